@@ -1,0 +1,56 @@
+//! "Did you mean": the nearest of a list of words.
+
+/// The word of `candidates` that `typed` most likely stands for, if one is close: at most one slip (a wrong, missing,
+/// extra or swapped character) for every three characters, ignoring case.
+#[must_use]
+pub fn nearest<'a>(typed: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let typed: Vec<char> = typed.chars().take(64).flat_map(char::to_lowercase).collect();
+    let allowed = (typed.len() / 3).max(1);
+    candidates
+        .into_iter()
+        .map(|word| (slips(&typed, &word.chars().flat_map(char::to_lowercase).collect::<Vec<_>>()), word))
+        .filter(|&(distance, word)| distance <= allowed && distance < word.chars().count())
+        .min_by_key(|&(distance, _)| distance)
+        .map(|(_, word)| word)
+}
+
+/// Optimal string alignment distance: insertions, deletions, substitutions and swaps of neighbours.
+fn slips(a: &[char], b: &[char]) -> usize {
+    let mut before_previous = vec![0; b.len() + 1];
+    let mut previous: Vec<usize> = (0..=b.len()).collect();
+    for (i, &ca) in a.iter().enumerate() {
+        let mut row = vec![i + 1];
+        for (j, &cb) in b.iter().enumerate() {
+            let substituted = previous[j] + usize::from(ca != cb);
+            let mut best = substituted.min(previous[j + 1] + 1).min(row[j] + 1);
+            if i > 0 && j > 0 && ca == b[j - 1] && a[i - 1] == cb {
+                best = best.min(before_previous[j - 1] + 1);
+            }
+            row.push(best);
+        }
+        before_previous = std::mem::replace(&mut previous, row);
+    }
+    previous[b.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_slip_in_three_characters_is_close() {
+        let types = ["FLYOVER", "FLYBY", "HOLD", "LAND"];
+        assert_eq!(nearest("FLYOVR", types), Some("FLYOVER"));
+        assert_eq!(nearest("flyvoer", types), Some("FLYOVER"));
+        assert_eq!(nearest("HODL", types), Some("HOLD"));
+        assert_eq!(nearest("LOITER", types), None);
+        assert_eq!(nearest("", types), None);
+    }
+
+    #[test]
+    fn a_swap_is_one_slip() {
+        assert_eq!(slips(&['a', 'b'], &['b', 'a']), 1);
+        assert_eq!(slips(&['a', 'b', 'c'], &['a', 'c']), 1);
+        assert_eq!(slips(&[], &['a']), 1);
+    }
+}

@@ -1,0 +1,22 @@
+//! Flight plans: what a pilot writes, uploads, stores and flies.
+//!
+//! Pure data and rules.
+
+pub mod builtin;
+pub mod estimate;
+pub mod format;
+pub mod review;
+pub mod validate;
+mod waypoint;
+
+pub use waypoint::{HoldPattern, Waypoint, WaypointType};
+
+/// The most waypoints a plan holds.
+pub const MAX_WAYPOINTS: usize = 30;
+
+/// An ordered list of at most [`MAX_WAYPOINTS`] waypoints; it never allocates, so the vehicle can copy it in flight.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct FlightPlan {
+    /// The waypoints in flight order.
+    pub waypoints: arrayvec::ArrayVec<Waypoint, MAX_WAYPOINTS>,
+}

@@ -1,0 +1,159 @@
+//! Plan files: one submodule a file format, all of them pure text ↔ [`PlanFile`].
+//!
+//! * [`Format::Toml`] is the project's own format: everything a [`PlanFile`] holds, units in the key names.
+//! * [`Format::CliText`] is Betaflight CLI text: the `waypoint` lines of a hand-written list or of a whole `diff all`.
+//!
+//! A reader reports every problem of a file with its place, and changes nothing; a writer says what it could not carry.
+
+mod cli_text;
+mod field;
+mod home;
+mod native_read;
+mod native_write;
+mod note;
+mod problem;
+mod setting;
+mod table;
+
+use strum::IntoEnumIterator as _;
+
+use super::FlightPlan;
+
+pub use field::degrees_e7;
+pub use home::{Home, HomeError};
+pub use note::{Note, NoteKind};
+pub use problem::{PlanError, Problems, report};
+pub use setting::setting_line;
+pub use table::table;
+
+/// A file format for plans. `Display` and `FromStr` use the names of `convert --from` and `--to`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::EnumString, strum::EnumIter)]
+#[strum(ascii_case_insensitive)]
+pub enum Format {
+    /// The project's own format, `*.toml`.
+    #[strum(serialize = "toml")]
+    Toml,
+    /// Betaflight CLI text, `*.txt` and standard input.
+    #[strum(serialize = "txt")]
+    CliText,
+}
+
+impl Format {
+    /// The format that a file name stands for: by its ending; `-` (standard input) is CLI text.
+    #[must_use]
+    pub fn from_file_name(name: &str) -> Option<Self> {
+        if name == "-" {
+            return Some(Self::CliText);
+        }
+        let (stem, ending) = name.rsplit_once('.')?;
+        if stem.is_empty() || ending.contains(['/', '\\']) {
+            return None;
+        }
+        ending.parse().ok()
+    }
+
+    /// What the format is, in words.
+    #[must_use]
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Toml => "betadeck plan",
+            Self::CliText => "Betaflight CLI text",
+        }
+    }
+
+    /// The file endings that are understood, for messages: `.toml, .txt`.
+    #[must_use]
+    pub fn endings() -> String {
+        Self::iter().map(|format| format!(".{format}")).collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// A plan and what a file says about it.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct PlanFile {
+    /// Name of the plan; the file's name without its ending when the file gives none.
+    pub name: String,
+    /// What the plan shows, for people; may be empty.
+    pub description: String,
+    /// Where the craft stands at boot, if the plan asks for a place.
+    pub home: Option<Home>,
+    /// Settings the plan is made for, as `name = value`, in the order in which they are applied.
+    pub settings: Vec<String>,
+    /// The waypoints.
+    pub plan: FlightPlan,
+    /// What the reader skipped.
+    pub notes: Vec<Note>,
+}
+
+/// A written file and what it does not carry.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Written {
+    /// The text of the file.
+    pub text: String,
+    /// One sentence for each thing that the format cannot hold.
+    pub lost: Vec<String>,
+}
+
+/// Reads a plan file.
+///
+/// `name` is the file's name as the user gave it: it heads the error messages and names a plan that has no name of
+/// its own.
+///
+/// # Errors
+///
+/// All problems of the file, in the order of their places.
+pub fn parse(name: &str, text: &str, format: Format) -> Result<PlanFile, Vec<PlanError>> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut problems = Problems::new(name, text);
+    let mut file = match format {
+        Format::Toml => native_read::read(text, &mut problems),
+        Format::CliText => cli_text::read(text, &mut problems),
+    };
+    let errors = problems.into_errors();
+    if !errors.is_empty() {
+        return Err(errors);
+    }
+    if file.name.is_empty() {
+        file.name = stem(name);
+    }
+    Ok(file)
+}
+
+/// Writes a plan file in its canonical form: reading it back gives the same plan, and writing that gives the same text.
+#[must_use]
+pub fn write(file: &PlanFile, format: Format) -> Written {
+    match format {
+        Format::Toml => native_write::write(file),
+        Format::CliText => cli_text::write(file),
+    }
+}
+
+/// The file's name without folders and ending; `plan` for standard input.
+fn stem(name: &str) -> String {
+    let base = name.rsplit(['/', '\\']).next().unwrap_or(name);
+    let stem = base.rsplit_once('.').map_or(base, |(stem, _)| stem);
+    if stem.is_empty() || stem == "-" { "plan".to_owned() } else { stem.to_owned() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn endings_choose_the_format() {
+        assert_eq!(Format::from_file_name("a/b.TOML"), Some(Format::Toml));
+        assert_eq!(Format::from_file_name("b.txt"), Some(Format::CliText));
+        assert_eq!(Format::from_file_name("-"), Some(Format::CliText));
+        assert_eq!(Format::from_file_name("square"), None);
+        assert_eq!(Format::from_file_name("dir.txt/square"), None);
+        assert_eq!(Format::from_file_name(".txt"), None);
+        assert_eq!(Format::endings(), ".toml, .txt");
+    }
+
+    #[test]
+    fn stem_names_a_nameless_plan() {
+        assert_eq!(stem("plans/guide-square.txt"), "guide-square");
+        assert_eq!(stem("-"), "plan");
+        assert_eq!(stem(".toml"), "plan");
+    }
+}

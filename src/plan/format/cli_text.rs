@@ -1,0 +1,363 @@
+//! Betaflight CLI text: `waypoint insert …`, `update`, `remove` and `clear` are carried out in the order of the lines,
+//! starting from an empty plan, as typing them would. Everything else is skipped and counted, so a whole `diff all`
+//! is a plan file too. Its `set` lines are not part of the plan: as a configuration they belong to `--settings`.
+
+use std::ops::Range;
+
+use super::field::{self, FieldError};
+use super::{Note, NoteKind, PlanFile, Problems, Written};
+use crate::geo::{Degrees7, LatLon};
+use crate::nearest::nearest;
+use crate::plan::{FlightPlan, MAX_WAYPOINTS, Waypoint};
+
+/// The values of `waypoint insert` and `waypoint update`, by name.
+const VALUES: [&str; 8] =
+    ["index", "latitude", "longitude", "altitude", "speed", "type", "duration", "pattern"];
+
+/// The sub-commands of `waypoint`.
+const OPERATIONS: [&str; 6] = ["insert", "update", "remove", "clear", "list", "status"];
+
+/// What the reader knows after some lines.
+struct Reader<'p, 'a> {
+    problems: &'p mut Problems<'a>,
+    waypoints: Vec<Waypoint>,
+    notes: Vec<Note>,
+    /// Where the first waypoint that does not fit is.
+    overflow: Option<Range<usize>>,
+}
+
+/// A word of a line and its byte range in the text.
+type Word<'a> = (&'a str, Range<usize>);
+
+/// Reads the text; problems are added to `problems`.
+pub(super) fn read(text: &str, problems: &mut Problems<'_>) -> PlanFile {
+    let mut reader = Reader { problems, waypoints: Vec::new(), notes: Vec::new(), overflow: None };
+    let mut start = 0;
+    for (index, line) in text.split_inclusive('\n').enumerate() {
+        reader.line(index + 1, line, start);
+        start += line.len();
+    }
+    let most = reader.waypoints.len();
+    if let Some(span) = reader.overflow.take() {
+        let hint = format!("a plan holds at most {MAX_WAYPOINTS} waypoints");
+        reader.problems.add(
+            span,
+            format!("waypoint {MAX_WAYPOINTS} does not fit: {most} are inserted"),
+            hint,
+        );
+    }
+    if reader.waypoints.is_empty() && reader.problems.is_empty() {
+        reader.note(NoteKind::NoWaypoints, 1);
+    }
+    let mut plan = FlightPlan::default();
+    plan.waypoints.extend(reader.waypoints.into_iter().take(MAX_WAYPOINTS));
+    PlanFile { plan, notes: reader.notes, ..PlanFile::default() }
+}
+
+impl Reader<'_, '_> {
+    fn line(&mut self, number: usize, line: &str, start: usize) {
+        let (code, comment) = line.split_once('#').map_or((line, false), |(code, _)| (code, true));
+        let words = words(code, start);
+        let Some((command, span)) = words.first() else {
+            if comment {
+                self.note(NoteKind::Comment, number);
+            }
+            return;
+        };
+        match command.to_ascii_lowercase().as_str() {
+            "waypoint" => self.waypoint(&words, start + code.trim_end().len()),
+            "set" => self.note(NoteKind::Setting, number),
+            other if nearest(other, ["waypoint"]).is_some() => self.problems.add(
+                span.clone(),
+                format!("{command} is not a command"),
+                "did you mean waypoint?",
+            ),
+            other => self.note(NoteKind::Command(other.to_owned()), number),
+        }
+    }
+
+    fn note(&mut self, kind: NoteKind, line: usize) {
+        match self.notes.iter_mut().find(|note| note.kind == kind) {
+            Some(note) => note.count += 1,
+            None => self.notes.push(Note { kind, count: 1, first_line: line }),
+        }
+    }
+
+    fn waypoint(&mut self, words: &[Word<'_>], line_end: usize) {
+        let Some((operation, span)) = words.get(1) else { return };
+        let arguments = &words[2..];
+        match operation.to_ascii_lowercase().as_str() {
+            "insert" => self.insert_or_update(arguments, line_end, true),
+            "update" => self.insert_or_update(arguments, line_end, false),
+            "remove" => self.remove(arguments, line_end),
+            "clear" => {
+                if self.no_more_than(0, arguments, "waypoint clear takes no value") {
+                    self.waypoints.clear();
+                    self.overflow = None;
+                }
+            }
+            "list" | "status" => {}
+            _ => self.problems.add(
+                span.clone(),
+                format!("{operation} is not an operation of waypoint"),
+                field::words_hint(operation, OPERATIONS.into_iter()),
+            ),
+        }
+    }
+
+    fn insert_or_update(&mut self, arguments: &[Word<'_>], line_end: usize, insert: bool) {
+        let before = self.problems.len();
+        let operation = if insert { "insert" } else { "update" };
+        if let Some(missing) = VALUES.get(arguments.len()) {
+            let values = VALUES.map(|name| format!("<{name}>")).join(" ");
+            self.problems.add(
+                line_end..line_end,
+                format!("the {missing} is missing: waypoint {operation} takes {} values", VALUES.len()),
+                format!("write waypoint {operation} {values}"),
+            );
+        }
+        let too_many = format!("waypoint {operation} takes {} values", VALUES.len());
+        self.no_more_than(VALUES.len(), arguments, &too_many);
+        let index = arguments.first().and_then(|word| self.index(word, insert));
+        let waypoint = Waypoint {
+            position: LatLon::new(
+                self.value(arguments.get(1), field::latitude),
+                self.value(arguments.get(2), field::longitude),
+            ),
+            alt_cm: self.value(arguments.get(3), field::altitude_cm),
+            speed_cms: self.value(arguments.get(4), field::speed_cms),
+            kind: self.value(arguments.get(5), field::waypoint_type),
+            duration_ds: self.value(arguments.get(6), field::duration_ds),
+            pattern: self.value(arguments.get(7), field::pattern),
+        };
+        if insert {
+            // A faulty waypoint still takes its place, so that the lines after it are not blamed for it.
+            let index = index.unwrap_or(self.waypoints.len());
+            self.waypoints.insert(index, waypoint);
+            if self.waypoints.len() > MAX_WAYPOINTS && self.overflow.is_none() {
+                self.overflow = arguments.first().map(|(_, span)| span.clone());
+            }
+        } else if let (Some(index), true) = (index, self.problems.len() == before) {
+            self.waypoints[index] = waypoint;
+        }
+    }
+
+    fn remove(&mut self, arguments: &[Word<'_>], line_end: usize) {
+        let Some(word) = arguments.first() else {
+            self.problems.add(line_end..line_end, "the index is missing", "write waypoint remove <index>");
+            return;
+        };
+        if self.no_more_than(1, arguments, "waypoint remove takes one value")
+            && let Some(index) = self.index(word, false)
+        {
+            self.waypoints.remove(index);
+            if self.waypoints.len() <= MAX_WAYPOINTS {
+                self.overflow = None;
+            }
+        }
+    }
+
+    /// An index into the waypoints so far; inserting may also name the place behind the last.
+    fn index(&mut self, (text, span): &Word<'_>, insert: bool) -> Option<usize> {
+        let count = self.waypoints.len();
+        let places = if insert { count + 1 } else { count };
+        match text.parse::<usize>() {
+            Ok(index) if index < places => return Some(index),
+            Ok(_) if places == 0 => self.problems.add(
+                span.clone(),
+                format!("there is no waypoint {text}: the plan is empty here"),
+                "waypoint insert 0 adds the first",
+            ),
+            Ok(_) => self.problems.add(
+                span.clone(),
+                format!("index {text} is out of range"),
+                format!("allowed: 0 to {} ({count} waypoints so far)", places - 1),
+            ),
+            Err(_) => self.problems.add(
+                span.clone(),
+                format!("index {text} is not a whole number"),
+                format!("allowed: 0 to {}", MAX_WAYPOINTS - 1),
+            ),
+        }
+        None
+    }
+
+    /// Reads one value; a missing one was already reported.
+    fn value<T: Default>(&mut self, word: Option<&Word<'_>>, read: fn(&str) -> Result<T, FieldError>) -> T {
+        let Some((text, span)) = word else { return T::default() };
+        read(text).unwrap_or_else(|error| {
+            self.problems.add(span.clone(), error.message, error.hint);
+            T::default()
+        })
+    }
+
+    fn no_more_than(&mut self, count: usize, arguments: &[Word<'_>], message: &str) -> bool {
+        let (Some((_, first)), Some((_, last))) = (arguments.get(count), arguments.last()) else {
+            return true;
+        };
+        self.problems.add(first.start..last.end, message, "remove the rest of the line");
+        false
+    }
+}
+
+/// The words of a line that starts at byte `start` of the text.
+fn words(line: &str, start: usize) -> Vec<Word<'_>> {
+    line.split_ascii_whitespace()
+        .map(|word| {
+            let at = start + (word.as_ptr() as usize - line.as_ptr() as usize);
+            (word, at..at + word.len())
+        })
+        .collect()
+}
+
+/// Writes what `waypoint list` prints: text that can be pasted into the CLI.
+pub(super) fn write(file: &PlanFile) -> Written {
+    let mut text = String::from("waypoint clear\n");
+    for (index, waypoint) in file.plan.waypoints.iter().enumerate() {
+        text.push_str(&insert_line(index, waypoint));
+        text.push('\n');
+    }
+    let mut lost = Vec::new();
+    if !file.description.is_empty() {
+        lost.push("the description".to_owned());
+    }
+    if let Some(home) = file.home {
+        lost.push(format!("the home position: fly with --home {home}"));
+    }
+    if !file.settings.is_empty() {
+        lost.push(format!(
+            "{} settings: type them as `set` lines in the CLI or fly with --settings",
+            file.settings.len()
+        ));
+    }
+    Written { text, lost }
+}
+
+/// The CLI line that inserts the waypoint.
+fn insert_line(index: usize, waypoint: &Waypoint) -> String {
+    let Waypoint { position, alt_cm, speed_cms, duration_ds, kind, pattern } = waypoint;
+    let (lat, lon) = (Degrees7(position.lat_e7), Degrees7(position.lon_e7));
+    format!("waypoint insert {index} {lat} {lon} {alt_cm} {speed_cms} {kind} {duration_ds} {pattern}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Format, parse, report, write};
+    use super::*;
+    use crate::plan::{HoldPattern, WaypointType};
+
+    fn read_text(text: &str) -> PlanFile {
+        parse("plan.txt", text, Format::CliText).unwrap_or_else(|errors| panic!("{}", report(&errors)))
+    }
+
+    fn headlines(text: &str) -> Vec<String> {
+        let errors = parse("plan.txt", text, Format::CliText).unwrap_err();
+        errors.iter().map(super::super::PlanError::headline).collect()
+    }
+
+    const TWO: &str = "waypoint clear\n\
+        waypoint insert 0 40.4640000 -79.5175000 5000 0 FLYOVER 0 ORBIT\n\
+        waypoint insert 1 -27.4900000 153.0100000 -150 1000 HOLD 600 FIGURE8\n";
+
+    #[test]
+    fn canonical_text_prints_byte_identically() {
+        let file = read_text(TWO);
+        assert_eq!(file.name, "plan");
+        assert_eq!(file.plan.waypoints[1].alt_cm, -150);
+        assert_eq!(file.plan.waypoints[1].pattern, HoldPattern::Figure8);
+        assert_eq!(write(&file, Format::CliText), Written { text: TWO.to_owned(), lost: vec![] });
+    }
+
+    #[test]
+    fn lines_are_carried_out_in_order() {
+        let file = read_text(&format!(
+            "{TWO}Waypoint INSERT 0 1 2 300 0 takeoff 0 none\r\n\
+             waypoint update 1 1.5 2 300 0 flyby 0 none # comment\n waypoint remove 2\nwaypoint list\nwaypoint\n"
+        ));
+        let kinds: Vec<_> = file.plan.waypoints.iter().map(|waypoint| waypoint.kind).collect();
+        assert_eq!(kinds, [WaypointType::Takeoff, WaypointType::Flyby]);
+        assert_eq!(read_text(&format!("{TWO}waypoint clear")).plan, FlightPlan::default());
+    }
+
+    #[test]
+    fn other_lines_are_counted_by_kind() {
+        let file = read_text(&format!(
+            "# version\nbatch start\nfeature GPS\nfeature -LED_STRIP\n\n# master\nset ap_max_angle = 25\n{TWO}save\n"
+        ));
+        let notes: Vec<_> = file.notes.iter().map(ToString::to_string).collect();
+        assert_eq!(notes[0], "Skipped 2 comment lines");
+        assert_eq!(notes[1], "Skipped 1 `batch` line (first: line 2)");
+        assert_eq!(notes[2], "Skipped 2 `feature` lines (first: line 3)");
+        assert!(notes[3].starts_with("Skipped 1 `set` line (first: line 7)"));
+        assert!(notes[3].contains("--settings"));
+        assert_eq!(notes[4], "Skipped 1 `save` line (first: line 11)");
+        assert_eq!(read_text("save").notes.last().unwrap().kind, NoteKind::NoWaypoints);
+    }
+
+    #[test]
+    fn all_problems_are_reported_with_their_places() {
+        let text = "waypoint insert 0 4O.4640000 -79.5175000 5000 0 FLYOVR 0 ORBIT\n\
+                    waypoint insert 1 40.4 -790 5000 70000 FLYBY 0 CIRCLE\n\
+                    waypoint insert 7 40.4 -79 5000 0 FLYBY 0 NONE\n\
+                    waypont insert 2 1 2 3 0 LAND 0 NONE\n\
+                    waypoint inser 2 1 2 3 0 LAND 0 NONE\n\
+                    waypoint insert 2 1 2 3 0 LAND 0\n\
+                    waypoint insert 2 1 2 3 0 LAND 0 NONE extra words\n\
+                    waypoint remove x\n\
+                    waypoint remove\n";
+        assert_eq!(
+            headlines(text),
+            [
+                "plan.txt:1:19: latitude 4O.4640000 is not a number",
+                "plan.txt:1:49: FLYOVR is not a waypoint type",
+                "plan.txt:2:24: longitude -790 is out of range",
+                "plan.txt:2:34: speed 70000 is out of range",
+                "plan.txt:2:48: CIRCLE is not a hold pattern",
+                "plan.txt:3:17: index 7 is out of range",
+                "plan.txt:4:1: waypont is not a command",
+                "plan.txt:5:10: inser is not an operation of waypoint",
+                "plan.txt:6:33: the pattern is missing: waypoint insert takes 8 values",
+                "plan.txt:7:39: waypoint insert takes 8 values",
+                "plan.txt:8:17: index x is not a whole number",
+                "plan.txt:9:16: the index is missing",
+            ]
+        );
+    }
+
+    #[test]
+    fn the_report_shows_line_caret_range_and_guess() {
+        let text = "waypoint clear\nwaypoint insert 0 1 2 3 0 FLYOVR 0 NONE\n";
+        let errors = parse("plan.txt", text, Format::CliText).unwrap_err();
+        assert_eq!(
+            report(&errors),
+            "plan.txt:2:27: FLYOVR is not a waypoint type\n  |\n\
+             2 | waypoint insert 0 1 2 3 0 FLYOVR 0 NONE\n  \
+             |                           ^^^^^^ did you mean FLYOVER? allowed: FLYOVER, FLYBY, HOLD, LAND, TAKEOFF, \
+             ALT_CHANGE, DELAY, YAW_RATE"
+        );
+    }
+
+    #[test]
+    fn the_thirty_first_waypoint_is_refused_once() {
+        let lines = |count: usize| {
+            (0..count).map(|i| format!("waypoint insert {i} 1 2 3 0 FLYBY 0 NONE\n")).collect::<String>()
+        };
+        assert_eq!(read_text(&lines(30)).plan.waypoints.len(), 30);
+        assert_eq!(headlines(&lines(33)), ["plan.txt:31:17: waypoint 30 does not fit: 33 are inserted"]);
+        assert_eq!(read_text(&format!("{}waypoint remove 3", lines(31))).plan.waypoints.len(), 30);
+        assert_eq!(read_text(&format!("{}waypoint clear", lines(40))).plan.waypoints.len(), 0);
+    }
+
+    #[test]
+    fn what_the_text_cannot_carry_is_listed() {
+        let file = PlanFile {
+            description: "d".to_owned(),
+            home: "40,-79,300".parse().ok(),
+            settings: vec!["ap_max_angle = 25".to_owned()],
+            ..PlanFile::default()
+        };
+        let lost = write(&file, Format::CliText).lost;
+        assert_eq!(lost.len(), 3);
+        assert!(lost[1].contains("--home 40.0000000,-79.0000000,300"));
+    }
+}

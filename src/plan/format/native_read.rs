@@ -1,0 +1,384 @@
+//! Reading the project's own format: TOML whose key names carry the units. Unknown keys are refused, and all problems
+//! are found in one pass.
+
+use std::ops::Range;
+
+use toml::Spanned;
+use toml::de::{DeString, DeTable, DeValue};
+
+use super::field::{self, FieldError};
+use super::home::{self, Home};
+use super::setting::setting_line;
+use super::{PlanFile, Problems};
+use crate::geo::LatLon;
+use crate::plan::{FlightPlan, HoldPattern, MAX_WAYPOINTS, Waypoint, WaypointType};
+
+/// Keys of the whole file.
+const FILE_KEYS: &[&str] = &["name", "description", "settings", "home", "waypoint"];
+
+/// Keys of `[home]`.
+const HOME_KEYS: &[&str] = &["lat_deg", "lon_deg", "alt_amsl_m"];
+
+/// Keys of `[[waypoint]]`.
+const WAYPOINT_KEYS: &[&str] =
+    &["type", "lat_deg", "lon_deg", "alt_m", "speed_mps", "yaw_rate_dps", "duration_s", "pattern"];
+
+/// A value with its place.
+type Value<'i> = Spanned<DeValue<'i>>;
+
+/// A table being read: which keys it may have, and where it is.
+struct Table<'t, 'i> {
+    /// What it is, for messages: `waypoint 3`.
+    what: String,
+    entries: &'t DeTable<'i>,
+    span: Range<usize>,
+}
+
+/// Reads the text; problems are added to `problems`.
+pub(super) fn read(text: &str, problems: &mut Problems<'_>) -> PlanFile {
+    let (document, syntax) = DeTable::parse_recoverable(text);
+    for error in &syntax {
+        let message = error.message().replace('\n', ", ");
+        problems.add(error.span().unwrap_or(0..0), message, "this is not valid TOML");
+    }
+    if !syntax.is_empty() {
+        // What the parser salvaged would only yield follow-up problems.
+        return PlanFile::default();
+    }
+    let span = document.span();
+    let file = Table { what: "the plan file".to_owned(), entries: document.get_ref(), span };
+    file.refuse_unknown(FILE_KEYS, problems);
+    PlanFile {
+        name: file.string("name", problems).unwrap_or_default(),
+        description: file.string("description", problems).unwrap_or_default(),
+        home: file.get("home").and_then(|value| read_home(value, problems)),
+        settings: file.get("settings").map(|value| read_settings(value, problems)).unwrap_or_default(),
+        plan: file.get("waypoint").map(|value| read_waypoints(value, problems)).unwrap_or_default(),
+        notes: Vec::new(),
+    }
+}
+
+fn read_home(value: &Value<'_>, problems: &mut Problems<'_>) -> Option<Home> {
+    let table = Table::new("home".to_owned(), value, problems)?;
+    table.refuse_unknown(HOME_KEYS, problems);
+    let lat = table.required("lat_deg", problems).and_then(|v| number(v, field::latitude, problems));
+    let lon = table.required("lon_deg", problems).and_then(|v| number(v, field::longitude, problems));
+    let amsl = |text: &str| {
+        home::amsl_m(text).map_err(|message| FieldError { message, hint: home::AMSL_HINT.to_owned() })
+    };
+    let amsl_m = table.get("alt_amsl_m").and_then(|value| number(value, amsl, problems));
+    Some(Home { position: LatLon::new(lat?, lon?), amsl_m })
+}
+
+fn read_settings(value: &Value<'_>, problems: &mut Problems<'_>) -> Vec<String> {
+    let DeValue::Array(lines) = value.get_ref() else {
+        problems.add(value.span(), "settings is not a list", "write settings = [\"ap_max_angle = 25\"]");
+        return Vec::new();
+    };
+    let mut settings = Vec::new();
+    for line in lines.iter() {
+        match line.get_ref().as_str().and_then(setting_line) {
+            Some(setting) => settings.push(setting),
+            None => problems.add(
+                line.span(),
+                "this is not a setting",
+                "write a text of name and value, such as \"ap_max_angle = 25\"",
+            ),
+        }
+    }
+    settings
+}
+
+fn read_waypoints(value: &Value<'_>, problems: &mut Problems<'_>) -> FlightPlan {
+    let mut plan = FlightPlan::default();
+    let DeValue::Array(tables) = value.get_ref() else {
+        problems.add(
+            value.span(),
+            "waypoint is not a list of tables",
+            "head each waypoint with [[waypoint]]",
+        );
+        return plan;
+    };
+    for (index, value) in tables.iter().enumerate() {
+        if index == MAX_WAYPOINTS {
+            problems.add(
+                value.span(),
+                format!("waypoint {index} does not fit: the file has {}", tables.len()),
+                format!("a plan holds at most {MAX_WAYPOINTS} waypoints"),
+            );
+        }
+        if let Some(table) = Table::new(format!("waypoint {index}"), value, problems) {
+            let waypoint = read_waypoint(&table, problems);
+            // Full: the problem above stands for all that follow.
+            let _ = plan.waypoints.try_push(waypoint);
+        }
+    }
+    plan
+}
+
+fn read_waypoint(table: &Table<'_, '_>, problems: &mut Problems<'_>) -> Waypoint {
+    table.refuse_unknown(WAYPOINT_KEYS, problems);
+    let kind = table.required("type", problems).and_then(|value| word(value, field::waypoint_type, problems));
+    let is_yaw_rate = kind == Some(WaypointType::YawRate);
+    // What a record without a known type needs cannot be said.
+    let needs_place = kind.is_some_and(WaypointType::uses_position);
+    let needs_altitude = kind.is_some_and(|kind| kind.is_positional() || kind == WaypointType::AltChange);
+    let speed_key = if is_yaw_rate { "yaw_rate_dps" } else { "speed_mps" };
+    let wrong_key = if is_yaw_rate { "speed_mps" } else { "yaw_rate_dps" };
+    if let (Some(kind), Some(value)) = (kind, table.get(wrong_key)) {
+        problems.add(
+            value.span(),
+            format!("a {kind} waypoint has no {wrong_key}"),
+            format!("write {speed_key}"),
+        );
+    }
+    let needs_duration = kind == Some(WaypointType::Delay);
+    let mut read = |key, needed: bool| {
+        if needed { table.required(key, problems) } else { table.get(key) }
+    };
+    let (lat, lon) = (read("lat_deg", needs_place), read("lon_deg", needs_place));
+    let alt = read("alt_m", needs_altitude);
+    let speed = read(speed_key, is_yaw_rate);
+    let duration = read("duration_s", needs_duration);
+    let pattern = table.get("pattern").and_then(|value| word(value, field::pattern, problems));
+    let speed_value = if is_yaw_rate { yaw_rate } else { speed_cms };
+    Waypoint {
+        position: LatLon::new(
+            lat.and_then(|value| number(value, field::latitude, problems)).unwrap_or_default(),
+            lon.and_then(|value| number(value, field::longitude, problems)).unwrap_or_default(),
+        ),
+        alt_cm: alt.and_then(|value| number(value, altitude_cm, problems)).unwrap_or_default(),
+        speed_cms: speed.and_then(|value| number(value, speed_value, problems)).unwrap_or_default(),
+        duration_ds: duration.and_then(|value| number(value, duration_ds, problems)).unwrap_or_default(),
+        kind: kind.unwrap_or_default(),
+        pattern: pattern.unwrap_or(HoldPattern::None),
+    }
+}
+
+fn altitude_cm(text: &str) -> Result<i32, FieldError> {
+    let value = scaled("alt_m", text, 100.0, f64::from(i32::MIN), f64::from(i32::MAX), "m above home")?;
+    Ok(value as i32)
+}
+
+fn speed_cms(text: &str) -> Result<u16, FieldError> {
+    Ok(scaled("speed_mps", text, 100.0, 0.0, f64::from(u16::MAX), "m/s (0 = default)")? as u16)
+}
+
+fn yaw_rate(text: &str) -> Result<u16, FieldError> {
+    Ok(scaled("yaw_rate_dps", text, 1.0, 0.0, f64::from(u16::MAX), "deg/s (0 = no cap)")? as u16)
+}
+
+fn duration_ds(text: &str) -> Result<u16, FieldError> {
+    Ok(scaled("duration_s", text, 10.0, 0.0, f64::from(u16::MAX), "s")? as u16)
+}
+
+/// A number times `factor`, rounded to the whole number that the craft stores.
+fn scaled(key: &str, text: &str, factor: f64, low: f64, high: f64, unit: &str) -> Result<f64, FieldError> {
+    let value = text.parse::<f64>().unwrap_or(f64::NAN);
+    let stored = (value * factor).round();
+    if (low..=high).contains(&stored) {
+        return Ok(stored);
+    }
+    let problem = if value.is_nan() { "is not a number" } else { "is out of range" };
+    Err(FieldError {
+        message: format!("{key} {text} {problem}"),
+        hint: format!("allowed: {} to {} {unit}", low / factor, high / factor),
+    })
+}
+
+/// A number, read from its decimal text.
+fn number<T>(
+    value: &Value<'_>,
+    read: impl FnOnce(&str) -> Result<T, FieldError>,
+    problems: &mut Problems<'_>,
+) -> Option<T> {
+    let text = match value.get_ref() {
+        DeValue::Integer(integer) if integer.radix() == 10 => integer.as_str(),
+        DeValue::Float(float) => float.as_str(),
+        other => {
+            let what = other.type_str();
+            problems.add(value.span(), format!("a number is expected here, not a TOML {what}"), "write 12.5");
+            return None;
+        }
+    };
+    // Powers of ten are TOML but not decimal degrees.
+    let plain;
+    let text = match text.parse::<f64>() {
+        Ok(parsed) if text.contains(['e', 'E']) && parsed.is_finite() => {
+            plain = format!("{parsed}");
+            plain.as_str()
+        }
+        _ => text,
+    };
+    read(text).map_err(|error| problems.add(value.span(), error.message, error.hint)).ok()
+}
+
+/// A keyword.
+fn word<T>(
+    value: &Value<'_>,
+    read: impl FnOnce(&str) -> Result<T, FieldError>,
+    problems: &mut Problems<'_>,
+) -> Option<T> {
+    let Some(text) = value.get_ref().as_str() else {
+        let what = value.get_ref().type_str();
+        problems.add(value.span(), format!("a word is expected here, not a TOML {what}"), "write \"HOLD\"");
+        return None;
+    };
+    read(text).map_err(|error| problems.add(value.span(), error.message, error.hint)).ok()
+}
+
+impl<'t, 'i> Table<'t, 'i> {
+    fn new(what: String, value: &'t Value<'i>, problems: &mut Problems<'_>) -> Option<Self> {
+        match value.get_ref() {
+            DeValue::Table(entries) => Some(Self { what, entries, span: value.span() }),
+            other => {
+                problems.add(value.span(), format!("{what} is a {}, not a table", other.type_str()), "");
+                None
+            }
+        }
+    }
+
+    fn entry(&self, key: &str) -> Option<(&'t Spanned<DeString<'i>>, &'t Value<'i>)> {
+        self.entries.iter().find(|(name, _)| name.get_ref() == key)
+    }
+
+    fn get(&self, key: &str) -> Option<&'t Value<'i>> {
+        self.entry(key).map(|(_, value)| value)
+    }
+
+    fn required(&self, key: &str, problems: &mut Problems<'_>) -> Option<&'t Value<'i>> {
+        let value = self.get(key);
+        if value.is_none() {
+            problems.add(
+                self.span.clone(),
+                format!("{key} is missing in {}", self.what),
+                format!("add {key} = …"),
+            );
+        }
+        value
+    }
+
+    fn string(&self, key: &str, problems: &mut Problems<'_>) -> Option<String> {
+        let value = self.get(key)?;
+        let text = value.get_ref().as_str();
+        if text.is_none() {
+            problems.add(value.span(), format!("{key} is not a text"), format!("write {key} = \"…\""));
+        }
+        text.map(str::to_owned)
+    }
+
+    fn refuse_unknown(&self, known: &'static [&'static str], problems: &mut Problems<'_>) {
+        for (key, _) in self.entries.iter() {
+            let name = key.get_ref();
+            if !known.contains(&name.as_ref()) {
+                problems.add(
+                    key.span(),
+                    format!("{name} is not a key of {}", self.what),
+                    field::words_hint(name, known.iter().copied()),
+                );
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Format, PlanError, parse, report, write};
+    use super::*;
+
+    const SMALL: &str = r#"name = "small"
+description = "Two points"
+settings = [
+  "ap_max_angle = 25",
+]
+
+[home]
+lat_deg = 40.4635000
+lon_deg = -79.5182000
+alt_amsl_m = 300
+
+[[waypoint]]
+type = "TAKEOFF"
+alt_m = 10
+
+[[waypoint]]
+type = "YAW_RATE"
+yaw_rate_dps = 45
+
+[[waypoint]]
+type = "HOLD"
+lat_deg = 40.4640000
+lon_deg = -79.5175000
+alt_m = -0.5
+speed_mps = 5.25
+duration_s = 30.5
+pattern = "FIGURE8"
+"#;
+
+    fn read_text(text: &str) -> PlanFile {
+        parse("small.toml", text, Format::Toml).unwrap_or_else(|errors| panic!("{}", report(&errors)))
+    }
+
+    fn headlines(text: &str) -> Vec<String> {
+        parse("p.toml", text, Format::Toml).unwrap_err().iter().map(PlanError::headline).collect()
+    }
+
+    #[test]
+    fn canonical_text_prints_byte_identically() {
+        let file = read_text(SMALL);
+        let hold = file.plan.waypoints[2];
+        assert_eq!((hold.alt_cm, hold.speed_cms, hold.duration_ds), (-50, 525, 305));
+        assert_eq!(file.plan.waypoints[1].speed_cms, 45);
+        assert_eq!(file.settings, ["ap_max_angle = 25"]);
+        assert_eq!(write(&file, Format::Toml).text, SMALL);
+    }
+
+    #[test]
+    fn numbers_may_be_written_in_several_ways() {
+        let file = read_text(
+            "settings = ['set  a=1']\nwaypoint = [{type='flyby', lat_deg=40.46400009, lon_deg=-7.95e1, alt_m=1_0}]",
+        );
+        assert_eq!(file.name, "small");
+        assert_eq!(file.settings, ["a = 1"]);
+        assert_eq!(file.plan.waypoints[0].position, LatLon::new(404_640_000, -795_000_000));
+        assert_eq!(file.plan.waypoints[0].alt_cm, 1000);
+    }
+
+    #[test]
+    fn all_problems_are_reported_with_their_places() {
+        let text = "nmae = 'x'\nsettings = [5, 'a b']\n[home]\nlat_deg = 95\n[[waypoint]]\ntype = 'FLYOVR'\n\
+                    [[waypoint]]\ntype = 'FLYBY'\nlat_deg = true\nlon_deg = 1\nalt_m = nan\nspeed_mps = 700\n\
+                    yaw_rate_dps = 3\npattern = 8\n[[waypoint]]\nlat = 5\n";
+        assert_eq!(
+            headlines(text),
+            [
+                "p.toml:1:1: nmae is not a key of the plan file",
+                "p.toml:2:13: this is not a setting",
+                "p.toml:2:16: this is not a setting",
+                "p.toml:3:1: lon_deg is missing in home",
+                "p.toml:4:11: latitude 95 is out of range",
+                "p.toml:6:8: FLYOVR is not a waypoint type",
+                "p.toml:9:11: a number is expected here, not a TOML boolean",
+                "p.toml:11:9: alt_m nan is not a number",
+                "p.toml:12:13: speed_mps 700 is out of range",
+                "p.toml:13:16: a FLYBY waypoint has no yaw_rate_dps",
+                "p.toml:14:11: a word is expected here, not a TOML integer",
+                "p.toml:15:1: type is missing in waypoint 2",
+                "p.toml:16:1: lat is not a key of waypoint 2",
+            ]
+        );
+    }
+
+    #[test]
+    fn syntax_errors_have_a_place() {
+        let all = headlines("name = 'x'\n[[waypoint]]\nlat_deg = 4O.4\nalt_m = \n");
+        assert!(all[0].starts_with("p.toml:3:1"), "{all:?}");
+        assert!(all.len() >= 2, "{all:?}");
+    }
+
+    #[test]
+    fn the_thirty_first_waypoint_is_refused_once() {
+        let text = "[[waypoint]]\ntype='DELAY'\nduration_s=1\n".repeat(32);
+        assert_eq!(headlines(&text), ["p.toml:91:1: waypoint 30 does not fit: the file has 32"]);
+    }
+}

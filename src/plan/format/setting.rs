@@ -1,0 +1,38 @@
+//! A setting as one line of text.
+
+/// A line `name = value`, `set name = value` or `name=value` in its canonical form `name = value`; `None` when it is
+/// none of them, or would not survive the CLI it goes through.
+#[must_use]
+pub fn setting_line(line: &str) -> Option<String> {
+    let line = line.trim();
+    let line = match line.get(..4) {
+        Some(prefix) if prefix.eq_ignore_ascii_case("set ") => line[4..].trim_start(),
+        _ => line,
+    };
+    let (name, value) = line.split_once('=')?;
+    let (name, value) = (name.trim(), value.trim());
+    let is_name = !name.is_empty() && name.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_');
+    // The CLI cuts a line at a `#`.
+    let is_value = !value.is_empty() && !value.contains(|c: char| c.is_control() || c == '#');
+    (is_name && is_value).then(|| format!("{name} = {value}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_get_their_canonical_form() {
+        for line in ["a_1=5", " set a_1 = 5 ", "SET  a_1=5", "a_1 =5"] {
+            assert_eq!(setting_line(line).as_deref(), Some("a_1 = 5"), "{line}");
+        }
+        assert_eq!(setting_line("name = two words").as_deref(), Some("name = two words"));
+    }
+
+    #[test]
+    fn what_the_cli_would_not_take_is_refused() {
+        for line in ["", "a", "a =", "= 5", "a b = 5", "a = 5 # five", "a = 5\nsave", "é = 1"] {
+            assert_eq!(setting_line(line), None, "{line}");
+        }
+    }
+}

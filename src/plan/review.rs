@@ -1,0 +1,201 @@
+//! What is worth knowing about a plan before it flies: why the craft would refuse it, and what it may not do as expected.
+
+use std::fmt;
+
+use crate::geo::{LatLon, distance_bearing};
+
+use super::estimate::Assumptions;
+use super::validate::{PlanFault, check_plan};
+use super::{FlightPlan, Waypoint, WaypointType};
+
+/// Something found in a plan.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Finding {
+    /// The craft refuses the plan.
+    Fault(PlanFault),
+    /// The craft refuses the plan because of the fence.
+    OutsideFence {
+        /// The waypoint.
+        index: usize,
+        /// Its distance from home, m.
+        distance_m: f64,
+        /// The fence, m.
+        limit_m: f64,
+    },
+    /// Waypoints behind a LAND or an endless HOLD.
+    NeverFlown {
+        /// The waypoint that ends the mission.
+        index: usize,
+        /// What it is.
+        kind: WaypointType,
+    },
+    /// A modifier with no place behind it.
+    NothingToModify {
+        /// The waypoint.
+        index: usize,
+        /// What it is.
+        kind: WaypointType,
+    },
+    /// The leg is flown slower than it asks for.
+    SpeedLimited {
+        /// The waypoint.
+        index: usize,
+        /// What it asks for, m/s.
+        speed_mps: f64,
+        /// The limit, m/s.
+        limit_mps: f64,
+    },
+    /// The mission ends in the air.
+    StaysInTheAir,
+}
+
+impl Finding {
+    /// Whether the craft refuses the plan because of it.
+    #[must_use]
+    pub fn is_refusal(&self) -> bool {
+        matches!(self, Self::Fault(_) | Self::OutsideFence { .. })
+    }
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Fault(fault) => write!(f, "refused: {fault}"),
+            Self::OutsideFence { index, distance_m, limit_m } => write!(
+                f,
+                "refused: waypoint {index} is {distance_m:.0} m from home, the fence \
+                 (ap_max_distance_from_home) is {limit_m:.0} m"
+            ),
+            Self::NeverFlown { index, kind: WaypointType::Land } => {
+                write!(f, "waypoint {index} lands: the waypoints behind it are never flown")
+            }
+            Self::NeverFlown { index, .. } => {
+                write!(
+                    f,
+                    "waypoint {index} holds forever (duration 0): the waypoints behind it are never flown"
+                )
+            }
+            Self::NothingToModify { index, kind } => {
+                write!(f, "waypoint {index} ({kind}) has no effect: no place follows it")
+            }
+            Self::SpeedLimited { index, speed_mps, limit_mps } => write!(
+                f,
+                "waypoint {index} asks for {speed_mps} m/s; ap_max_velocity limits it to {limit_mps} m/s"
+            ),
+            Self::StaysInTheAir => {
+                f.write_str("the plan does not end in LAND: the craft stays in the air at its end")
+            }
+        }
+    }
+}
+
+/// All findings, refusals first.
+#[must_use]
+pub fn review(plan: &FlightPlan, home: LatLon, assumptions: &Assumptions) -> Vec<Finding> {
+    let waypoints = &plan.waypoints;
+    if let Err(fault) = check_plan(plan) {
+        return vec![Finding::Fault(fault)];
+    }
+    let mut findings: Vec<Finding> = Vec::new();
+    if let Some(limit_m) = assumptions.fence_m {
+        findings.extend(
+            waypoints.iter().enumerate().filter(|(_, waypoint)| waypoint.kind.uses_position()).filter_map(
+                |(index, waypoint)| {
+                    let (distance_m, _) = distance_bearing(home, waypoint.position);
+                    (distance_m > limit_m).then_some(Finding::OutsideFence { index, distance_m, limit_m })
+                },
+            ),
+        );
+    }
+    let last_place = waypoints.iter().rposition(|waypoint| waypoint.kind.is_positional());
+    let end = waypoints.iter().position(ends_the_mission);
+    if let Some(index) = end.filter(|&index| last_place.is_some_and(|last| last > index)) {
+        findings.push(Finding::NeverFlown { index, kind: waypoints[index].kind });
+    }
+    for (index, waypoint) in waypoints.iter().enumerate() {
+        let modifies_a_leg = matches!(waypoint.kind, WaypointType::AltChange | WaypointType::Delay);
+        if modifies_a_leg && last_place.is_none_or(|last| last < index) {
+            findings.push(Finding::NothingToModify { index, kind: waypoint.kind });
+        }
+        let speed_mps = f64::from(waypoint.speed_cms) / 100.0;
+        if waypoint.kind.is_positional() && speed_mps > assumptions.max_velocity_mps {
+            let limit_mps = assumptions.max_velocity_mps;
+            findings.push(Finding::SpeedLimited { index, speed_mps, limit_mps });
+        }
+    }
+    if !waypoints.iter().any(|waypoint| waypoint.kind == WaypointType::Land) {
+        findings.push(Finding::StaysInTheAir);
+    }
+    findings
+}
+
+fn ends_the_mission(waypoint: &Waypoint) -> bool {
+    match waypoint.kind {
+        WaypointType::Land => true,
+        WaypointType::Hold => waypoint.duration_ds == 0,
+        WaypointType::Flyover
+        | WaypointType::Flyby
+        | WaypointType::Takeoff
+        | WaypointType::AltChange
+        | WaypointType::Delay
+        | WaypointType::YawRate => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HOME: LatLon = LatLon::new(404_635_000, -795_182_000);
+
+    fn say(waypoints: &[(WaypointType, u16, u16)], fence_m: Option<f64>) -> Vec<String> {
+        let mut plan = FlightPlan::default();
+        plan.waypoints.extend(waypoints.iter().map(|&(kind, speed_cms, duration_ds)| Waypoint {
+            position: LatLon::new(404_648_508, -795_182_000),
+            speed_cms,
+            duration_ds,
+            kind,
+            ..Waypoint::default()
+        }));
+        let assumptions = Assumptions { fence_m, ..Assumptions::default() };
+        review(&plan, HOME, &assumptions).iter().map(ToString::to_string).collect()
+    }
+
+    #[test]
+    fn a_sound_plan_has_no_findings() {
+        assert!(say(&[(WaypointType::Flyover, 500, 0), (WaypointType::Land, 0, 0)], None).is_empty());
+    }
+
+    #[test]
+    fn refusals_are_named() {
+        assert_eq!(say(&[], None), ["refused: the plan has no waypoints: upload one"]);
+        let fence = say(&[(WaypointType::Land, 0, 0)], Some(100.0));
+        assert_eq!(
+            fence,
+            ["refused: waypoint 0 is 150 m from home, the fence (ap_max_distance_from_home) is 100 m"]
+        );
+        assert!(Finding::OutsideFence { index: 0, distance_m: 2.0, limit_m: 1.0 }.is_refusal());
+    }
+
+    #[test]
+    fn surprises_are_named() {
+        let all = say(
+            &[
+                (WaypointType::Hold, 5000, 0),
+                (WaypointType::Flyover, 0, 0),
+                (WaypointType::YawRate, 5000, 0),
+                (WaypointType::Delay, 0, 10),
+            ],
+            None,
+        );
+        assert_eq!(
+            all,
+            [
+                "waypoint 0 holds forever (duration 0): the waypoints behind it are never flown",
+                "waypoint 0 asks for 50 m/s; ap_max_velocity limits it to 10 m/s",
+                "waypoint 3 (DELAY) has no effect: no place follows it",
+                "the plan does not end in LAND: the craft stays in the air at its end",
+            ]
+        );
+    }
+}

@@ -1,0 +1,145 @@
+//! The cables between the airframe, its sensors and the flight controller: plain data that neither side owns.
+//!
+//! Frames: world ENU (x east, y north, z up); body FLU (x forward, y left, z up); quaternions are body → world,
+//! Hamilton. All SI. A measurement that did not arrive with this frame is `None`.
+
+use nalgebra::{UnitQuaternion, Vector3};
+
+/// Simulated time since boot in whole microseconds: the only time the core knows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Hash)]
+pub struct SimTime(pub u64);
+
+impl SimTime {
+    /// The time of boot.
+    pub const ZERO: Self = Self(0);
+
+    /// A time from seconds, rounded to the microsecond; negative or non-finite values give zero.
+    #[must_use]
+    pub fn from_secs_f64(seconds: f64) -> Self {
+        Self((seconds * 1e6).round() as u64)
+    }
+
+    /// Seconds since boot, the nearest to the exact quotient: 100 000 µs is the number that `0.1` is.
+    #[must_use]
+    pub fn as_secs_f64(self) -> f64 {
+        self.0 as f64 / 1e6
+    }
+
+    /// Seconds from `earlier` to this time; zero when `earlier` is later.
+    #[must_use]
+    pub fn seconds_since(self, earlier: Self) -> f64 {
+        self.0.saturating_sub(earlier.0) as f64 / 1e6
+    }
+}
+
+/// Normalised motor commands M1…M4 (rear right, front right, rear left, front left), 0…1.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct MotorCommand(pub [f64; 4]);
+
+/// What the sensors delivered at one instant.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SensorFrame {
+    /// When the inertial samples were taken.
+    pub time: SimTime,
+    /// Body rates, FLU, rad/s.
+    pub rate_flu: Vector3<f64>,
+    /// Specific force, FLU, m/s²: +9.81 on z at rest.
+    pub specific_force_flu: Vector3<f64>,
+    /// Static pressure, Pa, when a new sample arrived.
+    pub pressure_pa: Option<f64>,
+    /// Magnetic field, FLU, in the field's own units (only the direction matters), when a new sample arrived.
+    pub mag_flu: Option<Vector3<f64>>,
+    /// A navigation solution, when a new one arrived; a solution without a fix is also a message.
+    pub gps: Option<GpsSample>,
+    /// Battery, when a new sample arrived.
+    pub battery: Option<BatterySample>,
+    /// True attitude, body FLU → ENU, for a firmware that is told to trust it; `None` when the source has none.
+    pub truth_attitude: Option<UnitQuaternion<f64>>,
+}
+
+impl Default for SensorFrame {
+    /// At rest, level, facing east, nothing new.
+    fn default() -> Self {
+        Self {
+            time: SimTime::ZERO,
+            rate_flu: Vector3::zeros(),
+            specific_force_flu: Vector3::new(0.0, 0.0, crate::geo::GRAVITY),
+            pressure_pa: None,
+            mag_flu: None,
+            gps: None,
+            battery: None,
+            truth_attitude: None,
+        }
+    }
+}
+
+/// One GPS navigation solution.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct GpsSample {
+    /// Whether the solution is a 3-D fix; without one the position fields are meaningless.
+    pub fix: bool,
+    /// Satellites used.
+    pub sats: u8,
+    /// Position, degrees × 10⁷.
+    pub position: crate::geo::LatLon,
+    /// Altitude above mean sea level, cm.
+    pub alt_amsl_cm: i32,
+    /// Velocity east, north, up, m/s.
+    pub vel_enu: Vector3<f64>,
+    /// Horizontal dilution of precision; 0 = not reported.
+    pub hdop: f64,
+    /// Horizontal accuracy estimate, m.
+    pub horizontal_accuracy_m: f64,
+    /// Vertical accuracy estimate, m.
+    pub vertical_accuracy_m: f64,
+    /// Age of the solution when it was delivered, s: receivers stamp the instant their solution describes.
+    pub latency_s: f64,
+}
+
+/// One battery sample.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct BatterySample {
+    /// Voltage at the terminals, V.
+    pub voltage_v: f64,
+    /// Current drawn, A.
+    pub current_a: f64,
+    /// Charge drawn since the start, mAh.
+    pub drawn_mah: f64,
+}
+
+/// Number of RC channels on the wire.
+pub const RC_CHANNELS: usize = 16;
+
+/// Who sent an RC frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::EnumCount, strum::EnumIter)]
+#[strum(serialize_all = "lowercase")]
+pub enum RcSource {
+    /// UDP 9004 (scripts, joysticks).
+    Udp,
+    /// `MSP_SET_RAW_RC`.
+    Msp,
+    /// The virtual sticks of the user interface and of the scripted pilot.
+    Sticks,
+}
+
+/// One RC frame in wire order (AETR1234 …), µs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RcFrame {
+    /// Pulses, µs: roll, pitch, throttle, yaw, AUX1 … AUX12.
+    pub channels: [u16; RC_CHANNELS],
+}
+
+impl RcFrame {
+    /// Sticks centred, throttle and all switches low.
+    pub const SAFE: Self = Self {
+        channels: [
+            1500, 1500, 1000, 1500, 1000, 1000, 1000, 1000, 1000, 1000, 1000, 1000, 1000, 1000, 1000, 1000,
+        ],
+    };
+}
+
+impl Default for RcFrame {
+    fn default() -> Self {
+        Self::SAFE
+    }
+}
