@@ -1,0 +1,64 @@
+//! The plant: one quadcopter, the air, the ground, its sensors and what goes wrong with them.
+//!
+//! A function of its configuration, a seed and the motor commands: no I/O, no clock, no threads. One step of
+//! [`World::step`] takes the motor commands of the present instant and makes the next one:
+//!
+//! ```text
+//!  MotorCommand ─► motors ─► forces and torques ─► RK4 ─► ground ─► sensors ─► SensorFrame
+//!     0…1           Ω, lag     rotors, drag,        p v q ω   contact,   noise, rate,
+//!                              wind, battery                  events     latency, faults
+//! ```
+//!
+//! | what | how often |
+//! | --- | --- |
+//! | rotors, body, ground, inertial sensors | every step (125 µs … 2.5 ms) |
+//! | air (mean wind, gusts, turbulence, density), battery, magnetometer | 10 ms |
+//! | barometer, battery readings | 20 ms |
+//! | GPS | 100 ms (1 to 20 Hz) |
+//!
+//! World axes are ENU (x east, y north, z up) with the origin on the ground at home; body axes are FLU (x forward,
+//! y left, z up); attitudes turn body into world. [`Truth`] and [`SensorFrame`](crate::signals::SensorFrame) are
+//! different types: what is so and what is measured cannot be mixed up. `docs/physics.md` has the equations.
+
+mod air;
+mod airframe;
+mod atmosphere;
+mod battery;
+mod body;
+mod command;
+mod config;
+mod event;
+mod fault;
+mod ground;
+mod motors;
+mod parse;
+mod random;
+mod sensors;
+mod suggest;
+mod switches;
+mod touchdown;
+mod truth;
+mod world;
+
+pub use air::{AIR_TICK_US, DrydenScales, one_minus_cosine};
+pub use airframe::{
+    Airframe, AirframeFileError, AirframeProblem, BUILTIN_NAMES, MAX_LEGS, REFERENCE_DENSITY, ROTORS,
+    UnknownAirframe,
+};
+pub use atmosphere::{density, density_ratio, pressure_pa, temperature_k};
+pub use battery::{BatterySpec, motor_power_w};
+pub use body::{AirSample, BodyState, Loads, Plant, ground_effect_factor, lever_arm_acceleration};
+pub use command::{COMMAND_WORDS, CommandWord, WorldCommand};
+pub use config::{Home, Noise, STEP_RATES_HZ, Turbulence, Wind, WorldConfig, WorldError, step_us};
+pub use event::{CrashCause, DivergeCause, WorldEvent, WorldEventKind};
+pub use fault::{
+    ActiveFault, BatteryFault, Direction, FAULTS, Fault, FaultInfo, FaultKey, FaultLink, FaultStart,
+    LinkFaults, MAX_FAULTS, MotorNumber, ScheduledFault,
+};
+pub use ground::{FREE_FEET, Feet, Ground, Touch};
+pub use parse::ParseError;
+pub use random::Stream;
+pub use sensors::{SITL_DECLINATION_DEG, magnetic_field_enu};
+pub use switches::{AirDensity, SWITCHES, SwitchInfo, Switches, WindProfile};
+pub use truth::{BatteryTruth, Truth, attitude, level_attitude};
+pub use world::{World, WorldStatus};

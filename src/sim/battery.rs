@@ -1,0 +1,144 @@
+//! The battery: open-circuit voltage over charge, inner resistance, load of the motors.
+
+use super::airframe::{Airframe, ROTORS};
+
+/// Share of the electrical power that reaches the propeller shafts.
+const DRIVE_EFFICIENCY: f64 = 0.75;
+/// What the electronics draw, W.
+const BASE_LOAD_W: f64 = 5.0;
+/// Open-circuit voltage of a full cell, of one with 10 % left, and of an empty one, V.
+const CELL_V: [f64; 3] = [4.2, 3.5, 3.0];
+/// Charge left where the steep end of the discharge curve begins.
+const KNEE: f64 = 0.1;
+
+/// The battery of an airframe.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BatterySpec {
+    /// Cells in series.
+    pub cells: u8,
+    /// Voltage at which the motors reach their stated top speed, V.
+    pub nominal_v: f64,
+    /// Inner resistance of the pack, Ω.
+    pub resistance_ohm: f64,
+    /// Capacity, A·h.
+    pub capacity_ah: f64,
+}
+
+impl BatterySpec {
+    /// Open-circuit voltage with `left` (0…1) of the charge left, V.
+    #[must_use]
+    pub fn open_circuit_v(&self, left: f64) -> f64 {
+        let [full, knee, empty] = CELL_V;
+        let left = left.clamp(0.0, 1.0);
+        let cell = if left >= KNEE {
+            knee + (full - knee) * (left - KNEE) / (1.0 - KNEE)
+        } else {
+            empty + (knee - empty) * left / KNEE
+        };
+        cell * f64::from(self.cells)
+    }
+
+    /// Terminal voltage (V) and current (A) under a constant-power load; a load beyond the greatest power the pack
+    /// can give is cut to that.
+    #[must_use]
+    pub fn under_load(&self, open_circuit_v: f64, load_w: f64) -> (f64, f64) {
+        let load = load_w.min(open_circuit_v * open_circuit_v / (4.0 * self.resistance_ohm));
+        let root = (open_circuit_v * open_circuit_v - 4.0 * self.resistance_ohm * load).max(0.0).sqrt();
+        let voltage = 0.5 * (open_circuit_v + root);
+        (voltage, load / voltage)
+    }
+}
+
+/// Electrical power the four motors take at the given rotor speeds (rad/s), W. `load_factor` is what density and
+/// efficiency make of each rotor's torque.
+#[must_use]
+pub fn motor_power_w(airframe: &Airframe, rotor_speeds: &[f64; ROTORS], load_factor: &[f64; ROTORS]) -> f64 {
+    let cubes: f64 = rotor_speeds.iter().zip(load_factor).map(|(speed, load)| speed.powi(3) * load).sum();
+    airframe.torque_per_thrust_m * airframe.thrust_coeff * cubes / DRIVE_EFFICIENCY
+}
+
+/// What makes a pack worse than its specification.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct BatteryFaults {
+    /// Added to the open-circuit voltage, V.
+    pub offset_v: f64,
+    /// Cells that failed short.
+    pub dead_cells: u8,
+}
+
+/// State of the battery in the air.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Battery {
+    spec: BatterySpec,
+    /// Terminal voltage, V.
+    pub voltage_v: f64,
+    /// Current, A.
+    pub current_a: f64,
+    /// Charge drawn since the start, mA·h.
+    pub drawn_mah: f64,
+    /// Energy drawn since the start, W·h.
+    pub drawn_wh: f64,
+}
+
+impl Battery {
+    /// A full battery under the base load.
+    #[must_use]
+    pub fn full(spec: BatterySpec) -> Self {
+        let (voltage_v, current_a) = spec.under_load(spec.open_circuit_v(1.0), BASE_LOAD_W);
+        Self { spec, voltage_v, current_a, drawn_mah: 0.0, drawn_wh: 0.0 }
+    }
+
+    /// Charge left, 0…1.
+    #[must_use]
+    pub fn left(&self) -> f64 {
+        (1.0 - self.drawn_mah / (self.spec.capacity_ah * 1000.0)).max(0.0)
+    }
+
+    /// Terminal over nominal voltage: the scale of the rotor speeds where sag acts on them.
+    #[must_use]
+    pub fn speed_scale(&self) -> f64 {
+        self.voltage_v / self.spec.nominal_v
+    }
+
+    /// Draws `motor_w` and the base load for `dt` seconds.
+    pub(super) fn draw(&mut self, motor_w: f64, faults: BatteryFaults, dt: f64) {
+        let alive = f64::from(self.spec.cells.saturating_sub(faults.dead_cells)) / f64::from(self.spec.cells);
+        // A pack always keeps a rest of voltage: the load equations need a positive one.
+        let open = (self.spec.open_circuit_v(self.left()) * alive + faults.offset_v).max(1.0);
+        (self.voltage_v, self.current_a) = self.spec.under_load(open, motor_w + BASE_LOAD_W);
+        self.drawn_mah += self.current_a * dt / 3.6;
+        self.drawn_wh += self.voltage_v * self.current_a * dt / 3600.0;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_discharge_curve_has_its_knee_at_ten_percent() {
+        let spec = Airframe::iris().battery;
+        assert!((spec.open_circuit_v(1.0) - 12.6).abs() < 1e-12);
+        assert!((spec.open_circuit_v(0.1) - 10.5).abs() < 1e-12);
+        assert!((spec.open_circuit_v(0.0) - 9.0).abs() < 1e-12);
+        assert!(spec.open_circuit_v(0.09) < spec.open_circuit_v(0.11));
+    }
+
+    #[test]
+    fn a_load_beyond_the_pack_is_cut_to_half_the_voltage() {
+        let spec = Airframe::iris().battery;
+        let (voltage, current) = spec.under_load(12.0, 1e9);
+        assert!((voltage - 6.0).abs() < 1e-12);
+        assert!((current - 200.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn an_hour_at_one_ampere_is_one_ampere_hour() {
+        let mut battery = Battery::full(Airframe::iris().battery);
+        for _ in 0..360 {
+            battery.draw(12.0 - BASE_LOAD_W, BatteryFaults::default(), 10.0);
+        }
+        assert!((battery.drawn_wh - 12.0).abs() < 1e-9);
+        assert!((battery.drawn_mah - 1000.0).abs() < 60.0);
+    }
+}

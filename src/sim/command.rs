@@ -1,0 +1,66 @@
+//! What can be changed in a world while it runs.
+
+use super::config::{Noise, Turbulence, Wind, WorldError};
+use super::fault::{Fault, FaultKey, MAX_TIME_S, ScheduledFault};
+
+mod parse;
+
+pub use parse::{COMMAND_WORDS, CommandWord};
+
+/// A change of the world by a user, a scenario or a script; it acts from the next step on.
+#[derive(Debug, Clone, PartialEq)]
+pub enum WorldCommand {
+    /// The mean wind changes to this over two seconds.
+    SetWind(Wind),
+    /// Random gusts of this strength from now on, m/s; 0 for none.
+    SetGust(f64),
+    /// One gust now.
+    GustNow(Wind),
+    /// Another level of turbulence.
+    SetTurbulence(Turbulence),
+    /// Sensors err or not.
+    SetNoise(Noise),
+    /// A rare switch as `NAME=VALUE`; the battery's capacity acts from the next reset on.
+    SetSwitch(String),
+    /// GPS solutions a second, 1…20.
+    SetGpsRate(u8),
+    /// A fault now, for so many seconds or to the end.
+    FaultOn(Fault, Option<f64>),
+    /// Ends the active faults of this kind.
+    FaultOff(FaultKey),
+    /// Ends all active faults and forgets all waiting ones.
+    ClearFaults,
+    /// A fault at its time.
+    Schedule(ScheduledFault),
+    /// The craft stands at home again, undamaged, with a full battery; air, noise and faults stay as they are.
+    ResetToHome,
+}
+
+impl WorldCommand {
+    /// Whether the numbers of the command are in range.
+    pub(super) fn check(&self) -> Result<(), WorldError> {
+        match *self {
+            Self::SetWind(wind) | Self::GustNow(wind) => check_wind(wind),
+            Self::SetGust(size) => in_range("gust", size, 0.0, Wind::MAX_MPS),
+            Self::SetGpsRate(rate) => in_range("GPS rate", f64::from(rate), 1.0, 20.0),
+            Self::FaultOn(_, Some(seconds)) => in_range("duration", seconds, 0.0, MAX_TIME_S),
+            Self::SetSwitch(_)
+            | Self::SetTurbulence(_)
+            | Self::SetNoise(_)
+            | Self::FaultOn(_, None)
+            | Self::FaultOff(_)
+            | Self::ClearFaults
+            | Self::Schedule(_)
+            | Self::ResetToHome => Ok(()),
+        }
+    }
+}
+
+pub(super) fn check_wind(wind: Wind) -> Result<(), WorldError> {
+    in_range("wind speed", wind.speed_mps, 0.0, Wind::MAX_MPS)?;
+    in_range("wind direction", wind.from_deg, -360.0, 360.0)
+}
+
+pub(super) fn in_range(name: &'static str, value: f64, min: f64, max: f64) -> Result<(), WorldError> {
+    if (min..=max).contains(&value) { Ok(()) } else { Err(WorldError::OutOfRange { name, value, min, max }) }
+}

@@ -1,0 +1,310 @@
+//! Faults: what can go wrong, when, and for how long.
+//!
+//! `NAME@T[,FOR][,VALUE]`: T and FOR in simulated seconds, T from engagement or, as `boot+T`, from boot; without FOR
+//! the fault lasts to the end. The name ends at the first `@`; VALUE may contain more of them, and commas.
+
+use std::fmt;
+
+use nalgebra::Vector3;
+
+use super::airframe::ROTORS;
+use super::config::Wind;
+
+mod board;
+mod effects;
+mod parse;
+
+pub use board::{ActiveFault, MAX_FAULTS};
+pub(super) use board::{FaultBoard, Switch};
+pub(super) use effects::Effects;
+pub use effects::{GpsFaults, LinkFaults};
+pub(super) use parse::MAX_TIME_S;
+pub use parse::{FAULTS, FaultInfo};
+
+/// A motor by its number, 1…4.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct MotorNumber(u8);
+
+impl MotorNumber {
+    /// The motor with this number; `None` unless 1…4.
+    #[must_use]
+    pub fn new(number: u8) -> Option<Self> {
+        (1..=ROTORS as u8).contains(&number).then_some(Self(number))
+    }
+
+    /// Place in arrays of motors, 0…3.
+    #[must_use]
+    pub fn index(self) -> usize {
+        usize::from(self.0 - 1)
+    }
+}
+
+impl fmt::Display for MotorNumber {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.0)
+    }
+}
+
+/// The six directions of a push.
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, strum::Display, strum::EnumString, strum::VariantNames, strum::EnumIter,
+)]
+#[strum(serialize_all = "lowercase")]
+#[allow(missing_docs, reason = "the names say it")]
+pub enum Direction {
+    North,
+    East,
+    South,
+    West,
+    Up,
+    Down,
+}
+
+impl Direction {
+    /// Unit vector, ENU.
+    #[must_use]
+    pub fn enu(self) -> Vector3<f64> {
+        match self {
+            Self::North => Vector3::y(),
+            Self::East => Vector3::x(),
+            Self::South => -Vector3::y(),
+            Self::West => -Vector3::x(),
+            Self::Up => Vector3::z(),
+            Self::Down => -Vector3::z(),
+        }
+    }
+}
+
+/// What a battery fault does.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum BatteryFault {
+    /// Changes the open-circuit voltage by this much, V.
+    Offset(f64),
+    /// One cell fails short.
+    CellOut,
+}
+
+/// One fault with its value. `Display` shows the value as it is written on the command line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Fault {
+    /// RC frames stop.
+    RxLoss,
+    /// This fraction of RC frames is lost at random.
+    RxJitter(f64),
+    /// No solution, no satellites.
+    GpsLoss,
+    /// The position is shifted by metres along a bearing (degrees from north); the velocity stays honest.
+    GpsGlitch(f64, f64),
+    /// The same solution again and again.
+    GpsFreeze,
+    /// All GPS errors times this factor.
+    GpsNoise(f64),
+    /// Pressure ramps by this many Pa/s.
+    BaroDrift(f64),
+    /// One sample a second is off by this many Pa.
+    BaroSpike(f64),
+    /// No magnetometer samples.
+    MagOff,
+    /// The measured heading is off by this many degrees, clockwise positive.
+    MagBias(f64),
+    /// Step on the gyro's x axis, °/s.
+    GyroBias(f64),
+    /// Step on the accelerometer's x axis, m/s².
+    AccBias(f64),
+    /// The last inertial sample is repeated.
+    ImuFreeze,
+    /// A motor's thrust and torque times an efficiency, 0…1.
+    Motor(MotorNumber, f64),
+    /// A motor's command is frozen, 0…1.
+    MotorStuck(MotorNumber, f64),
+    /// An unbalanced propeller: rotating acceleration of this size at hover speed, m/s².
+    PropImbalance(MotorNumber, f64),
+    /// Accelerometer vibration at hover speed, m/s² rms per axis.
+    Vibration(f64),
+    /// A weak battery.
+    Battery(BatteryFault),
+    /// One gust; lasts four seconds unless a time is given.
+    Gust(Wind),
+    /// Another mean wind.
+    Wind(Wind),
+    /// An impulse, N·s.
+    Push(f64, Direction),
+    /// Moves the craft by metres north, east, up; the velocity stays.
+    Teleport([f64; 3]),
+    /// Hangs a weight below the craft, kg.
+    Payload(f64),
+    /// External link: the simulator stops sending.
+    Stall,
+    /// External link: this fraction of packets is lost.
+    FdmLoss(f64),
+    /// External link: packets are late by this many ms.
+    FdmLate(f64),
+    /// External link: this fraction of packets comes twice.
+    FdmDup(f64),
+    /// External link: packets are late by up to this many ms at random.
+    FdmJitter(f64),
+}
+
+impl Fault {
+    /// The name on the command line.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::RxLoss => "rx-loss",
+            Self::RxJitter(_) => "rx-jitter",
+            Self::GpsLoss => "gps-loss",
+            Self::GpsGlitch(..) => "gps-glitch",
+            Self::GpsFreeze => "gps-freeze",
+            Self::GpsNoise(_) => "gps-noise",
+            Self::BaroDrift(_) => "baro-drift",
+            Self::BaroSpike(_) => "baro-spike",
+            Self::MagOff => "mag-off",
+            Self::MagBias(_) => "mag-bias",
+            Self::GyroBias(_) => "gyro-bias",
+            Self::AccBias(_) => "acc-bias",
+            Self::ImuFreeze => "imu-freeze",
+            Self::Motor(..) => "motor",
+            Self::MotorStuck(..) => "motor-stuck",
+            Self::PropImbalance(..) => "prop-imbalance",
+            Self::Vibration(_) => "vibration",
+            Self::Battery(_) => "battery",
+            Self::Gust(_) => "gust",
+            Self::Wind(_) => "wind",
+            Self::Push(..) => "push",
+            Self::Teleport(_) => "teleport",
+            Self::Payload(_) => "payload",
+            Self::Stall => "stall",
+            Self::FdmLoss(_) => "fdm-loss",
+            Self::FdmLate(_) => "fdm-late",
+            Self::FdmDup(_) => "fdm-dup",
+            Self::FdmJitter(_) => "fdm-jitter",
+        }
+    }
+
+    /// Whether the fault acts at once and has no end.
+    #[must_use]
+    pub fn is_instant(&self) -> bool {
+        matches!(self, Self::Push(..) | Self::Teleport(_))
+    }
+
+    /// Whether the fault acts on the link to an external firmware or simulator.
+    #[must_use]
+    pub fn needs_link(&self) -> bool {
+        matches!(
+            self,
+            Self::Stall | Self::FdmLoss(_) | Self::FdmLate(_) | Self::FdmDup(_) | Self::FdmJitter(_)
+        )
+    }
+
+    /// What distinguishes faults that can be on together; of faults with the same key the later takes the place of the
+    /// earlier.
+    #[must_use]
+    pub fn key(&self) -> FaultKey {
+        FaultKey { name: self.name(), motor: self.motor() }
+    }
+
+    fn motor(&self) -> Option<MotorNumber> {
+        match *self {
+            Self::Motor(motor, _) | Self::MotorStuck(motor, _) | Self::PropImbalance(motor, _) => Some(motor),
+            _ => None,
+        }
+    }
+}
+
+/// A kind of fault, for motor faults perhaps of one motor only.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FaultKey {
+    name: &'static str,
+    motor: Option<MotorNumber>,
+}
+
+impl FaultKey {
+    /// Whether a fault is of this kind: without a motor, those of all motors are.
+    #[must_use]
+    pub fn covers(&self, fault: &Fault) -> bool {
+        self.name == fault.name() && (self.motor.is_none() || self.motor == fault.motor())
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::RxLoss | Self::GpsLoss | Self::GpsFreeze | Self::MagOff | Self::ImuFreeze | Self::Stall => {
+                Ok(())
+            }
+            Self::RxJitter(value)
+            | Self::GpsNoise(value)
+            | Self::BaroDrift(value)
+            | Self::BaroSpike(value)
+            | Self::MagBias(value)
+            | Self::GyroBias(value)
+            | Self::AccBias(value)
+            | Self::Vibration(value)
+            | Self::Payload(value)
+            | Self::FdmLoss(value)
+            | Self::FdmLate(value)
+            | Self::FdmDup(value)
+            | Self::FdmJitter(value)
+            | Self::Battery(BatteryFault::Offset(value)) => write!(f, "{value}"),
+            Self::Battery(BatteryFault::CellOut) => f.write_str("cell-out"),
+            Self::GpsGlitch(metres, bearing) => write!(f, "{metres}@{bearing}"),
+            Self::Motor(motor, value)
+            | Self::MotorStuck(motor, value)
+            | Self::PropImbalance(motor, value) => {
+                write!(f, "{motor}:{value}")
+            }
+            Self::Gust(wind) | Self::Wind(wind) => write!(f, "{wind}"),
+            Self::Push(impulse, direction) => write!(f, "{impulse},{direction}"),
+            Self::Teleport([north, east, up]) => write!(f, "{north},{east},{up}"),
+        }
+    }
+}
+
+/// When a fault begins.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum FaultStart {
+    /// Seconds after the autopilot engaged for the first time.
+    Engagement(f64),
+    /// Seconds after boot.
+    Boot(f64),
+}
+
+/// A fault with its time. `Display` gives the text that parses back to it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ScheduledFault {
+    /// What.
+    pub fault: Fault,
+    /// When.
+    pub start: FaultStart,
+    /// For how many seconds; to the end when `None`.
+    pub for_s: Option<f64>,
+}
+
+impl fmt::Display for ScheduledFault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}@", self.fault.name())?;
+        match self.start {
+            FaultStart::Engagement(t) => write!(f, "{t}")?,
+            FaultStart::Boot(t) => write!(f, "boot+{t}")?,
+        }
+        if let Some(for_s) = self.for_s {
+            write!(f, ",{for_s}")?;
+        }
+        let value = self.fault.to_string();
+        match (value.is_empty(), self.for_s) {
+            (true, _) => Ok(()),
+            (false, Some(_)) => write!(f, ",{value}"),
+            (false, None) => write!(f, ",,{value}"),
+        }
+    }
+}
+
+/// Whether there is a link to an external firmware or simulator for link faults to act on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum FaultLink {
+    /// Everything is embedded: link faults are refused.
+    #[default]
+    Embedded,
+    /// There is one.
+    External,
+}

@@ -1,0 +1,212 @@
+//! Which faults wait, which are active, and when the next one begins or ends.
+
+use arrayvec::ArrayVec;
+
+use crate::signals::SimTime;
+
+use super::{Effects, Fault, FaultStart, ScheduledFault};
+
+/// Most faults that can wait and be active together.
+pub const MAX_FAULTS: usize = 64;
+
+/// An active fault and when it ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ActiveFault {
+    /// What.
+    pub fault: Fault,
+    /// When it ends; never when `None`.
+    pub until: Option<SimTime>,
+}
+
+/// A fault that begins (and when it will end) or ends now.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::sim) enum Switch {
+    On(ActiveFault),
+    Off(Fault),
+}
+
+/// Faults that wait and faults that are active.
+#[derive(Debug, Clone)]
+pub(in crate::sim) struct FaultBoard {
+    waiting: Vec<ScheduledFault>,
+    active: ArrayVec<ActiveFault, MAX_FAULTS>,
+    engaged: Option<SimTime>,
+    /// When the next one begins or ends, µs; `u64::MAX` when none will.
+    next_us: u64,
+}
+
+impl FaultBoard {
+    pub fn new(waiting: Vec<ScheduledFault>) -> Self {
+        let mut board = Self { waiting, active: ArrayVec::new(), engaged: None, next_us: 0 };
+        board.look_ahead();
+        board
+    }
+
+    /// Whether something begins or ends at or before `now`.
+    pub fn is_due(&self, now: SimTime) -> bool {
+        now.0 >= self.next_us
+    }
+
+    /// Takes one fault that ends or begins at or before `now`: ends first, then beginnings in the order of their times.
+    pub fn take_due(&mut self, now: SimTime) -> Option<Switch> {
+        let switch = self.take_ended(now).or_else(|| self.take_begun(now));
+        self.look_ahead();
+        switch
+    }
+
+    fn take_ended(&mut self, now: SimTime) -> Option<Switch> {
+        let ended = self.active.iter().position(|active| active.until.is_some_and(|until| until <= now))?;
+        Some(Switch::Off(self.active.remove(ended).fault))
+    }
+
+    fn take_begun(&mut self, now: SimTime) -> Option<Switch> {
+        let (due, index) = (0..self.waiting.len())
+            .filter_map(|i| Some((self.due(&self.waiting[i])?, i)))
+            .filter(|&(due, _)| due <= now)
+            .min()?;
+        let ScheduledFault { fault, for_s, .. } = self.waiting.remove(index);
+        let until = for_s.map(|seconds| SimTime(due.0.saturating_add(SimTime::from_secs_f64(seconds).0)));
+        Some(Switch::On(self.insert(fault, until)))
+    }
+
+    /// Puts a fault on now, in place of an active one of its kind.
+    pub fn insert(&mut self, fault: Fault, until: Option<SimTime>) -> ActiveFault {
+        let begun = ActiveFault { fault, until };
+        if !fault.is_instant() {
+            self.active.retain(|active| fault.key() != active.fault.key());
+            // There is room: waiting and active faults together are at most MAX_FAULTS.
+            let _ = self.active.try_push(begun);
+        }
+        self.look_ahead();
+        begun
+    }
+
+    /// Whether another fault can be put on or scheduled.
+    pub fn has_room(&self) -> bool {
+        self.active.len() + self.waiting.len() < MAX_FAULTS
+    }
+
+    /// Changes when an active fault ends.
+    pub fn set_end(&mut self, fault: &Fault, until: SimTime) {
+        for active in self.active.iter_mut().filter(|active| active.fault == *fault) {
+            active.until = Some(until);
+        }
+        self.look_ahead();
+    }
+
+    /// Ends the first active fault that `ends` picks.
+    pub fn end_first(&mut self, ends: impl Fn(&Fault) -> bool) -> Option<Fault> {
+        let index = self.active.iter().position(|active| ends(&active.fault))?;
+        let fault = self.active.remove(index).fault;
+        self.look_ahead();
+        Some(fault)
+    }
+
+    /// Forgets the faults that wait.
+    pub fn forget_waiting(&mut self) {
+        self.waiting.clear();
+        self.look_ahead();
+    }
+
+    /// Adds a fault that will begin.
+    pub fn schedule(&mut self, fault: ScheduledFault) {
+        self.waiting.push(fault);
+        self.look_ahead();
+    }
+
+    /// Tells the time from which faults without `boot+` count; only the first call matters.
+    pub fn set_engaged(&mut self, time: SimTime) {
+        if self.engaged.is_none() {
+            self.engaged = Some(time);
+            self.look_ahead();
+        }
+    }
+
+    pub fn active(&self) -> &[ActiveFault] {
+        &self.active
+    }
+
+    pub fn waiting(&self) -> &[ScheduledFault] {
+        &self.waiting
+    }
+
+    /// What the active faults together do.
+    pub fn effects(&self) -> Effects {
+        let mut effects = Effects::NONE;
+        for active in &self.active {
+            effects.add(&active.fault);
+        }
+        effects
+    }
+
+    fn due(&self, fault: &ScheduledFault) -> Option<SimTime> {
+        match fault.start {
+            FaultStart::Boot(seconds) => Some(SimTime::from_secs_f64(seconds)),
+            FaultStart::Engagement(seconds) => self
+                .engaged
+                .map(|engaged| SimTime(engaged.0.saturating_add(SimTime::from_secs_f64(seconds).0))),
+        }
+    }
+
+    fn look_ahead(&mut self) {
+        let begins = self.waiting.iter().filter_map(|fault| self.due(fault));
+        let ends = self.active.iter().filter_map(|active| active.until);
+        self.next_us = begins.chain(ends).map(|time| time.0).min().unwrap_or(u64::MAX);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn switches(board: &mut FaultBoard, now_s: f64) -> Vec<(&'static str, bool)> {
+        let now = SimTime::from_secs_f64(now_s);
+        let mut seen = Vec::new();
+        while board.is_due(now) {
+            let Some(switch) = board.take_due(now) else { break };
+            seen.push(match switch {
+                Switch::On(begun) => (begun.fault.name(), true),
+                Switch::Off(fault) => (fault.name(), false),
+            });
+        }
+        seen
+    }
+
+    fn board(faults: &[&str]) -> FaultBoard {
+        FaultBoard::new(faults.iter().map(|text| text.parse().unwrap()).collect())
+    }
+
+    #[test]
+    fn faults_begin_in_order_and_end_after_their_time() {
+        let mut board = board(&["mag-off@boot+2", "gps-loss@boot+1,2"]);
+        assert_eq!(switches(&mut board, 0.999), []);
+        assert_eq!(switches(&mut board, 1.0), [("gps-loss", true)]);
+        assert_eq!(switches(&mut board, 2.5), [("mag-off", true)]);
+        assert_eq!(switches(&mut board, 3.0), [("gps-loss", false)]);
+        assert_eq!(switches(&mut board, 1e6), []);
+        assert_eq!(board.active().len(), 1);
+    }
+
+    #[test]
+    fn faults_wait_for_the_first_engagement() {
+        let mut board = board(&["gps-loss@1"]);
+        assert_eq!(switches(&mut board, 100.0), []);
+        board.set_engaged(SimTime::from_secs_f64(100.0));
+        board.set_engaged(SimTime::from_secs_f64(200.0));
+        assert_eq!(switches(&mut board, 100.5), []);
+        assert_eq!(switches(&mut board, 101.0), [("gps-loss", true)]);
+    }
+
+    #[test]
+    fn a_fault_of_the_same_kind_takes_the_place_of_the_first() {
+        let mut board = board(&[]);
+        for text in ["motor@0,,2:0.5", "motor@0,,3:0.5", "motor@0,,2:0"] {
+            board.insert(text.parse::<ScheduledFault>().unwrap().fault, None);
+        }
+        assert_eq!(board.effects().efficiency, [1.0, 0.0, 0.5, 1.0]);
+        assert_eq!(
+            board.end_first(|fault| fault.name() == "motor").map(|f| f.to_string()),
+            Some("3:0.5".into())
+        );
+    }
+}

@@ -1,0 +1,177 @@
+//! The ground: a plane at z = 0, legs as springs and dampers, friction that holds.
+//!
+//! A point below the plane is pushed up by `max(0, −k·z − c·vz)`. Along the plane it slides with Coulomb friction,
+//! regularised below a small speed; a point that has become slow is latched where it stands and held there by the same
+//! spring and damper until the pull exceeds the friction, so that a craft at rest does not creep in the wind.
+//!
+//! The hull is the four rotor hubs: it carries load like the legs, and touching with it is a crash.
+
+use arrayvec::ArrayVec;
+use nalgebra::{Matrix3, Vector2, Vector3};
+
+use super::airframe::{Airframe, MAX_LEGS, ROTORS};
+use super::body::{BodyState, Loads};
+
+/// Most points that can touch the ground: legs first, then the hull.
+const MAX_POINTS: usize = MAX_LEGS + ROTORS;
+/// An upside-down craft with its centre of mass below this height lies on its hull, m.
+const INVERTED_HULL_M: f64 = 0.05;
+
+/// Where each contact point is latched to the ground, metres east and north; `None` while it slides or is in the air.
+pub type Feet = [Option<Vector2<f64>>; MAX_POINTS];
+
+/// No point latched.
+pub const FREE_FEET: Feet = [None; MAX_POINTS];
+
+/// The contact model of one airframe.
+#[derive(Debug, Clone)]
+pub struct Ground {
+    points: ArrayVec<Vector3<f64>, MAX_POINTS>,
+    legs: usize,
+    stiffness: f64,
+    damping: f64,
+    friction: f64,
+    full_friction_mps: f64,
+    reach: f64,
+}
+
+/// Which points are on the ground.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Touch {
+    /// At least one leg carries load.
+    pub any_leg: bool,
+    /// Every leg carries load.
+    pub all_legs: bool,
+    /// The hull touches.
+    pub hull: bool,
+    /// Height of the lowest point above the ground, m; high up, a lower bound of it.
+    pub clearance_m: f64,
+}
+
+/// Place and velocity of one contact point, ENU.
+struct Point {
+    place: Vector3<f64>,
+    vel: Vector3<f64>,
+}
+
+impl Ground {
+    /// The contact model of an airframe.
+    #[must_use]
+    pub fn new(airframe: &Airframe) -> Self {
+        let points: ArrayVec<_, MAX_POINTS> =
+            airframe.legs_m.iter().chain(&airframe.rotor_positions_m).copied().collect();
+        let reach = points.iter().map(Vector3::norm).fold(0.0, f64::max);
+        Self {
+            points,
+            legs: airframe.legs_m.len(),
+            stiffness: airframe.leg_stiffness,
+            damping: airframe.leg_damping,
+            friction: airframe.friction,
+            full_friction_mps: airframe.friction_full_mps,
+            reach,
+        }
+    }
+
+    /// Height of the centre of mass above which nothing can touch, m.
+    #[must_use]
+    pub fn reach_m(&self) -> f64 {
+        self.reach
+    }
+
+    /// Contact force and torque on the body.
+    pub(super) fn loads(
+        &self,
+        pos: &Vector3<f64>,
+        vel: &Vector3<f64>,
+        r: &Matrix3<f64>,
+        rate: &Vector3<f64>,
+        feet: &Feet,
+    ) -> Loads {
+        let rate_enu = r * rate;
+        let mut force = Vector3::zeros();
+        let mut torque = Vector3::zeros();
+        for (arm, foot) in self.points.iter().zip(feet) {
+            let arm = r * arm;
+            if pos.z + arm.z >= 0.0 {
+                continue;
+            }
+            let point = Point { place: pos + arm, vel: vel + rate_enu.cross(&arm) };
+            let normal = self.normal_force(&point);
+            let along = self.friction_force(&point, normal, foot.as_ref());
+            let push = Vector3::new(along.x, along.y, normal);
+            force += push;
+            torque += arm.cross(&push);
+        }
+        Loads { force_flu: r.tr_mul(&force), torque_flu: r.tr_mul(&torque) }
+    }
+
+    /// Latches points that have come to rest and frees those that are pulled too hard or have left the ground.
+    pub(super) fn latch_feet(&self, state: &BodyState, feet: &mut Feet) {
+        if state.pos_enu.z >= self.reach {
+            return;
+        }
+        let r = state.attitude.to_rotation_matrix();
+        let rate_enu = r * state.rate_flu;
+        for (arm, foot) in self.points.iter().zip(feet) {
+            let arm = r * arm;
+            let point = Point { place: state.pos_enu + arm, vel: state.vel_enu + rate_enu.cross(&arm) };
+            let limit = self.friction * self.normal_force(&point);
+            *foot = match *foot {
+                _ if limit <= 0.0 => None,
+                Some(anchor) if self.holding_force(&point, &anchor).norm() <= limit => Some(anchor),
+                None if point.vel.xy().norm() < self.full_friction_mps => Some(point.place.xy()),
+                Some(_) | None => None,
+            };
+        }
+    }
+
+    /// What touches the ground in a state.
+    #[must_use]
+    pub fn touch(&self, state: &BodyState) -> Touch {
+        if state.pos_enu.z >= 2.0 * self.reach {
+            return Touch {
+                any_leg: false,
+                all_legs: false,
+                hull: false,
+                clearance_m: state.pos_enu.z - self.reach,
+            };
+        }
+        let up = state.attitude.inverse_transform_vector(&Vector3::z());
+        let height = |arm: &Vector3<f64>| state.pos_enu.z + up.dot(arm);
+        let (legs, hull) = self.points.split_at(self.legs);
+        let lowest_hull = hull.iter().map(height).fold(f64::INFINITY, f64::min);
+        let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
+        for height in legs.iter().map(height) {
+            lowest = height.min(lowest);
+            highest = height.max(highest);
+        }
+        let inverted = up.z < 0.0 && state.pos_enu.z <= INVERTED_HULL_M;
+        Touch {
+            any_leg: lowest < 0.0,
+            all_legs: highest < 0.0,
+            hull: inverted || lowest_hull < 0.0,
+            clearance_m: lowest.min(lowest_hull),
+        }
+    }
+
+    fn normal_force(&self, point: &Point) -> f64 {
+        if point.place.z >= 0.0 {
+            return 0.0;
+        }
+        (-self.stiffness * point.place.z - self.damping * point.vel.z).max(0.0)
+    }
+
+    fn friction_force(&self, point: &Point, normal: f64, anchor: Option<&Vector2<f64>>) -> Vector2<f64> {
+        let limit = self.friction * normal;
+        if let Some(anchor) = anchor {
+            return self.holding_force(point, anchor).cap_magnitude(limit);
+        }
+        let vel = point.vel.xy();
+        // min(1, v/v_full) / v, without dividing by zero.
+        vel * (-limit / vel.norm().max(self.full_friction_mps))
+    }
+
+    fn holding_force(&self, point: &Point, anchor: &Vector2<f64>) -> Vector2<f64> {
+        (anchor - point.place.xy()) * self.stiffness - point.vel.xy() * self.damping
+    }
+}

@@ -1,0 +1,123 @@
+//! Randomness: one independent ChaCha8 stream per consumer, all from one seed.
+//!
+//! A consumer that draws more, less or not at all leaves the numbers of every other consumer as they are.
+
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
+
+/// Who draws. The discriminant is the stream number of the generator: changing one changes every flight.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(u64)]
+pub enum Stream {
+    /// White noise of the gyro.
+    Gyro = 1,
+    /// Turn-on bias and random walk of the gyro.
+    GyroBias = 2,
+    /// White noise of the accelerometer, vibration included.
+    Accelerometer = 3,
+    /// Turn-on bias and random walk of the accelerometer.
+    AccelerometerBias = 4,
+    /// White noise and drift of the barometer.
+    Barometer = 5,
+    /// White noise of the magnetometer.
+    Magnetometer = 6,
+    /// Position and velocity errors of the GPS.
+    Gps = 7,
+    /// Times of the first fix.
+    GpsAcquisition = 8,
+    /// Voltage and current readings.
+    Battery = 9,
+    /// The turbulence filters.
+    Turbulence = 10,
+    /// Times and directions of gusts.
+    Gusts = 11,
+    /// RC frames dropped by the `rx-jitter` fault.
+    RxJitter = 12,
+    /// Packets that the faults of an external link drop, delay or repeat.
+    Link = 13,
+}
+
+impl Stream {
+    /// The generator of this consumer for a seed.
+    #[must_use]
+    pub fn rng(self, seed: u64) -> ChaCha8Rng {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        rng.set_stream(self as u64);
+        rng
+    }
+}
+
+/// Unit normal deviates from one stream.
+#[derive(Debug, Clone)]
+pub(super) struct Normals(ChaCha8Rng);
+
+impl Normals {
+    pub fn new(seed: u64, stream: Stream) -> Self {
+        Self(stream.rng(seed))
+    }
+
+    /// One deviate of mean 0 and standard deviation 1.
+    pub fn next(&mut self) -> f64 {
+        StandardNormal.sample(&mut self.0)
+    }
+
+    /// Three independent deviates.
+    pub fn next3(&mut self) -> nalgebra::Vector3<f64> {
+        let x = self.next();
+        let y = self.next();
+        nalgebra::Vector3::new(x, y, self.next())
+    }
+}
+
+/// A first-order Gauss–Markov process: an error that wanders with a time constant and keeps a standard deviation.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct GaussMarkov {
+    keep: f64,
+    drive: f64,
+}
+
+impl GaussMarkov {
+    /// The process of stationary standard deviation `sigma` and time constant `tau_s`, updated every `dt` seconds.
+    pub fn stationary(sigma: f64, tau_s: f64, dt: f64) -> Self {
+        let keep = (-dt / tau_s).exp();
+        Self { keep, drive: sigma * (1.0 - keep * keep).sqrt() }
+    }
+
+    /// The process driven by white noise of density `walk` (unit per √s), time constant `tau_s`.
+    pub fn random_walk(walk: f64, tau_s: f64, dt: f64) -> Self {
+        Self::stationary(walk * (0.5 * tau_s).sqrt(), tau_s, dt)
+    }
+
+    /// The next value after `value`, with a unit normal deviate.
+    pub fn next(&self, value: f64, normal: f64) -> f64 {
+        self.keep * value + self.drive * normal
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn streams_of_one_seed_and_seeds_of_one_stream_differ() {
+        let first = |seed, stream| Normals::new(seed, stream).next().to_bits();
+        assert_ne!(first(1, Stream::Gyro), first(1, Stream::Gps));
+        assert_ne!(first(1, Stream::Gyro), first(2, Stream::Gyro));
+        assert_eq!(first(1, Stream::Gyro), first(1, Stream::Gyro));
+    }
+
+    #[test]
+    fn a_gauss_markov_process_keeps_its_deviation() {
+        let process = GaussMarkov::stationary(0.25, 60.0, 0.1);
+        let mut normals = Normals::new(5, Stream::Gps);
+        let (mut value, mut sum) = (0.0, 0.0);
+        let n = 4_000_000;
+        for _ in 0..n {
+            value = process.next(value, normals.next());
+            sum += value * value;
+        }
+        let sigma = (sum / f64::from(n)).sqrt();
+        assert!((sigma - 0.25).abs() < 0.01, "{sigma}");
+    }
+}

@@ -1,0 +1,145 @@
+//! The sensors: from the true state to what the flight controller is given.
+//!
+//! Inertial samples come with every step; everything else on slow ticks of 10 ms: magnetometer each, barometer and
+//! battery every second, GPS at its own rate. With [`Noise::None`] all values are exact and without latency, and no
+//! random number is drawn.
+
+use nalgebra::Vector3;
+
+use crate::geo::LocalFrame;
+use crate::signals::{BatterySample, SensorFrame};
+
+use super::atmosphere;
+use super::config::{Noise, WorldConfig};
+use super::fault::Effects;
+use super::random::{Normals, Stream};
+use super::switches::Switches;
+use super::truth::Truth;
+
+mod barometer;
+mod gps;
+mod imu;
+mod magnetometer;
+
+use barometer::Barometer;
+use gps::Gps;
+use imu::Imu;
+use magnetometer::Magnetometer;
+pub use magnetometer::{SITL_DECLINATION_DEG, magnetic_field_enu};
+
+/// Barometer and battery are sampled every so many slow ticks: 50 Hz.
+const FIFTY_HZ_TICKS: u64 = 2;
+/// Noise of voltage (V) and current (A) readings, standard deviation.
+const VOLTAGE_SIGMA_V: f64 = 0.02;
+const CURRENT_SIGMA_A: f64 = 0.1;
+
+/// All sensors of the craft.
+#[derive(Debug, Clone)]
+pub(super) struct Sensors {
+    pub noise: Noise,
+    imu: Imu,
+    barometer: Barometer,
+    magnetometer: Magnetometer,
+    pub gps: Gps,
+    battery: Normals,
+    local: LocalFrame,
+}
+
+/// What a sensor may look at.
+pub(super) struct Scene<'a> {
+    pub truth: &'a Truth,
+    pub effects: &'a Effects,
+    pub switches: &'a Switches,
+    /// Number of the slow tick, when the present instant is one.
+    pub slow_tick: Option<u64>,
+    /// Angular acceleration, FLU, rad/s².
+    pub rate_dot_flu: Vector3<f64>,
+}
+
+impl Sensors {
+    /// Sensors at boot.
+    pub fn new(config: &WorldConfig, step_s: f64) -> Self {
+        let home = &config.home;
+        Self {
+            noise: config.noise,
+            imu: Imu::new(config, step_s),
+            barometer: Barometer::new(config.seed),
+            magnetometer: Magnetometer::new(config.seed),
+            gps: Gps::new(config.seed),
+            battery: Normals::new(config.seed, Stream::Battery),
+            local: LocalFrame::new(home.lat_deg, home.lon_deg, home.alt_amsl_m),
+        }
+    }
+
+    /// The local frame the positions are measured in.
+    pub fn local(&self) -> &LocalFrame {
+        &self.local
+    }
+
+    /// Forgets the past of what comes late: the craft has always been here.
+    pub fn settle(&mut self, pos_enu: Vector3<f64>, vel_enu: Vector3<f64>) {
+        self.gps.settle(pos_enu, vel_enu);
+        self.barometer.settle();
+    }
+
+    /// Reads everything that is due at the present instant.
+    pub fn read(&mut self, scene: &Scene<'_>, frame: &mut SensorFrame) {
+        let truth = scene.truth;
+        frame.time = truth.time;
+        frame.truth_attitude = Some(truth.attitude);
+        frame.pressure_pa = None;
+        frame.mag_flu = None;
+        frame.gps = None;
+        frame.battery = None;
+        if let Some(tick) = scene.slow_tick {
+            self.read_slow(tick, scene, frame);
+        }
+        if !scene.effects.imu_freeze {
+            (frame.rate_flu, frame.specific_force_flu) = self.imu.read(scene, self.noise);
+        }
+    }
+
+    fn read_slow(&mut self, tick: u64, scene: &Scene<'_>, frame: &mut SensorFrame) {
+        let (truth, effects) = (scene.truth, scene.effects);
+        self.imu.drift(scene.switches, self.noise);
+        frame.mag_flu =
+            self.magnetometer.read(&truth.attitude, scene.switches.declination_deg, effects, self.noise);
+        frame.gps = self.gps.advance(tick, truth, &self.local, &effects.gps, self.noise);
+        if tick.is_multiple_of(FIFTY_HZ_TICKS) {
+            let pressure = atmosphere::pressure_pa(self.local.alt_amsl_m + truth.pos_enu.z);
+            frame.pressure_pa = Some(self.barometer.read(pressure, scene.switches, effects, self.noise));
+            frame.battery = Some(self.read_battery(truth));
+        }
+    }
+
+    fn read_battery(&mut self, truth: &Truth) -> BatterySample {
+        let battery = &truth.battery;
+        let (dv, di) = match self.noise {
+            Noise::Real => (VOLTAGE_SIGMA_V * self.battery.next(), CURRENT_SIGMA_A * self.battery.next()),
+            Noise::None => (0.0, 0.0),
+        };
+        BatterySample {
+            voltage_v: (battery.voltage_v + dv).max(0.0),
+            current_a: (battery.current_a + di).max(0.0),
+            drawn_mah: battery.drawn_mah,
+        }
+    }
+}
+
+/// Rounds to a multiple of `1/per_unit`, as a converter does; a cheap exact rounding for sizes below 2⁵¹.
+fn quantise(value: f64, per_unit: f64) -> f64 {
+    const SHIFT: f64 = 6_755_399_441_055_744.0; // 1.5·2⁵²: adding it leaves no bits below the unit.
+    ((value * per_unit + SHIFT) - SHIFT) / per_unit
+}
+
+#[cfg(test)]
+mod tests {
+    use super::quantise;
+
+    #[test]
+    fn quantising_rounds_to_the_grid() {
+        assert_eq!(quantise(1.26, 10.0), 1.3);
+        assert_eq!(quantise(-1.24, 10.0), -1.2);
+        assert_eq!(quantise(0.0, 16.4), 0.0);
+    }
+}

@@ -1,0 +1,73 @@
+//! Barometer: static pressure 50 times a second, 20 ms late.
+
+use crate::sim::config::Noise;
+use crate::sim::fault::Effects;
+use crate::sim::random::{GaussMarkov, Normals, Stream};
+use crate::sim::switches::Switches;
+
+/// White noise of one sample, Pa.
+const SIGMA_PA: f64 = 1.0;
+/// Drift: standard deviation, Pa, and time constant, s.
+const DRIFT_PA: (f64, f64) = (3.0, 600.0);
+/// Time between two samples, s.
+const PERIOD_S: f64 = 0.02;
+/// Samples between two spikes of the spike fault: one second.
+const SPIKE_EVERY: u32 = 50;
+
+/// The barometer.
+#[derive(Debug, Clone)]
+pub(super) struct Barometer {
+    normals: Normals,
+    drift: f64,
+    drift_process: GaussMarkov,
+    /// What the drift fault has added so far, Pa.
+    ramp: f64,
+    since_spike: u32,
+    /// Pressure at the last sampling instant, Pa; the sampling period is the latency.
+    last: Option<f64>,
+}
+
+impl Barometer {
+    pub fn new(seed: u64) -> Self {
+        let (sigma, tau_s) = DRIFT_PA;
+        Self {
+            normals: Normals::new(seed, Stream::Barometer),
+            drift: 0.0,
+            drift_process: GaussMarkov::stationary(sigma, tau_s, PERIOD_S),
+            ramp: 0.0,
+            since_spike: SPIKE_EVERY - 1,
+            last: None,
+        }
+    }
+
+    /// Forgets the past: the craft has always been here.
+    pub fn settle(&mut self) {
+        self.last = None;
+    }
+
+    /// One sample, Pa, where the true pressure is `pressure`; called once a sampling period.
+    pub fn read(&mut self, pressure: f64, switches: &Switches, effects: &Effects, noise: Noise) -> f64 {
+        let late = self.last.replace(pressure).unwrap_or(pressure);
+        self.ramp += effects.baro_drift_pa_per_s * PERIOD_S;
+        let faults = self.ramp + self.spike(effects.baro_spike_pa);
+        match noise {
+            Noise::None => pressure + faults,
+            Noise::Real => {
+                if switches.sensor_bias {
+                    self.drift = self.drift_process.next(self.drift, self.normals.next());
+                }
+                let drift = if switches.sensor_bias { self.drift } else { 0.0 };
+                (late + drift + SIGMA_PA * self.normals.next() + faults).round()
+            }
+        }
+    }
+
+    fn spike(&mut self, size: f64) -> f64 {
+        if size == 0.0 {
+            self.since_spike = SPIKE_EVERY - 1;
+            return 0.0;
+        }
+        self.since_spike = (self.since_spike + 1) % SPIKE_EVERY;
+        if self.since_spike == 0 { size } else { 0.0 }
+    }
+}

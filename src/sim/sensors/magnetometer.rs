@@ -1,0 +1,90 @@
+//! Magnetometer: the earth's field in body axes, 100 times a second.
+//!
+//! The field is the one Betaflight's SITL assumes (60° dip, 2° east declination, 500 mG shown as 4096 counts), turned
+//! to the declination that was asked for. Only its direction matters to the flight controller.
+
+use nalgebra::{UnitQuaternion, Vector3};
+
+use crate::sim::config::Noise;
+use crate::sim::fault::Effects;
+use crate::sim::random::{Normals, Stream};
+
+/// Horizontal and vertical (up) part of the field, counts.
+const HORIZONTAL: f64 = 2_048.048_458_899_349_5;
+const UP: f64 = -3_547.2;
+/// Declination of the field of Betaflight's SITL, degrees east.
+pub const SITL_DECLINATION_DEG: f64 = 2.000_675_735_167_871_2;
+/// White noise per axis, counts: 0.4 mG of a field of 500 mG.
+const SIGMA: f64 = 0.4 / 500.0 * 4096.0;
+
+/// The magnetometer.
+#[derive(Debug, Clone)]
+pub(super) struct Magnetometer {
+    normals: Normals,
+}
+
+/// The earth's magnetic field for a declination (degrees east), ENU, counts: 4096 counts are 500 mG.
+#[must_use]
+pub fn magnetic_field_enu(declination_deg: f64) -> Vector3<f64> {
+    let (sin, cos) = declination_deg.to_radians().sin_cos();
+    Vector3::new(HORIZONTAL * sin, HORIZONTAL * cos, UP)
+}
+
+impl Magnetometer {
+    pub fn new(seed: u64) -> Self {
+        Self { normals: Normals::new(seed, Stream::Magnetometer) }
+    }
+
+    /// The field in body axes FLU, counts, as measured now.
+    pub fn read(
+        &mut self,
+        attitude: &UnitQuaternion<f64>,
+        declination_deg: f64,
+        effects: &Effects,
+        noise: Noise,
+    ) -> Option<Vector3<f64>> {
+        let error = match noise {
+            Noise::Real => self.normals.next3() * SIGMA,
+            Noise::None => Vector3::zeros(),
+        };
+        if effects.mag_off {
+            return None;
+        }
+        let mut field = attitude.inverse_transform_vector(&magnetic_field_enu(declination_deg));
+        if effects.mag_bias_rad != 0.0 {
+            // North seen further left means a heading further right.
+            field = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), effects.mag_bias_rad) * field;
+        }
+        Some(field + error)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::truth;
+
+    /// Heading by a level magnetometer, degrees.
+    fn heading(field: Vector3<f64>) -> f64 {
+        field.y.atan2(field.x).to_degrees().rem_euclid(360.0)
+    }
+
+    #[test]
+    fn the_field_is_that_of_the_reference() {
+        let field = magnetic_field_enu(SITL_DECLINATION_DEG);
+        assert!((field - Vector3::new(71.5, 2046.8, -3547.2)).norm() < 1e-9, "{field}");
+    }
+
+    #[test]
+    fn bias_adds_to_the_heading() {
+        let mut magnetometer = Magnetometer::new(1);
+        let mut effects = Effects::NONE;
+        let level = truth::level_attitude(90.0);
+        let read = |m: &mut Magnetometer, e: &Effects| m.read(&level, 0.0, e, Noise::None).map(heading);
+        assert!((read(&mut magnetometer, &effects).unwrap() - 90.0).abs() < 1e-9);
+        effects.mag_bias_rad = 20_f64.to_radians();
+        assert!((read(&mut magnetometer, &effects).unwrap() - 110.0).abs() < 1e-9);
+        effects.mag_off = true;
+        assert_eq!(read(&mut magnetometer, &effects), None);
+    }
+}

@@ -1,0 +1,237 @@
+//! The plant's rare switches: `--world NAME=VALUE`.
+
+use super::command::in_range;
+use super::config::WorldError;
+use super::parse::{ParseError, number, on_off};
+use super::suggest::did_you_mean;
+
+/// How the mean wind changes with height.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::Display)]
+#[strum(serialize_all = "lowercase")]
+pub enum WindProfile {
+    /// The stated speed from 10 m up, less below (logarithmic law over short grass).
+    #[default]
+    Log,
+    /// The stated speed at every height.
+    Flat,
+}
+
+/// How air density changes with height.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::Display)]
+#[strum(serialize_all = "lowercase")]
+pub enum AirDensity {
+    /// The standard atmosphere.
+    #[default]
+    Isa,
+    /// The density at which the airframe's coefficients are stated, everywhere.
+    Reference,
+}
+
+/// The rare switches of a world.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Switches {
+    /// Mean wind over height.
+    pub wind_profile: WindProfile,
+    /// Whether battery voltage limits rotor speed.
+    pub battery_sag: bool,
+    /// Battery capacity in place of the airframe's, A·h.
+    pub battery_capacity_ah: Option<f64>,
+    /// Whether rotors gain thrust near the ground.
+    pub ground_effect: bool,
+    /// Multiplies the turbulence velocities.
+    pub turbulence_scale: f64,
+    /// Rise and fall time of a gust, s.
+    pub gust_rise_s: f64,
+    /// Air density over height.
+    pub air_density: AirDensity,
+    /// Vibration that the accelerometer shows at hover speed, m/s² rms per axis.
+    pub vibration_mps2: f64,
+    /// Whether inertial sensors have turn-on bias and drift, and the barometer drifts.
+    pub sensor_bias: bool,
+    /// Declination of the magnetic field, degrees east.
+    pub declination_deg: f64,
+}
+
+impl Default for Switches {
+    fn default() -> Self {
+        Self {
+            wind_profile: WindProfile::Log,
+            battery_sag: false,
+            battery_capacity_ah: None,
+            ground_effect: false,
+            turbulence_scale: 1.0,
+            gust_rise_s: 1.0,
+            air_density: AirDensity::Isa,
+            vibration_mps2: 0.0,
+            sensor_bias: true,
+            declination_deg: super::sensors::SITL_DECLINATION_DEG,
+        }
+    }
+}
+
+/// One switch: name, allowed values, meaning.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SwitchInfo {
+    /// Name before the `=`.
+    pub name: &'static str,
+    /// Allowed values.
+    pub values: &'static str,
+    /// What it does.
+    pub help: &'static str,
+}
+
+/// All switches, for help and completion.
+pub const SWITCHES: [SwitchInfo; 10] = [
+    SwitchInfo {
+        name: "wind_profile",
+        values: "log, flat",
+        help: "wind grows with height up to 10 m, or is the same everywhere",
+    },
+    SwitchInfo { name: "battery_sag", values: "on, off", help: "battery voltage limits rotor speed" },
+    SwitchInfo {
+        name: "battery_capacity",
+        values: "0.01 to 100",
+        help: "capacity in A·h instead of the airframe's",
+    },
+    SwitchInfo { name: "ground_effect", values: "on, off", help: "rotors gain thrust near the ground" },
+    SwitchInfo { name: "turbulence_scale", values: "0 to 10", help: "multiplies the turbulence" },
+    SwitchInfo { name: "gust_rise", values: "0.05 to 30", help: "rise and fall time of a gust, s" },
+    SwitchInfo {
+        name: "air_density",
+        values: "isa, reference",
+        help: "standard atmosphere, or 1.225 kg/m³ everywhere",
+    },
+    SwitchInfo {
+        name: "vibration",
+        values: "0 to 50",
+        help: "accelerometer vibration at hover speed, m/s² rms per axis",
+    },
+    SwitchInfo {
+        name: "sensor_bias",
+        values: "on, off",
+        help: "turn-on bias and drift of gyro, accelerometer and barometer",
+    },
+    SwitchInfo { name: "declination", values: "-180 to 180", help: "magnetic declination, degrees east" },
+];
+
+impl Switches {
+    /// Sets one switch from `NAME=VALUE`.
+    ///
+    /// # Errors
+    /// When the name is unknown or the value is not allowed.
+    pub fn set(&mut self, text: &str) -> Result<(), ParseError> {
+        let error = |problem: String| ParseError::new("world switch", text, problem);
+        let Some((name, value)) = text.split_once('=') else {
+            return Err(error(format!(
+                "write NAME=VALUE with a name of {}",
+                SWITCHES.map(|s| s.name).join(", ")
+            )));
+        };
+        let (name, value) = (name.trim(), value.trim());
+        let Some(info) = SWITCHES.iter().find(|info| info.name == name) else {
+            let hint = did_you_mean(name, SWITCHES.iter().map(|s| s.name));
+            return Err(error(format!(
+                "there is no switch {name}{hint}; there are {}",
+                SWITCHES.map(|s| s.name).join(", ")
+            )));
+        };
+        self.assign(name, value).map_err(|problem| error(format!("{problem}; allowed are {}", info.values)))
+    }
+
+    /// Whether all numbers are in the ranges of [`SWITCHES`].
+    pub(super) fn check(&self) -> Result<(), WorldError> {
+        in_range("turbulence_scale", self.turbulence_scale, 0.0, 10.0)?;
+        in_range("gust_rise", self.gust_rise_s, 0.05, 30.0)?;
+        in_range("vibration", self.vibration_mps2, 0.0, 50.0)?;
+        in_range("declination", self.declination_deg, -180.0, 180.0)?;
+        self.battery_capacity_ah
+            .map_or(Ok(()), |capacity| in_range("battery_capacity", capacity, 0.01, 100.0))
+    }
+
+    fn assign(&mut self, name: &str, value: &str) -> Result<(), String> {
+        let range = |min, max| match number("value", value)? {
+            number if (min..=max).contains(&number) => Ok(number),
+            _ => Err(format!("{value} is out of range")),
+        };
+        let unknown = || format!("{value} is not a value of {name}");
+        match name {
+            "wind_profile" => {
+                self.wind_profile = match value {
+                    "log" => WindProfile::Log,
+                    "flat" => WindProfile::Flat,
+                    _ => return Err(unknown()),
+                }
+            }
+            "battery_sag" => self.battery_sag = on_off(value)?,
+            "battery_capacity" => self.battery_capacity_ah = Some(range(0.01, 100.0)?),
+            "ground_effect" => self.ground_effect = on_off(value)?,
+            "turbulence_scale" => self.turbulence_scale = range(0.0, 10.0)?,
+            "gust_rise" => self.gust_rise_s = range(0.05, 30.0)?,
+            "air_density" => {
+                self.air_density = match value {
+                    "isa" => AirDensity::Isa,
+                    "reference" => AirDensity::Reference,
+                    _ => return Err(unknown()),
+                }
+            }
+            "vibration" => self.vibration_mps2 = range(0.0, 50.0)?,
+            "sensor_bias" => self.sensor_bias = on_off(value)?,
+            "declination" => self.declination_deg = range(-180.0, 180.0)?,
+            _ => return Err(unknown()),
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn switches_are_set_by_name() {
+        let mut switches = Switches::default();
+        for text in [
+            "wind_profile=flat",
+            "battery_sag=on",
+            "battery_capacity=0.5",
+            "ground_effect=on",
+            "turbulence_scale=0.5",
+            "gust_rise=2",
+            "air_density=reference",
+            "vibration=0.3",
+            "sensor_bias=off",
+            "declination=-9.5",
+        ] {
+            switches.set(text).unwrap();
+        }
+        let expected = Switches {
+            wind_profile: WindProfile::Flat,
+            battery_sag: true,
+            battery_capacity_ah: Some(0.5),
+            ground_effect: true,
+            turbulence_scale: 0.5,
+            gust_rise_s: 2.0,
+            air_density: AirDensity::Reference,
+            vibration_mps2: 0.3,
+            sensor_bias: false,
+            declination_deg: -9.5,
+        };
+        assert_eq!(switches, expected);
+    }
+
+    #[test]
+    fn every_listed_switch_is_known_to_the_parser() {
+        for info in SWITCHES {
+            let error = Switches::default().set(&format!("{}=banana", info.name)).unwrap_err().to_string();
+            assert!(error.contains(info.values), "{error}");
+        }
+    }
+
+    #[test]
+    fn errors_name_the_switch_and_the_way_out() {
+        let error = |text| Switches::default().set(text).unwrap_err().to_string();
+        assert!(error("wind_profil=flat").contains("did you mean wind_profile?"));
+        assert!(error("wind_profile").contains("NAME=VALUE"));
+        assert!(error("turbulence_scale=11").contains("allowed are 0 to 10"));
+    }
+}

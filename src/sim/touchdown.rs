@@ -1,0 +1,105 @@
+//! Watches the legs: first contact, settled touchdown, crash.
+
+use crate::signals::SimTime;
+
+use super::body::BodyState;
+use super::event::{CrashCause, WorldEventKind};
+use super::ground::Touch;
+
+/// A touch counts as the end of a flight after this long in the air, s, or this much clearance, m.
+const FLIGHT_S: f64 = 0.5;
+const FLIGHT_CLEARANCE_M: f64 = 0.05;
+/// Load on all legs for this long at less than this speed is a touchdown.
+const SETTLED_S: f64 = 0.2;
+const SETTLED_MPS: f64 = 0.2;
+/// A contact faster than this, down or sideways, is a crash, m/s.
+const CRASH_MPS: f64 = 3.0;
+
+/// What the watch has seen so far.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Phase {
+    /// On the ground since the start or the last touchdown.
+    Standing,
+    /// No leg touches since `since`.
+    Airborne { since: SimTime, cleared: bool },
+    /// Touched, not settled; `loaded` is when all legs began to carry load.
+    Settling { impact_mps: f64, peak_mps2: f64, loaded: Option<SimTime> },
+}
+
+/// The watch.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct GroundWatch {
+    phase: Phase,
+}
+
+impl GroundWatch {
+    /// A craft that stands.
+    pub const STANDING: Self = Self { phase: Phase::Standing };
+
+    /// One step: what touches now, the state before the step (whose velocity the ground has not yet changed) and after
+    /// it, and the size of the specific force now, m/s².
+    pub fn update(
+        &mut self,
+        now: SimTime,
+        touch: Touch,
+        before: &BodyState,
+        after: &BodyState,
+        force_mps2: f64,
+    ) -> Option<WorldEventKind> {
+        match self.phase {
+            Phase::Standing => {
+                if !touch.any_leg {
+                    self.phase = Phase::Airborne { since: now, cleared: false };
+                }
+                None
+            }
+            Phase::Airborne { since, cleared } if !touch.any_leg && !touch.hull => {
+                let cleared =
+                    cleared || touch.clearance_m > FLIGHT_CLEARANCE_M || now.seconds_since(since) >= FLIGHT_S;
+                self.phase = Phase::Airborne { since, cleared };
+                None
+            }
+            Phase::Airborne { cleared: false, .. } => {
+                self.phase = Phase::Standing;
+                None
+            }
+            Phase::Airborne { .. } => {
+                let impact_mps = (-before.vel_enu.z).max(0.0);
+                self.phase = Phase::Settling { impact_mps, peak_mps2: force_mps2, loaded: None };
+                Some(WorldEventKind::Contact { impact_mps })
+            }
+            Phase::Settling { impact_mps, peak_mps2, loaded } => {
+                let peak_mps2 = peak_mps2.max(force_mps2);
+                let settled = touch.all_legs && after.vel_enu.norm() < SETTLED_MPS;
+                let loaded = settled.then(|| loaded.unwrap_or(now));
+                if loaded.is_some_and(|since| now.seconds_since(since) >= SETTLED_S) {
+                    self.phase = Phase::Standing;
+                    return Some(WorldEventKind::Touchdown { impact_mps, peak_mps2 });
+                }
+                self.phase = if !touch.any_leg && touch.clearance_m > FLIGHT_CLEARANCE_M {
+                    Phase::Airborne { since: now, cleared: true }
+                } else {
+                    Phase::Settling { impact_mps, peak_mps2, loaded }
+                };
+                None
+            }
+        }
+    }
+
+    /// Forgets the flight: the craft was put somewhere else.
+    pub fn lift(&mut self, now: SimTime) {
+        self.phase = Phase::Airborne { since: now, cleared: true };
+    }
+}
+
+/// Whether touching the ground like this is a crash: `new_contact` tells that this step is the first touch.
+pub(super) fn crash_cause(touch: Touch, new_contact: bool, before: &BodyState) -> Option<CrashCause> {
+    if new_contact && before.vel_enu.z < -CRASH_MPS {
+        return Some(CrashCause::HardLanding(-before.vel_enu.z));
+    }
+    let sideways = before.vel_enu.xy().norm();
+    if new_contact && sideways > CRASH_MPS {
+        return Some(CrashCause::SidewaysLanding(sideways));
+    }
+    touch.hull.then_some(CrashCause::HullContact)
+}

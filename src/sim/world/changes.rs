@@ -1,0 +1,154 @@
+//! Changes of a running world: commands, faults, displacement, reset.
+
+use nalgebra::Vector3;
+
+use crate::signals::SimTime;
+use crate::sim::air::usual_length_s;
+use crate::sim::airframe::ROTORS;
+use crate::sim::command::WorldCommand;
+use crate::sim::config::{Wind, WorldError};
+use crate::sim::event::WorldEventKind;
+use crate::sim::fault::{ActiveFault, Fault, FaultLink, MAX_FAULTS, Switch};
+use crate::sim::ground::FREE_FEET;
+use crate::sim::touchdown::GroundWatch;
+
+use super::{World, full_battery};
+
+/// The payload hangs this share of the standing height below the centre of mass.
+const PAYLOAD_DEPTH: f64 = 0.5;
+
+impl World {
+    /// Changes the world; sensors and truth of the present instant stay as they are, but for a reset: nothing that is
+    /// measured after it speaks of the flight before.
+    ///
+    /// # Errors
+    /// When a value is not allowed; then nothing has changed.
+    pub fn apply(&mut self, command: WorldCommand) -> Result<(), WorldError> {
+        command.check()?;
+        match command {
+            WorldCommand::SetWind(wind) => self.air.change_wind(wind, self.time),
+            WorldCommand::SetGust(size) => self.air.gusts.set_size(size, self.time),
+            WorldCommand::GustNow(wind) => {
+                self.gust(wind, None);
+            }
+            WorldCommand::SetTurbulence(level) => self.air.set_turbulence(level),
+            WorldCommand::SetNoise(noise) => self.sensors.noise = noise,
+            WorldCommand::SetSwitch(switch) => {
+                self.switches.set(&switch)?;
+                self.set_ground_effect();
+            }
+            WorldCommand::SetGpsRate(rate) => self.sensors.gps.set_rate(rate),
+            WorldCommand::FaultOn(fault, for_s) => {
+                self.check_fault(&fault)?;
+                let until = for_s.map(|seconds| SimTime(self.time.0 + SimTime::from_secs_f64(seconds).0));
+                let begun = self.faults.insert(fault, until);
+                self.begin_fault(&begun);
+            }
+            WorldCommand::FaultOff(key) => {
+                while let Some(ended) = self.faults.end_first(|active| key.covers(active)) {
+                    self.end_fault(&ended);
+                }
+            }
+            WorldCommand::ClearFaults => {
+                self.faults.forget_waiting();
+                while let Some(ended) = self.faults.end_first(|_| true) {
+                    self.end_fault(&ended);
+                }
+            }
+            WorldCommand::Schedule(scheduled) => {
+                scheduled.check()?;
+                self.check_fault(&scheduled.fault)?;
+                self.faults.schedule(scheduled);
+            }
+            WorldCommand::ResetToHome => self.reset_to_home(),
+        }
+        self.refresh_loads();
+        Ok(())
+    }
+
+    fn check_fault(&self, fault: &Fault) -> Result<(), WorldError> {
+        fault.check()?;
+        if fault.needs_link() && self.link == FaultLink::Embedded {
+            return Err(WorldError::NeedsLink(fault.name()));
+        }
+        if self.faults.has_room() { Ok(()) } else { Err(WorldError::TooManyFaults(MAX_FAULTS)) }
+    }
+
+    /// Puts on and takes off the faults that are due.
+    pub(super) fn run_faults(&mut self) {
+        while let Some(switch) = self.faults.take_due(self.time) {
+            match switch {
+                Switch::On(begun) => self.begin_fault(&begun),
+                Switch::Off(fault) => self.end_fault(&fault),
+            }
+        }
+    }
+
+    fn begin_fault(&mut self, begun: &ActiveFault) {
+        let fault = begun.fault;
+        self.tell(WorldEventKind::Fault { fault, on: true });
+        match fault {
+            Fault::Push(impulse, direction) => {
+                self.body.vel_enu += direction.enu() * (impulse / self.plant.mass_kg());
+            }
+            Fault::Teleport([north, east, up]) => self.teleport(Vector3::new(east, north, up)),
+            Fault::Gust(wind) => {
+                let end = self.gust(wind, begun.until);
+                self.faults.set_end(&fault, end);
+            }
+            _ => {}
+        }
+        self.use_effects();
+    }
+
+    fn end_fault(&mut self, fault: &Fault) {
+        self.tell(WorldEventKind::Fault { fault: *fault, on: false });
+        self.use_effects();
+    }
+
+    /// Starts a gust that is over at a time, or after the usual one; tells when.
+    fn gust(&mut self, wind: Wind, until: Option<SimTime>) -> SimTime {
+        let rise_s = self.switches.gust_rise_s;
+        let total_s = until.map_or(usual_length_s(rise_s), |until| until.seconds_since(self.time));
+        self.air.gusts.blow(wind, rise_s, total_s, self.time);
+        SimTime(self.time.0 + SimTime::from_secs_f64(total_s).0)
+    }
+
+    /// Brings the plant in line with the active faults.
+    fn use_effects(&mut self) {
+        self.effects = self.faults.effects();
+        self.plant.set_efficiency(self.effects.efficiency);
+        let depth = self.start.pos_enu.z * PAYLOAD_DEPTH;
+        self.plant.set_payload(&self.airframe, self.effects.payload_kg, depth);
+        self.air.change_wind_fault(self.effects.wind, self.time);
+    }
+
+    pub(super) fn set_ground_effect(&mut self) {
+        self.plant.set_ground_effect(self.switches.ground_effect.then_some(self.airframe.rotor_radius_m));
+    }
+
+    /// Moves the craft, never into the ground.
+    fn teleport(&mut self, by_enu: Vector3<f64>) {
+        self.body.pos_enu += by_enu;
+        let clearance = self.plant.ground().touch(&self.body).clearance_m;
+        self.body.pos_enu.z -= clearance.min(0.0);
+        self.feet = FREE_FEET;
+        if clearance > 0.0 {
+            self.watch.lift(self.time);
+        }
+    }
+
+    fn reset_to_home(&mut self) {
+        self.body = self.start;
+        self.rotors = [0.0; ROTORS];
+        self.feet = FREE_FEET;
+        self.plant.ground().latch_feet(&self.start, &mut self.feet);
+        self.battery = full_battery(&self.airframe, &self.switches);
+        self.command = [0.0; ROTORS];
+        self.watch = GroundWatch::STANDING;
+        (self.crashed, self.diverged) = (false, false);
+        self.sensors.settle(self.start.pos_enu, self.start.vel_enu);
+        self.rate_before = self.body.rate_flu;
+        self.present_with(None);
+    }
+}

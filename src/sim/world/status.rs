@@ -1,0 +1,52 @@
+//! What the World panel shows of the settings.
+
+use arrayvec::ArrayVec;
+
+use crate::sim::config::{Noise, Turbulence, Wind};
+use crate::sim::fault::{ActiveFault, Fault, MAX_FAULTS};
+use crate::sim::switches::Switches;
+
+use super::World;
+
+/// The settings of a world at one instant.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WorldStatus {
+    /// Mean wind: a fault's or the one that was set.
+    pub wind: Wind,
+    /// Strength of random gusts, m/s.
+    pub gust_mps: f64,
+    /// A gust is blowing.
+    pub gust_blowing: bool,
+    /// Level of turbulence.
+    pub turbulence: Turbulence,
+    /// Whether sensors err.
+    pub noise: Noise,
+    /// The rare switches.
+    pub switches: Switches,
+    /// Active faults and how many seconds each will still last.
+    pub faults: ArrayVec<(Fault, Option<f64>), MAX_FAULTS>,
+    /// Faults that wait for their time.
+    pub waiting: usize,
+    /// Motor commands refused because they were not numbers.
+    pub refused_commands: u64,
+}
+
+impl World {
+    /// The settings of air, noise and faults as they are now.
+    #[must_use]
+    pub fn status(&self) -> WorldStatus {
+        let left =
+            |fault: &ActiveFault| (fault.fault, fault.until.map(|until| until.seconds_since(self.time)));
+        WorldStatus {
+            wind: self.air.settled_wind(),
+            gust_mps: self.air.gusts.size_mps(),
+            gust_blowing: self.air.gusts.is_blowing(),
+            turbulence: self.air.turbulence.level,
+            noise: self.sensors.noise,
+            switches: self.switches,
+            faults: self.faults.active().iter().map(left).collect(),
+            waiting: self.faults.waiting().len(),
+            refused_commands: self.refused_commands,
+        }
+    }
+}

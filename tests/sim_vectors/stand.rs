@@ -1,0 +1,94 @@
+//! A test stand: the bare plant with motor commands and air held, without sensors, faults or events.
+
+use betadeck::sim::{
+    AirSample, Airframe, BodyState, FREE_FEET, Feet, Loads, Plant, REFERENCE_DENSITY, ROTORS, level_attitude,
+};
+use nalgebra::Vector3;
+
+pub struct Stand {
+    pub airframe: Airframe,
+    pub plant: Plant,
+    pub body: BodyState,
+    pub rotors: [f64; ROTORS],
+    pub target: [f64; ROTORS],
+    pub air: AirSample,
+    feet: Feet,
+    h: f64,
+}
+
+impl Stand {
+    /// A level craft facing north at a height, at rest, rotors stopped, in still air of reference density.
+    pub fn new(airframe: Airframe, height_m: f64, h: f64) -> Self {
+        Self {
+            plant: Plant::new(&airframe, h),
+            airframe,
+            body: BodyState {
+                pos_enu: Vector3::new(0.0, 0.0, height_m),
+                vel_enu: Vector3::zeros(),
+                attitude: level_attitude(0.0),
+                rate_flu: Vector3::zeros(),
+            },
+            rotors: [0.0; ROTORS],
+            target: [0.0; ROTORS],
+            air: AirSample { wind_enu: Vector3::zeros(), density_ratio: 1.0 },
+            feet: FREE_FEET,
+            h,
+        }
+    }
+
+    /// Rotors turn at these speeds and stay there.
+    pub fn hold_rotors(&mut self, speeds: [f64; ROTORS]) {
+        self.rotors = speeds;
+        self.target = speeds;
+    }
+
+    /// Motor commands 0…1.
+    pub fn command(&mut self, u: [f64; ROTORS]) {
+        self.target = u.map(|u| u * self.airframe.rotor_speed_max);
+    }
+
+    pub fn loads(&self) -> Loads {
+        self.plant.loads(&self.body, &self.rotors, &self.air, &self.feet)
+    }
+
+    pub fn specific_force(&self) -> Vector3<f64> {
+        self.loads().force_flu / self.plant.mass_kg()
+    }
+
+    pub fn step(&mut self) {
+        let loads = self.loads();
+        self.plant.step(&mut self.body, &mut self.rotors, &mut self.feet, &self.target, &self.air, &loads);
+    }
+
+    pub fn run(&mut self, seconds: f64) {
+        for _ in 0..(seconds / self.h).round() as u64 {
+            self.step();
+        }
+    }
+}
+
+/// An airframe without any aerodynamic force but thrust.
+pub fn without_drag(mut airframe: Airframe) -> Airframe {
+    airframe.inflow_coeff = 0.0;
+    airframe.rotor_drag_coeff = 0.0;
+    airframe.body_drag = Vector3::zeros();
+    airframe.angular_damping = Vector3::zeros();
+    airframe
+}
+
+/// The airframe with its rotors at the same distance from the long axis, in the plane of the centre of mass if `flat`.
+pub fn symmetric(mut airframe: Airframe, flat: bool) -> Airframe {
+    for rotor in &mut airframe.rotor_positions_m {
+        rotor.y = 0.21 * rotor.y.signum();
+        if flat {
+            rotor.z = 0.0;
+        }
+    }
+    airframe
+}
+
+/// The density at which the coefficients hold is the one of the vectors.
+#[test]
+fn the_reference_density_is_that_of_sea_level() {
+    assert!((betadeck::sim::density(0.0) / REFERENCE_DENSITY - 1.0).abs() < 1e-7);
+}
