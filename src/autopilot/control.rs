@@ -1,0 +1,20 @@
+//! How to get there: altitude, position and yaw control, shared by the autopilot and the firmware's hold modes.
+
+mod altitude;
+mod blend;
+mod disturbance;
+mod hover;
+mod position;
+mod yaw;
+
+pub use altitude::{
+    AltitudeController, AltitudeMeasurement, AltitudeTarget, THROTTLE_SLEW_US_PER_S, ThrottleTerms,
+    throttle_share,
+};
+pub use blend::Blend;
+pub use disturbance::DisturbanceObserver;
+pub use hover::{Balance, HOVER_MAX_US, HOVER_MIN_US, HoverLearner};
+pub use position::{
+    LEAN_SLEW_RPS, PositionController, PositionLaw, PositionMeasurement, PositionTarget, earth_to_body,
+};
+pub use yaw::{YAW_SLEW_DPS2, YawController, YawFacts, desired_heading, yaw_rate_dps};

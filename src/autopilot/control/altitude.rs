@@ -1,0 +1,266 @@
+//! Altitude control: a setpoint that moves as the craft can, and the throttle that follows it.
+
+use super::blend::Blend;
+use super::hover::{Balance, HoverLearner};
+use crate::autopilot::params::Params;
+
+/// How fast the setpoint's speed may change, m/s².
+const SETPOINT_ACCEL: f64 = 2.0;
+/// Deceleration with which the setpoint approaches its target, m/s².
+const SETPOINT_BRAKE: f64 = 1.0;
+/// Limit of the integral, µs.
+const INTEGRAL_LIMIT_US: f64 = 200.0;
+/// Fastest change of the throttle, µs/s.
+pub const THROTTLE_SLEW_US_PER_S: f64 = 5000.0;
+/// Fastest change of the throttle limits in use, µs/s.
+const LIMIT_SLEW_US_PER_S: f64 = 500.0;
+
+/// The vertical state of the craft.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AltitudeMeasurement {
+    /// Altitude above home, m.
+    pub altitude_m: f64,
+    /// Climb rate, m/s.
+    pub climb_mps: f64,
+    /// Cosine of the tilt from level.
+    pub cos_tilt: f64,
+    /// Throttle that drove the mixer in the previous cycle, µs.
+    pub throttle_us: f64,
+}
+
+/// What the altitude controller is asked for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum AltitudeTarget {
+    /// Go to this altitude (m) and stay, within the climb rate of the parameters.
+    Altitude(f64),
+    /// Climb (or, negative, sink) at this rate, m/s; the setpoint never runs more than a second ahead of the craft.
+    Rate(f64),
+    /// Follow a setpoint that somebody else moves: a landing. The integral works at full gain.
+    Landing {
+        /// Altitude now, m.
+        setpoint_m: f64,
+        /// Its rate, m/s.
+        rate_mps: f64,
+    },
+}
+
+/// Everything the throttle depends on in one update.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ThrottleTerms {
+    /// Setpoint minus altitude, cm.
+    pub error_cm: f64,
+    /// Integral, µs.
+    pub integral_us: f64,
+    /// Rate of the setpoint, cm/s.
+    pub setpoint_rate_cms: f64,
+    /// Climb rate, cm/s.
+    pub climb_rate_cms: f64,
+    /// Hover throttle in use, µs.
+    pub hover_us: f64,
+    /// Cosine of the tilt.
+    pub cos_tilt: f64,
+}
+
+impl ThrottleTerms {
+    /// Throttle before its limits, µs: P, I, D and F about the hover throttle, compensated for the tilt.
+    #[must_use]
+    pub fn throttle_us(&self, params: &Params) -> f64 {
+        let p = 0.01 * f64::from(params.altitude_p) * self.error_cm;
+        let q = self.climb_rate_cms.abs() / 500.0;
+        let boost = if q <= 1.0 { 1.0 } else { (3.0 * q - 2.0) / q };
+        let d = 0.01 * f64::from(params.altitude_d) * (self.setpoint_rate_cms - self.climb_rate_cms) * boost;
+        let f = 0.0033 * f64::from(params.altitude_f) * self.setpoint_rate_cms;
+        let offset = p + self.integral_us + d + f + (self.hover_us - 1000.0);
+        1000.0 + offset / self.cos_tilt.max(0.5)
+    }
+}
+
+/// A throttle pulse as a share of the mixer's range, 0…1.
+#[must_use]
+pub fn throttle_share(throttle_us: f64, params: &Params) -> f64 {
+    let zero = params.throttle_zero_us();
+    ((throttle_us - zero) / (2000.0 - zero)).clamp(0.0, 1.0)
+}
+
+/// One altitude controller for the autopilot, altitude hold and the failsafe descent.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct AltitudeController {
+    hover: HoverLearner,
+    /// Hover throttle when this controller took over, µs.
+    captured_us: f64,
+    setpoint_m: f64,
+    setpoint_rate: f64,
+    integral_us: f64,
+    /// Throttle of the last update, µs.
+    throttle_us: f64,
+    limits_us: Option<(f64, f64)>,
+    params: Option<Params>,
+    blend: Blend,
+}
+
+impl AltitudeController {
+    /// Watches a cycle that somebody else flies, so that the hover throttle is known when this controller takes over.
+    pub fn watch(&mut self, now: &AltitudeMeasurement, params: &Params, dt: f64) {
+        self.hover.watch(&balance(now, params), dt);
+    }
+
+    /// Takes over: the setpoint starts at the craft, the throttle where it was.
+    pub fn engage(&mut self, now: &AltitudeMeasurement, params: &Params) {
+        let configured = match params.hover_throttle {
+            0 => now.throttle_us.clamp(1100.0, 1700.0),
+            us => f64::from(us),
+        };
+        self.hover.engage(configured);
+        self.captured_us = self.hover.hover_us();
+        self.setpoint_m = now.altitude_m;
+        let rate = params.climb_rate_mps();
+        self.setpoint_rate = now.climb_mps.clamp(-rate, rate);
+        self.integral_us = 0.0;
+        self.limits_us = None;
+        self.params = Some(*params);
+        let law = self.terms(now).throttle_us(params);
+        self.throttle_us = now.throttle_us;
+        self.blend.start(now.throttle_us, law);
+    }
+
+    /// Altitude setpoint now, m above home.
+    #[must_use]
+    pub fn setpoint_m(&self) -> f64 {
+        self.setpoint_m
+    }
+
+    /// Hover throttle in use, µs.
+    #[must_use]
+    pub fn hover_us(&self) -> f64 {
+        self.hover.hover_us()
+    }
+
+    /// The hover throttle that a touchdown is measured against, µs: the parameter, or what held the craft when this
+    /// controller took over if there is none.
+    #[must_use]
+    pub fn reference_hover_us(&self, params: &Params) -> f64 {
+        match params.hover_throttle {
+            0 => self.captured_us,
+            us => f64::from(us),
+        }
+    }
+
+    /// Throttle of the last update, µs.
+    #[must_use]
+    pub fn throttle_us(&self) -> f64 {
+        self.throttle_us
+    }
+
+    /// Throttle (µs) towards `target` after `dt` seconds; inside the limits of the parameters.
+    pub fn update(
+        &mut self,
+        now: &AltitudeMeasurement,
+        target: AltitudeTarget,
+        params: &Params,
+        dt: f64,
+    ) -> f64 {
+        if !(now.altitude_m + now.climb_mps + now.cos_tilt + now.throttle_us).is_finite() {
+            return self.throttle_us;
+        }
+        self.hover.watch(&balance(now, params), dt);
+        let landing = self.move_setpoint(now, target, params, dt);
+        self.integrate(now, landing, params, dt);
+        if let Some(old) = self.params.filter(|old| old != params) {
+            // A changed parameter must not step the throttle.
+            let terms = self.terms(now);
+            let before = terms.throttle_us(&old) + self.blend.remaining();
+            self.blend.start(before, terms.throttle_us(params));
+            self.params = Some(*params);
+        }
+        let wanted = self.blend.apply(self.terms(now).throttle_us(params), dt);
+        let (min, max) = self.slew_limits(params, dt);
+        let step = THROTTLE_SLEW_US_PER_S * dt;
+        let slewed = wanted.clamp(self.throttle_us - step, self.throttle_us + step);
+        self.throttle_us = if slewed.is_finite() { slewed.clamp(min, max) } else { min };
+        self.throttle_us
+    }
+
+    fn terms(&self, now: &AltitudeMeasurement) -> ThrottleTerms {
+        ThrottleTerms {
+            error_cm: (self.setpoint_m - now.altitude_m) * 100.0,
+            integral_us: self.integral_us,
+            setpoint_rate_cms: self.setpoint_rate * 100.0,
+            climb_rate_cms: now.climb_mps * 100.0,
+            hover_us: self.hover.hover_us(),
+            cos_tilt: now.cos_tilt,
+        }
+    }
+
+    /// Moves the setpoint; returns whether this is a landing.
+    fn move_setpoint(
+        &mut self,
+        now: &AltitudeMeasurement,
+        target: AltitudeTarget,
+        params: &Params,
+        dt: f64,
+    ) -> bool {
+        let climb_rate = params.climb_rate_mps();
+        let change = SETPOINT_ACCEL * dt;
+        match target {
+            AltitudeTarget::Altitude(altitude_m) => {
+                let left = altitude_m - self.setpoint_m;
+                let speed = climb_rate.min((2.0 * SETPOINT_BRAKE * left.abs()).sqrt());
+                let wanted = speed.copysign(left);
+                self.setpoint_rate += (wanted - self.setpoint_rate).clamp(-change, change);
+                let step = self.setpoint_rate * dt;
+                // The last step lands on the target instead of swinging about it.
+                if left.abs() < 0.02 && step.abs() >= left.abs() {
+                    self.setpoint_m = altitude_m;
+                    self.setpoint_rate = 0.0;
+                } else {
+                    self.setpoint_m += step;
+                }
+                false
+            }
+            AltitudeTarget::Rate(rate) => {
+                let wanted = rate.clamp(-2.0 * climb_rate, 2.0 * climb_rate);
+                self.setpoint_rate += (wanted - self.setpoint_rate).clamp(-change, change);
+                let leash = wanted.abs().max(0.5);
+                self.setpoint_m = (self.setpoint_m + self.setpoint_rate * dt)
+                    .clamp(now.altitude_m - leash, now.altitude_m + leash);
+                false
+            }
+            AltitudeTarget::Landing { setpoint_m, rate_mps } => {
+                self.setpoint_m = setpoint_m;
+                self.setpoint_rate += (rate_mps - self.setpoint_rate).clamp(-change, change);
+                true
+            }
+        }
+    }
+
+    fn integrate(&mut self, now: &AltitudeMeasurement, landing: bool, params: &Params, dt: f64) {
+        let error_cm = (self.setpoint_m - now.altitude_m) * 100.0;
+        let share = if error_cm.abs() > 200.0 && !landing { 0.1 } else { 1.0 };
+        self.integral_us += 0.003 * f64::from(params.altitude_i) * error_cm * share * dt;
+        let taken = self.hover.learn(self.integral_us, self.setpoint_rate, dt);
+        self.integral_us = (self.integral_us - taken).clamp(-INTEGRAL_LIMIT_US, INTEGRAL_LIMIT_US);
+    }
+
+    /// The throttle limits, led to the parameters' at a limited rate.
+    fn slew_limits(&mut self, params: &Params, dt: f64) -> (f64, f64) {
+        let wanted = (f64::from(params.throttle_min), f64::from(params.throttle_max));
+        let step = LIMIT_SLEW_US_PER_S * dt;
+        let slew = |old: f64, new: f64| old + (new - old).clamp(-step, step);
+        let limits = match self.limits_us {
+            Some((min, max)) => (slew(min, wanted.0), slew(max, wanted.1)),
+            None => wanted,
+        };
+        self.limits_us = Some(limits);
+        (limits.0, limits.1.max(limits.0))
+    }
+}
+
+fn balance(now: &AltitudeMeasurement, params: &Params) -> Balance {
+    Balance {
+        throttle_us: now.throttle_us,
+        zero_us: params.throttle_zero_us(),
+        climb_mps: now.climb_mps,
+        altitude_m: now.altitude_m,
+        cos_tilt: now.cos_tilt,
+    }
+}

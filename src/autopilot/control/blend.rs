@@ -1,0 +1,51 @@
+//! Changing hands without a step: the difference between the old and the new demand fades out.
+
+/// Time in which a difference fades out, s.
+const FADE_S: f64 = 1.0;
+
+/// A difference that fades out linearly.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Blend {
+    offset: f64,
+    left_s: f64,
+}
+
+impl Blend {
+    /// From now on [`Blend::apply`] leads from `old` to `new`, the demands of the same instant.
+    pub fn start(&mut self, old: f64, new: f64) {
+        let offset = old - new;
+        *self = if offset.is_finite() { Self { offset, left_s: FADE_S } } else { Self::default() };
+    }
+
+    /// Forgets the difference.
+    pub fn clear(&mut self) {
+        *self = Self::default();
+    }
+
+    /// The demand `new` with what is left of the difference after `dt` more seconds.
+    pub fn apply(&mut self, new: f64, dt: f64) -> f64 {
+        let out = new + self.offset * (self.left_s / FADE_S);
+        self.left_s = (self.left_s - dt).max(0.0);
+        out
+    }
+
+    /// The part of the difference that is still added.
+    #[must_use]
+    pub fn remaining(&self) -> f64 {
+        self.offset * (self.left_s / FADE_S)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn leads_from_the_old_to_the_new_value() {
+        let mut blend = Blend::default();
+        blend.start(10.0, 2.0);
+        assert!((blend.apply(2.0, 0.5) - 10.0).abs() < 1e-12);
+        assert!((blend.apply(2.0, 0.5) - 6.0).abs() < 1e-12);
+        assert!((blend.apply(2.0, 0.5) - 2.0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,309 @@
+//! Position control: from a place to fly to, to a lean towards north and east.
+
+use nalgebra::Vector2;
+
+use super::blend::Blend;
+use super::disturbance::DisturbanceObserver;
+use crate::autopilot::guidance::stop_speed_mps;
+use crate::autopilot::params::Params;
+use crate::geo::GRAVITY;
+
+/// Limit of the speed law's integral, rad.
+const SPEED_INTEGRAL_LIMIT: f64 = 35.0 * DEG;
+/// Limit of the direct law's integral, m·s.
+const DIRECT_INTEGRAL_LIMIT: f64 = 20.0;
+/// Limit of the position error of the direct law, m.
+const DIRECT_ERROR_LIMIT: f64 = 5.0;
+/// Half-life of the integrals while the pilot flies, s.
+const BLEED_HALF_LIFE_S: f64 = 2.5;
+/// Setpoint acceleration (m/s²) at which the speed integral works at half its gain: the lag of speeding up and braking
+/// is not an error to remember.
+const HALF_INTEGRAL_ACCEL: f64 = 0.3;
+/// Rate at which the velocity setpoint closes small differences, rad/s: without it a turn of the direction at walking
+/// pace would kick the lean.
+const SETPOINT_RPS: f64 = 5.0;
+/// Fastest change of the lean limit in use, rad/s.
+const LIMIT_SLEW: f64 = 30.0 * DEG;
+/// Fastest change of the lean demand, rad/s.
+pub const LEAN_SLEW_RPS: f64 = 200.0 * DEG;
+const DEG: f64 = std::f64::consts::PI / 180.0;
+
+/// A lean towards (north, east) as (forward, right) of a craft heading `heading_rad`.
+#[must_use]
+pub fn earth_to_body(ne: Vector2<f64>, heading_rad: f64) -> Vector2<f64> {
+    let (sin, cos) = heading_rad.sin_cos();
+    Vector2::new(ne.x * cos + ne.y * sin, -ne.x * sin + ne.y * cos)
+}
+
+/// The inverse of [`earth_to_body`].
+fn body_to_earth(body: Vector2<f64>, heading_rad: f64) -> Vector2<f64> {
+    earth_to_body(body, -heading_rad)
+}
+
+/// The horizontal state of the craft; north, east.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PositionMeasurement {
+    /// Position, m.
+    pub position: Vector2<f64>,
+    /// Ground velocity, m/s.
+    pub velocity: Vector2<f64>,
+    /// Acceleration, m/s².
+    pub accel: Vector2<f64>,
+    /// Lean flown now (forward, right), rad.
+    pub lean_body: Vector2<f64>,
+    /// Heading, rad clockwise from north.
+    pub heading_rad: f64,
+}
+
+/// Which law flies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PositionLaw {
+    /// Position error → speed → lean: legs, and holds with `ap_velocity_control_enable`.
+    Speed,
+    /// Position error → lean: holds without it.
+    Direct,
+}
+
+/// What the position controller is asked for; north, east.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PositionTarget {
+    /// The point to steer for, m.
+    pub aim: Vector2<f64>,
+    /// The point to reach, m.
+    pub target: Vector2<f64>,
+    /// Velocity of the target, m/s (direct law).
+    pub target_velocity: Vector2<f64>,
+    /// Acceleration of the target, m/s² (direct law).
+    pub target_accel: Vector2<f64>,
+    /// Fly on at full speed instead of stopping at the target.
+    pub pass_through: bool,
+    /// Greatest speed, m/s.
+    pub speed_mps: f64,
+    /// Which law flies.
+    pub law: PositionLaw,
+}
+
+impl PositionTarget {
+    /// Stop at `point` and stay.
+    #[must_use]
+    pub fn stay(point: Vector2<f64>, params: &Params) -> Self {
+        Self {
+            aim: point,
+            target: point,
+            target_velocity: Vector2::zeros(),
+            target_accel: Vector2::zeros(),
+            pass_through: false,
+            speed_mps: params.max_velocity_mps(),
+            law: if params.velocity_control_enable { PositionLaw::Speed } else { PositionLaw::Direct },
+        }
+    }
+}
+
+/// One position controller for the autopilot and position hold.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct PositionController {
+    observer: DisturbanceObserver,
+    /// Speed setpoint along the way, m/s.
+    speed: f64,
+    velocity_setpoint: Vector2<f64>,
+    accel_setpoint: Vector2<f64>,
+    accel_filtered: Vector2<f64>,
+    /// Integral of the speed law, rad.
+    speed_integral: Vector2<f64>,
+    /// Integral of the direct law, m·s.
+    direct_integral: Vector2<f64>,
+    saturated: bool,
+    limit_rad: Option<f64>,
+    params: Option<Params>,
+    fade: [Blend; 2],
+    /// Lean flown by somebody else until now, to lead on from.
+    flown: Option<Vector2<f64>>,
+    /// Demand of the last update, rad.
+    demand: Option<Vector2<f64>>,
+}
+
+impl PositionController {
+    /// Watches a cycle that somebody else flies: wind and drag stay known, integrals bleed, the setpoints follow the
+    /// craft.
+    pub fn watch(&mut self, now: &PositionMeasurement, dt: f64) {
+        self.observe(now, dt);
+        let keep = 0.5_f64.powf(dt / BLEED_HALF_LIFE_S);
+        self.speed_integral *= keep;
+        self.direct_integral *= keep;
+        self.accel_filtered = now.accel;
+        self.velocity_setpoint = now.velocity;
+        self.speed = now.velocity.norm();
+        self.saturated = false;
+        self.limit_rad = None;
+        let flown = body_to_earth(now.lean_body, now.heading_rad);
+        self.flown = Some(flown);
+        self.demand = Some(flown);
+    }
+
+    /// Takes over: integrals empty, setpoints at the craft, lean where it was.
+    pub fn engage(&mut self, now: &PositionMeasurement) {
+        let observer = self.observer;
+        *self = Self { observer, ..Self::default() };
+        self.watch(now, 0.0);
+    }
+
+    /// Speed setpoint, m/s.
+    #[must_use]
+    pub fn speed_setpoint_mps(&self) -> f64 {
+        self.speed
+    }
+
+    /// Lean towards (north, east) in rad that leads to `target`, `dt` seconds after the last; inside the greatest
+    /// lean.
+    pub fn update(
+        &mut self,
+        now: &PositionMeasurement,
+        target: &PositionTarget,
+        params: &Params,
+        dt: f64,
+    ) -> Vector2<f64> {
+        self.observe(now, dt);
+        self.shape_speed(now, target, params, dt);
+        self.filter_accel(now, params, dt);
+        self.integrate(now, target, params, dt);
+        let law = self.law(now, target, params);
+        if let Some(flown) = self.flown.take() {
+            self.start_fade(flown, law);
+        } else if let Some(old) = self.params.filter(|old| old != params) {
+            let before = self.law(now, target, &old) + self.fade_remaining();
+            self.start_fade(before, law);
+        }
+        self.params = Some(*params);
+        let wanted = Vector2::new(self.fade[0].apply(law.x, dt), self.fade[1].apply(law.y, dt));
+        let limit = self.slew_limit(params, dt);
+        self.saturated = wanted.norm() > limit;
+        let finite = wanted.iter().all(|axis| axis.is_finite());
+        let wanted = if finite { wanted.cap_magnitude(limit) } else { Vector2::zeros() };
+        let slewed =
+            self.demand.map_or(wanted, |last| last + (wanted - last).cap_magnitude(LEAN_SLEW_RPS * dt));
+        let demand = slewed.cap_magnitude(limit);
+        self.demand = Some(demand);
+        demand
+    }
+
+    fn observe(&mut self, now: &PositionMeasurement, dt: f64) {
+        let lean = body_to_earth(now.lean_body, now.heading_rad);
+        let accel = lean.map(|axis| GRAVITY * axis.clamp(-1.3, 1.3).tan());
+        self.observer.update(now.velocity, accel, dt);
+    }
+
+    fn shape_speed(&mut self, now: &PositionMeasurement, target: &PositionTarget, params: &Params, dt: f64) {
+        let demand = if target.pass_through {
+            target.speed_mps
+        } else {
+            stop_speed_mps((target.target - now.position).norm(), target.speed_mps, params)
+        };
+        let brake = params.max_accel_mps2();
+        self.speed += (demand - self.speed).clamp(-brake * dt, params.build_up_accel_mps2() * dt);
+        let direction = (target.aim - now.position).try_normalize(1e-6).unwrap_or_default();
+        let left = direction * self.speed - self.velocity_setpoint;
+        let step = (left * (SETPOINT_RPS * dt).min(1.0)).cap_magnitude(brake * dt);
+        self.velocity_setpoint += step;
+        self.accel_setpoint = if dt > 0.0 { step / dt } else { Vector2::zeros() };
+    }
+
+    fn filter_accel(&mut self, now: &PositionMeasurement, params: &Params, dt: f64) {
+        let time_constant = 1.0 / (std::f64::consts::TAU * 0.1 * f64::from(params.position_cutoff.max(1)));
+        self.accel_filtered += (now.accel - self.accel_filtered) * (dt / (time_constant + dt));
+    }
+
+    fn integrate(&mut self, now: &PositionMeasurement, target: &PositionTarget, params: &Params, dt: f64) {
+        if self.saturated {
+            return;
+        }
+        match target.law {
+            PositionLaw::Speed => {
+                let steady = 1.0 / (1.0 + (self.accel_setpoint.norm() / HALF_INTEGRAL_ACCEL).powi(2));
+                let gain = 0.1 * DEG * f64::from(params.velocity_i);
+                let step = (self.velocity_setpoint - now.velocity) * (gain * steady * dt);
+                self.speed_integral = (self.speed_integral + step)
+                    .map(|x| x.clamp(-SPEED_INTEGRAL_LIMIT, SPEED_INTEGRAL_LIMIT));
+                self.direct_integral = Vector2::zeros();
+            }
+            PositionLaw::Direct => {
+                let step = direct_error(now, target) * dt;
+                self.direct_integral = (self.direct_integral + step)
+                    .map(|x| x.clamp(-DIRECT_INTEGRAL_LIMIT, DIRECT_INTEGRAL_LIMIT));
+                self.speed_integral = Vector2::zeros();
+            }
+        }
+    }
+
+    fn law(&self, now: &PositionMeasurement, target: &PositionTarget, params: &Params) -> Vector2<f64> {
+        let wind = self.observer.accel().map(|axis| -(axis / GRAVITY).atan());
+        let lean = match target.law {
+            PositionLaw::Speed => self.speed_law(now, params),
+            PositionLaw::Direct => self.direct_law(now, target, params),
+        };
+        lean + wind
+    }
+
+    fn speed_law(&self, now: &PositionMeasurement, params: &Params) -> Vector2<f64> {
+        let p = 0.1 * DEG * f64::from(params.velocity_p);
+        let d = 0.1 * DEG * f64::from(params.velocity_d);
+        let drag = 1e-4 * DEG * f64::from(params.velocity_drag_coeff);
+        let setpoint = self.velocity_setpoint;
+        (setpoint - now.velocity) * p + self.speed_integral - self.accel_filtered * d
+            + setpoint * (setpoint.norm() * drag)
+            + self.accel_setpoint.map(|axis| (axis / GRAVITY).atan())
+    }
+
+    fn direct_law(
+        &self,
+        now: &PositionMeasurement,
+        target: &PositionTarget,
+        params: &Params,
+    ) -> Vector2<f64> {
+        let p = 0.12 * DEG * f64::from(params.position_p);
+        let i = 0.01 * DEG * f64::from(params.position_i);
+        let d = 0.15 * DEG * f64::from(params.position_d);
+        let a = 0.08 * DEG * f64::from(params.position_a);
+        direct_error(now, target) * p
+            + self.direct_integral * i
+            + (target.target_velocity - now.velocity) * d
+            + (target.target_accel - self.accel_filtered) * a
+    }
+
+    fn start_fade(&mut self, old: Vector2<f64>, new: Vector2<f64>) {
+        self.fade[0].start(old.x, new.x);
+        self.fade[1].start(old.y, new.y);
+    }
+
+    fn fade_remaining(&self) -> Vector2<f64> {
+        Vector2::new(self.fade[0].remaining(), self.fade[1].remaining())
+    }
+
+    /// The greatest lean, led to the parameter's at a limited rate.
+    fn slew_limit(&mut self, params: &Params, dt: f64) -> f64 {
+        let wanted = params.max_lean_rad();
+        let limit = match self.limit_rad {
+            Some(old) => old + (wanted - old).clamp(-LIMIT_SLEW * dt, LIMIT_SLEW * dt),
+            None => wanted,
+        };
+        self.limit_rad = Some(limit);
+        limit
+    }
+}
+
+fn direct_error(now: &PositionMeasurement, target: &PositionTarget) -> Vector2<f64> {
+    (target.target - now.position).cap_magnitude(DIRECT_ERROR_LIMIT)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn body_and_earth_are_inverse(n in -50.0..50.0, e in -50.0..50.0, heading in -7.0..7.0) {
+            let ne = Vector2::new(n, e);
+            prop_assert!((body_to_earth(earth_to_body(ne, heading), heading) - ne).norm() < 1e-9);
+        }
+    }
+}

@@ -1,0 +1,132 @@
+//! Where the nose points while the autopilot flies.
+
+use crate::autopilot::control::blend::Blend;
+use crate::autopilot::params::{Params, YawMode};
+use crate::geo::wrap_pi;
+
+/// Time in which yaw control fades in, s.
+const RAMP_S: f64 = 2.0;
+/// Distance over which HYBRID goes over from bearing to course, m.
+const HYBRID_M: f64 = 10.0;
+/// Fastest change of the demand, deg/s².
+pub const YAW_SLEW_DPS2: f64 = 180.0;
+/// Share of the minimum speed below which the course is given up.
+const RELEASE: f64 = 0.75;
+
+/// What the heading can be steered by; rad clockwise from north, SI.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct YawFacts {
+    /// Heading now.
+    pub heading_rad: f64,
+    /// Yaw rate now, rad/s, clockwise positive.
+    pub yaw_rate_rps: f64,
+    /// Ground course.
+    pub course_rad: f64,
+    /// Ground speed, m/s.
+    pub ground_speed_mps: f64,
+    /// Bearing to the waypoint.
+    pub bearing_rad: f64,
+    /// Distance to the waypoint, m.
+    pub distance_m: f64,
+    /// Acceptance radius of the waypoint, m: nearer, the bearing says nothing.
+    pub acceptance_radius_m: f64,
+}
+
+/// Heading to steer for, rad, or `None` to hold; `course_trusted` = the craft is fast enough for a course.
+#[must_use]
+pub fn desired_heading(mode: YawMode, facts: &YawFacts, course_trusted: bool) -> Option<f64> {
+    match mode {
+        YawMode::Velocity => course_trusted.then_some(facts.course_rad),
+        YawMode::Bearing => (facts.distance_m >= facts.acceptance_radius_m).then_some(facts.bearing_rad),
+        YawMode::Hybrid => Some(if course_trusted { hybrid(facts) } else { facts.bearing_rad }),
+        YawMode::Fixed | YawMode::Dampener => None,
+    }
+}
+
+/// Bearing and course mixed on the circle.
+fn hybrid(facts: &YawFacts) -> f64 {
+    let share = (facts.distance_m / HYBRID_M).clamp(0.0, 1.0);
+    let (bearing, course) = (facts.bearing_rad, facts.course_rad);
+    let north = share * bearing.cos() + (1.0 - share) * course.cos();
+    let east = share * bearing.sin() + (1.0 - share) * course.sin();
+    east.atan2(north)
+}
+
+/// Yaw rate (deg/s, clockwise positive) towards `desired_rad`, faded by `ramp` (0…1) and limited by `max_dps`.
+#[must_use]
+pub fn yaw_rate_dps(desired_rad: f64, facts: &YawFacts, ramp: f64, max_dps: f64, params: &Params) -> f64 {
+    let error = wrap_pi(desired_rad - facts.heading_rad).to_degrees();
+    let p = 0.01 * f64::from(params.yaw_p) * error;
+    let d = 0.01 * f64::from(params.yaw_d) * facts.yaw_rate_rps.to_degrees();
+    ((p - d) * ramp).clamp(-max_dps, max_dps)
+}
+
+/// Yaw control with its memory: whether the course is trusted, and the fade-in.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct YawController {
+    course_trusted: bool,
+    ramp: f64,
+    params: Option<Params>,
+    fade: Blend,
+    last_dps: f64,
+}
+
+impl YawController {
+    /// Starts anew: the next control fades in.
+    pub fn reset(&mut self) {
+        *self = Self::default();
+    }
+
+    /// Yaw rate demand, rad/s clockwise; `cap_dps` limits it below `ap_max_yaw_rate` when present.
+    pub fn update(&mut self, facts: &YawFacts, cap_dps: Option<f64>, params: &Params, dt: f64) -> f64 {
+        let minimum = f64::from(params.min_forward_velocity) / 100.0;
+        let threshold = if self.course_trusted { RELEASE * minimum } else { minimum };
+        self.course_trusted = facts.ground_speed_mps >= threshold;
+        let max_dps = cap_dps.unwrap_or(f64::INFINITY).min(f64::from(params.max_yaw_rate));
+        let rate = if let Some(desired) = desired_heading(params.yaw_mode, facts, self.course_trusted) {
+            self.ramp = (self.ramp + dt / RAMP_S).min(1.0);
+            yaw_rate_dps(desired, facts, self.ramp, max_dps, params)
+        } else {
+            self.ramp = 0.0;
+            0.0
+        };
+        if self.params.is_some_and(|old| old != *params) {
+            self.fade.start(self.last_dps, rate);
+        }
+        self.params = Some(*params);
+        let faded = self.fade.apply(rate, dt);
+        let wanted = if faded.is_finite() { faded } else { 0.0 };
+        let step = YAW_SLEW_DPS2 * dt;
+        self.last_dps += (wanted - self.last_dps).clamp(-step, step);
+        self.last_dps.to_radians()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn facts(speed: f64) -> YawFacts {
+        YawFacts { course_rad: 1.0, ground_speed_mps: speed, distance_m: 50.0, ..YawFacts::default() }
+    }
+
+    #[test]
+    fn the_course_is_released_below_three_quarters() {
+        let params = Params::default();
+        let mut yaw = YawController::default();
+        let mut rate = |speed: f64| yaw.update(&facts(speed), None, &params, 1.0);
+        assert!(rate(2.9).abs() < 1e-12);
+        assert!(rate(3.0) > 0.0);
+        assert!(rate(2.3) > 0.0);
+        assert!(rate(2.2).abs() < 1e-12);
+    }
+
+    #[test]
+    fn control_fades_in_over_two_seconds() {
+        let params = Params { max_yaw_rate: 360, ..Params::default() };
+        let mut yaw = YawController::default();
+        let first = yaw.update(&facts(5.0), None, &params, 0.5);
+        let last = (0..10).map(|_| yaw.update(&facts(5.0), None, &params, 0.5)).last().unwrap();
+        assert!((first * 4.0 - last).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,169 @@
+//! Why the autopilot engages, or not: the preconditions in their order, with words for the OSD and for people.
+
+use std::borrow::Cow;
+
+use super::fence;
+use super::io::{AbortReason, NavState, Refusal};
+use super::params::Params;
+use crate::geo::LatLon;
+use crate::plan::FlightPlan;
+use crate::plan::validate::{PlanFault, check_plan};
+
+/// Facts for the decision, each line of the list one field.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct EngageFacts {
+    /// Whether the craft is armed.
+    pub armed: bool,
+    /// Whether the throttle has been above 25 % since arming.
+    pub throttle_raised: bool,
+    /// Whether a 3-D fix is present.
+    pub fix: bool,
+    /// Whether the altitude estimate is valid.
+    pub altitude_valid: bool,
+    /// Whether the plan can be flown.
+    pub plan: Result<(), PlanFault>,
+    /// Whether the fence allows the plan; only looked at when the plan can be flown.
+    pub fence: Result<(), Refusal>,
+    /// Whether stage 2 of the failsafe is active.
+    pub failsafe: bool,
+    /// Why the last mission was given up since the switch went on, if it was.
+    pub aborted: Option<AbortReason>,
+}
+
+impl EngageFacts {
+    /// The facts about the plan: whether it can be flown, and whether the fence allows it.
+    pub fn plan_facts(
+        stored: &FlightPlan,
+        home: Option<LatLon>,
+        params: &Params,
+    ) -> (Result<(), PlanFault>, Result<(), Refusal>) {
+        (check_plan(stored), fence::check_plan(params.max_distance_from_home, home, stored))
+    }
+}
+
+/// The first precondition that fails.
+///
+/// # Errors
+/// With the reason to show.
+pub fn check(facts: &EngageFacts) -> Result<(), Refusal> {
+    check_craft(facts)?;
+    facts.plan.map_err(|fault| match fault {
+        PlanFault::Empty => Refusal::NoPlan,
+        PlanFault::Corrupt(_) => Refusal::PlanCorrupt,
+        PlanFault::BadWaypoint { index, .. } => Refusal::BadWaypoint(index),
+    })?;
+    facts.fence?;
+    if facts.failsafe {
+        return Err(Refusal::Failsafe);
+    }
+    facts.aborted.map_or(Ok(()), |why| Err(Refusal::Aborted(why)))
+}
+
+/// The preconditions that also hold for commands that bring their own plan.
+///
+/// # Errors
+/// With the reason to show.
+pub fn check_craft(facts: &EngageFacts) -> Result<(), Refusal> {
+    if !facts.armed {
+        return Err(Refusal::NotArmed);
+    }
+    if !facts.throttle_raised {
+        return Err(Refusal::Throttle);
+    }
+    if !facts.fix {
+        return Err(Refusal::NoFix);
+    }
+    if !facts.altitude_valid {
+        return Err(Refusal::NoAltitude);
+    }
+    Ok(())
+}
+
+impl Refusal {
+    /// Words for the on-screen display, at most 14 characters.
+    #[must_use]
+    pub fn osd(&self) -> Cow<'static, str> {
+        match self {
+            Self::NotArmed => "AP NOT ARMED".into(),
+            Self::Throttle => "AP THROTTLE".into(),
+            Self::NoFix => "AP NO FIX".into(),
+            Self::NoAltitude => "AP NO ALT".into(),
+            Self::NoPlan => "AP NO PLAN".into(),
+            Self::PlanCorrupt => "AP BAD PLAN".into(),
+            Self::BadWaypoint(wp) => format!("AP BAD WP {wp}").into(),
+            Self::NoHome => "AP NO HOME".into(),
+            Self::Geofence { wp, .. } => format!("AP FENCE WP {wp}").into(),
+            Self::Failsafe => "AP FAILSAFE".into(),
+            Self::Aborted(why) => match why {
+                AbortReason::Stalled => "AP STALLED".into(),
+                AbortReason::Flyaway => "AP FLYAWAY".into(),
+                AbortReason::GpsLost => "AP GPS LOST".into(),
+                AbortReason::NoPlan => "AP NO PLAN".into(),
+            },
+        }
+    }
+
+    /// One sentence: what is missing and what to do.
+    #[must_use]
+    pub fn sentence(&self) -> Cow<'static, str> {
+        match self {
+            Self::NotArmed => "Autopilot needs an armed craft: arm first, then switch on.".into(),
+            Self::Throttle => "Raise the throttle once after arming.".into(),
+            Self::NoFix => "No GPS fix: wait for satellites.".into(),
+            Self::NoAltitude => "No altitude estimate.".into(),
+            Self::NoPlan => "No waypoints: upload a plan.".into(),
+            Self::PlanCorrupt => "The stored plan is damaged: upload it again.".into(),
+            Self::BadWaypoint(wp) => format!(
+                "Waypoint {wp} is invalid: its position must lie within \u{b1}90\u{b0} and \u{b1}180\u{b0} and its type and pattern \
+                 must be known; correct it."
+            )
+            .into(),
+            Self::NoHome => "Fence is set but home is unknown: arm with a fix.".into(),
+            Self::Geofence { wp, distance_cm, limit_m } => format!(
+                "Waypoint {wp} is {:.0} m from home, the fence is {limit_m} m.",
+                f64::from(*distance_cm) / 100.0
+            )
+            .into(),
+            Self::Failsafe => "RX failsafe is active.".into(),
+            Self::Aborted(why) => match why {
+                AbortReason::Stalled => {
+                    "The mission was given up because the craft made no progress: cycle the switch.".into()
+                }
+                AbortReason::Flyaway => {
+                    "The mission was given up because the craft moved away from its waypoint: cycle the switch."
+                        .into()
+                }
+                AbortReason::GpsLost => "The GPS fix was lost: the mission resumes 2 s after it is back.".into(),
+                AbortReason::NoPlan => "The plan was cleared in flight: upload a plan.".into(),
+            },
+        }
+    }
+}
+
+/// Words for the on-screen display while the autopilot flies; `None` when the state needs no warning.
+#[must_use]
+pub fn osd_in_flight(state: NavState) -> Option<&'static str> {
+    match state {
+        NavState::Landing => Some("AP LANDING"),
+        NavState::Complete => Some("AP COMPLETE"),
+        NavState::Idle
+        | NavState::Approaching
+        | NavState::Arrived
+        | NavState::Holding
+        | NavState::Orbiting
+        | NavState::Figure8 => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_fence_refusal_says_both_distances() {
+        let refusal = Refusal::Geofence { wp: 3, distance_cm: 15_040, limit_m: 100 };
+        assert_eq!(refusal.to_string(), "GEOFENCE");
+        assert_eq!(refusal.osd(), "AP FENCE WP 3");
+        assert_eq!(refusal.sentence(), "Waypoint 3 is 150 m from home, the fence is 100 m.");
+    }
+}

@@ -1,0 +1,78 @@
+//! The fence: a greatest horizontal distance from home. Exactly on it is inside.
+
+use super::io::{NavState, PlanSource, Refusal};
+use super::params::FenceAction;
+use crate::geo::{LatLon, distance_bearing};
+use crate::plan::{FlightPlan, WaypointType};
+
+/// Facts for the check in flight.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FenceFacts {
+    /// The fence, m; `None` = off.
+    pub limit_m: Option<f64>,
+    /// Distance from home, m; `None` = home unknown.
+    pub distance_m: Option<f64>,
+    /// State of the machine.
+    pub state: NavState,
+    /// What is flown: an injected plan *is* the answer to a fence, so it is not checked.
+    pub source: PlanSource,
+    /// `ap_geofence_action`.
+    pub action: FenceAction,
+}
+
+/// Distance and limit to compare, when the fence counts in this state.
+#[must_use]
+pub fn armed(facts: &FenceFacts) -> Option<(f64, f64)> {
+    let live = match facts.state {
+        NavState::Approaching
+        | NavState::Arrived
+        | NavState::Holding
+        | NavState::Orbiting
+        | NavState::Figure8 => true,
+        NavState::Idle | NavState::Landing | NavState::Complete => false,
+    };
+    let stored = facts.source == PlanSource::Stored;
+    facts.distance_m.zip(facts.limit_m).filter(|_| live && stored)
+}
+
+/// What leaving the fence asks for now, if the craft is outside.
+#[must_use]
+pub fn in_flight(facts: &FenceFacts) -> Option<FenceAction> {
+    armed(facts).filter(|(distance, limit)| distance > limit).map(|_| facts.action)
+}
+
+/// Checks waypoints, given by type and distance from home (m), before a flight.
+///
+/// # Errors
+/// When a fence is set and home is unknown, or a waypoint lies outside.
+pub fn pre_flight(
+    limit_m: u16,
+    home_known: bool,
+    waypoints: impl IntoIterator<Item = (WaypointType, f64)>,
+) -> Result<(), Refusal> {
+    if limit_m == 0 {
+        return Ok(());
+    }
+    if !home_known {
+        return Err(Refusal::NoHome);
+    }
+    for (wp, (kind, distance_m)) in (0_u8..).zip(waypoints) {
+        if kind.uses_position() && distance_m > f64::from(limit_m) {
+            // Saturates; the fence itself is at most 10 km.
+            let distance_cm = (distance_m * 100.0).round() as u32;
+            return Err(Refusal::Geofence { wp, distance_cm, limit_m });
+        }
+    }
+    Ok(())
+}
+
+/// Checks a whole plan before a flight.
+///
+/// # Errors
+/// As [`pre_flight`].
+pub fn check_plan(limit_m: u16, home: Option<LatLon>, plan: &FlightPlan) -> Result<(), Refusal> {
+    let distances = plan.waypoints.iter().map(|waypoint| {
+        (waypoint.kind, home.map_or(0.0, |home| distance_bearing(home, waypoint.position).0))
+    });
+    pre_flight(limit_m, home.is_some(), distances)
+}

@@ -1,0 +1,285 @@
+//! The waypoint state machine: facts → guards → one outcome. Pure; the navigator carries the outcome out.
+//!
+//! ```text
+//!  engage ──► APPROACHING ──arrival──► ARRIVED ─┬─ FLYOVER, FLYBY, TAKEOFF ──► next APPROACHING, or COMPLETE
+//!                 ▲   (CLIMBING overlay)        ├─ HOLD ──► HOLDING ─┬─ time ──► next, or COMPLETE
+//!                 │                             │                    └─► ORBITING / FIGURE8 ── time ──► next, or COMPLETE
+//!                 └──── next ◄──────────────────┴─ LAND ──► (HOLDING) ──► LANDING ── touchdown ──► COMPLETE, disarm
+//!  any state: no fix, plan cleared ──► IDLE        outside the fence ──► LANDING here, or APPROACHING home
+//! ```
+
+mod rules;
+mod table;
+
+use arrayvec::ArrayVec;
+
+use super::fence::FenceFacts;
+use super::guidance::{PlaneCrossing, TouchdownFacts};
+use super::io::{AbortReason, Guard, NavState, PlanSource};
+use super::params::FenceAction;
+use crate::plan::{HoldPattern, WaypointType};
+
+pub use rules::rules;
+pub use table::transition_table;
+
+/// Time without progress after which a mission is given up, s.
+pub const STALL_S: f64 = 30.0;
+
+/// The current waypoint and its place in the plan.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WaypointFacts {
+    /// Type.
+    pub kind: WaypointType,
+    /// Hold pattern.
+    pub pattern: HoldPattern,
+    /// Hold time, ds.
+    pub duration_ds: u16,
+    /// No positional waypoint follows.
+    pub last: bool,
+    /// The next positional waypoint lies less than 10 cm away.
+    pub co_located: bool,
+    /// The craft passed its plane too far beside; it must come back to the point.
+    pub missed: bool,
+}
+
+/// How the craft lies to the waypoint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ApproachFacts {
+    /// Horizontal distance, m.
+    pub distance_m: f64,
+    /// Altitude of the target minus the craft's, m.
+    pub altitude_error_m: f64,
+    /// This update's step relative to the waypoint's plane.
+    pub plane: PlaneCrossing,
+    /// Distance before a FLYBY at which the turn begins, m.
+    pub turn_radius_m: f64,
+    /// `ap_waypoint_arrival_radius`, m.
+    pub arrival_radius_m: f64,
+    /// `ap_waypoint_hold_radius`, m.
+    pub hold_radius_m: f64,
+}
+
+/// What the progress monitors know; `None` in [`Facts`] while they are paused.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ProgressFacts {
+    /// Time since the distance last shrank, s.
+    pub no_progress_s: f64,
+    /// Distance now, m.
+    pub distance_m: f64,
+    /// Distance beyond which the craft is flying away, m.
+    pub flyaway_m: f64,
+}
+
+/// What tells the ground from a craft that hovers low with a wrongly configured hover throttle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GroundFacts {
+    /// How far the landing has come down, or how far the setpoint is under the craft beyond 1.5 m: m.
+    pub descent_m: f64,
+    /// Commanded throttle below the hover throttle learned in flight, µs.
+    pub below_hover_us: f64,
+    /// How far below it must be, µs.
+    pub needed_us: f64,
+}
+
+impl GroundFacts {
+    /// Evidence that needs no more.
+    pub const CERTAIN: Self =
+        Self { descent_m: f64::INFINITY, below_hover_us: f64::INFINITY, needed_us: 0.0 };
+
+    /// Whether the evidence suffices.
+    #[must_use]
+    pub fn suffices(&self) -> bool {
+        self.descent_m >= DESCENT_M && self.below_hover_us >= self.needed_us
+    }
+}
+
+/// Descent that makes a touchdown credible, m.
+pub const DESCENT_M: f64 = 0.5;
+
+/// Everything a transition depends on, as plain numbers and flags.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Facts {
+    /// Whether a 3-D fix is present.
+    pub fix: bool,
+    /// Waypoints in the active plan.
+    pub count: u8,
+    /// The current waypoint.
+    pub waypoint: WaypointFacts,
+    /// The fence.
+    pub fence: FenceFacts,
+    /// The approach to the waypoint.
+    pub approach: ApproachFacts,
+    /// While CLIMBING: altitude and the altitude to reach, m.
+    pub climb: Option<(f64, f64)>,
+    /// The progress monitors, unless paused.
+    pub progress: Option<ProgressFacts>,
+    /// Time since HOLDING was entered, µs.
+    pub hold_elapsed_us: u64,
+    /// The touchdown conditions.
+    pub touchdown: TouchdownFacts,
+    /// What tells the ground from a craft that hovers low.
+    pub ground: GroundFacts,
+    /// Time all of them have held, µs.
+    pub touchdown_held_us: Option<u64>,
+    /// Time they must hold, ds.
+    pub detection_time_ds: u8,
+}
+
+impl Default for Facts {
+    /// A fix, one FLYOVER, nothing near.
+    fn default() -> Self {
+        Self {
+            fix: true,
+            count: 1,
+            waypoint: WaypointFacts {
+                kind: WaypointType::Flyover,
+                pattern: HoldPattern::None,
+                duration_ds: 0,
+                last: true,
+                co_located: false,
+                missed: false,
+            },
+            fence: FenceFacts {
+                limit_m: None,
+                distance_m: None,
+                state: NavState::Idle,
+                source: PlanSource::Stored,
+                action: FenceAction::Land,
+            },
+            approach: ApproachFacts {
+                distance_m: 0.0,
+                altitude_error_m: 0.0,
+                plane: PlaneCrossing::NoLeg,
+                turn_radius_m: 0.0,
+                arrival_radius_m: 5.0,
+                hold_radius_m: 2.0,
+            },
+            climb: None,
+            progress: None,
+            hold_elapsed_us: 0,
+            touchdown: TouchdownFacts::default(),
+            ground: GroundFacts::CERTAIN,
+            touchdown_held_us: None,
+            detection_time_ds: 10,
+        }
+    }
+}
+
+/// What an update decides.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outcome {
+    /// The mission is over: IDLE.
+    Abort(AbortReason),
+    /// Outside the fence: land here or return home, on an injected plan.
+    Fence(FenceAction),
+    /// The climb before the first leg is done; stays APPROACHING.
+    Climbed,
+    /// The plane was passed too far beside; stays APPROACHING, the waypoint becomes a stop.
+    Missed,
+    /// The waypoint is reached.
+    Arrive,
+    /// Keep station; the clock of the hold starts.
+    Hold,
+    /// Start the circle.
+    Orbit,
+    /// Start the figure of eight.
+    Figure8,
+    /// Start the descent.
+    Land,
+    /// On to the next positional waypoint.
+    Next,
+    /// The plan is flown.
+    Complete,
+    /// On the ground: COMPLETE and disarm.
+    Touchdown,
+}
+
+impl Outcome {
+    /// The state it leads to.
+    #[must_use]
+    pub fn state(self) -> NavState {
+        match self {
+            Self::Abort(_) => NavState::Idle,
+            Self::Fence(FenceAction::Land) | Self::Land => NavState::Landing,
+            Self::Fence(FenceAction::Rth) | Self::Climbed | Self::Missed | Self::Next => {
+                NavState::Approaching
+            }
+            Self::Arrive => NavState::Arrived,
+            Self::Hold => NavState::Holding,
+            Self::Orbit => NavState::Orbiting,
+            Self::Figure8 => NavState::Figure8,
+            Self::Complete | Self::Touchdown => NavState::Complete,
+        }
+    }
+
+    /// What happens besides, in a few words; empty when nothing does.
+    #[must_use]
+    pub fn effect(self) -> &'static str {
+        match self {
+            Self::Abort(AbortReason::GpsLost) => "mission off, reason GPS_LOST",
+            Self::Abort(AbortReason::NoPlan) => "mission off, reason NO_PLAN",
+            Self::Abort(AbortReason::Stalled) => "mission off until the switch is cycled, reason STALLED",
+            Self::Abort(AbortReason::Flyaway) => "mission off until the switch is cycled, reason FLYAWAY",
+            Self::Fence(FenceAction::Land) => "active plan: LAND here",
+            Self::Fence(FenceAction::Rth) => "active plan: FLYOVER home, LAND home",
+            Self::Climbed => "climb over, the leg starts here",
+            Self::Missed => "the waypoint becomes a stop",
+            Self::Hold => "the hold clock starts",
+            Self::Orbit | Self::Figure8 => "phase 0, centre = waypoint",
+            Self::Land => "descent from the altitude now",
+            Self::Next => "advance to the next positional waypoint",
+            Self::Complete => "target and altitude held",
+            Self::Touchdown => "disarm, reason LANDING",
+            Self::Arrive => "",
+        }
+    }
+}
+
+/// A way out of a state: fires when all its guards hold (at once when it has none).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rule {
+    /// The conditions, in the order they are shown.
+    pub guards: ArrayVec<Guard, 7>,
+    /// What happens.
+    pub outcome: Outcome,
+    /// The cause in a word, for events.
+    pub reason: &'static str,
+}
+
+/// The rules of a state for given facts, in the order they are tried.
+pub type Rules = ArrayVec<Rule, 8>;
+
+/// One decision.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Transition {
+    /// What happens; `None` = nothing.
+    pub outcome: Option<Outcome>,
+    /// The guard that fired, if the rule had one.
+    pub guard: Option<Guard>,
+    /// The cause in a word; empty when nothing happens.
+    pub reason: &'static str,
+}
+
+/// Decides what an update in `state` leads to.
+#[must_use]
+pub fn transition(state: NavState, facts: &Facts) -> Transition {
+    rules(state, facts).iter().find(|rule| rule.guards.iter().all(Guard::holds)).map_or(
+        Transition { outcome: None, guard: None, reason: "" },
+        |rule| Transition {
+            outcome: Some(rule.outcome),
+            guard: rule.guards.last().copied(),
+            reason: rule.reason,
+        },
+    )
+}
+
+/// The guards to show for `state`: what it waits for, without those that only say that fix and plan are there.
+#[must_use]
+pub fn waiting_for(state: NavState, facts: &Facts) -> ArrayVec<Guard, 8> {
+    rules(state, facts)
+        .iter()
+        .flat_map(|rule| rule.guards.iter().copied())
+        .filter(|guard| !matches!(guard.name, rules::FIX | rules::PLAN))
+        .take(8)
+        .collect()
+}

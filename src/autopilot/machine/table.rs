@@ -1,0 +1,152 @@
+//! The transition table, printed from the rules themselves.
+
+use std::fmt::Write as _;
+
+use strum::IntoEnumIterator as _;
+
+use super::rules::{common, monitors, own};
+use super::{Facts, Outcome, ProgressFacts, Rules};
+use crate::autopilot::guidance::{PlaneCrossing, TouchdownFacts};
+use crate::autopilot::io::{Guard, NavState};
+use crate::autopilot::params::{FenceAction, Params};
+use crate::plan::{HoldPattern, WaypointType};
+
+/// A place in the machine, in words, and the rules that hold there.
+struct Situation {
+    state: String,
+    waypoint: &'static str,
+    rules: Rules,
+}
+
+fn facts(kind: WaypointType, last: bool) -> Facts {
+    let mut facts = Facts::default();
+    facts.waypoint.kind = kind;
+    facts.waypoint.last = last;
+    facts
+}
+
+/// A hold of 2 s.
+fn timed(kind: WaypointType, last: bool) -> Facts {
+    let mut facts = facts(kind, last);
+    facts.waypoint.duration_ds = 20;
+    facts
+}
+
+fn own_rules(state: NavState, waypoint: &'static str, facts: &Facts) -> Situation {
+    let mut rules = Rules::new();
+    own(state, facts, &mut rules);
+    Situation { state: state.to_string(), waypoint, rules }
+}
+
+/// What ends a mission from any state, the fence with both actions.
+fn everywhere() -> Vec<Situation> {
+    let mut list = Vec::new();
+    for (state, from) in [
+        (NavState::Complete, "any"),
+        (NavState::Orbiting, "APPROACHING, ARRIVED, HOLDING, ORBITING, FIGURE8"),
+    ] {
+        for action in FenceAction::iter() {
+            let mut facts = Facts::default();
+            facts.fence.limit_m = Some(100.0);
+            facts.fence.distance_m = Some(0.0);
+            facts.fence.action = action;
+            let mut rules = Rules::new();
+            common(state, &facts, &mut rules);
+            let fenced = state == NavState::Orbiting;
+            rules.retain(|rule| matches!(rule.outcome, Outcome::Fence(_)) == fenced);
+            list.push(Situation { state: from.to_owned(), waypoint: "any", rules });
+        }
+    }
+    // Both actions print the same rows where the fence is not live.
+    list.remove(1);
+    list
+}
+
+fn on_the_way() -> Vec<Situation> {
+    let approaching = |waypoint, facts: &Facts| own_rules(NavState::Approaching, waypoint, facts);
+    let climbing = Facts { climb: Some((0.0, 5.0)), ..Facts::default() };
+    let progress = ProgressFacts { no_progress_s: 0.0, distance_m: 0.0, flyaway_m: 20.0 };
+    let mut watched = Rules::new();
+    monitors(&Facts { progress: Some(progress), ..Facts::default() }, &mut watched);
+    let mut list = vec![
+        approaching("any, while CLIMBING", &climbing),
+        Situation { state: NavState::Approaching.to_string(), waypoint: "any", rules: watched },
+    ];
+    for (kind, between, last) in [
+        (WaypointType::Flyover, "FLYOVER, not last", "FLYOVER last, co-located or missed"),
+        (WaypointType::Flyby, "FLYBY, not last", "FLYBY last, co-located or missed"),
+    ] {
+        let mut crossing = facts(kind, false);
+        crossing.approach.plane = PlaneCrossing::Crossed { lateral_m: 0.0 };
+        crossing.approach.turn_radius_m = 5.5;
+        list.push(approaching(between, &crossing));
+        list.push(approaching(last, &facts(kind, true)));
+    }
+    let mut behind = facts(WaypointType::Flyover, false);
+    behind.approach.plane = PlaneCrossing::Behind;
+    list.push(approaching("FLYOVER, FLYBY, not last, behind the plane", &behind));
+    list.push(approaching("HOLD, LAND", &facts(WaypointType::Hold, true)));
+    list.push(approaching("TAKEOFF", &facts(WaypointType::Takeoff, true)));
+    list
+}
+
+fn at_the_waypoint() -> Vec<Situation> {
+    let mut list = Vec::new();
+    let mut add = |state, waypoint, facts: Facts| list.push(own_rules(state, waypoint, &facts));
+    add(NavState::Arrived, "FLYOVER, FLYBY, TAKEOFF, not last", facts(WaypointType::Flyover, false));
+    add(NavState::Arrived, "FLYOVER, FLYBY, TAKEOFF, last", facts(WaypointType::Flyover, true));
+    add(NavState::Arrived, "HOLD; TAKEOFF with a duration", facts(WaypointType::Hold, true));
+    add(NavState::Arrived, "LAND", facts(WaypointType::Land, true));
+    add(NavState::Arrived, "LAND with a duration", timed(WaypointType::Land, true));
+    for (pattern, words) in [(HoldPattern::Orbit, "HOLD ORBIT"), (HoldPattern::Figure8, "HOLD FIGURE8")] {
+        let mut hold = facts(WaypointType::Hold, true);
+        hold.waypoint.pattern = pattern;
+        add(NavState::Holding, words, hold);
+    }
+    add(NavState::Holding, "LAND, 2 s", timed(WaypointType::Land, true));
+    for (state, between, last) in [
+        (NavState::Holding, "HOLD NONE, TAKEOFF, 2 s, not last", "HOLD NONE, TAKEOFF, 2 s, last"),
+        (NavState::Orbiting, "HOLD, 2 s, not last", "HOLD, 2 s, last"),
+        (NavState::Figure8, "HOLD, 2 s, not last", "HOLD, 2 s, last"),
+    ] {
+        add(state, between, timed(WaypointType::Hold, false));
+        add(state, last, timed(WaypointType::Hold, true));
+    }
+    let mut landing = facts(WaypointType::Land, true);
+    let params = Params::default();
+    let hover = f64::from(params.hover_throttle);
+    landing.touchdown = TouchdownFacts::new(&params, hover, 0.0, 0.0, 0.0, 0.0);
+    landing.ground.needed_us = 50.0;
+    add(NavState::Landing, "LAND", landing);
+    list
+}
+
+fn condition(guards: &[Guard]) -> String {
+    if guards.is_empty() {
+        return "always".to_owned();
+    }
+    let words: Vec<String> = guards
+        .iter()
+        .map(|guard| format!("{} {} {} {}", guard.name, guard.op, guard.limit, guard.unit).trim().to_owned())
+        .collect();
+    words.join(" and ")
+}
+
+/// Every transition as a Markdown table, with the default parameters as limits, in the order in which the rules of a
+/// state are tried.
+#[must_use]
+pub fn transition_table() -> String {
+    let mut table =
+        "| from | waypoint | condition | to | effect |\n| --- | --- | --- | --- | --- |\n".to_owned();
+    for Situation { state, waypoint, rules } in
+        everywhere().into_iter().chain(on_the_way()).chain(at_the_waypoint())
+    {
+        for rule in &rules {
+            let (to, effect) = (rule.outcome.state(), rule.outcome.effect());
+            // Writing to a string cannot fail.
+            let _ =
+                writeln!(table, "| {state} | {waypoint} | {} | {to} | {effect} |", condition(&rule.guards));
+        }
+    }
+    table
+}

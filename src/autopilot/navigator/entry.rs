@@ -1,0 +1,353 @@
+//! The ways into and out of a mission.
+
+use super::{Climb, Mission, Navigator};
+use crate::autopilot::engage::{self, EngageFacts};
+use crate::autopilot::io::{AbortReason, NavEvent, NavInputs, NavState, PlanSource, Refusal};
+use crate::autopilot::params::Params;
+use crate::geo::{LatLon, offset_to_latlon};
+use crate::plan::{FlightPlan, HoldPattern, MAX_WAYPOINTS, Waypoint, WaypointType};
+
+/// How long a lost fix must be back before a mission resumes, s.
+const FIX_BACK_S: f64 = 2.0;
+
+/// How a rescue flies home, beyond a plain return: the altitude is climbed to on the spot first.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rescue {
+    /// Altitude to return at, m above home, when it is higher than the craft.
+    pub altitude_m: f64,
+    /// Climb rate, m/s.
+    pub climb_mps: f64,
+    /// Ground speed, m/s.
+    pub speed_mps: f64,
+    /// Sink rate down to the last 4 m, m/s.
+    pub descend_mps: f64,
+}
+
+impl Navigator {
+    /// Engages, as the mode switch asks while it is on: checks the preconditions and resumes the mission, or starts it.
+    /// Call it in each cycle while nothing is flown; a refusal is reported once per cause.
+    ///
+    /// # Errors
+    /// With the first precondition that fails.
+    pub fn engage(
+        &mut self,
+        inputs: &NavInputs,
+        params: &Params,
+        stored: &FlightPlan,
+    ) -> Result<(), Refusal> {
+        if self.is_flying() {
+            return Ok(());
+        }
+        let inputs = &self.sane(inputs);
+        let facts = self.engage_facts(inputs, params, stored);
+        let lost = self.gps_lost && (!inputs.fix || !self.fix_is_back(inputs));
+        let verdict = if facts.armed && facts.throttle_raised && lost {
+            Err(Refusal::Aborted(AbortReason::GpsLost))
+        } else {
+            engage::check(&facts)
+        };
+        if let Err(refusal) = verdict {
+            self.refuse(refusal);
+            return Err(refusal);
+        }
+        self.resume(inputs, params, stored);
+        Ok(())
+    }
+
+    fn engage_facts(&self, inputs: &NavInputs, params: &Params, stored: &FlightPlan) -> EngageFacts {
+        let (plan, fence) = EngageFacts::plan_facts(stored, inputs.home, params);
+        EngageFacts {
+            armed: inputs.armed && !self.landed,
+            throttle_raised: inputs.throttle_raised,
+            fix: inputs.fix,
+            altitude_valid: inputs.altitude_valid,
+            plan,
+            fence,
+            failsafe: inputs.failsafe,
+            aborted: self.aborted,
+        }
+    }
+
+    fn fix_is_back(&self, inputs: &NavInputs) -> bool {
+        self.fix_since.is_some_and(|since| inputs.time.seconds_since(since) >= FIX_BACK_S)
+    }
+
+    fn refuse(&mut self, refusal: Refusal) {
+        if self.refused != Some(refusal) {
+            self.push(NavEvent::Refused(refusal));
+        }
+        self.refused = Some(refusal);
+        self.telemetry.refusal = Some(refusal);
+    }
+
+    /// Goes on with the mission that was begun since arming, when the stored plan is still the same; otherwise starts
+    /// it from its first waypoint.
+    fn resume(&mut self, inputs: &NavInputs, params: &Params, stored: &FlightPlan) {
+        let at = self.mission.as_ref().filter(|mission| mission.plan == *stored).map(|mission| mission.index);
+        match at {
+            Some(index) => {
+                self.begin(inputs, params, stored);
+                self.begin_first_leg(index, true, "resume", inputs, params);
+            }
+            None => self.start(inputs, params, stored),
+        }
+    }
+
+    /// Starts the mission from its first waypoint, whatever was flown before.
+    ///
+    /// # Errors
+    /// When the plan cannot be flown, the fence forbids it or there is no fix; the navigator is IDLE then.
+    pub fn reset(&mut self, inputs: &NavInputs, params: &Params, stored: &FlightPlan) -> Result<(), Refusal> {
+        let inputs = &self.sane(inputs);
+        let facts = EngageFacts {
+            // Preconditions of the switch, not of the plan.
+            armed: true,
+            throttle_raised: true,
+            altitude_valid: true,
+            failsafe: false,
+            aborted: None,
+            ..self.engage_facts(inputs, params, stored)
+        };
+        // The plan is looked at before the fix here, so that a missing plan is said first.
+        let plan = engage::check(&EngageFacts { fix: true, fence: Ok(()), ..facts });
+        if let Err(refusal) = plan.and_then(|()| engage::check(&facts)) {
+            if self.state != NavState::Idle {
+                self.go_idle(refusal_word(refusal), None);
+            }
+            self.refuse(refusal);
+            return Err(refusal);
+        }
+        self.start(inputs, params, stored);
+        Ok(())
+    }
+
+    fn start(&mut self, inputs: &NavInputs, params: &Params, stored: &FlightPlan) {
+        self.begin(inputs, params, stored);
+        let from = self.start_at.take().unwrap_or(0);
+        self.mission = Some(Mission { plan: stored.clone(), index: from });
+        match self.positional_from(from) {
+            Some(index) => self.begin_first_leg(index, false, "reset", inputs, params),
+            None => {
+                self.index = 0;
+                self.leg =
+                    super::Leg { waypoint: here(inputs), altitude_m: inputs.alt_m, ..super::Leg::default() };
+                self.complete("reset", None);
+            }
+        }
+    }
+
+    /// Makes the stored plan the active one and takes over the craft.
+    fn begin(&mut self, inputs: &NavInputs, params: &Params, stored: &FlightPlan) {
+        self.active = stored.clone();
+        self.source = PlanSource::Stored;
+        self.take_over(inputs, params);
+        self.push(NavEvent::Plan { source: self.source, plan: Box::new(self.active.clone()) });
+    }
+
+    /// Resets what belongs to one engagement; the controllers start where the craft is, unless they fly already.
+    fn take_over(&mut self, inputs: &NavInputs, params: &Params) {
+        if self.state == NavState::Idle {
+            self.altitude.engage(&super::fly::vertical(inputs), params);
+            self.position.engage(&super::fly::horizontal(inputs));
+            self.yaw.reset();
+        }
+        self.climb = Climb::default();
+        self.clear_clocks();
+        self.yaw_cap_dps = None;
+        self.rescue = None;
+        self.gps_lost = false;
+        self.aborted = None;
+        self.refused = None;
+        self.previous = Some(inputs.pos_ne);
+        self.target_ne = inputs.pos_ne;
+        self.target_alt_m = inputs.alt_m;
+    }
+
+    /// Ends the flight, as the mode switch asks when it goes off: IDLE, the active plan dropped. The mission can be
+    /// resumed until disarming, and a mission that was given up may start again.
+    pub fn disengage(&mut self) {
+        self.aborted = None;
+        self.gps_lost = false;
+        self.refused = None;
+        self.telemetry.refusal = None;
+        if self.is_flying() {
+            self.go_idle("disengage", None);
+        }
+    }
+
+    /// Ends the flight and forgets the mission. After a touchdown the state reads COMPLETE until the next arming.
+    pub fn on_disarm(&mut self) {
+        self.mission = None;
+        self.start_at = None;
+        self.aborted = None;
+        self.gps_lost = false;
+        if self.landed {
+            return;
+        }
+        if self.state != NavState::Idle {
+            self.go_idle("disarm", None);
+        }
+    }
+
+    /// Jumps to waypoint `index` of the stored plan; before a mission, makes it the one to begin with. Returns whether
+    /// it was accepted: not out of range, not while an injected plan flies.
+    pub fn set_current(
+        &mut self,
+        index: u8,
+        inputs: &NavInputs,
+        params: &Params,
+        stored: &FlightPlan,
+    ) -> bool {
+        let inputs = &self.sane(inputs);
+        if !self.is_flying() {
+            let accepted = usize::from(index) < stored.waypoints.len().min(MAX_WAYPOINTS);
+            if accepted {
+                self.start_at = Some(index);
+                self.mission = None;
+            }
+            return accepted;
+        }
+        if self.source != PlanSource::Stored || usize::from(index) >= self.active.waypoints.len() {
+            return false;
+        }
+        let Some(positional) = self.positional_from(index) else { return false };
+        self.yaw_cap_dps = None;
+        self.clear_clocks();
+        let here = here(inputs);
+        self.begin_leg(positional, index, here, "set_current", None, inputs, params);
+        true
+    }
+
+    /// Lands here, now: the active plan becomes one LAND at the craft. Called again it starts over at the new place.
+    ///
+    /// # Errors
+    /// When the craft is not armed or has no fix or no altitude.
+    pub fn emergency_land(&mut self, inputs: &NavInputs, params: &Params) -> Result<(), Refusal> {
+        let inputs = &self.sane(inputs);
+        self.check_command(inputs)?;
+        self.land_here("emergency", None, inputs, params);
+        Ok(())
+    }
+
+    /// Returns home: the active plan becomes FLYOVER and LAND at home at the altitude of the craft, or that of
+    /// `rescue` where it is higher. Without a known home it lands here.
+    ///
+    /// # Errors
+    /// When the craft is not armed or has no fix or no altitude.
+    pub fn return_to_home(
+        &mut self,
+        inputs: &NavInputs,
+        params: &Params,
+        rescue: Option<Rescue>,
+    ) -> Result<(), Refusal> {
+        let inputs = &self.sane(inputs);
+        self.check_command(inputs)?;
+        self.fly_home("return to home", None, rescue, inputs, params);
+        Ok(())
+    }
+
+    fn check_command(&mut self, inputs: &NavInputs) -> Result<(), Refusal> {
+        let facts = EngageFacts {
+            armed: inputs.armed && !self.landed,
+            throttle_raised: inputs.throttle_raised || self.is_flying(),
+            fix: inputs.fix,
+            altitude_valid: inputs.altitude_valid,
+            plan: Ok(()),
+            fence: Ok(()),
+            failsafe: false,
+            aborted: None,
+        };
+        engage::check_craft(&facts)
+    }
+
+    pub(super) fn land_here(
+        &mut self,
+        reason: &'static str,
+        guard: Option<crate::autopilot::io::Guard>,
+        inputs: &NavInputs,
+        params: &Params,
+    ) {
+        self.inject(PlanSource::Emergency, &[injected(WaypointType::Land, here(inputs), inputs.alt_m, 0.0)]);
+        self.take_over(inputs, params);
+        self.announce_plan();
+        self.index = 0;
+        self.next_index = 0;
+        self.leg = super::Leg {
+            waypoint: here(inputs),
+            altitude_m: inputs.alt_m,
+            start: here(inputs),
+            ..super::Leg::default()
+        };
+        self.enter(NavState::Landing, reason, guard);
+    }
+
+    pub(super) fn fly_home(
+        &mut self,
+        reason: &'static str,
+        guard: Option<crate::autopilot::io::Guard>,
+        rescue: Option<Rescue>,
+        inputs: &NavInputs,
+        params: &Params,
+    ) {
+        let Some(home) = inputs.home else {
+            self.land_here(reason, guard, inputs, params);
+            return;
+        };
+        let altitude = inputs
+            .alt_m
+            .max(f64::from(params.min_nav_altitude_m))
+            .max(rescue.map_or(f64::NEG_INFINITY, |rescue| rescue.altitude_m));
+        let speed = rescue.map_or(0.0, |rescue| rescue.speed_mps);
+        let records =
+            [WaypointType::Flyover, WaypointType::Land].map(|kind| injected(kind, home, altitude, speed));
+        self.inject(PlanSource::Rth, &records);
+        self.take_over(inputs, params);
+        self.rescue = rescue;
+        self.announce_plan();
+        self.begin_first_leg_with_guard(0, false, reason, guard, inputs, params);
+    }
+
+    fn inject(&mut self, source: PlanSource, records: &[Waypoint]) {
+        self.mission = None;
+        self.source = source;
+        self.active.waypoints.clear();
+        self.active.waypoints.extend(records.iter().copied());
+    }
+
+    fn announce_plan(&mut self) {
+        self.push(NavEvent::Plan { source: self.source, plan: Box::new(self.active.clone()) });
+    }
+}
+
+/// Position of the craft.
+pub(super) fn here(inputs: &NavInputs) -> LatLon {
+    offset_to_latlon(inputs.origin, inputs.pos_ne)
+}
+
+fn injected(kind: WaypointType, position: LatLon, altitude_m: f64, speed_mps: f64) -> Waypoint {
+    Waypoint {
+        position,
+        // Both saturate: an altitude in cm and a speed in cm/s that fit their fields.
+        alt_cm: (altitude_m * 100.0).round() as i32,
+        speed_cms: (speed_mps * 100.0).round() as u16,
+        duration_ds: 0,
+        kind,
+        pattern: HoldPattern::None,
+    }
+}
+
+fn refusal_word(refusal: Refusal) -> &'static str {
+    match refusal {
+        Refusal::NoPlan => "NO_PLAN",
+        Refusal::PlanCorrupt => "PLAN_CORRUPT",
+        Refusal::BadWaypoint(_) => "BAD_WAYPOINT",
+        Refusal::NoFix => "NO_FIX",
+        Refusal::NoHome => "NO_HOME",
+        Refusal::Geofence { .. } => "GEOFENCE",
+        Refusal::NotArmed
+        | Refusal::Throttle
+        | Refusal::NoAltitude
+        | Refusal::Failsafe
+        | Refusal::Aborted(_) => "refused",
+    }
+}

@@ -1,0 +1,175 @@
+//! Moving on in the plan: the next positional waypoint, the modifiers before it, the start of its leg.
+
+use nalgebra::Vector2;
+
+use super::entry::here;
+use super::{Leg, Navigator};
+use crate::autopilot::guidance::{CornerArc, PlaneCrossing, plane_crossing};
+use crate::autopilot::io::{Guard, NavInputs, NavState, PlanSource};
+use crate::autopilot::params::Params;
+use crate::geo::{LatLon, local_offset};
+use crate::plan::{Waypoint, WaypointType};
+use crate::signals::SimTime;
+
+/// Distance below which two waypoints count as one, m.
+const CO_LOCATED_M: f64 = 0.1;
+/// Slowest speed a DELAY asks for, m/s.
+const SLOWEST_MPS: f64 = 0.1;
+/// Ground speed from which a course is known well enough for an arc, m/s.
+const MOVING_MPS: f64 = 0.5;
+
+impl Navigator {
+    pub(super) fn record(&self, index: u8) -> Option<Waypoint> {
+        self.active.waypoints.get(usize::from(index)).copied()
+    }
+
+    /// The first positional waypoint at or after `index`.
+    pub(super) fn positional_from(&self, index: u8) -> Option<u8> {
+        (index..)
+            .zip(self.active.waypoints.iter().skip(usize::from(index)))
+            .find(|(_, waypoint)| waypoint.kind.is_positional())
+            .map(|(index, _)| index)
+    }
+
+    /// The positional waypoint after the current one.
+    pub(super) fn following(&self) -> Option<u8> {
+        self.positional_from(self.index.saturating_add(1))
+    }
+
+    /// Whether the next positional waypoint lies on the current one.
+    pub(super) fn co_located(&self) -> bool {
+        let next = self.following().and_then(|index| self.record(index));
+        next.is_some_and(|next| {
+            let position = if next.kind.uses_position() { next.position } else { self.leg.waypoint };
+            local_offset(self.leg.waypoint, position).norm() < CO_LOCATED_M
+        })
+    }
+
+    /// Number of positional waypoints in the active plan.
+    pub(super) fn positional_count(&self) -> usize {
+        self.active.waypoints.iter().filter(|waypoint| waypoint.kind.is_positional()).count()
+    }
+
+    pub(super) fn begin_first_leg(
+        &mut self,
+        index: u8,
+        resumed: bool,
+        reason: &'static str,
+        inputs: &NavInputs,
+        params: &Params,
+    ) {
+        self.begin_first_leg_with_guard(index, resumed, reason, None, inputs, params);
+    }
+
+    /// The first leg of an engagement, from the craft. A resumed leg keeps its altitude change and the yaw cap of the
+    /// plan before it; a delay is not repeated.
+    pub(super) fn begin_first_leg_with_guard(
+        &mut self,
+        index: u8,
+        resumed: bool,
+        reason: &'static str,
+        guard: Option<Guard>,
+        inputs: &NavInputs,
+        params: &Params,
+    ) {
+        let before = self.active.waypoints.iter().take(usize::from(index));
+        let run = before.rev().take_while(|waypoint| !waypoint.kind.is_positional()).count();
+        // Both are below 30.
+        let modifiers_from = index - run as u8;
+        self.begin_leg(index, modifiers_from, here(inputs), reason, guard, inputs, params);
+        if resumed {
+            self.leg.delay = None;
+            let caps = self.active.waypoints.iter().take(usize::from(index));
+            if let Some(cap) = caps.rev().find(|waypoint| waypoint.kind == WaypointType::YawRate) {
+                self.yaw_cap_dps = yaw_cap(cap);
+            }
+        }
+    }
+
+    /// Starts the leg from `start` to waypoint `index` and applies the modifiers from `modifiers_from` on.
+    #[expect(clippy::too_many_arguments, reason = "the leg, its cause and the two contexts of an update")]
+    pub(super) fn begin_leg(
+        &mut self,
+        index: u8,
+        modifiers_from: u8,
+        start: LatLon,
+        reason: &'static str,
+        guard: Option<Guard>,
+        inputs: &NavInputs,
+        params: &Params,
+    ) {
+        let Some(waypoint) = self.record(index) else { return };
+        self.index = index;
+        self.next_index = self.following().unwrap_or(index);
+        if self.source == PlanSource::Stored
+            && let Some(mission) = &mut self.mission
+        {
+            mission.index = index;
+        }
+        let position = if waypoint.kind.uses_position() { waypoint.position } else { here(inputs) };
+        self.leg = Leg {
+            waypoint: position,
+            altitude_m: f64::from(waypoint.alt_cm) / 100.0,
+            start,
+            missed: false,
+            delay: None,
+            arc: None,
+        };
+        self.clear_clocks();
+        self.apply_modifiers(modifiers_from, index, inputs);
+        let (from, to) = (local_offset(inputs.origin, start), local_offset(inputs.origin, position));
+        // Already behind the plane: it can only be reached by coming back.
+        self.leg.missed = plane_crossing(from, to, inputs.pos_ne, inputs.pos_ne) == PlaneCrossing::Behind;
+        self.leg.arc = corner_arc(to - inputs.pos_ne, inputs.vel_ne, params);
+        self.enter(NavState::Approaching, reason, guard);
+    }
+
+    pub(super) fn clear_clocks(&mut self) {
+        self.hold_start = SimTime::ZERO;
+        self.pattern_angle = 0.0;
+        self.landing = None;
+        self.touchdown = Default::default();
+        self.touchdown_held_us = None;
+        self.progress = None;
+    }
+
+    fn apply_modifiers(&mut self, from: u8, to: u8, inputs: &NavInputs) {
+        for at in from..to {
+            let Some(modifier) = self.record(at) else { return };
+            match modifier.kind {
+                WaypointType::AltChange => self.leg.altitude_m = f64::from(modifier.alt_cm) / 100.0,
+                WaypointType::YawRate => self.yaw_cap_dps = yaw_cap(&modifier),
+                WaypointType::Delay => self.leg.delay = self.delay(&modifier, inputs),
+                WaypointType::Flyover
+                | WaypointType::Flyby
+                | WaypointType::Hold
+                | WaypointType::Land
+                | WaypointType::Takeoff => {}
+            }
+        }
+    }
+
+    fn delay(&self, modifier: &Waypoint, inputs: &NavInputs) -> Option<(f64, SimTime)> {
+        if modifier.duration_ds == 0 {
+            return None;
+        }
+        let horizontal = (local_offset(inputs.origin, self.leg.waypoint) - inputs.pos_ne).norm();
+        let length = horizontal.hypot(self.leg.altitude_m - inputs.alt_m);
+        let speed = length / (f64::from(modifier.duration_ds) / 10.0);
+        let until = SimTime(inputs.time.0.saturating_add(u64::from(modifier.duration_ds) * 100_000));
+        Some((speed.max(SLOWEST_MPS), until))
+    }
+}
+
+fn yaw_cap(modifier: &Waypoint) -> Option<f64> {
+    (modifier.speed_cms > 0).then(|| f64::from(modifier.speed_cms))
+}
+
+fn corner_arc(to_target: Vector2<f64>, velocity: Vector2<f64>, params: &Params) -> Option<CornerArc> {
+    if velocity.norm() < MOVING_MPS || to_target.norm() < CO_LOCATED_M {
+        return None;
+    }
+    let course = velocity.y.atan2(velocity.x);
+    let leg = to_target.y.atan2(to_target.x);
+    CornerArc::begin(course, leg, f64::from(params.l1_turn_rate).to_radians())
+}

@@ -1,0 +1,173 @@
+//! Carrying out what the machine decided.
+
+use super::Navigator;
+use super::entry::here;
+use crate::autopilot::io::{AbortReason, Guard, NavEvent, NavInputs, NavState};
+use crate::autopilot::machine::{Facts, Outcome, transition};
+use crate::autopilot::params::{FenceAction, Params};
+use crate::geo::{LatLon, local_offset};
+use crate::plan::WaypointType;
+
+impl Navigator {
+    /// At most one transition.
+    pub(super) fn step(&mut self, facts: &Facts, now: &NavInputs, params: &Params) {
+        let decision = transition(self.state, facts);
+        let Some(outcome) = decision.outcome else { return };
+        let (reason, guard) = (decision.reason, decision.guard);
+        match outcome {
+            Outcome::Abort(why) => self.abort(why, reason, guard),
+            Outcome::Fence(action) => self.fence(action, reason, guard, facts, now, params),
+            Outcome::Climbed => {
+                self.stop_climbing();
+                self.leg.start = here(now);
+            }
+            Outcome::Missed => self.leg.missed = true,
+            Outcome::Arrive => self.enter(NavState::Arrived, reason, guard),
+            Outcome::Hold => {
+                self.hold_start = now.time;
+                self.enter(NavState::Holding, reason, guard);
+            }
+            Outcome::Orbit => {
+                self.pattern_angle = 0.0;
+                self.enter(NavState::Orbiting, reason, guard);
+            }
+            Outcome::Figure8 => {
+                self.pattern_angle = 0.0;
+                self.enter(NavState::Figure8, reason, guard);
+            }
+            Outcome::Land => {
+                self.clear_clocks();
+                self.enter(NavState::Landing, reason, guard);
+            }
+            Outcome::Next => self.advance(reason, guard, now, params),
+            Outcome::Complete => self.complete(reason, guard),
+            Outcome::Touchdown => {
+                self.mission = None;
+                self.landed = true;
+                self.enter(NavState::Complete, reason, guard);
+                self.push(NavEvent::Disarm);
+            }
+        }
+    }
+
+    /// On to the next positional waypoint. The leg begins at the waypoint just left, or at the craft when it stayed
+    /// there or came back to it.
+    fn advance(&mut self, reason: &'static str, guard: Option<Guard>, now: &NavInputs, params: &Params) {
+        let Some(next) = self.following() else {
+            self.complete(reason, guard);
+            return;
+        };
+        let kind = self.record(self.index).unwrap_or_default().kind;
+        let start = self.leg_end(kind, now);
+        let modifiers_from = self.index.saturating_add(1);
+        self.begin_leg(next, modifiers_from, start, reason, guard, now, params);
+    }
+
+    fn leg_end(&self, kind: WaypointType, now: &NavInputs) -> LatLon {
+        match kind {
+            WaypointType::Flyover | WaypointType::Flyby if !self.leg.missed => self.leg.waypoint,
+            WaypointType::Flyover
+            | WaypointType::Flyby
+            | WaypointType::Hold
+            | WaypointType::Land
+            | WaypointType::Takeoff
+            | WaypointType::AltChange
+            | WaypointType::Delay
+            | WaypointType::YawRate => here(now),
+        }
+    }
+
+    pub(super) fn complete(&mut self, reason: &'static str, guard: Option<Guard>) {
+        self.mission = None;
+        self.next_index = self.index;
+        self.progress = None;
+        self.enter(NavState::Complete, reason, guard);
+    }
+
+    fn abort(&mut self, why: AbortReason, reason: &'static str, guard: Option<Guard>) {
+        match why {
+            AbortReason::Stalled | AbortReason::Flyaway => self.aborted = Some(why),
+            AbortReason::GpsLost => self.gps_lost = true,
+            AbortReason::NoPlan => self.mission = None,
+        }
+        self.go_idle(reason, guard);
+    }
+
+    fn fence(
+        &mut self,
+        action: FenceAction,
+        reason: &'static str,
+        guard: Option<Guard>,
+        facts: &Facts,
+        now: &NavInputs,
+        params: &Params,
+    ) {
+        self.push(NavEvent::Geofence {
+            distance_m: facts.fence.distance_m.unwrap_or_default(),
+            limit_m: facts.fence.limit_m.unwrap_or_default(),
+            action: action.into(),
+        });
+        match action {
+            FenceAction::Land => self.land_here(reason, guard, now, params),
+            FenceAction::Rth => self.fly_home(reason, guard, None, now, params),
+        }
+    }
+
+    pub(super) fn go_idle(&mut self, reason: &'static str, guard: Option<Guard>) {
+        self.enter(NavState::Idle, reason, guard);
+        self.active.waypoints.clear();
+        self.source = Default::default();
+        self.yaw_cap_dps = None;
+        self.rescue = None;
+        self.clear_clocks();
+        self.yaw.reset();
+    }
+
+    pub(super) fn stop_climbing(&mut self) {
+        self.climb.done = true;
+        if self.climb.at.take().is_some() {
+            self.push(NavEvent::Climbing(false));
+        }
+    }
+
+    /// The only place where the state changes.
+    pub(super) fn enter(&mut self, to: NavState, reason: &'static str, guard: Option<Guard>) {
+        let from = self.state;
+        self.state = to;
+        self.telemetry.reason = reason;
+        if to != NavState::Approaching {
+            if self.climb.at.take().is_some() {
+                self.push(NavEvent::Climbing(false));
+            }
+            self.progress = None;
+        }
+        let kind = self.record(self.index).map(|waypoint| waypoint.kind);
+        // A command between two updates shows at once.
+        self.telemetry.state = to;
+        self.telemetry.engaged = self.is_flying();
+        self.telemetry.wp = self.index;
+        self.telemetry.next_wp = self.next_index;
+        self.telemetry.source = self.source;
+        self.telemetry.kind = kind;
+        self.push(NavEvent::State {
+            from,
+            to,
+            wp: self.index,
+            kind,
+            reason,
+            guard,
+            target: self.leg.waypoint,
+            target_alt_m: self.leg.altitude_m,
+        });
+    }
+
+    pub(super) fn push(&mut self, event: NavEvent) {
+        // Full only when nobody drains: then the newest are dropped.
+        let _ = self.events.try_push(event);
+    }
+
+    /// The waypoint of the leg in the local frame.
+    pub(super) fn waypoint_ne(&self, now: &NavInputs) -> nalgebra::Vector2<f64> {
+        local_offset(now.origin, self.leg.waypoint)
+    }
+}

@@ -1,0 +1,163 @@
+//! The types a parameter can have.
+
+use strum::IntoEnumIterator as _;
+
+/// Which way the nose points while the autopilot flies.
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    Default,
+    Hash,
+    strum::Display,
+    strum::EnumIter,
+    strum::FromRepr,
+    strum::IntoStaticStr,
+)]
+#[strum(serialize_all = "UPPERCASE")]
+#[repr(u8)]
+pub enum YawMode {
+    /// Along the ground course.
+    #[default]
+    Velocity = 0,
+    /// To the waypoint.
+    Bearing = 1,
+    /// To the waypoint when far, along the course when near.
+    Hybrid = 2,
+    /// Where it points already.
+    Fixed = 3,
+    /// For wings; a multirotor treats it as [`YawMode::Fixed`].
+    Dampener = 4,
+}
+
+/// What a lost receiver does to a mission.
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    Default,
+    Hash,
+    strum::Display,
+    strum::EnumIter,
+    strum::FromRepr,
+    strum::IntoStaticStr,
+)]
+#[strum(serialize_all = "UPPERCASE")]
+#[repr(u8)]
+pub enum RxLossPolicy {
+    /// The mission ends and the configured failsafe procedure runs.
+    #[default]
+    Disable = 0,
+    /// The mission goes on.
+    Continue = 1,
+    /// Land where the link was lost.
+    Land = 2,
+}
+
+/// What leaving the fence does.
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    Default,
+    Hash,
+    strum::Display,
+    strum::EnumIter,
+    strum::FromRepr,
+    strum::IntoStaticStr,
+)]
+#[strum(serialize_all = "UPPERCASE")]
+#[repr(u8)]
+pub enum FenceAction {
+    /// Land on the spot.
+    #[default]
+    Land = 0,
+    /// Return to home.
+    Rth = 1,
+}
+
+/// A type a parameter can have. Conversions saturate, so no number can be out of range of the type.
+pub(super) trait Value: Copy {
+    fn to_number(self) -> i64;
+    fn from_number(number: i64) -> Self;
+    /// The words of an enumeration in the order of their numbers; empty for plain numbers.
+    fn words() -> Vec<&'static str>;
+}
+
+impl Value for u8 {
+    fn to_number(self) -> i64 {
+        i64::from(self)
+    }
+    fn from_number(number: i64) -> Self {
+        Self::try_from(number.max(0)).unwrap_or(Self::MAX)
+    }
+    fn words() -> Vec<&'static str> {
+        Vec::new()
+    }
+}
+
+impl Value for u16 {
+    fn to_number(self) -> i64 {
+        i64::from(self)
+    }
+    fn from_number(number: i64) -> Self {
+        Self::try_from(number.max(0)).unwrap_or(Self::MAX)
+    }
+    fn words() -> Vec<&'static str> {
+        Vec::new()
+    }
+}
+
+impl Value for bool {
+    fn to_number(self) -> i64 {
+        i64::from(self)
+    }
+    fn from_number(number: i64) -> Self {
+        number != 0
+    }
+    fn words() -> Vec<&'static str> {
+        vec!["OFF", "ON"]
+    }
+}
+
+impl Value for YawMode {
+    fn to_number(self) -> i64 {
+        self as i64
+    }
+    fn from_number(number: i64) -> Self {
+        u8::try_from(number).ok().and_then(Self::from_repr).unwrap_or_default()
+    }
+    fn words() -> Vec<&'static str> {
+        Self::iter().map(Into::into).collect()
+    }
+}
+
+impl Value for RxLossPolicy {
+    fn to_number(self) -> i64 {
+        self as i64
+    }
+    fn from_number(number: i64) -> Self {
+        u8::try_from(number).ok().and_then(Self::from_repr).unwrap_or_default()
+    }
+    fn words() -> Vec<&'static str> {
+        Self::iter().map(Into::into).collect()
+    }
+}
+
+impl Value for FenceAction {
+    fn to_number(self) -> i64 {
+        self as i64
+    }
+    fn from_number(number: i64) -> Self {
+        u8::try_from(number).ok().and_then(Self::from_repr).unwrap_or_default()
+    }
+    fn words() -> Vec<&'static str> {
+        Self::iter().map(Into::into).collect()
+    }
+}

@@ -1,0 +1,67 @@
+//! What a lost receiver means for a mission, decided when stage 2 of the failsafe begins.
+
+use super::io::NavState;
+use super::params::RxLossPolicy;
+
+/// Facts for the decision.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RxLossFacts {
+    /// `ap_rx_loss_policy`.
+    pub policy: RxLossPolicy,
+    /// Whether the autopilot flies.
+    pub engaged: bool,
+    /// State of the machine.
+    pub state: NavState,
+    /// Whether a 3-D fix is present.
+    pub fix: bool,
+}
+
+/// What to do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::Display)]
+#[strum(serialize_all = "SCREAMING_SNAKE_CASE")]
+pub enum RxLossAction {
+    /// Nothing: what is flown goes on.
+    None,
+    /// Land where the link was lost; the navigator flies it underneath the failsafe.
+    EmergencyLand,
+    /// End the mission and run the configured failsafe procedure.
+    Procedure,
+}
+
+/// A decision.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RxLossDecision {
+    /// What to do.
+    pub action: RxLossAction,
+    /// Whether the AUTOPILOT mode flag stays on.
+    pub autopilot_flag: bool,
+}
+
+/// Decides by policy and state.
+#[must_use]
+pub fn decide(facts: &RxLossFacts) -> RxLossDecision {
+    let (action, autopilot_flag) = match facts.policy {
+        RxLossPolicy::Disable => (RxLossAction::Procedure, false),
+        RxLossPolicy::Continue => {
+            if flying(facts) && facts.state != NavState::Complete {
+                (RxLossAction::None, true)
+            } else {
+                (RxLossAction::Procedure, false)
+            }
+        }
+        RxLossPolicy::Land => {
+            if !flying(facts) {
+                (RxLossAction::Procedure, false)
+            } else if facts.state == NavState::Landing {
+                (RxLossAction::None, false)
+            } else {
+                (RxLossAction::EmergencyLand, false)
+            }
+        }
+    };
+    RxLossDecision { action, autopilot_flag }
+}
+
+fn flying(facts: &RxLossFacts) -> bool {
+    facts.engaged && facts.fix && facts.state != NavState::Idle
+}
