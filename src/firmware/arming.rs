@@ -1,0 +1,337 @@
+//! Arming and disarming: the switch, the reasons that block it, and everything that stops the motors by itself.
+//!
+//! The flags are judged at every RC update while disarmed; a flag that stands while the ARM switch is on sets
+//! ARM_SWITCH, which stays until the switch goes off.
+
+pub mod flags;
+pub mod impact;
+pub mod runaway;
+
+pub use flags::{ArmingFlag, ArmingFlags};
+
+use crate::signals::SimTime;
+
+use super::event::DisarmReason;
+use super::modes::boxes::{self, BoxSet};
+use super::rx::Sticks;
+
+/// RC updates with the ARM switch off that disarm.
+const SWITCH_OFF_UPDATES: u8 = 4;
+/// How long a stick command must be held, s.
+const STICK_COMMAND_S: f64 = 0.5;
+/// Yaw stick beyond this counts as a stick command, RC units.
+const STICK_COMMAND_YAW: f64 = 400.0;
+/// Throttle that counts as low with arm assist, µs.
+const ASSIST_LOW_THROTTLE_US: f64 = 1150.0;
+
+/// Settings of arming.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ArmingConfig {
+    /// Throttle below this is low, µs.
+    pub min_check_us: f64,
+    /// Arming is refused when tilted more, rad; `None` = never.
+    pub small_angle_rad: Option<f64>,
+    /// Time after boot before arming, s.
+    pub boot_grace_s: f64,
+    /// The PREARM switch may stay on for the next arming.
+    pub prearm_allow_rearm: bool,
+    /// A mode condition for ARM exists.
+    pub has_arm_condition: bool,
+    /// A mode condition for PREARM exists.
+    pub has_prearm_condition: bool,
+    /// GPS rescue is the failsafe procedure or has a mode condition.
+    pub rescue_configured: bool,
+    /// Rescue needs this many satellites.
+    pub rescue_min_sats: u8,
+    /// Arming is allowed although rescue cannot work.
+    pub rescue_allow_without_fix: bool,
+    /// Arming by stick command, when no mode condition for ARM exists.
+    pub stick_arming: bool,
+    /// Low throttle for this long disarms a stick-armed craft whose motors stand still then, s; `None` = never.
+    pub auto_disarm_s: Option<f64>,
+    /// Throttle that counts as raised, µs.
+    pub raised_throttle_us: f64,
+    /// The rules are softened for RC from UDP, so that a simple script can arm.
+    pub assist: bool,
+}
+
+impl Default for ArmingConfig {
+    fn default() -> Self {
+        Self {
+            min_check_us: 1050.0,
+            small_angle_rad: None,
+            boot_grace_s: 5.0,
+            prearm_allow_rearm: false,
+            has_arm_condition: true,
+            has_prearm_condition: false,
+            rescue_configured: false,
+            rescue_min_sats: 8,
+            rescue_allow_without_fix: false,
+            stick_arming: false,
+            auto_disarm_s: None,
+            raised_throttle_us: 1287.5,
+            assist: false,
+        }
+    }
+}
+
+/// What arming looks at.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ArmingFacts {
+    /// Time.
+    pub now: SimTime,
+    /// Whether a new RC frame came with this update.
+    pub new_frame: bool,
+    /// Boxes switched on.
+    pub boxes: BoxSet,
+    /// Stick positions in use.
+    pub sticks: Sticks,
+    /// The RC signal is there.
+    pub signal: bool,
+    /// The RC signal has been there for the recovery delay.
+    pub link_good: bool,
+    /// RC comes from UDP.
+    pub from_udp: bool,
+    /// A failsafe landing ended the last flight and the link is not good again.
+    pub failsafe_landed: bool,
+    /// Tilt from level, rad; `None` = attitude unknown.
+    pub tilt_rad: Option<f64>,
+    /// Sensors are being calibrated.
+    pub calibrating: bool,
+    /// A fix with this many satellites; `None` = no fix.
+    pub fix_sats: Option<u8>,
+}
+
+/// What an update did.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ArmingChange {
+    /// Armed; `assisted` when the strict rules would have refused.
+    Armed {
+        /// Arm assist was needed.
+        assisted: bool,
+    },
+    /// Disarmed.
+    Disarmed(DisarmReason),
+}
+
+/// The state of arming.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Arming {
+    armed: bool,
+    raised: bool,
+    flags: ArmingFlags,
+    latched: ArmingFlags,
+    ever_armed: bool,
+    link_was_good: bool,
+    prearm_used: bool,
+    assist_used: bool,
+    off_updates: u8,
+    stick_command_since: Option<SimTime>,
+    low_since: Option<SimTime>,
+}
+
+impl Arming {
+    /// Whether the craft is armed.
+    #[must_use]
+    pub fn armed(&self) -> bool {
+        self.armed
+    }
+
+    /// Whether the throttle has been raised since arming.
+    #[must_use]
+    pub fn raised(&self) -> bool {
+        self.raised
+    }
+
+    /// What blocks arming, as judged at the last update while disarmed.
+    #[must_use]
+    pub fn flags(&self) -> ArmingFlags {
+        self.flags
+    }
+
+    /// A command line session was opened: no arming until reboot.
+    pub fn cli_opened(&mut self) {
+        self.latch(ArmingFlag::Cli);
+    }
+
+    /// The failsafe ended with the ARM switch on: it must be switched off first.
+    pub fn require_switch_off(&mut self) {
+        self.latch(ArmingFlag::NotDisarmed);
+    }
+
+    /// Stops the motors; `false` when they were stopped already.
+    pub fn disarm(&mut self, reason: DisarmReason) -> bool {
+        if !self.armed {
+            return false;
+        }
+        self.armed = false;
+        self.raised = false;
+        self.low_since = None;
+        self.stick_command_since = None;
+        match reason {
+            DisarmReason::Landing => self.latch(ArmingFlag::ArmSwitch),
+            DisarmReason::RunawayTakeoff => self.latch(ArmingFlag::Runaway),
+            DisarmReason::CrashProtection => self.latch(ArmingFlag::Crash),
+            DisarmReason::ArmingDisabled
+            | DisarmReason::Failsafe
+            | DisarmReason::ThrottleTimeout
+            | DisarmReason::Sticks
+            | DisarmReason::Switch
+            | DisarmReason::GpsRescue
+            | DisarmReason::SerialCommand
+            | DisarmReason::Crashflip
+            | DisarmReason::System => {}
+        }
+        true
+    }
+
+    fn latch(&mut self, flag: ArmingFlag) {
+        self.latched.set(flag, true);
+        self.flags.set(flag, true);
+    }
+
+    /// One RC update.
+    pub fn update(&mut self, config: &ArmingConfig, facts: &ArmingFacts) -> Option<ArmingChange> {
+        if self.armed { self.update_armed(config, facts) } else { self.update_disarmed(config, facts) }
+    }
+
+    fn update_armed(&mut self, config: &ArmingConfig, facts: &ArmingFacts) -> Option<ArmingChange> {
+        self.link_was_good = facts.link_good;
+        if facts.sticks.throttle_us >= config.raised_throttle_us {
+            self.raised = true;
+        }
+        let reason = self.disarm_request(config, facts)?;
+        self.disarm(reason);
+        Some(ArmingChange::Disarmed(reason))
+    }
+
+    fn disarm_request(&mut self, config: &ArmingConfig, facts: &ArmingFacts) -> Option<DisarmReason> {
+        let low = facts.sticks.throttle_us < config.min_check_us;
+        if config.has_arm_condition {
+            let trusted = facts.signal || facts.boxes.has(boxes::FAILSAFE);
+            if facts.boxes.has(boxes::ARM) || !trusted {
+                self.off_updates = 0;
+            } else if facts.new_frame {
+                self.off_updates += 1;
+            }
+            return (self.off_updates >= SWITCH_OFF_UPDATES).then_some(DisarmReason::Switch);
+        }
+        let shown = low && facts.sticks.yaw <= -STICK_COMMAND_YAW;
+        let held = self.stick_command_held(shown && listens_to_sticks(config, facts), facts.now);
+        if facts.signal && held {
+            return Some(DisarmReason::Sticks);
+        }
+        let limit = config.auto_disarm_s?;
+        if !low {
+            self.low_since = None;
+            return None;
+        }
+        let since = *self.low_since.get_or_insert(facts.now);
+        (facts.now.seconds_since(since) >= limit).then_some(DisarmReason::ThrottleTimeout)
+    }
+
+    fn stick_command_held(&mut self, shown: bool, now: SimTime) -> bool {
+        if !shown {
+            self.stick_command_since = None;
+            return false;
+        }
+        let since = *self.stick_command_since.get_or_insert(now);
+        now.seconds_since(since) >= STICK_COMMAND_S
+    }
+
+    fn update_disarmed(&mut self, config: &ArmingConfig, facts: &ArmingFacts) -> Option<ArmingChange> {
+        let switch = config.has_arm_condition && facts.boxes.has(boxes::ARM);
+        let assist = config.assist && facts.from_udp;
+        self.update_latches(switch, assist, facts);
+
+        let strict = self.judge(config, facts, config.min_check_us);
+        let mut flags = match assist {
+            true => self.judge(config, facts, config.min_check_us.max(ASSIST_LOW_THROTTLE_US)),
+            false => strict,
+        };
+        let would_latch = switch && !strict.is_empty();
+        if would_latch && !assist {
+            self.latched.set(ArmingFlag::ArmSwitch, true);
+        }
+        self.assist_used = switch && assist && (self.assist_used || would_latch);
+        flags.set(ArmingFlag::ArmSwitch, self.latched.has(ArmingFlag::ArmSwitch));
+        self.flags = flags;
+
+        let by_stick = !config.has_arm_condition && listens_to_sticks(config, facts) && {
+            let low = facts.sticks.throttle_us < config.min_check_us;
+            self.stick_command_held(low && facts.sticks.yaw >= STICK_COMMAND_YAW, facts.now)
+        };
+        if !(switch || by_stick) || !flags.is_empty() {
+            return None;
+        }
+        self.armed = true;
+        self.ever_armed = true;
+        self.raised = false;
+        self.prearm_used = true;
+        self.off_updates = 0;
+        self.stick_command_since = None;
+        self.low_since = None;
+        Some(ArmingChange::Armed { assisted: std::mem::take(&mut self.assist_used) })
+    }
+
+    fn update_latches(&mut self, switch: bool, assist: bool, facts: &ArmingFacts) {
+        if !switch {
+            for flag in
+                [ArmingFlag::NotDisarmed, ArmingFlag::Runaway, ArmingFlag::Crash, ArmingFlag::ArmSwitch]
+            {
+                self.latched.set(flag, false);
+            }
+        }
+        if facts.link_good && !self.link_was_good && switch && !assist {
+            self.latched.set(ArmingFlag::NotDisarmed, true);
+        }
+        self.link_was_good = facts.link_good;
+        if facts.boxes.has(boxes::PARALYZE) {
+            self.latched.set(ArmingFlag::Paralyze, true);
+        }
+        if !facts.boxes.has(boxes::PREARM) {
+            self.prearm_used = false;
+        }
+    }
+
+    /// The flags of this moment but for ARM_SWITCH.
+    fn judge(&self, config: &ArmingConfig, facts: &ArmingFacts, low_throttle_us: f64) -> ArmingFlags {
+        let on = |id| facts.boxes.has(id);
+        let mut flags = self.latched.without(ArmingFlag::ArmSwitch);
+        let mut raise = |flag, set| {
+            if set {
+                flags.set(flag, true);
+            }
+        };
+        raise(ArmingFlag::Failsafe, facts.failsafe_landed);
+        raise(ArmingFlag::RxLoss, !facts.link_good);
+        raise(ArmingFlag::BoxFailsafe, on(boxes::FAILSAFE));
+        raise(ArmingFlag::Throttle, facts.sticks.throttle_us >= low_throttle_us);
+        raise(
+            ArmingFlag::Angle,
+            facts.tilt_rad.is_none_or(|tilt| config.small_angle_rad.is_some_and(|limit| tilt > limit)),
+        );
+        raise(ArmingFlag::BootGrace, facts.now.as_secs_f64() < config.boot_grace_s);
+        let prearmed = on(boxes::PREARM) && (!self.prearm_used || config.prearm_allow_rearm);
+        raise(ArmingFlag::NoPrearm, config.has_prearm_condition && !prearmed);
+        raise(ArmingFlag::Calibrating, facts.calibrating);
+        let can_rescue = facts.fix_sats.is_some_and(|sats| sats >= config.rescue_min_sats);
+        raise(
+            ArmingFlag::Gps,
+            config.rescue_configured && !can_rescue && !config.rescue_allow_without_fix && !self.ever_armed,
+        );
+        raise(ArmingFlag::RescueSwitch, config.rescue_configured && on(boxes::GPS_RESCUE));
+        raise(ArmingFlag::AltHoldSwitch, on(boxes::ALTHOLD));
+        raise(ArmingFlag::PosHoldSwitch, on(boxes::POS_HOLD));
+        raise(ArmingFlag::AutopilotSwitch, on(boxes::AUTOPILOT));
+        flags
+    }
+}
+
+/// Whether stick positions arm and disarm.
+fn listens_to_sticks(config: &ArmingConfig, facts: &ArmingFacts) -> bool {
+    config.stick_arming && !facts.boxes.has(boxes::STICK_COMMANDS_DISABLE)
+}
+
+#[cfg(test)]
+mod tests;

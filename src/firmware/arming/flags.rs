@@ -1,0 +1,215 @@
+//! The reasons why arming is refused.
+
+use strum::IntoEnumIterator as _;
+
+/// A reason why arming is refused. The discriminant is its bit on the wire, `Display` its name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::EnumIter, strum::IntoStaticStr)]
+#[strum(serialize_all = "SCREAMING_SNAKE_CASE")]
+#[repr(u8)]
+pub enum ArmingFlag {
+    /// No gyro.
+    #[strum(to_string = "NOGYRO")]
+    NoGyro = 0,
+    /// A failsafe landing ended the flight and the link is not good again.
+    Failsafe = 1,
+    /// No valid RC.
+    #[strum(to_string = "RXLOSS")]
+    RxLoss = 2,
+    /// The link appeared with the ARM switch on.
+    NotDisarmed = 3,
+    /// The FAILSAFE switch is on.
+    #[strum(to_string = "BOXFAILSAFE")]
+    BoxFailsafe = 4,
+    /// Runaway take-off prevention stopped the motors.
+    Runaway = 5,
+    /// Crash detection stopped the motors.
+    Crash = 6,
+    /// Throttle not low.
+    Throttle = 7,
+    /// Tilted, or the attitude is not known yet.
+    Angle = 8,
+    /// Just booted.
+    #[strum(to_string = "BOOTGRACE")]
+    BootGrace = 9,
+    /// The PREARM switch is missing.
+    #[strum(to_string = "NOPREARM")]
+    NoPrearm = 10,
+    /// CPU overload.
+    Load = 11,
+    /// Sensors are being calibrated.
+    #[strum(to_string = "CALIB")]
+    Calibrating = 12,
+    /// A command line session was opened.
+    Cli = 13,
+    /// The on-screen menu is open.
+    Cms = 14,
+    /// A BST device is active.
+    Bst = 15,
+    /// An MSP client asked for it (on hardware).
+    Msp = 16,
+    /// The PARALYZE switch was on.
+    Paralyze = 17,
+    /// GPS rescue is configured and cannot work.
+    Gps = 18,
+    /// The GPS RESCUE switch is on.
+    #[strum(to_string = "RESCUE_SW")]
+    RescueSwitch = 19,
+    /// DShot telemetry.
+    DshotTelem = 20,
+    /// A change needs a reboot.
+    #[strum(to_string = "REBOOT_REQD")]
+    RebootRequired = 21,
+    /// DShot bit banging.
+    #[strum(to_string = "DSHOT_BBANG")]
+    DshotBitbang = 22,
+    /// The accelerometer was never calibrated.
+    #[strum(to_string = "NO_ACC_CAL")]
+    NoAccCal = 23,
+    /// The motor protocol is unusable.
+    #[strum(to_string = "MOTOR_PROTO")]
+    MotorProtocol = 24,
+    /// The crash-flip switch is on.
+    FlipSwitch = 25,
+    /// The ALTHOLD switch is on.
+    #[strum(to_string = "ALT_HOLD_SW")]
+    AltHoldSwitch = 26,
+    /// The POS HOLD switch is on.
+    #[strum(to_string = "POS_HOLD_SW")]
+    PosHoldSwitch = 27,
+    /// The AUTOPILOT switch is on.
+    #[strum(to_string = "AUTOPILOT_SW")]
+    AutopilotSwitch = 28,
+    /// The ARM switch was on while another reason stood.
+    ArmSwitch = 29,
+}
+
+/// Flags that tell a pilot most, first; the others follow in bit order, and the two that only say "again" come last.
+const MOST_USEFUL: [ArmingFlag; 5] = [
+    ArmingFlag::Cli,
+    ArmingFlag::RxLoss,
+    ArmingFlag::BootGrace,
+    ArmingFlag::Calibrating,
+    ArmingFlag::Throttle,
+];
+const LEAST_USEFUL: [ArmingFlag; 2] = [ArmingFlag::NotDisarmed, ArmingFlag::ArmSwitch];
+
+impl ArmingFlag {
+    /// What to do about it, as a phrase.
+    #[must_use]
+    pub fn hint(self) -> &'static str {
+        match self {
+            Self::NoGyro => "no gyro",
+            Self::Failsafe => "the link was lost: wait until it is good again",
+            Self::RxLoss => "no RC signal: start sending RC",
+            Self::NotDisarmed | Self::ArmSwitch => "switch ARM off, then on",
+            Self::BoxFailsafe => "switch FAILSAFE off",
+            Self::Runaway => "motors or propellers mixed up: switch ARM off",
+            Self::Crash => "switch ARM off",
+            Self::Throttle => "lower the throttle",
+            Self::Angle => "craft tilted, or no attitude yet",
+            Self::BootGrace => "just booted: wait a few seconds",
+            Self::NoPrearm => "switch PREARM on",
+            Self::Load => "CPU overload",
+            Self::Calibrating => "calibrating: wait and keep still",
+            Self::Cli => "a CLI session was opened: type exit or save",
+            Self::Cms => "close the menu",
+            Self::Bst => "disconnect the BST device",
+            Self::Msp => "disconnect the configurator",
+            Self::Paralyze => "PARALYZE was switched on: reboot",
+            Self::Gps => "GPS rescue needs a fix: wait for satellites",
+            Self::RescueSwitch => "switch GPS RESCUE off",
+            Self::DshotTelem | Self::DshotBitbang => "DShot trouble",
+            Self::RebootRequired => "save and reboot",
+            Self::NoAccCal => "calibrate the accelerometer",
+            Self::MotorProtocol => "choose another motor protocol",
+            Self::FlipSwitch => "switch crash flip off",
+            Self::AltHoldSwitch => "switch ALTHOLD off",
+            Self::PosHoldSwitch => "switch POS HOLD off",
+            Self::AutopilotSwitch => "arm first, then switch AUTOPILOT on",
+        }
+    }
+}
+
+/// A set of reasons; the bits are those of the wire.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
+pub struct ArmingFlags(u32);
+
+impl ArmingFlags {
+    /// No reason: the craft can be armed.
+    pub const NONE: Self = Self(0);
+
+    /// Whether the flag is set.
+    #[must_use]
+    pub fn has(self, flag: ArmingFlag) -> bool {
+        self.0 & (1 << flag as u32) != 0
+    }
+
+    /// Sets or clears a flag.
+    pub fn set(&mut self, flag: ArmingFlag, on: bool) {
+        self.0 = if on { self.0 | (1 << flag as u32) } else { self.0 & !(1 << flag as u32) };
+    }
+
+    /// The set with one flag taken out.
+    #[must_use]
+    pub fn without(mut self, flag: ArmingFlag) -> Self {
+        self.set(flag, false);
+        self
+    }
+
+    /// Whether nothing blocks arming.
+    #[must_use]
+    pub fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+
+    /// The bits of the wire.
+    #[must_use]
+    pub fn bits(self) -> u32 {
+        self.0
+    }
+
+    /// The flags in bit order.
+    pub fn iter(self) -> impl Iterator<Item = ArmingFlag> {
+        ArmingFlag::iter().filter(move |&flag| self.has(flag))
+    }
+
+    /// The flags with the most telling first.
+    pub fn by_usefulness(self) -> impl Iterator<Item = ArmingFlag> {
+        let middle =
+            ArmingFlag::iter().filter(|flag| !MOST_USEFUL.contains(flag) && !LEAST_USEFUL.contains(flag));
+        MOST_USEFUL.into_iter().chain(middle).chain(LEAST_USEFUL).filter(move |&flag| self.has(flag))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_in_bit_order() {
+        let names: Vec<_> = ArmingFlag::iter().map(|flag| flag.to_string()).collect();
+        assert_eq!(
+            names.join(" "),
+            "NOGYRO FAILSAFE RXLOSS NOT_DISARMED BOXFAILSAFE RUNAWAY CRASH THROTTLE ANGLE BOOTGRACE NOPREARM LOAD \
+             CALIB CLI CMS BST MSP PARALYZE GPS RESCUE_SW DSHOT_TELEM REBOOT_REQD DSHOT_BBANG NO_ACC_CAL MOTOR_PROTO \
+             FLIP_SWITCH ALT_HOLD_SW POS_HOLD_SW AUTOPILOT_SW ARM_SWITCH"
+        );
+        for (bit, flag) in ArmingFlag::iter().enumerate() {
+            assert_eq!(flag as usize, bit);
+        }
+    }
+
+    #[test]
+    fn again_flags_come_last() {
+        let mut flags = ArmingFlags::NONE;
+        for flag in [ArmingFlag::NotDisarmed, ArmingFlag::Angle, ArmingFlag::Throttle, ArmingFlag::ArmSwitch]
+        {
+            flags.set(flag, true);
+        }
+        let order: Vec<_> = flags.by_usefulness().collect();
+        assert_eq!(
+            order,
+            [ArmingFlag::Throttle, ArmingFlag::Angle, ArmingFlag::NotDisarmed, ArmingFlag::ArmSwitch]
+        );
+    }
+}

@@ -1,0 +1,91 @@
+//! The command line.
+//!
+//! Two layers. The [`Interpreter`] turns one line into text and a list of things to do; the console panel, files, MSP
+//! and scripts use it as it is. The [`LineEditor`] turns the bytes of one serial link into lines and back.
+//!
+//! ```text
+//! bytes ── LineEditor ── line ──▶ Interpreter::run(line, CliContext) ──▶ CliReply { text, actions }
+//!                                      │ edits                                   │
+//!                                 Configuration                 saved, restarted, … by the owner
+//! ```
+
+mod advice;
+mod apply;
+mod bench;
+mod command;
+mod complete;
+mod craft;
+mod dump;
+mod editor;
+mod facts;
+mod foreign;
+mod get_set;
+mod interpreter;
+mod leave;
+mod modes;
+mod names;
+mod profiles;
+mod receiver;
+mod serial;
+mod session;
+mod status;
+mod waypoint;
+
+pub use advice::advice;
+pub use apply::{ApplyReport, FailedLine, apply_lines, provision};
+pub use command::{COMMANDS, Command};
+pub use complete::{Completion, complete, hint};
+pub use editor::{EditorOutput, LineEditor, LinkMode};
+pub use facts::{
+    BatteryFacts, BuildInfo, CliFacts, GpsFacts, GpsSolutionFacts, LoopFacts, NavFacts, SmoothingFacts,
+    StorageFacts, TaskFacts,
+};
+pub use interpreter::{Interpreter, Mode, refused_over_msp};
+
+use super::config::Configuration;
+
+/// The most characters of a line; the rest is dropped.
+pub const MAX_LINE: usize = 255;
+
+/// What a command may see and change.
+#[derive(Debug)]
+pub struct CliContext<'a> {
+    /// The configuration in memory.
+    pub configuration: &'a mut Configuration,
+    /// Figures of the running firmware.
+    pub facts: &'a CliFacts,
+}
+
+/// The answer to one line.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct CliReply {
+    /// Text as it goes over the link, without echo and prompt.
+    pub text: String,
+    /// What the owner of the firmware has to do, in order.
+    pub actions: Vec<CliAction>,
+    /// Whether the line was refused.
+    pub failed: bool,
+}
+
+/// Something a command asks the owner of the firmware to do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CliAction {
+    /// Store the configuration.
+    Save,
+    /// Restart from the stored configuration; what is not stored is lost.
+    Restart {
+        /// Whether the serial clients are closed, as a real restart does.
+        close_links: bool,
+    },
+    /// The session leaves the command line and speaks MSP again.
+    Leave,
+    /// Run a motor on the bench until the session ends.
+    MotorTest {
+        /// Which motor, or all.
+        motor: Option<u8>,
+        /// Output, µs, 1000…2000.
+        output_us: u16,
+    },
+    /// The stored flight plan was changed.
+    PlanChanged,
+}

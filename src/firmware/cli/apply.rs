@@ -1,0 +1,114 @@
+//! Running the lines of a file, a paste or a list of options, with a report of those that failed.
+//!
+//! Lines that save, leave or restart are not run: what becomes of the configuration is the caller's decision.
+//! `defaults` resets without saving.
+
+use super::super::config::correct;
+use super::{CliContext, CliReply, Interpreter};
+
+/// One line that was refused.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FailedLine {
+    /// Its number, from 1.
+    pub number: usize,
+    /// The line without its comment.
+    pub line: String,
+    /// The first line of the refusal.
+    pub reason: String,
+}
+
+/// What happened to the lines.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct ApplyReport {
+    /// Lines that held a command.
+    pub commands: usize,
+    /// Lines that were refused.
+    pub failed: Vec<FailedLine>,
+    /// A line was refused between `batch start` and `batch end`.
+    pub batch_failed: bool,
+}
+
+/// What a line of a file asks for.
+enum Wish<'l> {
+    Nothing,
+    /// It saves, leaves or restarts.
+    Leave,
+    Save,
+    Run(&'l str),
+}
+
+fn wish(line: &str) -> Wish<'_> {
+    let code = line.split('#').next().unwrap_or("").trim();
+    match code.split_ascii_whitespace().next().unwrap_or("").to_ascii_lowercase().as_str() {
+        "" => Wish::Nothing,
+        "save" => Wish::Save,
+        "exit" | "bl" | "msc" | "reboot" => Wish::Leave,
+        "defaults" => Wish::Run("defaults nosave"),
+        _ => Wish::Run(code),
+    }
+}
+
+impl ApplyReport {
+    fn run(
+        &mut self,
+        number: usize,
+        line: &str,
+        interpreter: &mut Interpreter,
+        context: &mut CliContext<'_>,
+    ) -> CliReply {
+        self.commands += 1;
+        let reply = interpreter.run(line, context);
+        if reply.failed {
+            let reason = reply.text.lines().find(|line| !line.is_empty()).unwrap_or("").to_owned();
+            self.failed.push(FailedLine { number, line: line.to_owned(), reason });
+        }
+        let ends_batch =
+            line.split_ascii_whitespace().next().is_some_and(|word| word.eq_ignore_ascii_case("batch"));
+        self.batch_failed |= ends_batch && reply.failed;
+        reply
+    }
+}
+
+/// Runs lines in order; each that is run is handed to `shown` with its reply.
+pub fn apply_lines<'l>(
+    lines: impl IntoIterator<Item = &'l str>,
+    interpreter: &mut Interpreter,
+    context: &mut CliContext<'_>,
+    mut shown: impl FnMut(&str, &CliReply),
+) -> ApplyReport {
+    let mut report = ApplyReport::default();
+    for (at, line) in lines.into_iter().enumerate() {
+        if let Wish::Run(line) = wish(line) {
+            let reply = report.run(at + 1, line, interpreter, context);
+            shown(line, &reply);
+        }
+    }
+    report.batch_failed |= interpreter.batch_failed();
+    report
+}
+
+/// Runs a provisioning file up to its `save`, or its end, handing the text of the session to `shown`. The configuration
+/// is then ready to be stored, unless a line in a batch was refused.
+pub fn provision(
+    file: &str,
+    interpreter: &mut Interpreter,
+    context: &mut CliContext<'_>,
+    mut shown: impl FnMut(&str),
+) -> ApplyReport {
+    let mut report = ApplyReport::default();
+    for (at, line) in file.lines().enumerate() {
+        match wish(line) {
+            Wish::Nothing | Wish::Leave => {}
+            Wish::Save => break,
+            Wish::Run(line) => {
+                let reply = report.run(at + 1, line, interpreter, context);
+                shown(&format!("{line}\r\n{}\r\n# ", reply.text));
+            }
+        }
+    }
+    report.batch_failed |= interpreter.batch_failed();
+    if !report.batch_failed {
+        correct(context.configuration);
+    }
+    report
+}

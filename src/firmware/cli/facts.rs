@@ -1,0 +1,172 @@
+//! Figures of the running firmware that commands print: plain data, filled in by the owner of the firmware.
+
+use crate::autopilot::io::NavTelemetry;
+use crate::geo::LatLon;
+use crate::plan::FlightPlan;
+
+/// Everything `status`, `env`, `tasks`, `version` and `waypoint status` tell about the running firmware.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct CliFacts {
+    /// Version and build.
+    pub build: BuildInfo,
+    /// Whether the craft is armed; many commands are refused then.
+    pub armed: bool,
+    /// Names of the reasons that block arming, in bit order.
+    pub arming_blocks: Vec<&'static str>,
+    /// Seconds since boot.
+    pub uptime_s: u64,
+    /// The stored configuration.
+    pub storage: StorageFacts,
+    /// The GPS.
+    pub gps: GpsFacts,
+    /// The battery.
+    pub battery: BatteryFacts,
+    /// Loop rates.
+    pub loops: LoopFacts,
+    /// One row a task, in order of their numbers.
+    pub tasks: Vec<TaskFacts>,
+    /// The RC smoothing filters.
+    pub smoothing: SmoothingFacts,
+    /// The navigator.
+    pub nav: NavFacts,
+}
+
+/// Version and build, as announced by `version`, `env` and MSP.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct BuildInfo {
+    /// Firmware version.
+    pub version: String,
+    /// MSP API version.
+    pub api: String,
+    /// Build date, `Mmm dd yyyy`.
+    pub date: String,
+    /// Build time, `hh:mm:ss`.
+    pub time: String,
+    /// Source revision.
+    pub revision: String,
+}
+
+impl Default for BuildInfo {
+    fn default() -> Self {
+        Self {
+            version: "2026.12.0-alpha".to_owned(),
+            api: "1.49".to_owned(),
+            date: "Jan 01 2026".to_owned(),
+            time: "00:00:00".to_owned(),
+            revision: "norevision".to_owned(),
+        }
+    }
+}
+
+/// The stored configuration as `status` shows it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct StorageFacts {
+    /// Bytes of the stored image.
+    pub used_bytes: usize,
+    /// Bytes a real vehicle has for it.
+    pub capacity_bytes: usize,
+    /// What was found wrong at boot, for the `CONFIG:` line.
+    pub note: Option<String>,
+    /// Why `save` cannot work: the file belongs to another firmware, or another process holds it.
+    pub save_refusal: Option<String>,
+}
+
+impl Default for StorageFacts {
+    fn default() -> Self {
+        Self { used_bytes: 0, capacity_bytes: 32_768, note: None, save_refusal: None }
+    }
+}
+
+/// The GPS as `status` shows it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum GpsFacts {
+    /// The feature is off.
+    NotEnabled,
+    /// Nothing was received yet.
+    #[default]
+    NotConnected,
+    /// Messages arrive; the solution is present once they are healthy.
+    Connected(Option<GpsSolutionFacts>),
+}
+
+/// A navigation solution.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct GpsSolutionFacts {
+    /// Satellites used.
+    pub sats: u8,
+    /// Horizontal dilution of precision; 0 = not reported.
+    pub hdop: f64,
+    /// Vertical dilution of precision; 0 = not reported.
+    pub vdop: f64,
+    /// Position and altitude above mean sea level, cm; `None` without a fix.
+    pub position: Option<(LatLon, i32)>,
+}
+
+/// The battery.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BatteryFacts {
+    /// Voltage, V.
+    pub voltage_v: f64,
+    /// Cells in series.
+    pub cells: u8,
+    /// `OK`, `WARNING`, `CRITICAL`, `NOT PRESENT` or `INIT`.
+    pub state: &'static str,
+}
+
+impl Default for BatteryFacts {
+    fn default() -> Self {
+        Self { voltage_v: 0.0, cells: 0, state: "INIT" }
+    }
+}
+
+/// Loop rates.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct LoopFacts {
+    /// Processor load, percent.
+    pub cpu_load_percent: u32,
+    /// Period of the control loop, µs.
+    pub cycle_time_us: u32,
+    /// Gyro loop, Hz.
+    pub gyro_hz: u32,
+    /// RC frames, Hz.
+    pub rx_hz: u32,
+    /// Housekeeping, Hz.
+    pub system_hz: u32,
+}
+
+/// One task.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct TaskFacts {
+    /// Its number.
+    pub id: u8,
+    /// Its name.
+    pub name: &'static str,
+    /// How often it runs, Hz.
+    pub rate_hz: u32,
+    /// Longest run, µs.
+    pub max_us: u32,
+    /// Average run, µs.
+    pub avg_us: u32,
+    /// Time spent since boot, ms.
+    pub total_ms: u32,
+}
+
+/// The RC smoothing filters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct SmoothingFacts {
+    /// Measured frame rate, Hz; `None` without a signal.
+    pub rx_hz: Option<u32>,
+    /// Cutoff of setpoint and feed-forward, Hz.
+    pub setpoint_hz: u32,
+    /// Cutoff of the throttle, Hz.
+    pub throttle_hz: u32,
+}
+
+/// The navigator.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct NavFacts {
+    /// Its telemetry.
+    pub telemetry: NavTelemetry,
+    /// The plan being flown, while one is.
+    pub active_plan: Option<FlightPlan>,
+}

@@ -1,0 +1,223 @@
+//! One line in, one reply out.
+
+use super::super::settings::Scope;
+use super::command::by_name;
+use super::foreign::{is_foreign_command, keep_command};
+use super::session::Session;
+use super::{CliContext, CliReply, MAX_LINE};
+
+/// Who talks to the interpreter, which changes a few answers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Mode {
+    /// A person or a script at a prompt.
+    #[default]
+    Interactive,
+    /// One line between STX and ETX on a serial link: other words for unknown commands, no restart that closes links.
+    Framed,
+    /// One line in an MSP message: as framed, and `save` never restarts.
+    Message,
+    /// The lines of a file: words of other builds are kept.
+    File,
+}
+
+/// State of `batch start` … `batch end`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) enum Batch {
+    #[default]
+    Closed,
+    Open,
+    Failed,
+}
+
+/// The interpreter of one session.
+#[derive(Debug, Clone)]
+pub struct Interpreter {
+    pub(super) mode: Mode,
+    pub(super) batch: Batch,
+    /// Section to which kept lines belong: master, or the profile selected last.
+    pub(super) section: (Scope, u8),
+    lenient: bool,
+}
+
+impl Default for Interpreter {
+    fn default() -> Self {
+        Self::new(Mode::default())
+    }
+}
+
+impl Interpreter {
+    /// A fresh session.
+    #[must_use]
+    pub fn new(mode: Mode) -> Self {
+        Self { mode, batch: Batch::Closed, section: (Scope::Master, 0), lenient: false }
+    }
+
+    /// A session in which errors do not stop a batch from being saved.
+    #[must_use]
+    pub fn lenient(mut self, lenient: bool) -> Self {
+        self.lenient = lenient;
+        self
+    }
+
+    /// Changes who is talking; an open batch stays open.
+    pub fn set_mode(&mut self, mode: Mode) {
+        self.mode = mode;
+    }
+
+    /// Whether a batch is open in which a line was refused.
+    #[must_use]
+    pub fn batch_failed(&self) -> bool {
+        self.batch == Batch::Failed
+    }
+
+    /// Runs one line. Comments and characters beyond [`MAX_LINE`] are dropped.
+    pub fn run(&mut self, line: &str, context: &mut CliContext<'_>) -> CliReply {
+        let line = code_of(line);
+        if line.is_empty() {
+            return CliReply::default();
+        }
+        let (word, rest) = line.split_once([' ', '\t']).unwrap_or((line, ""));
+        let rest = rest.trim();
+        let command = by_name(word);
+        let keeps_foreign = self.batch != Batch::Closed || self.mode == Mode::File;
+        let mut session = Session {
+            command: command.map_or("input", |command| command.name),
+            interpreter: self,
+            configuration: context.configuration,
+            facts: context.facts,
+            reply: CliReply::default(),
+        };
+        match command {
+            Some(command) => (command.run)(&mut session, rest),
+            None if keeps_foreign && is_foreign_command(word) => keep_command(&mut session, word, line),
+            None => unknown(&mut session, line),
+        }
+        session.reply
+    }
+
+    pub(super) fn note_failure(&mut self) {
+        if self.batch == Batch::Open && !self.lenient {
+            self.batch = Batch::Failed;
+        }
+    }
+}
+
+fn unknown(session: &mut Session<'_>, line: &str) {
+    if matches!(session.interpreter.mode, Mode::Framed | Mode::Message) {
+        session.line(format_args!("ERR_CMD_NA: {line}"));
+    } else {
+        // The only error without a line end.
+        session.raw("###ERROR IN input: UNKNOWN COMMAND, TRY 'HELP'###");
+    }
+    session.fail();
+}
+
+/// The part of a line before its comment, without surrounding blanks, cut to the longest line.
+fn code_of(line: &str) -> &str {
+    let end = line.char_indices().nth(MAX_LINE).map_or(line.len(), |(at, _)| at);
+    let line = line.get(..end).unwrap_or(line);
+    line.split_once('#').map_or(line, |(code, _)| code).trim()
+}
+
+/// Whether a line must not be run from an MSP message: it would take the link down, or the craft out of the air.
+#[must_use]
+pub fn refused_over_msp(line: &str, armed: bool) -> bool {
+    let line = code_of(line).to_ascii_lowercase();
+    let mut words = line.split_ascii_whitespace();
+    match words.next().unwrap_or("") {
+        "bl" | "msc" | "serialpassthrough" => true,
+        "defaults" => armed || !words.any(|word| word == "nosave"),
+        "save" => armed,
+        _ => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::config::Configuration;
+    use super::super::{CliAction, CliFacts, StorageFacts};
+    use super::*;
+
+    fn run(line: &str, facts: &CliFacts) -> CliReply {
+        let mut configuration = Configuration::default();
+        Interpreter::default().run(line, &mut CliContext { configuration: &mut configuration, facts })
+    }
+
+    #[test]
+    fn what_would_change_a_flying_craft_is_refused() {
+        let armed = CliFacts { armed: true, ..CliFacts::default() };
+        for line in [
+            "save",
+            "save noreboot",
+            "defaults",
+            "defaults nosave",
+            "exit",
+            "bl",
+            "reboot",
+            "motor 0 1100",
+            "feature -GPS",
+            "mixer quadp",
+            "mmix reset",
+            "map TAER1234",
+            "serial UART2 1 115200 57600 0 115200",
+            "profile 1",
+        ] {
+            let reply = run(line, &armed);
+            let word = line.split(' ').next().expect("a word");
+            assert_eq!(reply.text, format!("###ERROR IN {word}: NOT WHILE ARMED###\r\n"), "{line}");
+            assert!(reply.failed && reply.actions.is_empty(), "{line}");
+            assert!(!run(line, &CliFacts::default()).failed, "{line}");
+        }
+        for line in [
+            "feature",
+            "feature list",
+            "mixer",
+            "mixer list",
+            "mmix",
+            "map",
+            "serial",
+            "profile",
+            "status",
+            "dump all",
+            "get ap",
+            "set ap_max_angle = 20",
+            "set p_roll = 50",
+            "waypoint clear",
+            "waypoint insert 0 1 2 3 0 LAND 0 NONE",
+        ] {
+            assert!(!run(line, &armed).failed, "{line}");
+        }
+    }
+
+    #[test]
+    fn a_store_that_cannot_save_says_so_and_nothing_restarts() {
+        let storage =
+            StorageFacts { save_refusal: Some("the file is not ours".to_owned()), ..StorageFacts::default() };
+        let facts = CliFacts { storage, ..CliFacts::default() };
+        for line in ["save", "save noreboot", "defaults"] {
+            let word = line.split(' ').next().expect("a word");
+            let reply = run(line, &facts);
+            assert_eq!(reply.text, format!("###ERROR IN {word}: the file is not ours###\r\n"));
+            assert_eq!(reply.actions, []);
+        }
+        let restart = CliAction::Restart { close_links: true };
+        assert_eq!(run("exit", &facts).actions, [restart]);
+        assert_eq!(run("save", &CliFacts::default()).actions, [CliAction::Save, restart]);
+    }
+
+    #[test]
+    fn lines_that_end_the_link_are_not_for_msp() {
+        for line in ["bl", " BL rom", "defaults", "serialpassthrough 1", "msc # now"] {
+            assert!(refused_over_msp(line, false), "{line}");
+        }
+        for line in ["save", "defaults nosave"] {
+            assert!(!refused_over_msp(line, false) && refused_over_msp(line, true), "{line}");
+        }
+        assert!(!refused_over_msp("waypoint clear", true));
+        let mut configuration = Configuration::default();
+        let mut context = CliContext { configuration: &mut configuration, facts: &CliFacts::default() };
+        let mut message = Interpreter::new(Mode::Message);
+        assert_eq!(message.run("save", &mut context).actions, [CliAction::Save]);
+        assert_eq!(message.run("exit", &mut context), CliReply::default());
+    }
+}

@@ -1,0 +1,229 @@
+//! The `waypoint` family: the stored flight plan as text.
+
+use std::str::FromStr as _;
+
+use super::CliAction;
+use super::session::{Session, integer};
+use crate::autopilot::io::{NavState, Refusal};
+use crate::geo::{Degrees7, LatLon};
+use crate::plan::{FlightPlan, HoldPattern, MAX_WAYPOINTS, Waypoint, WaypointType};
+
+/// `waypoint [list|status|insert|update|remove|clear]`.
+pub(super) fn waypoint(session: &mut Session<'_>, rest: &str) {
+    let words: Vec<&str> = rest.split_ascii_whitespace().collect();
+    let (operation, arguments) =
+        words.split_first().map_or(("list", [].as_slice()), |(word, rest)| (*word, rest));
+    match operation.to_ascii_lowercase().as_str() {
+        "list" | "status" | "clear" if !arguments.is_empty() => session.wrong_count(),
+        "list" => list(session),
+        "status" => status(session),
+        "clear" => {
+            session.configuration.plan.waypoints.clear();
+            session.line("Waypoints cleared");
+            session.act(CliAction::PlanChanged);
+        }
+        "insert" => edit(session, arguments, Edit::Insert),
+        "update" => edit(session, arguments, Edit::Update),
+        "remove" => remove(session, arguments),
+        _ => session.error("INVALID OPERATION. USE: list, status, insert, update, remove, clear"),
+    }
+}
+
+/// The lines that rebuild a plan.
+pub(super) fn plan_lines(plan: &FlightPlan) -> Vec<String> {
+    let inserts = plan.waypoints.iter().enumerate().map(|(at, waypoint)| {
+        format!("waypoint insert {at} {}", record(waypoint, &waypoint.alt_cm.to_string()))
+    });
+    std::iter::once("waypoint clear".to_owned()).chain(inserts).collect()
+}
+
+fn list(session: &mut Session<'_>) {
+    for line in plan_lines(&session.configuration.plan) {
+        session.line(line);
+    }
+}
+
+fn record(waypoint: &Waypoint, altitude: &str) -> String {
+    format!(
+        "{} {} {altitude} {} {} {} {}",
+        Degrees7(waypoint.position.lat_e7),
+        Degrees7(waypoint.position.lon_e7),
+        waypoint.speed_cms,
+        waypoint.kind,
+        waypoint.duration_ds,
+        waypoint.pattern
+    )
+}
+
+/// Centimetres as metres with two decimals.
+fn metres(cm: i32) -> String {
+    let sign = if cm < 0 { "-" } else { "" };
+    let size = cm.unsigned_abs();
+    format!("{sign}{}.{:02}m", size / 100, size % 100)
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Edit {
+    Insert,
+    Update,
+}
+
+fn edit(session: &mut Session<'_>, arguments: &[&str], edit: Edit) {
+    let &[index, lat, lon, alt, speed, kind, duration, pattern] = arguments else {
+        session.wrong_count();
+        return;
+    };
+    let count = session.configuration.plan.waypoints.len();
+    if edit == Edit::Update && count == 0 {
+        session.error("NO WAYPOINTS TO UPDATE");
+        return;
+    }
+    let Some(index) = integer(index) else {
+        session.error("INVALID INDEX");
+        return;
+    };
+    if edit == Edit::Insert && count >= MAX_WAYPOINTS {
+        session.error("WAYPOINT LIST FULL");
+        return;
+    }
+    let last = if edit == Edit::Insert { count } else { count - 1 };
+    let Some(index) = usize::try_from(index).ok().filter(|index| *index <= last) else {
+        session.error(format_args!("index NOT BETWEEN 0 AND {last}"));
+        return;
+    };
+    let waypoint = match read([lat, lon, alt, speed, kind, duration, pattern]) {
+        Ok(waypoint) => waypoint,
+        Err(text) => {
+            session.error(text);
+            return;
+        }
+    };
+    let waypoints = &mut session.configuration.plan.waypoints;
+    let word = match edit {
+        Edit::Insert => {
+            waypoints.insert(index, waypoint);
+            "insert"
+        }
+        Edit::Update => {
+            if let Some(place) = waypoints.get_mut(index) {
+                *place = waypoint;
+            }
+            "update"
+        }
+    };
+    session.line(format_args!("waypoint {word} {index} {}", record(&waypoint, &metres(waypoint.alt_cm))));
+    session.act(CliAction::PlanChanged);
+}
+
+/// Reads the fields after the index; the order of the checks decides which text a line with several faults gets.
+fn read(fields: [&str; 7]) -> Result<Waypoint, &'static str> {
+    let [lat, lon, alt, speed, kind, duration, pattern] = fields;
+    let lat_e7 = degrees(lat).ok_or("INVALID LATITUDE FORMAT. USE: -90.0000000 to 90.0000000")?;
+    let lon_e7 = degrees(lon).ok_or("INVALID LONGITUDE FORMAT. USE: -180.0000000 to 180.0000000")?;
+    let alt = integer(alt).ok_or("INVALID ALTITUDE")?;
+    let alt_cm = i32::try_from(alt).map_err(|_| "ALTITUDE OUT OF RANGE")?;
+    let speed = integer(speed).ok_or("INVALID SPEED")?;
+    let duration = integer(duration).ok_or("INVALID DURATION")?;
+    let speed_cms = u16::try_from(speed).map_err(|_| "speed NOT BETWEEN 0 AND 65535")?;
+    let duration_ds = u16::try_from(duration).map_err(|_| "duration NOT BETWEEN 0 AND 65535")?;
+    let kind = WaypointType::from_str(kind)
+        .map_err(|_| "INVALID TYPE. USE: FLYOVER, FLYBY, HOLD, LAND, TAKEOFF, ALT_CHANGE, DELAY, YAW_RATE")?;
+    let pattern = HoldPattern::from_str(pattern).map_err(|_| "INVALID PATTERN. USE: NONE, ORBIT, FIGURE8")?;
+    if !LatLon::new(lat_e7, 0).is_on_globe() {
+        return Err("LATITUDE OUT OF RANGE. USE: -90.0 to 90.0");
+    }
+    if !LatLon::new(0, lon_e7).is_on_globe() {
+        return Err("LONGITUDE OUT OF RANGE. USE: -180.0 to 180.0");
+    }
+    Ok(Waypoint { position: LatLon::new(lat_e7, lon_e7), alt_cm, speed_cms, duration_ds, kind, pattern })
+}
+
+/// Decimal degrees as degrees × 10⁷; decimals beyond the seventh are cut, not rounded.
+fn degrees(text: &str) -> Option<i32> {
+    const DECIMALS: usize = 7;
+    let (negative, digits) = match text.strip_prefix('-') {
+        Some(digits) => (true, digits),
+        None => (false, text.strip_prefix('+').unwrap_or(text)),
+    };
+    let (whole, decimals) = digits.split_once('.').unwrap_or((digits, ""));
+    let all_digits = |part: &str| part.bytes().all(|byte| byte.is_ascii_digit());
+    if whole.is_empty() || !all_digits(whole) || !all_digits(decimals) {
+        return None;
+    }
+    let padded = decimals.bytes().chain(std::iter::repeat(b'0')).take(DECIMALS);
+    let size = whole
+        .bytes()
+        .chain(padded)
+        .fold(0_i64, |sum, digit| sum.saturating_mul(10).saturating_add(i64::from(digit - b'0')));
+    let size = i32::try_from(size).ok()?;
+    Some(if negative { -size } else { size })
+}
+
+fn remove(session: &mut Session<'_>, arguments: &[&str]) {
+    let &[index] = arguments else {
+        session.wrong_count();
+        return;
+    };
+    let waypoints = &mut session.configuration.plan.waypoints;
+    let count = waypoints.len();
+    if count == 0 {
+        session.error("NO WAYPOINTS TO REMOVE");
+        return;
+    }
+    let Some(index) = integer(index) else {
+        session.error("INVALID INDEX");
+        return;
+    };
+    let removed = usize::try_from(index).ok().and_then(|index| waypoints.pop_at(index));
+    if removed.is_none() {
+        session.error(format_args!("index NOT BETWEEN 0 AND {}", count - 1));
+        return;
+    }
+    session.line(format_args!("Waypoint {index} removed, {} waypoints remaining", count - 1));
+    session.act(CliAction::PlanChanged);
+}
+
+/// Shows the plan being flown, or the stored one, and what the navigator does.
+fn status(session: &mut Session<'_>) {
+    let facts = session.facts;
+    let plan = facts.nav.active_plan.as_ref().unwrap_or(&session.configuration.plan).clone();
+    session.line(format_args!("Waypoint count: {}", plan.waypoints.len()));
+    if !plan.waypoints.is_empty() {
+        session.raw("\n");
+        session.line("Configured waypoints:");
+        for (at, waypoint) in plan.waypoints.iter().enumerate() {
+            session.line(format_args!(
+                "  [{at}] {} {} {} {}",
+                Degrees7(waypoint.position.lat_e7),
+                Degrees7(waypoint.position.lon_e7),
+                metres(waypoint.alt_cm),
+                waypoint.kind
+            ));
+        }
+    }
+    session.raw("\n");
+    session.line("Runtime status:");
+    let nav = &facts.nav.telemetry;
+    if let (NavState::Idle, Some(Refusal::Aborted(reason))) = (nav.state, nav.refusal) {
+        session.line(format_args!("  state: {}", nav.state));
+        session.line(format_args!("  abort reason: {}", reason.to_string().replace('_', " ")));
+        return;
+    }
+    if nav.state == NavState::Idle {
+        session.line("  inactive");
+        return;
+    }
+    session.line(format_args!("  state: {}", nav.state));
+    session.line(format_args!("  current waypoint: {}/{}", u16::from(nav.wp) + 1, nav.count));
+    if nav.state == NavState::Complete {
+        return;
+    }
+    if let (Some(distance), Some(bearing)) = (nav.distance_m, nav.bearing_rad) {
+        let bearing = bearing.to_degrees().round().rem_euclid(360.0).abs();
+        session.raw(format_args!("  distance: {distance:.2}m  bearing: {bearing:.0} deg"));
+        if let Some(eta) = nav.eta_s {
+            session.raw(format_args!("  eta: {eta:.0}s"));
+        }
+        session.line("");
+    }
+}

@@ -1,0 +1,122 @@
+//! Mode conditions and in-flight adjustments.
+
+/// Pulse step of mode ranges, µs.
+const STEP_US: u16 = 25;
+/// Lowest pulse of a mode range, µs.
+const LOWEST_US: u16 = 900;
+/// Highest pulse of a mode range, µs.
+const HIGHEST_US: u16 = 2100;
+
+/// How several conditions of one mode combine.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, strum::FromRepr)]
+#[repr(u8)]
+pub enum ModeLogic {
+    /// Any one suffices.
+    #[default]
+    Or = 0,
+    /// All of these must hold.
+    And = 1,
+}
+
+/// One rule that binds a mode to a switch, or to another mode.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct ModeCondition {
+    /// Permanent id of the mode.
+    pub box_id: u8,
+    /// Switch channel, 0 = AUX1 = fifth receiver channel, up to 13.
+    pub aux_channel: u8,
+    /// Lowest pulse, µs, 900…2100 in steps of 25.
+    pub start_us: u16,
+    /// First pulse above the range, µs.
+    pub end_us: u16,
+    /// How it combines with the other conditions of its mode.
+    pub logic: ModeLogic,
+    /// Permanent id of the mode whose state it follows instead of a channel; 0 = none.
+    pub linked: u8,
+}
+
+impl Default for ModeCondition {
+    /// An empty slot.
+    fn default() -> Self {
+        Self { box_id: 0, aux_channel: 0, start_us: 900, end_us: 900, logic: ModeLogic::Or, linked: 0 }
+    }
+}
+
+impl ModeCondition {
+    /// Highest switch channel.
+    pub const MAX_AUX: u8 = 13;
+
+    /// A pulse brought to the range and step that conditions are stored in.
+    #[must_use]
+    pub fn snap(pulse_us: i64) -> u16 {
+        let clipped = pulse_us.clamp(i64::from(LOWEST_US), i64::from(HIGHEST_US)) as u16;
+        clipped - (clipped - LOWEST_US) % STEP_US
+    }
+
+    /// Whether it can ever turn its mode on.
+    #[must_use]
+    pub fn is_usable(&self) -> bool {
+        self.start_us < self.end_us || self.linked != 0
+    }
+
+    /// Whether a pulse lies in the range; pulses beyond the ends count as the ends.
+    #[must_use]
+    pub fn contains(&self, pulse_us: f64) -> bool {
+        let pulse = pulse_us.max(f64::from(LOWEST_US)).min(f64::from(HIGHEST_US - 1));
+        f64::from(self.start_us) <= pulse && pulse < f64::from(self.end_us)
+    }
+}
+
+/// One in-flight adjustment; kept, not executed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct AdjustmentRange {
+    /// Channel whose range enables it, 0 = AUX1.
+    pub aux_channel: u8,
+    /// Lowest pulse, µs.
+    pub start_us: u16,
+    /// First pulse above the range, µs.
+    pub end_us: u16,
+    /// Which value it adjusts.
+    pub function: u8,
+    /// Channel that adjusts, 0 = AUX1.
+    pub select_channel: u8,
+    /// Centre of an absolute adjustment.
+    pub center: u16,
+    /// Scale of an absolute adjustment.
+    pub scale: u16,
+}
+
+impl Default for AdjustmentRange {
+    /// An empty slot.
+    fn default() -> Self {
+        Self {
+            aux_channel: 0,
+            start_us: 900,
+            end_us: 900,
+            function: 0,
+            select_channel: 0,
+            center: 0,
+            scale: 0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ranges_are_half_open_and_end_pulses_count_as_inside() {
+        let range = ModeCondition { start_us: 1700, end_us: 2100, ..ModeCondition::default() };
+        let inside = [1699.9, 1700.0, 2099.0, 2100.0, 2500.0, f64::NAN].map(|pulse| range.contains(pulse));
+        assert_eq!(inside, [false, true, true, true, true, false]);
+        let low = ModeCondition { start_us: 900, end_us: 1300, ..ModeCondition::default() };
+        assert_eq!([0.0, 1299.9, 1300.0].map(|pulse| low.contains(pulse)), [true, true, false]);
+        assert!(!ModeCondition::default().contains(900.0));
+    }
+
+    #[test]
+    fn pulses_are_stored_in_steps() {
+        assert_eq!([i64::MIN, 912, 1724, i64::MAX].map(ModeCondition::snap), [900, 900, 1700, 2100]);
+    }
+}

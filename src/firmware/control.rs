@@ -1,0 +1,154 @@
+//! From demands to motors: setpoints, levelling, rate control, mixing.
+//!
+//! ```text
+//! sticks ─► rates ─► smoothing ─┬─► acro setpoint ──────────┐
+//!                               └─► angle target ─┐         ▼
+//! navigator, holds ─► lean ───────────────────────┴► level ─► rate PID ─► mixer ─► motors
+//!                   ─► throttle ──────────────────────────────────────────▲
+//! gyro ─► low-pass ─────────────────────────────────────────────▲
+//! ```
+//!
+//! Signs are those of [`crate::firmware::estimate`]: roll right, pitch nose down, yaw clockwise positive. Angles and
+//! rates between settings and PID are degrees and degrees per second, the units of the tuning; demands from outside
+//! are SI.
+
+use crate::firmware::estimate::DueTasks;
+use crate::signals::MotorCommand;
+
+mod controller;
+mod curve;
+mod derived;
+mod ground;
+mod gyro;
+mod heading;
+pub mod hold;
+mod level;
+mod mixer;
+mod pid;
+mod smoothing;
+mod tuning;
+
+pub use controller::Controller;
+pub use curve::{RateCurve, RatesType, ThrottleCurve, ThrottleLimit};
+pub use tuning::{AxisGains, ItermRelax, LevelTuning, MixerTuning, RateTuning, Tuning};
+
+/// How the sticks are understood.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum StickMode {
+    /// Sticks demand rates.
+    #[default]
+    Acro,
+    /// Sticks demand angles.
+    Angle,
+    /// Angles about the centre, rates towards the ends.
+    Horizon,
+}
+
+/// An attitude demanded by the navigator or a hold mode; it takes the place of the pilot's angles.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct LeanDemand {
+    /// Roll, rad, right positive.
+    pub roll_rad: f64,
+    /// Pitch, rad, nose **down** positive.
+    pub pitch_rad: f64,
+}
+
+/// What the controller is told in one step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ControlInput {
+    /// Which slower loops are due, as the estimator said.
+    pub due: DueTasks,
+    /// Motors may run.
+    pub armed: bool,
+    /// How the sticks are understood.
+    pub mode: StickMode,
+    /// Roll stick, RC command units ±500, right positive.
+    pub stick_roll: f64,
+    /// Pitch stick, RC command units ±500, forward positive.
+    pub stick_pitch: f64,
+    /// Yaw stick, RC command units ±500, right positive.
+    pub stick_yaw: f64,
+    /// Throttle pulse, µs.
+    pub throttle_us: f64,
+    /// A new RC frame arrived since the last step.
+    pub rc_frame: bool,
+    /// Lean demanded instead of the pilot's; implies levelling.
+    pub lean: Option<LeanDemand>,
+    /// Yaw rate demanded instead of the pilot's, rad/s, clockwise positive.
+    pub yaw_rate_rps: Option<f64>,
+    /// Throttle demanded instead of the pilot's, 0…1.
+    pub throttle: Option<f64>,
+    /// Full stabilisation at zero throttle: the AIRMODE feature or its switch, once the throttle was raised.
+    pub airmode: bool,
+    /// Motors stop at low throttle: the MOTOR_STOP feature.
+    pub motor_stop: bool,
+    /// A failsafe procedure runs.
+    pub failsafe: bool,
+    /// Heading (rad) that roll and pitch sticks refer to: HEADFREE.
+    pub headfree_reference_rad: Option<f64>,
+    /// Hold the heading while the yaw stick is centred: MAG.
+    pub heading_hold: bool,
+    /// Outputs of the `motor` command while disarmed, µs.
+    pub motor_test_us: [f64; 4],
+}
+
+impl Default for ControlInput {
+    /// Disarmed, sticks centred.
+    fn default() -> Self {
+        Self {
+            due: DueTasks::default(),
+            armed: false,
+            mode: StickMode::Acro,
+            stick_roll: 0.0,
+            stick_pitch: 0.0,
+            stick_yaw: 0.0,
+            throttle_us: 1000.0,
+            rc_frame: false,
+            lean: None,
+            yaw_rate_rps: None,
+            throttle: None,
+            airmode: false,
+            motor_stop: false,
+            failsafe: false,
+            headfree_reference_rad: None,
+            heading_hold: false,
+            motor_test_us: [1000.0; 4],
+        }
+    }
+}
+
+/// What the controller did in the last step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ControlState {
+    /// Motor commands.
+    pub motors: MotorCommand,
+    /// The same as pulses, µs.
+    pub motors_us: [f64; 4],
+    /// Throttle that drove the mixer, RC µs.
+    pub throttle_us: f64,
+    /// Filtered gyro, °/s: roll, pitch, yaw.
+    pub gyro_dps: [f64; 3],
+    /// Rate setpoints, °/s.
+    pub setpoint_dps: [f64; 3],
+    /// PID sums before their limits, ±1000 = the full range of the mixer.
+    pub pid_sum: [f64; 3],
+    /// Demanded roll and pitch while levelling, rad.
+    pub angle_demand_rad: Option<[f64; 2]>,
+    /// The legs carry weight; demanded leans are not flown then.
+    pub on_legs: bool,
+}
+
+impl Default for ControlState {
+    fn default() -> Self {
+        Self {
+            motors: MotorCommand::default(),
+            motors_us: [1000.0; 4],
+            throttle_us: 1000.0,
+            gyro_dps: [0.0; 3],
+            setpoint_dps: [0.0; 3],
+            pid_sum: [0.0; 3],
+            angle_demand_rad: None,
+            on_legs: false,
+        }
+    }
+}

@@ -1,0 +1,406 @@
+//! The controller: one step from demands and motion to motor commands.
+
+use super::derived::Derived;
+use super::ground::Legs;
+use super::gyro::GyroFilter;
+use super::heading::{HeadingHold, headless};
+use super::level::{Horizon, Level, LevelDemand};
+use super::mixer::{MixDemand, command, mix};
+use super::pid::{RateDemand, RateLoop};
+use super::smoothing::Smoothing;
+use super::tuning::Tuning;
+use super::{ControlInput, ControlState, StickMode};
+use crate::firmware::estimate::Estimate;
+
+/// Full stick, RC command units.
+const FULL_STICK: f64 = 500.0;
+/// Longest step that is believed, s.
+const LONGEST_STEP_S: f64 = 0.05;
+/// Change of the step that needs new filter coefficients.
+const STEP_TOLERANCE: f64 = 0.01;
+
+/// Flies what it is told.
+#[derive(Debug, Clone)]
+pub struct Controller {
+    tuning: Tuning,
+    /// Stick rates at full deflection, °/s, for the angle target.
+    full_rates: [f64; 2],
+    derived: Derived,
+    gyro: GyroFilter,
+    smoothing: Smoothing,
+    /// Setpoints (°/s) and throttle (0…1) of the sticks before smoothing, and the sticks they belong to.
+    raw: [f64; 4],
+    raw_sticks: [f64; 4],
+    heading_hold: HeadingHold,
+    level: Level,
+    horizon: Horizon,
+    horizon_strength: f64,
+    since_level_s: f64,
+    /// The attitude is fresh since the last step of the rate loop.
+    is_level_due: bool,
+    legs: Legs,
+    since_legs_s: f64,
+    rate_loop: RateLoop,
+    phase: u8,
+    was_armed: bool,
+    was_raised: bool,
+    state: ControlState,
+}
+
+impl Controller {
+    /// A controller at boot for steps of `dt` seconds.
+    #[must_use]
+    pub fn new(tuning: Tuning, dt: f64) -> Self {
+        let mut controller = Self {
+            derived: Derived::new(&tuning, dt),
+            full_rates: [1.0; 2],
+            tuning,
+            gyro: GyroFilter::default(),
+            smoothing: Smoothing::new(),
+            raw: [0.0; 4],
+            raw_sticks: [f64::NAN; 4],
+            heading_hold: HeadingHold::default(),
+            level: Level::default(),
+            horizon: Horizon::default(),
+            horizon_strength: 0.0,
+            since_level_s: 0.0,
+            is_level_due: false,
+            legs: Legs::default(),
+            since_legs_s: 0.0,
+            rate_loop: RateLoop::default(),
+            phase: 0,
+            was_armed: false,
+            was_raised: false,
+            state: ControlState::default(),
+        };
+        controller.set_tuning(tuning);
+        controller
+    }
+
+    /// Changes the settings, outside of a step. Filters keep their state.
+    pub fn set_tuning(&mut self, tuning: Tuning) {
+        self.tuning = tuning;
+        self.derived = Derived::new(&tuning, self.derived.dt);
+        self.full_rates = [0, 1].map(|axis| tuning.rates[axis].rate_dps(1.0).max(1.0));
+        self.raw_sticks = [f64::NAN; 4];
+        self.smoothing.invalidate();
+    }
+
+    /// The tuning in use.
+    #[must_use]
+    pub fn tuning(&self) -> &Tuning {
+        &self.tuning
+    }
+
+    /// Cutoffs of the smoothing of sticks and throttle in use, Hz; 0 while nothing is smoothed.
+    #[must_use]
+    pub fn smoothing_hz(&self) -> [f64; 2] {
+        self.smoothing.cutoffs_hz()
+    }
+
+    /// What the last step did.
+    #[must_use]
+    pub fn state(&self) -> &ControlState {
+        &self.state
+    }
+
+    /// The craft was armed: nothing of the flight before is remembered.
+    pub fn on_arm(&mut self) {
+        self.rate_loop = RateLoop::default();
+        self.was_raised = false;
+        self.level.release();
+    }
+
+    /// One step of `dt` seconds.
+    pub fn step(&mut self, input: &ControlInput, estimate: &Estimate, dt: f64) -> &ControlState {
+        let dt = if dt > 0.0 { dt.min(LONGEST_STEP_S) } else { self.derived.dt };
+        if (dt - self.derived.dt).abs() > STEP_TOLERANCE * self.derived.dt {
+            self.derived = Derived::new(&self.tuning, dt);
+            self.smoothing.invalidate();
+        }
+        if input.armed && !self.was_armed {
+            self.on_arm();
+        }
+        self.was_armed = input.armed;
+        self.state.gyro_dps = self.gyro.apply(&estimate.rates, &self.derived);
+        let [roll, pitch, yaw, lift] = self.sticks(input, estimate, dt);
+        self.since_level_s += dt;
+        self.since_legs_s += dt;
+        if !input.armed {
+            self.rest(input);
+            return &self.state;
+        }
+        if input.due.navigation {
+            self.legs.update(&self.state.motors.0, estimate, self.since_legs_s);
+            self.since_legs_s = 0.0;
+        }
+        self.is_level_due |= input.due.attitude;
+        self.phase += 1;
+        if self.phase < self.tuning.rate.denominator {
+            return &self.state;
+        }
+        self.phase = 0;
+        let yaw = self.yaw_dps(input, estimate, yaw);
+        let mut setpoint = [roll, pitch, yaw];
+        let levelling = self.levelling(input, estimate, &mut setpoint);
+        self.fly(input, setpoint, lift, levelling);
+        self.is_level_due = false;
+        &self.state
+    }
+
+    /// Smoothed setpoints (°/s) and throttle (0…1) of the sticks.
+    fn sticks(&mut self, input: &ControlInput, estimate: &Estimate, dt: f64) -> [f64; 4] {
+        let (mut roll, mut pitch) = (input.stick_roll, input.stick_pitch);
+        if let Some(reference) = input.headfree_reference_rad {
+            (roll, pitch) = headless(roll, pitch, reference, estimate.heading_rad);
+        }
+        let sticks = [roll, pitch, input.stick_yaw, input.throttle_us];
+        if sticks != self.raw_sticks {
+            self.raw_sticks = sticks;
+            let [roll_curve, pitch_curve, yaw_curve] = &self.tuning.rates;
+            let yaw_sign = if self.tuning.yaw_stick_reversed { -1.0 } else { 1.0 };
+            self.raw = [
+                roll_curve.rate_dps(roll / FULL_STICK),
+                pitch_curve.rate_dps(pitch / FULL_STICK),
+                yaw_sign * yaw_curve.rate_dps(input.stick_yaw / FULL_STICK),
+                self.tuning.throttle.throttle(input.throttle_us),
+            ];
+        }
+        self.smoothing.apply(&self.raw, input.rc_frame, &self.tuning, dt)
+    }
+
+    /// Disarmed: motors stand or follow the `motor` command.
+    fn rest(&mut self, input: &ControlInput) {
+        self.rate_loop.clear_integrals();
+        self.level.release();
+        self.legs.rest();
+        self.phase = 0;
+        let state = &mut self.state;
+        state.motors_us = input.motor_test_us;
+        state.motors = command(&input.motor_test_us);
+        state.throttle_us = 1000.0;
+        (state.setpoint_dps, state.pid_sum, state.angle_demand_rad) = ([0.0; 3], [0.0; 3], None);
+        state.on_legs = false;
+    }
+
+    fn yaw_dps(&mut self, input: &ControlInput, estimate: &Estimate, stick_dps: f64) -> f64 {
+        if let Some(rate) = input.yaw_rate_rps.filter(|rate| rate.is_finite()) {
+            return rate.to_degrees();
+        }
+        let (heading, gyro) = (estimate.heading_rad, self.state.gyro_dps[2]);
+        let held = self.heading_hold.rate_dps(input.heading_hold, input.stick_yaw, heading, gyro);
+        held.unwrap_or(stick_dps)
+    }
+
+    /// Lets the angle loop shape the setpoints; says whether roll and pitch are fully its own.
+    fn levelling(&mut self, input: &ControlInput, estimate: &Estimate, setpoint: &mut [f64; 3]) -> bool {
+        if input.lean.is_none() && input.mode == StickMode::Acro {
+            self.level.release();
+            self.state.angle_demand_rad = None;
+            return false;
+        }
+        let is_horizon = input.lean.is_none() && input.mode == StickMode::Horizon;
+        if self.is_level_due {
+            let target = self.target_deg(input, setpoint);
+            let demand = LevelDemand {
+                target,
+                flown: [estimate.roll_rad.to_degrees(), estimate.pitch_rad.to_degrees()],
+                yaw_dps: setpoint[2],
+                earth_reference: if input.lean.is_some() { 1.0 } else { self.tuning.level.earth_reference },
+            };
+            let dt = self.since_level_s;
+            self.since_level_s = 0.0;
+            self.level.update(&demand, &self.state.gyro_dps, &self.tuning.level, dt);
+            self.state.angle_demand_rad = Some(target.map(f64::to_radians));
+            if is_horizon {
+                let stick = input.stick_roll.abs().max(input.stick_pitch.abs()) / FULL_STICK;
+                let tilt = estimate.cos_tilt.clamp(-1.0, 1.0).acos().to_degrees();
+                self.horizon_strength = self.horizon.update(stick, tilt, &self.tuning.level, dt);
+            }
+        }
+        let level = self.level.rates(&self.derived);
+        let share = if is_horizon { self.horizon_strength } else { 1.0 };
+        for axis in 0..2 {
+            setpoint[axis] += share * (level[axis] - setpoint[axis]);
+        }
+        if !is_horizon {
+            setpoint[2] *= self.level.yaw_share();
+        }
+        !is_horizon
+    }
+
+    /// Demanded roll and pitch, °: the navigator's, or the sticks' within the angle limit.
+    fn target_deg(&self, input: &ControlInput, setpoint: &[f64; 3]) -> [f64; 2] {
+        if let Some(lean) = input.lean {
+            if self.legs.are_loaded() {
+                return [0.0; 2];
+            }
+            let sane =
+                |angle: f64| if angle.is_finite() { angle.to_degrees().clamp(-85.0, 85.0) } else { 0.0 };
+            return [sane(lean.roll_rad), sane(lean.pitch_rad)];
+        }
+        let limit = self.tuning.level.limit_deg;
+        [0, 1].map(|axis| limit * (setpoint[axis] / self.full_rates[axis]).clamp(-1.0, 1.0))
+    }
+
+    fn fly(&mut self, input: &ControlInput, setpoint: [f64; 3], lift: f64, levelling: bool) {
+        let is_held = input.throttle.is_some();
+        let throttle = input.throttle.filter(|t| t.is_finite()).unwrap_or(lift).clamp(0.0, 1.0);
+        let airmode = input.airmode || is_held;
+        let is_low = !is_held && input.throttle_us < self.tuning.throttle.zero_us;
+        if self.is_level_due {
+            self.derived.follow_throttle(&self.tuning, throttle);
+        }
+        let demand = RateDemand {
+            setpoint,
+            gyro: self.state.gyro_dps,
+            levelling,
+            deflection: [input.stick_roll, input.stick_pitch, input.stick_yaw].map(|s| s.abs() / FULL_STICK),
+            attenuation: self.attenuation(lift),
+            integrate: (airmode || !is_low) && !(input.lean.is_some() && self.legs.are_loaded()),
+        };
+        let rate = &self.tuning.rate;
+        let sums = self.rate_loop.step(&demand, rate, &self.derived);
+        let limited =
+            std::array::from_fn(|axis| sums[axis].clamp(-rate.sum_limit[axis], rate.sum_limit[axis]));
+        let mixer = &self.tuning.mixer;
+        let motors_us = if input.motor_stop && is_low && !airmode {
+            [mixer.stop_us; 4]
+        } else {
+            mix(&MixDemand { sums: limited, throttle, airmode, may_stop: input.failsafe }, mixer)
+        };
+        let zero = self.tuning.throttle.zero_us;
+        let state = &mut self.state;
+        state.motors_us = motors_us;
+        state.motors = command(&motors_us);
+        state.throttle_us = zero + throttle * (2000.0 - zero);
+        (state.setpoint_dps, state.pid_sum) = (setpoint, sums);
+        state.on_legs = self.legs.are_loaded();
+    }
+
+    /// Gain factor for the stick throttle (0…1): less at high throttle, and less near the ground before take-off.
+    fn attenuation(&mut self, throttle: f64) -> f64 {
+        let rate = &self.tuning.rate;
+        if throttle >= rate.tpa_low_breakpoint {
+            self.was_raised = true;
+        } else if !self.was_raised || rate.tpa_low_always {
+            let missing = 1.0 - throttle / rate.tpa_low_breakpoint.max(1e-6);
+            return 1.0 - rate.tpa_low_share * missing;
+        }
+        (1.0 - rate.tpa_slope * (throttle - rate.tpa_breakpoint).max(0.0)).max(0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::firmware::estimate::DueTasks;
+
+    const DT: f64 = 0.001;
+    const DUE: DueTasks = DueTasks { attitude: true, navigation: false };
+
+    fn flying() -> ControlInput {
+        ControlInput { armed: true, airmode: true, throttle_us: 1525.0, due: DUE, ..ControlInput::default() }
+    }
+
+    fn run(controller: &mut Controller, input: &ControlInput, steps: usize) -> ControlState {
+        for _ in 0..steps {
+            controller.step(input, &Estimate::default(), DT);
+        }
+        *controller.state()
+    }
+
+    #[test]
+    fn disarmed_motors_stand_or_follow_the_motor_command() {
+        let mut controller = Controller::new(Tuning::default(), DT);
+        assert_eq!(run(&mut controller, &ControlInput::default(), 10).motors.0, [0.0; 4]);
+        let test =
+            ControlInput { motor_test_us: [1100.0, 1000.0, 1000.0, 1250.0], ..ControlInput::default() };
+        assert_eq!(run(&mut controller, &test, 1).motors.0, [0.1, 0.0, 0.0, 0.25]);
+    }
+
+    #[test]
+    fn half_stick_is_half_throttle_above_idle() {
+        let mut controller = Controller::new(Tuning::default(), DT);
+        let state = run(&mut controller, &flying(), 1000);
+        for motor in state.motors_us {
+            assert!((motor - (1055.0 + 945.0 * 0.5)).abs() < 0.1, "{motor}");
+        }
+        assert!((state.throttle_us - 1525.0).abs() < 0.1);
+    }
+
+    #[test]
+    fn right_sticks_roll_right_pitch_down_and_turn_clockwise() {
+        for (stick, raised) in [(0, [2, 3]), (1, [0, 2]), (2, [1, 2])] {
+            let mut controller = Controller::new(Tuning::default(), DT);
+            let mut input = flying();
+            *[&mut input.stick_roll, &mut input.stick_pitch, &mut input.stick_yaw][stick] = 100.0;
+            let state = run(&mut controller, &input, 300);
+            let mean = state.motors_us.iter().sum::<f64>() / 4.0;
+            for (motor, pulse) in state.motors_us.iter().enumerate() {
+                assert_eq!(*pulse > mean, raised.contains(&motor), "stick {stick} motor {motor}");
+            }
+            assert!(state.setpoint_dps[stick] > 10.0);
+        }
+    }
+
+    #[test]
+    fn a_demanded_lean_takes_the_place_of_the_sticks() {
+        let mut controller = Controller::new(Tuning::default(), DT);
+        let lean = super::super::LeanDemand { roll_rad: 0.2, pitch_rad: -0.1 };
+        let input = ControlInput { lean: Some(lean), stick_roll: -500.0, throttle: Some(0.4), ..flying() };
+        let state = run(&mut controller, &input, 100);
+        assert!(state.setpoint_dps[0] > 0.0 && state.setpoint_dps[1] < 0.0);
+        let [roll, pitch] = state.angle_demand_rad.unwrap();
+        assert!((roll - 0.2).abs() < 1e-9 && (pitch + 0.1).abs() < 1e-9);
+        assert!((state.throttle_us - (1050.0 + 950.0 * 0.4)).abs() < 0.1);
+    }
+
+    #[test]
+    fn integrals_are_empty_before_the_throttle_is_raised() {
+        let mut controller = Controller::new(Tuning::default(), DT);
+        let low = ControlInput { airmode: false, throttle_us: 1000.0, stick_yaw: 100.0, ..flying() };
+        run(&mut controller, &low, 500);
+        let once = controller.state().pid_sum[2];
+        run(&mut controller, &low, 500);
+        assert!((controller.state().pid_sum[2] - once).abs() < 0.2);
+        let stopped = ControlInput { motor_stop: true, ..low };
+        assert_eq!(run(&mut controller, &stopped, 1).motors_us, [1000.0; 4]);
+    }
+
+    #[test]
+    fn a_slower_rate_loop_hears_every_fresh_attitude() {
+        let mut settings = crate::firmware::settings::Settings::default();
+        settings.set_number("pid_process_denom", 2).unwrap();
+        let tuning = Tuning::from_settings(&settings, crate::firmware::config::MixerKind::QuadX, &[]);
+        for first in 0..2 {
+            let mut controller = Controller::new(tuning, DT);
+            for step in 0..20 {
+                let due = DueTasks { attitude: step % 2 == first, navigation: false };
+                let input = ControlInput { mode: StickMode::Angle, stick_roll: 200.0, due, ..flying() };
+                controller.step(&input, &Estimate::default(), DT);
+            }
+            assert!(controller.state().setpoint_dps[0] > 1.0);
+        }
+    }
+
+    #[test]
+    fn gains_fall_with_throttle_and_before_take_off() {
+        let mut controller = Controller::new(Tuning::default(), DT);
+        assert!((controller.attenuation(0.0) - 0.8).abs() < 1e-9);
+        assert!((controller.attenuation(0.2) - 1.0).abs() < 1e-9);
+        assert!((controller.attenuation(0.0) - 1.0).abs() < 1e-9);
+        assert!((controller.attenuation(1.0) - 0.35).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_lost_gyro_leaves_finite_outputs() {
+        let mut controller = Controller::new(Tuning::default(), DT);
+        let mut estimate = Estimate::default();
+        estimate.rates.roll = f64::NAN;
+        for _ in 0..10 {
+            let state = controller.step(&flying(), &estimate, DT);
+            assert!(state.motors.0.iter().all(|motor| motor.is_finite()));
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! Filter coefficients for one step length, computed when tuning or step change.
+
+use super::tuning::Tuning;
+use crate::firmware::filter::{LowPass, Pt3, pt1_gain};
+
+/// Cutoff of the demanded rates of the angle loop, Hz.
+const LEVEL_RATE_HZ: f64 = 50.0;
+
+/// Coefficients of the fixed filters.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Derived {
+    /// Gyro step, s.
+    pub dt: f64,
+    /// Step of the rate loop, s.
+    pub pid_dt: f64,
+    pub gyro_lpf1: LowPass,
+    pub gyro_lpf2: LowPass,
+    pub d_lpf1: LowPass,
+    pub d_lpf2: LowPass,
+    pub yaw_lowpass: f64,
+    pub relax: f64,
+    pub level_rate: f64,
+}
+
+impl Derived {
+    pub fn new(tuning: &Tuning, dt: f64) -> Self {
+        let rate = &tuning.rate;
+        let pid_dt = dt * f64::from(rate.denominator);
+        let mut derived = Self {
+            dt,
+            pid_dt,
+            gyro_lpf1: LowPass::Off,
+            gyro_lpf2: LowPass::new(rate.gyro_lpf2.kind, rate.gyro_lpf2.hz, dt),
+            d_lpf1: LowPass::Off,
+            d_lpf2: LowPass::new(rate.d_lpf2.kind, rate.d_lpf2.hz, pid_dt),
+            yaw_lowpass: pt1_gain(rate.yaw_lowpass_hz, pid_dt),
+            relax: pt1_gain(rate.relax.cutoff_hz, pid_dt),
+            level_rate: Pt3::gain(LEVEL_RATE_HZ, pid_dt),
+        };
+        derived.follow_throttle(tuning, 0.0);
+        derived
+    }
+
+    /// Moves the cutoffs that depend on the throttle (0…1).
+    pub fn follow_throttle(&mut self, tuning: &Tuning, throttle: f64) {
+        let (gyro, d) = (&tuning.rate.gyro_lpf1, &tuning.rate.d_lpf1);
+        self.gyro_lpf1 = LowPass::new(gyro.kind, gyro.cutoff_hz(throttle), self.dt);
+        self.d_lpf1 = LowPass::new(d.kind, d.cutoff_hz(throttle), self.pid_dt);
+    }
+}

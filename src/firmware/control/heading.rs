@@ -1,0 +1,64 @@
+//! Heading hold (MAG) and headless flight (HEADFREE).
+
+use crate::geo::wrap_pi;
+
+/// Yaw stick (RC units) that takes the heading over.
+const STICK: f64 = 15.0;
+/// Rate per error, 1/s, and the greatest one, °/s.
+const GAIN: f64 = 2.0;
+const LIMIT_DPS: f64 = 90.0;
+/// The heading is taken when the craft turns slower than this, °/s.
+const STILL_DPS: f64 = 15.0;
+
+/// Holds the heading while the yaw stick is centred.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct HeadingHold {
+    held_rad: Option<f64>,
+}
+
+impl HeadingHold {
+    /// The yaw rate (°/s, clockwise) that holds the heading; `None` while the pilot turns or the mode is off.
+    pub fn rate_dps(&mut self, is_on: bool, stick: f64, heading_rad: f64, yaw_dps: f64) -> Option<f64> {
+        if !is_on || stick.abs() > STICK {
+            self.held_rad = None;
+            return None;
+        }
+        if self.held_rad.is_none() && yaw_dps.abs() < STILL_DPS {
+            self.held_rad = Some(heading_rad);
+        }
+        let error = wrap_pi(self.held_rad? - heading_rad);
+        Some((GAIN * error.to_degrees()).clamp(-LIMIT_DPS, LIMIT_DPS))
+    }
+}
+
+/// Roll and pitch sticks, given relative to `reference_rad`, as the craft heading `heading_rad` must take them.
+pub(super) fn headless(roll: f64, pitch: f64, reference_rad: f64, heading_rad: f64) -> (f64, f64) {
+    let (sin, cos) = (heading_rad - reference_rad).sin_cos();
+    (roll * cos - pitch * sin, pitch * cos + roll * sin)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::FRAC_PI_2;
+
+    #[test]
+    fn holds_what_it_found_and_lets_the_pilot_turn() {
+        let mut hold = HeadingHold::default();
+        assert_eq!(hold.rate_dps(true, 0.0, 1.0, 0.0), Some(0.0));
+        assert!(hold.rate_dps(true, 0.0, 1.1, 0.0).unwrap() < -10.0);
+        assert_eq!(hold.rate_dps(true, 100.0, 1.1, 0.0), None);
+        assert_eq!(hold.rate_dps(true, 0.0, 2.0, 50.0), None);
+        assert_eq!(hold.rate_dps(true, 0.0, 2.2, 5.0), Some(0.0));
+    }
+
+    #[test]
+    fn forward_stays_where_it_was_at_arming() {
+        // Armed facing north, now facing east: forward stick must fly north, which is to the left.
+        let (roll, pitch) = headless(0.0, 500.0, 0.0, FRAC_PI_2);
+        assert!((roll + 500.0).abs() < 1e-9 && pitch.abs() < 1e-9);
+        // Right stick must fly east, which is ahead.
+        let (roll, pitch) = headless(500.0, 0.0, 0.0, FRAC_PI_2);
+        assert!(roll.abs() < 1e-9 && (pitch - 500.0).abs() < 1e-9);
+    }
+}

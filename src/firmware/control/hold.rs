@@ -1,0 +1,124 @@
+//! ALTHOLD, POS HOLD and the failsafe descent: the autopilot's controllers in the hands of the pilot.
+//!
+//! Runs a hundred times a second. While nobody holds, it watches the flight, so that wind and hover throttle are known
+//! when a hold takes over.
+
+use crate::autopilot::Params;
+use crate::autopilot::io::NavInputs;
+use crate::firmware::settings::Settings;
+
+use super::LeanDemand;
+
+mod altitude;
+mod position;
+
+use altitude::AltitudeHold;
+use position::PositionHold;
+
+/// Which holds are on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct HoldModes {
+    /// Hold the altitude; the throttle stick climbs and sinks.
+    pub altitude: bool,
+    /// Hold the position; roll and pitch sticks fly by angle.
+    pub position: bool,
+    /// Descend and land: the throttle stick has no effect.
+    pub descend: bool,
+}
+
+impl HoldModes {
+    /// No hold.
+    pub const NONE: Self = Self { altitude: false, position: false, descend: false };
+}
+
+/// Settings of the holds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HoldTuning {
+    /// Throttle stick within this share of its way from hover to the end holds, 0…1.
+    pub throttle_deadband: f64,
+    /// Roll and pitch stick within this share holds, 0…1.
+    pub stick_deadband: f64,
+    /// Centre of the sticks, µs.
+    pub mid_us: f64,
+    /// Below this the throttle stick does nothing, µs.
+    pub low_us: f64,
+}
+
+impl Default for HoldTuning {
+    fn default() -> Self {
+        Self::from_settings(&Settings::default())
+    }
+}
+
+impl HoldTuning {
+    /// The tuning in the settings.
+    #[must_use]
+    pub fn from_settings(settings: &Settings) -> Self {
+        let number = |name: &str| settings.number(name) as f64;
+        Self {
+            throttle_deadband: number("alt_hold_deadband") / 100.0,
+            stick_deadband: number("pos_hold_deadband") / 100.0,
+            mid_us: number("mid_rc"),
+            low_us: number("min_check"),
+        }
+    }
+}
+
+/// What the holds demand; `None` leaves it to the pilot.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct HoldOutput {
+    /// Lean.
+    pub lean: Option<LeanDemand>,
+    /// Throttle, 0…1.
+    pub throttle: Option<f64>,
+    /// Position hold is asked for, but position or heading are unknown: the craft is only levelled.
+    pub no_position: bool,
+    /// The descent has reached the ground: stop the motors.
+    pub touchdown: bool,
+}
+
+/// The holds.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Holds {
+    altitude: AltitudeHold,
+    position: PositionHold,
+}
+
+impl Holds {
+    /// The craft was armed or disarmed: nothing is held.
+    pub fn reset(&mut self) {
+        *self = Self::default();
+    }
+
+    /// Altitude that is held, m above home, while it is.
+    #[must_use]
+    pub fn altitude_target_m(&self) -> Option<f64> {
+        self.altitude.target_m()
+    }
+
+    /// One update. `throttle_stick_us` is the pilot's throttle; while the navigator flies, no mode is on.
+    pub fn update(
+        &mut self,
+        modes: HoldModes,
+        now: &NavInputs,
+        throttle_stick_us: f64,
+        params: &Params,
+        tuning: &HoldTuning,
+    ) -> HoldOutput {
+        let (throttle, touchdown) = if now.altitude_valid && (modes.altitude || modes.descend) {
+            let stick = (!modes.descend).then_some(throttle_stick_us);
+            let throttle = self.altitude.update(stick, now, params, tuning);
+            (Some(throttle), self.altitude.has_touched_down())
+        } else {
+            self.altitude.watch(now, params);
+            (None, false)
+        };
+        let lean = if modes.position && now.fix {
+            Some(self.position.update(now, params, tuning))
+        } else {
+            self.position.watch(now);
+            None
+        };
+        HoldOutput { lean, throttle, no_position: modes.position && lean.is_none(), touchdown }
+    }
+}

@@ -1,0 +1,227 @@
+//! Altitude hold with the throttle stick, and the descent without.
+
+use super::HoldTuning;
+use crate::autopilot::Params;
+use crate::autopilot::control::{AltitudeController, AltitudeMeasurement, AltitudeTarget, throttle_share};
+use crate::autopilot::io::NavInputs;
+
+/// A craft that climbs faster than this (m/s) when the hold begins is stopped first.
+const STEADY_MPS: f64 = 0.5;
+/// Altitude that counts as airborne, m, and seconds in the air that show the hover throttle.
+const AIRBORNE_M: f64 = 1.0;
+const LIFTED_S: f64 = 2.1;
+/// A climb below this share of the demanded rate is none.
+const STUCK_SHARE: f64 = 0.3;
+/// Deceleration that a released craft is led with, m/s².
+const STOP_MPS2: f64 = 1.25;
+/// It has stopped below this speed, m/s, and error, m.
+const STOPPED_MPS: f64 = 0.2;
+const STOPPED_M: f64 = 0.3;
+/// The descent: rate near the ground over the climb rate, and how it grows with height (1/m).
+const DESCENT_SHARE: f64 = 0.2;
+const DESCENT_GROWTH_PER_M: f64 = 0.05;
+/// The setpoint of a descent runs at most this far below the craft, m.
+const DESCENT_LEASH_M: f64 = 5.0;
+/// A craft on the ground sinks slower than this share of the demanded rate, and drifts slower than this, m/s.
+const GROUNDED_SHARE: f64 = 0.25;
+const GROUNDED_DRIFT_MPS: f64 = 0.5;
+
+/// What is held.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+enum Phase {
+    /// Nothing.
+    #[default]
+    Off,
+    /// The stick moves the altitude.
+    Moving,
+    /// The stick was released: the craft is led to where it can stop. Setpoint, m, and its rate, m/s.
+    Stopping(f64, f64),
+    /// This altitude, m.
+    Holding(f64),
+    /// Descending to the ground; the setpoint, m.
+    Descending(f64),
+}
+
+/// Altitude hold.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct AltitudeHold {
+    controller: AltitudeController,
+    phase: Phase,
+    /// The hold began on the ground, where the hover throttle cannot be learned; seconds in the air since.
+    lifting_s: Option<f64>,
+    grounded_s: f64,
+    grounded_limit_s: f64,
+}
+
+impl AltitudeHold {
+    /// Somebody else flies.
+    pub fn watch(&mut self, now: &NavInputs, params: &Params) {
+        self.phase = Phase::Off;
+        self.grounded_s = 0.0;
+        self.controller.watch(&measurement(now), params, now.dt);
+    }
+
+    /// Altitude held or aimed at, m.
+    pub fn target_m(&self) -> Option<f64> {
+        (self.phase != Phase::Off).then(|| self.controller.setpoint_m())
+    }
+
+    /// Whether the descent has ended on the ground.
+    pub fn has_touched_down(&self) -> bool {
+        matches!(self.phase, Phase::Descending(_)) && self.grounded_s >= self.grounded_limit_s
+    }
+
+    /// Throttle 0…1; without a stick the craft descends.
+    pub fn update(
+        &mut self,
+        stick_us: Option<f64>,
+        now: &NavInputs,
+        params: &Params,
+        tuning: &HoldTuning,
+    ) -> f64 {
+        let measured = measurement(now);
+        if self.phase == Phase::Off {
+            self.controller.engage(&measured, params);
+            self.lifting_s = (now.alt_m < AIRBORNE_M).then_some(0.0);
+            let is_steady = now.climb_mps.abs() < STEADY_MPS;
+            self.phase = if is_steady { Phase::Holding(now.alt_m) } else { stop(now) };
+        }
+        self.learn_after_lift_off(now, &measured, params);
+        let target = match stick_us {
+            Some(stick) => self.by_stick(stick, now, params, tuning),
+            None => self.descend(now, params),
+        };
+        let throttle_us = self.controller.update(&measured, target, params, now.dt);
+        throttle_share(throttle_us, params)
+    }
+
+    /// Takes over once more when the craft has flown for a moment: now its hover throttle is known.
+    fn learn_after_lift_off(&mut self, now: &NavInputs, measured: &AltitudeMeasurement, params: &Params) {
+        let Some(seconds) = self.lifting_s else { return };
+        let seconds = if now.alt_m > AIRBORNE_M { seconds + now.dt } else { 0.0 };
+        self.lifting_s = Some(seconds);
+        if seconds >= LIFTED_S {
+            self.lifting_s = None;
+            self.controller.engage(measured, params);
+        }
+    }
+
+    fn by_stick(
+        &mut self,
+        stick_us: f64,
+        now: &NavInputs,
+        params: &Params,
+        tuning: &HoldTuning,
+    ) -> AltitudeTarget {
+        let hover = self.controller.reference_hover_us(params);
+        let share = climb_share(stick_us, hover, tuning);
+        let rate = share * params.climb_rate_mps();
+        self.grounded_s = 0.0;
+        self.phase = match self.phase {
+            _ if share != 0.0 => Phase::Moving,
+            Phase::Moving | Phase::Descending(_) => stop(now),
+            Phase::Stopping(setpoint, rate) if has_stopped(setpoint, rate, now) => Phase::Holding(setpoint),
+            Phase::Stopping(setpoint, rate) => {
+                let step = STOP_MPS2 * now.dt;
+                Phase::Stopping(setpoint + rate * now.dt, rate - rate.clamp(-step, step))
+            }
+            phase => phase,
+        };
+        match self.phase {
+            Phase::Holding(altitude) => AltitudeTarget::Altitude(altitude),
+            // Led like a landing: the integral works at full gain, for climbing has its own hover throttle.
+            Phase::Stopping(setpoint_m, rate_mps) => AltitudeTarget::Landing { setpoint_m, rate_mps },
+            // A craft that does not rise is heavier than its hover throttle says, or stands: the integral must work.
+            _ if rate > 0.0 && now.climb_mps < STUCK_SHARE * rate => {
+                AltitudeTarget::Landing { setpoint_m: now.alt_m + rate, rate_mps: rate }
+            }
+            _ => AltitudeTarget::Rate(rate),
+        }
+    }
+
+    fn descend(&mut self, now: &NavInputs, params: &Params) -> AltitudeTarget {
+        let rate = descent_rate_mps(now.alt_m, params);
+        let before = match self.phase {
+            Phase::Descending(setpoint) => setpoint,
+            _ => now.alt_m,
+        };
+        let setpoint = (before - rate * now.dt).max(now.alt_m - DESCENT_LEASH_M.max(rate));
+        self.phase = Phase::Descending(setpoint);
+        // By the hover throttle in use: the configured one may be far off, and waiting for it would tip the craft over.
+        let light = self.controller.hover_us() - f64::from(params.landing_throttle_threshold);
+        let is_grounded = now.climb_mps > -GROUNDED_SHARE * rate
+            && now.throttle_us < light
+            && (!now.fix || now.vel_ne.norm() < GROUNDED_DRIFT_MPS);
+        self.grounded_s = if is_grounded { self.grounded_s + now.dt } else { 0.0 };
+        self.grounded_limit_s = f64::from(params.landing_detection_time) / 10.0;
+        AltitudeTarget::Landing { setpoint_m: setpoint, rate_mps: -rate }
+    }
+}
+
+/// Begins to stop here.
+fn stop(now: &NavInputs) -> Phase {
+    Phase::Stopping(now.alt_m, now.climb_mps)
+}
+
+/// Whether a craft led to `setpoint` (m) at `rate` (m/s) has come to rest there.
+fn has_stopped(setpoint: f64, rate: f64, now: &NavInputs) -> bool {
+    rate == 0.0 && now.climb_mps.abs() < STOPPED_MPS && (now.alt_m - setpoint).abs() < STOPPED_M
+}
+
+/// Sink rate of the failsafe descent: a fifth of the climb rate near the ground, faster from high up.
+fn descent_rate_mps(altitude_m: f64, params: &Params) -> f64 {
+    let factor = 0.9 + (altitude_m * DESCENT_GROWTH_PER_M).clamp(0.1, 9.0);
+    factor * params.climb_rate_mps() * DESCENT_SHARE
+}
+
+/// Share of the climb rate that the throttle stick demands, −1…1. Zero about the hover throttle and about the centre
+/// of the stick, whichever is farther, so that both a pilot who hovers by hand and one who centres the stick stay.
+fn climb_share(stick_us: f64, hover_us: f64, tuning: &HoldTuning) -> f64 {
+    if stick_us < tuning.low_us {
+        return 0.0;
+    }
+    let low = hover_us.min(tuning.mid_us);
+    let high = hover_us.max(tuning.mid_us);
+    let low = low - tuning.throttle_deadband * (low - tuning.low_us).max(0.0);
+    let high = high + tuning.throttle_deadband * (2000.0 - high).max(0.0);
+    if stick_us > high {
+        ((stick_us - high) / (2000.0 - high).max(1.0)).min(1.0)
+    } else if stick_us < low {
+        -((low - stick_us) / (low - tuning.low_us).max(1.0)).min(1.0)
+    } else {
+        0.0
+    }
+}
+
+fn measurement(now: &NavInputs) -> AltitudeMeasurement {
+    AltitudeMeasurement {
+        altitude_m: now.alt_m,
+        climb_mps: now.climb_mps,
+        cos_tilt: now.cos_tilt,
+        throttle_us: now.throttle_us,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_stick_holds_about_hover_and_centre_and_when_low() {
+        let tuning = HoldTuning::default();
+        for stick in [1000.0, 1049.0, 1240.0, 1275.0, 1500.0, 1590.0] {
+            assert_eq!(climb_share(stick, 1275.0, &tuning), 0.0, "{stick}");
+        }
+        assert!((climb_share(2000.0, 1275.0, &tuning) - 1.0).abs() < 1e-9);
+        assert!((climb_share(1050.0, 1275.0, &tuning) + 1.0).abs() < 1e-9);
+        assert!((climb_share(1800.0, 1500.0, &tuning) - 0.5).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_descent_slows_down_towards_the_ground() {
+        let params = Params::default();
+        for (altitude, rate) in [(0.0, 1.0), (2.0, 1.0), (20.0, 1.9), (180.0, 9.9), (500.0, 9.9)] {
+            assert!((descent_rate_mps(altitude, &params) - rate).abs() < 1e-9, "{altitude}");
+        }
+    }
+}

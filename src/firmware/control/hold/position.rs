@@ -1,0 +1,95 @@
+//! Position hold with the roll and pitch sticks.
+
+use nalgebra::Vector2;
+
+use super::HoldTuning;
+use crate::autopilot::Params;
+use crate::autopilot::control::{PositionController, PositionMeasurement, PositionTarget, earth_to_body};
+use crate::autopilot::io::NavInputs;
+use crate::firmware::control::LeanDemand;
+
+/// Full stick, RC command units.
+const FULL_STICK: f64 = 500.0;
+/// Share of the greatest lean that the stop at a release is planned with.
+const STOP_SHARE: f64 = 0.4;
+
+/// Position hold.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct PositionHold {
+    controller: PositionController,
+    /// The point held, north and east, m; none while the pilot flies.
+    point: Option<Vector2<f64>>,
+    is_on: bool,
+}
+
+impl PositionHold {
+    /// Somebody else flies.
+    pub fn watch(&mut self, now: &NavInputs) {
+        (self.point, self.is_on) = (None, false);
+        if now.fix {
+            self.controller.watch(&measurement(now), now.dt);
+        }
+    }
+
+    /// The lean that keeps the place, or the one the pilot asks for.
+    pub fn update(&mut self, now: &NavInputs, params: &Params, tuning: &HoldTuning) -> LeanDemand {
+        let measured = measurement(now);
+        if !self.is_on {
+            self.controller.engage(&measured);
+            self.is_on = true;
+        }
+        let limit = params.max_lean_rad();
+        let stick = Vector2::new(
+            share(now.stick_pitch, tuning.stick_deadband),
+            share(now.stick_roll, tuning.stick_deadband),
+        );
+        if stick != Vector2::zeros() {
+            self.point = None;
+            self.controller.watch(&measured, now.dt);
+            let lean = stick.cap_magnitude(1.0) * limit;
+            return LeanDemand { pitch_rad: lean.x, roll_rad: lean.y };
+        }
+        let point = *self.point.get_or_insert_with(|| stopping_point(now, params));
+        let target = PositionTarget::stay(point, params);
+        let lean_ne = self.controller.update(&measured, &target, params, now.dt);
+        let body = earth_to_body(lean_ne, now.heading_rad);
+        LeanDemand { pitch_rad: body.x, roll_rad: body.y }
+    }
+}
+
+/// Where the craft can stand without coming back: here, when it is slow.
+fn stopping_point(now: &NavInputs, params: &Params) -> Vector2<f64> {
+    let brake = STOP_SHARE * params.max_accel_mps2();
+    now.pos_ne + now.vel_ne * (now.vel_ne.norm() / (2.0 * brake.max(0.5)))
+}
+
+/// Stick deflection beyond the deadband as a share of the rest, −1…1.
+fn share(stick: f64, deadband: f64) -> f64 {
+    let deflection = stick.abs() / FULL_STICK;
+    if deflection <= deadband {
+        return 0.0;
+    }
+    ((deflection - deadband) / (1.0 - deadband).max(0.01)).min(1.0).copysign(stick)
+}
+
+fn measurement(now: &NavInputs) -> PositionMeasurement {
+    PositionMeasurement {
+        position: now.pos_ne,
+        velocity: now.vel_ne,
+        accel: now.accel_ne,
+        lean_body: Vector2::new(now.pitch_rad, now.roll_rad),
+        heading_rad: now.heading_rad,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sticks_count_beyond_the_deadband() {
+        assert_eq!(share(25.0, 0.05), 0.0);
+        assert!((share(-500.0, 0.05) + 1.0).abs() < 1e-12);
+        assert!(share(30.0, 0.05) < 0.02);
+    }
+}

@@ -1,0 +1,195 @@
+//! The angle loop: from demanded to flown angles, as rate setpoints.
+//!
+//! A demand first moves a *leading angle*: what a well-damped craft would fly. The rate of the leading angle is
+//! commanded outright and the gain corrects only what the craft misses of it, so a stick step is followed quickly
+//! without overshoot. With `angle_feedforward = 0` there is no lead and the gain alone pulls the craft to the demand.
+
+use super::derived::Derived;
+use super::tuning::LevelTuning;
+use crate::firmware::filter::Pt3;
+
+/// Poles of the leading angle per smoothing time: it settles within 5 % after 2.4 smoothing times.
+const LEAD_POLES: f64 = 2.0;
+/// Greatest rate of the leading angle, °/s.
+const LEAD_LIMIT_DPS: f64 = 600.0;
+/// Slower yaw (°/s) is not coupled: it would cost trigonometry for nothing.
+const COUPLED_YAW_DPS: f64 = 0.01;
+
+/// What the angle loop is told.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct LevelDemand {
+    /// Demanded roll and pitch, °.
+    pub target: [f64; 2],
+    /// Flown roll and pitch, °.
+    pub flown: [f64; 2],
+    /// Demanded yaw rate about the vertical, °/s.
+    pub yaw_dps: f64,
+    /// Share of the yaw that turns about the vertical of the earth, 0…1.
+    pub earth_reference: f64,
+}
+
+/// The leading angle: a critically damped second order.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+struct Lead {
+    angle: f64,
+    rate: f64,
+}
+
+impl Lead {
+    fn follow(&mut self, target: f64, poles: f64, dt: f64) {
+        let accel = poles * (poles * (target - self.angle) - 2.0 * self.rate);
+        self.rate = (self.rate + accel * dt).clamp(-LEAD_LIMIT_DPS, LEAD_LIMIT_DPS);
+        self.angle += self.rate * dt;
+    }
+}
+
+/// Memory of the angle loop.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct Level {
+    lead: [Lead; 2],
+    filters: [Pt3; 2],
+    wanted: [f64; 2],
+    yaw_share: f64,
+    is_on: bool,
+}
+
+impl Level {
+    /// Nobody levels now; the next update starts from the craft's attitude.
+    pub fn release(&mut self) {
+        self.is_on = false;
+    }
+
+    /// One update of the demanded rates, `dt` seconds after the last.
+    pub fn update(&mut self, demand: &LevelDemand, gyro: &[f64; 3], tuning: &LevelTuning, dt: f64) {
+        if !self.is_on {
+            self.is_on = true;
+            for (axis, &rate) in gyro.iter().take(2).enumerate() {
+                self.lead[axis] = Lead { angle: demand.flown[axis], rate };
+                self.filters[axis].reset(rate);
+            }
+        }
+        let share = tuning.feedforward.min(1.0);
+        let poles = LEAD_POLES / tuning.smoothing_s.max(dt);
+        for axis in 0..2 {
+            let lead = &mut self.lead[axis];
+            lead.follow(demand.target[axis], poles, dt);
+            let wanted = demand.target[axis] + share * (lead.angle - demand.target[axis]);
+            let error = wrap_deg(wanted - demand.flown[axis] - tuning.trim_deg[axis]);
+            self.wanted[axis] = tuning.p * error + tuning.feedforward * lead.rate;
+        }
+        self.yaw_share = 1.0;
+        if demand.yaw_dps.abs() > COUPLED_YAW_DPS {
+            self.couple(demand);
+        }
+    }
+
+    /// Turning about the vertical while leaning needs roll and pitch rates, too.
+    fn couple(&mut self, demand: &LevelDemand) {
+        let g = demand.earth_reference;
+        let [roll, pitch] = demand.target.map(f64::to_radians);
+        self.wanted[0] += demand.yaw_dps * pitch.sin() * g;
+        self.wanted[1] -= demand.yaw_dps * roll.sin() * g;
+        self.yaw_share = (roll.abs().max(pitch.abs()) * g).cos();
+    }
+
+    /// Rate setpoints of roll and pitch, °/s, once per step of the rate loop.
+    pub fn rates(&mut self, derived: &Derived) -> [f64; 2] {
+        let [roll, pitch] = &mut self.filters;
+        [roll.apply(self.wanted[0], derived.level_rate), pitch.apply(self.wanted[1], derived.level_rate)]
+    }
+
+    /// Factor of the yaw setpoint: the part of a turn about the vertical that is a turn about the craft's own axis.
+    pub fn yaw_share(&self) -> f64 {
+        self.yaw_share
+    }
+}
+
+/// An angle folded into ±180°.
+fn wrap_deg(angle: f64) -> f64 {
+    if angle.abs() <= 180.0 { angle } else { (angle + 180.0).rem_euclid(360.0) - 180.0 }
+}
+
+/// How much HORIZON levels, 0…1.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Horizon {
+    strength: f64,
+}
+
+impl Horizon {
+    /// One update for the farthest stick (0…1) and the tilt (°): weaker at once, stronger with delay.
+    pub fn update(&mut self, stick: f64, tilt_deg: f64, tuning: &LevelTuning, dt: f64) -> f64 {
+        let by_tilt = (1.0 - tilt_deg / tuning.horizon_tilt_limit_deg.max(1.0)).max(0.0);
+        let by_stick = if tuning.horizon_ignores_sticks {
+            1.0
+        } else {
+            (1.0 - stick / tuning.horizon_stick_limit.max(0.01)).max(0.0)
+        };
+        let wanted = by_tilt * by_stick * tuning.horizon_strength;
+        if wanted > self.strength {
+            let gain = dt / (tuning.horizon_delay_s + dt);
+            self.strength += gain * (wanted - self.strength);
+        } else {
+            self.strength = wanted;
+        }
+        self.strength
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tuning::Tuning;
+    use super::*;
+
+    fn demand(target: f64, flown: f64) -> LevelDemand {
+        LevelDemand { target: [target, 0.0], flown: [flown, 0.0], yaw_dps: 0.0, earth_reference: 1.0 }
+    }
+
+    #[test]
+    fn without_feedforward_the_gain_alone_works() {
+        let tuning = LevelTuning { feedforward: 0.0, ..Tuning::default().level };
+        let mut level = Level::default();
+        level.update(&demand(30.0, 10.0), &[0.0; 3], &tuning, 0.002);
+        assert!((level.wanted[0] - 5.0 * 20.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_craft_that_follows_the_lead_needs_no_correction() {
+        let tuning = LevelTuning { feedforward: 1.0, ..Tuning::default().level };
+        let mut level = Level::default();
+        let mut flown = 0.0;
+        for _ in 0..250 {
+            level.update(&demand(30.0, flown), &[0.0; 3], &tuning, 0.002);
+            flown += level.wanted[0] * 0.002;
+        }
+        assert!((flown - 30.0).abs() < 0.1, "{flown}");
+    }
+
+    #[test]
+    fn turning_while_leaning_couples_the_axes() {
+        let tuning = LevelTuning { feedforward: 0.0, ..Tuning::default().level };
+        let mut level = Level::default();
+        // Nose down 30° and turning clockwise at 90°/s: the craft must roll right at 45°/s to keep its angles.
+        let turning =
+            LevelDemand { target: [0.0, 30.0], flown: [0.0, 30.0], yaw_dps: 90.0, earth_reference: 1.0 };
+        level.update(&turning, &[0.0; 3], &tuning, 0.002);
+        assert!((level.wanted[0] - 45.0).abs() < 1e-9);
+        assert!((level.yaw_share() - 30_f64.to_radians().cos()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_shorter_way_round_is_taken() {
+        assert!((wrap_deg(190.0) + 170.0).abs() < 1e-12);
+        assert!((wrap_deg(-350.0) - 10.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn horizon_fades_with_stick_and_tilt() {
+        let tuning = Tuning::default().level;
+        let mut horizon = Horizon::default();
+        for _ in 0..5000 {
+            horizon.update(0.0, 0.0, &tuning, 0.002);
+        }
+        assert!((horizon.update(0.0, 0.0, &tuning, 0.002) - 0.75).abs() < 0.01);
+        assert_eq!(horizon.update(0.8, 0.0, &tuning, 0.002), 0.0);
+    }
+}

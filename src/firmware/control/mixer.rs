@@ -1,0 +1,134 @@
+//! From PID sums and throttle to motors.
+//!
+//! Quad X seen from above, nose up the page; more of a motor turns the craft …
+//!
+//! ```text
+//!   4 clockwise          2 anticlockwise         motor    roll right  nose down  clockwise
+//!       ╲    front    ╱                          1        −           +          −
+//!         ╲         ╱                            2        −           −          +
+//!           ╲     ╱                              3        +           +          +
+//!           ╱     ╲                              4        +           −          −
+//!         ╱         ╲
+//!       ╱             ╲                          A propeller turns the craft against its own direction.
+//!   3 anticlockwise      1 clockwise
+//! ```
+
+use super::tuning::MixerTuning;
+use crate::signals::MotorCommand;
+
+/// Zero of a motor command, µs, and its range.
+const COMMAND_ZERO_US: f64 = 1000.0;
+const COMMAND_RANGE_US: f64 = 1000.0;
+
+/// What the mixer is told in one step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct MixDemand {
+    /// PID sums of roll, pitch, yaw (clockwise positive), thousandths.
+    pub sums: [f64; 3],
+    /// Throttle, 0…1.
+    pub throttle: f64,
+    /// Keep full authority at any throttle.
+    pub airmode: bool,
+    /// Motors may stop: the lowest pulse is that of a stopped motor.
+    pub may_stop: bool,
+}
+
+/// Pulses of the running motors, µs.
+pub(super) fn mix(demand: &MixDemand, tuning: &MixerTuning) -> [f64; 4] {
+    let [roll, pitch, yaw] = demand.sums.map(|sum| sum / 1000.0);
+    let yaw = if tuning.yaw_reversed { -yaw } else { yaw };
+    let mut mixes = tuning.rows.map(|row| roll * row.roll + pitch * row.pitch + yaw * row.yaw);
+    let (mut low, mut high) = bounds(&mixes);
+    let range = high - low;
+    let mut scale = if range > 1.0 { 1.0 / range } else { 1.0 };
+    if !demand.airmode && demand.throttle < 0.5 {
+        scale *= 0.5 + demand.throttle;
+    }
+    for mix in &mut mixes {
+        *mix *= scale;
+    }
+    (low, high) = (low * scale, high * scale);
+    // −low ≤ 1 − high, because the scaled range is at most 1; `max` keeps rounding from turning them round.
+    let throttle = demand.throttle.clamp(-low, (1.0 - high).max(-low));
+    let ceiling = tuning.stop_us + (tuning.max_us - tuning.stop_us) * tuning.output_limit;
+    let idle = tuning.idle_us.min(ceiling);
+    let floor = if demand.may_stop { tuning.stop_us } else { idle };
+    std::array::from_fn(|motor| {
+        let output = idle + (ceiling - idle) * (mixes[motor] + throttle * tuning.rows[motor].throttle);
+        output.clamp(floor, ceiling)
+    })
+}
+
+/// The command for a pulse.
+pub(super) fn command(pulses_us: &[f64; 4]) -> MotorCommand {
+    MotorCommand(pulses_us.map(|pulse| ((pulse - COMMAND_ZERO_US) / COMMAND_RANGE_US).clamp(0.0, 1.0)))
+}
+
+fn bounds(mixes: &[f64; 4]) -> (f64, f64) {
+    mixes.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &mix| (low.min(mix), high.max(mix)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tuning::Tuning;
+    use super::*;
+    use proptest::prelude::*;
+
+    fn demand(sums: [f64; 3], throttle: f64, airmode: bool) -> MixDemand {
+        MixDemand { sums, throttle, airmode, may_stop: false }
+    }
+
+    fn quad() -> MixerTuning {
+        Tuning::default().mixer
+    }
+
+    #[test]
+    fn each_axis_raises_its_motors() {
+        let rising =
+            |sums| mix(&demand(sums, 0.5, true), &quad()).map(|pulse| pulse > 1055.0 + 945.0 * 0.5 + 1.0);
+        assert_eq!(rising([100.0, 0.0, 0.0]), [false, false, true, true]);
+        assert_eq!(rising([0.0, 100.0, 0.0]), [true, false, true, false]);
+        // Clockwise: the anticlockwise propellers, 2 and 3, turn faster.
+        assert_eq!(rising([0.0, 0.0, 100.0]), [false, true, true, false]);
+    }
+
+    #[test]
+    fn airmode_lifts_the_throttle_to_keep_authority() {
+        let with = mix(&demand([200.0, 0.0, 0.0], 0.0, true), &quad());
+        assert!((with[2] - with[0] - 945.0 * 0.4).abs() < 1e-9);
+        assert_eq!(with[0], 1055.0);
+        let without = mix(&demand([200.0, 0.0, 0.0], 0.0, false), &quad());
+        assert!((without[2] - without[0] - 945.0 * 0.2).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_output_limit_scales_the_range() {
+        let limited = MixerTuning { output_limit: 0.5, ..quad() };
+        assert_eq!(mix(&demand([0.0; 3], 1.0, true), &limited), [1500.0; 4]);
+        assert_eq!(mix(&demand([0.0; 3], 0.0, true), &limited), [1055.0; 4]);
+    }
+
+    #[test]
+    fn reversed_propellers_get_the_opposite_yaw() {
+        let reversed = MixerTuning { yaw_reversed: true, ..quad() };
+        let yaw = |sum, tuning: &MixerTuning| mix(&demand([0.0, 0.0, sum], 0.5, true), tuning);
+        assert_eq!(yaw(100.0, &reversed), yaw(-100.0, &quad()));
+    }
+
+    proptest! {
+        #[test]
+        fn outputs_stay_in_range_and_keep_the_differences(
+            sums in prop::array::uniform3(-1000.0..1000.0), throttle in 0.0..1.0, airmode: bool
+        ) {
+            let pulses = mix(&demand(sums, throttle, airmode), &quad());
+            for pulse in pulses {
+                prop_assert!((1055.0..=2000.0).contains(&pulse));
+            }
+            // Roll, pitch and yaw keep their proportions: only the common part is clipped.
+            let part = |shares: [f64; 4]| (0..4).map(|m| pulses[m] * shares[m]).sum::<f64>();
+            let roll = part([-1.0, -1.0, 1.0, 1.0]);
+            let pitch = part([1.0, -1.0, 1.0, -1.0]);
+            prop_assert!((roll * sums[1] - pitch * sums[0]).abs() < 1e-4 * (1.0 + sums[0].abs() + sums[1].abs()));
+        }
+    }
+}

@@ -1,0 +1,214 @@
+//! The rate loop.
+
+use super::derived::Derived;
+use super::tuning::{AxisGains, RateTuning};
+use crate::firmware::filter::{LowPassState, Pt1};
+
+/// Index of yaw among the axes.
+const YAW: usize = 2;
+/// Setpoint change (°/s) at which the integral stops: sticks, and levelling, where the angle loop moves the setpoint.
+const RELAX_ACRO_DPS: f64 = 40.0;
+const RELAX_LEVEL_DPS: f64 = 8.0;
+
+/// What the rate loop is told in one step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct RateDemand {
+    /// Setpoints, °/s.
+    pub setpoint: [f64; 3],
+    /// Filtered gyro, °/s.
+    pub gyro: [f64; 3],
+    /// Roll and pitch are levelled: their setpoints come from the angle loop.
+    pub levelling: bool,
+    /// Greatest deflection of the stick of each axis, 0…1.
+    pub deflection: [f64; 3],
+    /// Gains of D (and P) fall by this factor.
+    pub attenuation: f64,
+    /// The integrals work.
+    pub integrate: bool,
+}
+
+/// Memory of one axis.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+struct Axis {
+    integral: f64,
+    d_filters: [LowPassState; 2],
+    last_d_input: f64,
+    last_setpoint: f64,
+    slow_setpoint: Pt1,
+    slow_gyro: Pt1,
+    p_filter: Pt1,
+}
+
+/// The rate loop of three axes.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct RateLoop {
+    axes: [Axis; 3],
+}
+
+impl RateLoop {
+    /// Empties the integrals.
+    pub fn clear_integrals(&mut self) {
+        for axis in &mut self.axes {
+            axis.integral = 0.0;
+        }
+    }
+
+    /// One step; sums in thousandths of the mixer's range, before their limits.
+    pub fn step(&mut self, demand: &RateDemand, tuning: &RateTuning, derived: &Derived) -> [f64; 3] {
+        let mut sums = [0.0; 3];
+        let rate_hz = 1.0 / derived.pid_dt;
+        for (index, (axis, sum)) in self.axes.iter_mut().zip(&mut sums).enumerate() {
+            let gains = &tuning.gains[index];
+            let (setpoint, gyro) = (demand.setpoint[index], demand.gyro[index]);
+            let is_level = demand.levelling && index != YAW;
+            let error = setpoint - gyro;
+            let mut p = gains.p * error;
+            if tuning.tpa_on_p {
+                p *= demand.attenuation;
+            }
+            if index == YAW {
+                p = axis.p_filter.apply(p, derived.yaw_lowpass);
+            }
+            let relaxed = axis.relax(index, error, demand, is_level, tuning, derived);
+            if demand.integrate {
+                let limit = tuning.integral_limit[index];
+                let grown = axis.integral + gains.i * relaxed * derived.pid_dt;
+                axis.integral = grown.clamp(-limit, limit);
+            } else {
+                axis.integral = 0.0;
+            }
+            let d = axis.derivative(gyro, gains, rate_hz, derived) * demand.attenuation;
+            let setpoint_rate = (setpoint - axis.last_setpoint) * rate_hz;
+            axis.last_setpoint = setpoint;
+            let f = if is_level {
+                0.0
+            } else {
+                gains.f * setpoint_rate * fade(demand.deflection[index], tuning.feedforward_transition)
+            };
+            let raw = if demand.integrate || tuning.at_min_throttle {
+                p + axis.integral + d + f
+            } else {
+                axis.integral
+            };
+            *sum = if raw.is_finite() { raw } else { 0.0 };
+        }
+        sums
+    }
+}
+
+impl Axis {
+    fn derivative(&mut self, gyro: f64, gains: &AxisGains, rate_hz: f64, derived: &Derived) -> f64 {
+        if gains.d == 0.0 {
+            return 0.0;
+        }
+        let first = self.d_filters[0].apply(gyro, &derived.d_lpf1);
+        let filtered = self.d_filters[1].apply(first, &derived.d_lpf2);
+        let slope = (filtered - self.last_d_input) * rate_hz;
+        self.last_d_input = filtered;
+        -gains.d * slope
+    }
+
+    /// The error as the integral sees it: a setpoint that moves fast is no reason to wind up.
+    fn relax(
+        &mut self,
+        index: usize,
+        error: f64,
+        demand: &RateDemand,
+        is_level: bool,
+        tuning: &RateTuning,
+        derived: &Derived,
+    ) -> f64 {
+        let relax = &tuning.relax;
+        if !relax.axes[index] {
+            return error;
+        }
+        let setpoint = demand.setpoint[index];
+        let change = (setpoint - self.slow_setpoint.apply(setpoint, derived.relax)).abs();
+        if relax.increments_only && self.integral * error < 0.0 {
+            return error;
+        }
+        if relax.by_gyro {
+            // Only what the slow gyro misses of the band about the moving setpoint counts.
+            let slow = self.slow_gyro.apply(demand.gyro[index], derived.relax);
+            let (low, high) = (slow - change, slow + change);
+            return setpoint - setpoint.clamp(low, high);
+        }
+        let threshold = if is_level { RELAX_LEVEL_DPS } else { RELAX_ACRO_DPS };
+        error * (1.0 - change / threshold).max(0.0)
+    }
+}
+
+/// Feed-forward fades in with the stick up to `transition`.
+fn fade(deflection: f64, transition: f64) -> f64 {
+    if transition > 0.0 { (deflection / transition).min(1.0) } else { 1.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tuning::Tuning;
+    use super::*;
+
+    fn demand(setpoint: f64, gyro: f64) -> RateDemand {
+        RateDemand {
+            setpoint: [setpoint; 3],
+            gyro: [gyro; 3],
+            levelling: false,
+            deflection: [1.0; 3],
+            attenuation: 1.0,
+            integrate: true,
+        }
+    }
+
+    #[test]
+    fn a_steady_error_gives_p_and_a_growing_i() {
+        let tuning = Tuning::default();
+        let derived = Derived::new(&tuning, 0.001);
+        let mut rate_loop = RateLoop::default();
+        let mut sums = [0.0; 3];
+        for _ in 0..1000 {
+            sums = rate_loop.step(&demand(0.0, -10.0), &tuning.rate, &derived);
+        }
+        let gains = &tuning.rate.gains[0];
+        assert!((sums[0] - 10.0 * (gains.p + gains.i)).abs() < 0.5, "{sums:?}");
+        for _ in 0..10_000 {
+            sums = rate_loop.step(&demand(0.0, -10.0), &tuning.rate, &derived);
+        }
+        // The integral stops at 400.
+        assert!((sums[0] - (10.0 * gains.p + 400.0)).abs() < 0.5, "{sums:?}");
+        assert_eq!(sums[2], 400.0_f64.min(10.0 * tuning.rate.gains[2].p + 320.0));
+    }
+
+    #[test]
+    fn the_integral_waits_while_the_setpoint_jumps() {
+        let tuning = Tuning::default();
+        let derived = Derived::new(&tuning, 0.001);
+        let mut rate_loop = RateLoop::default();
+        rate_loop.step(&demand(0.0, 0.0), &tuning.rate, &derived);
+        rate_loop.step(&demand(300.0, 0.0), &tuning.rate, &derived);
+        assert_eq!(rate_loop.axes[0].integral, 0.0);
+        assert!(rate_loop.axes[YAW].integral > 0.0);
+    }
+
+    #[test]
+    fn without_integration_only_the_other_terms_work() {
+        let mut tuning = Tuning::default();
+        let derived = Derived::new(&tuning, 0.001);
+        let mut rate_loop = RateLoop::default();
+        let idle = RateDemand { integrate: false, ..demand(0.0, -10.0) };
+        for _ in 0..100 {
+            rate_loop.step(&idle, &tuning.rate, &derived);
+        }
+        let sums = rate_loop.step(&idle, &tuning.rate, &derived);
+        assert!((sums[0] - 10.0 * tuning.rate.gains[0].p).abs() < 0.5);
+        tuning.rate.at_min_throttle = false;
+        assert_eq!(rate_loop.step(&idle, &tuning.rate, &derived), [0.0; 3]);
+    }
+
+    #[test]
+    fn nonsense_never_reaches_the_motors() {
+        let tuning = Tuning::default();
+        let derived = Derived::new(&tuning, 0.001);
+        let sums = RateLoop::default().step(&demand(0.0, f64::NAN), &tuning.rate, &derived);
+        assert!(sums.iter().all(|sum| sum.is_finite()));
+    }
+}

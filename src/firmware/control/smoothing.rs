@@ -1,0 +1,134 @@
+//! Smoothing of the sticks: an RC stream of 50 frames a second is a staircase to a loop of 1000.
+
+use super::tuning::Tuning;
+use crate::firmware::filter::Pt3;
+
+/// Frame rate assumed before it is known, and the range that is believed, Hz.
+const ASSUMED_FRAME_HZ: f64 = 50.0;
+const FRAME_HZ: std::ops::RangeInclusive<f64> = 10.0..=1000.0;
+/// Lowest automatic cutoff, Hz.
+const LOWEST_CUTOFF_HZ: f64 = 15.0;
+/// Share of the newest interval in the mean one.
+const INTERVAL_SHARE: f64 = 0.1;
+/// The cutoff follows when the mean interval moved by this share.
+const INTERVAL_CHANGE: f64 = 0.1;
+
+/// Smooths roll, pitch, yaw and throttle.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Smoothing {
+    filters: [Pt3; 4],
+    /// Gains and cutoffs of sticks and throttle.
+    gains: [f64; 2],
+    cutoffs_hz: [f64; 2],
+    since_frame_s: f64,
+    interval_s: f64,
+    /// Interval the gains were computed for.
+    used_interval_s: f64,
+}
+
+impl Smoothing {
+    pub fn new() -> Self {
+        Self {
+            filters: [Pt3::default(); 4],
+            gains: [1.0; 2],
+            cutoffs_hz: [0.0; 2],
+            since_frame_s: 0.0,
+            interval_s: 1.0 / ASSUMED_FRAME_HZ,
+            used_interval_s: 0.0,
+        }
+    }
+
+    /// Cutoffs of sticks and throttle in use, Hz; 0 while nothing is smoothed.
+    pub fn cutoffs_hz(&self) -> [f64; 2] {
+        self.cutoffs_hz
+    }
+
+    /// The gains are recomputed in the next step.
+    pub fn invalidate(&mut self) {
+        self.used_interval_s = 0.0;
+    }
+
+    /// One step; `values` are the setpoints of roll, pitch, yaw (°/s) and the throttle (0…1).
+    pub fn apply(&mut self, values: &[f64; 4], is_frame: bool, tuning: &Tuning, dt: f64) -> [f64; 4] {
+        self.since_frame_s += dt;
+        if is_frame {
+            let hz = 1.0 / self.since_frame_s.max(1e-6);
+            if FRAME_HZ.contains(&hz) {
+                self.interval_s += INTERVAL_SHARE * (self.since_frame_s - self.interval_s);
+            }
+            self.since_frame_s = 0.0;
+        }
+        if !tuning.smoothing {
+            self.cutoffs_hz = [0.0; 2];
+            for (filter, value) in self.filters.iter_mut().zip(values) {
+                filter.reset(*value);
+            }
+            return *values;
+        }
+        if (self.interval_s - self.used_interval_s).abs() > INTERVAL_CHANGE * self.used_interval_s {
+            self.used_interval_s = self.interval_s;
+            for which in 0..2 {
+                let cutoff = cutoff_hz(
+                    1.0 / self.interval_s,
+                    tuning.smoothing_factor[which],
+                    tuning.smoothing_cutoff_hz[which],
+                );
+                self.gains[which] = Pt3::gain(cutoff, dt);
+                self.cutoffs_hz[which] = cutoff;
+            }
+        }
+        let [sticks, throttle] = self.gains;
+        let [roll, pitch, yaw, lift] = &mut self.filters;
+        [
+            roll.apply(values[0], sticks),
+            pitch.apply(values[1], sticks),
+            yaw.apply(values[2], sticks),
+            lift.apply(values[3], throttle),
+        ]
+    }
+}
+
+/// Cutoff for a frame rate: the fixed one if set, else by the automatic factor.
+fn cutoff_hz(frame_hz: f64, factor: f64, fixed_hz: f64) -> f64 {
+    if fixed_hz > 0.0 {
+        return fixed_hz;
+    }
+    (frame_hz * 1.5 / (1.0 + factor / 10.0)).max(LOWEST_CUTOFF_HZ)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_default_factor_gives_three_eighths_of_the_frame_rate() {
+        assert!((cutoff_hz(50.0, 30.0, 0.0) - 18.75).abs() < 1e-12);
+        assert!((cutoff_hz(20.0, 30.0, 0.0) - 15.0).abs() < 1e-12);
+        assert!((cutoff_hz(50.0, 30.0, 7.0) - 7.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_cutoff_follows_the_frame_rate() {
+        let tuning = Tuning::default();
+        let mut smoothing = Smoothing::new();
+        smoothing.apply(&[0.0; 4], false, &tuning, 0.001);
+        let at_50 = smoothing.gains[0];
+        for step in 0..2000 {
+            smoothing.apply(&[0.0; 4], step % 4 == 0, &tuning, 0.001);
+        }
+        assert!(smoothing.gains[0] > 2.5 * at_50);
+    }
+
+    #[test]
+    fn a_step_is_smooth_and_complete() {
+        let tuning = Tuning::default();
+        let mut smoothing = Smoothing::new();
+        let mut last = 0.0;
+        for step in 0..100 {
+            let [roll, ..] = smoothing.apply(&[100.0, 0.0, 0.0, 0.0], step % 20 == 0, &tuning, 0.001);
+            assert!(roll >= last && roll - last < 10.0);
+            last = roll;
+        }
+        assert!(last > 99.0);
+    }
+}

@@ -1,0 +1,382 @@
+//! The settings of the control loops, in the units the loops work with.
+
+use super::curve::{RateCurve, RatesType, ThrottleCurve, ThrottleLimit};
+use crate::firmware::config::{MixRow, MixerKind};
+use crate::firmware::filter::LowPassKind;
+use crate::firmware::settings::Settings;
+
+/// Gains of one axis; error in °/s, sum in thousandths of the mixer's range.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct AxisGains {
+    /// Per °/s.
+    pub p: f64,
+    /// Per °.
+    pub i: f64,
+    /// Per °/s².
+    pub d: f64,
+    /// Per °/s² of the setpoint.
+    pub f: f64,
+}
+
+/// A low-pass as set: shape and cutoff, the cutoff moving with the throttle between two bounds.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct DynamicLowPass {
+    /// Shape.
+    pub kind: LowPassKind,
+    /// Cutoff at zero throttle, Hz.
+    pub min_hz: f64,
+    /// Cutoff at full throttle, Hz; the same as `min_hz` for a static filter.
+    pub max_hz: f64,
+    /// Bend of the way between, 0…10.
+    pub expo: f64,
+}
+
+impl DynamicLowPass {
+    /// Cutoff for a throttle 0…1, Hz.
+    #[must_use]
+    pub fn cutoff_hz(&self, throttle: f64) -> f64 {
+        let bent = throttle + throttle * (1.0 - throttle) * self.expo / 10.0;
+        self.min_hz + (self.max_hz - self.min_hz) * bent
+    }
+}
+
+/// A low-pass with a fixed cutoff.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct StaticLowPass {
+    /// Shape.
+    pub kind: LowPassKind,
+    /// Cutoff, Hz; 0 = off.
+    pub hz: f64,
+}
+
+/// When the integral is held back while the setpoint moves.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct ItermRelax {
+    /// Axes it works on: roll and pitch, yaw.
+    pub axes: [bool; 3],
+    /// Only while the integral grows.
+    pub increments_only: bool,
+    /// Judged by the gyro instead of the setpoint.
+    pub by_gyro: bool,
+    /// Cutoff of the slow setpoint, Hz.
+    pub cutoff_hz: f64,
+}
+
+/// Settings of the rate loop.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RateTuning {
+    /// Gains of roll, pitch and yaw.
+    pub gains: [AxisGains; 3],
+    /// Greatest sums.
+    pub sum_limit: [f64; 3],
+    /// Greatest integrals.
+    pub integral_limit: [f64; 3],
+    /// First and second gyro filter.
+    pub gyro_lpf1: DynamicLowPass,
+    /// See [`RateTuning::gyro_lpf1`].
+    pub gyro_lpf2: StaticLowPass,
+    /// First and second filter of the derivative.
+    pub d_lpf1: DynamicLowPass,
+    /// See [`RateTuning::d_lpf1`].
+    pub d_lpf2: StaticLowPass,
+    /// Cutoff of the yaw P term, Hz; 0 = off.
+    pub yaw_lowpass_hz: f64,
+    /// Integral relaxation.
+    pub relax: ItermRelax,
+    /// Reduction works on P, too.
+    pub tpa_on_p: bool,
+    /// Throttle above which gains fall, 0…1, and by how much per unit.
+    pub tpa_breakpoint: f64,
+    /// See [`RateTuning::tpa_breakpoint`].
+    pub tpa_slope: f64,
+    /// Throttle below which gains fall, and by how much at zero.
+    pub tpa_low_breakpoint: f64,
+    /// See [`RateTuning::tpa_low_breakpoint`].
+    pub tpa_low_share: f64,
+    /// The low reduction stays on after the throttle was raised.
+    pub tpa_low_always: bool,
+    /// Stick share within which feed-forward fades in, 0…1; 0 = everywhere full.
+    pub feedforward_transition: f64,
+    /// P, D and F work at zero throttle without airmode.
+    pub at_min_throttle: bool,
+    /// The loop runs every so many gyro samples.
+    pub denominator: u8,
+}
+
+/// Settings of ANGLE and HORIZON.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LevelTuning {
+    /// Greatest angle of the sticks, °.
+    pub limit_deg: f64,
+    /// Rate per angle error, 1/s.
+    pub p: f64,
+    /// Share of the angle that is led instead of corrected, 1 = all of it.
+    pub feedforward: f64,
+    /// Time in which the leading angle follows a stick, s.
+    pub smoothing_s: f64,
+    /// Share of yaw that turns about the vertical of the earth, 0…1.
+    pub earth_reference: f64,
+    /// Angles of a level craft, ° roll right and pitch nose down.
+    pub trim_deg: [f64; 2],
+    /// HORIZON: share of levelling at the centre, 0…1.
+    pub horizon_strength: f64,
+    /// HORIZON: stick share where levelling ends.
+    pub horizon_stick_limit: f64,
+    /// HORIZON: tilt where levelling ends, °.
+    pub horizon_tilt_limit_deg: f64,
+    /// HORIZON: sticks do not reduce levelling.
+    pub horizon_ignores_sticks: bool,
+    /// HORIZON: time in which levelling returns, s.
+    pub horizon_delay_s: f64,
+}
+
+/// Settings of mixer and motors.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MixerTuning {
+    /// Shares of the four motors; yaw clockwise positive.
+    pub rows: [MixRow; 4],
+    /// Propellers turn the other way round.
+    pub yaw_reversed: bool,
+    /// Pulse of a stopped motor, µs.
+    pub stop_us: f64,
+    /// Lowest pulse of a running motor, µs.
+    pub idle_us: f64,
+    /// Highest pulse, µs.
+    pub max_us: f64,
+    /// Share of the range that is used, 0…1.
+    pub output_limit: f64,
+}
+
+/// Everything the controller takes from the settings.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tuning {
+    /// Rate curves of roll, pitch and yaw.
+    pub rates: [RateCurve; 3],
+    /// The yaw stick works the other way round.
+    pub yaw_stick_reversed: bool,
+    /// Throttle curve.
+    pub throttle: ThrottleCurve,
+    /// Sticks are smoothed.
+    pub smoothing: bool,
+    /// `rc_smoothing_auto_factor` for sticks and throttle.
+    pub smoothing_factor: [f64; 2],
+    /// Fixed cutoffs of sticks and throttle, Hz; 0 = by the frame rate.
+    pub smoothing_cutoff_hz: [f64; 2],
+    /// Rate loop.
+    pub rate: RateTuning,
+    /// Levelling.
+    pub level: LevelTuning,
+    /// Mixer.
+    pub mixer: MixerTuning,
+}
+
+impl Default for Tuning {
+    fn default() -> Self {
+        Self::from_settings(&Settings::default(), MixerKind::QuadX, &[])
+    }
+}
+
+/// Units of the gain settings.
+const P_SCALE: f64 = 0.032_029;
+const I_SCALE: f64 = 0.244_381;
+const D_SCALE: f64 = 0.000_529;
+const F_SCALE: f64 = 0.013_754 / 100.0;
+const YAW_I_FACTOR: f64 = 2.5;
+/// The value of `angle_feedforward` that leads the whole angle. It is a little above the default, because the rate
+/// loop lags and the angle loop adds what is missing.
+const FULL_ANGLE_FEEDFORWARD: f64 = 67.0;
+
+impl Tuning {
+    /// The tuning of the active profiles and of this airframe type. A type that cannot fly here flies as QUADX.
+    #[must_use]
+    pub fn from_settings(settings: &Settings, mixer: MixerKind, custom_mix: &[MixRow]) -> Self {
+        let reader = Reader(settings);
+        Self {
+            rates: [reader.curve("roll"), reader.curve("pitch"), reader.curve("yaw")],
+            yaw_stick_reversed: settings.flag("yaw_control_reversed"),
+            throttle: reader.throttle(),
+            smoothing: settings.flag("rc_smoothing"),
+            smoothing_factor: [
+                reader.number("rc_smoothing_auto_factor"),
+                reader.number("rc_smoothing_auto_factor_throttle"),
+            ],
+            smoothing_cutoff_hz: [
+                reader.number("rc_smoothing_setpoint_cutoff"),
+                reader.number("rc_smoothing_throttle_cutoff"),
+            ],
+            rate: reader.rate(),
+            level: reader.level(),
+            mixer: reader.mixer(mixer, custom_mix),
+        }
+    }
+}
+
+struct Reader<'a>(&'a Settings);
+
+impl Reader<'_> {
+    fn number(&self, name: &str) -> f64 {
+        self.0.number(name) as f64
+    }
+
+    /// The number of a setting whose name ends with an axis or begins with it.
+    fn of(&self, prefix: &str, axis: &str, suffix: &str) -> f64 {
+        self.number(&format!("{prefix}{axis}{suffix}"))
+    }
+
+    fn kind(&self, name: &str) -> LowPassKind {
+        u8::try_from(self.0.number(name)).ok().and_then(LowPassKind::from_repr).unwrap_or_default()
+    }
+
+    fn curve(&self, axis: &str) -> RateCurve {
+        let kind = u8::try_from(self.0.number("rates_type")).ok().and_then(RatesType::from_repr);
+        RateCurve {
+            kind: kind.unwrap_or_default(),
+            rc_rate: self.of("", axis, "_rc_rate"),
+            srate: self.of("", axis, "_srate"),
+            expo: self.of("", axis, "_expo"),
+            limit_dps: self.of("", axis, "_rate_limit"),
+            quick_expo_on_stick: self.0.flag("quickrates_rc_expo"),
+        }
+    }
+
+    fn throttle(&self) -> ThrottleCurve {
+        let limit = u8::try_from(self.0.number("throttle_limit_type")).ok();
+        ThrottleCurve {
+            zero_us: self.number("min_check").max(1000.0),
+            mid: self.number("thr_mid") / 100.0,
+            hover: self.number("thr_hover") / 100.0,
+            expo: self.number("thr_expo") / 100.0,
+            limit: limit.and_then(ThrottleLimit::from_repr).unwrap_or_default(),
+            limit_share: self.number("throttle_limit_percent") / 100.0,
+        }
+    }
+
+    fn gains(&self, axis: &str, i_factor: f64) -> AxisGains {
+        AxisGains {
+            p: P_SCALE * self.of("p_", axis, ""),
+            i: I_SCALE * i_factor * self.of("i_", axis, ""),
+            d: D_SCALE * self.of("d_", axis, ""),
+            f: F_SCALE * self.of("f_", axis, ""),
+        }
+    }
+
+    fn lpf(&self, prefix: &str) -> (DynamicLowPass, StaticLowPass) {
+        let number = |suffix: &str| self.number(&format!("{prefix}_{suffix}"));
+        let (min, max) = (number("lpf1_dyn_min_hz"), number("lpf1_dyn_max_hz"));
+        let fixed = number("lpf1_static_hz");
+        let (min_hz, max_hz) = if min > 0.0 { (min, max.max(min)) } else { (fixed, fixed) };
+        let first = DynamicLowPass {
+            kind: self.kind(&format!("{prefix}_lpf1_type")),
+            min_hz,
+            max_hz,
+            expo: number("lpf1_dyn_expo"),
+        };
+        let second =
+            StaticLowPass { kind: self.kind(&format!("{prefix}_lpf2_type")), hz: number("lpf2_static_hz") };
+        (first, second)
+    }
+
+    fn rate(&self) -> RateTuning {
+        let (gyro_lpf1, gyro_lpf2) = self.lpf("gyro");
+        let (d_lpf1, d_lpf2) = self.lpf("dterm");
+        let (sum, sum_yaw) = (self.number("pidsum_limit"), self.number("pidsum_limit_yaw"));
+        let windup = self.number("iterm_windup") / 100.0;
+        let relax = self.0.text("iterm_relax");
+        let breakpoint = ((self.number("tpa_breakpoint") - 1000.0) / 1000.0).clamp(0.0, 0.99);
+        RateTuning {
+            gains: [self.gains("roll", 1.0), self.gains("pitch", 1.0), self.gains("yaw", YAW_I_FACTOR)],
+            sum_limit: [sum, sum, sum_yaw],
+            integral_limit: [sum * windup, sum * windup, sum_yaw * windup],
+            gyro_lpf1,
+            gyro_lpf2,
+            d_lpf1,
+            d_lpf2,
+            yaw_lowpass_hz: self.number("yaw_lowpass_hz"),
+            relax: ItermRelax {
+                axes: [relax != "OFF", relax != "OFF", relax.starts_with("RPY")],
+                increments_only: relax.ends_with("INC"),
+                by_gyro: self.0.text("iterm_relax_type") == "GYRO",
+                cutoff_hz: self.number("iterm_relax_cutoff"),
+            },
+            tpa_on_p: self.0.text("tpa_mode") == "PD",
+            tpa_breakpoint: breakpoint,
+            tpa_slope: self.number("tpa_rate") / 100.0 / (1.0 - breakpoint),
+            tpa_low_breakpoint: (self.number("tpa_low_breakpoint") - 1000.0) / 1000.0,
+            tpa_low_share: self.number("tpa_low_rate") / 100.0,
+            tpa_low_always: self.0.flag("tpa_low_always"),
+            feedforward_transition: self.number("feedforward_transition") / 100.0,
+            at_min_throttle: self.0.flag("pid_at_min_throttle"),
+            denominator: u8::try_from(self.0.number("pid_process_denom")).unwrap_or(1).max(1),
+        }
+    }
+
+    fn level(&self) -> LevelTuning {
+        LevelTuning {
+            limit_deg: self.number("angle_limit"),
+            p: self.number("angle_p_gain") / 10.0,
+            feedforward: self.number("angle_feedforward") / FULL_ANGLE_FEEDFORWARD,
+            smoothing_s: self.number("angle_feedforward_smoothing_ms") / 1000.0,
+            earth_reference: self.number("angle_earth_ref") / 100.0,
+            trim_deg: [self.number("acc_trim_roll") / 10.0, self.number("acc_trim_pitch") / 10.0],
+            horizon_strength: self.number("horizon_level_strength") / 100.0,
+            horizon_stick_limit: self.number("horizon_limit_sticks") / 100.0,
+            horizon_tilt_limit_deg: self.number("horizon_limit_degrees"),
+            horizon_ignores_sticks: self.0.flag("horizon_ignore_sticks"),
+            horizon_delay_s: self.number("horizon_delay_ms") / 1000.0,
+        }
+    }
+
+    fn mixer(&self, kind: MixerKind, custom: &[MixRow]) -> MixerTuning {
+        let quad_x = MixerKind::QuadX.rows().unwrap_or_default();
+        let custom_rows = match (kind, custom) {
+            (MixerKind::Custom, &[a, b, c, d, ..]) => Some([a, b, c, d]),
+            _ => None,
+        };
+        let stop_us = self.number("min_command");
+        MixerTuning {
+            rows: custom_rows.or_else(|| kind.rows()).unwrap_or(quad_x),
+            yaw_reversed: self.0.flag("yaw_motors_reversed"),
+            stop_us,
+            idle_us: stop_us + self.number("motor_idle") / 10.0,
+            max_us: self.number("max_throttle").max(stop_us + 1.0),
+            output_limit: self.number("motor_output_limit") / 100.0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn default_gains_and_limits() {
+        let rate = Tuning::default().rate;
+        assert!((rate.gains[0].p - 45.0 * 0.032029).abs() < 1e-12);
+        assert!((rate.gains[2].i - 80.0 * 0.244381 * 2.5).abs() < 1e-12);
+        assert_eq!((rate.integral_limit[0], rate.integral_limit[2]), (400.0, 320.0));
+        assert!((rate.tpa_slope - 1.0).abs() < 1e-12);
+        assert_eq!(rate.relax.axes, [true, true, false]);
+    }
+
+    #[test]
+    fn default_motor_range_is_idle_to_full() {
+        let mixer = Tuning::default().mixer;
+        assert_eq!((mixer.stop_us, mixer.idle_us, mixer.max_us), (1000.0, 1055.0, 2000.0));
+        assert_eq!(Some(mixer.rows), MixerKind::QuadX.rows());
+    }
+
+    #[test]
+    fn a_custom_mix_flies_when_it_has_four_rows() {
+        let row = MixRow { throttle: 0.9, roll: 0.5, pitch: 0.5, yaw: 0.1 };
+        let of = |rows: &[MixRow]| Tuning::from_settings(&Settings::default(), MixerKind::Custom, rows);
+        assert_eq!(of(&[row; 4]).mixer.rows, [row; 4]);
+        assert_eq!(of(&[row; 2]).mixer.rows, Tuning::default().mixer.rows);
+    }
+
+    #[test]
+    fn the_dynamic_cutoff_runs_between_its_bounds() {
+        let filter = Tuning::default().rate.gyro_lpf1;
+        assert_eq!((filter.cutoff_hz(0.0), filter.cutoff_hz(1.0)), (250.0, 500.0));
+        assert!((filter.cutoff_hz(0.5) - (250.0 + 250.0 * 0.625)).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,408 @@
+//! The estimator: sensor frames in, one [`Estimate`] out.
+
+use nalgebra::{Rotation3, Vector2, Vector3};
+
+use super::attitude::{Attitude, VerticalGains, steady_missing};
+use super::calibration::{AccCalibration, GyroCalibration};
+use super::gps::GpsMonitor;
+use super::heading::{CourseComparison, MagTrust, magnetic_error};
+use super::horizontal::Horizontal;
+use super::schedule::Schedule;
+use super::tuning::{AttitudeSource, EstimatorOptions, EstimatorTuning};
+use super::vertical::{AltitudeSource, Vertical, pressure_altitude_m};
+use super::{DueTasks, Estimate, Rates};
+use crate::firmware::filter::{Pt1, Pt2, pt1_gain};
+use crate::geo::{GRAVITY, LatLon};
+use crate::signals::{GpsSample, SensorFrame, SimTime};
+
+/// Nominal step of the slow part, s.
+const SLOW_S: f64 = 0.01;
+/// Longest step that is integrated, s: after a stall the craft is where it was, not where it was heading.
+const LONGEST_STEP_S: f64 = 0.05;
+/// Greatest readings that a sensor can give, rad/s and m/s²; beyond, it is broken.
+const RATE_LIMIT: f64 = 60.0;
+const FORCE_LIMIT: f64 = 500.0;
+/// The tilt follows the accelerometer so much faster on the ground.
+const PARKED_FACTOR: f64 = 10.0;
+/// And so much slower in the air after the GPS was lost: the tilt is true then, but a craft that coasts to a stop feels
+/// its drag as a tilt.
+const ORPHANED_FACTOR: f64 = 0.2;
+/// While the horizontal filter says how the craft moves the correction is better informed: it works so much faster,
+/// and an integral (critically damped: a quarter of the square of the gain) finds a gyro offset in flight.
+const AIDED_FACTOR: f64 = 2.0;
+const AIDED_INTEGRAL: f64 = 0.25;
+/// Without a magnetometer for this long the heading is taken from the simulator once, as a crew would set it.
+const MAG_WAIT_S: f64 = 0.5;
+/// The magnetometer counts as present for this long after a sample, s.
+const MAG_VALID_S: f64 = 1.0;
+/// The same inertial sample for this long is a frozen sensor, s.
+const FROZEN_S: f64 = 1.0;
+
+/// Estimates attitude, position and altitude from what the sensors deliver.
+#[derive(Debug, Clone)]
+pub struct Estimator {
+    options: EstimatorOptions,
+    tuning: EstimatorTuning,
+    schedule: Schedule,
+    estimate: Estimate,
+    time: Option<SimTime>,
+    armed: bool,
+    /// The horizontal filter told the tilt correction how the craft moves, in this flight.
+    was_aided: bool,
+    last_rate: Vector3<f64>,
+    last_force: Vector3<f64>,
+    same_s: f64,
+    gyro: GyroCalibration,
+    acc: Option<AccCalibration>,
+    acc_result: Option<[i64; 3]>,
+    attitude: Attitude,
+    /// Sum of the specific force since the last attitude step, body axes, and how many samples.
+    force_sum: Vector3<f64>,
+    force_samples: f64,
+    /// Sum of their means, world axes, since the last slow step, and how many.
+    world_sum: Vector3<f64>,
+    world_samples: f64,
+    force_filter: [Pt1; 3],
+    slow_time: SimTime,
+    pending_gps: Option<(GpsSample, SimTime)>,
+    pending_pressure: Option<f64>,
+    pending_mag: Option<Vector3<f64>>,
+    since_mag_s: f64,
+    gps: GpsMonitor,
+    horizontal: Horizontal,
+    vertical: Vertical,
+    course: CourseComparison,
+    shown_alt: Pt2,
+    shown_climb: Pt2,
+}
+
+impl Estimator {
+    /// An estimator at boot.
+    #[must_use]
+    pub fn new(options: EstimatorOptions, tuning: EstimatorTuning) -> Self {
+        let mut horizontal = Horizontal::new();
+        horizontal.set_accel_trust(tuning.accel_trust);
+        Self {
+            options,
+            tuning,
+            schedule: Schedule::default(),
+            estimate: Estimate::default(),
+            time: None,
+            armed: false,
+            was_aided: false,
+            last_rate: Vector3::zeros(),
+            last_force: Vector3::new(0.0, 0.0, GRAVITY),
+            same_s: 0.0,
+            gyro: GyroCalibration::new(),
+            acc: None,
+            acc_result: None,
+            attitude: Attitude::new(),
+            force_sum: Vector3::zeros(),
+            force_samples: 0.0,
+            world_sum: Vector3::zeros(),
+            world_samples: 0.0,
+            force_filter: [Pt1::default(); 3],
+            slow_time: SimTime::ZERO,
+            pending_gps: None,
+            pending_pressure: None,
+            pending_mag: None,
+            since_mag_s: 0.0,
+            gps: GpsMonitor::default(),
+            horizontal,
+            vertical: Vertical::new(),
+            course: CourseComparison::new(),
+            shown_alt: Pt2::default(),
+            shown_climb: Pt2::default(),
+        }
+    }
+
+    /// Changes the settings, outside of a step.
+    pub fn set_tuning(&mut self, tuning: EstimatorTuning) {
+        self.horizontal.set_accel_trust(tuning.accel_trust);
+        self.tuning = tuning;
+    }
+
+    /// Changes the source of the attitude and the like.
+    pub fn set_options(&mut self, options: EstimatorOptions) {
+        self.options = options;
+    }
+
+    /// The newest estimate.
+    #[must_use]
+    pub fn estimate(&self) -> &Estimate {
+        &self.estimate
+    }
+
+    /// The craft was armed: altitude zero is here, the local frame counts from `home` (or from here, when no home
+    /// could be taken).
+    pub fn on_arm(&mut self, home: Option<LatLon>) {
+        self.armed = true;
+        self.was_aided = false;
+        self.vertical.zero();
+        self.shown_alt.reset(0.0);
+        if let Some(origin) = home.or_else(|| self.estimate.place()) {
+            self.horizontal.set_origin(origin);
+        }
+        self.publish();
+    }
+
+    /// The craft was disarmed. Altitude and position keep their zero, so that the way back to home stays known.
+    pub fn on_disarm(&mut self) {
+        self.armed = false;
+    }
+
+    /// Starts a calibration of the gyro.
+    pub fn calibrate_gyro(&mut self) {
+        self.gyro = GyroCalibration::new();
+    }
+
+    /// Starts a calibration of the accelerometer; the craft must stand level.
+    pub fn calibrate_accelerometer(&mut self) {
+        self.acc = Some(AccCalibration::new());
+    }
+
+    /// The result of an accelerometer calibration that has just ended, for the first three elements of
+    /// `acc_calibration`. Given once.
+    pub fn take_acc_calibration(&mut self) -> Option<[i64; 3]> {
+        self.acc_result.take()
+    }
+
+    /// Takes in one frame; says which slower loops run in this step.
+    pub fn update(&mut self, frame: &SensorFrame) -> DueTasks {
+        let now = frame.time;
+        let dt = self.time.map_or(0.0, |last| now.seconds_since(last)).min(LONGEST_STEP_S);
+        let is_first = self.time.replace(now).is_none();
+        self.take_inertial(frame, dt);
+        if is_first {
+            self.attitude.align(&self.last_force);
+            self.slow_time = now;
+        }
+        self.take_slow(frame);
+        match (self.options.attitude, frame.truth_attitude) {
+            (AttitudeSource::Truth, Some(truth)) if truth.coords.iter().all(|c| c.is_finite()) => {
+                self.attitude.q = truth;
+                self.estimate.heading_valid = true;
+            }
+            _ => {
+                let rate = self.last_rate - self.gyro.bias;
+                self.attitude.integrate(&rate, dt);
+            }
+        }
+        let due = self.schedule.due(now);
+        if due.attitude {
+            self.attitude_step();
+        }
+        if due.navigation {
+            self.slow_step(frame, now);
+        }
+        due
+    }
+
+    /// Gyro and accelerometer of this step; a broken sample repeats the last good one.
+    fn take_inertial(&mut self, frame: &SensorFrame, dt: f64) {
+        let (rate, force) = (frame.rate_flu, frame.specific_force_flu);
+        let is_same = rate == self.last_rate && force == self.last_force + self.tuning.acc_offset_flu;
+        // Standing still the samples of an ideal sensor repeat, too.
+        self.same_s = if is_same && rate.norm() > 0.01 { self.same_s + dt } else { 0.0 };
+        self.estimate.imu_frozen = self.same_s > FROZEN_S;
+        if rate.norm() <= RATE_LIMIT {
+            self.last_rate = rate;
+        }
+        if force.norm() <= FORCE_LIMIT {
+            self.last_force = force - self.tuning.acc_offset_flu;
+        }
+        if !self.gyro.done && dt > 0.0 {
+            let tuning = &self.tuning;
+            self.gyro.feed(&self.last_rate, dt, tuning.gyro_calibration_s, tuning.gyro_noise_limit);
+        }
+        self.force_sum += self.last_force;
+        self.force_samples += 1.0;
+        let rate = self.last_rate - self.gyro.bias + self.attitude.rate_correction();
+        self.estimate.rates = Rates::from_flu(&rate);
+        self.estimate.force_flu = self.last_force;
+    }
+
+    /// What does not come with every frame waits for the next slow step.
+    fn take_slow(&mut self, frame: &SensorFrame) {
+        if let Some(gps) = frame.gps {
+            self.pending_gps = Some((gps, frame.time));
+        }
+        if frame.pressure_pa.is_some() {
+            self.pending_pressure = frame.pressure_pa;
+        }
+        if frame.mag_flu.is_some() {
+            self.pending_mag = frame.mag_flu;
+        }
+    }
+
+    fn attitude_step(&mut self) {
+        self.attitude.refresh();
+        if self.force_samples > 0.0 {
+            self.world_sum += self.attitude.matrix * (self.force_sum / self.force_samples);
+            self.world_samples += 1.0;
+            (self.force_sum, self.force_samples) = (Vector3::zeros(), 0.0);
+        }
+        let estimate = &mut self.estimate;
+        estimate.attitude = self.attitude.q;
+        (estimate.roll_rad, estimate.pitch_rad) = self.attitude.roll_pitch();
+        estimate.cos_tilt = self.attitude.cos_tilt();
+        estimate.attitude_valid = true;
+    }
+
+    fn slow_step(&mut self, frame: &SensorFrame, now: SimTime) {
+        let dt = now.seconds_since(self.slow_time).min(2.0 * LONGEST_STEP_S);
+        self.slow_time = now;
+        let force = self.world_sum / self.world_samples.max(1.0);
+        (self.world_sum, self.world_samples) = (Vector3::zeros(), 0.0);
+        if let Some(acc) = &mut self.acc
+            && let Some(result) = acc.feed(&(self.last_force + self.tuning.acc_offset_flu))
+        {
+            (self.acc, self.acc_result) = (None, Some(result));
+        }
+        let felt = Vector2::new(force.y, force.x);
+        self.horizontal.predict(felt, dt);
+        self.vertical.predict(force.z - GRAVITY, dt);
+        self.course.predict(felt, dt);
+        self.hear_gps(now);
+        self.hear_baro();
+        if self.options.attitude == AttitudeSource::Estimated || frame.truth_attitude.is_none() {
+            self.hear_mag(frame, dt);
+            self.correct_tilt(&force, dt);
+        }
+        self.estimate.heading_rad = self.attitude.heading();
+        self.estimate.accel_ne = felt + self.horizontal.accel_error();
+        self.show(dt);
+        self.publish();
+    }
+
+    fn hear_gps(&mut self, now: SimTime) {
+        let timeout = self.options.gps_timeout_s.max(2.5 / self.tuning.gps_rate_hz);
+        if let Some((sample, arrived)) = self.pending_gps.take()
+            && let Some(sample) = self.gps.receive(sample, arrived)
+        {
+            let latency = if sample.latency_s.is_finite() { sample.latency_s.clamp(0.0, 0.3) } else { 0.0 };
+            let age = latency + now.seconds_since(arrived);
+            let velocity = Vector2::new(sample.vel_enu.y, sample.vel_enu.x);
+            let turn = self.course.compare(velocity, (age / SLOW_S).round() as usize);
+            if self.armed && turn != 0.0 && !self.has_mag() {
+                self.turn_heading(turn);
+            }
+            self.horizontal.fuse(&sample, age);
+            if self.tuning.altitude_source != AltitudeSource::BaroOnly {
+                self.vertical.fuse_gps(&sample, age, self.tuning.altitude_source, !self.armed);
+            }
+        }
+        self.gps.update(now, timeout);
+        if !self.gps.status.fix {
+            self.course.clear();
+        }
+    }
+
+    fn hear_baro(&mut self) {
+        let Some(pressure) = self.pending_pressure.take() else { return };
+        let altitude = pressure_altitude_m(pressure);
+        if self.tuning.altitude_source != AltitudeSource::GpsOnly && altitude.is_finite() {
+            self.vertical.fuse_baro(altitude, self.tuning.baro_preference);
+        }
+    }
+
+    /// Whether the magnetometer leads the heading.
+    fn has_mag(&self) -> bool {
+        self.tuning.has_mag && self.since_mag_s < MAG_VALID_S
+    }
+
+    fn hear_mag(&mut self, frame: &SensorFrame, dt: f64) {
+        self.since_mag_s += dt;
+        let declination = match self.tuning.declination_deg {
+            0.0 => self.options.declination_deg,
+            set => set,
+        };
+        let sample = self.pending_mag.take().filter(|_| self.tuning.has_mag);
+        if let Some(mag) = sample
+            && let Some(error) = magnetic_error(&self.attitude.matrix, &mag, declination.to_radians())
+        {
+            if !self.estimate.heading_valid {
+                self.turn_heading(error);
+                self.estimate.heading_valid = true;
+            }
+            let trust = match (self.armed, self.tuning.trust_mag) {
+                (false, _) => MagTrust::Parked,
+                (true, true) => MagTrust::Trusted,
+                (true, false) => MagTrust::Doubted,
+            };
+            let correction = trust.correction(error, dt);
+            if correction != 0.0 {
+                self.since_mag_s = 0.0;
+                self.turn_heading(correction);
+            }
+        } else if !self.estimate.heading_valid
+            && self.since_mag_s > MAG_WAIT_S
+            && let Some(truth) = frame.truth_attitude
+        {
+            let error = self.attitude.heading() - heading_of(&truth.to_rotation_matrix());
+            self.turn_heading(error);
+            self.estimate.heading_valid = true;
+        }
+    }
+
+    /// Turns the attitude anticlockwise, so that the heading falls by `angle` (rad).
+    fn turn_heading(&mut self, angle: f64) {
+        if angle.is_finite() {
+            self.attitude.turn_world(&Vector3::new(0.0, 0.0, angle));
+        }
+    }
+
+    fn correct_tilt(&mut self, force: &Vector3<f64>, dt: f64) {
+        let gain = pt1_gain(self.tuning.acc_lpf_hz, dt);
+        let filtered = Vector3::new(
+            self.force_filter[0].apply(force.x, gain),
+            self.force_filter[1].apply(force.y, gain),
+            self.force_filter[2].apply(force.z, gain),
+        );
+        let is_aided = self.armed && self.horizontal.is_settled();
+        self.was_aided |= is_aided;
+        let (missing, gains) = if is_aided {
+            let missing = self.horizontal.accel_error();
+            let kp = self.tuning.kp * AIDED_FACTOR;
+            let gains = VerticalGains { kp, ki: self.tuning.ki + AIDED_INTEGRAL * kp * kp };
+            (Vector3::new(missing.y, missing.x, 0.0), gains)
+        } else {
+            let factor = match (self.armed, self.was_aided) {
+                (false, _) => PARKED_FACTOR,
+                (true, false) => 1.0,
+                (true, true) => ORPHANED_FACTOR,
+            };
+            let gains = VerticalGains { kp: self.tuning.kp * factor, ki: self.tuning.ki };
+            let Some(missing) = steady_missing(&filtered) else { return };
+            (missing, gains)
+        };
+        let explained = self.attitude.steady(&filtered, &missing, &gains, dt);
+        self.horizontal.explain(Vector2::new(explained.y, explained.x));
+    }
+
+    fn show(&mut self, dt: f64) {
+        let (alt, climb) = (self.vertical.altitude(), self.vertical.climb());
+        let tuning = &self.tuning;
+        self.estimate.shown_alt_m = self.shown_alt.apply(alt, Pt2::gain(tuning.shown_alt_hz, dt));
+        self.estimate.shown_climb_mps = self.shown_climb.apply(climb, Pt2::gain(tuning.shown_climb_hz, dt));
+    }
+
+    fn publish(&mut self) {
+        let estimate = &mut self.estimate;
+        estimate.origin = self.horizontal.origin();
+        estimate.position_valid = self.horizontal.is_valid();
+        estimate.pos_ne = self.horizontal.position();
+        estimate.vel_ne = self.horizontal.velocity();
+        estimate.altitude_valid = self.vertical.is_valid();
+        estimate.alt_m = self.vertical.altitude();
+        estimate.climb_mps = self.vertical.climb();
+        estimate.gps = self.gps.status;
+        estimate.calibrating = !self.gyro.done || self.acc.is_some();
+    }
+}
+
+/// Heading of an attitude, rad clockwise from north.
+fn heading_of(matrix: &Rotation3<f64>) -> f64 {
+    let m = matrix.matrix();
+    m[(0, 0)].atan2(m[(1, 0)])
+}

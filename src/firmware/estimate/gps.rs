@@ -1,0 +1,118 @@
+//! What the flight controller knows about its GPS receiver.
+
+use crate::signals::{GpsSample, SimTime};
+
+/// Identical solutions in a row that mean a frozen receiver.
+const FROZEN_SAMPLES: u8 = 3;
+/// Slower solutions (m/s) may repeat: the craft stands.
+const STANDING_MPS: f64 = 0.02;
+
+/// State of the GPS receiver.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct GpsStatus {
+    /// A fresh 3-D fix.
+    pub fix: bool,
+    /// Satellites of the newest message; 0 without messages.
+    pub sats: u8,
+    /// Horizontal dilution of precision; 0 = not reported.
+    pub hdop: f64,
+    /// The newest solution with a fix.
+    pub solution: Option<GpsSample>,
+    /// Messages since boot.
+    pub messages: u32,
+    /// Seconds since the newest message.
+    pub age_s: f64,
+    /// The receiver repeats the same solution although the craft moves.
+    pub frozen: bool,
+}
+
+/// Judges the messages of the receiver.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct GpsMonitor {
+    pub status: GpsStatus,
+    has_fix: bool,
+    repeats: u8,
+    arrived: SimTime,
+}
+
+impl GpsMonitor {
+    /// Takes in a message; returns it when it is a usable solution.
+    pub fn receive(&mut self, sample: GpsSample, now: SimTime) -> Option<GpsSample> {
+        let is_sane = sample.vel_enu.iter().all(|v| v.is_finite()) && sample.position.is_on_globe();
+        let usable = sample.fix && is_sane;
+        self.arrived = now;
+        let status = &mut self.status;
+        status.messages = status.messages.wrapping_add(1);
+        (status.sats, status.hdop) = (sample.sats, sample.hdop);
+        if !usable {
+            (self.has_fix, self.repeats) = (false, 0);
+            return None;
+        }
+        let is_repeated = status.solution == Some(sample) && sample.vel_enu.norm() > STANDING_MPS;
+        self.repeats = if is_repeated { self.repeats.saturating_add(1) } else { 0 };
+        status.frozen = self.repeats >= FROZEN_SAMPLES;
+        status.solution = Some(sample);
+        self.has_fix = !status.frozen;
+        // A repeated solution describes a past that was already taken in.
+        (!is_repeated).then_some(sample)
+    }
+
+    /// Brings age and fix up to date.
+    pub fn update(&mut self, now: SimTime, timeout_s: f64) {
+        let status = &mut self.status;
+        status.age_s = now.seconds_since(self.arrived);
+        if status.messages == 0 || status.age_s > timeout_s {
+            (self.has_fix, status.sats) = (false, 0);
+        }
+        status.fix = self.has_fix;
+        status.frozen &= status.sats > 0;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector3;
+
+    fn solution(speed: f64) -> GpsSample {
+        GpsSample { fix: true, sats: 12, vel_enu: Vector3::new(speed, 0.0, 0.0), ..GpsSample::default() }
+    }
+
+    fn at(seconds: f64) -> SimTime {
+        SimTime::from_secs_f64(seconds)
+    }
+
+    #[test]
+    fn silence_ends_the_fix() {
+        let mut gps = GpsMonitor::default();
+        gps.update(at(1.0), 0.3);
+        assert!(!gps.status.fix);
+        gps.receive(solution(1.0), at(1.0));
+        gps.update(at(1.29), 0.3);
+        assert!(gps.status.fix);
+        gps.update(at(1.31), 0.3);
+        assert!(!gps.status.fix);
+        assert_eq!(gps.status.sats, 0);
+    }
+
+    #[test]
+    fn a_frozen_receiver_has_no_fix_but_a_parked_one_does() {
+        for (speed, fix) in [(3.0, false), (0.0, true)] {
+            let mut gps = GpsMonitor::default();
+            for tenth in 0..10 {
+                gps.receive(solution(speed), at(f64::from(tenth) * 0.1));
+            }
+            gps.update(at(0.91), 0.3);
+            assert_eq!(gps.status.fix, fix);
+            assert_eq!(gps.status.frozen, !fix);
+        }
+    }
+
+    #[test]
+    fn nonsense_is_no_fix() {
+        let mut gps = GpsMonitor::default();
+        gps.receive(solution(f64::NAN), at(0.0));
+        gps.update(at(0.0), 0.3);
+        assert!(!gps.status.fix);
+    }
+}

@@ -1,0 +1,143 @@
+//! Keeping the heading true: by the magnetometer, and by comparing accelerations with the GPS.
+
+use nalgebra::{Rotation3, Vector2, Vector3};
+
+use crate::geo::wrap_pi;
+
+/// Time constants of the correction by the magnetometer, s: on the ground, trusted in the air, and not.
+const PARKED_S: f64 = 0.5;
+const TRUSTED_S: f64 = 5.0;
+const DOUBTED_S: f64 = 20.0;
+/// A doubted magnetometer is heard within this, rad.
+const DOUBT_LIMIT: f64 = 10.0 * std::f64::consts::PI / 180.0;
+/// Remembered steps of inertial velocity: 320 ms.
+const DEPTH: usize = 32;
+/// Solutions between the ends of a comparison: 1 s at 10 Hz.
+const WINDOW: usize = 10;
+/// Change of velocity over the window that says something about direction, m/s, and one that says all.
+const LEAST_CHANGE: f64 = 1.0;
+const FULL_CHANGE: f64 = 3.0;
+/// Share of the disagreement that one comparison corrects.
+const SHARE: f64 = 0.05;
+
+/// How far the estimated heading is clockwise of the true one by a magnetometer sample (body axes), rad; `None` when
+/// the field points straight up or down.
+pub(super) fn magnetic_error(
+    attitude: &Rotation3<f64>,
+    mag_flu: &Vector3<f64>,
+    declination_rad: f64,
+) -> Option<f64> {
+    let field = attitude * mag_flu;
+    let horizontal = field.xy().norm();
+    let error = wrap_pi(field.x.atan2(field.y) - declination_rad);
+    (horizontal > 0.05 * field.norm() && error.is_finite()).then_some(error)
+}
+
+/// How much the magnetometer is trusted now.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum MagTrust {
+    /// On the ground.
+    Parked,
+    /// In the air, `trust_mag` on.
+    Trusted,
+    /// In the air, `trust_mag` off.
+    Doubted,
+}
+
+impl MagTrust {
+    /// The part of a heading error that one sample corrects after `dt` seconds, rad; zero when it is not believed.
+    pub fn correction(self, error: f64, dt: f64) -> f64 {
+        let time_constant = match self {
+            Self::Parked => PARKED_S,
+            Self::Trusted => TRUSTED_S,
+            Self::Doubted if error.abs() < DOUBT_LIMIT => DOUBTED_S,
+            Self::Doubted => return 0.0,
+        };
+        error * (dt / time_constant).min(1.0)
+    }
+}
+
+/// Compares the velocity change that the accelerometer saw with the one that the GPS saw: the angle between them is
+/// the error of the heading. It speaks only while the craft accelerates.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct CourseComparison {
+    inertial: [Vector2<f64>; DEPTH],
+    newest: usize,
+    window: [(Vector2<f64>, Vector2<f64>); WINDOW],
+    filled: usize,
+    next: usize,
+}
+
+impl CourseComparison {
+    pub fn new() -> Self {
+        let zero = Vector2::zeros();
+        Self { inertial: [zero; DEPTH], newest: 0, window: [(zero, zero); WINDOW], filled: 0, next: 0 }
+    }
+
+    /// One step of inertial acceleration (north, east), m/s².
+    pub fn predict(&mut self, accel: Vector2<f64>, dt: f64) {
+        let velocity = self.inertial[self.newest] + accel * dt;
+        self.newest = (self.newest + 1) % DEPTH;
+        self.inertial[self.newest] = velocity;
+    }
+
+    /// A gap in the solutions: start over.
+    pub fn clear(&mut self) {
+        self.filled = 0;
+    }
+
+    /// A solution's velocity (north, east) of `age` steps ago; returns the correction of the heading,
+    /// anticlockwise positive, rad.
+    pub fn compare(&mut self, velocity: Vector2<f64>, age: usize) -> f64 {
+        let inertial = self.inertial[(self.newest + DEPTH - age.min(DEPTH - 1)) % DEPTH];
+        let (then, inertial_then) = self.window[self.next];
+        self.window[self.next] = (velocity, inertial);
+        self.next = (self.next + 1) % WINDOW;
+        if self.filled < WINDOW {
+            self.filled += 1;
+            return 0.0;
+        }
+        let (seen, felt) = (velocity - then, inertial - inertial_then);
+        let size = seen.norm().min(felt.norm());
+        if size < LEAST_CHANGE {
+            return 0.0;
+        }
+        // Bearings grow from north to east.
+        let error = wrap_pi(felt.y.atan2(felt.x) - seen.y.atan2(seen.x));
+        SHARE * (size / FULL_CHANGE).min(1.0).powi(2) * error
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_craft_that_believes_to_point_further_right_sees_north_further_right() {
+        // True heading north; the estimate says 0.1 rad clockwise of it.
+        let truth = Rotation3::from_axis_angle(&Vector3::z_axis(), std::f64::consts::FRAC_PI_2);
+        let believed = Rotation3::from_axis_angle(&Vector3::z_axis(), -0.1) * truth;
+        let field = Vector3::new(0.0, 2046.8, -3547.2);
+        let error = magnetic_error(&believed, &(truth.inverse() * field), 0.0).unwrap();
+        assert!((error - 0.1).abs() < 1e-9);
+        assert_eq!(MagTrust::Doubted.correction(0.3, 0.01), 0.0);
+        assert!((MagTrust::Trusted.correction(0.3, 0.01) - 0.0006).abs() < 1e-12);
+    }
+
+    #[test]
+    fn accelerating_reveals_a_wrong_heading() {
+        let mut comparison = CourseComparison::new();
+        let mut heading_error = 0.4;
+        let mut velocity = Vector2::zeros();
+        for step in 0..6000 {
+            let accel = Vector2::new(3.0 * (f64::from(step) * 0.01).cos(), 0.0);
+            let (sin, cos) = f64::sin_cos(heading_error);
+            comparison.predict(Vector2::new(accel.x * cos, accel.x * sin), 0.01);
+            velocity += accel * 0.01;
+            if step % 10 == 0 {
+                heading_error -= comparison.compare(velocity, 0);
+            }
+        }
+        assert!(heading_error.abs() < 0.04, "{heading_error}");
+    }
+}

@@ -1,0 +1,75 @@
+//! The slower loops, by division of time.
+
+use crate::signals::SimTime;
+
+/// Period of the attitude loop, µs: 500 Hz.
+const ATTITUDE_US: u64 = 2_000;
+/// Period of estimation, navigator and holds, µs: 100 Hz.
+const NAVIGATION_US: u64 = 10_000;
+
+/// Which slower loops run in this step. Everybody follows these, so that they stay in phase.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct DueTasks {
+    /// Roll and pitch are fresh: the angle loop runs (500 Hz, or each step where 500 does not divide the rate).
+    pub attitude: bool,
+    /// Position and altitude are fresh: navigator, holds and modes run (100 Hz).
+    pub navigation: bool,
+}
+
+/// Decides which loops are due.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct Schedule {
+    attitude: SimTime,
+    navigation: SimTime,
+}
+
+impl Schedule {
+    /// The loops due at `now`. Both are due in the first step.
+    pub fn due(&mut self, now: SimTime) -> DueTasks {
+        let navigation = pass(&mut self.navigation, now, NAVIGATION_US);
+        let attitude = pass(&mut self.attitude, now, ATTITUDE_US);
+        DueTasks { attitude: attitude || navigation, navigation }
+    }
+}
+
+/// Whether `next` has come; if so it moves on, skipping what was missed.
+fn pass(next: &mut SimTime, now: SimTime, period_us: u64) -> bool {
+    if now < *next {
+        return false;
+    }
+    let missed = (now.0 - next.0) / period_us;
+    next.0 += (missed + 1) * period_us;
+    true
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_rate_gives_exact_hundredths() {
+        for rate in [400_u64, 500, 1000, 2000, 4000, 8000] {
+            let mut schedule = Schedule::default();
+            let step = 1_000_000 / rate;
+            let (mut attitude, mut navigation) = (0, Vec::new());
+            for tick in 0..rate {
+                let due = schedule.due(SimTime(tick * step));
+                attitude += u64::from(due.attitude);
+                if due.navigation {
+                    navigation.push(tick * step);
+                }
+            }
+            assert_eq!(navigation, (0..100).map(|n| n * 10_000).collect::<Vec<_>>(), "{rate}");
+            assert_eq!(attitude, rate.min(500), "{rate}");
+        }
+    }
+
+    #[test]
+    fn a_stall_is_not_made_up_for() {
+        let mut schedule = Schedule::default();
+        schedule.due(SimTime(0));
+        assert!(schedule.due(SimTime(5_003_000)).navigation);
+        assert!(!schedule.due(SimTime(5_004_000)).navigation);
+        assert!(schedule.due(SimTime(5_010_000)).navigation);
+    }
+}

@@ -1,0 +1,124 @@
+//! What of the settings the estimator uses.
+
+use super::calibration::acc_offset;
+use super::vertical::AltitudeSource;
+use crate::firmware::settings::Settings;
+use nalgebra::Vector3;
+
+/// Where the attitude comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, strum::Display)]
+#[strum(serialize_all = "lowercase")]
+pub enum AttitudeSource {
+    /// From gyro, accelerometer, magnetometer and GPS.
+    #[default]
+    Estimated,
+    /// From the simulator, as far as it tells.
+    Truth,
+}
+
+/// What of the estimator is not a setting of the craft.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EstimatorOptions {
+    /// Where the attitude comes from.
+    pub attitude: AttitudeSource,
+    /// Silence of the GPS receiver that ends the fix, s, at 10 solutions a second or more.
+    pub gps_timeout_s: f64,
+    /// Declination of the field where the craft flies, degrees east, used while `mag_declination` is 0.
+    pub declination_deg: f64,
+}
+
+/// Declination of the field that SITL simulates, degrees east: (2046.8, −71.5) counts north and west.
+const SITL_DECLINATION_DEG: f64 = 2.000_675_735_167_871;
+
+impl Default for EstimatorOptions {
+    fn default() -> Self {
+        Self {
+            attitude: AttitudeSource::Estimated,
+            gps_timeout_s: 0.3,
+            declination_deg: SITL_DECLINATION_DEG,
+        }
+    }
+}
+
+/// The settings of the estimator in the units it works with.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EstimatorTuning {
+    /// Correction towards the vertical, rad/s per unit of the sine of the error.
+    pub kp: f64,
+    /// Its integral, rad/s² per unit.
+    pub ki: f64,
+    /// Cutoff of the accelerometer for the tilt correction, Hz; 0 = none.
+    pub acc_lpf_hz: f64,
+    /// Accelerometer zero, body forward-left-up, m/s².
+    pub acc_offset_flu: Vector3<f64>,
+    /// Quiet time of a gyro calibration, s.
+    pub gyro_calibration_s: f64,
+    /// Standard deviation that restarts it, gyro units; 0 = any will do.
+    pub gyro_noise_limit: f64,
+    /// Whether there is a magnetometer.
+    pub has_mag: bool,
+    /// Whether it is trusted in flight.
+    pub trust_mag: bool,
+    /// Declination set by the user, degrees east; 0 = that of the place.
+    pub declination_deg: f64,
+    /// Solutions a second expected of the receiver.
+    pub gps_rate_hz: f64,
+    /// Witnesses of the altitude.
+    pub altitude_source: AltitudeSource,
+    /// Weight of the barometer, 0…1.
+    pub baro_preference: f64,
+    /// Cutoff of the shown altitude and climb rate, Hz.
+    pub shown_alt_hz: f64,
+    /// See [`EstimatorTuning::shown_alt_hz`].
+    pub shown_climb_hz: f64,
+    /// `ap_position_a`: trust in the accelerometer, 30 is neutral.
+    pub accel_trust: f64,
+}
+
+impl Default for EstimatorTuning {
+    fn default() -> Self {
+        Self::from_settings(&Settings::default())
+    }
+}
+
+impl EstimatorTuning {
+    /// The tuning of the active profiles.
+    #[must_use]
+    pub fn from_settings(settings: &Settings) -> Self {
+        let number = |name: &str| settings.number(name) as f64;
+        Self {
+            kp: number("imu_dcm_kp") * 1e-4,
+            ki: number("imu_dcm_ki") * 1e-4,
+            acc_lpf_hz: number("acc_lpf_hz"),
+            acc_offset_flu: acc_offset(settings.array("acc_calibration")),
+            gyro_calibration_s: number("gyro_calib_duration") * 0.01,
+            gyro_noise_limit: number("gyro_calib_noise_limit"),
+            has_mag: settings.text("mag_hardware") != "NONE",
+            trust_mag: settings.flag("trust_mag"),
+            declination_deg: number("mag_declination") * 0.1,
+            gps_rate_hz: number("gps_update_rate_hz").max(1.0),
+            altitude_source: match settings.text("altitude_source") {
+                "BARO_ONLY" => AltitudeSource::BaroOnly,
+                "GPS_ONLY" => AltitudeSource::GpsOnly,
+                _ => AltitudeSource::Both,
+            },
+            baro_preference: number("altitude_prefer_baro") * 0.01,
+            shown_alt_hz: number("altitude_lpf") * 0.01,
+            shown_climb_hz: number("altitude_d_lpf") * 0.01,
+            accel_trust: number("ap_position_a"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn defaults_are_those_of_the_settings() {
+        let tuning = EstimatorTuning::default();
+        assert!((tuning.kp - 0.25).abs() < 1e-12);
+        assert!((tuning.gyro_calibration_s - 1.25).abs() < 1e-12);
+        assert_eq!((tuning.shown_alt_hz, tuning.baro_preference, tuning.has_mag), (3.0, 1.0, true));
+    }
+}

@@ -1,0 +1,206 @@
+//! Altitude and climb rate: dead reckoning by the accelerometer, held by barometer and GPS.
+
+use super::chain::{Chain, ChainNoise};
+use super::history::Axis;
+use crate::signals::GpsSample;
+
+/// Nominal step, s.
+const STEP_S: f64 = 0.01;
+/// White error of the acceleration, (m/s²)²/Hz, and walk of its slow error, (m/s³)²/Hz.
+const NOISE: ChainNoise = ChainNoise { accel: 4e-4, drift: 4e-4 };
+/// Standard deviation of a barometer sample, m (1 Pa is 8 cm), fully preferred.
+const BARO_SIGMA: f64 = 0.1;
+/// Steps between the pressure and its sample: half way between an ideal sensor and a filtered one.
+const BARO_AGE: usize = 1;
+/// Spikes beyond this (m) are left out …
+const BARO_GATE: f64 = 1.0;
+/// … unless so many samples agree.
+const PATIENCE: u8 = 10;
+/// Standard deviations of the receiver's altitude (m; alone, and beside a barometer) and climb rate (m/s).
+const GPS_ALONE_SIGMA: f64 = 0.6;
+const GPS_BESIDE_SIGMA: f64 = 4.0;
+const CLIMB_SIGMA: f64 = 0.08;
+/// Share of a solution that the zero of the GPS altitude follows while the barometer is the better witness.
+const GPS_ZERO_SHARE: f64 = 0.02;
+/// A measurement counts for this long, s.
+const VALID_S: f64 = 2.0;
+
+/// Which witnesses of the altitude are heard.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum AltitudeSource {
+    /// Barometer, and GPS as far as it helps.
+    #[default]
+    Both,
+    /// Barometer only.
+    BaroOnly,
+    /// GPS only.
+    GpsOnly,
+}
+
+/// The vertical filter. Zero is where it was set last.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Vertical {
+    chain: Chain,
+    axis: Axis,
+    /// Barometric and GPS altitude (m) of the zero.
+    baro_zero: Option<f64>,
+    gps_zero: Option<f64>,
+    spikes: u8,
+    since_baro_s: f64,
+    since_gps_s: f64,
+}
+
+/// Altitude (m) in the standard atmosphere for a pressure (Pa).
+pub(super) fn pressure_altitude_m(pressure_pa: f64) -> f64 {
+    (1.0 - (pressure_pa / 101_325.0).powf(1.0 / 5.255_88)) / 2.255_77e-5
+}
+
+impl Vertical {
+    pub fn new() -> Self {
+        Self {
+            chain: Chain::new(0.5, 0.1, 0.1),
+            axis: Axis::new(),
+            baro_zero: None,
+            gps_zero: None,
+            spikes: 0,
+            since_baro_s: f64::INFINITY,
+            since_gps_s: f64::INFINITY,
+        }
+    }
+
+    /// Altitude above the zero, m.
+    pub fn altitude(&self) -> f64 {
+        self.axis.position
+    }
+
+    /// Climb rate, m/s.
+    pub fn climb(&self) -> f64 {
+        self.axis.velocity
+    }
+
+    /// Whether the altitude means something.
+    pub fn is_valid(&self) -> bool {
+        self.since_baro_s.min(self.since_gps_s) <= VALID_S
+    }
+
+    /// Puts the zero here.
+    pub fn zero(&mut self) {
+        let altitude = self.axis.position;
+        self.axis.shift(-altitude);
+        self.baro_zero = self.baro_zero.map(|zero| zero + altitude);
+        self.gps_zero = self.gps_zero.map(|zero| zero + altitude);
+    }
+
+    /// One step with the measured upward acceleration without gravity, m/s².
+    pub fn predict(&mut self, accel: f64, dt: f64) {
+        self.since_baro_s += dt;
+        self.since_gps_s += dt;
+        if !self.is_valid() {
+            // Without any witness the craft is believed to stay: dead reckoning would run away.
+            self.axis.velocity = 0.0;
+            return;
+        }
+        self.chain.predict(dt, &NOISE);
+        self.axis.predict(accel, dt);
+    }
+
+    /// Takes in a barometric altitude (m); `preference` is its weight, 0…1.
+    pub fn fuse_baro(&mut self, altitude: f64, preference: f64) {
+        if preference <= 0.0 {
+            return;
+        }
+        let zero = *self.baro_zero.get_or_insert(altitude - self.axis.position);
+        let sigma = BARO_SIGMA / preference.sqrt();
+        let mut chain = self.chain;
+        let gain = chain.measure_position(sigma * sigma);
+        let error = altitude - zero - self.axis.past(BARO_AGE).0;
+        self.since_baro_s = 0.0;
+        if error.abs() > BARO_GATE + 5.0 * gain.innovation.sqrt() && self.spikes < PATIENCE {
+            self.spikes += 1;
+            return;
+        }
+        self.spikes = 0;
+        self.chain = chain;
+        self.axis.correct(&gain, error, BARO_AGE, STEP_S);
+    }
+
+    /// Takes in altitude and climb rate of a solution that is `age_s` old. On the ground (`parked`) the zero of the
+    /// GPS altitude follows, in the air it stays.
+    pub fn fuse_gps(&mut self, sample: &GpsSample, age_s: f64, source: AltitudeSource, parked: bool) {
+        let age = (age_s / STEP_S).round().max(0.0) as usize;
+        let altitude = f64::from(sample.alt_amsl_cm) * 0.01;
+        let has_baro = self.since_baro_s <= VALID_S;
+        let dilution = if sample.hdop > 0.0 { (sample.hdop / 0.8).clamp(1.0, 20.0) } else { 1.0 };
+        let expected = self.axis.past(age).0;
+        let zero = self.gps_zero.get_or_insert(altitude - expected);
+        if has_baro && parked {
+            *zero += GPS_ZERO_SHARE * (altitude - expected - *zero);
+        }
+        let zero = *zero;
+        self.since_gps_s = 0.0;
+        let gain = self.chain.measure_velocity((CLIMB_SIGMA * dilution).powi(2));
+        let error = sample.vel_enu.z - self.axis.past(age).1;
+        self.axis.correct(&gain, error.clamp(-5.0, 5.0), age, STEP_S);
+        let sigma =
+            if has_baro && source == AltitudeSource::Both { GPS_BESIDE_SIGMA } else { GPS_ALONE_SIGMA };
+        let gain = self.chain.measure_position((sigma * dilution).powi(2));
+        let error = altitude - zero - self.axis.past(age).0;
+        self.axis.correct(&gain, error, age, STEP_S);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn settled() -> Vertical {
+        let mut filter = Vertical::new();
+        for step in 0..1000 {
+            filter.predict(0.05, STEP_S);
+            if step % 2 == 0 {
+                filter.fuse_baro(300.0, 1.0);
+            }
+        }
+        filter
+    }
+
+    #[test]
+    fn the_standard_atmosphere_inverts() {
+        assert!(pressure_altitude_m(101_325.0).abs() < 1e-9);
+        let pressure = 101_325.0 * (1.0 - 2.25577e-5 * 300.0_f64).powf(5.25588);
+        assert!((pressure_altitude_m(pressure) - 300.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn accelerometer_bias_does_not_lift_the_craft() {
+        let filter = settled();
+        assert!(filter.altitude().abs() < 0.02, "{}", filter.altitude());
+        assert!(filter.climb().abs() < 0.02, "{}", filter.climb());
+    }
+
+    #[test]
+    fn a_spike_does_not_move_the_altitude_but_a_lasting_step_does() {
+        let mut filter = settled();
+        filter.fuse_baro(308.0, 1.0);
+        assert!(filter.altitude().abs() < 0.02);
+        for _ in 0..2000 {
+            filter.predict(0.05, STEP_S);
+            filter.fuse_baro(308.0, 1.0);
+        }
+        assert!((filter.altitude() - 8.0).abs() < 0.2, "{}", filter.altitude());
+    }
+
+    #[test]
+    fn the_zero_moves_without_a_jump_of_the_climb_rate() {
+        let mut filter = settled();
+        for _ in 0..300 {
+            filter.predict(0.05, STEP_S);
+            filter.fuse_baro(310.0, 1.0);
+        }
+        let climb = filter.climb();
+        filter.zero();
+        assert_eq!((filter.altitude(), filter.climb()), (0.0, climb));
+        filter.fuse_baro(310.0, 1.0);
+        assert!(filter.altitude().abs() < 0.5);
+    }
+}

@@ -1,0 +1,74 @@
+//! What the flight controller reports as having happened.
+
+use crate::autopilot::io::NavEvent;
+
+use super::mode::ModeFlags;
+
+/// Why the craft was disarmed. The discriminant is the code of logs and protocols.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::EnumIter)]
+#[strum(serialize_all = "SCREAMING_SNAKE_CASE")]
+#[repr(u8)]
+pub enum DisarmReason {
+    /// An arming-disable flag appeared.
+    ArmingDisabled = 0,
+    /// The failsafe machine.
+    Failsafe = 1,
+    /// Throttle low for too long.
+    ThrottleTimeout = 2,
+    /// Stick command.
+    Sticks = 3,
+    /// The ARM switch.
+    Switch = 4,
+    /// Crash protection.
+    CrashProtection = 5,
+    /// Runaway take-off.
+    RunawayTakeoff = 6,
+    /// GPS rescue.
+    GpsRescue = 7,
+    /// A serial command.
+    SerialCommand = 8,
+    /// Touchdown.
+    Landing = 9,
+    /// Crash flip.
+    Crashflip = 10,
+    /// The system (restart).
+    System = 255,
+}
+
+/// An event of the flight controller.
+#[derive(Debug, Clone, PartialEq)]
+pub enum FirmwareEvent {
+    /// The first fix, or the fix came back.
+    GpsFix {
+        /// Satellites in use.
+        sats: u8,
+    },
+    /// The fix was lost.
+    GpsLost {
+        /// Satellites in use.
+        sats: u8,
+    },
+    /// Armed.
+    Armed,
+    /// Disarmed.
+    Disarmed(DisarmReason),
+    /// The set of active modes changed.
+    Mode(ModeFlags),
+    /// The receiver link was lost (stage 1).
+    RxLoss,
+    /// The receiver link is back.
+    RxRecovered,
+    /// A failsafe stage began.
+    Failsafe {
+        /// `ap_rx_loss_policy` in force.
+        policy: &'static str,
+        /// 1 at the loss, 2 when the procedure starts.
+        stage: u8,
+        /// The procedure, `DROP`, `AUTO-LAND`, `GPS-RESCUE`, `CONTINUE`, `LAND`.
+        procedure: &'static str,
+    },
+    /// The navigator.
+    Nav(NavEvent),
+    /// Something the pilot should read, as a sentence.
+    Notice(&'static str),
+}

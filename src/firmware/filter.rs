@@ -1,0 +1,217 @@
+//! Low-pass filters of the control loops. Coefficients are computed when a cutoff is set, not when a sample passes.
+
+use std::f64::consts::{FRAC_1_SQRT_2, PI};
+
+/// The cutoff of each stage over the cutoff of the whole, so that n equal stages are 3 dB down together.
+const PT2_STAGE: f64 = 1.553_773_974;
+const PT3_STAGE: f64 = 1.961_459_177;
+
+/// Gain of a first-order low-pass: ω·dt/(ω·dt + 1); 1, no filtering, for a cutoff of zero.
+#[must_use]
+pub fn pt1_gain(cutoff_hz: f64, dt: f64) -> f64 {
+    let turn = 2.0 * PI * cutoff_hz * dt;
+    if turn > 0.0 { turn / (turn + 1.0) } else { 1.0 }
+}
+
+/// First-order low-pass.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Pt1 {
+    state: f64,
+}
+
+impl Pt1 {
+    /// Output now.
+    #[must_use]
+    pub fn state(&self) -> f64 {
+        self.state
+    }
+
+    /// Starts anew at `value`.
+    pub fn reset(&mut self, value: f64) {
+        self.state = value;
+    }
+
+    /// One sample; `gain` is [`pt1_gain`].
+    pub fn apply(&mut self, input: f64, gain: f64) -> f64 {
+        self.state += gain * (input - self.state);
+        self.state
+    }
+}
+
+/// Three equal first-order low-passes in a row.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Pt3 {
+    stages: [f64; 3],
+}
+
+impl Pt3 {
+    /// Gain for a cutoff of the whole.
+    #[must_use]
+    pub fn gain(cutoff_hz: f64, dt: f64) -> f64 {
+        pt1_gain(cutoff_hz * PT3_STAGE, dt)
+    }
+
+    /// Output now.
+    #[must_use]
+    pub fn state(&self) -> f64 {
+        self.stages[2]
+    }
+
+    /// Starts anew at `value`.
+    pub fn reset(&mut self, value: f64) {
+        self.stages = [value; 3];
+    }
+
+    /// One sample; `gain` is [`Pt3::gain`].
+    pub fn apply(&mut self, input: f64, gain: f64) -> f64 {
+        let [a, b, c] = &mut self.stages;
+        *a += gain * (input - *a);
+        *b += gain * (*a - *b);
+        *c += gain * (*b - *c);
+        *c
+    }
+}
+
+/// Two equal first-order low-passes in a row.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Pt2 {
+    stages: [f64; 2],
+}
+
+impl Pt2 {
+    /// Gain for a cutoff of the whole.
+    #[must_use]
+    pub fn gain(cutoff_hz: f64, dt: f64) -> f64 {
+        pt1_gain(cutoff_hz * PT2_STAGE, dt)
+    }
+
+    /// Starts anew at `value`.
+    pub fn reset(&mut self, value: f64) {
+        self.stages = [value; 2];
+    }
+
+    /// One sample; `gain` is [`Pt2::gain`].
+    pub fn apply(&mut self, input: f64, gain: f64) -> f64 {
+        let [a, b] = &mut self.stages;
+        *a += gain * (input - *a);
+        *b += gain * (*a - *b);
+        *b
+    }
+}
+
+/// Shape of a low-pass; the discriminant is the value of the settings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::FromRepr)]
+#[repr(u8)]
+pub enum LowPassKind {
+    /// First order.
+    #[default]
+    Pt1 = 0,
+    /// Second order, Butterworth.
+    Biquad = 1,
+    /// Two first orders.
+    Pt2 = 2,
+    /// Three first orders.
+    Pt3 = 3,
+}
+
+/// Coefficients of a low-pass of any shape.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum LowPass {
+    /// Lets everything through.
+    Off,
+    /// Equal first-order stages with this gain; 1…3 of them.
+    Stages {
+        /// How many.
+        count: u8,
+        /// Gain of each.
+        gain: f64,
+    },
+    /// Second order: `b0`, `b1`, `b2`, `a1`, `a2`.
+    Biquad([f64; 5]),
+}
+
+impl LowPass {
+    /// A low-pass of this shape; off for a cutoff of zero. A biquad's cutoff is kept below the Nyquist frequency.
+    #[must_use]
+    pub fn new(kind: LowPassKind, cutoff_hz: f64, dt: f64) -> Self {
+        if cutoff_hz <= 0.0 {
+            return Self::Off;
+        }
+        match kind {
+            LowPassKind::Pt1 => Self::Stages { count: 1, gain: pt1_gain(cutoff_hz, dt) },
+            LowPassKind::Pt2 => Self::Stages { count: 2, gain: Pt2::gain(cutoff_hz, dt) },
+            LowPassKind::Pt3 => Self::Stages { count: 3, gain: Pt3::gain(cutoff_hz, dt) },
+            LowPassKind::Biquad => Self::butterworth(cutoff_hz.min(0.45 / dt), dt),
+        }
+    }
+
+    /// Bilinear transform of a second-order low-pass with Q = 1/√2.
+    fn butterworth(cutoff_hz: f64, dt: f64) -> Self {
+        let (sin, cos) = (2.0 * PI * cutoff_hz * dt).sin_cos();
+        let alpha = sin / (2.0 * FRAC_1_SQRT_2);
+        let a0 = 1.0 + alpha;
+        let b1 = (1.0 - cos) / a0;
+        Self::Biquad([0.5 * b1, b1, 0.5 * b1, -2.0 * cos / a0, (1.0 - alpha) / a0])
+    }
+}
+
+/// Memory of a [`LowPass`].
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct LowPassState {
+    stages: [f64; 3],
+}
+
+impl LowPassState {
+    /// One sample.
+    pub fn apply(&mut self, input: f64, filter: &LowPass) -> f64 {
+        match filter {
+            LowPass::Off => input,
+            LowPass::Stages { count, gain } => {
+                let mut value = input;
+                for stage in self.stages.iter_mut().take(usize::from(*count)) {
+                    *stage += gain * (value - *stage);
+                    value = *stage;
+                }
+                value
+            }
+            // Transposed direct form II; the third slot is free.
+            LowPass::Biquad([b0, b1, b2, a1, a2]) => {
+                let output = b0 * input + self.stages[0];
+                self.stages[0] = b1 * input - a1 * output + self.stages[1];
+                self.stages[1] = b2 * input - a2 * output;
+                output
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Amplitude of the answer to a sine of `hz` at 8 kHz.
+    fn amplitude(filter: &LowPass, hz: f64) -> f64 {
+        let (dt, mut state) = (1.0 / 8000.0, LowPassState::default());
+        let answers = (0..16_000).map(|n| state.apply((2.0 * PI * hz * f64::from(n) * dt).sin(), filter));
+        answers.skip(8000).fold(0.0, |greatest: f64, value| greatest.max(value.abs()))
+    }
+
+    #[test]
+    fn every_shape_is_three_decibels_down_at_its_cutoff() {
+        for kind in [LowPassKind::Pt1, LowPassKind::Biquad, LowPassKind::Pt2, LowPassKind::Pt3] {
+            let filter = LowPass::new(kind, 50.0, 1.0 / 8000.0);
+            let at_cutoff = amplitude(&filter, 50.0);
+            assert!((at_cutoff - FRAC_1_SQRT_2).abs() < 0.03, "{kind:?} {at_cutoff}");
+            assert!(amplitude(&filter, 2.0) > 0.99);
+        }
+    }
+
+    #[test]
+    fn off_and_out_of_range_cutoffs_are_stable() {
+        assert_eq!(LowPass::new(LowPassKind::Biquad, 0.0, 0.001), LowPass::Off);
+        let filter = LowPass::new(LowPassKind::Biquad, 1000.0, 0.0025);
+        let mut state = LowPassState::default();
+        let last = (0..1000).fold(0.0, |_, _| state.apply(1.0, &filter));
+        assert!((last - 1.0).abs() < 1e-6);
+    }
+}

@@ -1,0 +1,153 @@
+//! From who flies to what the controller is told: sticks, navigator, holds, and the descent of the failsafe.
+
+use crate::autopilot::io::NavOutput;
+use crate::signals::MotorCommand;
+
+use super::control::{ControlInput, ControlState, Controller, LeanDemand, StickMode, Tuning};
+use super::estimate::{DueTasks, Estimate};
+use super::mode::{Mode, ModeFlags};
+use super::rx::Sticks;
+
+/// A motor that stands still, µs.
+const MOTOR_STOP_US: f64 = 1000.0;
+
+/// Demands that take the place of the pilot's, renewed a hundred times a second.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Demand {
+    /// Roll and pitch.
+    pub lean: Option<LeanDemand>,
+    /// Yaw rate, rad/s, clockwise positive.
+    pub yaw_rate_rps: Option<f64>,
+    /// Throttle into the mixer, 0…1.
+    pub throttle: Option<f64>,
+}
+
+impl From<NavOutput> for Demand {
+    fn from(output: NavOutput) -> Self {
+        Self {
+            lean: Some(LeanDemand { roll_rad: output.roll_rad, pitch_rad: output.pitch_rad }),
+            yaw_rate_rps: output.yaw_rate_rps,
+            throttle: Some(output.throttle),
+        }
+    }
+}
+
+/// What one step of the controller needs besides the estimate.
+#[derive(Debug, Clone, Copy)]
+pub struct FlightStep<'a> {
+    /// Loops that are due.
+    pub due: DueTasks,
+    /// Motors may run.
+    pub armed: bool,
+    /// Active modes.
+    pub modes: ModeFlags,
+    /// Stick positions in use.
+    pub sticks: &'a Sticks,
+    /// A new RC frame came.
+    pub rc_frame: bool,
+    /// Full stabilisation at zero throttle.
+    pub airmode: bool,
+    /// Motors stand still at low throttle.
+    pub motor_stop: bool,
+    /// A failsafe procedure runs.
+    pub failsafe: bool,
+    /// Heading at arming, rad: what HEADFREE refers to.
+    pub headfree_rad: f64,
+}
+
+/// The controller and the demands in force.
+#[derive(Debug, Clone)]
+pub struct Flight {
+    controller: Controller,
+    demand: Demand,
+    motor_test_us: [f64; 4],
+    step_s: f64,
+}
+
+impl Flight {
+    /// A controller at boot for so many steps a second.
+    #[must_use]
+    pub fn new(tuning: &Tuning, rate_hz: u32) -> Self {
+        let step_s = 1.0 / f64::from(rate_hz.max(1));
+        Self {
+            controller: Controller::new(*tuning, step_s),
+            demand: Demand::default(),
+            motor_test_us: [MOTOR_STOP_US; 4],
+            step_s,
+        }
+    }
+
+    /// Follows the settings.
+    pub fn set_tuning(&mut self, tuning: &Tuning) {
+        self.controller.set_tuning(*tuning);
+    }
+
+    /// Sets the demands that take the place of the pilot's.
+    pub fn set_demand(&mut self, demand: Demand) {
+        self.demand = demand;
+    }
+
+    /// Turns motors on the bench; `motor` = all when absent. Only the disarmed craft listens.
+    pub fn test_motor(&mut self, motor: Option<u8>, output_us: u16) {
+        let pulse = f64::from(output_us);
+        match motor {
+            None => self.motor_test_us = [pulse; 4],
+            Some(index) => {
+                if let Some(motor) = self.motor_test_us.get_mut(usize::from(index)) {
+                    *motor = pulse;
+                }
+            }
+        }
+    }
+
+    /// Stops the motors that were turned on the bench.
+    pub fn end_motor_test(&mut self) {
+        self.motor_test_us = [MOTOR_STOP_US; 4];
+    }
+
+    /// One step.
+    pub fn step(&mut self, step: &FlightStep<'_>, estimate: &Estimate) -> MotorCommand {
+        let sticks = step.sticks;
+        let input = ControlInput {
+            due: step.due,
+            armed: step.armed,
+            mode: stick_mode(step.modes),
+            stick_roll: sticks.roll,
+            stick_pitch: sticks.pitch,
+            stick_yaw: sticks.yaw,
+            throttle_us: sticks.throttle_us,
+            rc_frame: step.rc_frame,
+            lean: self.demand.lean,
+            yaw_rate_rps: self.demand.yaw_rate_rps,
+            throttle: self.demand.throttle,
+            airmode: step.airmode,
+            motor_stop: step.motor_stop,
+            failsafe: step.failsafe,
+            headfree_reference_rad: headfree(step).then_some(step.headfree_rad),
+            heading_hold: step.modes.has(Mode::Mag),
+            motor_test_us: self.motor_test_us,
+        };
+        self.controller.step(&input, estimate, self.step_s).motors
+    }
+
+    /// What the controller did in the last step.
+    #[must_use]
+    pub fn state(&self) -> &ControlState {
+        self.controller.state()
+    }
+}
+
+/// HEADFREE has no effect while the autopilot flies.
+fn headfree(step: &FlightStep<'_>) -> bool {
+    step.modes.has(Mode::HeadFree) && !step.modes.has(Mode::Autopilot)
+}
+
+fn stick_mode(modes: ModeFlags) -> StickMode {
+    if modes.has(Mode::Angle) {
+        StickMode::Angle
+    } else if modes.has(Mode::Horizon) {
+        StickMode::Horizon
+    } else {
+        StickMode::Acro
+    }
+}

@@ -1,0 +1,221 @@
+use nalgebra::Vector2;
+use strum::IntoEnumIterator as _;
+
+use super::*;
+use crate::autopilot::io::PlanSource;
+use crate::autopilot::params::RxLossPolicy;
+use crate::geo::LatLon;
+use crate::plan::{Waypoint, WaypointType};
+use crate::signals::SimTime;
+
+const HOME: LatLon = LatLon::new(404_635_000, -795_182_000);
+
+/// An armed craft hovering over home at 20 m.
+fn hovering() -> NavInputs {
+    NavInputs {
+        time: SimTime(60_000_000),
+        dt: 0.01,
+        armed: true,
+        fix: true,
+        altitude_valid: true,
+        throttle_raised: true,
+        home: Some(HOME),
+        origin: HOME,
+        pos_ne: Vector2::zeros(),
+        vel_ne: Vector2::zeros(),
+        alt_m: 20.0,
+        climb_mps: 0.0,
+        heading_rad: 0.0,
+        yaw_rate_rps: 0.0,
+        roll_rad: 0.0,
+        pitch_rad: 0.0,
+        cos_tilt: 1.0,
+        accel_ne: Vector2::zeros(),
+        throttle_us: 1500.0,
+        stick_roll: 0.0,
+        stick_pitch: 0.0,
+        stick_yaw: 0.0,
+        failsafe: false,
+    }
+}
+
+fn plan() -> FlightPlan {
+    let far = Waypoint {
+        position: LatLon::new(404_645_000, -795_182_000),
+        alt_cm: 2000,
+        kind: WaypointType::Flyover,
+        ..Waypoint::default()
+    };
+    FlightPlan { waypoints: [far, far].into_iter().collect() }
+}
+
+const CALM: OrderFacts = OrderFacts {
+    autopilot_switch: false,
+    rescue_switch: false,
+    signal: true,
+    failsafe_active: false,
+    failsafe_mission: None,
+    fix_for_s: 60.0,
+};
+
+/// A flight of the navigator under orders, without a craft.
+struct Flight {
+    orders: Orders,
+    navigator: Navigator,
+    inputs: NavInputs,
+}
+
+impl Flight {
+    fn new() -> Self {
+        Self { orders: Orders::default(), navigator: Navigator::new(), inputs: hovering() }
+    }
+
+    fn update(&mut self, facts: OrderFacts) {
+        let params = Params::default();
+        let rescue = RescueConfig { initial_climb_m: 10.0, ..RescueConfig::default() };
+        self.inputs.time.0 += 10_000;
+        self.orders.update(&mut self.navigator, &self.inputs, &params, &rescue, &plan(), &facts);
+        self.navigator.update(&self.inputs, &params, &plan());
+    }
+
+    fn engaged() -> Self {
+        let mut flight = Self::new();
+        flight.update(OrderFacts { autopilot_switch: true, ..CALM });
+        assert_eq!(flight.navigator.state(), NavState::Approaching);
+        flight
+    }
+}
+
+#[test]
+fn switch_engages_and_releases() {
+    let mut flight = Flight::engaged();
+    flight.update(CALM);
+    assert_eq!(flight.navigator.state(), NavState::Idle);
+    assert_eq!(flight.orders.after_abort(), AfterAbort::Nothing);
+}
+
+#[test]
+fn lost_signal_leaves_everything_as_it_was() {
+    let mut flight = Flight::engaged();
+    flight.update(OrderFacts { autopilot_switch: false, signal: false, ..CALM });
+    assert_eq!(flight.navigator.state(), NavState::Approaching);
+}
+
+#[test]
+fn command_flies_without_the_switch_until_the_switch_goes_off() {
+    let mut flight = Flight::new();
+    flight.update(CALM);
+    let done = flight.orders.return_to_home(&mut flight.navigator, &flight.inputs, &Params::default(), None);
+    assert_eq!(done, Ok(()));
+    for switch in [false, true, true] {
+        flight.update(OrderFacts { autopilot_switch: switch, ..CALM });
+        assert!(flight.navigator.is_flying());
+        assert_eq!(flight.navigator.source(), PlanSource::Rth);
+    }
+    flight.update(CALM);
+    assert!(!flight.navigator.is_flying());
+}
+
+#[test]
+fn rescue_switch_flies_home_higher_and_lets_go() {
+    let mut flight = Flight::engaged();
+    let on = OrderFacts { autopilot_switch: true, rescue_switch: true, ..CALM };
+    flight.update(on);
+    assert_eq!(flight.navigator.source(), PlanSource::Rth);
+    assert_eq!(flight.navigator.active_plan().waypoints[0].alt_cm, 3000);
+    flight.update(OrderFacts { rescue_switch: false, ..on });
+    assert_eq!(flight.navigator.source(), PlanSource::Stored, "the mission goes on");
+
+    let mut flight = Flight::new();
+    flight.update(OrderFacts { rescue_switch: true, ..CALM });
+    assert!(flight.navigator.is_flying());
+    flight.update(CALM);
+    assert!(!flight.navigator.is_flying(), "the pilot has it back");
+}
+
+#[test]
+fn lost_fix_keeps_the_altitude_and_resumes() {
+    let mut flight = Flight::engaged();
+    let on = OrderFacts { autopilot_switch: true, ..CALM };
+    flight.inputs.fix = false;
+    flight.update(OrderFacts { fix_for_s: 0.0, ..on });
+    assert_eq!(flight.navigator.state(), NavState::Idle);
+    flight.orders.mission_aborted(AbortReason::GpsLost);
+    assert_eq!(flight.orders.after_abort(), AfterAbort::Altitude);
+    assert_eq!(flight.orders.status(&flight.navigator), MissionStatus::Over);
+    flight.inputs.fix = true;
+    for _ in 0..199 {
+        flight.update(on);
+    }
+    assert_eq!(flight.navigator.state(), NavState::Idle);
+    for _ in 0..3 {
+        flight.update(on);
+    }
+    assert_eq!(flight.navigator.state(), NavState::Approaching);
+    assert_eq!(flight.orders.after_abort(), AfterAbort::Nothing);
+}
+
+#[test]
+fn descent_of_the_failsafe_takes_the_mission_off() {
+    let mut flight = Flight::engaged();
+    let failsafe = OrderFacts { autopilot_switch: true, signal: false, failsafe_active: true, ..CALM };
+    flight.update(OrderFacts { failsafe_mission: Some(Response::Continue), ..failsafe });
+    assert!(flight.navigator.is_flying());
+    flight.update(failsafe);
+    assert!(!flight.navigator.is_flying());
+}
+
+#[test]
+fn disarming_forgets_commands() {
+    let mut flight = Flight::new();
+    flight.update(CALM);
+    flight.orders.emergency_land(&mut flight.navigator, &flight.inputs, &Params::default()).unwrap();
+    flight.inputs.armed = false;
+    flight.update(CALM);
+    flight.inputs.armed = true;
+    flight.update(CALM);
+    assert!(!flight.navigator.is_flying());
+}
+
+#[test]
+fn failsafe_response_by_policy_and_procedure() {
+    use Response::{Continue, EmergencyLand, KeepLanding};
+    for procedure in [Procedure::Drop, Procedure::AutoLand, Procedure::GpsRescue] {
+        let plain = Response::Procedure(procedure);
+        // policy: idle, approaching, landing, approaching without fix
+        let rows = [
+            (RxLossPolicy::Disable, [plain, plain, plain, plain]),
+            (RxLossPolicy::Continue, [plain, Continue, Continue, plain]),
+            (RxLossPolicy::Land, [plain, EmergencyLand, KeepLanding, plain]),
+        ];
+        assert_eq!(rows.len(), RxLossPolicy::iter().count());
+        for (policy, expected) in rows {
+            let params = Params { rx_loss_policy: policy, ..Params::default() };
+            let idle = Flight::new();
+            let approaching = Flight::engaged();
+            let mut landing = Flight::engaged();
+            landing.orders.emergency_land(&mut landing.navigator, &landing.inputs, &params).unwrap();
+            let got = [
+                failsafe_response(&idle.navigator, &params, procedure, true),
+                failsafe_response(&approaching.navigator, &params, procedure, true),
+                failsafe_response(&landing.navigator, &params, procedure, true),
+                failsafe_response(&approaching.navigator, &params, procedure, false),
+            ];
+            assert_eq!(got, expected, "{policy} {procedure}");
+        }
+    }
+}
+
+#[test]
+fn rescue_altitude_by_mode() {
+    let orders = Orders { highest_m: 45.0, ..Orders::default() };
+    let config = RescueConfig { initial_climb_m: 10.0, return_alt_m: 30.0, ..RescueConfig::default() };
+    for (altitude, expected) in [
+        (RescueAltitude::HighestOfFlight, 55.0),
+        (RescueAltitude::Fixed, 30.0),
+        (RescueAltitude::Present, 30.0),
+    ] {
+        let flight = orders.rescue_flight(&RescueConfig { altitude, ..config }, &hovering());
+        assert_eq!(flight.altitude_m, expected);
+    }
+}

@@ -1,0 +1,171 @@
+//! What messages tell about the running firmware: plain data, filled in by its owner.
+
+use nalgebra::{UnitQuaternion, Vector3};
+
+use crate::firmware::cli::BuildInfo;
+use crate::firmware::mode::ModeFlags;
+use crate::firmware::modes::BoxSet;
+use crate::geo::LatLon;
+use crate::signals::RC_CHANNELS;
+
+/// Figures of the running firmware.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MspFacts {
+    /// Version and build.
+    pub build: BuildInfo,
+    /// Whether the craft is armed.
+    pub armed: bool,
+    /// Active flight modes.
+    pub modes: ModeFlags,
+    /// Boxes that are switched on.
+    pub switches: BoxSet,
+    /// Arming-disable flags, by bit.
+    pub arming_blocks: u32,
+    /// Whether a change waits for a restart.
+    pub reboot_required: bool,
+    /// Period of the control loop, µs.
+    pub cycle_time_us: u32,
+    /// Processor load, percent.
+    pub cpu_load_percent: u32,
+    /// Gyro loop, Hz.
+    pub gyro_hz: u32,
+    /// Whether a magnetometer is present.
+    pub has_mag: bool,
+    /// Specific force, FLU, m/s².
+    pub specific_force_flu: Vector3<f64>,
+    /// Body rates, FLU, rad/s.
+    pub rate_flu: Vector3<f64>,
+    /// Magnetic field, FLU, sensor counts.
+    pub mag_flu: Vector3<f64>,
+    /// Attitude, body FLU → world ENU.
+    pub attitude: UnitQuaternion<f64>,
+    /// Roll, degrees, right positive.
+    pub roll_deg: f64,
+    /// Pitch, degrees, nose **up** positive.
+    pub pitch_deg: f64,
+    /// Heading, degrees clockwise from north.
+    pub heading_deg: f64,
+    /// Estimated altitude above the arming point, m.
+    pub altitude_m: f64,
+    /// Climb rate, m/s.
+    pub climb_mps: f64,
+    /// The battery, when its voltage is measured.
+    pub battery: Option<BatteryReading>,
+    /// Signal strength, 0…1023.
+    pub rssi: u16,
+    /// Channels in use, µs: roll, pitch, **yaw, throttle**, AUX1 ….
+    pub channels: [u16; RC_CHANNELS],
+    /// Motor outputs M1…M4, µs.
+    pub motors_us: [u16; 4],
+    /// The GPS.
+    pub gps: GpsReading,
+    /// Where home is; `None` without one.
+    pub home: Option<HomeReading>,
+    /// The time of day, when somebody set it.
+    pub clock: Option<UtcTime>,
+}
+
+impl Default for MspFacts {
+    /// A disarmed craft at rest, level, facing north, that has heard nothing.
+    fn default() -> Self {
+        Self {
+            build: BuildInfo::default(),
+            armed: false,
+            modes: ModeFlags::NONE,
+            switches: BoxSet::NONE,
+            arming_blocks: 0,
+            reboot_required: false,
+            cycle_time_us: 1000,
+            cpu_load_percent: 0,
+            gyro_hz: 1000,
+            has_mag: true,
+            specific_force_flu: Vector3::new(0.0, 0.0, crate::geo::GRAVITY),
+            rate_flu: Vector3::zeros(),
+            mag_flu: Vector3::zeros(),
+            attitude: UnitQuaternion::from_axis_angle(&Vector3::z_axis(), std::f64::consts::FRAC_PI_2),
+            roll_deg: 0.0,
+            pitch_deg: 0.0,
+            heading_deg: 0.0,
+            altitude_m: 0.0,
+            climb_mps: 0.0,
+            battery: None,
+            rssi: 0,
+            channels: [1500; RC_CHANNELS],
+            motors_us: [1000; 4],
+            gps: GpsReading::default(),
+            home: None,
+            clock: None,
+        }
+    }
+}
+
+/// State of the battery; the discriminant is the code on the wire.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[repr(u8)]
+pub enum BatteryState {
+    /// Enough.
+    Ok = 0,
+    /// Below the warning voltage.
+    Warning = 1,
+    /// Below the lowest voltage.
+    Critical = 2,
+    /// None.
+    #[default]
+    NotPresent = 3,
+    /// Being measured.
+    Starting = 4,
+}
+
+/// The battery.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct BatteryReading {
+    /// Voltage, V.
+    pub voltage_v: f64,
+    /// Current, A.
+    pub current_a: f64,
+    /// Charge drawn, mAh.
+    pub drawn_mah: f64,
+    /// Cells in series.
+    pub cells: u8,
+    /// Its state.
+    pub state: BatteryState,
+}
+
+/// The GPS.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct GpsReading {
+    /// A 3-D fix.
+    pub fix: bool,
+    /// Satellites used.
+    pub sats: u8,
+    /// Position.
+    pub position: LatLon,
+    /// Altitude above mean sea level, m.
+    pub alt_amsl_m: f64,
+    /// Ground speed, m/s.
+    pub ground_speed_mps: f64,
+    /// Course over ground, degrees clockwise from north.
+    pub course_deg: f64,
+    /// Dilution of precision; 0 = not reported.
+    pub dop: f64,
+    /// Changes with every solution.
+    pub solution: u8,
+}
+
+/// Where home is, seen from the craft.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct HomeReading {
+    /// Distance, m.
+    pub distance_m: f64,
+    /// Direction, degrees clockwise from north.
+    pub bearing_deg: f64,
+}
+
+/// A time of day.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct UtcTime {
+    /// Seconds since 1970, UTC.
+    pub unix_s: u32,
+    /// Milliseconds of the second.
+    pub millis: u16,
+}

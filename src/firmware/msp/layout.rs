@@ -1,0 +1,101 @@
+//! Messages that are lists of settings: the same list reads and writes them.
+
+use super::wire::{Reader, Writer};
+use crate::firmware::settings::{Kind, Settings, Value, Width, find};
+
+/// One field of a message.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Field {
+    /// A setting of the active profile.
+    Setting(Width, &'static str),
+    /// A setting of which the message carries `factor` × value + `offset`.
+    Scaled {
+        /// Type on the wire.
+        width: Width,
+        /// The setting.
+        name: &'static str,
+        /// Multiplies the setting.
+        factor: i64,
+        /// Is added.
+        offset: i64,
+    },
+    /// Something this vehicle does not have: always this value, ignored when written.
+    Fixed(Width, i64),
+}
+
+/// An unsigned byte.
+pub(super) const fn u8(name: &'static str) -> Field {
+    Field::Setting(Width::U8, name)
+}
+
+/// A signed byte.
+pub(super) const fn i8(name: &'static str) -> Field {
+    Field::Setting(Width::I8, name)
+}
+
+/// An unsigned word.
+pub(super) const fn u16(name: &'static str) -> Field {
+    Field::Setting(Width::U16, name)
+}
+
+/// A signed word.
+pub(super) const fn i16(name: &'static str) -> Field {
+    Field::Setting(Width::I16, name)
+}
+
+/// A byte without meaning here.
+pub(super) const fn byte(value: i64) -> Field {
+    Field::Fixed(Width::U8, value)
+}
+
+/// A word without meaning here.
+pub(super) const fn word(value: i64) -> Field {
+    Field::Fixed(Width::U16, value)
+}
+
+/// A double word without meaning here.
+pub(super) const fn long(value: i64) -> Field {
+    Field::Fixed(Width::U32, value)
+}
+
+/// Writes the fields of a message.
+pub(super) fn read(fields: &[Field], settings: &Settings, reply: &mut Writer) {
+    for field in fields {
+        match *field {
+            Field::Setting(width, name) => reply.number(width, settings.number(name)),
+            Field::Scaled { width, name, factor, offset } => {
+                reply.number(width, settings.number(name) * factor + offset);
+            }
+            Field::Fixed(width, value) => reply.number(width, value),
+        }
+    }
+}
+
+/// Takes the fields of a message; settings of which no byte came keep their value.
+pub(super) fn write(fields: &[Field], settings: &mut Settings, request: &mut Reader<'_>) {
+    for field in fields {
+        if request.remaining() == 0 {
+            return;
+        }
+        match *field {
+            Field::Setting(width, name) => put(settings, name, request.number(width)),
+            Field::Scaled { width, name, factor, offset } => {
+                put(settings, name, (request.number(width) - offset) / factor);
+            }
+            Field::Fixed(width, _) => {
+                request.number(width);
+            }
+        }
+    }
+}
+
+/// Sets a number brought into the setting's range. A word position that does not exist changes nothing: there is no
+/// nearest word.
+pub(super) fn put(settings: &mut Settings, name: &str, number: i64) {
+    let Some(setting) = find(name) else { return };
+    let number = match setting.kind {
+        Kind::Number { min, max, .. } => number.clamp(min, max),
+        Kind::Choice { .. } | Kind::Port { .. } | Kind::Array { .. } | Kind::Text { .. } => number,
+    };
+    let _unknown_word = settings.set(name, Value::Number(number));
+}

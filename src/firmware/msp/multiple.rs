@@ -1,0 +1,38 @@
+//! Several questions in one request.
+
+use super::table::{self, Access};
+use super::{Call, Refused};
+
+/// Room for the answers.
+const REPLY_MAX: usize = 512;
+
+/// Answers questions that need no payload of their own, each after its length. Answers that do not fit are left out;
+/// the client asks again for them.
+pub(super) fn multiple(call: &mut Call<'_>) -> Result<(), Refused> {
+    let codes = call.request.all();
+    if codes.is_empty() {
+        return Err(Refused);
+    }
+    let mut answers: Vec<u8> = Vec::with_capacity(REPLY_MAX);
+    for &code in codes {
+        let message =
+            table::find(u16::from(code)).filter(|message| message.access == Access::Read).ok_or(Refused)?;
+        let mut question = Call {
+            configuration: call.configuration,
+            facts: call.facts,
+            request: super::Reader::new(&[]),
+            reply: super::Writer::default(),
+            action: None,
+        };
+        message.handler.run(&mut question)?;
+        let answer = question.reply.into_bytes();
+        let Ok(length) = u8::try_from(answer.len()) else { return Err(Refused) };
+        if answers.len() + 1 + answer.len() > REPLY_MAX {
+            break;
+        }
+        answers.push(length);
+        answers.extend(answer);
+    }
+    call.reply.bytes(&answers);
+    Ok(())
+}

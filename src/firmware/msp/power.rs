@@ -1,0 +1,163 @@
+//! Battery, meters and battery profiles.
+
+use super::layout::{Field, byte, i16, u8};
+use super::{Call, Refused};
+use crate::firmware::settings::{Scope, Value, find};
+
+/// Bytes of one voltage meter's subframe.
+const VOLTAGE_SUBFRAME: u8 = 5;
+/// Bytes of one current meter's subframe.
+const CURRENT_SUBFRAME: u8 = 6;
+/// The measuring meters.
+const METER_MEASURED: u8 = 10;
+/// The current meter that computes from the throttle.
+const METER_VIRTUAL: u8 = 80;
+/// Type of a current meter with a converter.
+const CURRENT_ADC: u8 = 1;
+/// Highest cell count.
+const MAX_CELLS: u8 = 24;
+
+const VOLTAGE_FIELDS: &[Field] = &[u8("vbat_scale"), u8("vbat_divider"), u8("vbat_multiplier")];
+const CURRENT_MEASURED: &[Field] = &[i16("ibata_scale"), i16("ibata_offset")];
+const CURRENT_VIRTUAL: &[Field] = &[i16("ibatv_scale"), i16("ibatv_offset")];
+
+const MIN_CELL: &str = "vbat_min_cell_voltage";
+const MAX_CELL: &str = "vbat_max_cell_voltage";
+const WARNING_CELL: &str = "vbat_warning_cell_voltage";
+const FULL_CELL: &str = "vbat_full_cell_voltage";
+
+pub(super) fn battery_config(call: &mut Call<'_>) -> Result<(), Refused> {
+    let cells = [MIN_CELL, MAX_CELL, WARNING_CELL].map(|name| call.setting(name));
+    let (capacity, voltage, current) =
+        (call.setting("bat_capacity"), call.setting("battery_meter"), call.setting("current_meter"));
+    for cell in cells {
+        call.reply.u8((cell + 5) / 10);
+    }
+    call.reply.u16(capacity);
+    call.reply.u8(voltage);
+    call.reply.u8(current);
+    for cell in cells {
+        call.reply.u16(cell);
+    }
+    Ok(())
+}
+
+pub(super) fn set_battery_config(call: &mut Call<'_>) -> Result<(), Refused> {
+    if call.request.remaining() < 7 {
+        return Err(Refused);
+    }
+    let request = &mut call.request;
+    let coarse = [(); 3].map(|()| i64::from(request.u8()) * 10);
+    let (capacity, voltage, current) = (request.u16(), request.u8(), request.u8());
+    let [min, max, warning] =
+        if request.remaining() >= 6 { [(); 3].map(|()| i64::from(request.u16())) } else { coarse };
+    if !(min <= warning && warning <= max) {
+        return Err(Refused);
+    }
+    call.set(MIN_CELL, min);
+    call.set(MAX_CELL, max);
+    call.set(WARNING_CELL, warning);
+    call.set("bat_capacity", i64::from(capacity));
+    call.set("battery_meter", i64::from(voltage));
+    call.set("current_meter", i64::from(current));
+    Ok(())
+}
+
+pub(super) fn voltage_meter_config(call: &mut Call<'_>) -> Result<(), Refused> {
+    call.reply.bytes(&[1, VOLTAGE_SUBFRAME, METER_MEASURED, 0]);
+    super::layout::read(VOLTAGE_FIELDS, &call.configuration.settings, &mut call.reply);
+    Ok(())
+}
+
+pub(super) fn set_voltage_meter_config(call: &mut Call<'_>) -> Result<(), Refused> {
+    if call.request.u8() == METER_MEASURED {
+        super::layout::write(VOLTAGE_FIELDS, &mut call.configuration.settings, &mut call.request);
+    }
+    Ok(())
+}
+
+pub(super) fn current_meter_config(call: &mut Call<'_>) -> Result<(), Refused> {
+    let settings = &call.configuration.settings;
+    call.reply.bytes(&[2, CURRENT_SUBFRAME, METER_MEASURED, CURRENT_ADC]);
+    super::layout::read(CURRENT_MEASURED, settings, &mut call.reply);
+    call.reply.bytes(&[CURRENT_SUBFRAME, METER_VIRTUAL, 0]);
+    super::layout::read(CURRENT_VIRTUAL, settings, &mut call.reply);
+    Ok(())
+}
+
+pub(super) fn set_current_meter_config(call: &mut Call<'_>) -> Result<(), Refused> {
+    let fields = match call.request.u8() {
+        METER_MEASURED => CURRENT_MEASURED,
+        METER_VIRTUAL => CURRENT_VIRTUAL,
+        _ => return Ok(()),
+    };
+    super::layout::write(fields, &mut call.configuration.settings, &mut call.request);
+    Ok(())
+}
+
+/// The numbers of a battery profile in wire order, without the profile's index: setting, bytes.
+const PROFILE: [(&str, usize); 7] = [
+    (MIN_CELL, 2),
+    (MAX_CELL, 2),
+    (WARNING_CELL, 2),
+    (FULL_CELL, 2),
+    ("bat_capacity", 2),
+    ("force_battery_cell_count", 1),
+    ("cbat_alert_percent", 1),
+];
+
+pub(super) fn battery_profile(call: &mut Call<'_>) -> Result<(), Refused> {
+    let settings = &call.configuration.settings;
+    let profile = match call.request.remaining() {
+        0 => settings.active(Scope::BatteryProfile),
+        _ => call.request.u8(),
+    };
+    if profile >= Scope::BatteryProfile.instances() {
+        return Err(Refused);
+    }
+    call.reply.u8(profile);
+    for (name, size) in PROFILE {
+        let number = match find(name).and_then(|setting| settings.value(setting, profile)) {
+            Some(Value::Number(number)) => *number,
+            _ => 0,
+        };
+        if size == 2 {
+            call.reply.u16(number);
+        } else {
+            call.reply.u8(number);
+        }
+    }
+    Ok(())
+}
+
+pub(super) fn set_battery_profile(call: &mut Call<'_>) -> Result<(), Refused> {
+    let profile = call.request.u8();
+    let mut numbers = [0_i64; PROFILE.len()];
+    for (number, (_, size)) in numbers.iter_mut().zip(PROFILE) {
+        *number = if size == 2 { i64::from(call.request.u16()) } else { i64::from(call.request.u8()) };
+    }
+    let [min, max, warning, full, _, cells, alert_percent] = numbers;
+    let in_order = min <= warning && warning <= full && full <= max;
+    if profile >= Scope::BatteryProfile.instances()
+        || !in_order
+        || cells > i64::from(MAX_CELLS)
+        || alert_percent > 100
+    {
+        return Err(Refused);
+    }
+    let settings = &mut call.configuration.settings;
+    // All or nothing.
+    let mut changed = settings.clone();
+    for ((name, _), number) in PROFILE.into_iter().zip(numbers) {
+        let setting = find(name).ok_or(Refused)?;
+        changed.put(setting, profile, Value::Number(number)).map_err(|_| Refused)?;
+    }
+    *settings = changed;
+    Ok(())
+}
+
+/// `RSSI_CONFIG`.
+pub(super) const RSSI: &[Field] = &[u8("rssi_channel")];
+
+/// `TRANSPONDER_CONFIG`: there is none.
+pub(super) const NONE: &[Field] = &[byte(0)];

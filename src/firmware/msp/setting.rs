@@ -1,0 +1,59 @@
+//! Settings by name, for clients that do not want a command line.
+
+use super::{Call, Refused};
+use crate::firmware::settings::{Kind, PORT_NAMES, Scope, Setting, find};
+
+/// Sets with `name = value`, reads with `name`; answers `name = value`.
+pub(super) fn setting(call: &mut Call<'_>) -> Result<(), Refused> {
+    let text = std::str::from_utf8(call.request.all()).map_err(|_| Refused)?.trim_matches(['\0', ' ']);
+    let (name, value) = match text.split_once('=') {
+        Some((name, value)) => (name.trim(), Some(value.trim())),
+        None => (text, None),
+    };
+    let setting = find(name).ok_or(Refused)?;
+    let settings = &mut call.configuration.settings;
+    if let Some(value) = value {
+        settings.assign(setting, value).map_err(|_| Refused)?;
+    }
+    let value = settings.active_value(setting).ok_or(Refused)?;
+    call.reply.bytes(format!("{} = {}", setting.name, setting.display(value)).as_bytes());
+    Ok(())
+}
+
+/// Describes a setting in lines of text, from an offset on, after their total length.
+pub(super) fn setting_info(call: &mut Call<'_>) -> Result<(), Refused> {
+    let request = call.request.all();
+    let (name, offset) = match request.iter().position(|&byte| byte == 0) {
+        Some(end) => {
+            let mut rest = super::Reader::new(&request[end + 1..]);
+            (&request[..end], usize::from(rest.u16()))
+        }
+        None => (request, 0),
+    };
+    let name = std::str::from_utf8(name).map_err(|_| Refused)?;
+    let text = describe(find(name.trim()).ok_or(Refused)?);
+    call.reply.u16(text.len() as i64);
+    call.reply.bytes(text.as_bytes().get(offset..).unwrap_or_default());
+    Ok(())
+}
+
+fn describe(setting: &Setting) -> String {
+    let group = match setting.scope {
+        Scope::Master => 0,
+        Scope::Profile => 1,
+        Scope::RateProfile => 2,
+        Scope::BatteryProfile => 3,
+    };
+    let mut lines = vec![format!("pgn={group}"), format!("type={}", setting.width)];
+    match setting.kind {
+        Kind::Number { min, max, .. } => lines.extend([format!("min={min}"), format!("max={max}")]),
+        Kind::Choice { words, .. } => lines.push(format!("values={}", words.join(","))),
+        Kind::Array { default } => lines.push(format!("length={}", default.len())),
+        Kind::Text { max } => lines.extend(["min=1".to_owned(), format!("max={max}")]),
+        Kind::Port { .. } => {
+            lines.push(format!("values={}", PORT_NAMES.join(",")));
+        }
+    }
+    lines.push(format!("default={}", setting.display(&setting.default_value())));
+    lines.iter().map(|line| format!("{line}\n")).collect()
+}

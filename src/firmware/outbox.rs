@@ -1,0 +1,55 @@
+//! Events on their way out of the firmware: a fixed room, and a count of what did not fit.
+
+use super::event::FirmwareEvent;
+
+/// Most events between two drains.
+pub const CAPACITY: usize = 64;
+
+/// The events since the last drain, oldest first.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Outbox {
+    events: arrayvec::ArrayVec<FirmwareEvent, CAPACITY>,
+    lost: u32,
+}
+
+impl Outbox {
+    /// Adds an event; when there is no room it is counted as lost.
+    pub fn push(&mut self, event: FirmwareEvent) {
+        if self.events.try_push(event).is_err() {
+            self.lost = self.lost.saturating_add(1);
+        }
+    }
+
+    /// Takes the oldest event.
+    pub fn take(&mut self) -> Option<FirmwareEvent> {
+        self.events.pop_at(0)
+    }
+
+    /// Whether nothing happened since the last drain.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.events.is_empty()
+    }
+
+    /// How many events were lost since boot because nobody drained in time.
+    #[must_use]
+    pub fn lost(&self) -> u32 {
+        self.lost
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_does_not_fit_is_counted() {
+        let mut outbox = Outbox::default();
+        for _ in 0..CAPACITY + 3 {
+            outbox.push(FirmwareEvent::Armed);
+        }
+        assert_eq!(outbox.lost(), 3);
+        assert_eq!(std::iter::from_fn(|| outbox.take()).count(), CAPACITY);
+        assert!(outbox.is_empty());
+    }
+}

@@ -1,0 +1,333 @@
+//! Typed parameters of the running firmware, made from the configuration outside the tick.
+//!
+//! Most follow the configuration at once. What the pages of the settings call "at boot" is taken once, in
+//! [`BootChoices`], and kept until the next restart.
+
+use crate::autopilot::Params;
+
+use super::FirmwareOptions;
+use super::arming::ArmingConfig;
+use super::arming::runaway::RunawayConfig;
+use super::battery::BatteryConfig;
+use super::config::{
+    ChannelMap, Configuration, Feature, Features, MAX_MIX_ROWS, MODE_CONDITIONS, MixRow, MixerKind,
+    ModeCondition,
+};
+use super::control::Tuning;
+use super::control::hold::HoldTuning;
+use super::estimate::EstimatorTuning;
+use super::failsafe::link::LinkConfig;
+use super::failsafe::{FailsafeConfig, Procedure, SwitchMode};
+use super::modes::boxes;
+use super::rx::{ChannelConfig, RxConfig, StickConfig};
+use super::settings::Settings;
+
+/// What changes only with a restart.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BootChoices {
+    /// Feature switches.
+    pub features: Features,
+    /// Order of the stick channels on the wire.
+    pub channel_map: ChannelMap,
+    /// AUX channels evaluated.
+    pub max_aux: u8,
+    /// A magnetometer is present.
+    pub mag: bool,
+    /// The airframe type.
+    pub mixer: MixerKind,
+    /// Rows of the custom mix.
+    pub custom_mix: [MixRow; MAX_MIX_ROWS],
+    /// Gyro samples for each run of the rate loop.
+    pub pid_denominator: u8,
+}
+
+impl BootChoices {
+    /// The choices of a configuration.
+    #[must_use]
+    pub fn new(configuration: &Configuration) -> Self {
+        let settings = &configuration.settings;
+        Self {
+            features: configuration.features,
+            channel_map: configuration.channel_map,
+            max_aux: small(settings, "max_aux_channels"),
+            mag: settings.text("mag_hardware") != "NONE",
+            mixer: configuration.mixer,
+            custom_mix: configuration.custom_mix,
+            pid_denominator: small(settings, "pid_process_denom"),
+        }
+    }
+}
+
+/// Altitude of a GPS rescue.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum RescueAltitude {
+    /// The highest of this flight and the initial climb on top.
+    #[default]
+    HighestOfFlight,
+    /// A fixed altitude above home.
+    Fixed,
+    /// The present one and the initial climb on top.
+    Present,
+}
+
+/// Settings of GPS rescue.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct RescueConfig {
+    /// How the return altitude is chosen.
+    pub altitude: RescueAltitude,
+    /// Climb on top, m.
+    pub initial_climb_m: f64,
+    /// Fixed return altitude above home, m.
+    pub return_alt_m: f64,
+    /// Climb rate, m/s.
+    pub ascend_mps: f64,
+    /// Sink rate down to the last metres, m/s.
+    pub descend_mps: f64,
+    /// Speed on the way home, m/s.
+    pub ground_speed_mps: f64,
+    /// Satellites that make home and rescue trustworthy.
+    pub min_sats: u8,
+    /// Home stays where the craft was armed first.
+    pub home_once: bool,
+}
+
+/// Everything the firmware's own state machines need.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Parameters {
+    /// Receiver.
+    pub rx: RxConfig,
+    /// Debouncing of the link.
+    pub link: LinkConfig,
+    /// Failsafe machine.
+    pub failsafe: FailsafeConfig,
+    /// Arming.
+    pub arming: ArmingConfig,
+    /// Runaway take-off prevention.
+    pub runaway: RunawayConfig,
+    /// Jerk that ends a landing, setting units; 0 = off.
+    pub landing_disarm_threshold: f64,
+    /// Mode conditions.
+    pub modes: [ModeCondition; MODE_CONDITIONS],
+    /// GPS rescue.
+    pub rescue: RescueConfig,
+    /// Battery thresholds.
+    pub battery: BatteryConfig,
+    /// Feature GPS.
+    pub gps: bool,
+    /// Airmode is always on.
+    pub airmode: bool,
+    /// Motors stand still at low throttle.
+    pub motor_stop: bool,
+    /// Altitude and position hold.
+    pub hold: HoldTuning,
+    /// The navigator's parameters.
+    pub nav: Params,
+    /// The estimator's tuning.
+    pub estimator: EstimatorTuning,
+    /// The controller's tuning.
+    pub control: Tuning,
+}
+
+impl Parameters {
+    /// The parameters of a configuration and the choices made at boot.
+    #[must_use]
+    pub fn new(configuration: &Configuration, boot: &BootChoices, options: &FirmwareOptions) -> Self {
+        let settings = &configuration.settings;
+        let number = |name| settings.number(name) as f64;
+        let motor_stop = boot.features.has(Feature::MotorStop);
+        let airmode = boot.features.has(Feature::AirMode);
+        Self {
+            rx: receiver(configuration, boot),
+            link: LinkConfig {
+                delay_s: number("failsafe_delay") / 10.0,
+                recovery_delay_s: number("failsafe_recovery_delay") / 10.0,
+            },
+            failsafe: failsafe(settings),
+            arming: arming(configuration, options, motor_stop && !airmode),
+            runaway: RunawayConfig {
+                enabled: settings.flag("runaway_takeoff_prevention"),
+                deactivate_delay_s: number("runaway_takeoff_deactivate_delay") / 1000.0,
+                deactivate_throttle_percent: number("runaway_takeoff_deactivate_throttle_percent"),
+            },
+            landing_disarm_threshold: number("landing_disarm_threshold"),
+            modes: configuration.modes,
+            rescue: rescue(settings),
+            battery: battery(settings),
+            gps: boot.features.has(Feature::Gps),
+            airmode,
+            motor_stop,
+            hold: HoldTuning::from_settings(settings),
+            nav: navigator(settings),
+            estimator: EstimatorTuning { has_mag: boot.mag, ..EstimatorTuning::from_settings(settings) },
+            control: control(settings, boot),
+        }
+    }
+}
+
+fn control(settings: &Settings, boot: &BootChoices) -> Tuning {
+    let mut tuning = Tuning::from_settings(settings, boot.mixer, &boot.custom_mix);
+    tuning.rate.denominator = boot.pid_denominator;
+    tuning
+}
+
+/// A number that fits a byte; the settings keep to their ranges.
+fn small(settings: &Settings, name: &str) -> u8 {
+    settings.number(name).clamp(0, 255) as u8
+}
+
+/// A pulse, µs.
+fn pulse(settings: &Settings, name: &str) -> u16 {
+    settings.number(name).clamp(0, i64::from(u16::MAX)) as u16
+}
+
+fn receiver(configuration: &Configuration, boot: &BootChoices) -> RxConfig {
+    let settings = &configuration.settings;
+    let mid_us = pulse(settings, "mid_rc");
+    RxConfig {
+        channels: ChannelConfig {
+            map: boot.channel_map,
+            max_aux: boot.max_aux,
+            min_us: pulse(settings, "rx_min_usec"),
+            max_us: pulse(settings, "rx_max_usec"),
+            mid_us,
+            ranges: configuration.rx_ranges,
+            fail: configuration.rx_fail.0,
+            failsafe_throttle_us: pulse(settings, "failsafe_throttle"),
+        },
+        sticks: StickConfig {
+            mid_us,
+            deadband: pulse(settings, "deadband"),
+            yaw_deadband: pulse(settings, "yaw_deadband"),
+        },
+    }
+}
+
+fn failsafe(settings: &Settings) -> FailsafeConfig {
+    let number = |name| settings.number(name) as f64;
+    FailsafeConfig {
+        start_s: number("pwr_on_arm_grace"),
+        landing_time_s: number("failsafe_landing_time"),
+        throttle_low_s: number("failsafe_throttle_low_delay") / 10.0,
+        stick_threshold_percent: number("failsafe_stick_threshold"),
+        switch_mode: match settings.text("failsafe_switch_mode") {
+            "KILL" => SwitchMode::Kill,
+            "STAGE2" => SwitchMode::Stage2,
+            _ => SwitchMode::Stage1,
+        },
+        procedure: match settings.text("failsafe_procedure") {
+            "AUTO-LAND" => Procedure::AutoLand,
+            "GPS-RESCUE" => Procedure::GpsRescue,
+            _ => Procedure::Drop,
+        },
+    }
+}
+
+fn arming(configuration: &Configuration, options: &FirmwareOptions, motors_stop: bool) -> ArmingConfig {
+    let settings = &configuration.settings;
+    let number = |name| settings.number(name) as f64;
+    let has =
+        |id| configuration.modes.iter().any(|condition| condition.box_id == id && condition.is_usable());
+    let min_check_us = number("min_check");
+    let raised_part = number("airmode_start_throttle_percent") / 100.0;
+    let stick_arming = settings.flag("enable_stick_arming");
+    ArmingConfig {
+        min_check_us,
+        small_angle_rad: Some(number("small_angle").to_radians())
+            .filter(|&angle| angle < std::f64::consts::PI),
+        boot_grace_s: number("pwr_on_arm_grace"),
+        prearm_allow_rearm: settings.flag("prearm_allow_rearm"),
+        has_arm_condition: has(boxes::ARM),
+        has_prearm_condition: has(boxes::PREARM),
+        rescue_configured: has(boxes::GPS_RESCUE) || settings.text("failsafe_procedure") == "GPS-RESCUE",
+        rescue_min_sats: small(settings, "gps_rescue_min_sats"),
+        rescue_allow_without_fix: settings.flag("gps_rescue_allow_arming_without_fix"),
+        stick_arming,
+        auto_disarm_s: (motors_stop && stick_arming)
+            .then(|| number("auto_disarm_delay"))
+            .filter(|&delay| delay > 0.0),
+        raised_throttle_us: min_check_us + raised_part * (2000.0 - min_check_us),
+        assist: options.arm_assist,
+    }
+}
+
+fn rescue(settings: &Settings) -> RescueConfig {
+    let number = |name| settings.number(name) as f64;
+    RescueConfig {
+        altitude: match settings.text("gps_rescue_alt_mode") {
+            "FIXED_ALT" => RescueAltitude::Fixed,
+            "CURRENT_ALT" => RescueAltitude::Present,
+            _ => RescueAltitude::HighestOfFlight,
+        },
+        initial_climb_m: number("gps_rescue_initial_climb"),
+        return_alt_m: number("gps_rescue_return_alt"),
+        ascend_mps: number("gps_rescue_ascend_rate") / 100.0,
+        descend_mps: number("gps_rescue_descend_rate") / 100.0,
+        ground_speed_mps: number("gps_rescue_ground_speed") / 100.0,
+        min_sats: small(settings, "gps_rescue_min_sats"),
+        home_once: settings.flag("gps_set_home_point_once"),
+    }
+}
+
+fn battery(settings: &Settings) -> BatteryConfig {
+    let volts = |name| settings.number(name) as f64 / 100.0;
+    BatteryConfig {
+        max_cell_v: volts("vbat_max_cell_voltage"),
+        warning_cell_v: volts("vbat_warning_cell_voltage"),
+        min_cell_v: volts("vbat_min_cell_voltage"),
+        cells: small(settings, "force_battery_cell_count"),
+    }
+}
+
+/// The navigator's parameters by their names; the few that the settings allow a wider range are limited.
+fn navigator(settings: &Settings) -> Params {
+    let mut params = Params::default();
+    for field in Params::FIELDS {
+        (field.set)(&mut params, settings.number(field.name).clamp(field.min, field.max));
+    }
+    params
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::settings::find;
+    use super::*;
+
+    #[test]
+    fn defaults_of_settings_and_modules_agree() {
+        let configuration = Configuration::default();
+        let boot = BootChoices::new(&configuration);
+        let parameters = Parameters::new(&configuration, &boot, &FirmwareOptions::default());
+        assert_eq!(parameters.rx, RxConfig::default());
+        assert_eq!(parameters.link, LinkConfig::default());
+        assert_eq!(parameters.failsafe, FailsafeConfig::default());
+        assert_eq!(parameters.runaway, RunawayConfig::default());
+        assert_eq!(parameters.nav, Params::default());
+        assert_eq!(parameters.battery, BatteryConfig::default());
+        let arming = ArmingConfig {
+            has_arm_condition: false,
+            small_angle_rad: Some(25_f64.to_radians()),
+            ..ArmingConfig::default()
+        };
+        assert_eq!(parameters.arming, arming);
+    }
+
+    #[test]
+    fn what_needs_a_restart_waits_for_it() {
+        let mut configuration = Configuration::default();
+        let boot = BootChoices::new(&configuration);
+        configuration.channel_map = ChannelMap::parse("TAER1234").unwrap();
+        configuration.settings.set_number("max_aux_channels", 2).unwrap();
+        configuration.settings.set_number("mid_rc", 1480).unwrap();
+        configuration.mixer = MixerKind::QuadP;
+        configuration.settings.set_number("pid_process_denom", 4).unwrap();
+        let mag = find("mag_hardware").unwrap();
+        configuration.settings.assign(mag, "NONE").unwrap();
+        let parameters = Parameters::new(&configuration, &boot, &FirmwareOptions::default());
+        assert_eq!(parameters.rx.channels.map, ChannelMap::default());
+        assert_eq!(parameters.rx.channels.max_aux, 6);
+        assert_eq!(parameters.rx.channels.mid_us, 1480);
+        assert_eq!(parameters.control.mixer, Tuning::default().mixer);
+        assert_eq!(parameters.control.rate.denominator, 1);
+        assert!(parameters.estimator.has_mag);
+    }
+}

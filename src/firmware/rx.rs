@@ -1,0 +1,212 @@
+//! The receiver: sources, channels, sticks, and whether the signal is there.
+//!
+//! ```text
+//! frames ─► Sources (who drives) ─► Channels (map, range, hold, substitution) ─► Sticks
+//!                                        └► Signal (lost after 150 ms)
+//! ```
+//!
+//! Ages count in the firmware's own time, given with each call.
+
+pub mod channels;
+pub mod source;
+pub mod sticks;
+
+pub use channels::{ChannelConfig, Channels};
+pub use source::Sources;
+pub use sticks::{StickConfig, Sticks};
+
+use crate::signals::{RC_CHANNELS, RcFrame, RcSource, SimTime};
+
+/// Without a frame for longer than this the signal is lost, s.
+const SIGNAL_LOSS_S: f64 = 0.15;
+/// Without frames the receiver looks this often, s.
+const LOOK_EVERY_S: f64 = 0.05;
+
+/// Receiver settings.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct RxConfig {
+    /// How pulses become channel values.
+    pub channels: ChannelConfig,
+    /// How channel values become stick positions.
+    pub sticks: StickConfig,
+}
+
+/// The receiver.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Receiver {
+    sources: Sources,
+    channels: Channels,
+    sticks: Sticks,
+    pending: bool,
+    last_frame: Option<SimTime>,
+    last_pass: SimTime,
+    signal: bool,
+}
+
+impl Receiver {
+    /// A receiver that has heard nothing yet.
+    #[must_use]
+    pub fn new(config: &RxConfig) -> Self {
+        let channels = Channels::new(&config.channels);
+        Self {
+            sources: Sources::default(),
+            sticks: Sticks::from_channels(&config.sticks, channels.values()),
+            channels,
+            pending: false,
+            last_frame: None,
+            last_pass: SimTime::ZERO,
+            signal: false,
+        }
+    }
+
+    /// Takes a frame.
+    pub fn receive(&mut self, config: &RxConfig, frame: RcFrame, source: RcSource, now: SimTime) {
+        if let Some(frame) = self.sources.receive(frame, source, now) {
+            self.channels.receive(&config.channels, &frame, now);
+            self.last_frame = Some(now);
+            self.pending = true;
+        }
+    }
+
+    /// Whether a pass is due: a new frame, or 50 ms without one.
+    #[must_use]
+    pub fn is_due(&self, now: SimTime) -> bool {
+        self.pending || now.seconds_since(self.last_pass) >= LOOK_EVERY_S
+    }
+
+    /// One pass: judges the signal and recomputes channels and sticks. `switched_off` counts as signal loss (the
+    /// FAILSAFE switch in its first mode); `procedure` says that a failsafe procedure owns the sticks. Says whether a new
+    /// frame was used.
+    pub fn update(&mut self, config: &RxConfig, now: SimTime, switched_off: bool, procedure: bool) -> bool {
+        let fresh = self.last_frame.is_some_and(|last| now.seconds_since(last) <= SIGNAL_LOSS_S);
+        self.signal = fresh && self.channels.flight_channels_valid(now) && !switched_off;
+        self.channels.update(&config.channels, now, procedure);
+        self.sticks = Sticks::from_channels(&config.sticks, self.channels.values());
+        self.last_pass = now;
+        std::mem::take(&mut self.pending)
+    }
+
+    /// Whether the signal is there: a frame within 150 ms with valid flight channels.
+    #[must_use]
+    pub fn signal(&self) -> bool {
+        self.signal
+    }
+
+    /// Whether any frame was ever used.
+    #[must_use]
+    pub fn has_heard(&self) -> bool {
+        self.last_frame.is_some()
+    }
+
+    /// When the newest frame that was used came.
+    #[must_use]
+    pub fn last_frame(&self) -> Option<SimTime> {
+        self.last_frame
+    }
+
+    /// The channel values in use, µs: roll, pitch, yaw, throttle, AUX1….
+    #[must_use]
+    pub fn channels(&self) -> &[u16; RC_CHANNELS] {
+        self.channels.values()
+    }
+
+    /// The live AUX channels in use, µs.
+    #[must_use]
+    pub fn aux(&self, config: &RxConfig) -> &[u16] {
+        self.channels.aux(&config.channels)
+    }
+
+    /// The stick positions in use.
+    #[must_use]
+    pub fn sticks(&self) -> &Sticks {
+        &self.sticks
+    }
+
+    /// The stick positions as received, whatever a failsafe substitutes.
+    #[must_use]
+    pub fn received_sticks(&self, config: &RxConfig) -> Sticks {
+        Sticks::from_channels(&config.sticks, self.channels.received())
+    }
+
+    /// Who drives.
+    #[must_use]
+    pub fn sources(&self) -> &Sources {
+        &self.sources
+    }
+
+    /// Lets the virtual sticks win over the other sources, or ends that.
+    pub fn take_over(&mut self, sticks_first: bool) {
+        self.sources.take_over(sticks_first);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(ms: u64) -> SimTime {
+        SimTime(ms * 1000)
+    }
+
+    /// Runs the passes of a receiver that gets frames every 20 ms up to `stop_ms`, and says when the signal was lost.
+    fn lost_after(stop_ms: u64) -> Option<u64> {
+        let config = RxConfig::default();
+        let mut rx = Receiver::new(&config);
+        for ms in 0..stop_ms + 1000 {
+            if ms <= stop_ms && ms % 20 == 0 {
+                rx.receive(&config, RcFrame::SAFE, RcSource::Sticks, at(ms));
+            }
+            if rx.is_due(at(ms)) {
+                rx.update(&config, at(ms), false, false);
+                if ms > 0 && !rx.signal() {
+                    return Some(ms);
+                }
+            }
+        }
+        None
+    }
+
+    #[test]
+    fn signal_is_lost_between_150_and_210_ms_after_the_last_frame() {
+        let lost = lost_after(1000).unwrap();
+        assert!((1150..=1210).contains(&lost), "{lost}");
+    }
+
+    #[test]
+    fn a_gap_of_150_ms_is_no_loss() {
+        let config = RxConfig::default();
+        let mut rx = Receiver::new(&config);
+        for ms in 0..=150 {
+            if ms == 0 || ms == 150 {
+                rx.receive(&config, RcFrame::SAFE, RcSource::Udp, at(ms));
+            }
+            if rx.is_due(at(ms)) {
+                rx.update(&config, at(ms), false, false);
+                assert!(rx.signal(), "{ms}");
+            }
+        }
+    }
+
+    #[test]
+    fn switch_counts_as_loss_at_once() {
+        let config = RxConfig::default();
+        let mut rx = Receiver::new(&config);
+        rx.receive(&config, RcFrame::SAFE, RcSource::Udp, at(0));
+        rx.update(&config, at(0), true, false);
+        assert!(!rx.signal());
+    }
+
+    #[test]
+    fn invalid_throttle_counts_as_loss_after_300_ms() {
+        let config = RxConfig::default();
+        let mut rx = Receiver::new(&config);
+        let mut bad = RcFrame::SAFE;
+        bad.channels[2] = 0;
+        for ms in (0..=320).step_by(20) {
+            let frame = if ms == 0 { RcFrame::SAFE } else { bad };
+            rx.receive(&config, frame, RcSource::Udp, at(ms));
+            rx.update(&config, at(ms), false, false);
+            assert_eq!(rx.signal(), ms <= 300, "{ms}");
+        }
+    }
+}

@@ -1,0 +1,242 @@
+//! The values of all settings.
+
+use super::parse::{check, parse};
+use super::table::{SETTINGS, find, slots};
+use super::{AssignError, Kind, Scope, Setting};
+use strum::IntoEnumIterator;
+
+/// The value of one setting.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Value {
+    /// A number, the position of a word in its list, or the number of a port.
+    Number(i64),
+    /// The elements of an array.
+    Array(Vec<i64>),
+    /// A text.
+    Text(String),
+}
+
+/// The values of all settings, of all profiles.
+///
+/// Two stores are equal when their values and active profiles are; the generation does not count.
+#[derive(Debug, Clone)]
+pub struct Settings {
+    values: Vec<Value>,
+    active: [u8; 4],
+    generation: u32,
+}
+
+impl PartialEq for Settings {
+    fn eq(&self, other: &Self) -> bool {
+        self.values == other.values && self.active == other.active
+    }
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        let mut values = Vec::new();
+        for scope in Scope::iter() {
+            for _ in 0..scope.instances() {
+                values.extend(of_scope(scope).map(Setting::default_value));
+            }
+        }
+        Self { values, active: [0; 4], generation: 0 }
+    }
+}
+
+/// The settings of one scope in table order.
+fn of_scope(scope: Scope) -> impl Iterator<Item = &'static Setting> {
+    SETTINGS.iter().filter(move |setting| setting.scope == scope)
+}
+
+impl Settings {
+    /// Grows by one with every change, so that readers know when to refresh what they derived.
+    #[must_use]
+    pub fn generation(&self) -> u32 {
+        self.generation
+    }
+
+    /// A number, the position of the chosen word, or a port number, in the active profile; 0 for any other name.
+    #[must_use]
+    pub fn number(&self, name: &str) -> i64 {
+        match find(name).and_then(|setting| self.active_value(setting)) {
+            Some(Value::Number(number)) => *number,
+            _ => 0,
+        }
+    }
+
+    /// Whether a switch of the active profile is ON; `false` for any other name.
+    #[must_use]
+    pub fn flag(&self, name: &str) -> bool {
+        self.number(name) != 0
+    }
+
+    /// A text, or the chosen word in canonical case; empty for any other name.
+    #[must_use]
+    pub fn text(&self, name: &str) -> &str {
+        let Some(setting) = find(name) else { return "" };
+        match (self.active_value(setting), setting.kind) {
+            (Some(Value::Text(text)), _) => text,
+            (Some(Value::Number(at)), Kind::Choice { words, .. }) => super::word_at(words, *at),
+            (Some(Value::Number(at)), Kind::Port { .. }) => super::word_at(&super::PORT_NAMES, *at),
+            _ => "",
+        }
+    }
+
+    /// The elements of an array setting; empty for any other name.
+    #[must_use]
+    pub fn array(&self, name: &str) -> &[i64] {
+        match find(name).and_then(|setting| self.active_value(setting)) {
+            Some(Value::Array(numbers)) => numbers,
+            _ => &[],
+        }
+    }
+
+    /// The value of a setting in one profile; `None` when the profile does not exist.
+    #[must_use]
+    pub fn value(&self, setting: &Setting, instance: u8) -> Option<&Value> {
+        self.values.get(offset(setting, instance)?)
+    }
+
+    /// The value of a setting in the active profile.
+    #[must_use]
+    pub fn active_value(&self, setting: &Setting) -> Option<&Value> {
+        self.value(setting, self.active(setting.scope))
+    }
+
+    /// Whether a setting differs from the default in one profile.
+    #[must_use]
+    pub fn is_changed(&self, setting: &Setting, instance: u8) -> bool {
+        self.value(setting, instance).is_some_and(|value| *value != setting.default_value())
+    }
+
+    /// The active instance of a scope.
+    #[must_use]
+    pub fn active(&self, scope: Scope) -> u8 {
+        self.active[scope as usize]
+    }
+
+    /// Makes another profile the active one; an instance that does not exist is refused with `false`.
+    pub fn select(&mut self, scope: Scope, instance: u8) -> bool {
+        let exists = instance < scope.instances();
+        if exists && self.active[scope as usize] != instance {
+            self.active[scope as usize] = instance;
+            self.touch();
+        }
+        exists
+    }
+
+    /// Reads `text` as the value of a setting of the active profile.
+    pub fn assign(&mut self, setting: &Setting, text: &str) -> Result<(), AssignError> {
+        self.assign_in(setting, self.active(setting.scope), text)
+    }
+
+    /// Reads `text` as the value of a setting of one profile.
+    pub fn assign_in(&mut self, setting: &Setting, instance: u8, text: &str) -> Result<(), AssignError> {
+        self.put(setting, instance, parse(setting, text)?)
+    }
+
+    /// Sets a number, word position or port number in the active profile.
+    pub fn set_number(&mut self, name: &str, number: i64) -> Result<(), AssignError> {
+        self.set(name, Value::Number(number))
+    }
+
+    /// Sets a text of the active profile; the empty text is allowed.
+    pub fn set_text(&mut self, name: &str, text: &str) -> Result<(), AssignError> {
+        self.set(name, Value::Text(text.to_owned()))
+    }
+
+    /// Sets any value in the active profile.
+    pub fn set(&mut self, name: &str, value: Value) -> Result<(), AssignError> {
+        let setting = find(name).ok_or(AssignError::UnknownName)?;
+        self.put(setting, self.active(setting.scope), value)
+    }
+
+    /// Sets a value in one profile after checking it.
+    pub fn put(&mut self, setting: &Setting, instance: u8, value: Value) -> Result<(), AssignError> {
+        let value = check(setting, value)?;
+        let place = offset(setting, instance).and_then(|at| self.values.get_mut(at));
+        let place = place.ok_or(AssignError::UnknownName)?;
+        if *place != value {
+            *place = value;
+            self.touch();
+        }
+        Ok(())
+    }
+
+    /// Returns all values and the profile selection to those of a fresh vehicle.
+    pub fn reset(&mut self) {
+        *self = Self { generation: self.generation.wrapping_add(1), ..Self::default() };
+    }
+
+    fn touch(&mut self) {
+        self.generation = self.generation.wrapping_add(1);
+    }
+}
+
+/// Where the value of a setting lies in the store.
+fn offset(setting: &Setting, instance: u8) -> Option<usize> {
+    if instance >= setting.scope.instances() {
+        return None;
+    }
+    let before: usize = Scope::iter()
+        .take_while(|scope| *scope != setting.scope)
+        .map(|scope| slots(scope) * usize::from(scope.instances()))
+        .sum();
+    Some(before + usize::from(instance) * slots(setting.scope) + setting.slot)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn profiles_keep_their_own_values() {
+        let mut settings = Settings::default();
+        assert!(settings.select(Scope::Profile, 2));
+        settings.set_number("p_roll", 99).expect("allowed");
+        assert!(settings.select(Scope::RateProfile, 3));
+        settings.set_number("roll_srate", 11).expect("allowed");
+        assert_eq!((settings.number("p_roll"), settings.number("roll_srate")), (99, 11));
+        assert!(settings.select(Scope::Profile, 0) && settings.select(Scope::RateProfile, 0));
+        assert_eq!((settings.number("p_roll"), settings.number("roll_srate")), (45, 67));
+        assert!(!settings.select(Scope::Profile, 4) && !settings.select(Scope::BatteryProfile, 3));
+        assert_eq!(settings.active(Scope::Profile), 0);
+    }
+
+    #[test]
+    fn every_change_is_announced_and_nothing_else() {
+        let mut settings = Settings::default();
+        let mut seen = settings.generation();
+        let mut changed = |settings: &Settings| std::mem::replace(&mut seen, settings.generation()) != seen;
+        settings.set_number("small_angle", 25).expect("allowed");
+        assert!(!changed(&settings), "the value was there already");
+        settings.set_number("small_angle", 180).expect("allowed");
+        assert!(changed(&settings));
+        settings.set_number("small_angle", 181).expect_err("too large");
+        assert!(!changed(&settings));
+        assert!(settings.select(Scope::Profile, 1));
+        assert!(changed(&settings));
+        settings.reset();
+        assert!(changed(&settings));
+        assert_eq!(settings, Settings::default());
+    }
+
+    #[test]
+    fn wrong_names_and_kinds_answer_with_nothing() {
+        let mut settings = Settings::default();
+        assert_eq!((settings.number("nonsense"), settings.text("nonsense")), (0, ""));
+        assert_eq!((settings.number("craft_name"), settings.text("small_angle")), (0, ""));
+        assert_eq!(settings.array("motor_output_reordering"), [0, 1, 2, 3, 4, 5, 6, 7]);
+        assert_eq!((settings.text("ap_yaw_mode"), settings.text("msp_uart_1")), ("VELOCITY", "UART1"));
+        assert!(settings.flag("ap_l1_enable"));
+        assert_eq!(settings.set_text("small_angle", "1"), Err(AssignError::InvalidValue));
+        assert_eq!(settings.set_number("ap_yaw_mode", 5), Err(AssignError::InvalidValue));
+        assert_eq!(settings.set_number("nonsense", 5), Err(AssignError::UnknownName));
+        assert_eq!(
+            settings.set_text("craft_name", "seventeen letters"),
+            Err(AssignError::TextTooLong { max: 16 })
+        );
+        assert_eq!(settings.set_text("craft_name", "a#b"), Err(AssignError::InvalidValue));
+    }
+}

@@ -1,0 +1,35 @@
+//! Altitude and position hold and the altitude estimate.
+
+use super::super::Role::{Carry, Live};
+use super::super::Scope;
+use super::super::Width::{I8, U8, U16};
+use super::{Group, choice, number};
+
+/// Altitude and position hold.
+#[rustfmt::skip]
+pub(super) const HOLD: Group = Group {
+    title: "Altitude and position hold",
+    scope: Scope::Master,
+    settings: &[
+        number("alt_hold_climb_rate", U8, 0, 200, 50, Live, "Climb rate at full stick in altitude hold, 0.1 m/s."),
+        number("alt_hold_deadband", U8, 0, 70, 20, Live, "Throttle stick around hover that keeps the altitude, percent."),
+        number("pos_hold_deadband", U8, 0, 50, 5, Live, "Stick movement beyond which the pilot steers in position hold, percent."),
+        choice("poshold_position_source", U8, &["AUTO", "GPS_ONLY", "OPTICALFLOW_ONLY"], 0, Live, "Where position hold takes its position from."),
+        number("poshold_opticalflow_quality_min", U8, 0, 100, 30, Carry, "Least quality of optical flow, percent."),
+        number("poshold_opticalflow_max_range", U16, 50, 1000, 400, Carry, "Greatest height for optical flow, cm."),
+    ],
+};
+
+/// Altitude estimate.
+#[rustfmt::skip]
+pub(super) const ALTITUDE: Group = Group {
+    title: "Altitude estimate",
+    scope: Scope::Master,
+    settings: &[
+        choice("altitude_source", I8, &["DEFAULT", "BARO_ONLY", "GPS_ONLY", "RANGEFINDER_PREFER", "RANGEFINDER_ONLY"], 0, Live, "Sensors the altitude is made from."),
+        number("altitude_prefer_baro", I8, 0, 100, 100, Live, "Weight of the barometer against the GPS, percent."),
+        number("altitude_lpf", U16, 10, 5000, 300, Live, "Smoothing of the shown altitude, 0.01 Hz."),
+        number("rangefinder_max_range_cm", U16, 50, 1000, 400, Carry, "Greatest height for a rangefinder, cm."),
+        number("altitude_d_lpf", U16, 10, 5000, 300, Live, "Smoothing of the climb rate, 0.01 Hz."),
+    ],
+};

@@ -1,0 +1,34 @@
+//! Battery sensing.
+
+use super::super::Role::{Carry, Live};
+use super::super::Scope;
+use super::super::Width::{I16, U8, U16};
+use super::{Group, choice, number, switch};
+
+/// Power monitoring.
+#[rustfmt::skip]
+pub(super) const POWER: Group = Group {
+    title: "Power monitoring",
+    scope: Scope::Master,
+    settings: &[
+        number("vbat_hysteresis", U8, 0, 250, 1, Carry, "Voltage by which a battery alarm must clear, 0.01 V."),
+        choice("current_meter", U8, &["NONE", "ADC", "VIRTUAL", "ESC", "MSP"], 2, Carry, "Source of the current measurement.").hardware(),
+        choice("battery_meter", U8, &["NONE", "ADC", "ESC"], 0, Live, "Source of the voltage measurement.").hardware(),
+        number("vbat_detect_cell_voltage", U16, 0, 2000, 300, Carry, "Voltage a cell must show to be counted, 0.01 V."),
+        switch("use_vbat_alerts", U8, true, Carry, "Warn by voltage."),
+        switch("use_cbat_alerts", U8, false, Carry, "Warn by capacity used."),
+        number("vbat_cutoff_percent", U8, 0, 100, 100, Carry, "Throttle left at a critical battery, percent."),
+        number("vbat_display_lpf_period", U8, 1, 255, 30, Carry, "Smoothing of the shown voltage, 0.1 s."),
+        number("vbat_sag_lpf_period", U8, 1, 255, 2, Carry, "Smoothing of the voltage for sag compensation, 0.1 s."),
+        number("ibat_lpf_period", U8, 0, 255, 10, Carry, "Smoothing of the current, 0.1 s."),
+        number("vbat_duration_for_warning", U8, 0, 150, 0, Carry, "How long the voltage must be low for a warning, 0.1 s."),
+        number("vbat_duration_for_critical", U8, 0, 150, 0, Carry, "How long the voltage must be low for an alarm, 0.1 s."),
+        number("vbat_scale", U8, 0, 255, 110, Carry, "Scale of the voltage divider.").hardware(),
+        number("vbat_divider", U8, 1, 255, 10, Carry, "Divider of the voltage measurement."),
+        number("vbat_multiplier", U8, 1, 255, 1, Carry, "Multiplier of the voltage measurement."),
+        number("ibata_scale", I16, -16000, 16000, 400, Carry, "Scale of the current sensor, 0.1 mV/A.").hardware(),
+        number("ibata_offset", I16, -32000, 32000, 0, Carry, "Offset of the current sensor, mA."),
+        number("ibatv_scale", I16, -16000, 16000, 0, Carry, "Scale of the virtual current meter."),
+        number("ibatv_offset", U16, 0, 16000, 0, Carry, "Offset of the virtual current meter, mA."),
+    ],
+};

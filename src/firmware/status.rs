@@ -1,0 +1,252 @@
+//! What displays and links see of the firmware: plain pictures of the present instant.
+
+use arrayvec::ArrayVec;
+
+use crate::autopilot::io::NavTelemetry;
+use crate::geo::LatLon;
+use crate::plan::FlightPlan;
+use crate::signals::{RC_CHANNELS, RcSource, SimTime};
+use crate::vehicle::snapshot::{CraftView, EstimateView, ModeRange, SettingsView};
+
+use super::arming::ArmingFlags;
+use super::config::{Configuration, ModeCondition};
+use super::estimate::Estimate;
+use super::event::{DisarmReason, FirmwareEvent};
+use super::mode::ModeFlags;
+use super::modes::{BoxSet, boxes};
+use super::parameters::Parameters;
+use super::rx::{Receiver, channels};
+use super::{Firmware, battery};
+
+impl Firmware {
+    /// Takes the oldest event that was not taken yet.
+    pub fn take_event(&mut self) -> Option<FirmwareEvent> {
+        self.outbox.take()
+    }
+
+    /// How many events were lost because nobody drained in time; 0 when drained after every step.
+    #[must_use]
+    pub fn events_lost(&self) -> u32 {
+        self.outbox.lost()
+    }
+
+    /// Whether the craft is armed.
+    #[must_use]
+    pub fn is_armed(&self) -> bool {
+        self.arming.armed()
+    }
+
+    /// Why the craft was disarmed last.
+    #[must_use]
+    pub fn last_disarm(&self) -> Option<DisarmReason> {
+        self.last_disarm
+    }
+
+    /// What blocks arming.
+    #[must_use]
+    pub fn arming_flags(&self) -> ArmingFlags {
+        self.arming.flags()
+    }
+
+    /// The active modes.
+    #[must_use]
+    pub fn modes(&self) -> ModeFlags {
+        self.modes
+    }
+
+    /// The boxes that are switched on.
+    #[must_use]
+    pub fn boxes(&self) -> BoxSet {
+        self.boxes
+    }
+
+    /// The receiver.
+    #[must_use]
+    pub fn receiver(&self) -> &Receiver {
+        &self.rx
+    }
+
+    /// What the controller did in the last step.
+    #[must_use]
+    pub fn control(&self) -> &super::control::ControlState {
+        self.flight.state()
+    }
+
+    /// The battery.
+    #[must_use]
+    pub fn battery(&self) -> &battery::Battery {
+        &self.battery
+    }
+
+    /// What the estimator believes.
+    #[must_use]
+    pub fn estimate(&self) -> &Estimate {
+        self.estimator.estimate()
+    }
+
+    /// Altitude above home, m.
+    #[must_use]
+    pub fn altitude_m(&self) -> f64 {
+        self.estimate().alt_m
+    }
+
+    /// Climb rate, m/s.
+    #[must_use]
+    pub fn climb_mps(&self) -> f64 {
+        self.estimate().climb_mps
+    }
+
+    /// The navigator's telemetry; its points count from [`Firmware::origin`].
+    #[must_use]
+    pub fn nav(&self) -> &NavTelemetry {
+        self.navigator.telemetry()
+    }
+
+    /// Where the local frame of estimate and navigator has its zero; `None` before the first fix.
+    #[must_use]
+    pub fn origin(&self) -> Option<LatLon> {
+        self.estimate().origin
+    }
+
+    /// Where the throttle stick rests in ALTHOLD, µs.
+    #[must_use]
+    pub fn hover_stick_us(&self) -> u16 {
+        self.parameters.nav.hover_throttle.clamp(1100, 1900)
+    }
+
+    /// Home, when known.
+    #[must_use]
+    pub fn home(&self) -> Option<LatLon> {
+        self.home
+    }
+
+    /// Whether there is a fix.
+    #[must_use]
+    pub fn gps_fix(&self) -> bool {
+        self.fix
+    }
+
+    /// The configuration in memory.
+    #[must_use]
+    pub fn configuration(&self) -> &Configuration {
+        &self.configuration
+    }
+
+    /// The typed parameters in force.
+    #[must_use]
+    pub fn parameters(&self) -> &Parameters {
+        &self.parameters
+    }
+
+    /// The plan in the craft's memory.
+    #[must_use]
+    pub fn stored_plan(&self) -> &FlightPlan {
+        &self.configuration.plan
+    }
+
+    /// The plan being flown, when one is.
+    #[must_use]
+    pub fn active_plan(&self) -> Option<&FlightPlan> {
+        self.navigator.is_flying().then(|| self.navigator.active_plan())
+    }
+
+    /// Modes, arming, receiver, battery.
+    #[must_use]
+    pub fn craft_view(&self) -> CraftView {
+        let gps = &self.estimate().gps;
+        let battery = self.battery.sample();
+        let inner = self.rx.channels();
+        let mut wire_order = *inner;
+        wire_order[2] = inner[channels::THROTTLE];
+        wire_order[3] = inner[channels::YAW];
+        let source: Option<RcSource> = self.rx.sources().in_charge();
+        CraftView {
+            armed: self.arming.armed(),
+            modes: self.modes,
+            arming_blocked_by: match self.arming.armed() {
+                true => ArrayVec::new(),
+                false => self.arming.flags().iter().map(Into::into).collect(),
+            },
+            gps_fix: self.fix,
+            sats: gps.sats,
+            hdop: Some(gps.hdop).filter(|&hdop| hdop > 0.0),
+            home: self.home,
+            battery_v: battery.map(|sample| sample.voltage_v),
+            battery_a: battery.map(|sample| sample.current_a),
+            battery_mah: battery.map(|sample| sample.drawn_mah),
+            battery_cells: self.battery.cells(),
+            throttle_us: self.flight.state().throttle_us,
+            motors: self.flight.state().motors.0,
+            channels: wire_order,
+            rc_source: source,
+            rc_age_s: self.rx.last_frame().map(|last| self.now.seconds_since(last)),
+            rc_link: self.rx.signal(),
+            failsafe_stage: self.failsafe.stage(),
+            mode_ranges: self.mode_ranges(),
+        }
+    }
+
+    /// What the estimator believes; `n` and `e` count from [`Firmware::origin`].
+    #[must_use]
+    pub fn estimate_view(&self) -> EstimateView {
+        let estimate = self.estimate();
+        let known = estimate.origin.is_some();
+        let demand = self.flight.state().angle_demand_rad;
+        EstimateView {
+            n: known.then_some(estimate.pos_ne.x),
+            e: known.then_some(estimate.pos_ne.y),
+            alt: estimate.altitude_valid.then_some(estimate.alt_m),
+            ground_speed_mps: estimate.vel_ne.norm(),
+            climb_mps: estimate.climb_mps,
+            roll_deg: estimate.roll_rad.to_degrees(),
+            pitch_deg: -estimate.pitch_rad.to_degrees(),
+            heading_deg: estimate.heading_rad.to_degrees(),
+            roll_demand_deg: demand.map(|[roll, _]| roll.to_degrees()),
+            pitch_demand_deg: demand.map(|[_, pitch]| -pitch.to_degrees()),
+        }
+    }
+
+    /// The settings that shape what a map draws.
+    #[must_use]
+    pub fn settings_view(&self) -> SettingsView {
+        let nav = &self.parameters.nav;
+        SettingsView {
+            arrival_radius_m: nav.arrival_radius_m(),
+            hold_radius_m: nav.hold_radius_m(),
+            orbit_radius_m: f64::from(nav.hold_orbit_radius) / 100.0,
+            figure8_width_m: f64::from(nav.hold_figure8_width) / 100.0,
+            fence_m: nav.fence_m(),
+            max_angle_deg: f64::from(nav.max_angle),
+            max_velocity_mps: nav.max_velocity_mps(),
+            hover_throttle_us: nav.hover_throttle,
+        }
+    }
+
+    /// Time of the newest step.
+    #[must_use]
+    pub fn time(&self) -> SimTime {
+        self.now
+    }
+
+    /// The mode conditions in force that look at a channel.
+    #[must_use]
+    pub fn mode_ranges(&self) -> Vec<ModeRange> {
+        let live = (channels::AUX1 + usize::from(self.parameters.rx.channels.max_aux)).min(RC_CHANNELS);
+        let by_channel = |condition: &&ModeCondition| condition.linked == 0 && condition.is_usable();
+        self.parameters
+            .modes
+            .iter()
+            .filter(by_channel)
+            .filter_map(|condition| {
+                let channel = condition.aux_channel + channels::AUX1 as u8;
+                let entry = boxes::by_id(condition.box_id)?;
+                (usize::from(channel) < live).then_some(ModeRange {
+                    name: entry.name,
+                    channel,
+                    start_us: condition.start_us,
+                    end_us: condition.end_us,
+                })
+            })
+            .collect()
+    }
+}

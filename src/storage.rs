@@ -1,0 +1,259 @@
+//! Where the configuration is kept: `eeprom.bin` in a directory, or memory.
+//!
+//! A save never leaves less than one good copy, whenever it is interrupted:
+//!
+//! ```text
+//! 1 write eeprom.bin.tmp and flush it      old image intact
+//! 2 link eeprom.bin to eeprom.bin.bak      old image under two names
+//! 3 rename eeprom.bin.tmp to eeprom.bin    new image in place, old one in .bak
+//! 4 flush the directory
+//! ```
+//!
+//! A damaged file is renamed to `eeprom.bin.bad` and never deleted; the file of another firmware is left alone. The
+//! directory is locked, so that a second process in it runs but cannot save.
+
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+use crate::firmware::cli::StorageFacts;
+use crate::firmware::config::{Configuration, correct};
+use crate::firmware::storage::{ImageError, decode, encode};
+
+mod files;
+
+use files::{Files, read_image};
+
+/// Name of the file.
+pub const FILE_NAME: &str = "eeprom.bin";
+
+/// Why the configuration cannot be saved or the directory not be used.
+#[derive(Debug, thiserror::Error)]
+pub enum StorageError {
+    /// The directory cannot be used.
+    #[error("cannot use the directory {}: {source}; choose another one", path.display())]
+    Directory {
+        /// The directory.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// The file is that of another firmware.
+    #[error(
+        "{} is not overwritten because {reason}: load your settings with --config, use another directory, or start with --overwrite-config",
+        path.display()
+    )]
+    Protected {
+        /// The file.
+        path: PathBuf,
+        /// What it is, or why it cannot be read.
+        reason: String,
+    },
+    /// Another process uses the directory.
+    #[error("another betadeck uses {}: save there, or start this one with another directory", path.display())]
+    Locked {
+        /// The directory.
+        path: PathBuf,
+    },
+    /// Writing failed.
+    #[error("cannot write {}: {source}; the stored configuration is unchanged", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: std::io::Error,
+    },
+}
+
+/// A configuration as it was found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Loaded {
+    /// The configuration, made consistent.
+    pub configuration: Configuration,
+    /// What went wrong, in sentences for the user.
+    pub findings: Vec<String>,
+    /// Nothing was stored before.
+    pub first_boot: bool,
+}
+
+/// Keeps configurations.
+#[derive(Debug)]
+pub struct Store {
+    place: Place,
+    used_bytes: usize,
+    note: Option<String>,
+}
+
+#[derive(Debug)]
+enum Place {
+    Memory(Option<Vec<u8>>),
+    Directory(Box<Directory>),
+}
+
+#[derive(Debug)]
+struct Directory {
+    files: Files,
+    /// Holds the lock for as long as the store lives; `None` when another process has it.
+    lock: Option<File>,
+    overwrite: bool,
+    /// The stored image, when it is ours and good.
+    current: Option<Vec<u8>>,
+    /// Why the file must not be replaced, if so: it belongs to another firmware, or cannot be read.
+    protected: Option<String>,
+}
+
+impl Store {
+    /// A store that forgets with the process.
+    #[must_use]
+    pub fn in_memory() -> Self {
+        Self { place: Place::Memory(None), used_bytes: 0, note: None }
+    }
+
+    /// A store in a directory, which is created when it is missing. `overwrite` allows replacing the file of another
+    /// firmware.
+    pub fn open(directory: &Path, overwrite: bool) -> Result<Self, StorageError> {
+        let unusable = |source| StorageError::Directory { path: directory.to_owned(), source };
+        std::fs::create_dir_all(directory).map_err(unusable)?;
+        let files = Files::new(directory);
+        let lock = files.lock().map_err(unusable)?;
+        let place = Directory { files, lock, overwrite, current: None, protected: None };
+        Ok(Self { place: Place::Directory(Box::new(place)), used_bytes: 0, note: None })
+    }
+
+    /// Reads the stored configuration; what cannot be read is replaced as well as possible, and told. On the first
+    /// boot the defaults are stored.
+    pub fn load(&mut self) -> Loaded {
+        let (stored, mut findings) = match &mut self.place {
+            Place::Memory(image) => (image.clone(), Vec::new()),
+            Place::Directory(directory) => directory.load(),
+        };
+        self.note = findings.first().map(|_| match stored {
+            Some(_) => "restored from the previous copy".to_owned(),
+            None => "not loaded, defaults in use".to_owned(),
+        });
+        let decoded = stored.as_deref().and_then(|image| decode(image).ok());
+        let first_boot = decoded.is_none() && findings.is_empty();
+        let (mut configuration, unusable) = decoded.unwrap_or_default();
+        findings.extend(unusable);
+        correct(&mut configuration);
+        self.used_bytes = stored.map_or_else(|| encode(&configuration).len(), |image| image.len());
+        if first_boot
+            && self.refusal().is_none()
+            && let Err(error) = self.save(&configuration)
+        {
+            findings.push(error.to_string());
+        }
+        Loaded { configuration, findings, first_boot }
+    }
+
+    /// Stores a configuration; an unchanged one is not written again.
+    pub fn save(&mut self, configuration: &Configuration) -> Result<(), StorageError> {
+        let image = encode(configuration);
+        let length = image.len();
+        match &mut self.place {
+            Place::Memory(stored) => *stored = Some(image),
+            Place::Directory(directory) => directory.save(image)?,
+        }
+        self.used_bytes = length;
+        self.note = None;
+        Ok(())
+    }
+
+    /// Why [`Store::save`] cannot work, if that is known beforehand.
+    #[must_use]
+    pub fn refusal(&self) -> Option<StorageError> {
+        match &self.place {
+            Place::Memory(_) => None,
+            Place::Directory(directory) => directory.refusal(),
+        }
+    }
+
+    /// What `status` and `save` tell about the store.
+    #[must_use]
+    pub fn facts(&self) -> StorageFacts {
+        StorageFacts {
+            used_bytes: self.used_bytes,
+            note: self.note.clone(),
+            save_refusal: self.refusal().map(|error| error.to_string()),
+            ..StorageFacts::default()
+        }
+    }
+}
+
+impl Directory {
+    fn refusal(&self) -> Option<StorageError> {
+        if self.lock.is_none() {
+            return Some(StorageError::Locked { path: self.files.directory.clone() });
+        }
+        let reason = self.protected.clone()?;
+        Some(StorageError::Protected { path: self.files.image.clone(), reason })
+    }
+
+    /// The best image there is, and what was wrong with the others.
+    fn load(&mut self) -> (Option<Vec<u8>>, Vec<String>) {
+        let mut findings = Vec::new();
+        self.current = None;
+        self.protected = None;
+        let name = self.files.image.display().to_string();
+        match read_image(&self.files.image) {
+            Ok(Some(image)) => match decode(&image) {
+                Ok(_) => {
+                    self.current = Some(image.clone());
+                    return (Some(image), findings);
+                }
+                Err(reason @ (ImageError::Foreign | ImageError::LaterFormat { .. })) => {
+                    if !self.overwrite {
+                        self.protected = Some(reason.to_string());
+                    }
+                    findings.push(format!("{name} is not used: {reason}"));
+                    return (None, findings);
+                }
+                Err(ImageError::Damaged) => findings.push(self.set_aside(&name)),
+            },
+            Ok(None) => {}
+            Err(error) => {
+                findings.push(format!("{name} cannot be read: {error}"));
+                self.protected = Some(format!("it cannot be read: {error}"));
+                return (None, findings);
+            }
+        }
+        match read_image(&self.files.backup) {
+            Ok(Some(image)) if decode(&image).is_ok() => {
+                findings.push("the previous copy was loaded, what was saved last is lost".to_owned());
+                (Some(image), findings)
+            }
+            _ => {
+                if !findings.is_empty() {
+                    findings.push("there is no good copy, defaults are used".to_owned());
+                }
+                (None, findings)
+            }
+        }
+    }
+
+    /// Keeps a damaged file under another name; only the process that holds the lock may.
+    fn set_aside(&self, name: &str) -> String {
+        if self.lock.is_none() {
+            return format!("{name} is damaged");
+        }
+        match self.files.set_aside() {
+            Ok(kept) => format!("{name} is damaged and was kept as {}", kept.display()),
+            Err(error) => format!("{name} is damaged and could not be renamed: {error}"),
+        }
+    }
+
+    fn save(&mut self, image: Vec<u8>) -> Result<(), StorageError> {
+        if let Some(refusal) = self.refusal() {
+            return Err(refusal);
+        }
+        if self.current.as_ref() == Some(&image) && self.files.holds(&image) {
+            return Ok(());
+        }
+        let keep_previous =
+            read_image(&self.files.image).ok().flatten().is_some_and(|old| decode(&old).is_ok());
+        self.files
+            .replace(&image, keep_previous)
+            .map_err(|source| StorageError::Write { path: self.files.image.clone(), source })?;
+        self.current = Some(image);
+        Ok(())
+    }
+}

@@ -1,0 +1,83 @@
+//! `docs/settings.md` is printed from the table of settings and must not drift from it.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use betadeck::firmware::settings::{Kind, Role, SETTINGS, Scope, Setting, group_of, needs_restart};
+
+const INTRODUCTION: &str = "# Settings
+
+Every setting of the vehicle, in the order of `dump`. `get NAME` shows one with its range, `set NAME = VALUE` changes it,
+`save` keeps it.
+
+*Live* settings change how the vehicle behaves. *Optional* ones do where that part is built. *Carried* ones are checked,
+stored and printed, so that the configuration of a real craft stays complete, and have no effect here. A change works from
+the next control step on; settings marked ↻ need `save`, which restarts the firmware.
+
+Names of other builds and releases are accepted too: such a line is kept as it is and printed again by `dump` and `diff`.
+";
+
+fn values(setting: &Setting) -> String {
+    match setting.kind {
+        Kind::Number { min, max, .. } => format!("{min}…{max}"),
+        Kind::Choice { words, .. } => words.join(" "),
+        Kind::Array { default } => format!("{} numbers", default.len()),
+        Kind::Text { max } => format!("text of up to {max} characters"),
+        Kind::Port { .. } => "NONE or UART1…UART8".to_owned(),
+    }
+}
+
+fn document() -> String {
+    let mut text = INTRODUCTION.to_owned();
+    let mut group = "";
+    for setting in &SETTINGS {
+        if group_of(setting) != group {
+            group = group_of(setting);
+            let profiles = match setting.scope {
+                Scope::Master => String::new(),
+                scope => format!(
+                    "One value in each of {} profiles; `{} N` selects one.\n\n",
+                    scope.instances(),
+                    scope.word()
+                ),
+            };
+            write!(text, "\n## {group}\n\n{profiles}| setting | values | default | | meaning |\n| --- | --- | --- | --- | --- |\n")
+                .expect("a string");
+        }
+        let restart = if needs_restart(setting.name) { " ↻" } else { "" };
+        let default = setting.display(&setting.default_value());
+        writeln!(
+            text,
+            "| `{}` | {} | {default} | {}{restart} | {} |",
+            setting.name,
+            values(setting),
+            setting.role,
+            setting.help
+        )
+        .expect("a string");
+    }
+    text
+}
+
+#[test]
+fn the_settings_page_is_up_to_date() {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/settings.md");
+    let written = std::fs::read_to_string(&page).unwrap_or_default();
+    let wanted = document();
+    if written != wanted {
+        let fresh = Path::new(env!("CARGO_TARGET_TMPDIR")).join("settings.md");
+        std::fs::write(&fresh, wanted).expect("a temporary file");
+        panic!("docs/settings.md is out of date: copy {} over it", fresh.display());
+    }
+}
+
+#[test]
+fn every_setting_is_described_in_one_sentence() {
+    for setting in &SETTINGS {
+        let help = setting.help;
+        assert!(help.ends_with('.') && help.len() > 5 && help.len() < 110, "{}: {help:?}", setting.name);
+        assert!(!help.contains(['|', '\n']), "{}", setting.name);
+    }
+    let count = |role: Role| SETTINGS.iter().filter(|setting| setting.role == role).count();
+    assert_eq!((count(Role::Live), count(Role::Opt), count(Role::Carry)), (210, 58, 152));
+}

@@ -1,0 +1,148 @@
+//! Random and hostile input to the command line, the line editor, settings files and the stored image: no panic, no
+//! endless loop, no reply out of proportion.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use betadeck::firmware::cli::{
+    COMMANDS, CliContext, CliFacts, Interpreter, LineEditor, Mode, apply_lines, complete, hint, provision,
+};
+use betadeck::firmware::config::{Configuration, correct};
+use betadeck::firmware::settings::SETTINGS;
+use betadeck::firmware::storage::{decode, encode};
+use proptest::prelude::*;
+
+/// No reply may be longer.
+const LONGEST_REPLY: usize = 1 << 20;
+
+fn corpus(kind: &str) -> Vec<(PathBuf, Vec<u8>)> {
+    let directory = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/corpus").join(kind);
+    let mut files: Vec<_> = std::fs::read_dir(directory)
+        .expect("a directory")
+        .map(|entry| entry.expect("an entry").path())
+        .map(|path| (path.clone(), std::fs::read(path).expect("a file")))
+        .collect();
+    files.sort();
+    assert!(!files.is_empty());
+    files
+}
+
+/// Runs lines in every mode, with completion and hints for each.
+fn run_lines(lines: &[&str]) {
+    for mode in [Mode::Interactive, Mode::Framed, Mode::Message, Mode::File] {
+        let mut configuration = Configuration::default();
+        let mut interpreter = Interpreter::new(mode);
+        let facts = CliFacts::default();
+        for line in lines {
+            let mut context = CliContext { configuration: &mut configuration, facts: &facts };
+            let reply = interpreter.run(line, &mut context);
+            assert!(reply.text.len() <= LONGEST_REPLY, "{line}: {} bytes", reply.text.len());
+            let completion = complete(line);
+            assert!(completion.start <= line.len());
+            let _shown = hint(line, Some(&configuration.settings));
+        }
+        correct(&mut configuration);
+        let (stored, findings) = decode(&encode(&configuration)).expect("a good image");
+        assert_eq!((stored, findings), (configuration, Vec::new()));
+    }
+}
+
+#[test]
+fn corpus_of_settings_files() {
+    for (path, bytes) in corpus("cli") {
+        let text = String::from_utf8_lossy(&bytes);
+        run_lines(&text.lines().collect::<Vec<_>>());
+        let facts = CliFacts::default();
+        for mode in [Mode::Interactive, Mode::File] {
+            let mut configuration = Configuration::default();
+            let mut context = CliContext { configuration: &mut configuration, facts: &facts };
+            let report = apply_lines(text.lines(), &mut Interpreter::new(mode), &mut context, |_, _| ());
+            assert!(report.failed.len() <= report.commands, "{}", path.display());
+            provision(&text, &mut Interpreter::new(mode), &mut context, |_| ());
+        }
+        feed_editor(&bytes);
+    }
+}
+
+#[test]
+fn corpus_of_images() {
+    for (path, bytes) in corpus("eeprom") {
+        for end in 0..=bytes.len().min(64) {
+            let _short = decode(&bytes[..end]);
+        }
+        if let Ok((configuration, _)) = decode(&bytes) {
+            let again = decode(&encode(&configuration)).expect("a good image");
+            assert_eq!(again.0, configuration, "{}", path.display());
+        }
+    }
+}
+
+/// Feeds bytes to a link with a craft behind it.
+fn feed_editor(bytes: &[u8]) {
+    let mut configuration = Configuration::default();
+    let mut interpreter = Interpreter::default();
+    let mut editor = LineEditor::default();
+    let facts = CliFacts::default();
+    for (at, byte) in bytes.iter().enumerate() {
+        let now = Duration::from_millis(at as u64 * 60);
+        let output = editor.feed(*byte, at % 7 == 3, now);
+        assert!(output.bytes.len() <= LONGEST_REPLY);
+        if let Some(line) = output.line {
+            assert!(line.len() <= 255);
+            let mut context = CliContext { configuration: &mut configuration, facts: &facts };
+            editor.answer(&interpreter.run(&line, &mut context));
+        }
+        editor.poll(at % 5 == 0, now + Duration::from_millis(at as u64 % 200));
+    }
+}
+
+/// A word that some command may understand.
+fn word() -> impl Strategy<Value = String> {
+    prop_oneof![
+        3 => prop::sample::select(COMMANDS.iter().map(|command| command.name).collect::<Vec<_>>()).prop_map(str::to_owned),
+        3 => prop::sample::select(SETTINGS.iter().map(|setting| setting.name).collect::<Vec<_>>()).prop_map(str::to_owned),
+        3 => prop::sample::select(vec!["=", "*", "insert", "update", "remove", "clear", "list", "status", "start", "end",
+            "all", "bare", "defaults", "nosave", "noreboot", "reset", "load", "ON", "OFF", "NONE", "UART1", "UART9", "a",
+            "h", "s", "HOLD", "ORBIT", "flyby", "group_id", "resource", "beeper", "dshot_bidir", "osd_vbat_pos", "-GPS",
+            "AETR1234", "quadx", "#", "-"]).prop_map(str::to_owned),
+        3 => any::<i16>().prop_map(|number| number.to_string()),
+        1 => any::<i64>().prop_map(|number| number.to_string()),
+        1 => any::<f64>().prop_map(|number| number.to_string()),
+        1 => "[-+]?[0-9]{0,3}\\.?[0-9]{0,9}",
+        1 => "\\PC{0,12}",
+    ]
+}
+
+fn line() -> impl Strategy<Value = String> {
+    prop_oneof![
+        8 => prop::collection::vec(word(), 0..10).prop_map(|words| words.join(" ")),
+        1 => (word(), word()).prop_map(|(name, value)| format!("set {name} = {value}")),
+        1 => any::<String>(),
+    ]
+}
+
+proptest! {
+    // 500 runs of 50 lines in four modes: 100 000 lines.
+    #![proptest_config(ProptestConfig { cases: 500, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn random_lines(lines in prop::collection::vec(line(), 50)) {
+        run_lines(&lines.iter().map(String::as_str).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn random_bytes_on_a_link(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
+        feed_editor(&bytes);
+    }
+
+    #[test]
+    fn random_damage_to_an_image(at in any::<prop::sample::Index>(), change in 1..=255_u8, end in any::<prop::sample::Index>()) {
+        let mut image = encode(&Configuration::default());
+        let place = at.index(image.len());
+        image[place] ^= change;
+        prop_assert!(decode(&image).is_err(), "a change at {} went unnoticed", place);
+        image[place] ^= change;
+        image.truncate(end.index(image.len()));
+        prop_assert!(decode(&image).is_err());
+    }
+}

@@ -1,0 +1,226 @@
+//! A craft made of plant, estimator, controller and holds, without arming rules and receiver: what the control tests
+//! fly.
+
+#![allow(dead_code, reason = "each test file uses a part of it")]
+
+use betadeck::autopilot::Params;
+use betadeck::autopilot::io::NavInputs;
+use betadeck::firmware::config::MixerKind;
+use betadeck::firmware::control::hold::{HoldModes, HoldOutput, HoldTuning, Holds};
+use betadeck::firmware::control::{ControlInput, Controller, LeanDemand, StickMode, Tuning};
+use betadeck::firmware::estimate::{Estimate, Estimator, EstimatorOptions, EstimatorTuning};
+use betadeck::firmware::settings::Settings;
+use betadeck::signals::SimTime;
+use betadeck::sim::{Airframe, Noise, Truth, World, WorldConfig};
+use nalgebra::Vector2;
+
+/// Interval of the RC frames, µs.
+const FRAME_US: u64 = 20_000;
+
+/// The craft.
+pub struct Rig {
+    pub world: World,
+    pub estimator: Estimator,
+    pub controller: Controller,
+    pub holds: Holds,
+    pub hold_tuning: HoldTuning,
+    pub params: Params,
+    pub modes: HoldModes,
+    pub hold: HoldOutput,
+    /// Sticks and mode as the pilot has them; they reach the controller with the next frame.
+    pub sticks: ControlInput,
+    received: ControlInput,
+    dt: f64,
+    slow_time: SimTime,
+}
+
+/// A world with these sensors and this airframe in flat wind.
+pub fn world(noise: Noise, airframe: Airframe) -> WorldConfig {
+    let mut config = WorldConfig { noise, airframe, ..WorldConfig::default() };
+    config.switches.wind_profile = betadeck::sim::WindProfile::Flat;
+    config
+}
+
+impl Rig {
+    pub fn new(config: WorldConfig, settings: &Settings) -> Self {
+        let dt = 1.0 / f64::from(config.rate_hz);
+        let mut params = Params::default();
+        for field in Params::FIELDS {
+            params
+                .set_by_name(field.name, settings.number(field.name))
+                .expect("settings have the same ranges");
+        }
+        Self {
+            world: World::new(config).expect("a valid world"),
+            estimator: Estimator::new(EstimatorOptions::default(), EstimatorTuning::from_settings(settings)),
+            controller: Controller::new(Tuning::from_settings(settings, MixerKind::QuadX, &[]), dt),
+            holds: Holds::default(),
+            hold_tuning: HoldTuning::from_settings(settings),
+            params,
+            modes: HoldModes::NONE,
+            hold: HoldOutput::default(),
+            sticks: ControlInput::default(),
+            received: ControlInput::default(),
+            dt,
+            slow_time: SimTime::ZERO,
+        }
+    }
+
+    /// An armed craft 20 m above home, hovering in ALTHOLD and POS HOLD for 10 s.
+    pub fn airborne(config: WorldConfig, settings: &Settings) -> Self {
+        let mut rig = Self::new(config, settings);
+        rig.run(6.0);
+        rig.arm();
+        rig.modes = HoldModes { altitude: true, position: true, descend: false };
+        rig.sticks.throttle_us = 1900.0;
+        let mut left = 30.0;
+        while rig.estimate().alt_m < 18.0 && left > 0.0 {
+            rig.run(0.1);
+            left -= 0.1;
+        }
+        rig.sticks.throttle_us = 1500.0;
+        rig.run(10.0);
+        rig
+    }
+
+    pub fn arm(&mut self) {
+        let home = self.estimate().gps.solution.map(|solution| solution.position);
+        self.estimator.on_arm(home);
+        self.sticks.armed = true;
+        self.sticks.airmode = true;
+    }
+
+    /// Gives the craft into the hands of the pilot, levelled, at the throttle that hovers.
+    pub fn manual(&mut self, mode: StickMode) {
+        self.sticks.throttle_us = self.controller.state().throttle_us;
+        self.sticks.mode = mode;
+        self.modes = HoldModes::NONE;
+    }
+
+    pub fn estimate(&self) -> &Estimate {
+        self.estimator.estimate()
+    }
+
+    pub fn truth(&self) -> &Truth {
+        self.world.truth()
+    }
+
+    /// True roll (right positive) and pitch (nose down positive), degrees.
+    pub fn lean_deg(&self) -> [f64; 2] {
+        let m = self.truth().attitude.to_rotation_matrix();
+        let m = m.matrix();
+        [m[(2, 1)].atan2(m[(2, 2)]).to_degrees(), (-m[(2, 0)]).asin().to_degrees()]
+    }
+
+    /// True body rates, roll right, pitch nose down, yaw clockwise, °/s.
+    pub fn rates_dps(&self) -> [f64; 3] {
+        let rate = self.truth().rate_flu;
+        [rate.x.to_degrees(), rate.y.to_degrees(), -rate.z.to_degrees()]
+    }
+
+    /// True position north and east of home, m.
+    pub fn position_ne(&self) -> Vector2<f64> {
+        Vector2::new(self.truth().pos_enu.y, self.truth().pos_enu.x)
+    }
+
+    /// True altitude above where it stood, m.
+    pub fn altitude_m(&self) -> f64 {
+        self.truth().pos_enu.z - self.world.airframe().standing_height_m()
+    }
+
+    pub fn run(&mut self, seconds: f64) {
+        self.watch(seconds, |_| ());
+    }
+
+    /// Runs and looks at the craft after each step.
+    pub fn watch(&mut self, seconds: f64, mut look: impl FnMut(&Self)) {
+        for _ in 0..(seconds / self.dt).round() as usize {
+            self.step();
+            look(self);
+        }
+    }
+
+    pub fn step(&mut self) {
+        let frame = *self.world.sensors();
+        let is_frame = frame.time.0.is_multiple_of(FRAME_US);
+        if is_frame {
+            self.received = self.sticks;
+        }
+        let due = self.estimator.update(&frame);
+        if due.navigation {
+            let now = self.nav_inputs(frame.time);
+            let stick = self.received.throttle_us;
+            self.hold = self.holds.update(self.modes, &now, stick, &self.params, &self.hold_tuning);
+        }
+        let mut input = self.received;
+        (input.due, input.rc_frame) = (due, is_frame);
+        input.throttle = self.hold.throttle.or(input.throttle);
+        input.lean = self.hold.lean.or(input.lean);
+        if self.modes.altitude && input.lean.is_none() {
+            input.mode = StickMode::Angle;
+        }
+        let state = self.controller.step(&input, self.estimator.estimate(), self.dt);
+        self.world.step(&state.motors);
+    }
+
+    fn nav_inputs(&mut self, time: SimTime) -> NavInputs {
+        let estimate = self.estimator.estimate();
+        let dt = time.seconds_since(self.slow_time);
+        self.slow_time = time;
+        NavInputs {
+            time,
+            dt,
+            armed: self.received.armed,
+            fix: estimate.gps.fix && estimate.position_valid,
+            altitude_valid: estimate.altitude_valid,
+            throttle_raised: true,
+            failsafe: false,
+            home: estimate.origin,
+            origin: estimate.origin.unwrap_or_default(),
+            pos_ne: estimate.pos_ne,
+            vel_ne: estimate.vel_ne,
+            alt_m: estimate.alt_m,
+            climb_mps: estimate.climb_mps,
+            heading_rad: estimate.heading_rad,
+            yaw_rate_rps: estimate.rates.yaw,
+            roll_rad: estimate.roll_rad,
+            pitch_rad: estimate.pitch_rad,
+            cos_tilt: estimate.cos_tilt,
+            accel_ne: estimate.accel_ne,
+            throttle_us: self.controller.state().throttle_us,
+            stick_roll: self.received.stick_roll,
+            stick_pitch: self.received.stick_pitch,
+            stick_yaw: self.received.stick_yaw,
+        }
+    }
+
+    /// Demands this lean from the next frame on.
+    pub fn lean(&mut self, roll_deg: f64, pitch_deg: f64) {
+        self.sticks.lean =
+            Some(LeanDemand { roll_rad: roll_deg.to_radians(), pitch_rad: pitch_deg.to_radians() });
+    }
+}
+
+/// How a signal answered a step from 0 to `target`, sampled every `dt` seconds.
+#[derive(Debug)]
+pub struct StepResponse {
+    /// Share of the step that it went beyond.
+    pub overshoot: f64,
+    /// Seconds until it stayed within 5 % of the step.
+    pub settled_s: f64,
+    /// Seconds until it reached 90 %.
+    pub rise_s: f64,
+}
+
+impl StepResponse {
+    pub fn of(values: &[f64], target: f64, dt: f64) -> Self {
+        let shares: Vec<f64> = values.iter().map(|value| value / target).collect();
+        let last_outside = shares.iter().rposition(|share| (share - 1.0).abs() > 0.05);
+        let rise = shares.iter().position(|share| *share >= 0.9).unwrap_or(shares.len());
+        Self {
+            overshoot: shares.iter().fold(0.0_f64, |most, share| most.max(share - 1.0)),
+            settled_s: last_outside.map_or(0.0, |index| (index + 1) as f64 * dt),
+            rise_s: rise as f64 * dt,
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! `docs/modes.md` against the code: the boxes, the arming flags, the failsafe responses.
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test may stop and say what it expects")]
+
+use std::path::Path;
+
+use betadeck::firmware::DisarmReason;
+use betadeck::firmware::arming::ArmingFlag;
+use betadeck::firmware::modes::boxes::{BOXES, BoxLevel};
+use strum::IntoEnumIterator as _;
+
+fn page() -> String {
+    std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/modes.md")).unwrap()
+}
+
+#[track_caller]
+fn assert_on_page(table: &str) {
+    println!("{table}");
+    assert!(page().contains(table), "replace the table in docs/modes.md by the one printed above");
+}
+
+#[test]
+fn boxes_are_those_of_the_code() {
+    let mut table = String::from("| id | box | here |\n| --- | --- | --- |\n");
+    for entry in &BOXES {
+        let level = match entry.level {
+            BoxLevel::Full => "works",
+            BoxLevel::Flag => "is reported",
+            BoxLevel::Name => "is accepted",
+        };
+        table += &format!("| {} | {} | {level} |\n", entry.id, entry.name);
+    }
+    assert_on_page(&table);
+}
+
+#[test]
+fn arming_flags_are_those_of_the_code() {
+    let mut table = String::from("| bit | flag | what to do |\n| --- | --- | --- |\n");
+    for flag in ArmingFlag::iter() {
+        table += &format!("| {} | {flag} | {} |\n", flag as u8, flag.hint());
+    }
+    assert_on_page(&table);
+}
+
+#[test]
+fn disarm_reasons_are_those_of_the_code() {
+    let names: Vec<_> = DisarmReason::iter().map(|reason| format!("{} {reason}", reason as u8)).collect();
+    let line = names.join(", ");
+    println!("{line}");
+    assert!(page().replace('\n', " ").contains(&line));
+}

@@ -1,0 +1,97 @@
+//! A step of the firmware allocates nothing between transitions, whoever flies.
+
+#![allow(unsafe_code, reason = "an allocator that counts cannot be written without it")]
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+use betadeck::firmware::cli::Interpreter;
+use betadeck::firmware::config::Configuration;
+use betadeck::firmware::{Firmware, FirmwareOptions};
+use betadeck::signals::{RcFrame, RcSource};
+use betadeck::sim::{World, WorldConfig};
+
+thread_local! {
+    static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
+}
+
+struct Counting;
+
+// SAFETY: every call goes to the system allocator unchanged; counting touches only a thread-local cell that needs no
+// allocation and no destructor.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        ALLOCATIONS.with(|count| count.set(count.get() + 1));
+        // SAFETY: the caller's promises are passed on.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
+        // SAFETY: the caller's promises are passed on.
+        unsafe { System.dealloc(memory, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+fn allocations() -> u64 {
+    ALLOCATIONS.with(Cell::get)
+}
+
+#[test]
+fn the_counter_counts() {
+    let before = allocations();
+    drop(std::hint::black_box(Box::new(1)));
+    assert_eq!(allocations(), before + 1);
+}
+
+#[test]
+fn a_step_without_an_event_allocates_nothing() {
+    let mut configuration = Configuration::default();
+    configuration.starter_modes();
+    let mut firmware = Firmware::new(configuration, FirmwareOptions::default());
+    let mut session = Interpreter::default();
+    for line in [
+        "set ap_hover_throttle = 1500",
+        "set ap_rx_loss_policy = LAND",
+        "waypoint insert 0 40.4636801 -79.5182000 1500 500 HOLD 50 ORBIT",
+        "waypoint insert 1 40.4635000 -79.5180000 1000 500 FLYBY 0 NONE",
+        "waypoint insert 2 40.4635000 -79.5182000 1000 500 HOLD 0 NONE",
+    ] {
+        assert!(!firmware.run_cli(&mut session, line).failed);
+    }
+    let mut world = World::new(WorldConfig::default()).unwrap();
+    let mut sticks = RcFrame::SAFE;
+    let (mut steps_with_events, mut allocated) = (0, 0);
+    while world.time().as_secs_f64() < 90.0 {
+        let now = world.time();
+        let seconds = now.as_secs_f64();
+        // Arm, climb by hand, engage; later lose the link.
+        sticks.channels[4] = if seconds > 5.5 { 2000 } else { 1000 };
+        sticks.channels[2] = if seconds > 8.0 {
+            1500
+        } else if seconds > 6.0 {
+            1700
+        } else {
+            1000
+        };
+        sticks.channels[6] = if seconds > 7.0 { 2000 } else { 1000 };
+        sticks.channels[5] = if seconds > 12.0 { 2000 } else { 1000 };
+        if now.0.is_multiple_of(20_000) && seconds < 60.0 {
+            firmware.receive_rc(&sticks, RcSource::Sticks);
+        }
+        let before = allocations();
+        let command = firmware.step(world.sensors());
+        let used = allocations() - before;
+        let events = std::iter::from_fn(|| firmware.take_event()).count();
+        if events == 0 {
+            allocated += used;
+        } else {
+            steps_with_events += 1;
+        }
+        world.step(&command);
+    }
+    assert!(steps_with_events > 10, "the flight was flown: {steps_with_events}");
+    assert_eq!(allocated, 0);
+}
