@@ -1,0 +1,165 @@
+//! Speed of the whole vehicle: nanoseconds per tick of world, firmware and both, and how many times faster than real
+//! time a whole mission is flown.
+//!
+//! `cargo bench --bench vehicle`. The mission is the demo square from engagement to disarm, with real noise and light
+//! turbulence, no samples; each figure is the median of several runs on one core. World and firmware alone replay what
+//! the other one said in a recorded part of that mission.
+
+#![allow(
+    clippy::disallowed_methods,
+    clippy::print_stdout,
+    reason = "a benchmark looks at the clock and prints"
+)]
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use betadeck::firmware::cli::Interpreter;
+use betadeck::firmware::config::Configuration;
+use betadeck::firmware::{Firmware, FirmwareOptions};
+use betadeck::flight::{Flight, FlightOptions, FlightResult};
+use betadeck::plan::builtin::{BuiltinPlan, DEMO};
+use betadeck::session::upload;
+use betadeck::signals::{MotorCommand, RcFrame, RcSource, SensorFrame, SimTime};
+use betadeck::sim::{Turbulence, World, WorldConfig};
+use betadeck::vehicle::{Vehicle, VehicleConfig};
+
+const RUNS: usize = 5;
+/// Ticks of the replayed part of the mission.
+const REPLAY: usize = 100_000;
+
+fn main() {
+    for rate_hz in [1000, 4000, 8000] {
+        let mut runs: Vec<(f64, f64)> = (0..RUNS).map(|_| mission(rate_hz)).collect();
+        runs.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let (flown_s, wall_s) = runs[RUNS / 2];
+        println!(
+            "mission at {rate_hz} Hz: {flown_s:.1} s in {wall_s:.3} s, {:.0}x real time",
+            flown_s / wall_s
+        );
+    }
+    let recording = record();
+    let world = median(|| recording.replay_world());
+    let firmware = median(|| recording.replay_firmware());
+    let both = median(|| recording.fly_both());
+    println!("world    {world:>7.1} ns/tick");
+    println!("firmware {firmware:>7.1} ns/tick");
+    println!("both     {both:>7.1} ns/tick  ({:.0}x real time at 1 kHz)", 1e6 / both);
+}
+
+fn vehicle(rate_hz: u32) -> Vehicle {
+    let file = BuiltinPlan::find(DEMO).expect("the demo is built in").read().expect("the demo reads");
+    let mut configuration = Configuration::default();
+    configuration.starter_modes();
+    let mut vehicle = Vehicle::new(VehicleConfig {
+        world: WorldConfig { rate_hz, turbulence: Turbulence::Light, ..WorldConfig::default() },
+        firmware: FirmwareOptions { rate_hz, ..FirmwareOptions::default() },
+        configuration,
+        live: false,
+    })
+    .expect("the default world is sound");
+    let mut console = Interpreter::default();
+    for line in upload::lines(&file.plan, &file.settings) {
+        vehicle.firmware_mut().run_cli(&mut console, &line);
+    }
+    vehicle
+}
+
+/// Simulated and wall seconds from the engagement to the end of the demo mission.
+fn mission(rate_hz: u32) -> (f64, f64) {
+    let options = FlightOptions { takeoff_m: 10.0, timeout: SimTime::from_secs_f64(1800.0), samples_hz: 0.0 };
+    let mut flight = Flight::new(vehicle(rate_hz), &options).expect("the starter modes have the switches");
+    while flight.engaged_at().is_none() {
+        assert!(flight.tick(|_| {}).is_none(), "the mission never engaged");
+    }
+    let started = Instant::now();
+    loop {
+        if let Some(end) = flight.tick(|report| {
+            black_box(&report);
+        }) {
+            assert_eq!(end.verdict.result, FlightResult::Complete, "{}", end.verdict.reason);
+            return (end.flown_s, started.elapsed().as_secs_f64());
+        }
+    }
+}
+
+/// A part of the mission, tick by tick, from a vehicle that has just engaged.
+struct Recording {
+    start: Vehicle,
+    firmware: Firmware,
+    world: World,
+    frames: Vec<SensorFrame>,
+    commands: Vec<MotorCommand>,
+    sticks: RcFrame,
+}
+
+fn record() -> Recording {
+    let mut vehicle = vehicle(1000);
+    vehicle.start_pilot(10.0).expect("the starter modes have the switches");
+    while vehicle.engaged_at().is_none() {
+        vehicle.tick();
+    }
+    vehicle.drain_events(drop);
+    let mut recording = Recording {
+        start: vehicle.clone(),
+        firmware: vehicle.firmware().clone(),
+        world: vehicle.world().clone(),
+        frames: Vec::with_capacity(REPLAY),
+        commands: Vec::with_capacity(REPLAY),
+        sticks: vehicle.hands.sticks,
+    };
+    for _ in 0..REPLAY {
+        recording.frames.push(*vehicle.world().sensors());
+        vehicle.tick();
+        recording.commands.push(MotorCommand(vehicle.world().truth().motor_command));
+        vehicle.drain_events(drop);
+    }
+    recording
+}
+
+impl Recording {
+    fn replay_world(&self) -> f64 {
+        let mut world = self.world.clone();
+        time_per_tick(|tick| {
+            world.step(&self.commands[tick]);
+            black_box(world.sensors());
+        })
+    }
+
+    fn replay_firmware(&self) -> f64 {
+        let mut firmware = self.firmware.clone();
+        time_per_tick(|tick| {
+            let frame = &self.frames[tick];
+            if frame.time.0.is_multiple_of(20_000) {
+                firmware.receive_rc(&self.sticks, RcSource::Sticks);
+            }
+            black_box(firmware.step(frame));
+            while let Some(event) = firmware.take_event() {
+                black_box(event);
+            }
+        })
+    }
+
+    fn fly_both(&self) -> f64 {
+        let mut vehicle = self.start.clone();
+        time_per_tick(|_| {
+            vehicle.tick();
+            vehicle.drain_events(drop);
+        })
+    }
+}
+
+/// Nanoseconds a tick.
+fn time_per_tick(mut tick: impl FnMut(usize)) -> f64 {
+    let started = Instant::now();
+    for index in 0..REPLAY {
+        tick(index);
+    }
+    started.elapsed().as_secs_f64() * 1e9 / REPLAY as f64
+}
+
+fn median(mut measure: impl FnMut() -> f64) -> f64 {
+    let mut figures: Vec<f64> = (0..RUNS).map(|_| measure()).collect();
+    figures.sort_by(f64::total_cmp);
+    figures[RUNS / 2]
+}

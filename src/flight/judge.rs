@@ -1,0 +1,334 @@
+//! Decides when a headless flight is over and what became of it.
+
+use crate::autopilot::io::{NavState, PlanSource, Refusal};
+use crate::firmware::DisarmReason;
+use crate::signals::SimTime;
+
+/// Seconds a completed mission without a LAND is watched, still parked.
+const PARKED_S: f64 = 5.0;
+/// Seconds after a disarm or a crash, so that the last events are seen.
+const AFTERMATH_S: f64 = 1.0;
+/// Seconds a refusal with the same reason may stay.
+const REFUSED_S: f64 = 10.0;
+/// Seconds the machine may stay IDLE after an engagement.
+const IDLE_S: f64 = 30.0;
+
+/// How a flight ended; `Display` gives the word of the `end` event.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display)]
+#[strum(serialize_all = "lowercase")]
+pub enum FlightResult {
+    /// The mission reached COMPLETE, landed and disarmed where the plan ends in LAND.
+    Complete,
+    /// Landed by an emergency landing or a return home, not by the plan.
+    Landed,
+    /// The autopilot refused to engage.
+    Refused,
+    /// The mission was given up and stayed IDLE.
+    Aborted,
+    /// Disarmed by something else.
+    Disarmed,
+    /// Crashed.
+    Crashed,
+    /// Not over in time.
+    Timeout,
+    /// The simulation left the range where its numbers mean something.
+    Diverged,
+    /// Stopped by the user.
+    Interrupted,
+}
+
+/// The verdict.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Verdict {
+    /// How the flight ended.
+    pub result: FlightResult,
+    /// Why, as a sentence.
+    pub reason: String,
+}
+
+/// What the judge looks at, once a tick.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct JudgeFacts {
+    /// Now.
+    pub time: SimTime,
+    /// The autopilot flies.
+    pub engaged: bool,
+    /// Armed.
+    pub armed: bool,
+    /// The last reason of a disarm since boot.
+    pub last_disarm: Option<DisarmReason>,
+    /// State of the machine.
+    pub state: NavState,
+    /// Current waypoint.
+    pub wp: u8,
+    /// Origin of the active plan.
+    pub source: PlanSource,
+    /// Why the switch has no effect.
+    pub refusal: Option<Refusal>,
+    /// The mission's last positional waypoint is a LAND.
+    pub ends_in_land: bool,
+    /// At rest on the ground.
+    pub touched_down: bool,
+    /// Crashed.
+    pub crashed: bool,
+    /// Diverged.
+    pub diverged: bool,
+}
+
+/// Watches a flight.
+#[derive(Debug, Clone)]
+pub struct Judge {
+    timeout: SimTime,
+    engaged_at: Option<SimTime>,
+    was_armed: bool,
+    complete_at: Option<SimTime>,
+    completed_source: PlanSource,
+    over_at: Option<SimTime>,
+    refused: Option<(Refusal, SimTime)>,
+    idle_since: Option<SimTime>,
+}
+
+impl Judge {
+    /// A judge that gives up `timeout` after boot.
+    #[must_use]
+    pub fn new(timeout: SimTime) -> Self {
+        Self {
+            timeout,
+            engaged_at: None,
+            was_armed: false,
+            complete_at: None,
+            completed_source: PlanSource::Stored,
+            over_at: None,
+            refused: None,
+            idle_since: None,
+        }
+    }
+
+    /// When the autopilot engaged for the first time.
+    #[must_use]
+    pub fn engaged_at(&self) -> Option<SimTime> {
+        self.engaged_at
+    }
+
+    /// Looks once; a verdict ends the flight.
+    pub fn look(&mut self, facts: &JudgeFacts) -> Option<Verdict> {
+        let now = facts.time;
+        if facts.diverged {
+            return verdict(
+                FlightResult::Diverged,
+                "the simulation diverged: its numbers mean nothing any more",
+            );
+        }
+        if facts.engaged && self.engaged_at.is_none() {
+            self.engaged_at = Some(now);
+        }
+        self.was_armed |= facts.armed;
+        if facts.state == NavState::Complete {
+            if self.complete_at.is_none() {
+                self.complete_at = Some(now);
+                self.completed_source = facts.source;
+            }
+        } else if facts.armed {
+            self.complete_at = None;
+        }
+        self.judge_ground(facts)
+            .or_else(|| self.judge_complete(facts))
+            .or_else(|| self.judge_refusal(facts))
+            .or_else(|| self.judge_idle(facts))
+            .or_else(|| (now >= self.timeout).then(|| self.timeout_verdict(facts)))
+    }
+
+    /// Disarmed or crashed.
+    fn judge_ground(&mut self, facts: &JudgeFacts) -> Option<Verdict> {
+        let over = facts.crashed || (self.was_armed && !facts.armed);
+        if !over {
+            self.over_at = None;
+            return None;
+        }
+        let since = *self.over_at.get_or_insert(facts.time);
+        let landed = facts.last_disarm == Some(DisarmReason::Landing) && !facts.crashed;
+        let settled = facts.time.seconds_since(since) >= AFTERMATH_S;
+        if !(settled || landed && facts.touched_down) {
+            return None;
+        }
+        if facts.crashed {
+            return verdict(FlightResult::Crashed, "the craft crashed");
+        }
+        if landed {
+            return match (self.complete_at, self.completed_source) {
+                (Some(_), PlanSource::Stored) => {
+                    verdict(FlightResult::Complete, "mission complete, landed and disarmed")
+                }
+                (Some(_), PlanSource::Rth) => {
+                    verdict(FlightResult::Landed, "landed at home after a return to home")
+                }
+                (Some(_), PlanSource::Emergency) => {
+                    verdict(FlightResult::Landed, "landed by an emergency landing")
+                }
+                (None, _) => verdict(FlightResult::Landed, "landed, but not by the plan"),
+            };
+        }
+        let reason = facts.last_disarm.map_or_else(|| "unknown".to_owned(), |reason| reason.to_string());
+        Some(Verdict {
+            result: FlightResult::Disarmed,
+            reason: format!("disarmed by {reason} before the end"),
+        })
+    }
+
+    /// Parked in the air after the last waypoint.
+    fn judge_complete(&self, facts: &JudgeFacts) -> Option<Verdict> {
+        let since = self.complete_at?;
+        if facts.ends_in_land && facts.source == PlanSource::Stored {
+            return None;
+        }
+        (facts.time.seconds_since(since) >= PARKED_S).then(|| Verdict {
+            result: FlightResult::Complete,
+            reason: "mission complete, parked at the last waypoint".to_owned(),
+        })
+    }
+
+    fn judge_refusal(&mut self, facts: &JudgeFacts) -> Option<Verdict> {
+        let Some(refusal) = facts.refusal.filter(|refusal| {
+            // Given up after an engagement is a matter of the IDLE rule.
+            !facts.engaged && !matches!(refusal, Refusal::Aborted(_))
+        }) else {
+            self.refused = None;
+            return None;
+        };
+        match self.refused {
+            Some((same, since)) if same == refusal => {
+                (facts.time.seconds_since(since) >= REFUSED_S).then(|| Verdict {
+                    result: FlightResult::Refused,
+                    reason: format!("autopilot refused: {}", refusal.sentence()),
+                })
+            }
+            _ => {
+                self.refused = Some((refusal, facts.time));
+                None
+            }
+        }
+    }
+
+    fn judge_idle(&mut self, facts: &JudgeFacts) -> Option<Verdict> {
+        if self.engaged_at.is_none() || facts.state != NavState::Idle {
+            self.idle_since = None;
+            return None;
+        }
+        let since = *self.idle_since.get_or_insert(facts.time);
+        (facts.time.seconds_since(since) >= IDLE_S).then(|| {
+            let why = facts
+                .refusal
+                .map_or_else(|| "no reason given".to_owned(), |refusal| refusal.sentence().into_owned());
+            Verdict { result: FlightResult::Aborted, reason: format!("mission given up: {why}") }
+        })
+    }
+
+    fn timeout_verdict(&self, facts: &JudgeFacts) -> Verdict {
+        let limit = self.timeout.as_secs_f64();
+        let doing = if !self.was_armed {
+            "the craft never armed".to_owned()
+        } else if self.engaged_at.is_none() {
+            "the autopilot never engaged".to_owned()
+        } else {
+            format!("still {} at waypoint {}", facts.state, facts.wp)
+        };
+        Verdict { result: FlightResult::Timeout, reason: format!("not over {limit} s after boot: {doing}") }
+    }
+}
+
+fn verdict(result: FlightResult, reason: &str) -> Option<Verdict> {
+    Some(Verdict { result, reason: reason.to_owned() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn facts(seconds: f64) -> JudgeFacts {
+        JudgeFacts {
+            time: SimTime::from_secs_f64(seconds),
+            engaged: true,
+            armed: true,
+            last_disarm: None,
+            state: NavState::Approaching,
+            wp: 1,
+            source: PlanSource::Stored,
+            refusal: None,
+            ends_in_land: true,
+            touched_down: false,
+            crashed: false,
+            diverged: false,
+        }
+    }
+
+    fn judge() -> Judge {
+        let mut judge = Judge::new(SimTime::from_secs_f64(100.0));
+        assert_eq!(judge.look(&facts(10.0)), None);
+        judge
+    }
+
+    #[test]
+    fn a_landed_plan_is_complete_and_an_injected_one_is_landed() {
+        for (source, result) in [
+            (PlanSource::Stored, FlightResult::Complete),
+            (PlanSource::Rth, FlightResult::Landed),
+            (PlanSource::Emergency, FlightResult::Landed),
+        ] {
+            let down = JudgeFacts {
+                armed: false,
+                engaged: false,
+                last_disarm: Some(DisarmReason::Landing),
+                state: NavState::Complete,
+                touched_down: true,
+                source,
+                ..facts(20.0)
+            };
+            assert_eq!(judge().look(&down).map(|v| v.result), Some(result));
+        }
+    }
+
+    #[test]
+    fn a_parked_plan_is_watched_for_five_seconds() {
+        let mut judge = judge();
+        let parked = |s| JudgeFacts { state: NavState::Complete, ends_in_land: false, ..facts(s) };
+        assert_eq!(judge.look(&parked(20.0)), None);
+        assert_eq!(judge.look(&parked(24.9)), None);
+        assert_eq!(judge.look(&parked(25.0)).map(|v| v.result), Some(FlightResult::Complete));
+    }
+
+    #[test]
+    fn a_refusal_must_stay_ten_seconds() {
+        let mut judge = Judge::new(SimTime::from_secs_f64(100.0));
+        let refused =
+            |s, why| JudgeFacts { engaged: false, refusal: Some(why), state: NavState::Idle, ..facts(s) };
+        assert_eq!(judge.look(&refused(10.0, Refusal::NoFix)), None);
+        assert_eq!(judge.look(&refused(15.0, Refusal::NoPlan)), None);
+        assert_eq!(judge.look(&refused(24.0, Refusal::NoPlan)), None);
+        assert_eq!(
+            judge.look(&refused(25.0, Refusal::NoPlan)).map(|v| v.result),
+            Some(FlightResult::Refused)
+        );
+    }
+
+    #[test]
+    fn idle_disarm_crash_timeout() {
+        let idle = |s| JudgeFacts { state: NavState::Idle, engaged: false, ..facts(s) };
+        let mut idling = judge();
+        assert_eq!(idling.look(&idle(20.0)), None);
+        assert_eq!(idling.look(&idle(50.0)).map(|v| v.result), Some(FlightResult::Aborted));
+
+        let mut disarmed = judge();
+        let down = |s| JudgeFacts { armed: false, last_disarm: Some(DisarmReason::Switch), ..facts(s) };
+        assert_eq!(disarmed.look(&down(20.0)), None);
+        assert_eq!(disarmed.look(&down(21.0)).map(|v| v.result), Some(FlightResult::Disarmed));
+
+        let mut crashed = judge();
+        let wreck = |s| JudgeFacts { crashed: true, ..facts(s) };
+        assert_eq!(crashed.look(&wreck(20.0)), None);
+        assert_eq!(crashed.look(&wreck(21.0)).map(|v| v.result), Some(FlightResult::Crashed));
+
+        let verdict = judge().look(&facts(100.0)).unwrap();
+        assert_eq!(verdict.result, FlightResult::Timeout);
+        assert!(verdict.reason.contains("APPROACHING at waypoint 1"), "{}", verdict.reason);
+    }
+}

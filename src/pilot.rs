@@ -1,0 +1,291 @@
+//! The scripted pilot: flies a whole mission by RC alone, fifty frames a simulated second.
+//!
+//! Wait for the fix and for no arming-disable flag, arm with the throttle low, raise it, switch ANGLE, ALTHOLD and
+//! POS HOLD on, climb, hover, switch the AUTOPILOT on, and from then on hold the sticks still. Its own switches stay
+//! on, so that a craft whose autopilot refuses hovers on.
+//!
+//! It sees what a pilot sees (the OSD), and touches nothing but the sixteen channels.
+
+use crate::firmware::mode::Mode;
+use crate::signals::{RcFrame, SimTime};
+use crate::vehicle::snapshot::ModeRange;
+
+/// Seconds of hover between the climb and the engagement.
+const HOVER_S: f64 = 5.0;
+/// Rate of climb the pilot aims at, m/s.
+const CLIMB_MPS: f64 = 2.0;
+/// Time for the throttle stick to go from low to hover, s.
+const RAISE_S: f64 = 0.8;
+/// Interval of RC frames, s.
+const FRAME_S: f64 = 0.02;
+/// Channel index of the throttle.
+const THROTTLE: usize = 2;
+/// Throttle stick at the bottom, µs.
+const LOW_US: f64 = 1000.0;
+/// The least stick that counts as raised, with a margin, µs.
+const RAISED_US: f64 = 1300.0;
+/// The highest stick the pilot uses to climb, µs.
+const CLIMB_STICK_MAX_US: f64 = 1900.0;
+
+/// What the pilot sees.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PilotFacts {
+    /// Now.
+    pub time: SimTime,
+    /// A 3-D fix.
+    pub fix: bool,
+    /// Some arming-disable flag is set.
+    pub arming_blocked: bool,
+    /// Armed.
+    pub armed: bool,
+    /// The autopilot flies.
+    pub engaged: bool,
+    /// Altitude above home, m.
+    pub alt_m: f64,
+    /// Climb rate, m/s.
+    pub climb_mps: f64,
+    /// Where the throttle stick rests in ALTHOLD, µs.
+    pub hover_stick_us: u16,
+}
+
+/// What the pilot is doing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Phase {
+    Waiting,
+    Arming,
+    Raising { since: SimTime },
+    Climbing { stick_us: f64 },
+    Hovering { since: SimTime },
+    Engaging,
+    Engaged,
+    Done,
+}
+
+/// Channel values that switch the pilot's modes on, found from the craft's mode conditions.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+struct Switches {
+    arm: Option<(usize, u16)>,
+    levelling: [Option<(usize, u16)>; 3],
+    autopilot: Option<(usize, u16)>,
+}
+
+/// The scripted pilot.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pilot {
+    phase: Phase,
+    takeoff_m: f64,
+    switches: Switches,
+    frame: RcFrame,
+}
+
+impl Pilot {
+    /// A pilot that climbs to `takeoff_m` metres before engaging (0: engages at once, on the ground), using the
+    /// channels that the craft's mode conditions name.
+    ///
+    /// # Errors
+    /// The name of the mode that no channel switches: without ARM and AUTOPILOT there is no flight.
+    pub fn new(takeoff_m: f64, ranges: &[ModeRange]) -> Result<Self, Mode> {
+        let find = |mode: Mode| {
+            let name = mode.to_string();
+            ranges
+                .iter()
+                .find(|range| range.name == name && range.start_us < range.end_us)
+                .map(|range| (usize::from(range.channel), range.start_us.midpoint(range.end_us)))
+        };
+        let switches = Switches {
+            arm: find(Mode::Arm),
+            levelling: [find(Mode::Angle), find(Mode::AltHold), find(Mode::PosHold)],
+            autopilot: find(Mode::Autopilot),
+        };
+        for (mode, switch) in [(Mode::Arm, switches.arm), (Mode::Autopilot, switches.autopilot)] {
+            if switch.is_none() {
+                return Err(mode);
+            }
+        }
+        Ok(Self { phase: Phase::Waiting, takeoff_m, switches, frame: RcFrame::SAFE })
+    }
+
+    /// What the pilot is doing, in a word or two.
+    #[must_use]
+    pub fn doing(&self) -> &'static str {
+        match self.phase {
+            Phase::Waiting => "waiting to arm",
+            Phase::Arming => "arming",
+            Phase::Raising { .. } => "taking off",
+            Phase::Climbing { .. } => "climbing",
+            Phase::Hovering { .. } => "hovering",
+            Phase::Engaging => "engaging",
+            Phase::Engaged => "watching",
+            Phase::Done => "done",
+        }
+    }
+
+    /// Whether the flight is over as far as the pilot is concerned.
+    #[must_use]
+    pub fn is_done(&self) -> bool {
+        self.phase == Phase::Done
+    }
+
+    /// The next frame; to be called every 20 ms of simulated time.
+    pub fn fly(&mut self, facts: &PilotFacts) -> RcFrame {
+        self.advance(facts);
+        let throttle = match self.phase {
+            Phase::Waiting | Phase::Arming | Phase::Done => LOW_US,
+            Phase::Raising { since } => {
+                let part = (facts.time.seconds_since(since) / RAISE_S).clamp(0.0, 1.0);
+                LOW_US + part * (f64::from(facts.hover_stick_us).max(RAISED_US) - LOW_US)
+            }
+            Phase::Climbing { stick_us } => stick_us,
+            Phase::Hovering { .. } | Phase::Engaging => f64::from(facts.hover_stick_us),
+            Phase::Engaged => 1500.0,
+        };
+        self.frame.channels[THROTTLE] = throttle.round() as u16;
+        self.frame
+    }
+
+    fn advance(&mut self, facts: &PilotFacts) {
+        let flying = !matches!(self.phase, Phase::Waiting | Phase::Arming | Phase::Done);
+        if flying && !facts.armed {
+            self.phase = Phase::Done;
+            self.frame = RcFrame::SAFE;
+            return;
+        }
+        match self.phase {
+            Phase::Waiting => {
+                if facts.fix && !facts.arming_blocked {
+                    self.switch_on(self.switches.arm);
+                    self.phase = Phase::Arming;
+                }
+            }
+            Phase::Arming => {
+                if facts.armed {
+                    self.phase = Phase::Raising { since: facts.time };
+                } else if facts.arming_blocked {
+                    // Refused after all: release the switch and wait for the cause to go away.
+                    self.frame = RcFrame::SAFE;
+                    self.phase = Phase::Waiting;
+                }
+            }
+            Phase::Raising { since } => {
+                if facts.time.seconds_since(since) >= RAISE_S {
+                    for switch in self.switches.levelling {
+                        self.switch_on(switch);
+                    }
+                    self.phase = if self.takeoff_m > 0.0 {
+                        Phase::Climbing { stick_us: f64::from(facts.hover_stick_us).max(RAISED_US) }
+                    } else {
+                        self.switch_on(self.switches.autopilot);
+                        Phase::Engaging
+                    };
+                }
+            }
+            Phase::Climbing { stick_us } => {
+                let left = self.takeoff_m - facts.alt_m;
+                if left <= 0.2 {
+                    self.phase = Phase::Hovering { since: facts.time };
+                } else {
+                    self.phase = Phase::Climbing { stick_us: climb_stick(stick_us, left, facts) };
+                }
+            }
+            Phase::Hovering { since } => {
+                if facts.time.seconds_since(since) >= HOVER_S {
+                    self.switch_on(self.switches.autopilot);
+                    self.phase = Phase::Engaging;
+                }
+            }
+            Phase::Engaging => {
+                if facts.engaged {
+                    self.phase = Phase::Engaged;
+                }
+            }
+            Phase::Engaged | Phase::Done => {}
+        }
+    }
+
+    fn switch_on(&mut self, switch: Option<(usize, u16)>) {
+        if let Some((channel, value)) = switch
+            && let Some(slot) = self.frame.channels.get_mut(channel)
+        {
+            *slot = value;
+        }
+    }
+}
+
+/// Feels for the stick position that gives the wanted climb, slowing down near the top as a person would.
+fn climb_stick(stick_us: f64, left_m: f64, facts: &PilotFacts) -> f64 {
+    let wanted = CLIMB_MPS.min(0.3 + 0.8 * left_m);
+    let error = wanted - facts.climb_mps;
+    (stick_us + 120.0 * error * FRAME_S).clamp(f64::from(facts.hover_stick_us), CLIMB_STICK_MAX_US)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn range(name: &'static str, channel: u8) -> ModeRange {
+        ModeRange { name, channel, start_us: 1700, end_us: 2100 }
+    }
+
+    fn ranges() -> Vec<ModeRange> {
+        vec![
+            range("ARM", 4),
+            range("AUTOPILOT", 5),
+            range("ANGLE", 6),
+            range("ALTHOLD", 6),
+            range("POS HOLD", 6),
+        ]
+    }
+
+    fn facts(seconds: f64) -> PilotFacts {
+        PilotFacts {
+            time: SimTime::from_secs_f64(seconds),
+            fix: true,
+            arming_blocked: false,
+            armed: false,
+            engaged: false,
+            alt_m: 0.0,
+            climb_mps: 0.0,
+            hover_stick_us: 1500,
+        }
+    }
+
+    #[test]
+    fn needs_arm_and_autopilot_switches() {
+        assert_eq!(Pilot::new(10.0, &[range("ARM", 4)]), Err(Mode::Autopilot));
+        assert_eq!(Pilot::new(10.0, &[]), Err(Mode::Arm));
+    }
+
+    #[test]
+    fn arms_only_when_nothing_blocks_and_with_low_throttle() {
+        let mut pilot = Pilot::new(10.0, &ranges()).unwrap();
+        let blocked = PilotFacts { arming_blocked: true, ..facts(0.0) };
+        assert_eq!(pilot.fly(&blocked), RcFrame::SAFE);
+        let frame = pilot.fly(&facts(1.0));
+        assert_eq!(frame.channels[4], 1900);
+        assert_eq!(frame.channels[THROTTLE], 1000);
+    }
+
+    #[test]
+    fn climbs_hovers_engages_and_centres_the_throttle() {
+        let mut pilot = Pilot::new(10.0, &ranges()).unwrap();
+        pilot.fly(&facts(0.0));
+        let flying = PilotFacts { armed: true, ..facts(1.0) };
+        pilot.fly(&flying);
+        let at = |seconds, alt_m, engaged| PilotFacts {
+            alt_m,
+            engaged,
+            ..PilotFacts { armed: true, ..facts(seconds) }
+        };
+        let frame = pilot.fly(&at(2.0, 0.1, false));
+        assert_eq!(frame.channels[6], 1900, "levelling modes on once the throttle is up");
+        assert!(pilot.fly(&at(2.02, 0.2, false)).channels[THROTTLE] > 1500);
+        assert_eq!(pilot.fly(&at(7.0, 9.9, false)).channels[THROTTLE], 1500);
+        assert_eq!(pilot.fly(&at(11.9, 10.0, false)).channels[5], 1000);
+        assert_eq!(pilot.fly(&at(12.1, 10.0, false)).channels[5], 1900);
+        assert_eq!(pilot.doing(), "engaging");
+        pilot.fly(&at(12.2, 10.0, true));
+        assert_eq!(pilot.doing(), "watching");
+        assert_eq!(pilot.fly(&PilotFacts { armed: false, ..facts(99.0) }), RcFrame::SAFE);
+        assert!(pilot.is_done());
+    }
+}

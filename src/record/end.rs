@@ -1,0 +1,57 @@
+//! How a flight ended, for the last event and the last lines of a headless flight.
+
+/// The end of a flight.
+#[derive(Debug, Clone, PartialEq)]
+pub struct End {
+    /// What became of it, in a word: `complete`, `landed`, `refused`, `aborted`, `disarmed`, `crashed`, `timeout`,
+    /// `diverged`, `interrupted`.
+    pub result: String,
+    /// Why, as a sentence; may be empty.
+    pub reason: String,
+    /// Simulated seconds from engagement (or boot, if there was none) to the end.
+    pub flown_s: f64,
+    /// Seconds of wall time that took.
+    pub wall_s: f64,
+}
+
+impl End {
+    /// How many times faster than real time the flight was; zero when the clock did not move.
+    #[must_use]
+    pub fn speed_ratio(&self) -> f64 {
+        if self.wall_s > 0.0 { self.flown_s / self.wall_s } else { 0.0 }
+    }
+
+    /// `complete: landed and disarmed`, the last line but one on standard error.
+    #[must_use]
+    pub fn result_line(&self) -> String {
+        let Self { result, reason, .. } = self;
+        if reason.is_empty() { result.clone() } else { format!("{result}: {reason}") }
+    }
+
+    /// `flown 312.4 s in 0.21 s (1488x real time)`, the last line on standard error.
+    #[must_use]
+    pub fn flown_line(&self) -> String {
+        let (flown, wall, ratio) = (self.flown_s, self.wall_s, self.speed_ratio());
+        let decimals = if ratio < 10.0 { 1 } else { 0 };
+        format!("flown {flown:.1} s in {wall:.2} s ({ratio:.decimals$}x real time)")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_lines_read_as_documented() {
+        let end = End {
+            result: "complete".to_owned(),
+            reason: "landed and disarmed".to_owned(),
+            flown_s: 312.4,
+            wall_s: 0.21,
+        };
+        assert_eq!(end.flown_line(), "flown 312.4 s in 0.21 s (1488x real time)");
+        assert_eq!(end.result_line(), "complete: landed and disarmed");
+        assert!(End { wall_s: 0.0, ..end.clone() }.speed_ratio().abs() < f64::EPSILON);
+        assert!(End { wall_s: 312.0, ..end }.flown_line().ends_with("(1.0x real time)"));
+    }
+}

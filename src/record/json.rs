@@ -1,0 +1,83 @@
+//! One JSON object a line: events, samples and the end of a flight.
+//!
+//! Every line starts with `t`, simulated seconds since boot, and `event`. Units are SI, angles are degrees, altitudes
+//! are metres above home. New keys may be added, none is removed or renamed. Two equal flights give equal bytes, but for
+//! `wall_s` and `speed_ratio`.
+
+mod event;
+mod sample;
+
+use serde::Serialize;
+
+use crate::signals::SimTime;
+use crate::vehicle::{Event, Snapshot};
+
+use super::End;
+use super::number::{Decimals, Milli};
+
+/// An event's line, without line end; `None` for the few events that only matter inside the craft.
+#[must_use]
+pub fn event_line(event: &Event) -> Option<String> {
+    event::Fields::of(&event.kind).map(|(name, fields)| line(event.time, name, &fields))
+}
+
+/// A sample's line, without line end.
+#[must_use]
+pub fn sample_line(snapshot: &Snapshot) -> String {
+    line(snapshot.time, "sample", &sample::Fields::of(snapshot))
+}
+
+/// The last line of a flight, without line end.
+#[must_use]
+pub fn end_line(time: SimTime, end: &End) -> String {
+    #[derive(Serialize)]
+    struct Fields<'a> {
+        result: &'a str,
+        reason: &'a str,
+        flown_s: Milli,
+        wall_s: Milli,
+        speed_ratio: Decimals<1>,
+    }
+    let fields = Fields {
+        result: &end.result,
+        reason: &end.reason,
+        flown_s: Decimals(end.flown_s),
+        wall_s: Decimals(end.wall_s),
+        speed_ratio: Decimals(end.speed_ratio()),
+    };
+    line(time, "end", &fields)
+}
+
+/// Puts time and name in front of the fields.
+fn line(time: SimTime, event: &str, fields: &impl Serialize) -> String {
+    #[derive(Serialize)]
+    struct Line<'a, T: Serialize> {
+        t: Decimals<6>,
+        event: &'a str,
+        #[serde(flatten)]
+        fields: &'a T,
+    }
+    let line = Line { t: Decimals(time.as_secs_f64()), event, fields };
+    // The maps and numbers of a line always serialise; the fallback keeps the output one object a line.
+    serde_json::to_string(&line).unwrap_or_else(|error| format!("{{\"error\":\"{error}\"}}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_end_has_its_keys_in_order() {
+        let end = End {
+            result: "timeout".to_owned(),
+            reason: "1800 s are over".to_owned(),
+            flown_s: 12.3456,
+            wall_s: 0.5,
+        };
+        assert_eq!(
+            end_line(SimTime(20_000_000), &end),
+            "{\"t\":20.0,\"event\":\"end\",\"result\":\"timeout\",\"reason\":\"1800 s are over\",\"flown_s\":12.346,\
+             \"wall_s\":0.5,\"speed_ratio\":24.7}"
+        );
+    }
+}

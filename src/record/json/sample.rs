@@ -1,0 +1,175 @@
+//! The fields of a sample: truth and estimate side by side.
+//!
+//! All `n`, `e` and `alt` count from the place where the craft stood at boot, as in the snapshot.
+
+use serde::Serialize;
+
+use super::super::number::{Centi, Decimals, Milli, Place};
+use crate::vehicle::Snapshot;
+use crate::vehicle::snapshot::TruthView;
+
+/// The fields after `t` and `event`, in the order in which they are printed; what does not exist is `null`.
+#[derive(Debug, Serialize)]
+pub(super) struct Fields {
+    lat: Option<Place>,
+    lon: Option<Place>,
+    alt: Option<Milli>,
+    n: Option<Milli>,
+    e: Option<Milli>,
+    vn: Option<Milli>,
+    ve: Option<Milli>,
+    vu: Option<Milli>,
+    roll: Option<Milli>,
+    pitch: Option<Milli>,
+    heading: Option<Milli>,
+    est_n: Option<Milli>,
+    est_e: Option<Milli>,
+    est_alt: Option<Milli>,
+    throttle_us: Centi,
+    motors: [Decimals<4>; 4],
+    battery_v: Option<Milli>,
+    battery_a: Option<Milli>,
+    battery_mah: Option<Milli>,
+    state: String,
+    wp: Option<u8>,
+    wp_type: Option<String>,
+    dist_m: Option<Milli>,
+    bearing: Option<Centi>,
+    xte_m: Option<Milli>,
+    l1_mode: String,
+    target_n: Option<Milli>,
+    target_e: Option<Milli>,
+    target_alt: Option<Milli>,
+    hold_remaining_ds: u16,
+    wind_n: Option<Milli>,
+    wind_e: Option<Milli>,
+}
+
+impl Fields {
+    pub(super) fn of(snapshot: &Snapshot) -> Self {
+        let truth =
+            |value: fn(&TruthView) -> f64| snapshot.truth.as_ref().map(|truth| Decimals(value(truth)));
+        let place =
+            |value: fn(&TruthView) -> f64| snapshot.truth.as_ref().map(|truth| Decimals(value(truth)));
+        let (craft, nav, estimate) = (&snapshot.craft, &snapshot.nav, &snapshot.estimate);
+        Self {
+            lat: place(|truth| truth.lat_deg),
+            lon: place(|truth| truth.lon_deg),
+            alt: truth(|truth| truth.alt),
+            n: truth(|truth| truth.n),
+            e: truth(|truth| truth.e),
+            vn: truth(|truth| truth.vn),
+            ve: truth(|truth| truth.ve),
+            vu: truth(|truth| truth.vu),
+            roll: truth(|truth| truth.roll_deg),
+            pitch: truth(|truth| truth.pitch_deg),
+            heading: truth(|truth| truth.heading_deg),
+            est_n: estimate.n.map(Decimals),
+            est_e: estimate.e.map(Decimals),
+            est_alt: estimate.alt.map(Decimals),
+            throttle_us: Decimals(craft.throttle_us),
+            motors: craft.motors.map(Decimals),
+            battery_v: craft.battery_v.map(Decimals),
+            battery_a: craft.battery_a.map(Decimals),
+            battery_mah: craft.battery_mah.map(Decimals),
+            state: nav.state.to_string(),
+            wp: nav.kind.map(|_| nav.wp),
+            wp_type: nav.kind.map(|kind| kind.to_string()),
+            dist_m: nav.distance_m.map(Decimals),
+            bearing: nav.bearing_rad.map(|bearing| Decimals(bearing.to_degrees())),
+            xte_m: nav.xte_m.map(Decimals),
+            l1_mode: nav.l1_mode.to_string(),
+            target_n: nav.target_ne.map(|target| Decimals(target.x)),
+            target_e: nav.target_ne.map(|target| Decimals(target.y)),
+            target_alt: nav.target_alt_m.map(Decimals),
+            hold_remaining_ds: nav.hold_remaining_ds,
+            wind_n: truth(|truth| truth.wind_n),
+            wind_e: truth(|truth| truth.wind_e),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::sample_line;
+    use crate::signals::SimTime;
+    use crate::vehicle::Snapshot;
+    use crate::vehicle::snapshot::TruthView;
+
+    /// The keys of a sample, in their order.
+    const KEYS: [&str; 34] = [
+        "t",
+        "event",
+        "lat",
+        "lon",
+        "alt",
+        "n",
+        "e",
+        "vn",
+        "ve",
+        "vu",
+        "roll",
+        "pitch",
+        "heading",
+        "est_n",
+        "est_e",
+        "est_alt",
+        "throttle_us",
+        "motors",
+        "battery_v",
+        "battery_a",
+        "battery_mah",
+        "state",
+        "wp",
+        "wp_type",
+        "dist_m",
+        "bearing",
+        "xte_m",
+        "l1_mode",
+        "target_n",
+        "target_e",
+        "target_alt",
+        "hold_remaining_ds",
+        "wind_n",
+        "wind_e",
+    ];
+
+    #[test]
+    fn an_empty_snapshot_has_all_keys_in_order() {
+        let line = sample_line(&Snapshot { time: SimTime(1_500), ..Snapshot::default() });
+        let mut rest = line.as_str();
+        for key in KEYS {
+            let (_, after) =
+                rest.split_once(&format!("\"{key}\":")).unwrap_or_else(|| panic!("{key} in {line}"));
+            rest = after;
+        }
+        assert!(line.starts_with(r#"{"t":0.0015,"event":"sample","lat":null,"lon":null"#), "{line}");
+        assert!(line.contains(r#""state":"IDLE","wp":null,"wp_type":null"#), "{line}");
+        assert!(line.contains(r#""l1_mode":"OFF""#), "{line}");
+    }
+
+    #[test]
+    fn values_are_rounded() {
+        let mut snapshot = Snapshot {
+            truth: Some(TruthView {
+                lat_deg: 40.123_456_789_12,
+                n: 1.0 / 3.0,
+                pitch_deg: -7.9,
+                ..TruthView::default()
+            }),
+            ..Snapshot::default()
+        };
+        snapshot.nav.bearing_rad = Some(std::f64::consts::FRAC_PI_2);
+        snapshot.craft.motors = [0.502_565_52, 0.0, 1.0, 0.25];
+        let line = sample_line(&snapshot);
+        for part in [
+            r#""lat":40.12345679"#,
+            r#""n":0.333"#,
+            r#""pitch":-7.9"#,
+            r#""bearing":90.0"#,
+            r#""motors":[0.5026,0.0,1.0,0.25]"#,
+        ] {
+            assert!(line.contains(part), "{part} in {line}");
+        }
+    }
+}

@@ -1,0 +1,220 @@
+//! The same events as plain sentences, for people: `fly` without `--json`, `serve`, the log.
+
+use crate::autopilot::io::{Guard, NavEvent, NavState, PlanSource};
+use crate::firmware::{DisarmReason, FirmwareEvent};
+use crate::plan::{FlightPlan, WaypointType};
+use crate::vehicle::{Event, EventKind};
+
+/// `  12.4 s  Armed.`; `None` for the few events that only matter inside the craft.
+#[must_use]
+pub fn line(event: &Event) -> Option<String> {
+    text(&event.kind).map(|text| format!("{:>7.1} s  {text}", event.time.as_secs_f64()))
+}
+
+/// The sentence without the time.
+#[must_use]
+pub fn text(kind: &EventKind) -> Option<String> {
+    Some(match kind {
+        EventKind::Boot { seed, rate_hz, airframe, live } => {
+            let live = if *live { ", open to outside influence" } else { "" };
+            format!("Booted: airframe {airframe}, {rate_hz} steps a second, seed {seed}{live}.")
+        }
+        EventKind::Firmware(event) => return firmware(event),
+        EventKind::Fault { name, on, value } => {
+            let value = if value.is_empty() { String::new() } else { format!(" {value}") };
+            format!("Fault {name}{value} {}.", if *on { "begins" } else { "ends" })
+        }
+        EventKind::Contact { impact_mps } => format!("Ground contact at {impact_mps:.2} m/s."),
+        EventKind::Touchdown { impact_mps, peak_mps2 } => {
+            format!("Touchdown: came down at {impact_mps:.2} m/s, peak {peak_mps2:.1} m/s².")
+        }
+        EventKind::Crash { cause } => format!("Crashed: {}", sentence_end(cause)),
+        EventKind::Notice(notice) => sentence_end(notice),
+    })
+}
+
+fn firmware(event: &FirmwareEvent) -> Option<String> {
+    Some(match event {
+        FirmwareEvent::GpsFix { sats } => format!("GPS fix with {sats} satellites."),
+        FirmwareEvent::GpsLost { sats } => format!("GPS fix lost, {sats} satellites."),
+        FirmwareEvent::Armed => "Armed.".to_owned(),
+        FirmwareEvent::Disarmed(reason) => format!("Disarmed: {}.", disarm(*reason)),
+        FirmwareEvent::Mode(modes) => {
+            let names: Vec<_> = modes.iter().map(|mode| mode.to_string()).collect();
+            if names.is_empty() { "Modes: none.".to_owned() } else { format!("Modes: {}.", names.join(", ")) }
+        }
+        FirmwareEvent::RxLoss => "RC link lost.".to_owned(),
+        FirmwareEvent::RxRecovered => "RC link is back.".to_owned(),
+        FirmwareEvent::Failsafe { policy, stage, procedure } => {
+            format!("Failsafe stage {stage}: procedure {procedure}, policy {policy}.")
+        }
+        FirmwareEvent::Nav(event) => return nav(event),
+        FirmwareEvent::Notice(notice) => sentence_end(notice),
+    })
+}
+
+fn nav(event: &NavEvent) -> Option<String> {
+    Some(match event {
+        NavEvent::Plan { source, plan } => new_plan(*source, plan),
+        NavEvent::State { from, to, wp, kind, reason, guard, .. } => {
+            let at = waypoint(*to, *wp, *kind);
+            let why = cause(reason, *to);
+            let numbers = guard.as_ref().map_or_else(String::new, |guard| format!(" ({})", because(guard)));
+            format!("{from} → {to}{at}: {why}{numbers}.")
+        }
+        NavEvent::Climbing(true) => "Climbing to the minimum altitude first.".to_owned(),
+        NavEvent::Climbing(false) => "Climb done.".to_owned(),
+        NavEvent::Geofence { distance_m, limit_m, action } => {
+            let what = if *action == "RTH" { "flying home" } else { "landing here" };
+            format!("Geofence: {distance_m:.1} m from home, the fence is {limit_m:.0} m: {what}.")
+        }
+        NavEvent::Refused(reason) => format!("The autopilot does not engage. {}", reason.sentence()),
+        NavEvent::Disarm => return None,
+    })
+}
+
+/// The navigator's word for a cause in plain language.
+fn cause(reason: &str, to: NavState) -> &str {
+    match reason {
+        "reset" => "the mission starts",
+        "resume" => "the mission goes on",
+        "set_current" => "sent there",
+        "arrival" => "reached",
+        "plane" => "passed",
+        "turn radius" => "the turn begins",
+        "advance" if to == NavState::Complete => "the mission is done",
+        "advance" => "on to the next",
+        "hold" => "holding there",
+        "loiter" => "waiting there",
+        "pattern" => "the pattern begins",
+        "hold time" => "the time is over",
+        "land" => "the descent begins",
+        "touchdown" => "landed",
+        "fence" => "outside the fence",
+        "emergency" => "emergency landing",
+        "disengage" => "switched off",
+        "GPS_LOST" => "the GPS fix is lost",
+        "NO_PLAN" => "the plan was cleared",
+        "STALLED" => "no progress",
+        "FLYAWAY" => "moving away from the waypoint",
+        other => other,
+    }
+}
+
+fn waypoint(to: NavState, wp: u8, kind: Option<WaypointType>) -> String {
+    match kind {
+        Some(kind) if to != NavState::Idle => format!(" (waypoint {wp}, {kind})"),
+        _ => String::new(),
+    }
+}
+
+/// `arrival 4.9 m ≤ 5.0 m`; a count without a unit: `fix 0 < 1`.
+fn because(guard: &Guard) -> String {
+    let Guard { name, value, limit, op, unit } = guard;
+    match *unit {
+        "" => format!("{name} {value} {op} {limit}"),
+        unit => format!("{name} {value:.1} {unit} {op} {limit:.1} {unit}"),
+    }
+}
+
+fn new_plan(source: PlanSource, plan: &FlightPlan) -> String {
+    let count = plan.waypoints.len();
+    let waypoints = if count == 1 { "waypoint" } else { "waypoints" };
+    match source {
+        PlanSource::Stored => format!("Flying the stored plan, {count} {waypoints}."),
+        PlanSource::Rth => format!("Return to home: {count} {waypoints}."),
+        PlanSource::Emergency => "Emergency landing at this place.".to_owned(),
+    }
+}
+
+fn disarm(reason: DisarmReason) -> &'static str {
+    match reason {
+        DisarmReason::ArmingDisabled => "arming was disabled",
+        DisarmReason::Failsafe => "failsafe",
+        DisarmReason::ThrottleTimeout => "throttle low for too long",
+        DisarmReason::Sticks => "stick command",
+        DisarmReason::Switch => "ARM switch off",
+        DisarmReason::CrashProtection => "crash protection",
+        DisarmReason::RunawayTakeoff => "runaway take-off",
+        DisarmReason::GpsRescue => "GPS rescue",
+        DisarmReason::SerialCommand => "serial command",
+        DisarmReason::Landing => "landed",
+        DisarmReason::Crashflip => "crash flip",
+        DisarmReason::System => "restart",
+    }
+}
+
+fn sentence_end(text: &str) -> String {
+    if text.ends_with(['.', '!', '?']) { text.to_owned() } else { format!("{text}.") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::autopilot::io::{GuardOp, Refusal};
+    use crate::geo::LatLon;
+    use crate::signals::SimTime;
+
+    fn say(event: FirmwareEvent) -> String {
+        text(&EventKind::Firmware(event)).expect("a sentence")
+    }
+
+    #[test]
+    fn lines_start_with_the_time() {
+        let event = Event { time: SimTime(12_400_000), kind: EventKind::Firmware(FirmwareEvent::Armed) };
+        assert_eq!(line(&event).as_deref(), Some("   12.4 s  Armed."));
+    }
+
+    #[test]
+    fn a_transition_says_where_and_why() {
+        let state = |to, guard, reason| {
+            say(FirmwareEvent::Nav(NavEvent::State {
+                from: NavState::Approaching,
+                to,
+                wp: 2,
+                kind: Some(WaypointType::Hold),
+                reason,
+                guard,
+                target: LatLon::default(),
+                target_alt_m: 50.0,
+            }))
+        };
+        let guard = Guard { name: "arrival", value: 1.93, limit: 2.0, op: GuardOp::AtMost, unit: "m" };
+        assert_eq!(
+            state(NavState::Arrived, Some(guard), "arrival"),
+            "APPROACHING → ARRIVED (waypoint 2, HOLD): reached (arrival 1.9 m ≤ 2.0 m)."
+        );
+        let fix = Guard { name: "fix", value: 0.0, limit: 1.0, op: GuardOp::Below, unit: "" };
+        assert_eq!(
+            state(NavState::Idle, Some(fix), "GPS_LOST"),
+            "APPROACHING → IDLE: the GPS fix is lost (fix 0 < 1)."
+        );
+        assert_eq!(state(NavState::Idle, None, "GPS_LOST"), "APPROACHING → IDLE: the GPS fix is lost.");
+    }
+
+    #[test]
+    fn refusals_carry_the_numbers() {
+        let refused = Refusal::Geofence { wp: 3, distance_cm: 15_043, limit_m: 100 };
+        assert_eq!(
+            say(FirmwareEvent::Nav(NavEvent::Refused(refused))),
+            "The autopilot does not engage. Waypoint 3 is 150 m from home, the fence is 100 m."
+        );
+    }
+
+    #[test]
+    fn every_sentence_ends_as_one() {
+        for event in [
+            FirmwareEvent::GpsFix { sats: 12 },
+            FirmwareEvent::Disarmed(DisarmReason::Landing),
+            FirmwareEvent::Notice("No full stop"),
+            FirmwareEvent::Notice("A question?"),
+            FirmwareEvent::Mode(crate::firmware::mode::ModeFlags::NONE),
+            FirmwareEvent::Nav(NavEvent::Geofence { distance_m: 100.4, limit_m: 100.0, action: "RTH" }),
+        ] {
+            let sentence = say(event);
+            assert!(sentence.ends_with(['.', '?']), "{sentence}");
+        }
+        let fault = EventKind::Fault { name: "gps-loss", on: true, value: String::new() };
+        assert_eq!(text(&fault).as_deref(), Some("Fault gps-loss begins."));
+    }
+}

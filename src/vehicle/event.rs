@@ -1,0 +1,59 @@
+//! Everything that happens to the vehicle, with its time.
+
+use crate::firmware::FirmwareEvent;
+use crate::signals::SimTime;
+
+/// An event and when it happened.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Event {
+    /// Simulated time since boot.
+    pub time: SimTime,
+    /// What happened.
+    pub kind: EventKind,
+}
+
+/// What happened.
+#[derive(Debug, Clone, PartialEq)]
+pub enum EventKind {
+    /// The vehicle was started.
+    Boot {
+        /// Seed of all randomness.
+        seed: u64,
+        /// Steps a second.
+        rate_hz: u32,
+        /// Name of the airframe.
+        airframe: String,
+        /// Whether outside doors can influence the flight, so that it is not repeatable.
+        live: bool,
+    },
+    /// The flight controller.
+    Firmware(FirmwareEvent),
+    /// A fault began or ended.
+    Fault {
+        /// Its name.
+        name: &'static str,
+        /// Whether it began.
+        on: bool,
+        /// Its value as text.
+        value: String,
+    },
+    /// The craft touched the ground.
+    Contact {
+        /// Sink rate, m/s.
+        impact_mps: f64,
+    },
+    /// The craft came to rest on the ground.
+    Touchdown {
+        /// Sink rate at the contact, m/s.
+        impact_mps: f64,
+        /// Greatest specific force since the contact, m/s².
+        peak_mps2: f64,
+    },
+    /// The craft crashed.
+    Crash {
+        /// What went wrong, as a sentence.
+        cause: String,
+    },
+    /// A notice for the user, as a sentence.
+    Notice(String),
+}

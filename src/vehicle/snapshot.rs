@@ -1,0 +1,192 @@
+//! A picture of the whole vehicle at one instant: plain data for displays, links and recorders.
+//!
+//! All `n`, `e`, `alt` count in metres from the place where the craft stood at boot, estimates and targets too.
+
+use crate::autopilot::io::NavTelemetry;
+use crate::firmware::mode::ModeFlags;
+use crate::geo::LatLon;
+use crate::plan::FlightPlan;
+use crate::signals::{RC_CHANNELS, RcSource, SimTime};
+
+/// The whole picture.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Snapshot {
+    /// Simulated time since boot.
+    pub time: SimTime,
+    /// What the world knows; `None` with an external simulator that does not tell.
+    pub truth: Option<TruthView>,
+    /// What the firmware believes.
+    pub estimate: EstimateView,
+    /// Modes, arming and receiver.
+    pub craft: CraftView,
+    /// The navigator.
+    pub nav: NavTelemetry,
+    /// The plan being flown, when one is.
+    pub active_plan: Option<FlightPlan>,
+    /// The plan stored in the craft.
+    pub stored_plan: FlightPlan,
+    /// Settings the displays need, as the firmware uses them.
+    pub settings: SettingsView,
+    /// Wind, noise and faults.
+    pub world: WorldView,
+}
+
+/// The craft's true motion.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct TruthView {
+    /// Latitude, degrees.
+    pub lat_deg: f64,
+    /// Longitude, degrees.
+    pub lon_deg: f64,
+    /// North of the boot place, m.
+    pub n: f64,
+    /// East of the boot place, m.
+    pub e: f64,
+    /// Above the boot place, m.
+    pub alt: f64,
+    /// Velocity north, m/s.
+    pub vn: f64,
+    /// Velocity east, m/s.
+    pub ve: f64,
+    /// Velocity up, m/s.
+    pub vu: f64,
+    /// Roll, degrees, right positive.
+    pub roll_deg: f64,
+    /// Pitch, degrees, nose **up** positive.
+    pub pitch_deg: f64,
+    /// Heading, degrees clockwise from north, 0…360.
+    pub heading_deg: f64,
+    /// Motor commands M1…M4, 0…1.
+    pub motors: [f64; 4],
+    /// Wind at the craft, towards north, m/s.
+    pub wind_n: f64,
+    /// Wind at the craft, towards east, m/s.
+    pub wind_e: f64,
+    /// Standing on the ground.
+    pub on_ground: bool,
+    /// Crashed.
+    pub crashed: bool,
+    /// The simulation left the range where its numbers mean something.
+    pub diverged: bool,
+}
+
+/// What the estimator believes.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct EstimateView {
+    /// North of the boot place, m; `None` before the first fix.
+    pub n: Option<f64>,
+    /// East of the boot place, m.
+    pub e: Option<f64>,
+    /// Above the boot place, m.
+    pub alt: Option<f64>,
+    /// Ground speed, m/s.
+    pub ground_speed_mps: f64,
+    /// Climb rate, m/s.
+    pub climb_mps: f64,
+    /// Roll, degrees, right positive.
+    pub roll_deg: f64,
+    /// Pitch, degrees, nose **up** positive.
+    pub pitch_deg: f64,
+    /// Heading, degrees clockwise from north.
+    pub heading_deg: f64,
+    /// Demanded roll, degrees, right positive, in a levelling mode.
+    pub roll_demand_deg: Option<f64>,
+    /// Demanded pitch, degrees, nose **up** positive, in a levelling mode.
+    pub pitch_demand_deg: Option<f64>,
+}
+
+/// Modes, arming, receiver, battery.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct CraftView {
+    /// Armed.
+    pub armed: bool,
+    /// Active modes.
+    pub modes: ModeFlags,
+    /// Names of the arming-disable flags that are set, in bit order.
+    pub arming_blocked_by: arrayvec::ArrayVec<&'static str, 30>,
+    /// A 3-D fix.
+    pub gps_fix: bool,
+    /// Satellites.
+    pub sats: u8,
+    /// Horizontal dilution of precision, when reported.
+    pub hdop: Option<f64>,
+    /// Home position, when known.
+    pub home: Option<LatLon>,
+    /// Battery voltage, V.
+    pub battery_v: Option<f64>,
+    /// Battery current, A.
+    pub battery_a: Option<f64>,
+    /// Charge drawn, mAh.
+    pub battery_mah: Option<f64>,
+    /// Cells of the battery.
+    pub battery_cells: u8,
+    /// Throttle that drives the mixer, RC µs.
+    pub throttle_us: f64,
+    /// Motor outputs M1…M4 as commanded by the firmware, 0…1.
+    pub motors: [f64; 4],
+    /// Channel values the firmware uses, µs (substituted while the link is lost).
+    pub channels: [u16; RC_CHANNELS],
+    /// Who drives the channels; `None` before the first frame.
+    pub rc_source: Option<RcSource>,
+    /// Age of the newest frame, s.
+    pub rc_age_s: Option<f64>,
+    /// Whether the receiver link is up.
+    pub rc_link: bool,
+    /// Failsafe stage: 0 none, 1 guard time, 2 procedure.
+    pub failsafe_stage: u8,
+    /// The mode conditions in force: what the RC panel draws on the AUX bars.
+    pub mode_ranges: Vec<ModeRange>,
+}
+
+/// A switch range that turns a mode on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ModeRange {
+    /// Box name.
+    pub name: &'static str,
+    /// Index into [`CraftView::channels`].
+    pub channel: u8,
+    /// First value inside, µs.
+    pub start_us: u16,
+    /// First value outside, µs.
+    pub end_us: u16,
+}
+
+/// The settings that shape what a map draws, in SI units.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct SettingsView {
+    /// `ap_waypoint_arrival_radius`, m.
+    pub arrival_radius_m: f64,
+    /// `ap_waypoint_hold_radius`, m.
+    pub hold_radius_m: f64,
+    /// `ap_hold_orbit_radius`, m.
+    pub orbit_radius_m: f64,
+    /// `ap_hold_figure8_width`, m.
+    pub figure8_width_m: f64,
+    /// `ap_max_distance_from_home`, m; `None` = no fence.
+    pub fence_m: Option<f64>,
+    /// `ap_max_angle`, degrees.
+    pub max_angle_deg: f64,
+    /// `ap_max_velocity`, m/s.
+    pub max_velocity_mps: f64,
+    /// `ap_hover_throttle`, µs.
+    pub hover_throttle_us: u16,
+}
+
+/// The air and what is wrong with the craft.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct WorldView {
+    /// Name of the airframe.
+    pub airframe: String,
+    /// Mean wind speed, m/s.
+    pub wind_mps: f64,
+    /// Direction the mean wind comes from, degrees.
+    pub wind_from_deg: f64,
+    /// Gust amplitude, m/s.
+    pub gust_mps: f64,
+    /// Turbulence level: `none`, `light`, `moderate`, `severe`.
+    pub turbulence: &'static str,
+    /// Sensor noise on.
+    pub noise: bool,
+    /// Active faults: name, value as text, seconds left (`None` = to the end).
+    pub faults: Vec<(&'static str, String, Option<f64>)>,
+}

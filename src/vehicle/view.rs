@@ -1,0 +1,91 @@
+//! The snapshot of a vehicle.
+
+use nalgebra::Vector2;
+
+use super::Vehicle;
+use super::snapshot::{EstimateView, Snapshot, TruthView, WorldView};
+use crate::geo::offset_to_degrees;
+use crate::sim::Noise;
+
+impl Vehicle {
+    /// A picture of the whole vehicle at this instant.
+    #[must_use]
+    pub fn snapshot(&self) -> Snapshot {
+        let firmware = &self.firmware;
+        let mut nav = firmware.nav().clone();
+        for point in [&mut nav.aim_ne, &mut nav.target_ne].into_iter().flatten() {
+            *point = self.count_from_boot_place(*point);
+        }
+        Snapshot {
+            time: self.time(),
+            truth: Some(self.truth_view()),
+            estimate: self.estimate_view(),
+            craft: firmware.craft_view(),
+            active_plan: nav.engaged.then(|| self.active_plan.as_deref().cloned()).flatten(),
+            nav,
+            stored_plan: firmware.stored_plan().clone(),
+            settings: firmware.settings_view(),
+            world: self.world_view(),
+        }
+    }
+
+    /// A point that the firmware counts from its own origin and on its own scale, counted north and east from the boot
+    /// place on the world's scale, m. Without an origin (no fix yet) the two are the same.
+    fn count_from_boot_place(&self, ne: Vector2<f64>) -> Vector2<f64> {
+        let Some(origin) = self.firmware.origin() else { return ne };
+        let (lat_deg, lon_deg) = offset_to_degrees(origin, ne);
+        let frame = self.world.local_frame();
+        let enu = frame.to_enu(lat_deg, lon_deg, frame.alt_amsl_m);
+        Vector2::new(enu.y, enu.x)
+    }
+
+    fn truth_view(&self) -> TruthView {
+        let truth = self.world.truth();
+        let (lat_deg, lon_deg, _) = self.world.local_frame().to_geodetic(truth.pos_enu);
+        TruthView {
+            lat_deg,
+            lon_deg,
+            n: truth.pos_enu.y,
+            e: truth.pos_enu.x,
+            alt: truth.pos_enu.z - self.world.airframe().standing_height_m(),
+            vn: truth.vel_enu.y,
+            ve: truth.vel_enu.x,
+            vu: truth.vel_enu.z,
+            roll_deg: truth.roll_deg(),
+            pitch_deg: truth.pitch_deg(),
+            heading_deg: truth.heading_deg(),
+            motors: truth.motor_command,
+            wind_n: truth.wind_enu.y,
+            wind_e: truth.wind_enu.x,
+            on_ground: truth.on_ground,
+            crashed: truth.crashed,
+            diverged: truth.diverged,
+        }
+    }
+
+    fn estimate_view(&self) -> EstimateView {
+        let mut view = self.firmware.estimate_view();
+        if let (Some(n), Some(e)) = (view.n, view.e) {
+            let ne = self.count_from_boot_place(Vector2::new(n, e));
+            (view.n, view.e) = (Some(ne.x), Some(ne.y));
+        }
+        view
+    }
+
+    fn world_view(&self) -> WorldView {
+        let status = self.world.status();
+        WorldView {
+            airframe: self.world.airframe().name.clone(),
+            wind_mps: status.wind.speed_mps,
+            wind_from_deg: status.wind.from_deg,
+            gust_mps: status.gust_mps,
+            turbulence: status.turbulence.into(),
+            noise: status.noise == Noise::Real,
+            faults: status
+                .faults
+                .iter()
+                .map(|(fault, left)| (fault.name(), fault.to_string(), *left))
+                .collect(),
+        }
+    }
+}

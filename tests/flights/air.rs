@@ -1,0 +1,169 @@
+//! Wind, gusts, weak motors, heavy loads: what the craft does with air and parts that are not kind.
+
+use crate::checks::{Checks, assert_met, greatest, mean};
+use crate::rig::{Rig, Sample, world};
+use betadeck::autopilot::io::NavState;
+use betadeck::firmware::{DisarmReason, FirmwareEvent};
+use betadeck::sim::{Fault, Wind, WorldCommand};
+use betadeck::vehicle::EventKind;
+
+const HOLD: &str = "waypoint insert 0 40.4635901 -79.5182000 2000 500 HOLD 0 NONE";
+
+fn fault(name: &str, value: &str) -> WorldCommand {
+    WorldCommand::FaultOn(Fault::parse(name, Some(value)).unwrap(), None)
+}
+
+/// A craft that has held its place for ten seconds.
+fn holding(seed: u64, wind: &str, gust_mps: f64) -> Rig {
+    let mut world = world(seed).0;
+    world.wind = wind.parse::<Wind>().unwrap();
+    world.gust_mps = gust_mps;
+    let mut rig = Rig::new(world, HOLD, 20.0);
+    rig.engaged().until_state(60.0, NavState::Holding).fly(10.0);
+    rig
+}
+
+fn off(rig: &Rig) -> impl Fn(&Sample) -> f64 + use<> {
+    let place = rig.waypoint(0);
+    move |sample| sample.from(place)
+}
+
+fn hold_in_wind(seed: u64, wind: &str, gust_mps: f64, rms: f64) -> Option<String> {
+    let extra = world(seed).1;
+    let mut rig = holding(seed, wind, gust_mps);
+    let start = rig.t();
+    rig.fly(60.0);
+    let off = off(&rig);
+    let mut checks = Checks::default();
+    checks.at_most("rms", mean(rig.span(start, 1e9).map(|s| off(s).powi(2))).sqrt(), rms + extra.h);
+    let alt = greatest(rig.span(start, 1e9).map(|s| (s.alt - 20.0).abs()));
+    checks.at_most("altitude", alt, 0.3 + extra.v);
+    checks.verdict(&format!("hold in {wind}, gusts {gust_mps}, seed {seed}"), &rig.story())
+}
+
+#[test]
+fn place_is_held_in_wind() {
+    let airs = [("calm", 0.0, 0.3), ("5@225", 0.8, 0.8), ("8@225", 1.5, 1.3)];
+    assert_met(
+        [0, 1, 2]
+            .into_iter()
+            .flat_map(|seed| airs.map(|(wind, gust_mps, rms)| hold_in_wind(seed, wind, gust_mps, rms))),
+    );
+}
+
+#[test]
+fn single_gust_is_ridden_out() {
+    assert_met([0, 1].map(|seed| {
+        let extra = world(seed).1;
+        let mut rig = holding(seed, "calm", 0.0);
+        rig.vehicle.change_world(fault("gust", "8@0")).unwrap();
+        let start = rig.t();
+        rig.fly(20.0);
+        let off = off(&rig);
+        let mut checks = Checks::default();
+        checks.at_most("farthest", greatest(rig.span(start, 1e9).map(&off)), 4.0 + extra.h);
+        checks.at_most("back", greatest(rig.span(start + 14.0, 1e9).map(&off)), 1.0 + extra.h);
+        let alt = greatest(rig.span(start, 1e9).map(|s| (s.alt - 20.0).abs()));
+        checks.at_most("altitude", alt, 1.0 + extra.v);
+        checks.verdict(&format!("gust, seed {seed}"), &rig.story())
+    }));
+}
+
+#[test]
+fn weak_motor_is_recovered_from() {
+    assert_met([0, 1].map(|seed| {
+        let extra = world(seed).1;
+        let mut rig = holding(seed, "calm", 0.0);
+        rig.vehicle.change_world(fault("motor", "2:0.8")).unwrap();
+        let start = rig.t();
+        rig.fly(20.0);
+        let off = off(&rig);
+        let mut checks = Checks::default();
+        checks.at_most("attitude", greatest(rig.span(start, 1e9).map(Sample::lean)), 12.0 + extra.angle);
+        checks.at_most("back", greatest(rig.span(start + 10.0, 1e9).map(&off)), 1.0 + extra.h);
+        checks.verdict(&format!("weak motor, seed {seed}"), &rig.story())
+    }));
+}
+
+#[test]
+fn dead_motor_is_a_crash_without_nonsense() {
+    let mut rig = holding(0, "calm", 0.0);
+    rig.vehicle.change_world(fault("motor", "2:0")).unwrap();
+    rig.until(20.0, "crash", |rig| rig.vehicle.world().truth().crashed).fly(1.0);
+    let last = rig.samples.last().unwrap();
+    assert!([last.n, last.e, last.alt, last.roll].iter().all(|value| value.is_finite()));
+    let firmware = rig.vehicle.firmware();
+    assert!(firmware.control().motors.0.iter().all(|motor| motor.is_finite()));
+}
+
+#[test]
+fn load_is_carried_and_landed() {
+    let lines = "waypoint insert 0 40.4635901 -79.5182000 2000 500 HOLD 300 NONE
+waypoint insert 1 40.4635901 -79.5182000 1000 500 LAND 0 NONE";
+    let mut rig = Rig::new(world(0).0, lines, 20.0);
+    rig.engaged().until_state(60.0, NavState::Holding).fly(5.0);
+    rig.vehicle.change_world(fault("payload", "0.1")).unwrap();
+    let start = rig.t();
+    rig.until(120.0, "disarm", |rig| rig.disarmed().is_some());
+    let landing = rig.entered(NavState::Approaching, 1);
+    let alt = greatest(rig.span(start + 10.0, landing).map(|s| (s.alt - 20.0).abs()));
+    assert!(alt <= 1.0, "{alt}");
+    assert_eq!(rig.disarmed().unwrap().1, DisarmReason::Landing);
+}
+
+#[test]
+fn biased_inertial_sensors_still_hold() {
+    let mut rig = holding(0, "calm", 0.0);
+    rig.vehicle.change_world(fault("gyro-bias", "2")).unwrap();
+    rig.vehicle.change_world(fault("acc-bias", "0.3")).unwrap();
+    let start = rig.t();
+    rig.fly(60.0);
+    let off = off(&rig);
+    let far = greatest(rig.span(start + 20.0, 1e9).map(&off));
+    assert!(far <= 2.0, "{far}");
+}
+
+#[test]
+fn wind_near_the_limit_is_held_and_beyond_it_ends_at_the_fence() {
+    let mut rig = holding(0, "12@0", 0.0);
+    let off = off(&rig);
+    let start = rig.t();
+    rig.fly(30.0);
+    let far = greatest(rig.span(start, 1e9).map(&off));
+    assert!(far <= 5.0, "{far}");
+
+    let lines = "waypoint insert 0 40.4635000 -79.5182000 2000 500 HOLD 0 NONE";
+    let mut rig = Rig::new(world(0).0, lines, 20.0);
+    rig.engaged().until_state(60.0, NavState::Holding).fly(5.0);
+    rig.vehicle.change_world(WorldCommand::SetWind("14@0".parse().unwrap())).unwrap();
+    let start = rig.t();
+    rig.until(1200.0, "the fence", |rig| {
+        rig.event_at(|kind| {
+            matches!(
+                kind,
+                EventKind::Firmware(FirmwareEvent::Nav(betadeck::autopilot::io::NavEvent::Geofence { .. }))
+            )
+        })
+        .is_some()
+    });
+    let lean: Vec<f64> = rig.span(start + 15.0, 1e9).map(Sample::lean).collect();
+    let middle = mean(lean.iter().copied());
+    let swing = greatest(lean.iter().map(|lean| (lean - middle).abs()));
+    assert!(swing <= 5.0, "{swing}");
+}
+
+#[test]
+fn sagging_battery_is_made_up_for() {
+    let mut world = world(0).0;
+    world.switches.battery_sag = true;
+    world.switches.battery_capacity_ah = Some(0.5);
+    let mut rig = Rig::new(world, HOLD, 20.0);
+    rig.engaged().until_state(60.0, NavState::Holding).fly(10.0);
+    let start = rig.t();
+    let is_warning = |kind: &EventKind| matches!(kind, EventKind::Firmware(FirmwareEvent::Notice(text)) if text.starts_with("Battery low"));
+    rig.until(400.0, "a warning", |rig| rig.event_at(is_warning).is_some());
+    let alt = greatest(rig.span(start, 1e9).map(|s| (s.alt - 20.0).abs()));
+    assert!(alt <= 0.7, "{alt}");
+    let (first, last) = (rig.at(start), rig.samples.last().unwrap());
+    assert!(last.throttle_us > first.throttle_us, "throttle rises as the voltage falls");
+}

@@ -1,0 +1,64 @@
+//! Landing: the descent, the contact, and the touchdown logic.
+
+use crate::checks::{Checks, assert_met, greatest};
+use crate::rig::{Rig, SEEDS, Sample, world};
+use betadeck::autopilot::io::NavState;
+use betadeck::firmware::DisarmReason;
+use betadeck::sim::Wind;
+use betadeck::vehicle::EventKind;
+
+fn landing(seed: u64, wind: Wind) -> Option<String> {
+    let (mut world, extra) = world(seed);
+    world.wind = wind;
+    let windy = wind.speed_mps > 0.0;
+    let mut rig = Rig::new(world, "waypoint insert 0 40.4635000 -79.5182000 2000 0 LAND 0 ORBIT", 20.0);
+    rig.engaged().until(90.0, "disarm", |rig| rig.disarmed().is_some()).fly(10.0);
+    let mut checks = Checks::default();
+    checks.same("states", rig.path().as_str(), "APPROACHING 0, ARRIVED 0, LANDING 0, COMPLETE 0");
+    let landing = rig.entered(NavState::Landing, 0);
+    checks.at_most("LANDING at", landing, 0.1);
+    let (disarm, reason) = rig.disarmed().unwrap();
+    checks.same("reason", reason, DisarmReason::Landing);
+    checks.same("COMPLETE and disarm", rig.entered(NavState::Complete, 0), disarm);
+    let off = greatest(
+        rig.span(landing + 4.0, landing + 31.0).map(|s| (s.alt - (20.0 - 0.5 * (s.t - landing))).abs()),
+    );
+    checks.at_most("profile", off, 1.0 + extra.v);
+    let start = rig.at(landing);
+    let low = rig.samples.iter().find(|s| s.t > landing && s.alt <= 4.0).unwrap();
+    let rate = (start.alt - low.alt) / (low.t - start.t);
+    checks.within("mean rate", rate, 0.42, 0.58 + extra.speed);
+    let contact = rig.event_at(|kind| matches!(kind, EventKind::Contact { .. })).unwrap();
+    checks.within("contact after", contact - landing, 38.0 - extra.v / 0.5, 43.0 + extra.v / 0.5);
+    let touch = rig.at(contact);
+    let climbing = greatest(rig.span(landing, contact).map(|s| s.vu));
+    checks.at_most("climbing", climbing, 0.1 + extra.speed);
+    let place = rig.waypoint(0);
+    checks.at_most("contact from home", touch.from(place), if windy { 1.5 } else { 1.0 } + extra.h);
+    checks.at_most("side speed", touch.speed(), 0.5 + extra.speed);
+    for event in &rig.events {
+        match event.kind {
+            EventKind::Contact { impact_mps } => checks.at_most("impact", impact_mps, 0.8 + extra.speed),
+            EventKind::Touchdown { peak_mps2, .. } => checks.at_most("peak", peak_mps2, 75.0),
+            _ => {}
+        }
+    }
+    checks.within("disarm after contact", disarm - contact, 1.0, 8.0);
+    for sample in rig.span(disarm - 1.0, disarm) {
+        checks.holds(
+            "guide's conditions held",
+            sample.alt < 4.0 && sample.speed() < 0.5 && sample.throttle_us < 1400.5,
+        );
+    }
+    let rest = rig.at(disarm);
+    let moved = greatest(rig.span(disarm, 1e9).map(|s| (s.n - rest.n).hypot(s.e - rest.e)));
+    checks.at_most("stays", moved, 0.2);
+    checks.at_most("lean", greatest(rig.span(0.0, 1e9).map(Sample::lean)), 27.0 + extra.angle);
+    checks.verdict(&format!("landing, seed {seed}, wind {wind}"), &rig.story())
+}
+
+#[test]
+fn landing_in_calm_and_in_wind() {
+    let winds = [Wind::CALM, "3@200".parse().unwrap()];
+    assert_met(SEEDS.into_iter().flat_map(|seed| winds.map(|wind| landing(seed, wind))));
+}

@@ -1,0 +1,25 @@
+//! Whole flights: firmware and world in lockstep, flown by the scripted pilot.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    clippy::needless_pass_by_value,
+    reason = "helpers of tests fail and show as tests do"
+)]
+
+mod air;
+mod checks;
+mod corners;
+mod geofence;
+mod gps;
+mod landing;
+mod leaving;
+mod orbit;
+mod path;
+mod policies;
+mod rates;
+mod return_home;
+mod rig;
+mod rx_loss;
+mod script;
+mod square;

@@ -1,0 +1,60 @@
+//! Every RX-loss policy with every failsafe procedure, flying a mission and hovering by hand.
+
+use crate::rig::{Rig, world};
+use betadeck::firmware::mode::Mode;
+use betadeck::firmware::{DisarmReason, FirmwareEvent};
+use betadeck::vehicle::EventKind;
+
+const MISSION: &str = "\nwaypoint insert 0 40.4648508 -79.5182000 2000 500 FLYOVER 0 ORBIT
+waypoint insert 1 40.4648508 -79.5174926 2000 500 LAND 0 ORBIT";
+
+/// Cuts the link in flight; what stage 2 did, and the modes half a second later.
+fn stage_2(policy: &str, procedure: &str, engaged: bool) -> (String, String) {
+    let lines = format!("set ap_rx_loss_policy = {policy}\nset failsafe_procedure = {procedure}{MISSION}");
+    let mut rig = Rig::new(world(0).0, &lines, 10.0);
+    if engaged {
+        rig.engaged().fly(3.0);
+    } else {
+        rig.until(60.0, "hover", |rig| rig.vehicle.firmware().altitude_m() > 9.0);
+    }
+    rig.vehicle.hands.cut = true;
+    rig.fly(2.1);
+    let word = rig.events.iter().find_map(|event| match event.kind {
+        EventKind::Firmware(FirmwareEvent::Failsafe { stage: 2, procedure, .. }) => Some(procedure),
+        _ => None,
+    });
+    let last = rig.samples.last().unwrap();
+    if !last.armed {
+        assert_eq!(rig.disarmed().unwrap().1, DisarmReason::Failsafe);
+    }
+    let shown = [Mode::Arm, Mode::Autopilot, Mode::Failsafe, Mode::AltHold, Mode::PosHold];
+    let letters = shown.iter().map(|&mode| if last.modes.has(mode) { 'x' } else { '-' }).collect();
+    (word.unwrap_or("nothing").to_owned(), letters)
+}
+
+#[test]
+fn response_by_policy_procedure_and_flight() {
+    // Modes: ARM, AUTOPILOT, FAILSAFE, ALTHOLD, POS HOLD.
+    let by_hand = |procedure| match procedure {
+        "DROP" => ("DROP", "--x--"),
+        "AUTO-LAND" => ("AUTO-LAND", "x-xxx"),
+        _ => ("GPS-RESCUE", "xxxxx"),
+    };
+    for procedure in ["DROP", "AUTO-LAND", "GPS-RESCUE"] {
+        for policy in ["DISABLE", "CONTINUE", "LAND"] {
+            let in_mission = match policy {
+                "CONTINUE" => ("CONTINUE", "xxxxx"),
+                "LAND" => ("LAND", "x-xxx"),
+                _ => by_hand(procedure),
+            };
+            for (engaged, (word, modes)) in [(true, in_mission), (false, by_hand(procedure))] {
+                let got = stage_2(policy, procedure, engaged);
+                assert_eq!(
+                    got,
+                    (word.to_owned(), modes.to_owned()),
+                    "{policy} {procedure} engaged {engaged}"
+                );
+            }
+        }
+    }
+}

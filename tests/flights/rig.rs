@@ -1,0 +1,329 @@
+//! A vehicle, its pilot, and a record of what happened.
+
+use betadeck::autopilot::io::{NavEvent, NavState, PlanSource};
+use betadeck::firmware::cli::Interpreter;
+use betadeck::firmware::config::Configuration;
+use betadeck::firmware::mode::ModeFlags;
+use betadeck::firmware::{DisarmReason, FirmwareEvent, FirmwareOptions};
+use betadeck::plan::FlightPlan;
+use betadeck::signals::SimTime;
+use betadeck::sim::{Noise, Switches, WindProfile, WorldConfig};
+use betadeck::vehicle::{Event, EventKind, Vehicle, VehicleConfig};
+
+/// The guide's configuration, Step 5.
+pub const GUIDE_SETTINGS: &str = "
+set ap_position_p = 40
+set ap_position_i = 10
+set ap_position_d = 30
+set ap_position_a = 20
+set ap_position_cutoff = 5
+set ap_altitude_p = 50
+set ap_altitude_i = 30
+set ap_altitude_d = 20
+set ap_altitude_f = 10
+set ap_hover_throttle = 1500
+set ap_waypoint_arrival_radius = 500
+set ap_waypoint_hold_radius = 200
+set ap_max_angle = 25
+set ap_l1_enable = ON
+set ap_l1_period = 20
+set ap_l1_min_lookahead = 1000
+set ap_l1_max_lookahead = 10000
+set ap_landing_descent_rate = 50
+set ap_landing_detection_time = 10
+set ap_landing_velocity_threshold = 50
+set ap_yaw_mode = VELOCITY
+set ap_max_yaw_rate = 90
+set ap_max_distance_from_home = 500
+set ap_geofence_action = LAND
+";
+
+/// What a flight looks like from outside, a hundred times a second.
+#[derive(Debug, Clone, Copy)]
+pub struct Sample {
+    /// Seconds since engagement (before it: negative).
+    pub t: f64,
+    /// True place from the boot place, m: north, east, up.
+    pub n: f64,
+    pub e: f64,
+    pub alt: f64,
+    /// True velocity, m/s: north, east, up.
+    pub vn: f64,
+    pub ve: f64,
+    pub vu: f64,
+    /// True attitude, degrees: roll right, pitch nose up, heading.
+    pub roll: f64,
+    pub pitch: f64,
+    pub heading: f64,
+    pub throttle_us: f64,
+    pub motors: [f64; 4],
+    pub armed: bool,
+    pub modes: ModeFlags,
+    pub state: NavState,
+    pub wp: u8,
+    /// Distance to the waypoint as the navigator says, m.
+    pub distance: f64,
+    pub hold_remaining_ds: u16,
+}
+
+impl Sample {
+    pub fn speed(&self) -> f64 {
+        self.vn.hypot(self.ve)
+    }
+
+    /// Tilt from level, degrees.
+    pub fn lean(&self) -> f64 {
+        (self.roll.to_radians().cos() * self.pitch.to_radians().cos()).acos().to_degrees()
+    }
+
+    /// Horizontal distance from a point (north, east), m.
+    pub fn from(&self, point: [f64; 2]) -> f64 {
+        (self.n - point[0]).hypot(self.e - point[1])
+    }
+}
+
+/// A state transition.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Transition {
+    /// Seconds since engagement.
+    pub t: f64,
+    pub to: NavState,
+    pub wp: u8,
+}
+
+/// A flight under observation.
+pub struct Rig {
+    pub vehicle: Vehicle,
+    pub events: Vec<Event>,
+    pub samples: Vec<Sample>,
+    standing_m: f64,
+}
+
+impl Rig {
+    /// A vehicle with the guide's settings and the starter modes in this world, with these further CLI lines, and the
+    /// scripted pilot who climbs to `takeoff_m` and engages.
+    pub fn new(world: WorldConfig, lines: &str, takeoff_m: f64) -> Self {
+        let mut configuration = Configuration::default();
+        configuration.starter_modes();
+        let firmware = FirmwareOptions { rate_hz: world.rate_hz, ..FirmwareOptions::default() };
+        let vehicle = Vehicle::new(VehicleConfig { world, firmware, configuration, live: false }).unwrap();
+        let standing_m = vehicle.world().truth().pos_enu.z;
+        let mut rig = Self { vehicle, events: Vec::new(), samples: Vec::new(), standing_m };
+        rig.cli(GUIDE_SETTINGS);
+        rig.cli("set ap_geofence_action = LAND");
+        rig.cli(lines);
+        rig.vehicle.start_pilot(takeoff_m).unwrap();
+        rig
+    }
+
+    /// Types CLI lines; none may fail.
+    pub fn cli(&mut self, lines: &str) {
+        let mut session = Interpreter::default();
+        for line in lines.lines() {
+            let reply = self.vehicle.firmware_mut().run_cli(&mut session, line);
+            assert!(!reply.failed, "{line}: {}", reply.text);
+        }
+    }
+
+    /// One step.
+    pub fn tick(&mut self) {
+        self.vehicle.tick();
+        self.vehicle.drain_events(|event| self.events.push(event));
+        if self.vehicle.time().0.is_multiple_of(10_000) {
+            self.samples.push(self.sample());
+        }
+    }
+
+    /// Flies on for so many simulated seconds.
+    pub fn fly(&mut self, seconds: f64) -> &mut Self {
+        let end = self.boot_s() + seconds;
+        while self.boot_s() < end {
+            self.tick();
+        }
+        self
+    }
+
+    /// Flies until the condition holds; fails the test when it does not within so many simulated seconds.
+    #[track_caller]
+    pub fn until(&mut self, limit_s: f64, what: &str, mut done: impl FnMut(&Self) -> bool) -> &mut Self {
+        let end = self.boot_s() + limit_s;
+        while !done(self) {
+            assert!(self.boot_s() < end, "never came: {what}\n{}", self.story());
+            self.tick();
+        }
+        self
+    }
+
+    /// Flies until the autopilot engages.
+    #[track_caller]
+    pub fn engaged(&mut self) -> &mut Self {
+        self.until(60.0, "engagement", |rig| rig.vehicle.engaged_at().is_some())
+    }
+
+    /// Flies until this state is entered (again).
+    #[track_caller]
+    pub fn until_state(&mut self, limit_s: f64, state: NavState) -> &mut Self {
+        let seen = self.transitions().len();
+        self.until(limit_s, &state.to_string(), |rig| {
+            rig.transitions().get(seen..).is_some_and(|new| new.iter().any(|entry| entry.to == state))
+        })
+    }
+
+    /// Seconds since boot.
+    pub fn boot_s(&self) -> f64 {
+        self.vehicle.time().as_secs_f64()
+    }
+
+    fn since_engagement(&self, boot_s: f64) -> f64 {
+        boot_s - self.vehicle.engaged_at().map_or(1e6, SimTime::as_secs_f64)
+    }
+
+    /// Seconds since engagement.
+    pub fn t(&self) -> f64 {
+        self.since_engagement(self.boot_s())
+    }
+
+    fn sample(&self) -> Sample {
+        let truth = self.vehicle.world().truth();
+        let firmware = self.vehicle.firmware();
+        let nav = firmware.nav();
+        let craft = firmware.craft_view();
+        Sample {
+            t: self.t(),
+            n: truth.pos_enu.y,
+            e: truth.pos_enu.x,
+            alt: truth.pos_enu.z - self.standing_m,
+            vn: truth.vel_enu.y,
+            ve: truth.vel_enu.x,
+            vu: truth.vel_enu.z,
+            roll: truth.roll_deg(),
+            pitch: truth.pitch_deg(),
+            heading: truth.heading_deg(),
+            throttle_us: craft.throttle_us,
+            motors: craft.motors,
+            armed: craft.armed,
+            modes: craft.modes,
+            state: nav.state,
+            wp: nav.wp,
+            distance: nav.distance_m.unwrap_or(f64::NAN),
+            hold_remaining_ds: nav.hold_remaining_ds,
+        }
+    }
+
+    /// All state transitions so far.
+    pub fn transitions(&self) -> Vec<Transition> {
+        self.events
+            .iter()
+            .filter_map(|event| match &event.kind {
+                EventKind::Firmware(FirmwareEvent::Nav(NavEvent::State { to, wp, .. })) => {
+                    Some(Transition { t: self.since_engagement(event.time.as_secs_f64()), to: *to, wp: *wp })
+                }
+                _ => None,
+            })
+            .collect()
+    }
+
+    /// The transitions as words: `APPROACHING 0, ARRIVED 0, …`.
+    pub fn path(&self) -> String {
+        let words: Vec<_> =
+            self.transitions().iter().map(|entry| format!("{} {}", entry.to, entry.wp)).collect();
+        words.join(", ")
+    }
+
+    /// When a state was entered with this waypoint, the first time, s since engagement.
+    #[track_caller]
+    pub fn entered(&self, state: NavState, wp: u8) -> f64 {
+        let found = self.transitions().into_iter().find(|entry| entry.to == state && entry.wp == wp);
+        found.unwrap_or_else(|| panic!("{state} {wp} never came\n{}", self.story())).t
+    }
+
+    /// The samples of a span of time since engagement.
+    pub fn span(&self, from: f64, to: f64) -> impl Iterator<Item = &Sample> {
+        self.samples.iter().filter(move |sample| from <= sample.t && sample.t < to)
+    }
+
+    /// The first sample at or after a time since engagement.
+    #[track_caller]
+    pub fn at(&self, t: f64) -> &Sample {
+        self.samples.iter().find(|sample| sample.t >= t - 1e-9).unwrap()
+    }
+
+    /// Time of the first event that the pick accepts, s since engagement.
+    pub fn event_at(&self, pick: impl Fn(&EventKind) -> bool) -> Option<f64> {
+        let event = self.events.iter().find(|event| pick(&event.kind))?;
+        Some(self.since_engagement(event.time.as_secs_f64()))
+    }
+
+    /// When and why the craft was disarmed.
+    pub fn disarmed(&self) -> Option<(f64, DisarmReason)> {
+        self.events.iter().find_map(|event| match event.kind {
+            EventKind::Firmware(FirmwareEvent::Disarmed(reason)) => {
+                Some((self.since_engagement(event.time.as_secs_f64()), reason))
+            }
+            _ => None,
+        })
+    }
+
+    /// The plans that became active, with their sources.
+    pub fn plans(&self) -> Vec<(PlanSource, FlightPlan)> {
+        self.events
+            .iter()
+            .filter_map(|event| match &event.kind {
+                EventKind::Firmware(FirmwareEvent::Nav(NavEvent::Plan { source, plan })) => {
+                    Some((*source, (**plan).clone()))
+                }
+                _ => None,
+            })
+            .collect()
+    }
+
+    /// A place of a plan from the boot place in the world's projection (north, east), m.
+    pub fn place(&self, position: betadeck::geo::LatLon) -> [f64; 2] {
+        let enu = self.vehicle.world().local_frame().to_enu(position.lat_deg(), position.lon_deg(), 0.0);
+        [enu.y, enu.x]
+    }
+
+    /// Place of a waypoint of the stored plan.
+    pub fn waypoint(&self, index: usize) -> [f64; 2] {
+        self.place(self.vehicle.firmware().stored_plan().waypoints[index].position)
+    }
+
+    /// One line an event, for failure messages.
+    pub fn story(&self) -> String {
+        self.events
+            .iter()
+            .map(|event| {
+                format!("{:8.3} {:?}\n", self.since_engagement(event.time.as_secs_f64()), event.kind)
+            })
+            .collect()
+    }
+}
+
+/// What is allowed on top of the plain bounds, because sensors err.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Allowance {
+    /// Horizontally, m.
+    pub h: f64,
+    /// Vertically, m.
+    pub v: f64,
+    /// On speeds, m/s.
+    pub speed: f64,
+    /// On angles, degrees.
+    pub angle: f64,
+}
+
+/// A world: calm or windy, with exact sensors (seed 0) or real ones of this seed.
+pub fn world(seed: u64) -> (WorldConfig, Allowance) {
+    let switches = Switches { wind_profile: WindProfile::Flat, ..Switches::default() };
+    let plain = WorldConfig { switches, noise: Noise::None, ..WorldConfig::default() };
+    match seed {
+        0 => (plain, Allowance::default()),
+        seed => (
+            WorldConfig { noise: Noise::Real, seed, ..plain },
+            Allowance { h: 1.0, v: 0.5, speed: 0.15, angle: 3.0 },
+        ),
+    }
+}
+
+/// Seeds of a check: 0 = exact sensors.
+pub const SEEDS: [u64; 6] = [0, 1, 2, 3, 4, 5];
