@@ -1,0 +1,31 @@
+//! The doors: how configurators, scripts, simulators and command lines reach the vehicle.
+//!
+//! [`proto`] holds the protocols as pure state machines over bytes: they are told the time and never wait. Everything
+//! else here moves bytes between sockets and those machines and turns what arrives into [`Request`]s to the session.
+//!
+//! ```text
+//! tcp 5761 ──┐                                    ┌── Msp, EnterCli, Cli, LeftCli, Restart ─▶ session
+//! ws  6761 ──┴─ listener ─ client ─ conversation ─┘                    ◀─ oneshot replies ──
+//! udp 9004 ──── receive ── Rc  ──────────────────────────────────────────────────────────▶
+//! udp 9003 ──── receive ── Fdm ──────────────────────────────────────────────────────────▶  ExternalSimulator
+//! udp 9002, 9001 ◀── MotorPort ◀──────────────────────────────────────────────────────────
+//! ```
+
+mod client;
+mod desk;
+mod doors;
+mod external;
+mod gauge;
+mod listener;
+mod origin;
+pub mod proto;
+mod request;
+pub mod sitl;
+mod transport;
+mod udp;
+
+pub use desk::{Attended, Desk};
+pub use doors::{DoorError, DoorKind, Doors, DoorsConfig, RestartBell};
+pub use external::ExternalSimulator;
+pub use request::{CliAnswer, ClientId, Request};
+pub use udp::{MotorPort, Sent};

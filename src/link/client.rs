@@ -1,0 +1,195 @@
+//! One client of the TCP or the websocket door: moves bytes between its transport and its conversation, and asks the
+//! session.
+
+#![allow(clippy::disallowed_methods, reason = "the doors wait for people and programs")]
+
+use std::io;
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use tokio::sync::{mpsc, oneshot, watch};
+use tokio_util::sync::CancellationToken;
+
+use super::gauge::Gauge;
+use super::proto::conversation::{Ask, Conversation};
+use super::request::{CliAnswer, ClientId, Request};
+use super::transport::Transport;
+use crate::firmware::cli::{Interpreter, Mode};
+
+/// A client that neither sends nor gets anything for this long is closed.
+const IDLE: Duration = Duration::from_secs(120);
+/// A client that does not take what it asked for within this time is closed.
+const SLOW: Duration = Duration::from_secs(10);
+/// Output that is sent before more is asked for, bytes.
+const OUTPUT_MAX: usize = 64 * 1024;
+/// How long a goodbye may take.
+const GOODBYE: Duration = Duration::from_secs(1);
+
+/// What every client of the doors shares.
+#[derive(Debug, Clone)]
+pub(super) struct Reception {
+    pub(super) requests: mpsc::Sender<Request>,
+    pub(super) shutdown: CancellationToken,
+    /// Changes when the firmware started anew.
+    pub(super) restarts: watch::Receiver<u64>,
+}
+
+/// Why a client is not served any longer.
+enum Stop {
+    /// The session is gone, or the link is to be closed.
+    Ended,
+    /// The client cannot be reached.
+    Failed,
+}
+
+impl From<io::Error> for Stop {
+    fn from(_: io::Error) -> Self {
+        Self::Failed
+    }
+}
+
+/// One client being served.
+pub(super) struct Client {
+    id: ClientId,
+    transport: Transport,
+    reception: Reception,
+    gauge: Arc<Gauge>,
+    conversation: Conversation,
+    interpreter: Interpreter,
+    arrived: Instant,
+}
+
+impl Client {
+    pub(super) fn new(
+        id: ClientId,
+        transport: Transport,
+        mut reception: Reception,
+        gauge: Arc<Gauge>,
+    ) -> Self {
+        // A restart before the client came does not concern it.
+        reception.restarts.mark_unchanged();
+        Self {
+            id,
+            transport,
+            reception,
+            gauge,
+            conversation: Conversation::default(),
+            interpreter: Interpreter::default(),
+            arrived: Instant::now(),
+        }
+    }
+
+    /// Serves the client until it goes, the firmware restarts or the doors close.
+    pub(super) async fn serve(mut self) {
+        if let Stop::Failed = self.talk().await {
+            self.gauge.error();
+        }
+        if self.conversation.is_in_cli() {
+            let _gone = self.reception.requests.send(Request::LeftCli { client: self.id }).await;
+        }
+        let _gone = tokio::time::timeout(GOODBYE, self.transport.close()).await;
+    }
+
+    /// Talks until something ends it.
+    async fn talk(&mut self) -> Stop {
+        loop {
+            let answered = self.answer_all().await;
+            // What was answered before the end still goes out.
+            let flushed = self.flush().await;
+            if let Err(stop) = answered.and(flushed) {
+                return stop;
+            }
+            let due = self.conversation.due();
+            let wait = due.map_or(IDLE, |due| due.saturating_sub(self.arrived.elapsed()));
+            tokio::select! {
+                () = self.reception.shutdown.cancelled() => return Stop::Ended,
+                _ = self.reception.restarts.changed() => return Stop::Ended,
+                () = tokio::time::sleep(wait) => {
+                    if due.is_none() {
+                        return Stop::Ended;
+                    }
+                }
+                bytes = self.transport.read() => match bytes {
+                    Ok(Some(bytes)) => {
+                        self.gauge.received(bytes.len());
+                        self.conversation.push(&bytes);
+                    }
+                    Ok(None) => return Stop::Ended,
+                    Err(error) => return error.into(),
+                },
+            }
+        }
+    }
+
+    /// Answers everything that the bytes so far ask for.
+    async fn answer_all(&mut self) -> Result<(), Stop> {
+        let before = self.conversation.dropped();
+        while let Some(ask) = self.conversation.next(self.arrived.elapsed()) {
+            match ask {
+                Ask::Request(frame) => {
+                    self.gauge.asked(frame.code);
+                    let (code, payload, client) = (frame.code, frame.payload.clone(), self.id);
+                    let payload = self.ask(|reply| Request::Msp { client, code, payload, reply }).await?;
+                    self.conversation.reply(&frame, payload);
+                }
+                Ask::EnterCli { interactive } => {
+                    let client = self.id;
+                    let admitted = self.ask(|reply| Request::EnterCli { client, interactive, reply }).await?;
+                    self.conversation.admit(admitted, self.arrived.elapsed());
+                    self.interpreter =
+                        Interpreter::new(if interactive { Mode::Interactive } else { Mode::Framed });
+                }
+                Ask::Line { line, mode } => self.run(line, mode).await?,
+                Ask::Restart => {
+                    self.tell(Request::Restart { client: self.id }).await?;
+                    return Err(Stop::Ended);
+                }
+                Ask::LeftCli => self.tell(Request::LeftCli { client: self.id }).await?,
+            }
+            if self.conversation.output_len() > OUTPUT_MAX {
+                self.flush().await?;
+            }
+        }
+        if self.conversation.dropped() != before {
+            self.gauge.error();
+        }
+        Ok(())
+    }
+
+    async fn run(&mut self, line: String, mode: Mode) -> Result<(), Stop> {
+        let client = self.id;
+        // A message is a session of its own.
+        let interpreter =
+            if mode == Mode::Message { Interpreter::new(mode) } else { self.interpreter.clone() };
+        let CliAnswer { interpreter, reply } =
+            self.ask(|reply| Request::Cli { client, line, interpreter, reply }).await?;
+        if mode != Mode::Message {
+            self.interpreter = interpreter;
+        }
+        if self.conversation.answer(&reply) { Err(Stop::Ended) } else { Ok(()) }
+    }
+
+    async fn ask<T>(&self, request: impl FnOnce(oneshot::Sender<T>) -> Request) -> Result<T, Stop> {
+        let (reply, answer) = oneshot::channel();
+        self.tell(request(reply)).await?;
+        tokio::select! {
+            // An answer that is there is delivered, even when the doors close.
+            biased;
+            answer = answer => answer.map_err(|_| Stop::Ended),
+            () = self.reception.shutdown.cancelled() => Err(Stop::Ended),
+        }
+    }
+
+    async fn tell(&self, request: Request) -> Result<(), Stop> {
+        self.reception.requests.send(request).await.map_err(|_| Stop::Ended)
+    }
+
+    async fn flush(&mut self) -> Result<(), Stop> {
+        let output = self.conversation.take_output();
+        if output.is_empty() {
+            return Ok(());
+        }
+        self.gauge.sent(output.len());
+        Ok(tokio::time::timeout(SLOW, self.transport.write(output)).await.map_err(io::Error::from)??)
+    }
+}

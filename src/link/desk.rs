@@ -1,0 +1,224 @@
+//! Answers the clients of the doors from a firmware and its store. Whoever owns the firmware calls it between two
+//! steps.
+
+use std::time::{Duration, Instant};
+
+use tokio::sync::oneshot;
+
+use super::doors::RestartBell;
+use super::request::{CliAnswer, Request};
+use crate::firmware::Firmware;
+use crate::firmware::cli::{CliAction, CliReply};
+use crate::firmware::msp::{MspAction, UtcTime};
+use crate::signals::{RcFrame, RcSource};
+use crate::storage::Store;
+
+/// A frame from a script counts as fresh for this long of wall time.
+const RC_FRESH: Duration = Duration::from_millis(150);
+
+/// What attending to a request led to, beyond the answer.
+#[derive(Debug, Default)]
+pub struct Attended {
+    /// Sentences for the user.
+    pub notices: Vec<String>,
+    /// The firmware started anew.
+    pub restarted: bool,
+    /// A datagram from a simulator, which is not the desk's business, and when it came.
+    pub fdm: Option<(Vec<u8>, Instant)>,
+}
+
+/// The newest frame that came through a socket.
+#[derive(Debug, Clone, Copy)]
+struct HeardRc {
+    frame: RcFrame,
+    source: RcSource,
+    at: Instant,
+}
+
+/// Attends to the requests of the doors.
+#[derive(Debug)]
+pub struct Desk {
+    bell: RestartBell,
+    starter_modes: bool,
+    clock: Option<(UtcTime, Instant)>,
+    rc: Option<HeardRc>,
+    told_plan: bool,
+}
+
+impl Desk {
+    /// A desk that rings `bell` when the firmware starts anew. `starter_modes` gives a craft without mode conditions
+    /// the usual ones at every start.
+    #[must_use]
+    pub fn new(bell: RestartBell, starter_modes: bool) -> Self {
+        Self { bell, starter_modes, clock: None, rc: None, told_plan: false }
+    }
+
+    /// Attends to a request at `now`.
+    pub fn attend(
+        &mut self,
+        request: Request,
+        firmware: &mut Firmware,
+        store: &mut Store,
+        now: Instant,
+    ) -> Attended {
+        let mut attended = Attended::default();
+        match request {
+            Request::Msp { code, payload, reply, .. } => {
+                let outcome = firmware.run_msp(code, &payload, self.clock_at(now));
+                if outcome.action == Some(MspAction::Save) && !save(firmware, store, &mut attended) {
+                    answer(reply, None);
+                    return attended;
+                }
+                answer(reply, outcome.reply);
+                self.act_on_message(outcome.action, firmware, store, now, &mut attended);
+            }
+            Request::EnterCli { interactive, reply, .. } => {
+                let admitted = !firmware.is_armed();
+                if admitted && interactive {
+                    firmware.cli_opened();
+                }
+                answer(reply, admitted);
+            }
+            Request::Cli { line, mut interpreter, reply, .. } => {
+                let said = firmware.run_cli(&mut interpreter, &line);
+                let restart = self.act_on_line(&said, firmware, store, &mut attended);
+                answer(reply, CliAnswer { interpreter, reply: said });
+                if let Some(close_links) = restart {
+                    self.restart(close_links, firmware, store, &mut attended);
+                }
+            }
+            Request::LeftCli { .. } => firmware.cli_closed(),
+            Request::Restart { .. } => self.restart(true, firmware, store, &mut attended),
+            Request::Rc { frame, at, .. } => self.hear(frame, RcSource::Udp, at, firmware),
+            Request::Fdm { datagram, at, .. } => attended.fdm = Some((datagram, at)),
+            Request::Notice(text) => attended.notices.push(text),
+        }
+        attended
+    }
+
+    fn act_on_message(
+        &mut self,
+        action: Option<MspAction>,
+        firmware: &mut Firmware,
+        store: &mut Store,
+        now: Instant,
+        attended: &mut Attended,
+    ) {
+        match action {
+            Some(MspAction::Reboot) => self.restart(true, firmware, store, attended),
+            Some(MspAction::SaveAndReboot) => {
+                save(firmware, store, attended);
+                self.restart(true, firmware, store, attended);
+            }
+            Some(MspAction::SetClock { unix_s, millis }) => {
+                self.clock = Some((UtcTime { unix_s, millis }, now));
+            }
+            // The firmware has used it; from here on it ages in wall time.
+            Some(MspAction::RawRc(frame)) => {
+                self.rc = Some(HeardRc { frame, source: RcSource::Msp, at: now });
+            }
+            // The firmware itself has carried these out.
+            Some(
+                MspAction::Save
+                | MspAction::RawGps { .. }
+                | MspAction::MotorTest(_)
+                | MspAction::CalibrateAcc
+                | MspAction::CalibrateMag
+                | MspAction::HoldHeading(_)
+                | MspAction::RunawayPrevention(_),
+            )
+            | None => {}
+        }
+    }
+
+    /// Does what a line asks for; a restart waits until the line is answered: whether it closes the links.
+    fn act_on_line(
+        &mut self,
+        said: &CliReply,
+        firmware: &mut Firmware,
+        store: &mut Store,
+        attended: &mut Attended,
+    ) -> Option<bool> {
+        let mut restart = None;
+        for action in &said.actions {
+            match *action {
+                CliAction::Save => {
+                    save(firmware, store, attended);
+                }
+                CliAction::Restart { close_links } => restart = Some(close_links),
+                CliAction::PlanChanged if !self.told_plan => {
+                    self.told_plan = true;
+                    attended.notices.push("waypoint altitudes count from home, in centimetres".to_owned());
+                }
+                CliAction::PlanChanged | CliAction::Leave | CliAction::MotorTest { .. } => {}
+            }
+        }
+        restart
+    }
+
+    fn restart(
+        &mut self,
+        close_links: bool,
+        firmware: &mut Firmware,
+        store: &mut Store,
+        attended: &mut Attended,
+    ) {
+        let loaded = store.load();
+        attended.notices.extend(loaded.findings);
+        let mut configuration = loaded.configuration;
+        if self.starter_modes {
+            configuration.starter_modes();
+        }
+        firmware.restart(configuration);
+        firmware.set_storage_facts(store.facts());
+        self.rc = None;
+        attended.restarted = true;
+        if close_links {
+            self.bell.ring();
+        }
+    }
+
+    fn hear(&mut self, frame: RcFrame, source: RcSource, at: Instant, firmware: &mut Firmware) {
+        self.rc = Some(HeardRc { frame, source, at });
+        firmware.receive_rc(&frame, source);
+    }
+
+    /// Keeps RC from sockets alive while simulated time runs `speed` times faster than the wall clock: a script sends
+    /// 50 frames of wall time a second, and the firmware would miss it. To be called about every 20 ms of simulated
+    /// time.
+    pub fn keep_rc_fresh(&self, firmware: &mut Firmware, speed: f64, now: Instant) {
+        let Some(heard) = self.rc.filter(|_| speed > 1.0) else { return };
+        // The firmware itself notices a loss after as much simulated time.
+        let patience = RC_FRESH.mul_f64(1.0 - 1.0 / speed);
+        if now.saturating_duration_since(heard.at) < patience {
+            firmware.receive_rc(&heard.frame, heard.source);
+        }
+    }
+
+    /// The time of day, when a client has set it.
+    fn clock_at(&self, now: Instant) -> Option<UtcTime> {
+        let (set, at) = self.clock?;
+        let millis = u128::from(set.millis) + now.saturating_duration_since(at).as_millis();
+        Some(UtcTime {
+            unix_s: set.unix_s.wrapping_add((millis / 1000) as u32),
+            millis: (millis % 1000) as u16,
+        })
+    }
+}
+
+fn save(firmware: &mut Firmware, store: &mut Store, attended: &mut Attended) -> bool {
+    let saved = store.save(firmware.configuration());
+    firmware.set_storage_facts(store.facts());
+    match saved {
+        Ok(()) => true,
+        Err(error) => {
+            attended.notices.push(format!("not saved: {error}"));
+            false
+        }
+    }
+}
+
+/// A client that went away needs no answer.
+fn answer<T>(reply: oneshot::Sender<T>, value: T) {
+    drop(reply.send(value));
+}

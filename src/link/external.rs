@@ -1,0 +1,106 @@
+//! The firmware's side of an external simulator: the conversation of [`FdmLink`] over a [`MotorPort`].
+
+use std::time::{Duration, Instant};
+
+use super::proto::fdm_link::{Answer, Counters, FdmLink, FdmLinkConfig, LinkState, Received};
+use super::proto::servo::{self, MotorOrder};
+use super::udp::{MotorPort, Sent};
+use crate::session::command::DoorView;
+use crate::signals::{MotorCommand, SensorFrame};
+
+/// Drives a firmware by the packets of a simulator.
+#[derive(Debug)]
+pub struct ExternalSimulator {
+    link: FdmLink,
+    port: MotorPort,
+    order: MotorOrder,
+    started: Instant,
+    pulses_us: [f32; 4],
+}
+
+impl ExternalSimulator {
+    /// A link that starts now: says so to the simulator with motors at rest.
+    #[must_use]
+    pub fn start(config: FdmLinkConfig, order: MotorOrder, port: MotorPort, now: Instant) -> Self {
+        let mut simulator = Self {
+            link: FdmLink::new(config, 0),
+            port,
+            order,
+            started: now,
+            pulses_us: servo::pulses_us(&MotorCommand::default()),
+        };
+        simulator.send_servo();
+        simulator.port.send_raw(simulator.pulses_us);
+        simulator
+    }
+
+    /// Takes a datagram that arrived at `at`. When it describes the craft, `run` steps the firmware that many ticks on
+    /// those sensors and gives the motors; the simulator is answered as it expects.
+    pub fn receive(
+        &mut self,
+        datagram: &[u8],
+        at: Instant,
+        run: impl FnOnce(&SensorFrame, u32) -> MotorCommand,
+    ) -> Received {
+        let received = self.link.receive(datagram, self.micros(at));
+        if let Some(sensors) = &received.sensors {
+            self.pulses_us = servo::pulses_us(&run(sensors, received.ticks));
+        }
+        match received.answer {
+            Answer::Nothing => {}
+            Answer::Servo => self.send_servo(),
+            Answer::Both => {
+                self.send_servo();
+                self.port.send_raw(self.pulses_us);
+            }
+        }
+        received
+    }
+
+    /// Sends what is due unasked.
+    pub fn poll(&mut self, now: Instant) {
+        if self.link.poll(self.micros(now)) {
+            self.send_servo();
+        }
+    }
+
+    /// When [`Self::poll`] has something to do.
+    #[must_use]
+    pub fn due(&self) -> Instant {
+        self.started + Duration::from_micros(self.link.due_us())
+    }
+
+    /// Whether the simulator is there.
+    #[must_use]
+    pub fn state(&self, now: Instant) -> LinkState {
+        self.link.state(self.micros(now))
+    }
+
+    /// How many datagrams there were.
+    #[must_use]
+    pub fn counters(&self) -> Counters {
+        self.link.counters()
+    }
+
+    /// The line that shows where motors are sent and whether the simulator is there.
+    #[must_use]
+    pub fn view(&self, now: Instant) -> DoorView {
+        let state = self.state(now);
+        DoorView {
+            name: "udp motors",
+            address: self.port.address().map_or_else(String::new, |address| address.to_string()),
+            state: state.to_string(),
+            fault: state == LinkState::Silent,
+        }
+    }
+
+    fn send_servo(&mut self) {
+        if self.port.send_servo(self.order.arrange(self.pulses_us)) == Sent::Refused {
+            self.link.refused();
+        }
+    }
+
+    fn micros(&self, at: Instant) -> u64 {
+        at.saturating_duration_since(self.started).as_micros() as u64
+    }
+}

@@ -1,0 +1,152 @@
+//! The TCP and the websocket door: listens, lets clients in, turns strangers' web pages away.
+
+#![allow(clippy::disallowed_methods, reason = "the doors wait for people and programs")]
+
+use std::collections::BTreeSet;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use tokio::net::{TcpListener, TcpStream};
+use tokio_tungstenite::tungstenite::handshake::server::{ErrorResponse, Request as Handshake, Response};
+use tokio_tungstenite::tungstenite::http::{HeaderValue, StatusCode, header};
+use tokio_tungstenite::tungstenite::protocol::WebSocketConfig;
+use tokio_util::task::TaskTracker;
+
+use super::client::{Client, Reception};
+use super::gauge::Gauge;
+use super::origin;
+use super::request::{ClientId, Request};
+use super::transport::Transport;
+
+/// Most clients of one door.
+const CLIENTS_MAX: u32 = 32;
+/// How long a websocket handshake may take.
+const HANDSHAKE: Duration = Duration::from_secs(10);
+/// Pause after a client could not be accepted (too many open files).
+const ACCEPT_PAUSE: Duration = Duration::from_millis(100);
+/// Largest websocket message.
+const MESSAGE_MAX: usize = 64 * 1024;
+/// The sub-protocol of the Betaflight App.
+const BINARY: &str = "binary";
+/// Most origins that are remembered as told.
+const TOLD_MAX: usize = 64;
+/// Most characters of an origin in a notice.
+const ORIGIN_SHOWN: usize = 100;
+
+/// Numbers for clients, shared by all doors.
+static NEXT_CLIENT: AtomicU64 = AtomicU64::new(1);
+
+/// What a door speaks.
+#[derive(Debug, Clone)]
+pub(super) enum Kind {
+    Tcp,
+    WebSocket {
+        /// Origins that are served besides the usual ones.
+        allow_origin: Arc<[String]>,
+        /// Origins whose refusal was told already.
+        told: Arc<Mutex<BTreeSet<String>>>,
+    },
+}
+
+/// Lets clients in until the doors close.
+pub(super) async fn listen(
+    listener: TcpListener,
+    kind: Kind,
+    reception: Reception,
+    gauge: Arc<Gauge>,
+    tasks: TaskTracker,
+) {
+    loop {
+        let stream = tokio::select! {
+            () = reception.shutdown.cancelled() => return,
+            accepted = listener.accept() => match accepted {
+                Ok((stream, _)) => stream,
+                Err(_) => {
+                    gauge.error();
+                    tokio::time::sleep(ACCEPT_PAUSE).await;
+                    continue;
+                }
+            },
+        };
+        if gauge.client_came() > CLIENTS_MAX {
+            gauge.client_left();
+            gauge.error();
+            continue;
+        }
+        let (kind, reception, gauge) = (kind.clone(), reception.clone(), Arc::clone(&gauge));
+        tasks.spawn(async move {
+            // An interactive line is small packets both ways.
+            let _only_slower = stream.set_nodelay(true);
+            match admit(stream, &kind, &reception).await {
+                Some(transport) => {
+                    let id = ClientId(NEXT_CLIENT.fetch_add(1, Relaxed));
+                    Client::new(id, transport, reception, Arc::clone(&gauge)).serve().await;
+                }
+                None => gauge.error(),
+            }
+            gauge.client_left();
+        });
+    }
+}
+
+/// The client's transport, once it may come in.
+async fn admit(stream: TcpStream, kind: &Kind, reception: &Reception) -> Option<Transport> {
+    let Kind::WebSocket { allow_origin, told } = kind else { return Some(Transport::Tcp(stream)) };
+    let mut refused = None;
+    #[expect(clippy::result_large_err, reason = "the type of the handshake's callback is given")]
+    let callback = |request: &Handshake, response: Response| {
+        let origin = request.headers().get(header::ORIGIN).map(|value| value.to_str().unwrap_or("?"));
+        if origin::is_served(origin, allow_origin) {
+            return Ok(with_sub_protocol(request, response));
+        }
+        refused = origin.map(shown);
+        Err(forbidden())
+    };
+    let config =
+        WebSocketConfig::default().max_message_size(Some(MESSAGE_MAX)).max_frame_size(Some(MESSAGE_MAX));
+    let handshake = tokio_tungstenite::accept_hdr_async_with_config(stream, callback, Some(config));
+    let accepted = tokio::select! {
+        () = reception.shutdown.cancelled() => return None,
+        accepted = tokio::time::timeout(HANDSHAKE, handshake) => accepted.ok()?,
+    };
+    if let Some(origin) = refused
+        && is_news(told, &origin)
+    {
+        let notice = format!(
+            "a web page of {origin} tried to reach the craft through the websocket and was refused: start with \
+             --allow-origin {origin} to serve it"
+        );
+        let _session_gone = reception.requests.send(Request::Notice(notice)).await;
+    }
+    accepted.ok().map(|socket| Transport::WebSocket(Box::new(socket)))
+}
+
+/// Chooses the sub-protocol when it is offered: browsers fail a handshake that ignores what they asked for.
+fn with_sub_protocol(request: &Handshake, mut response: Response) -> Response {
+    let offered = request.headers().get_all(header::SEC_WEBSOCKET_PROTOCOL);
+    let mut offered =
+        offered.iter().filter_map(|value| value.to_str().ok()).flat_map(|value| value.split(','));
+    if offered.any(|protocol| protocol.trim() == BINARY) {
+        response.headers_mut().insert(header::SEC_WEBSOCKET_PROTOCOL, HeaderValue::from_static(BINARY));
+    }
+    response
+}
+
+fn forbidden() -> ErrorResponse {
+    let mut response =
+        ErrorResponse::new(Some("this page may not reach the craft: see --allow-origin\n".to_owned()));
+    *response.status_mut() = StatusCode::FORBIDDEN;
+    response
+}
+
+/// An origin as it may stand in a notice.
+fn shown(origin: &str) -> String {
+    origin.chars().filter(char::is_ascii_graphic).take(ORIGIN_SHOWN).collect()
+}
+
+/// Whether a refusal was not told before; a page that tries again and again is told once.
+fn is_news(told: &Mutex<BTreeSet<String>>, origin: &str) -> bool {
+    let mut told = told.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    told.len() < TOLD_MAX && told.insert(origin.to_owned())
+}

@@ -1,0 +1,87 @@
+//! The command line in a message: `CLI_COMMAND` runs a line and answers with its output, in pages when it is long.
+//!
+//! ```text
+//! request  line [0  offset:u16]     offset 0 or none runs the line, a larger one pages through its output
+//! reply    length:u16 flags output from the offset on     flags: 1 = output was cut, 2 = refused
+//! ```
+
+use super::msp::Frame;
+use crate::firmware::cli::CliReply;
+
+/// The message's code.
+const CLI_COMMAND: u16 = 0x3012;
+/// Most output that is kept.
+const OUTPUT_MAX: usize = 2048;
+/// Most output of one reply.
+const PAGE_MAX: usize = 512;
+/// The output was longer than what is kept.
+const CUT: u8 = 1;
+/// The line was refused.
+const REFUSED: u8 = 2;
+/// Commands that have no place in a message.
+const FORBIDDEN: [&str; 3] = ["bl", "msc", "serialpassthrough"];
+
+/// The last line and its output.
+#[derive(Debug, Clone, Default)]
+pub(super) struct CommandMessage {
+    /// The request that is being run.
+    open: Option<Frame>,
+    line: String,
+    output: Vec<u8>,
+    flags: u8,
+}
+
+impl CommandMessage {
+    /// Takes a frame: `None` when it is another message, else a line to run or the reply's payload.
+    pub(super) fn take(&mut self, frame: &Frame) -> Option<Result<String, Option<Vec<u8>>>> {
+        if frame.code != CLI_COMMAND {
+            return None;
+        }
+        let mut parts = frame.payload.splitn(2, |&byte| byte == 0);
+        let line = parts.next().unwrap_or_default();
+        let offset = match parts.next() {
+            Some([low, high, ..]) => usize::from(u16::from_le_bytes([*low, *high])),
+            _ => 0,
+        };
+        let Ok(line) = std::str::from_utf8(line).map(str::trim) else { return Some(Err(None)) };
+        if offset > 0 {
+            return Some(Err((line == self.line && !line.is_empty()).then(|| self.page(offset))));
+        }
+        line.clone_into(&mut self.line);
+        self.output.clear();
+        self.flags = 0;
+        if is_forbidden(line) {
+            self.flags = REFUSED;
+            return Some(Err(Some(self.page(0))));
+        }
+        self.open = Some(frame.clone());
+        Some(Ok(line.to_owned()))
+    }
+
+    /// Takes the answer of the line that was run: the frame to send, unless the line came from elsewhere.
+    pub(super) fn answer(&mut self, reply: &CliReply) -> Option<Frame> {
+        let request = self.open.take()?;
+        let text = reply.text.as_bytes();
+        self.output = text[..text.len().min(OUTPUT_MAX)].to_vec();
+        self.flags = if text.len() > OUTPUT_MAX { CUT } else { 0 };
+        if reply.failed {
+            self.flags |= REFUSED;
+        }
+        Some(request.answer(Some(self.page(0))))
+    }
+
+    fn page(&self, offset: usize) -> Vec<u8> {
+        let rest = self.output.get(offset..).unwrap_or_default();
+        let mut payload = (self.output.len() as u16).to_le_bytes().to_vec();
+        payload.push(self.flags);
+        payload.extend(&rest[..rest.len().min(PAGE_MAX)]);
+        payload
+    }
+}
+
+fn is_forbidden(line: &str) -> bool {
+    let mut words = line.split_ascii_whitespace();
+    let first = words.next().unwrap_or_default();
+    let bare_defaults = first.eq_ignore_ascii_case("defaults") && words.next().is_none();
+    bare_defaults || FORBIDDEN.iter().any(|word| first.eq_ignore_ascii_case(word))
+}

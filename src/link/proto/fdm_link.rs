@@ -1,0 +1,313 @@
+//! The conversation with an external simulator: what to make of each state datagram, when to answer, and when to speak
+//! unasked. The caller moves the bytes, owns the firmware and tells the time.
+//!
+//! ```text
+//!            datagram ─▶ receive() ─┬─ refused, old          dropped, no answer
+//!                                   ├─ resync (> 0.5 s gap)  time base taken, data unused, servo packet only
+//!                                   └─ state                 sensors + ticks to run, then servo and raw packet
+//!   silence, refused ─▶ poll() ───── repeat the last servo packet ("kick"), since a simulator that lost one packet
+//!                                    waits for it; packets too many are made up for by answers withheld later
+//! ```
+//!
+//! Times are microseconds of a steady clock. The firmware's own time advances by the simulator's stamps, so the
+//! simulator may run at any speed, and its pause pauses the flight.
+
+mod clock;
+mod kicks;
+mod sensors;
+mod surroundings;
+
+use super::fdm::{Dialect, Packet, Refusal};
+use crate::signals::SensorFrame;
+use clock::StampClock;
+use kicks::Kicks;
+use sensors::Sensors;
+use surroundings::{GravityTest, MirrorTest};
+
+/// A pause after which the next packet only sets the time base, µs.
+const RESYNC_AFTER_US: u64 = 500_000;
+
+/// Silence after which the simulator counts as gone, µs.
+const SILENT_AFTER_US: u64 = 1_000_000;
+
+/// Whether positions are mirrored about the first one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, strum::Display, strum::EnumString)]
+#[strum(serialize_all = "lowercase")]
+pub enum Mirror {
+    /// As the dialect does, until the motion shows otherwise.
+    #[default]
+    Auto,
+    /// Always.
+    On,
+    /// Never.
+    Off,
+}
+
+/// How to speak with the simulator.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FdmLinkConfig {
+    /// The simulator's dialect; `None` = found out from its packets.
+    pub dialect: Option<Dialect>,
+    /// Whether its positions are mirrored.
+    pub mirror: Mirror,
+    /// Length of a firmware tick, µs.
+    pub tick_us: u64,
+}
+
+impl Default for FdmLinkConfig {
+    fn default() -> Self {
+        Self { dialect: None, mirror: Mirror::Auto, tick_us: 1000 }
+    }
+}
+
+/// What to send back.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Answer {
+    /// Nothing.
+    Nothing,
+    /// The last servo packet again, no raw packet.
+    Servo,
+    /// The new servo packet and the new raw packet.
+    Both,
+}
+
+/// What a datagram was.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Verdict {
+    /// Unreadable.
+    Refused(Refusal),
+    /// From before the newest packet.
+    Old,
+    /// The first after a pause: the time base, nothing else.
+    Resync {
+        /// Its stamp is earlier than before: the simulator was started anew, and the firmware disarms.
+        restarted: bool,
+    },
+    /// The craft's state.
+    State,
+}
+
+/// Something to tell the user, once.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display)]
+pub enum Notice {
+    /// The packets show whether gravity is in the acceleration, and it is not as usual.
+    #[strum(
+        to_string = "the simulator's acceleration contains gravity, unlike that of the public plugin: adapted"
+    )]
+    GravityIncluded,
+    /// Likewise.
+    #[strum(to_string = "the simulator's acceleration lacks gravity, unlike that of this dialect: adapted")]
+    GravityMissing,
+    /// The acceleration at rest makes no sense.
+    #[strum(
+        to_string = "the simulator's acceleration at rest is neither 0 nor 1 g: the attitude may be wrong, try another --fdm-dialect"
+    )]
+    GravityUnclear,
+    /// Positions move against the velocity.
+    #[strum(
+        to_string = "the simulator's positions are not mirrored: taken as they are from now on (--fdm-mirror off does so from the start)"
+    )]
+    NotMirrored,
+    /// The stamps stand still.
+    #[strum(to_string = "the simulator's clock stands still: the firmware follows the wall clock")]
+    WallClock,
+    /// The simulator was started anew.
+    #[strum(to_string = "the simulator was restarted: disarmed")]
+    Restarted,
+}
+
+/// What to do about one datagram.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Received {
+    /// What it was.
+    pub verdict: Verdict,
+    /// The sensors to run the firmware on, for [`Verdict::State`]; their time is the caller's to set.
+    pub sensors: Option<Box<SensorFrame>>,
+    /// Ticks by which the firmware advances, before the answer.
+    pub ticks: u32,
+    /// What to send, after the ticks.
+    pub answer: Answer,
+    /// What to tell the user.
+    pub notices: arrayvec::ArrayVec<Notice, 4>,
+}
+
+impl Received {
+    fn only(verdict: Verdict) -> Self {
+        Self { verdict, sensors: None, ticks: 0, answer: Answer::Nothing, notices: arrayvec::ArrayVec::new() }
+    }
+}
+
+/// Whether the simulator is there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display)]
+pub enum LinkState {
+    /// It never spoke.
+    #[strum(to_string = "waiting for a simulator")]
+    Waiting,
+    /// It speaks.
+    #[strum(to_string = "flying")]
+    Flowing,
+    /// It has not spoken for a second.
+    #[strum(to_string = "no FDM")]
+    Silent,
+}
+
+/// How many datagrams there were.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Counters {
+    /// All that came.
+    pub received: u64,
+    /// Too short.
+    pub wrong_size: u64,
+    /// Long enough but senseless.
+    pub senseless: u64,
+    /// From before the newest.
+    pub old: u64,
+    /// Used as a time base only.
+    pub resyncs: u64,
+    /// Servo packets sent unasked.
+    pub kicks: u64,
+}
+
+/// The conversation with one simulator.
+#[derive(Debug, Clone)]
+pub struct FdmLink {
+    config: FdmLinkConfig,
+    clock: StampClock,
+    kicks: Kicks,
+    dialect: Option<Dialect>,
+    gravity: GravityTest,
+    mirror: MirrorTest,
+    sensors: Sensors,
+    counters: Counters,
+}
+
+impl FdmLink {
+    /// A link that starts at `now_us`. The caller sends one servo and one raw packet at once and reports with
+    /// [`Self::refused`] when nobody was there to take them.
+    #[must_use]
+    pub fn new(config: FdmLinkConfig, now_us: u64) -> Self {
+        Self {
+            config,
+            clock: StampClock::new(now_us, config.tick_us),
+            kicks: Kicks::new(now_us),
+            dialect: config.dialect,
+            gravity: GravityTest::default(),
+            mirror: MirrorTest::default(),
+            sensors: Sensors::default(),
+            counters: Counters::default(),
+        }
+    }
+
+    /// Takes a datagram.
+    pub fn receive(&mut self, datagram: &[u8], now_us: u64) -> Received {
+        self.counters.received += 1;
+        let packet = match Packet::parse(datagram) {
+            Ok(packet) => packet,
+            Err(refusal) => {
+                match refusal {
+                    Refusal::TooShort => self.counters.wrong_size += 1,
+                    _ => self.counters.senseless += 1,
+                }
+                return Received::only(Verdict::Refused(refusal));
+            }
+        };
+        self.kicks.heard(now_us);
+        if self.clock.gap_us(now_us) > RESYNC_AFTER_US {
+            return self.resync(packet.stamp_s(), now_us);
+        }
+        if self.clock.is_old(packet.stamp_s()) {
+            self.counters.old += 1;
+            return Received::only(Verdict::Old);
+        }
+        self.state_packet(&packet, now_us)
+    }
+
+    fn resync(&mut self, stamp_s: f64, now_us: u64) -> Received {
+        self.counters.resyncs += 1;
+        let restarted = self.clock.is_old(stamp_s);
+        self.clock.take(stamp_s, now_us);
+        let mut received = Received::only(Verdict::Resync { restarted });
+        // A resync is always answered, as the reference does: answers to make up for are withheld later.
+        received.answer = Answer::Servo;
+        if restarted {
+            self.dialect = self.config.dialect;
+            self.gravity = GravityTest::default();
+            self.mirror = MirrorTest::default();
+            received.notices.push(Notice::Restarted);
+        }
+        received
+    }
+
+    fn state_packet(&mut self, packet: &Packet, now_us: u64) -> Received {
+        let mut received = Received::only(Verdict::State);
+        let was_wall_clock = self.clock.is_wall_clock();
+        let ticks = self.clock.advance(packet.stamp_s(), now_us);
+        if self.clock.is_wall_clock() && !was_wall_clock {
+            received.notices.push(Notice::WallClock);
+        }
+        let elapsed_us = u64::from(ticks) * self.config.tick_us;
+
+        let dialect = *self.dialect.get_or_insert_with(|| Dialect::of_size(packet.size));
+        if self.config.dialect.is_none() {
+            received.notices.extend(self.gravity.watch(packet, dialect, elapsed_us));
+        }
+        let mut state = dialect.decode(packet, self.gravity.gravity(dialect));
+        let mirrors = match self.config.mirror {
+            Mirror::Auto => dialect.mirrors() && !self.mirror.is_refuted(),
+            Mirror::On => true,
+            Mirror::Off => false,
+        };
+        let position = self.mirror.place(&state, mirrors);
+        if self.config.mirror == Mirror::Auto && mirrors {
+            received.notices.extend(self.mirror.watch(position, state.vel_enu, elapsed_us));
+        }
+        if let Some((lat_deg, lon_deg)) = position {
+            (state.lat_deg, state.lon_deg) = (lat_deg, lon_deg);
+        }
+
+        received.sensors = Some(Box::new(self.sensors.frame(&state, position.is_some(), elapsed_us)));
+        received.ticks = ticks;
+        received.answer = if self.kicks.withhold() { Answer::Nothing } else { Answer::Both };
+        received
+    }
+
+    /// When [`Self::poll`] will have something to do, if nothing comes before.
+    #[must_use]
+    pub fn due_us(&self) -> u64 {
+        self.kicks.due_us()
+    }
+
+    /// Whether to send the last servo packet again now.
+    pub fn poll(&mut self, now_us: u64) -> bool {
+        let kicks = self.kicks.poll(now_us);
+        self.counters.kicks += u64::from(kicks);
+        kicks
+    }
+
+    /// The newest servo packet was refused: nobody listens.
+    pub fn refused(&mut self) {
+        self.kicks.refused();
+    }
+
+    /// Whether the simulator is there at `now_us`.
+    #[must_use]
+    pub fn state(&self, now_us: u64) -> LinkState {
+        match self.kicks.heard_at_us() {
+            None => LinkState::Waiting,
+            Some(heard) if now_us.saturating_sub(heard) > SILENT_AFTER_US => LinkState::Silent,
+            Some(_) => LinkState::Flowing,
+        }
+    }
+
+    /// The simulator's dialect, once known.
+    #[must_use]
+    pub fn dialect(&self) -> Option<Dialect> {
+        self.dialect
+    }
+
+    /// How many datagrams there were.
+    #[must_use]
+    pub fn counters(&self) -> Counters {
+        self.counters
+    }
+}

@@ -1,0 +1,100 @@
+//! The motor datagrams that the flight controller sends to a simulator.
+//!
+//! ```text
+//! servo, 16 bytes      0  f32 × 4   motors M1 … M4, 0…1 in steps of 0.001
+//! raw,   68 bytes      0  u16       number of motors
+//!                      2  –         two bytes of padding
+//!                      4  f32 × 16  pulses, µs: the motors, then the servos, unused 0
+//! ```
+
+use crate::signals::MotorCommand;
+
+/// Size of the normalised datagram. Receivers refuse a shorter one and ignore what is longer.
+pub const SIZE: usize = 16;
+
+/// Size of the raw datagram.
+pub const RAW_SIZE: usize = 68;
+
+/// Outputs in the raw datagram.
+pub const RAW_OUTPUTS: usize = 16;
+
+/// In which order a simulator's model expects the motors.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, strum::Display, strum::EnumString)]
+#[strum(serialize_all = "lowercase")]
+pub enum MotorOrder {
+    /// M1, M2, M3, M4, as current models expect.
+    #[default]
+    Native,
+    /// M2, M3, M4, M1, as models from before spring 2026 expect.
+    Legacy,
+}
+
+impl MotorOrder {
+    /// Values of M1 … M4 in the order of the packet.
+    #[must_use]
+    pub fn arrange<T>(self, [m1, m2, m3, m4]: [T; 4]) -> [T; 4] {
+        match self {
+            Self::Native => [m1, m2, m3, m4],
+            Self::Legacy => [m2, m3, m4, m1],
+        }
+    }
+}
+
+/// Motor pulses in µs, 1000 at rest, 2000 at full power.
+#[must_use]
+pub fn pulses_us(motors: &MotorCommand) -> [f32; 4] {
+    motors
+        .0
+        .map(|motor| (1000.0 + 1000.0 * if motor.is_finite() { motor.clamp(0.0, 1.0) } else { 0.0 }) as f32)
+}
+
+/// The normalised value of a pulse: its whole microseconds above 1000 in thousandths, rounded down.
+#[must_use]
+pub fn normalised(pulse_us: f32) -> f32 {
+    (pulse_us.trunc() - 1000.0) / 1000.0
+}
+
+/// The normalised datagram of four motor pulses, µs.
+#[must_use]
+pub fn encode(pulses_us: [f32; 4]) -> [u8; SIZE] {
+    let mut datagram = [0; SIZE];
+    for (field, pulse) in datagram.as_chunks_mut::<4>().0.iter_mut().zip(pulses_us) {
+        *field = normalised(pulse).to_le_bytes();
+    }
+    datagram
+}
+
+/// The four normalised motor values of a datagram; `None` when it is too short or a value is not a number.
+#[must_use]
+pub fn decode(datagram: &[u8]) -> Option<[f32; 4]> {
+    let mut motors = [0.0; 4];
+    for (motor, field) in motors.iter_mut().zip(datagram.get(..SIZE)?.as_chunks::<4>().0) {
+        *motor = f32::from_le_bytes(*field);
+        if !motor.is_finite() {
+            return None;
+        }
+    }
+    Some(motors)
+}
+
+/// The raw datagram: pulses in µs, motors first, of which there are `motor_count`; what is not given is 0.
+#[must_use]
+pub fn encode_raw(motor_count: u16, pulses_us: &[f32]) -> [u8; RAW_SIZE] {
+    let mut datagram = [0; RAW_SIZE];
+    datagram[..2].copy_from_slice(&motor_count.to_le_bytes());
+    for (field, pulse) in datagram[4..].as_chunks_mut::<4>().0.iter_mut().zip(pulses_us) {
+        *field = pulse.to_le_bytes();
+    }
+    datagram
+}
+
+/// Number of motors and all pulses (µs) of a raw datagram; `None` when it is too short.
+#[must_use]
+pub fn decode_raw(datagram: &[u8]) -> Option<(u16, [f32; RAW_OUTPUTS])> {
+    let (count, rest) = datagram.get(..RAW_SIZE)?.split_first_chunk::<2>()?;
+    let mut pulses = [0.0; RAW_OUTPUTS];
+    for (pulse, field) in pulses.iter_mut().zip(rest[2..].as_chunks::<4>().0) {
+        *pulse = f32::from_le_bytes(*field);
+    }
+    Some((u16::from_le_bytes(*count), pulses))
+}

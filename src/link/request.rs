@@ -1,0 +1,92 @@
+//! What the doors ask of the session. Requests are data; an answer goes back through a channel of one, so a client
+//! that went away costs nothing.
+
+use std::net::SocketAddr;
+use std::time::Instant;
+
+use tokio::sync::oneshot;
+
+use crate::firmware::cli::{CliReply, Interpreter};
+use crate::signals::RcFrame;
+
+/// A client of the TCP or the websocket door, by a number that is never used twice.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ClientId(pub u64);
+
+/// A request to the session. The session carries requests out between two ticks, in the order they came, and answers
+/// before it acts on what the answer announced (a restart, for one).
+#[derive(Debug)]
+pub enum Request {
+    /// An MSP message.
+    Msp {
+        /// Who asks.
+        client: ClientId,
+        /// The message's code.
+        code: u16,
+        /// Its payload.
+        payload: Vec<u8>,
+        /// Gets the reply's payload, or `None` for the protocol's error.
+        reply: oneshot::Sender<Option<Vec<u8>>>,
+    },
+    /// A client wants the command line.
+    EnterCli {
+        /// Who asks.
+        client: ClientId,
+        /// For a person: from now until the next restart, the craft does not arm.
+        interactive: bool,
+        /// Gets whether it opens; it does not while armed.
+        reply: oneshot::Sender<bool>,
+    },
+    /// A line of the command line.
+    Cli {
+        /// Who asks.
+        client: ClientId,
+        /// The line, without its end.
+        line: String,
+        /// The client's interpreter, which comes back with the answer.
+        interpreter: Interpreter,
+        /// Gets the interpreter and its answer.
+        reply: oneshot::Sender<CliAnswer>,
+    },
+    /// A client left the command line, or went away inside it: what lasts for a session (a motor on the bench) ends.
+    LeftCli {
+        /// Who left.
+        client: ClientId,
+    },
+    /// A client wants the firmware to start anew, losing what was not saved, and the links to close.
+    Restart {
+        /// Who asks.
+        client: ClientId,
+    },
+    /// An RC frame from a script.
+    Rc {
+        /// The script's clock, s; nothing depends on it.
+        stamp_s: f64,
+        /// The pulses.
+        frame: RcFrame,
+        /// Who sent it.
+        from: SocketAddr,
+        /// When it arrived.
+        at: Instant,
+    },
+    /// A datagram from a simulator.
+    Fdm {
+        /// Its bytes, the surplus cut.
+        datagram: Vec<u8>,
+        /// Who sent it.
+        from: SocketAddr,
+        /// When it arrived.
+        at: Instant,
+    },
+    /// Something the user should read, as a sentence.
+    Notice(String),
+}
+
+/// The answer to a line.
+#[derive(Debug, Clone)]
+pub struct CliAnswer {
+    /// The interpreter after the line.
+    pub interpreter: Interpreter,
+    /// What it answered; its actions are carried out by the session.
+    pub reply: CliReply,
+}

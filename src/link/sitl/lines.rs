@@ -1,0 +1,156 @@
+//! The lines that the SITL executable prints about its links, which scripts wait for.
+
+use std::net::SocketAddr;
+
+use crate::geo::LatLon;
+use crate::signals::RcFrame;
+
+use crate::link::proto::fdm;
+
+/// Result of opening a link, as the executable prints it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[repr(i8)]
+pub enum OpenResult {
+    /// Done.
+    Done = 0,
+    /// The port could not be bound.
+    BindFailed = -1,
+    /// There is no socket.
+    NoSocket = -2,
+}
+
+/// The ports of the links.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SitlPorts {
+    /// Raw pulses out.
+    pub raw: u16,
+    /// Motors out.
+    pub motors: u16,
+    /// States in.
+    pub fdm: u16,
+    /// RC in.
+    pub rc: u16,
+}
+
+impl Default for SitlPorts {
+    fn default() -> Self {
+        Self { raw: 9001, motors: 9002, fdm: 9003, rc: 9004 }
+    }
+}
+
+/// The first line, before any link is open; `ip` is where motors are sent.
+#[must_use]
+pub fn output_line(ip: &str, ports: SitlPorts) -> String {
+    format!(
+        "[SITL] The SITL will output to IP {ip}:{} (Gazebo) and {ip}:{} (RealFlightBridge)",
+        ports.motors, ports.raw
+    )
+}
+
+/// The lines about the motor links, then about state and RC, with the results of opening them.
+#[must_use]
+pub fn link_lines(
+    ip: &str,
+    ports: SitlPorts,
+    motors: OpenResult,
+    fdm: OpenResult,
+    rc: OpenResult,
+) -> [String; 4] {
+    let (motors, fdm, rc) = (motors as i8, fdm as i8, rc as i8);
+    [
+        format!("[SITL] init PwmOut UDP link to gazebo {ip}:{}...{motors}", ports.motors),
+        format!("[SITL] init PwmOut UDP link to RF9 {ip}:{}...{motors}", ports.raw),
+        format!("[SITL] start UDP server @{}...{fdm}", ports.fdm),
+        format!("[SITL] start UDP server @{}...{rc}", ports.rc),
+    ]
+}
+
+/// The first state datagram.
+#[must_use]
+pub fn first_fdm_line(datagram: &[u8], from: SocketAddr) -> Option<String> {
+    let packet = fdm::Packet::parse(datagram).ok()?;
+    Some(format!("[SITL] new fdm {} t:{:.6} from {}:{}", fdm::SIZE, packet.stamp_s(), from.ip(), from.port()))
+}
+
+/// The first RC datagram.
+#[must_use]
+pub fn first_rc_line(stamp_s: f64, frame: &RcFrame) -> String {
+    let [c1, c2, c3, c4, c5, c6, c7, c8, ..] = frame.channels;
+    format!("[SITL] new rc 40: t:{stamp_s:.6} AETR: {c1} {c2} {c3} {c4} AUX1-4: {c5} {c6} {c7} {c8}")
+}
+
+/// What the once-a-second line tells.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FlightLine {
+    /// Firmware time, ms.
+    pub t_ms: u64,
+    /// Ground speed, m/s.
+    pub speed_mps: f64,
+    /// Position.
+    pub position: LatLon,
+    /// Altitude, m.
+    pub alt_m: f64,
+    /// Roll, pitch, heading, degrees, as the craft's own messages count them.
+    pub attitude_deg: [f64; 3],
+}
+
+impl std::fmt::Display for FlightLine {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let [roll, pitch, yaw] = self.attitude_deg;
+        let LatLon { lat_e7, lon_e7 } = self.position;
+        write!(f, "[SITL] t={}ms  spd={:.2}m/s  pos=({lat_e7},{lon_e7})  ", self.t_ms, self.speed_mps)?;
+        write!(f, "alt={:.2}m  att=({roll:.1},{pitch:.1},{yaw:.1})", self.alt_m)
+    }
+}
+
+/// The once-a-second line while arming is blocked.
+#[must_use]
+pub fn blocked_line(t_ms: u64, reasons: &[&str]) -> String {
+    format!("[SITL] t={t_ms}ms Arming disabled: {}", reasons.join(" "))
+}
+
+/// The restart of the firmware.
+pub const RESET_LINE: &str = "[system]Reset!";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn start_lines_are_those_that_scripts_wait_for() {
+        let ports = SitlPorts::default();
+        assert_eq!(
+            output_line("127.0.0.1", ports),
+            "[SITL] The SITL will output to IP 127.0.0.1:9002 (Gazebo) and 127.0.0.1:9001 (RealFlightBridge)"
+        );
+        assert_eq!(
+            link_lines("127.0.0.1", ports, OpenResult::Done, OpenResult::BindFailed, OpenResult::Done),
+            [
+                "[SITL] init PwmOut UDP link to gazebo 127.0.0.1:9002...0",
+                "[SITL] init PwmOut UDP link to RF9 127.0.0.1:9001...0",
+                "[SITL] start UDP server @9003...-1",
+                "[SITL] start UDP server @9004...0",
+            ]
+        );
+    }
+
+    #[test]
+    fn flight_lines() {
+        let line = FlightLine {
+            t_ms: 12_345,
+            speed_mps: 4.996,
+            position: LatLon::new(404_635_000, -795_182_500),
+            alt_m: 50.0,
+            attitude_deg: [0.04, -1.0, 359.96],
+        };
+        assert_eq!(
+            line.to_string(),
+            "[SITL] t=12345ms  spd=5.00m/s  pos=(404635000,-795182500)  alt=50.00m  att=(0.0,-1.0,360.0)"
+        );
+        assert_eq!(blocked_line(7, &["RXLOSS", "CLI"]), "[SITL] t=7ms Arming disabled: RXLOSS CLI");
+        assert_eq!(
+            first_rc_line(1.5, &RcFrame::SAFE),
+            "[SITL] new rc 40: t:1.500000 AETR: 1500 1500 1000 1500 AUX1-4: 1000 1000 1000 1000"
+        );
+    }
+}

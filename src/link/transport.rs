@@ -1,0 +1,66 @@
+//! A client's bytes, over TCP or a websocket.
+
+use std::io;
+
+use futures_util::{SinkExt as _, StreamExt as _};
+use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
+use tokio::net::TcpStream;
+use tokio_tungstenite::WebSocketStream;
+use tokio_tungstenite::tungstenite::{self, Bytes, Message};
+
+/// Most bytes taken from TCP at once.
+const CHUNK: usize = 4096;
+
+/// A connected client.
+#[derive(Debug)]
+pub(super) enum Transport {
+    Tcp(TcpStream),
+    /// Boxed, for it is large.
+    WebSocket(Box<WebSocketStream<TcpStream>>),
+}
+
+impl Transport {
+    /// The next bytes; `None` when the client is gone. Nothing is lost when the wait is given up.
+    pub(super) async fn read(&mut self) -> io::Result<Option<Bytes>> {
+        match self {
+            Self::Tcp(stream) => {
+                let mut chunk = [0; CHUNK];
+                let count = stream.read(&mut chunk).await?;
+                Ok((count > 0).then(|| Bytes::copy_from_slice(&chunk[..count])))
+            }
+            Self::WebSocket(socket) => match socket.next().await {
+                // Text is taken for the bytes it is made of.
+                Some(Ok(Message::Binary(bytes))) => Ok(Some(bytes)),
+                Some(Ok(Message::Text(text))) => Ok(Some(text.into())),
+                Some(Ok(Message::Ping(_) | Message::Pong(_) | Message::Frame(_))) => Ok(Some(Bytes::new())),
+                Some(Ok(Message::Close(_))) | None => Ok(None),
+                Some(Err(error)) => ended(error).map(|()| None),
+            },
+        }
+    }
+
+    /// Sends bytes, as one message where there are messages.
+    pub(super) async fn write(&mut self, bytes: Vec<u8>) -> io::Result<()> {
+        match self {
+            Self::Tcp(stream) => stream.write_all(&bytes).await,
+            Self::WebSocket(socket) => socket.send(Message::Binary(bytes.into())).await.or_else(ended),
+        }
+    }
+
+    /// Says goodbye.
+    pub(super) async fn close(&mut self) -> io::Result<()> {
+        match self {
+            Self::Tcp(stream) => stream.shutdown().await,
+            Self::WebSocket(socket) => socket.as_mut().close(None).await.or_else(ended),
+        }
+    }
+}
+
+/// A client that closes is no error.
+fn ended(error: tungstenite::Error) -> io::Result<()> {
+    match error {
+        tungstenite::Error::ConnectionClosed | tungstenite::Error::AlreadyClosed => Ok(()),
+        tungstenite::Error::Io(error) => Err(error),
+        other => Err(io::Error::other(other)),
+    }
+}
