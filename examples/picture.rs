@@ -1,0 +1,82 @@
+//! Draws the picture of the README: flies the demo plan and writes the screen at that moment as SVG.
+//!
+//! `cargo run --release --example picture > docs/screen.svg`
+
+#![allow(clippy::print_stdout, reason = "the picture is the output")]
+
+use std::error::Error;
+use std::sync::Arc;
+
+use betadeck::firmware::FirmwareOptions;
+use betadeck::firmware::cli::{self, Interpreter};
+use betadeck::firmware::config::Configuration;
+use betadeck::plan::builtin::{BuiltinPlan, DEMO};
+use betadeck::record::sentence;
+use betadeck::session::{SessionView, upload};
+use betadeck::sim::WorldConfig;
+use betadeck::ui::{AppState, CliHelp, Msg, OpenPlan, Theme, UiConfig, draw, picture, update};
+use betadeck::vehicle::{Vehicle, VehicleConfig};
+use ratatui::Terminal;
+use ratatui::backend::TestBackend;
+
+/// Size of the terminal.
+const SIZE: (u16, u16) = (120, 40);
+/// Simulated seconds after boot: on the ring around the third waypoint.
+const MOMENT_S: f64 = 80.0;
+/// Ticks between two pictures that the track is made of.
+const TICKS_A_VIEW: u32 = 50;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let file = BuiltinPlan::find(DEMO)
+        .ok_or("no demo plan")?
+        .read()
+        .map_err(|errors| betadeck::plan::format::report(&errors))?;
+    let mut configuration = Configuration::default();
+    configuration.starter_modes();
+    let mut vehicle = Vehicle::new(VehicleConfig {
+        world: WorldConfig { wind: "3@230".parse()?, ..WorldConfig::default() },
+        firmware: FirmwareOptions::default(),
+        configuration,
+        live: false,
+    })?;
+    let mut console = Interpreter::default();
+    for line in upload::lines(&file.plan, &file.settings) {
+        vehicle.firmware_mut().run_cli(&mut console, &line);
+    }
+    vehicle.start_pilot(10.0).map_err(|mode| format!("no switch for {mode}"))?;
+
+    let config = UiConfig {
+        theme: Theme::default(),
+        cli: CliHelp { complete: |line| cli::complete(line).lines(line), hint: |_| None },
+        sentence: |event| sentence::text(&event.kind).unwrap_or_default(),
+        plan: OpenPlan { name: file.name, plan: file.plan, settings: file.settings },
+        mouse: true,
+    };
+    let mut state = AppState::new(config, SIZE, view(&vehicle));
+    while vehicle.time().as_secs_f64() < MOMENT_S {
+        for _ in 0..TICKS_A_VIEW {
+            vehicle.tick();
+        }
+        let mut heard = Vec::new();
+        vehicle.drain_events(|event| heard.push(event));
+        for event in heard {
+            update(&mut state, Msg::Event(event));
+        }
+        update(&mut state, Msg::View(view(&vehicle)));
+    }
+    let mut terminal = Terminal::new(TestBackend::new(SIZE.0, SIZE.1))?;
+    terminal.draw(|frame| draw(&state, frame))?;
+    println!("{}", picture::svg(terminal.backend().buffer()));
+    Ok(())
+}
+
+fn view(vehicle: &Vehicle) -> SessionView {
+    SessionView {
+        vehicle: Arc::new(vehicle.snapshot()),
+        speed_wanted: 1.0,
+        speed_achieved: 1.0,
+        sticks: vehicle.hands.sticks,
+        pilot: vehicle.hands.pilot.as_ref().map(betadeck::pilot::Pilot::doing),
+        ..SessionView::default()
+    }
+}

@@ -1,0 +1,10 @@
+//! Owns the vehicle and the clock; takes commands, publishes snapshots and events.
+
+pub mod command;
+mod pacer;
+mod runtime;
+pub mod upload;
+
+pub use command::{Command, SessionView};
+pub use pacer::{Pacer, SPEED_RANGE};
+pub use runtime::{Doorway, Handle, SessionConfig, start};

@@ -1,0 +1,100 @@
+//! What a user interface or a link can ask of the session, and what it gets back.
+
+use std::sync::Arc;
+
+use crate::plan::FlightPlan;
+use crate::signals::RcFrame;
+use crate::vehicle::Snapshot;
+
+/// A request to the session. Requests are carried out between two ticks, in the order they were sent.
+#[derive(Debug)]
+pub enum Command {
+    /// Pause (`true`) or go on.
+    Pause(bool),
+    /// Advance this many ticks while paused.
+    Step(u32),
+    /// Run at this many times real time; [`f64::INFINITY`] = as fast as possible.
+    Speed(f64),
+    /// The virtual sticks: sent 50 times a simulated second until replaced.
+    Sticks(RcFrame),
+    /// Cut (`true`) or restore the RC link of the virtual sticks.
+    CutRc(bool),
+    /// Run a CLI line of the console session; the reply is its output.
+    Cli {
+        /// The line, without line end.
+        line: String,
+        /// Gets the output.
+        reply: tokio::sync::oneshot::Sender<CliOutput>,
+    },
+    /// Hand a plan to the craft the way a ground station does; the reply says what the craft answered.
+    Upload {
+        /// The plan.
+        plan: Box<FlightPlan>,
+        /// Setting lines that come with the plan file, without `set `.
+        settings: Vec<String>,
+        /// Gets `Ok` or the sentence of the first refusal.
+        reply: tokio::sync::oneshot::Sender<Result<(), String>>,
+    },
+    /// Start (`true`) or stop the scripted pilot that flies the whole mission: arm, climb, engage.
+    Pilot(bool),
+    /// Fly home and land.
+    ReturnHome,
+    /// Put the craft back home, disarmed; plan and settings are kept.
+    ResetCraft,
+    /// Change the air, the noise or a fault: `wind=5@270`, `fault=motor,,2:0.8`, `end=all`…
+    World {
+        /// What to change.
+        line: String,
+        /// Gets `Ok` or why not.
+        reply: tokio::sync::oneshot::Sender<Result<(), String>>,
+    },
+    /// End the session.
+    Quit,
+}
+
+/// Output of a CLI line.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct CliOutput {
+    /// Text, lines separated by CRLF.
+    pub text: String,
+    /// The way out of a refusal, or what is still to do; not part of what the firmware says.
+    pub advice: Option<String>,
+    /// Whether the firmware restarted (save, exit, defaults).
+    pub restarted: bool,
+}
+
+/// The picture published after each slice of simulation.
+#[derive(Debug, Clone, Default)]
+pub struct SessionView {
+    /// The vehicle.
+    pub vehicle: Arc<Snapshot>,
+    /// Paused.
+    pub paused: bool,
+    /// Requested times real time; infinite = as fast as possible.
+    pub speed_wanted: f64,
+    /// Achieved over the last second.
+    pub speed_achieved: f64,
+    /// The frame of the virtual sticks.
+    pub sticks: RcFrame,
+    /// The virtual sticks are cut.
+    pub rc_cut: bool,
+    /// The scripted pilot is flying, and what it is doing in a word or two.
+    pub pilot: Option<&'static str>,
+    /// One line a door: name, address and state in words.
+    pub doors: Vec<DoorView>,
+    /// Files or doors influence the flight: not repeatable.
+    pub live: bool,
+}
+
+/// The state of one door.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct DoorView {
+    /// `ws`, `tcp`, `udp fdm`, `udp rc`, `udp motors`.
+    pub name: &'static str,
+    /// Address it listens on or sends to.
+    pub address: String,
+    /// `listening`, `closed`, `busy`, `2 clients`…
+    pub state: String,
+    /// Whether something is wrong with it.
+    pub fault: bool,
+}

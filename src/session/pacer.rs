@@ -1,0 +1,184 @@
+//! Decides how many ticks are due: the only place where wall time meets simulated time.
+//!
+//! The pacer reads no clock itself; it is told how much wall time has passed since the session began. It never
+//! stretches a step and never skips one: whatever it decides, the trajectory is the same.
+
+use std::time::Duration;
+
+/// Debt of wall time that is forgiven rather than caught up with.
+const MAX_DEBT: Duration = Duration::from_millis(50);
+/// Window of the achieved-speed average.
+const WINDOW: Duration = Duration::from_secs(1);
+/// Slowest and fastest factor that is paced; beyond the upper one the loop runs freely.
+pub const SPEED_RANGE: std::ops::RangeInclusive<f64> = 0.05..=1000.0;
+
+/// How the vehicle's time follows the wall clock.
+#[derive(Debug, Clone)]
+pub struct Pacer {
+    step: Duration,
+    speed: f64,
+    paused: bool,
+    /// Wall time up to which the due ticks were handed out.
+    paid: Duration,
+    /// Part of a step owed from the last call, in steps.
+    carry: f64,
+    window_start: Duration,
+    window_ticks: u64,
+    achieved: f64,
+}
+
+impl Pacer {
+    /// A pacer for steps of `step_us` microseconds at `speed` times real time (infinite: as fast as possible).
+    #[must_use]
+    pub fn new(step_us: u64, speed: f64) -> Self {
+        Self {
+            step: Duration::from_micros(step_us),
+            speed: clamp_speed(speed),
+            paused: false,
+            paid: Duration::ZERO,
+            carry: 0.0,
+            window_start: Duration::ZERO,
+            window_ticks: 0,
+            achieved: 0.0,
+        }
+    }
+
+    /// Requested times real time; infinite = as fast as possible.
+    #[must_use]
+    pub fn speed(&self) -> f64 {
+        self.speed
+    }
+
+    /// Changes the factor; values outside [`SPEED_RANGE`] are limited, infinity is kept.
+    pub fn set_speed(&mut self, speed: f64, now: Duration) {
+        self.speed = clamp_speed(speed);
+        self.forget_debt(now);
+    }
+
+    /// Whether time stands still.
+    #[must_use]
+    pub fn is_paused(&self) -> bool {
+        self.paused
+    }
+
+    /// Stops time or lets it go on.
+    pub fn set_paused(&mut self, paused: bool, now: Duration) {
+        self.paused = paused;
+        self.forget_debt(now);
+        if paused {
+            self.achieved = 0.0;
+        }
+        self.window_start = now;
+        self.window_ticks = 0;
+    }
+
+    /// Achieved times real time, averaged over the last second.
+    #[must_use]
+    pub fn achieved(&self) -> f64 {
+        self.achieved
+    }
+
+    /// Ticks due at wall time `now`, at most `most`. Whatever is not handed out stays due, up to 50 ms of wall time.
+    pub fn due(&mut self, now: Duration, most: u64) -> u64 {
+        if self.paused {
+            self.paid = now;
+            return 0;
+        }
+        if self.speed.is_infinite() {
+            self.paid = now;
+            return most;
+        }
+        if now.saturating_sub(self.paid) > MAX_DEBT {
+            self.paid = now.saturating_sub(MAX_DEBT);
+        }
+        let steps_per_second = self.speed / self.step.as_secs_f64();
+        let owed = self.carry + now.saturating_sub(self.paid).as_secs_f64() * steps_per_second;
+        let ticks = (owed as u64).min(most);
+        // What was not handed out is owed still, but only as much as 50 ms are worth.
+        self.carry = (owed - ticks as f64).min(MAX_DEBT.as_secs_f64() * steps_per_second);
+        self.paid = now;
+        ticks
+    }
+
+    /// Notes that `ticks` were run by wall time `now`.
+    pub fn ran(&mut self, ticks: u64, now: Duration) {
+        self.window_ticks += ticks;
+        let span = now.saturating_sub(self.window_start);
+        if span >= WINDOW {
+            self.achieved = self.window_ticks as f64 * self.step.as_secs_f64() / span.as_secs_f64();
+            self.window_start = now;
+            self.window_ticks = 0;
+        }
+    }
+
+    fn forget_debt(&mut self, now: Duration) {
+        self.paid = now;
+        self.carry = 0.0;
+    }
+}
+
+fn clamp_speed(speed: f64) -> f64 {
+    if speed == f64::INFINITY {
+        speed
+    } else if speed.is_finite() {
+        speed.clamp(*SPEED_RANGE.start(), *SPEED_RANGE.end())
+    } else {
+        1.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ms(n: u64) -> Duration {
+        Duration::from_millis(n)
+    }
+
+    #[test]
+    fn real_time_is_one_tick_a_millisecond_whatever_the_calls() {
+        let mut pacer = Pacer::new(1000, 1.0);
+        let ticks: u64 = (1..=1000).map(|n| pacer.due(ms(n * 2), 10_000)).sum();
+        assert!((1999..=2000).contains(&ticks), "{ticks}");
+    }
+
+    #[test]
+    fn debt_beyond_fifty_milliseconds_is_forgiven() {
+        let mut pacer = Pacer::new(1000, 10.0);
+        assert_eq!(pacer.due(ms(5_000), 100_000), 500);
+        assert_eq!(pacer.due(ms(5_002), 100_000), 20);
+    }
+
+    #[test]
+    fn ticks_not_handed_out_stay_due() {
+        let mut pacer = Pacer::new(1000, 1.0);
+        assert_eq!(pacer.due(ms(40), 10), 10);
+        assert_eq!(pacer.due(ms(40), 100), 30);
+    }
+
+    #[test]
+    fn pause_and_freewheel() {
+        let mut pacer = Pacer::new(1000, f64::INFINITY);
+        assert_eq!(pacer.due(ms(1), 777), 777);
+        pacer.set_paused(true, ms(1));
+        assert_eq!(pacer.due(ms(100), 777), 0);
+        pacer.set_paused(false, ms(200));
+        pacer.set_speed(1.0, ms(200));
+        assert_eq!(pacer.due(ms(210), 777), 10);
+    }
+
+    #[test]
+    fn achieved_speed_is_measured() {
+        let mut pacer = Pacer::new(1000, 4.0);
+        pacer.ran(4000, ms(1000));
+        assert!((pacer.achieved() - 4.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn nonsense_factors_are_limited() {
+        let mut pacer = Pacer::new(1000, f64::NAN);
+        assert!((pacer.speed() - 1.0).abs() < 1e-9);
+        pacer.set_speed(-3.0, ms(0));
+        assert!((pacer.speed() - 0.05).abs() < 1e-9);
+    }
+}

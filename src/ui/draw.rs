@@ -1,0 +1,116 @@
+//! The whole picture: status, panels, hints, popups.
+
+use ratatui::Frame;
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+use ratatui::text::Line;
+use ratatui::widgets::{Block, BorderType, Clear, Widget as _};
+
+use super::layout::{self, SMALLEST};
+use super::panel::{self, span};
+use super::state::{AppState, Layer, Pane};
+use super::status;
+use super::theme::{Charset, Role};
+use super::{ascii, quantity};
+
+/// Draws the state. Reads only.
+pub fn draw(state: &AppState, frame: &mut Frame<'_>) {
+    let area = frame.area();
+    let buffer = frame.buffer_mut();
+    let cursor = match layout::divided(state, (area.width, area.height)) {
+        Some(screen) => {
+            status::draw(state, screen.status, buffer);
+            let mut cursor = None;
+            for (pane, area) in screen.panes {
+                cursor = cursor.or(pane_with_frame(state, pane, area, buffer));
+            }
+            status::hints(state, screen.hints, buffer);
+            cursor
+        }
+        None => {
+            too_small(state, area, buffer);
+            None
+        }
+    };
+    for layer in &state.layers {
+        match layer {
+            Layer::Help { scroll } => panel::help::draw(state, *scroll, area, buffer),
+            Layer::Quit => quit_question(state, area, buffer),
+        }
+    }
+    if state.theme.charset == Charset::Ascii {
+        ascii::replace(buffer);
+    }
+    if let Some(position) = cursor.filter(|_| state.layers.is_empty()) {
+        frame.set_cursor_position(position);
+    }
+}
+
+/// Draws a panel; gives the place of the cursor if it is there.
+fn pane_with_frame(state: &AppState, pane: Pane, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+    let theme = &state.theme;
+    let focused = state.focus == pane;
+    let title = match pane {
+        Pane::Map => panel::map::title(state),
+        Pane::Plan => panel::plan::title(state),
+        Pane::State => Pane::State.title().to_owned(),
+        Pane::Rc => panel::rc::title(state),
+        Pane::Cli => panel::cli::title(state),
+        Pane::Log => panel::log::title(state),
+    };
+    let title = quantity::cut(&title, usize::from(area.width.saturating_sub(4)));
+    let (mark, frame_role, title_role) =
+        if focused { ("▸", Role::Focus, Role::Focus) } else { ("", Role::Dim, Role::Title) };
+    Block::bordered()
+        .border_type(BorderType::Plain)
+        .border_style(theme.style(frame_role))
+        .title(Line::from(span(theme, title_role, format!("{mark}{title}"))))
+        .render(area, buffer);
+    let inner = layout::inner(area);
+    match pane {
+        Pane::Map => panel::map::draw(state, inner, buffer),
+        Pane::Plan => panel::plan::draw(state, inner, buffer),
+        Pane::State => panel::state::draw(state, inner, buffer),
+        Pane::Rc => panel::rc::draw(state, inner, buffer),
+        Pane::Log => panel::log::draw(state, inner, buffer),
+        Pane::Cli => return panel::cli::draw(state, inner, buffer).filter(|_| focused),
+    }
+    None
+}
+
+fn too_small(state: &AppState, area: Rect, buffer: &mut Buffer) {
+    let text = format!(
+        "betadeck needs at least {}x{}, now {}x{}. The flight goes on; q quits.",
+        SMALLEST.0, SMALLEST.1, area.width, area.height
+    );
+    for (row, line) in panel::wrapped(&text, usize::from(area.width)).iter().enumerate() {
+        panel::row(buffer, area, row as u16, &state.theme, Role::Text, line);
+    }
+}
+
+fn quit_question(state: &AppState, area: Rect, buffer: &mut Buffer) {
+    let inside = popup(state, area, (46, 3), "Quit?", buffer);
+    let theme = &state.theme;
+    panel::row(buffer, inside, 0, theme, Role::Warn, " ▲ The craft is armed and flying ends here.");
+    let answers = Line::from(vec![
+        span(theme, Role::Key, " y"),
+        span(theme, Role::Text, " quit   "),
+        span(theme, Role::Key, "n"),
+        span(theme, Role::Text, " stay"),
+    ]);
+    panel::line(buffer, inside, 2, &answers);
+}
+
+/// Clears a framed place in the middle for a popup of this inner size; gives the inside.
+pub fn popup(state: &AppState, area: Rect, size: (u16, u16), title: &str, buffer: &mut Buffer) -> Rect {
+    let width = (size.0 + 2).min(area.width);
+    let height = (size.1 + 2).min(area.height);
+    let place =
+        Rect::new(area.x + (area.width - width) / 2, area.y + (area.height - height) / 2, width, height);
+    Clear.render(place, buffer);
+    Block::bordered()
+        .border_style(state.theme.style(Role::Focus))
+        .title(Line::from(span(&state.theme, Role::Focus, title)))
+        .render(place, buffer);
+    layout::inner(place)
+}

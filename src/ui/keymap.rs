@@ -1,0 +1,169 @@
+//! Keys as text and as events, and which action a key means where the focus is.
+
+use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
+
+use super::action::{ACTIONS, Action, Context};
+use super::state::Pane;
+
+/// A key with its modifiers; shift is part of the character where there is one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct KeyPress {
+    code: KeyCode,
+    modifiers: KeyModifiers,
+}
+
+impl KeyPress {
+    /// The key of an event.
+    #[must_use]
+    pub fn of(event: &KeyEvent) -> Self {
+        let mut modifiers =
+            event.modifiers & (KeyModifiers::CONTROL | KeyModifiers::ALT | KeyModifiers::SHIFT);
+        let code = match event.code {
+            KeyCode::BackTab => {
+                modifiers |= KeyModifiers::SHIFT;
+                KeyCode::Tab
+            }
+            KeyCode::Char(c) => {
+                // Terminals differ in whether they report shift beside the capital letter.
+                let c = if modifiers.contains(KeyModifiers::SHIFT) { c.to_ascii_uppercase() } else { c };
+                modifiers -= KeyModifiers::SHIFT;
+                KeyCode::Char(c)
+            }
+            code => code,
+        };
+        Self { code, modifiers }
+    }
+
+    /// A key from text: `a`, `F`, `space`, `ctrl-c`, `shift-tab`, `f1`.
+    #[must_use]
+    pub fn parse(text: &str) -> Option<Self> {
+        let mut modifiers = KeyModifiers::NONE;
+        let mut rest = text;
+        for (prefix, modifier) in
+            [("ctrl-", KeyModifiers::CONTROL), ("alt-", KeyModifiers::ALT), ("shift-", KeyModifiers::SHIFT)]
+        {
+            if let Some(after) = rest.strip_prefix(prefix) {
+                modifiers |= modifier;
+                rest = after;
+            }
+        }
+        let mut chars = rest.chars();
+        let code = match (rest, chars.next(), chars.next()) {
+            ("space", ..) => KeyCode::Char(' '),
+            ("tab", ..) => KeyCode::Tab,
+            ("esc", ..) => KeyCode::Esc,
+            ("enter", ..) => KeyCode::Enter,
+            ("up", ..) => KeyCode::Up,
+            ("down", ..) => KeyCode::Down,
+            ("left", ..) => KeyCode::Left,
+            ("right", ..) => KeyCode::Right,
+            ("home", ..) => KeyCode::Home,
+            ("end", ..) => KeyCode::End,
+            ("pageup", ..) => KeyCode::PageUp,
+            ("pagedown", ..) => KeyCode::PageDown,
+            (_, Some(c), None) => KeyCode::Char(c),
+            (_, Some('f'), Some(_)) => KeyCode::F(rest[1..].parse().ok()?),
+            _ => return None,
+        };
+        Some(Self { code, modifiers })
+    }
+}
+
+/// The key as hint bar and help show it.
+#[must_use]
+pub fn shown(key: &str) -> String {
+    match key {
+        "space" => "Space".to_owned(),
+        "tab" => "Tab".to_owned(),
+        "shift-tab" => "Shift-Tab".to_owned(),
+        "esc" => "Esc".to_owned(),
+        "enter" => "Enter".to_owned(),
+        "up" => "↑".to_owned(),
+        "down" => "↓".to_owned(),
+        "left" => "←".to_owned(),
+        "right" => "→".to_owned(),
+        "shift-left" => "Shift-←".to_owned(),
+        "shift-right" => "Shift-→".to_owned(),
+        "home" => "Home".to_owned(),
+        "end" => "End".to_owned(),
+        "pageup" => "PgUp".to_owned(),
+        "pagedown" => "PgDn".to_owned(),
+        "ctrl-c" => "Ctrl-C".to_owned(),
+        "ctrl-z" => "Ctrl-Z".to_owned(),
+        _ if key.len() > 1 && key.starts_with('f') => key.to_uppercase(),
+        _ => key.to_owned(),
+    }
+}
+
+/// Which key means what.
+#[derive(Debug, Clone)]
+pub struct Keymap {
+    bindings: Vec<(Context, KeyPress, Action)>,
+}
+
+impl Default for Keymap {
+    /// The default keys of the action table.
+    fn default() -> Self {
+        let bindings = ACTIONS
+            .iter()
+            .flat_map(|spec| {
+                spec.keys.iter().filter_map(|key| Some((spec.context, KeyPress::parse(key)?, spec.action)))
+            })
+            .collect();
+        Self { bindings }
+    }
+}
+
+impl Keymap {
+    /// The action of a key while `focus` has the focus; the panel's own meaning comes before the general one.
+    #[must_use]
+    pub fn action(&self, key: KeyPress, focus: Pane) -> Option<Action> {
+        let own = |context: &Context| matches!(context, Context::In(_) | Context::Lists);
+        // Function keys are never text.
+        let function = matches!(key.code, KeyCode::F(_));
+        let heard = |context: Context| context.applies(focus) || (function && context == Context::Global);
+        let mut hits = self.bindings.iter().filter(|(context, k, _)| *k == key && heard(*context));
+        let first = hits.next()?;
+        let best = if own(&first.0) { first } else { hits.find(|hit| own(&hit.0)).unwrap_or(first) };
+        Some(best.2)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_default_key_parses_and_none_is_used_twice_in_one_place() {
+        for spec in ACTIONS {
+            for key in spec.keys {
+                assert!(KeyPress::parse(key).is_some(), "{key} of {}", spec.name);
+                let same = |other: &&crate::ui::action::Spec| {
+                    other.context == spec.context && other.keys.contains(key)
+                };
+                assert_eq!(ACTIONS.iter().filter(same).count(), 1, "{key} of {}", spec.name);
+            }
+        }
+    }
+
+    #[test]
+    fn letters_are_text_in_the_cli_and_panels_come_before_the_rest() {
+        let keymap = Keymap::default();
+        let key = |text| KeyPress::parse(text).expect("a key");
+        assert_eq!(keymap.action(key("a"), Pane::Map), Some(Action::Arm));
+        assert_eq!(keymap.action(key("a"), Pane::Cli), None);
+        assert_eq!(keymap.action(key("ctrl-c"), Pane::Cli), Some(Action::Cancel));
+        assert_eq!(keymap.action(key("f1"), Pane::Cli), Some(Action::Show(Pane::Map)));
+        assert_eq!(keymap.action(key("up"), Pane::Rc), Some(Action::ChannelUp));
+        assert_eq!(keymap.action(key("up"), Pane::Log), Some(Action::ScrollUp));
+    }
+
+    #[test]
+    fn shift_is_told_by_the_capital_letter() {
+        let plain = KeyEvent::new(KeyCode::Char('F'), KeyModifiers::NONE);
+        let shifted = KeyEvent::new(KeyCode::Char('F'), KeyModifiers::SHIFT);
+        let kitty = KeyEvent::new(KeyCode::Char('f'), KeyModifiers::SHIFT);
+        assert_eq!(KeyPress::of(&plain), KeyPress::of(&shifted));
+        assert_eq!(KeyPress::of(&plain), KeyPress::of(&kitty));
+    }
+}

@@ -1,0 +1,176 @@
+//! Which panels stand where at a size of the screen.
+//!
+//! ```text
+//!  60x20 and zoomed    from 80x24           from 120x34           from 180x48
+//!  ┌──────────────┐    ┌─────────┬─────┐    ┌─────────┬──────┐    ┌────────┬──────┬─────┐
+//!  │ the focused  │    │ map or  │state│    │ map     │ state│    │ map    │ state│ RC  │
+//!  │ panel        │    │ RC, CLI │     │    │         │      │    │        │      │     │
+//!  │              │    ├─────────┴─────┤    ├─────────┼──────┤    ├──────┬─┴────┬─┴─────┤
+//!  │              │    │ log           │    │log, CLI │ RC,  │    │ log  │ plan │ CLI   │
+//!  └──────────────┘    └───────────────┘    └─────────┴ plan─┘    └──────┴──────┴───────┘
+//! ```
+//!
+//! Two lines of status stand above, one of hints below.
+
+use ratatui::layout::Rect;
+
+use super::state::{AppState, Pane};
+
+/// The smallest screen that shows anything useful.
+pub const SMALLEST: (u16, u16) = (60, 20);
+
+/// What the places that several panels share show: the one that had the focus last.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Slots {
+    /// 80x24: map (with the log below), or one of RC, CLI, plan instead of both.
+    main: Pane,
+    /// 120x40, bottom left: log or CLI.
+    left: Pane,
+    /// 120x40, bottom right: RC or plan.
+    right: Pane,
+}
+
+impl Default for Slots {
+    fn default() -> Self {
+        Self { main: Pane::Map, left: Pane::Log, right: Pane::Plan }
+    }
+}
+
+impl Slots {
+    /// Remembers that a panel got the focus.
+    pub fn visit(&mut self, pane: Pane) {
+        match pane {
+            Pane::Map => self.main = Pane::Map,
+            Pane::Log => {
+                self.main = Pane::Map;
+                self.left = Pane::Log;
+            }
+            Pane::Cli => {
+                self.main = Pane::Cli;
+                self.left = Pane::Cli;
+            }
+            Pane::Rc | Pane::Plan => {
+                self.main = pane;
+                self.right = pane;
+            }
+            Pane::State => {}
+        }
+    }
+}
+
+/// A screen divided.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Screen {
+    /// Two lines.
+    pub status: Rect,
+    /// The visible panels with their frames.
+    pub panes: Vec<(Pane, Rect)>,
+    /// One line.
+    pub hints: Rect,
+}
+
+impl Screen {
+    /// The place of a panel, if it is visible.
+    #[must_use]
+    pub fn pane(&self, pane: Pane) -> Option<Rect> {
+        self.panes.iter().find(|(p, _)| *p == pane).map(|(_, area)| *area)
+    }
+
+    /// The panel at a cell.
+    #[must_use]
+    pub fn at(&self, column: u16, row: u16) -> Option<(Pane, Rect)> {
+        self.panes.iter().find(|(_, area)| area.contains((column, row).into())).copied()
+    }
+}
+
+/// The inside of a panel.
+#[must_use]
+pub fn inner(area: Rect) -> Rect {
+    Rect::new(
+        area.x.saturating_add(1),
+        area.y.saturating_add(1),
+        area.width.saturating_sub(2),
+        area.height.saturating_sub(2),
+    )
+}
+
+/// Divides the screen; `None` when it is too small.
+#[must_use]
+pub fn screen(state: &AppState) -> Option<Screen> {
+    divided(state, state.size)
+}
+
+/// Divides a screen of this many columns and rows; `None` when it is too small.
+#[must_use]
+pub fn divided(state: &AppState, (width, height): (u16, u16)) -> Option<Screen> {
+    if width < SMALLEST.0 || height < SMALLEST.1 {
+        return None;
+    }
+    let body = Rect::new(0, 2, width, height - 3);
+    let panes = if state.zoomed || width < 80 || height < 24 {
+        vec![(state.focus, body)]
+    } else if width >= 180 && height >= 48 {
+        large(body)
+    } else if width >= 120 && height >= 34 {
+        medium(body, state.slots)
+    } else {
+        small(body, state.slots)
+    };
+    Some(Screen { status: Rect::new(0, 0, width, 2), panes, hints: Rect::new(0, height - 1, width, 1) })
+}
+
+fn small(body: Rect, slots: Slots) -> Vec<(Pane, Rect)> {
+    let side = (body.width * 29 / 100).clamp(23, 46);
+    if slots.main != Pane::Map {
+        let [main, state] = columns(body, [body.width - side, side]);
+        return vec![(slots.main, main), (Pane::State, state)];
+    }
+    let log = (body.height * 3 / 10).max(5);
+    let [top, bottom] = rows(body, [body.height - log, log]);
+    let [map, state] = columns(top, [top.width - side, side]);
+    vec![(Pane::Map, map), (Pane::State, state), (Pane::Log, bottom)]
+}
+
+fn medium(body: Rect, slots: Slots) -> Vec<(Pane, Rect)> {
+    let bottom = (body.height * 32 / 100).clamp(10, 20);
+    let [top, bottom] = rows(body, [body.height - bottom, bottom]);
+    let side = (body.width * 38 / 100).clamp(46, 60);
+    let [map, state] = columns(top, [top.width - side, side]);
+    let right = (body.width / 2).clamp(60, 76).min(body.width - 60);
+    let [left, right] = columns(bottom, [bottom.width - right, right]);
+    vec![(Pane::Map, map), (Pane::State, state), (slots.left, left), (slots.right, right)]
+}
+
+fn large(body: Rect) -> Vec<(Pane, Rect)> {
+    let bottom = body.height * 36 / 100;
+    let [top, bottom] = rows(body, [body.height - bottom, bottom]);
+    let [map, state, rc] = columns(top, [top.width - 96, 48, 48]);
+    let third = body.width / 3;
+    let [log, plan, cli] = columns(bottom, [body.width - 2 * third, third, third]);
+    vec![
+        (Pane::Map, map),
+        (Pane::State, state),
+        (Pane::Rc, rc),
+        (Pane::Log, log),
+        (Pane::Plan, plan),
+        (Pane::Cli, cli),
+    ]
+}
+
+fn columns<const N: usize>(area: Rect, widths: [u16; N]) -> [Rect; N] {
+    let mut x = area.x;
+    widths.map(|width| {
+        let column = Rect::new(x, area.y, width, area.height);
+        x += width;
+        column
+    })
+}
+
+fn rows<const N: usize>(area: Rect, heights: [u16; N]) -> [Rect; N] {
+    let mut y = area.y;
+    heights.map(|height| {
+        let row = Rect::new(area.x, y, area.width, height);
+        y += height;
+        row
+    })
+}

@@ -1,0 +1,145 @@
+//! Events and notices as lines.
+
+use std::collections::VecDeque;
+
+use crate::autopilot::io::{NavEvent, NavState};
+use crate::firmware::{DisarmReason, FirmwareEvent};
+use crate::signals::SimTime;
+use crate::vehicle::EventKind;
+
+use super::theme::Role;
+
+/// Lines kept.
+const MAX_LINES: usize = 5000;
+
+/// How serious a line is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Level {
+    /// For the record.
+    Info,
+    /// The mission went on.
+    Step,
+    /// Good news.
+    Good,
+    /// Needs attention.
+    Warn,
+    /// Something is wrong.
+    Fault,
+}
+
+impl Level {
+    /// How serious an event is.
+    #[must_use]
+    pub fn of(kind: &EventKind) -> Self {
+        match kind {
+            EventKind::Boot { .. } | EventKind::Contact { .. } | EventKind::Notice(_) => Self::Info,
+            EventKind::Touchdown { .. } => Self::Good,
+            EventKind::Fault { on, .. } => {
+                if *on {
+                    Self::Warn
+                } else {
+                    Self::Good
+                }
+            }
+            EventKind::Crash { .. } => Self::Fault,
+            EventKind::Firmware(event) => Self::of_firmware(event),
+        }
+    }
+
+    fn of_firmware(event: &FirmwareEvent) -> Self {
+        match event {
+            FirmwareEvent::GpsFix { .. } | FirmwareEvent::RxRecovered | FirmwareEvent::Armed => Self::Good,
+            FirmwareEvent::Disarmed(DisarmReason::Landing) => Self::Good,
+            FirmwareEvent::Disarmed(DisarmReason::Switch)
+            | FirmwareEvent::Mode(_)
+            | FirmwareEvent::Notice(_) => Self::Info,
+            FirmwareEvent::Disarmed(_) | FirmwareEvent::Failsafe { .. } => Self::Fault,
+            FirmwareEvent::GpsLost { .. } | FirmwareEvent::RxLoss => Self::Warn,
+            FirmwareEvent::Nav(event) => match event {
+                NavEvent::State { to: NavState::Complete, .. } => Self::Good,
+                NavEvent::State { .. } => Self::Step,
+                NavEvent::Refused(_) | NavEvent::Geofence { .. } => Self::Warn,
+                NavEvent::Plan { .. } | NavEvent::Climbing(_) | NavEvent::Disarm => Self::Info,
+            },
+        }
+    }
+
+    /// The mark in front of the line.
+    #[must_use]
+    pub fn glyph(self) -> &'static str {
+        match self {
+            Self::Info => "·",
+            Self::Step => "◆",
+            Self::Good => "✓",
+            Self::Warn => "▲",
+            Self::Fault => "✗",
+        }
+    }
+
+    /// Its role in the theme.
+    #[must_use]
+    pub fn role(self) -> Role {
+        match self {
+            Self::Info => Role::Text,
+            Self::Step => Role::Title,
+            Self::Good => Role::Ok,
+            Self::Warn => Role::Warn,
+            Self::Fault => Role::Fault,
+        }
+    }
+}
+
+/// A line of the log.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LogLine {
+    /// Simulated time.
+    pub time: SimTime,
+    /// How serious.
+    pub level: Level,
+    /// The sentence.
+    pub text: String,
+}
+
+/// The log, bounded.
+#[derive(Debug, Default)]
+pub struct LogState {
+    lines: VecDeque<LogLine>,
+}
+
+impl LogState {
+    /// Appends a line; the oldest goes when the log is full. Line breaks and control characters become blanks.
+    pub fn push(&mut self, time: SimTime, level: Level, text: String) {
+        if self.lines.len() == MAX_LINES {
+            self.lines.pop_front();
+        }
+        let text = if text.contains(char::is_control) { text.replace(char::is_control, " ") } else { text };
+        self.lines.push_back(LogLine { time, level, text });
+    }
+
+    /// The lines, the newest first.
+    pub fn newest_first(&self) -> impl Iterator<Item = &LogLine> {
+        self.lines.iter().rev()
+    }
+
+    /// How many lines there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.lines.len()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_log_is_bounded_and_keeps_the_newest() {
+        let mut log = LogState::default();
+        for n in 0..MAX_LINES + 10 {
+            log.push(SimTime(n as u64), Level::Info, format!("line\r\n{n}"));
+        }
+        assert_eq!(log.len(), MAX_LINES);
+        let newest = log.newest_first().next().expect("a line");
+        assert_eq!(newest.text, format!("line  {}", MAX_LINES + 9));
+    }
+}

@@ -1,0 +1,313 @@
+//! What part of the world the map shows: metres on one side, cells on the other.
+//!
+//! World: metres north and east of the boot place. A cell is taken to be twice as high as wide, so a row spans twice
+//! the metres of a column.
+
+use nalgebra::Vector3;
+use ratatui::layout::Rect;
+
+use crate::geo::{LatLon, LocalFrame};
+use crate::plan::WaypointType;
+use crate::session::SessionView;
+
+use super::state::AppState;
+
+/// Metres per column at the closest and the widest.
+const SCALE_LIMITS: (f64, f64) = (0.02, 20_000.0);
+/// Steps of the automatic scale in an octave.
+const STEPS_PER_OCTAVE: f64 = 4.0;
+
+/// How the map chooses its place.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum MapMode {
+    /// The whole plan and the craft.
+    #[default]
+    Fit,
+    /// The craft in the middle, at this many metres per column.
+    Follow(f64),
+    /// Where the user put it.
+    Free {
+        /// Middle, north, m.
+        n: f64,
+        /// Middle, east, m.
+        e: f64,
+        /// Metres per column.
+        scale: f64,
+    },
+}
+
+/// The state of the map panel.
+#[derive(Debug, Default)]
+pub struct MapState {
+    /// Its place.
+    pub mode: MapMode,
+}
+
+/// A place on the ground, metres north and east of the boot place.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Ground {
+    /// North, m.
+    pub n: f64,
+    /// East, m.
+    pub e: f64,
+}
+
+impl Ground {
+    /// A place.
+    #[must_use]
+    pub const fn new(n: f64, e: f64) -> Self {
+        Self { n, e }
+    }
+
+    /// Distance to another place, m.
+    #[must_use]
+    pub fn distance(self, other: Self) -> f64 {
+        (self.n - other.n).hypot(self.e - other.e)
+    }
+
+    /// The place `t` of the way to `other`.
+    #[must_use]
+    pub fn towards(self, other: Self, t: f64) -> Self {
+        Self::new(self.n + (other.n - self.n) * t, self.e + (other.e - self.e) * t)
+    }
+}
+
+/// The boot place as the origin of the map; home or the first waypoint when the world does not tell.
+#[must_use]
+pub fn origin(state: &AppState) -> Option<LocalFrame> {
+    let vehicle = &state.view.vehicle;
+    if let Some(truth) = &vehicle.truth {
+        let here = LocalFrame::new(truth.lat_deg, truth.lon_deg, 0.0);
+        let (lat, lon, _) = here.to_geodetic(Vector3::new(-truth.e, -truth.n, 0.0));
+        return Some(LocalFrame::new(lat, lon, 0.0));
+    }
+    let first =
+        || state.shown_plan().waypoints.iter().find(|wp| wp.kind.is_positional()).map(|wp| wp.position);
+    let place = vehicle.craft.home.or_else(first)?;
+    Some(LocalFrame::new(place.lat_deg(), place.lon_deg(), 0.0))
+}
+
+/// A position in metres from the origin of the map.
+#[must_use]
+pub fn ground(origin: &LocalFrame, position: LatLon) -> Ground {
+    let enu = origin.to_enu(position.lat_deg(), position.lon_deg(), 0.0);
+    Ground::new(enu.y, enu.x)
+}
+
+/// Where the craft is: in truth if the world tells, else as it believes.
+#[must_use]
+pub fn craft(view: &SessionView) -> Option<Ground> {
+    let vehicle = &view.vehicle;
+    match (&vehicle.truth, vehicle.estimate.n, vehicle.estimate.e) {
+        (Some(truth), ..) => Some(Ground::new(truth.n, truth.e)),
+        (None, Some(n), Some(e)) => Some(Ground::new(n, e)),
+        _ => None,
+    }
+    .filter(|place| place.n.is_finite() && place.e.is_finite())
+}
+
+/// The window of the map.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Viewport {
+    /// The cells it fills.
+    pub area: Rect,
+    /// Its middle.
+    pub centre: Ground,
+    /// Metres per column; a row is twice that.
+    pub scale: f64,
+}
+
+impl Viewport {
+    /// The window of the map in these cells.
+    #[must_use]
+    pub fn of(state: &AppState, area: Rect) -> Self {
+        match state.map.mode {
+            MapMode::Fit => Self::fit(state, area),
+            MapMode::Follow(scale) => {
+                let centre = craft(&state.view).unwrap_or_default();
+                Self { area, centre, scale: limited(scale) }
+            }
+            MapMode::Free { n, e, scale } => Self { area, centre: Ground::new(n, e), scale: limited(scale) },
+        }
+    }
+
+    /// The window that shows plan, home and craft. Its scale moves in steps, so that it stands still while the craft
+    /// flies inside the plan.
+    fn fit(state: &AppState, area: Rect) -> Self {
+        let origin = origin(state);
+        let home = state.view.vehicle.craft.home;
+        let places = origin.iter().flat_map(|frame| {
+            // The open plan, too: the map shall not jump when a return home or a landing takes over.
+            let plans = [state.shown_plan(), &state.plan.plan];
+            // A TAKEOFF stands at home, wherever its record points.
+            let waypoints = plans
+                .into_iter()
+                .flat_map(|plan| &plan.waypoints)
+                .filter(|wp| wp.kind.is_positional() && wp.kind != WaypointType::Takeoff);
+            waypoints.map(|wp| wp.position).chain(home).map(|position| ground(frame, position))
+        });
+        let mut low = Ground::default();
+        let mut high = Ground::default();
+        let craft = craft(&state.view);
+        for place in places.chain(craft) {
+            low = Ground::new(low.n.min(place.n), low.e.min(place.e));
+            high = Ground::new(high.n.max(place.n), high.e.max(place.e));
+        }
+        // Room for numbers at the sides, and for scale bar and wind below.
+        let columns = f64::from(area.width.saturating_sub(16).max(8));
+        let rows = f64::from(area.height.saturating_sub(4).max(3));
+        let scale = ((high.e - low.e) / columns).max((high.n - low.n) / rows / 2.0).max(0.25);
+        let stepped = ((scale.log2() * STEPS_PER_OCTAVE).ceil() / STEPS_PER_OCTAVE).exp2();
+        let scale = limited(stepped);
+        let mut centre = low.towards(high, 0.5);
+        // A plan too far away for the widest scale must not push the craft out.
+        if let Some(craft) = craft {
+            let half_e = columns.min(0.9 * f64::from(area.width)) / 2.0 * scale;
+            let half_n = rows.min(0.9 * f64::from(area.height)) * scale;
+            centre.e = centre.e.clamp(craft.e - half_e, craft.e + half_e);
+            centre.n = centre.n.clamp(craft.n - half_n, craft.n + half_n);
+        }
+        Self { area, centre, scale }
+    }
+
+    /// Column and row of a place, in cells from the top left of the area; may lie outside.
+    #[must_use]
+    pub fn cell(&self, place: Ground) -> (f64, f64) {
+        let column = f64::from(self.area.width) / 2.0 + (place.e - self.centre.e) / self.scale;
+        let row = f64::from(self.area.height) / 2.0 - (place.n - self.centre.n) / (2.0 * self.scale);
+        (column, row)
+    }
+
+    /// The screen cell of a place, if it is inside.
+    #[must_use]
+    pub fn screen_cell(&self, place: Ground) -> Option<(u16, u16)> {
+        let (column, row) = self.cell(place);
+        let inside = column >= 0.0
+            && row >= 0.0
+            && column < f64::from(self.area.width)
+            && row < f64::from(self.area.height);
+        inside.then(|| (self.area.x + column as u16, self.area.y + row as u16))
+    }
+
+    /// The place under the middle of a screen cell.
+    #[must_use]
+    pub fn place(&self, column: u16, row: u16) -> Ground {
+        let dc = f64::from(column) + 0.5 - f64::from(self.area.x) - f64::from(self.area.width) / 2.0;
+        let dr = f64::from(row) + 0.5 - f64::from(self.area.y) - f64::from(self.area.height) / 2.0;
+        Ground::new(self.centre.n - dr * 2.0 * self.scale, self.centre.e + dc * self.scale)
+    }
+
+    /// East limits of the window, m.
+    #[must_use]
+    pub fn east_bounds(&self) -> [f64; 2] {
+        let half = f64::from(self.area.width) / 2.0 * self.scale;
+        [self.centre.e - half, self.centre.e + half]
+    }
+
+    /// North limits of the window, m.
+    #[must_use]
+    pub fn north_bounds(&self) -> [f64; 2] {
+        let half = f64::from(self.area.height) * self.scale;
+        [self.centre.n - half, self.centre.n + half]
+    }
+
+    /// The window moved by a number of columns and rows.
+    #[must_use]
+    pub fn panned(&self, columns: f64, rows: f64) -> MapMode {
+        MapMode::Free {
+            n: self.centre.n - rows * 2.0 * self.scale,
+            e: self.centre.e + columns * self.scale,
+            scale: self.scale,
+        }
+    }
+
+    /// The window with its scale times `factor`; `fixed` keeps its place on the screen.
+    #[must_use]
+    pub fn zoomed(&self, factor: f64, fixed: Ground) -> MapMode {
+        let scale = limited(self.scale * factor);
+        let ratio = scale / self.scale;
+        let centre = fixed.towards(self.centre, ratio);
+        MapMode::Free { n: centre.n, e: centre.e, scale }
+    }
+}
+
+fn limited(scale: f64) -> f64 {
+    if scale.is_finite() { scale.clamp(SCALE_LIMITS.0, SCALE_LIMITS.1) } else { 1.0 }
+}
+
+/// The longest round length (1, 2, 5 times a power of ten) not above `metres`.
+#[must_use]
+pub fn round_length(metres: f64) -> f64 {
+    let decade = 10_f64.powf(metres.max(1e-3).log10().floor());
+    [5.0, 2.0].into_iter().map(|step| step * decade).find(|&length| length <= metres).unwrap_or(decade)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::Waypoint;
+    use crate::ui::{CliHelp, OpenPlan, Theme, UiConfig};
+    use crate::vehicle::snapshot::TruthView;
+
+    fn viewport() -> Viewport {
+        Viewport { area: Rect::new(3, 5, 40, 20), centre: Ground::new(10.0, -20.0), scale: 2.0 }
+    }
+
+    #[test]
+    fn cells_and_places_are_inverse_and_north_is_up() {
+        let view = viewport();
+        let place = view.place(13, 9);
+        assert_eq!(view.screen_cell(place), Some((13, 9)));
+        let north = view.cell(Ground::new(place.n + 4.0, place.e));
+        let here = view.cell(place);
+        assert!((here.1 - north.1 - 1.0).abs() < 1e-9, "a row is two columns of metres");
+        let east = view.cell(Ground::new(place.n, place.e + 2.0));
+        assert!((east.0 - here.0 - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn zoom_keeps_the_place_under_the_pointer() {
+        let view = viewport();
+        let fixed = view.place(7, 22);
+        let MapMode::Free { n, e, scale } = view.zoomed(0.5, fixed) else {
+            panic!("zoom leaves the map free")
+        };
+        let after = Viewport { centre: Ground::new(n, e), scale, ..view };
+        let (a, b) = (view.cell(fixed), after.cell(fixed));
+        assert!((a.0 - b.0).abs() < 1e-9 && (a.1 - b.1).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_fitted_map_shows_the_craft_however_far_plan_and_craft_are() {
+        let config = UiConfig {
+            theme: Theme::default(),
+            cli: CliHelp::default(),
+            sentence: |_| String::new(),
+            plan: OpenPlan::default(),
+            mouse: false,
+        };
+        let mut state = AppState::new(config, (80, 24), SessionView::default());
+        let far = LatLon::new(470_000_000, 80_000_000);
+        for position in [LatLon::new(404_640_000, -795_175_000), far] {
+            state.plan.plan.waypoints.clear();
+            state.plan.plan.waypoints.push(Waypoint { position, ..Waypoint::default() });
+            for (n, e) in [(0.0, 0.0), (900.0, -30.0), (-4e6, 3e6), (2e7, 2e7)] {
+                let truth = TruthView { lat_deg: 40.4635, lon_deg: -79.5182, n, e, ..TruthView::default() };
+                std::sync::Arc::make_mut(&mut state.view.vehicle).truth = Some(truth);
+                for (width, height) in [(8, 4), (20, 9), (53, 19), (180, 50)] {
+                    let view = Viewport::of(&state, Rect::new(1, 3, width, height));
+                    let cell = view.screen_cell(Ground::new(n, e));
+                    assert!(cell.is_some(), "{width}x{height}, {n} {e}: {view:?}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn scale_bars_are_round() {
+        assert!((round_length(34.0) - 20.0).abs() < 1e-9);
+        assert!((round_length(50.0) - 50.0).abs() < 1e-9);
+        assert!((round_length(999.0) - 500.0).abs() < 1e-9);
+        assert!((round_length(1.2) - 1.0).abs() < 1e-9);
+    }
+}

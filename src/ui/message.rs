@@ -1,0 +1,54 @@
+//! What the user interface hears, and what it asks for.
+
+use std::time::Duration;
+
+use crossterm::event::{KeyEvent, MouseEvent};
+
+use crate::plan::FlightPlan;
+use crate::session::command::{CliOutput, Command, SessionView};
+use crate::vehicle::Event;
+
+/// Something that happened outside.
+#[derive(Debug)]
+pub enum Msg {
+    /// Wall-clock time since the user interface started; sent ahead of the messages that it dates.
+    Clock(Duration),
+    /// A key was pressed.
+    Key(KeyEvent),
+    /// The mouse was used.
+    Mouse(MouseEvent),
+    /// Text was pasted.
+    Paste(String),
+    /// The terminal has this many columns and rows.
+    Resize(u16, u16),
+    /// The session published a picture.
+    View(SessionView),
+    /// Something happened to the vehicle.
+    Event(Event),
+    /// The firmware answered a CLI line; `None` when it went away instead.
+    CliReply(Option<CliOutput>),
+    /// The craft answered an upload: the sentence of the first refusal otherwise.
+    UploadReply(Result<(), String>),
+    /// A command could not be delivered because the session does not keep up.
+    Busy,
+}
+
+/// Something to be done outside.
+#[derive(Debug)]
+pub enum Effect {
+    /// Ask the session.
+    Send(Command),
+    /// Run a CLI line; the reply comes back as [`Msg::CliReply`].
+    Cli(String),
+    /// Hand a plan to the craft; the reply comes back as [`Msg::UploadReply`].
+    Upload {
+        /// The plan.
+        plan: Box<FlightPlan>,
+        /// Setting lines that come with it, without `set `.
+        settings: Vec<String>,
+    },
+    /// Give the terminal back until the shell continues the program.
+    Suspend,
+    /// Give the terminal back and end.
+    Quit,
+}

@@ -1,0 +1,58 @@
+//! The keys of this place, from the action table.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::text::Line;
+
+use crate::ui::action::{ACTIONS, Context};
+use crate::ui::draw::popup;
+use crate::ui::keymap::shown;
+use crate::ui::state::AppState;
+use crate::ui::theme::Role;
+
+use super::{line, span};
+
+/// Draws the popup, scrolled down by `scroll` lines.
+pub fn draw(state: &AppState, scroll: usize, area: Rect, buffer: &mut Buffer) {
+    let theme = &state.theme;
+    let mut lines: Vec<Line<'static>> = Vec::new();
+    let own =
+        |context: Context| matches!(context, Context::In(_) | Context::Lists) && context.applies(state.focus);
+    let general = |context: Context| matches!(context, Context::Global | Context::Always);
+    let sections: [(String, &dyn Fn(Context) -> bool); 2] =
+        [(format!("In {}", state.focus.title()), &own), ("Everywhere".to_owned(), &general)];
+    for (title, wanted) in sections {
+        let rows: Vec<_> = ACTIONS.iter().filter(|spec| wanted(spec.context)).collect();
+        if rows.is_empty() {
+            continue;
+        }
+        lines.push(Line::from(span(theme, Role::Title, title)));
+        for spec in rows {
+            let keys: Vec<String> = spec.keys.iter().map(|key| shown(key)).collect();
+            lines.push(Line::from(vec![
+                span(theme, Role::Key, format!("{:>12}  ", keys.join(" "))),
+                span(theme, Role::Text, spec.help),
+            ]));
+        }
+    }
+    lines.push(Line::from(span(theme, Role::Title, "Mouse")));
+    for (what, text) in [
+        ("click", "Focus a panel, set a channel"),
+        ("drag", "Move the map"),
+        ("wheel", "Zoom the map at the pointer, scroll the others"),
+        ("Shift", "Lets the terminal select text"),
+    ] {
+        lines.push(Line::from(vec![
+            span(theme, Role::Key, format!("{what:>12}  ")),
+            span(theme, Role::Text, text),
+        ]));
+    }
+    let width = lines.iter().map(Line::width).max().unwrap_or(0) as u16 + 1;
+    let height = lines.len() as u16;
+    let shows = area.height.saturating_sub(4).min(height);
+    let inside = popup(state, area, (width, shows), "Keys — any other key closes, ↑ ↓ scroll", buffer);
+    let first = scroll.min(lines.len().saturating_sub(usize::from(inside.height)));
+    for (at, text) in lines.iter().skip(first).take(usize::from(inside.height)).enumerate() {
+        line(buffer, inside, at as u16, text);
+    }
+}

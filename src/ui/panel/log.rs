@@ -1,0 +1,54 @@
+//! 8 Log: every event and notice, the newest on top.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::text::Line;
+
+use crate::ui::quantity::clock_ms;
+use crate::ui::state::{AppState, Pane};
+use crate::ui::theme::Role;
+
+use super::{line, row, span, wrapped};
+
+/// Columns of time and mark in front of the text.
+const STAMP: usize = 12;
+
+/// The title: how many lines are above the first one shown.
+pub fn title(state: &AppState) -> String {
+    let name = Pane::Log.title();
+    match state.scrolls.log {
+        0 => name.to_owned(),
+        newer => format!("{name} — {newer} newer above"),
+    }
+}
+
+/// Draws the inside.
+pub fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
+    let theme = &state.theme;
+    if state.log.len() == 0 {
+        row(buffer, area, 0, theme, Role::Dim, "Nothing has happened yet.");
+        return;
+    }
+    let height = usize::from(area.height);
+    let first = state.scrolls.log.min(state.log.len().saturating_sub(height));
+    let text_width = usize::from(area.width).saturating_sub(STAMP);
+    let mut at = 0;
+    for entry in state.log.newest_first().skip(first) {
+        let role = entry.level.role();
+        let mut stamp = format!("{} ", clock_ms(entry.time));
+        let mut mark = entry.level.glyph();
+        for part in wrapped(&entry.text, text_width) {
+            if at == area.height {
+                return;
+            }
+            let spans = vec![
+                span(theme, Role::Dim, stamp),
+                span(theme, role, format!("{mark} ")),
+                span(theme, role, part),
+            ];
+            line(buffer, area, at, &Line::from(spans));
+            at += 1;
+            (stamp, mark) = (" ".repeat(STAMP - 2), " ");
+        }
+    }
+}

@@ -1,0 +1,106 @@
+//! Text on the map that does not overlap.
+
+use ratatui::buffer::Buffer;
+use unicode_width::UnicodeWidthStr as _;
+
+use crate::ui::map::{Ground, Viewport};
+use crate::ui::theme::{Role, Theme};
+
+/// Writes marks and labels, and remembers which cells are taken.
+pub struct Labels<'a> {
+    theme: &'a Theme,
+    view: Viewport,
+    buffer: &'a mut Buffer,
+    taken: Vec<bool>,
+}
+
+impl<'a> Labels<'a> {
+    /// Nothing written yet.
+    pub fn new(theme: &'a Theme, view: Viewport, buffer: &'a mut Buffer) -> Self {
+        let taken = vec![false; usize::from(view.area.width) * usize::from(view.area.height)];
+        Self { theme, view, buffer, taken }
+    }
+
+    /// The window of the map.
+    pub fn view(&self) -> &Viewport {
+        &self.view
+    }
+
+    fn index(&self, column: u16, row: u16) -> usize {
+        usize::from(row - self.view.area.y) * usize::from(self.view.area.width)
+            + usize::from(column - self.view.area.x)
+    }
+
+    /// A mark of one column at a place, over everything.
+    pub fn mark(&mut self, place: Ground, symbol: &str, role: Role) {
+        if let Some((column, row)) = self.view.screen_cell(place) {
+            self.put(column, row, symbol, role);
+        }
+    }
+
+    fn put(&mut self, column: u16, row: u16, text: &str, role: Role) {
+        self.buffer.set_string(column, row, text, self.theme.style(role));
+        for column in column..column.saturating_add(text.width() as u16).min(self.view.area.right()) {
+            let index = self.index(column, row);
+            if let Some(taken) = self.taken.get_mut(index) {
+                *taken = true;
+            }
+        }
+    }
+
+    fn is_free(&self, column: i32, row: i32, width: usize) -> bool {
+        let area = self.view.area;
+        let inside = column >= i32::from(area.left())
+            && row >= i32::from(area.top())
+            && row < i32::from(area.bottom())
+            && column + width as i32 <= i32::from(area.right());
+        inside
+            && (column..column + width as i32)
+                .all(|column| self.taken.get(self.index(column as u16, row as u16)) == Some(&false))
+    }
+
+    /// A label beside a place: right, left, below, above; the short form where the long one does not fit, else none.
+    pub fn beside(&mut self, place: Ground, long: &str, short: &str, role: Role) {
+        let Some((column, row)) = self.view.screen_cell(place) else { return };
+        let (column, row) = (i32::from(column), i32::from(row));
+        for text in [long, short] {
+            let width = text.width();
+            let places = [
+                (column + 1, row),
+                (column - width as i32, row),
+                (column, row + 1),
+                (column, row - 1),
+                (column - width as i32, row + 1),
+                (column + 1, row - 1),
+            ];
+            if let Some(&(column, row)) =
+                places.iter().find(|(column, row)| self.is_free(*column, *row, width))
+            {
+                self.put(column as u16, row as u16, text, role);
+                return;
+            }
+        }
+    }
+
+    /// A line in the middle.
+    pub fn middle(&mut self, text: &str, role: Role) {
+        let area = self.view.area;
+        let width = text.width() as u16;
+        if width <= area.width {
+            self.put(area.x + (area.width - width) / 2, area.y + area.height / 2, text, role);
+        }
+    }
+
+    /// The bottom line: text at the left, and at the right if there is room for both.
+    pub fn bottom(&mut self, left: &str, right: &str) {
+        let area = self.view.area;
+        let row = area.bottom() - 1;
+        let (left_width, right_width) = (left.width() as u16, right.width() as u16);
+        if left_width <= area.width {
+            self.put(area.x, row, left, Role::Dim);
+        }
+        if left_width + right_width < area.width {
+            self.put(area.right() - right_width, row, right, Role::Dim);
+        }
+    }
+}

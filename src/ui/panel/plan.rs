@@ -1,0 +1,91 @@
+//! 2 Plan: the waypoints of the open plan, with what is wrong beside them.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+
+use crate::geo::Degrees7;
+use crate::plan::{HoldPattern, Waypoint, WaypointType};
+use crate::ui::advice::waypoint_problem;
+use crate::ui::state::{AppState, Pane};
+use crate::ui::theme::Role;
+
+use super::{row, wrapped};
+
+/// The title: name of the plan, and whether the craft has it.
+pub fn title(state: &AppState) -> String {
+    let name = Pane::Plan.title();
+    if state.plan.plan.waypoints.is_empty() {
+        return name.to_owned();
+    }
+    let where_it_is = if state.plan_is_on_craft() { "✓ on the craft" } else { "● not on the craft" };
+    format!("{name} — {} {where_it_is}", state.plan.name)
+}
+
+/// Draws the inside.
+pub fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
+    let theme = &state.theme;
+    let plan = &state.plan.plan;
+    if plan.waypoints.is_empty() {
+        row(buffer, area, 0, theme, Role::Dim, "No waypoints are open.");
+        row(buffer, area, 1, theme, Role::Dim, "`waypoint insert …` in the CLI (5) adds one to the craft.");
+        return;
+    }
+    let wide = area.width >= 70;
+    let head = if wide {
+        "  # type        latitude    longitude    alt m  m/s  time s pattern"
+    } else {
+        "  # type       latitude    longitude   alt m time s"
+    };
+    row(buffer, area, 0, theme, Role::Title, head);
+    let vehicle = &state.view.vehicle;
+    let fence = vehicle.craft.home.zip(vehicle.settings.fence_m);
+    let problems: Vec<String> =
+        (0..plan.waypoints.len()).filter_map(|index| waypoint_problem(plan, index, fence)).collect();
+    let below = problems.len().min(2) as u16;
+    let rows = area.height.saturating_sub(1 + below);
+    let first = state.scrolls.plan.min(plan.waypoints.len().saturating_sub(usize::from(rows)));
+    let flying = vehicle.nav.engaged && vehicle.active_plan.as_ref() == Some(plan);
+    for (at, (index, wp)) in plan.waypoints.iter().enumerate().skip(first).take(usize::from(rows)).enumerate()
+    {
+        let current = flying && index == usize::from(vehicle.nav.wp);
+        let problem = waypoint_problem(plan, index, fence).is_some();
+        let (mark, role) = match (problem, current) {
+            (true, _) => ('✗', Role::Fault),
+            (false, true) => ('▸', Role::Target),
+            (false, false) => (' ', Role::Text),
+        };
+        row(buffer, area, at as u16 + 1, theme, role, &format!("{mark}{}", waypoint_row(index, wp, wide)));
+    }
+    let width = usize::from(area.width);
+    for (at, problem) in problems.iter().take(usize::from(below)).enumerate() {
+        let text = wrapped(&format!("✗ {problem}"), width).join(" ");
+        row(buffer, area, area.height - below + at as u16, theme, Role::Fault, &text);
+    }
+}
+
+fn waypoint_row(index: usize, wp: &Waypoint, wide: bool) -> String {
+    let kind = wp.kind.to_string();
+    let place = |e7: i32| if wp.kind.is_positional() { Degrees7(e7).to_string() } else { "—".to_owned() };
+    let (lat, lon) = (place(wp.position.lat_e7), place(wp.position.lon_e7));
+    let alt = match wp.kind {
+        WaypointType::Delay | WaypointType::YawRate => "—".to_owned(),
+        _ => format!("{:.1}", f64::from(wp.alt_cm) / 100.0),
+    };
+    let time = match (wp.duration_ds, wp.kind) {
+        (0, WaypointType::Hold) => "∞".to_owned(),
+        (0, _) => "—".to_owned(),
+        (ds, _) => format!("{:.1}", f64::from(ds) / 10.0),
+    };
+    if !wide {
+        return format!("{index:>2} {kind:<10}{lat:>11} {lon:>12} {alt:>7} {time:>6}");
+    }
+    let speed = match wp.speed_cms {
+        0 => "—".to_owned(),
+        cms => format!("{:.1}", f64::from(cms) / 100.0),
+    };
+    let pattern = match (wp.kind, wp.pattern) {
+        (WaypointType::Hold, HoldPattern::None) | (WaypointType::Hold, _) => wp.pattern.to_string(),
+        _ => "—".to_owned(),
+    };
+    format!("{index:>2} {kind:<10} {lat:>11} {lon:>12} {alt:>8} {speed:>4} {time:>7} {pattern}")
+}

@@ -1,0 +1,193 @@
+//! 4 RC: the sixteen channels as bars, with the ranges that switch modes on.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+
+use crate::signals::{RC_CHANNELS, RcSource};
+use crate::ui::quantity::cut;
+use crate::ui::state::{AppState, Pane};
+use crate::ui::theme::Role;
+use crate::vehicle::snapshot::{CraftView, ModeRange};
+
+use super::row;
+
+/// Columns of name and value in front of the bar.
+const LABEL: u16 = 17;
+/// Ends of the bars, µs.
+const SPAN_US: (f64, f64) = (900.0, 2100.0);
+
+/// The title: who drives the channels, and how old the newest frame is.
+pub fn title(state: &AppState) -> String {
+    let name = Pane::Rc.title();
+    let craft = &state.view.vehicle.craft;
+    let ours = !matches!(craft.rc_source, Some(RcSource::Udp | RcSource::Msp));
+    if state.view.rc_cut && ours {
+        return format!("{name} — CUT, x restores it");
+    }
+    let age = match craft.rc_age_s {
+        Some(age) if age < 1.0 => format!("{:.0} ms", age * 1000.0),
+        Some(age) => format!("{age:.1} s"),
+        None => "—".to_owned(),
+    };
+    let source = match craft.rc_source {
+        None => return format!("{name} — no frames"),
+        Some(_) if !craft.rc_link => return format!("{name} — LOST {age}"),
+        Some(RcSource::Sticks) if state.view.pilot.is_some() => "pilot",
+        Some(RcSource::Sticks) => "keys",
+        Some(RcSource::Udp) => "udp",
+        Some(RcSource::Msp) => "msp",
+    };
+    format!("{name} — {source}, {age}")
+}
+
+/// Where each visible channel is drawn: one column, or two when the panel is low and wide; else scrolled so that the
+/// selected one is visible.
+fn grid(area: Rect, selected: usize) -> Vec<(usize, Rect)> {
+    let rows = usize::from(area.height);
+    if rows == 0 {
+        return Vec::new();
+    }
+    let half = area.width / 2;
+    if (RC_CHANNELS / 2..RC_CHANNELS).contains(&rows) && half > LABEL + 8 {
+        let per = RC_CHANNELS.div_ceil(2);
+        return (0..RC_CHANNELS)
+            .map(|channel| {
+                let x = area.x + (channel / per) as u16 * half;
+                (channel, Rect::new(x, area.y + (channel % per) as u16, half - 1, 1))
+            })
+            .collect();
+    }
+    let first = (selected + 1).saturating_sub(rows).min(RC_CHANNELS.saturating_sub(rows));
+    (first..RC_CHANNELS)
+        .take(rows)
+        .enumerate()
+        .map(|(at, channel)| (channel, Rect::new(area.x, area.y + at as u16, area.width, 1)))
+        .collect()
+}
+
+/// The bar of a channel's row.
+fn bar(row: Rect) -> Rect {
+    let label = LABEL.min(row.width);
+    Rect { x: row.x + label, width: row.width - label, ..row }
+}
+
+/// The channel at a screen cell, and the value there if it is on the bar.
+pub fn channel_at(area: Rect, selected: usize, (column, line): (u16, u16)) -> Option<(usize, Option<u16>)> {
+    let hit = |(_, place): &(usize, Rect)| place.contains((column, line).into());
+    let (channel, place) = grid(area, selected).into_iter().find(hit)?;
+    let bar = bar(place);
+    if column < bar.x || bar.width < 2 {
+        return Some((channel, None));
+    }
+    let share = f64::from(column - bar.x) / f64::from(bar.width - 1);
+    let us = SPAN_US.0 + share * (SPAN_US.1 - SPAN_US.0);
+    Some((channel, Some((us / 10.0).round() as u16 * 10)))
+}
+
+/// The column of a value on a bar.
+fn column_of(bar: Rect, us: u16) -> u16 {
+    let share = ((f64::from(us) - SPAN_US.0) / (SPAN_US.1 - SPAN_US.0)).clamp(0.0, 1.0);
+    bar.x + (share * f64::from(bar.width.saturating_sub(1))).round() as u16
+}
+
+/// The ranges on a channel.
+fn ranges(craft: &CraftView, channel: usize) -> impl Iterator<Item = &ModeRange> {
+    craft
+        .mode_ranges
+        .iter()
+        .filter(move |range| usize::from(range.channel) == channel && range.start_us < range.end_us)
+}
+
+/// Name of a channel: the stick, or the first mode on it and how many more.
+fn name(craft: &CraftView, channel: usize) -> String {
+    match channel {
+        0 => "ROLL".to_owned(),
+        1 => "PITCH".to_owned(),
+        2 => "THROTTLE".to_owned(),
+        3 => "YAW".to_owned(),
+        _ => {
+            let mut names = ranges(craft, channel).map(|range| range.name);
+            match (names.next(), names.count()) {
+                (None, _) => format!("AUX{}", channel - 3),
+                (Some(first), 0) => first.to_owned(),
+                (Some(first), more) => format!("{} +{more}", cut(first, 7)),
+            }
+        }
+    }
+}
+
+/// Draws the inside.
+pub fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
+    let theme = &state.theme;
+    let craft = &state.view.vehicle.craft;
+    let focused = state.focus == Pane::Rc;
+    for (channel, place) in grid(area, state.channel) {
+        let us = craft.channels.get(channel).copied().unwrap_or_default();
+        let known = us > 0;
+        let selected = focused && channel == state.channel;
+        let value = if known { format!("{us:>4}") } else { "   —".to_owned() };
+        let mark = if selected { '▸' } else { ' ' };
+        let on = ranges(craft, channel).any(|range| (range.start_us..range.end_us).contains(&us));
+        let role = match (selected, on) {
+            (true, _) => Role::Focus,
+            (false, true) => Role::Ok,
+            (false, false) => Role::Text,
+        };
+        row(buffer, place, 0, theme, role, &format!("{mark}{:<10}{value} ", cut(&name(craft, channel), 10)));
+        let bar = bar(place);
+        if bar.width < 4 {
+            continue;
+        }
+        row(buffer, bar, 0, theme, Role::Dim, &"─".repeat(usize::from(bar.width)));
+        let put = |buffer: &mut Buffer, column: u16, symbol: &str, role: Role| {
+            if let Some(cell) = buffer.cell_mut((column, bar.y)) {
+                cell.set_symbol(symbol).set_style(theme.style(role));
+            }
+        };
+        put(buffer, column_of(bar, 1500), "┼", Role::Dim);
+        let several = ranges(craft, channel).count() > 1;
+        for range in ranges(craft, channel) {
+            let active = (range.start_us..range.end_us).contains(&us);
+            let role = if active { Role::Ok } else { Role::Title };
+            let (from, to) = (column_of(bar, range.start_us), column_of(bar, range.end_us));
+            for column in from..=to {
+                put(buffer, column, "░", role);
+            }
+            if several && usize::from(to - from) > range.name.len() {
+                buffer.set_string(from + 1, bar.y, range.name, theme.style(role));
+            }
+        }
+        if known {
+            put(buffer, column_of(bar, us), "█", if selected { Role::Focus } else { Role::Text });
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_click_on_the_bar_gives_the_value_drawn_there() {
+        let area = Rect::new(5, 2, 60, 16);
+        for us in [1000, 1500, 2000] {
+            let place = grid(area, 0)[7].1;
+            let column = column_of(bar(place), us);
+            let (channel, value) = channel_at(area, 0, (column, place.y)).expect("on the bar");
+            assert_eq!(channel, 7);
+            assert!(value.is_some_and(|value| value.abs_diff(us) <= 20), "{us}: {value:?}");
+        }
+        assert_eq!(channel_at(area, 0, (6, 3)), Some((1, None)));
+        assert_eq!(channel_at(area, 0, (0, 0)), None);
+    }
+
+    #[test]
+    fn the_selected_channel_is_always_visible() {
+        for height in 0..20 {
+            for selected in 0..RC_CHANNELS {
+                let grid = grid(Rect::new(0, 0, 40, height), selected);
+                assert!(height == 0 || grid.iter().any(|(channel, _)| *channel == selected));
+            }
+        }
+    }
+}

@@ -1,0 +1,183 @@
+//! The loop around the user interface: waits, feeds messages in, carries effects out, draws.
+
+#![allow(clippy::disallowed_methods, reason = "the shell of the user interface lives on wall-clock time")]
+
+use std::io;
+use std::time::{Duration, Instant};
+
+use crossterm::event::{Event as TerminalEvent, EventStream};
+use futures_util::StreamExt as _;
+use tokio::sync::{mpsc, oneshot, watch};
+use tokio::time::sleep;
+
+use crate::session::{Command, SessionView};
+use crate::vehicle::Event;
+
+use super::message::{Effect, Msg};
+use super::state::{AppState, UiConfig};
+use super::terminal::Tui;
+use super::update::update;
+
+/// Shortest time between two frames after a key.
+const KEY_FRAME: Duration = Duration::from_millis(16);
+/// Shortest time between two frames when only the flight went on.
+const FLIGHT_FRAME: Duration = Duration::from_millis(50);
+/// Longest time without a frame while something on the screen fades.
+const FADE_FRAME: Duration = Duration::from_millis(500);
+/// Events taken at once.
+const BATCH: usize = 256;
+
+/// The session, seen from the user interface.
+#[derive(Debug)]
+pub struct SessionLink {
+    /// Requests.
+    pub commands: mpsc::Sender<Command>,
+    /// The newest picture.
+    pub view: watch::Receiver<SessionView>,
+    /// Everything that happens.
+    pub events: mpsc::UnboundedReceiver<Event>,
+}
+
+/// How the user interface ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Ending {
+    /// The user quit.
+    Quit,
+    /// A signal asked for it.
+    Signal,
+    /// The session ended by itself.
+    SessionEnded,
+    /// The terminal went away.
+    TerminalLost,
+}
+
+/// Why the loop woke.
+enum Wake {
+    Msg(Msg),
+    Flight(Msg),
+    Time,
+    End(Ending),
+}
+
+/// Runs the user interface until it ends, at the latest when `stop` does. The terminal is given back when `tui` is
+/// dropped, at the end of this.
+///
+/// # Errors
+/// The terminal could not be read or written.
+pub async fn run(
+    mut tui: Tui,
+    mut link: SessionLink,
+    config: UiConfig,
+    stop: impl Future<Output = ()>,
+) -> io::Result<Ending> {
+    let started = Instant::now();
+    let mut stop = std::pin::pin!(stop);
+    let size = tui.terminal().size()?;
+    let view = link.view.borrow_and_update().clone();
+    let mut state = AppState::new(config, (size.width, size.height), view);
+    tui.draw(&state)?;
+
+    let mut keys = EventStream::new();
+    let (replies_in, mut replies) = mpsc::unbounded_channel();
+    let mut events = Vec::with_capacity(BATCH);
+    let mut drawn = Instant::now();
+    // The time of the next frame; none while nothing changed.
+    let mut due: Option<Instant> = None;
+
+    loop {
+        let frame_at = due.unwrap_or(drawn + FADE_FRAME);
+        let wake = tokio::select! {
+            // Keys first: what the user does is answered before the flight is shown.
+            biased;
+            () = &mut stop => Wake::End(Ending::Signal),
+            key = keys.next() => match key {
+                Some(Ok(event)) => terminal_message(event).map_or(Wake::Time, Wake::Msg),
+                Some(Err(error)) => return Err(error),
+                None => Wake::End(Ending::TerminalLost),
+            },
+            Some(msg) = replies.recv() => Wake::Msg(msg),
+            () = sleep(frame_at.saturating_duration_since(Instant::now())) => Wake::Time,
+            heard = link.events.recv_many(&mut events, BATCH) => match heard {
+                0 => Wake::End(Ending::SessionEnded),
+                _ => Wake::Flight(Msg::Clock(started.elapsed())),
+            },
+            changed = link.view.changed() => match changed {
+                Ok(()) => Wake::Flight(Msg::View(link.view.borrow_and_update().clone())),
+                Err(_) => Wake::End(Ending::SessionEnded),
+            },
+        };
+        let now = Instant::now();
+        update(&mut state, Msg::Clock(now - started));
+        let (msg, frame) = match wake {
+            Wake::End(ending) => {
+                link.commands.try_send(Command::Quit).ok();
+                return Ok(ending);
+            }
+            Wake::Time => (None, Duration::ZERO),
+            Wake::Msg(msg) => (Some(msg), KEY_FRAME),
+            Wake::Flight(msg) => (Some(msg), FLIGHT_FRAME),
+        };
+        let heard = events.drain(..).map(Msg::Event);
+        for msg in heard.chain(msg).collect::<Vec<_>>() {
+            for effect in update(&mut state, msg) {
+                if matches!(effect, Effect::Quit) {
+                    link.commands.try_send(Command::Quit).ok();
+                    return Ok(Ending::Quit);
+                }
+                if matches!(effect, Effect::Suspend) {
+                    tui.suspend()?;
+                    let size = tui.terminal().size()?;
+                    update(&mut state, Msg::Resize(size.width, size.height));
+                }
+                carry_out(effect, &link, &replies_in);
+            }
+        }
+        let wanted = drawn + frame;
+        due = Some(due.map_or(wanted, |due| due.min(wanted)));
+        if due.is_some_and(|due| due <= now) {
+            tui.draw(&state)?;
+            drawn = Instant::now();
+            due = None;
+        }
+    }
+}
+
+/// The message of a terminal event, if it means anything.
+fn terminal_message(event: TerminalEvent) -> Option<Msg> {
+    match event {
+        TerminalEvent::Key(key) => Some(Msg::Key(key)),
+        TerminalEvent::Mouse(mouse) => Some(Msg::Mouse(mouse)),
+        TerminalEvent::Paste(text) => Some(Msg::Paste(text)),
+        TerminalEvent::Resize(columns, rows) => Some(Msg::Resize(columns, rows)),
+        TerminalEvent::FocusGained | TerminalEvent::FocusLost => None,
+    }
+}
+
+/// Does what an effect says; replies come back as messages.
+fn carry_out(effect: Effect, link: &SessionLink, replies: &mpsc::UnboundedSender<Msg>) {
+    let sent = match effect {
+        Effect::Send(command) => link.commands.try_send(command),
+        Effect::Cli(line) => {
+            let (reply, answer) = oneshot::channel();
+            let replies = replies.clone();
+            tokio::spawn(async move {
+                let msg = Msg::CliReply(answer.await.ok());
+                replies.send(msg).ok();
+            });
+            link.commands.try_send(Command::Cli { line, reply })
+        }
+        Effect::Upload { plan, settings } => {
+            let (reply, answer) = oneshot::channel();
+            let replies = replies.clone();
+            tokio::spawn(async move {
+                let answer = answer.await.unwrap_or_else(|_| Err("the session did not answer.".to_owned()));
+                replies.send(Msg::UploadReply(answer)).ok();
+            });
+            link.commands.try_send(Command::Upload { plan, settings, reply })
+        }
+        Effect::Suspend | Effect::Quit => Ok(()),
+    };
+    if sent.is_err() {
+        replies.send(Msg::Busy).ok();
+    }
+}

@@ -1,0 +1,284 @@
+//! Everything the user interface remembers.
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use crate::autopilot::io::{NavEvent, NavState};
+use crate::firmware::FirmwareEvent;
+use crate::plan::FlightPlan;
+use crate::session::SessionView;
+use crate::signals::{RcFrame, SimTime};
+use crate::vehicle::{Event, EventKind};
+
+use super::cli::{CliHelp, CliState};
+use super::keymap::Keymap;
+use super::layout::Slots;
+use super::log::{Level, LogState};
+use super::map::MapState;
+use super::theme::Theme;
+use super::track::Track;
+
+/// Transitions remembered for the state panel.
+const MAX_TRANSITIONS: usize = 200;
+
+/// A panel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::EnumIter)]
+pub enum Pane {
+    /// The map.
+    #[default]
+    Map,
+    /// The waypoint table.
+    Plan,
+    /// The state machine.
+    State,
+    /// The channels.
+    Rc,
+    /// The firmware's command line.
+    Cli,
+    /// Events and notices.
+    Log,
+}
+
+impl Pane {
+    /// All panels in the order of their numbers.
+    pub const ALL: [Self; 6] = [Self::Map, Self::Plan, Self::State, Self::Rc, Self::Cli, Self::Log];
+
+    /// Number and name.
+    #[must_use]
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Map => "1 Map",
+            Self::Plan => "2 Plan",
+            Self::State => "3 State",
+            Self::Rc => "4 RC",
+            Self::Cli => "5 CLI",
+            Self::Log => "8 Log",
+        }
+    }
+
+    /// Whether letters are text there.
+    #[must_use]
+    pub fn takes_text(self) -> bool {
+        self == Self::Cli
+    }
+}
+
+/// What lies over the panels; the last one hears keys first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Layer {
+    /// The keys, scrolled down by this many lines.
+    Help {
+        /// First line shown.
+        scroll: usize,
+    },
+    /// "The craft is armed. Quit?"
+    Quit,
+}
+
+/// The plan that is open in the user interface.
+#[derive(Debug, Clone, Default)]
+pub struct OpenPlan {
+    /// Its file or built-in name.
+    pub name: String,
+    /// Its waypoints.
+    pub plan: FlightPlan,
+    /// Setting lines that come with it, without `set `.
+    pub settings: Vec<String>,
+}
+
+/// What the user interface is given at start.
+#[derive(Debug, Clone)]
+pub struct UiConfig {
+    /// Colours and characters.
+    pub theme: Theme,
+    /// Completion and help of the CLI panel.
+    pub cli: CliHelp,
+    /// An event as a sentence; empty for events that nobody needs to read.
+    pub sentence: fn(&Event) -> String,
+    /// The open plan.
+    pub plan: OpenPlan,
+    /// Whether the mouse is used.
+    pub mouse: bool,
+}
+
+/// A sentence that takes the place of the hints for a moment.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Notice {
+    /// The sentence.
+    pub text: String,
+    /// How serious.
+    pub level: Level,
+    /// When it appeared, wall clock.
+    pub at: Duration,
+}
+
+/// A transition of the state machine.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Transition {
+    /// Simulated time.
+    pub time: SimTime,
+    /// When it was heard, wall clock.
+    pub heard: Duration,
+    /// State left.
+    pub from: NavState,
+    /// State entered.
+    pub to: NavState,
+    /// Waypoint.
+    pub wp: u8,
+    /// Cause.
+    pub reason: &'static str,
+}
+
+/// First visible line of the panels that scroll.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Scrolls {
+    /// Of the state panel's transitions.
+    pub transitions: usize,
+    /// Of the log.
+    pub log: usize,
+    /// Of the waypoint table.
+    pub plan: usize,
+}
+
+/// Everything the user interface remembers.
+#[derive(Debug)]
+pub struct AppState {
+    /// The newest picture.
+    pub view: SessionView,
+    /// Colours and characters.
+    pub theme: Theme,
+    /// Completion and help of the CLI panel.
+    pub cli_help: CliHelp,
+    /// An event as a sentence.
+    pub sentence: fn(&Event) -> String,
+    /// Keys.
+    pub keymap: Keymap,
+    /// The open plan.
+    pub plan: OpenPlan,
+    /// Columns and rows of the terminal.
+    pub size: (u16, u16),
+    /// The panel that hears keys.
+    pub focus: Pane,
+    /// The focused panel fills the screen.
+    pub zoomed: bool,
+    /// Which panels the shared places show.
+    pub slots: Slots,
+    /// Popups.
+    pub layers: Vec<Layer>,
+    /// Wall-clock time since start.
+    pub now: Duration,
+    /// The map.
+    pub map: MapState,
+    /// Selected channel of the RC panel.
+    pub channel: usize,
+    /// The command line.
+    pub cli: CliState,
+    /// The log.
+    pub log: LogState,
+    /// Transitions, the newest last.
+    pub transitions: VecDeque<Transition>,
+    /// First visible lines.
+    pub scrolls: Scrolls,
+    /// Where the craft has been.
+    pub track: Track,
+    /// The newest notice.
+    pub notice: Option<Notice>,
+    /// When Ctrl-C was pressed last.
+    pub cancelled: Option<Duration>,
+    /// Sticks sent that the session has not confirmed yet, and when.
+    pub sticks_sent: Option<(RcFrame, Duration)>,
+    /// The pilot starts when the upload on its way succeeds.
+    pub fly_after_upload: bool,
+    /// Ticks of one navigator update.
+    pub step_ticks: u32,
+    /// Where the mouse button went down on the map, and the map's centre (north, east) then.
+    pub drag: Option<(u16, u16, f64, f64)>,
+}
+
+impl AppState {
+    /// The state at start.
+    #[must_use]
+    pub fn new(config: UiConfig, size: (u16, u16), view: SessionView) -> Self {
+        Self {
+            view,
+            theme: config.theme,
+            cli_help: config.cli,
+            sentence: config.sentence,
+            keymap: Keymap::default(),
+            plan: config.plan,
+            size,
+            focus: Pane::Map,
+            zoomed: false,
+            slots: Slots::default(),
+            layers: Vec::new(),
+            now: Duration::ZERO,
+            map: MapState::default(),
+            channel: 0,
+            cli: CliState::default(),
+            log: LogState::default(),
+            transitions: VecDeque::new(),
+            scrolls: Scrolls::default(),
+            track: Track::default(),
+            notice: None,
+            cancelled: None,
+            sticks_sent: None,
+            fly_after_upload: false,
+            step_ticks: 10,
+            drag: None,
+        }
+    }
+
+    /// Says something to the user: in the hint bar for a moment, in the log for good.
+    pub fn notify(&mut self, level: Level, text: impl Into<String>) {
+        let text = text.into();
+        self.log.push(self.view.vehicle.time, level, text.clone());
+        self.notice = Some(Notice { text, level, at: self.now });
+    }
+
+    /// Takes an event in.
+    pub fn hear(&mut self, event: &Event) {
+        let text = (self.sentence)(event);
+        let level = Level::of(&event.kind);
+        if !text.is_empty() {
+            self.log.push(event.time, level, text.clone());
+        }
+        match &event.kind {
+            EventKind::Boot { rate_hz, .. } => self.step_ticks = (rate_hz / 100).max(1),
+            EventKind::Firmware(FirmwareEvent::Armed) => self.track.clear(),
+            EventKind::Firmware(FirmwareEvent::Nav(NavEvent::State { from, to, wp, reason, .. })) => {
+                if self.transitions.len() == MAX_TRANSITIONS {
+                    self.transitions.pop_front();
+                }
+                self.transitions.push_back(Transition {
+                    time: event.time,
+                    heard: self.now,
+                    from: *from,
+                    to: *to,
+                    wp: *wp,
+                    reason,
+                });
+            }
+            _ => {}
+        }
+        if matches!(level, Level::Warn | Level::Fault) && !text.is_empty() {
+            self.notice = Some(Notice { text, level, at: self.now });
+        }
+    }
+
+    /// The plan the map shows: the one being flown, else the open one, else the craft's.
+    #[must_use]
+    pub fn shown_plan(&self) -> &FlightPlan {
+        let vehicle = &self.view.vehicle;
+        match &vehicle.active_plan {
+            Some(plan) => plan,
+            None if self.plan.plan.waypoints.is_empty() => &vehicle.stored_plan,
+            None => &self.plan.plan,
+        }
+    }
+
+    /// Whether the craft stores the open plan.
+    #[must_use]
+    pub fn plan_is_on_craft(&self) -> bool {
+        self.view.vehicle.stored_plan == self.plan.plan
+    }
+}

@@ -1,0 +1,109 @@
+//! The terminal, borrowed and always given back: at the end, on an error, and before a panic is printed.
+
+use std::io::{self, Stdout, Write as _, stdout};
+use std::sync::Once;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crossterm::event::{
+    DisableBracketedPaste, DisableMouseCapture, EnableBracketedPaste, EnableMouseCapture,
+};
+use crossterm::terminal::{
+    BeginSynchronizedUpdate, EndSynchronizedUpdate, EnterAlternateScreen, LeaveAlternateScreen,
+    disable_raw_mode, enable_raw_mode,
+};
+use crossterm::{cursor, execute, style};
+use ratatui::Terminal;
+use ratatui::backend::CrosstermBackend;
+
+use super::draw::draw;
+use super::state::AppState;
+
+/// Whether the terminal is ours at the moment; the panic hook of any thread must know.
+static BORROWED: AtomicBool = AtomicBool::new(false);
+static HOOK: Once = Once::new();
+
+/// The terminal while it is ours; dropping it gives it back.
+pub struct Tui {
+    terminal: Terminal<CrosstermBackend<Stdout>>,
+    mouse: bool,
+}
+
+impl Tui {
+    /// Takes the terminal: raw mode, alternate screen, bracketed paste, mouse if wanted.
+    ///
+    /// # Errors
+    /// Whatever the terminal says.
+    pub fn enter(mouse: bool) -> io::Result<Self> {
+        HOOK.call_once(|| {
+            let before = std::panic::take_hook();
+            std::panic::set_hook(Box::new(move |info| {
+                give_back();
+                before(info);
+            }));
+        });
+        // The theme decides about colours; the library's own reading of NO_COLOR would wipe bold and reverse, too.
+        style::force_color_output(true);
+        match take(mouse).and_then(|()| Terminal::new(CrosstermBackend::new(stdout()))) {
+            Ok(terminal) => Ok(Self { terminal, mouse }),
+            Err(error) => {
+                give_back();
+                Err(error)
+            }
+        }
+    }
+
+    /// Gives the terminal back and stops the program as Ctrl-Z does, until the shell continues it.
+    ///
+    /// # Errors
+    /// Whatever the terminal says.
+    pub fn suspend(&mut self) -> io::Result<()> {
+        give_back();
+        #[cfg(unix)]
+        rustix::process::kill_process(rustix::process::getpid(), rustix::process::Signal::TSTP)?;
+        take(self.mouse)?;
+        self.terminal.clear()
+    }
+
+    /// Draws a frame; a terminal that can shows it all at once.
+    ///
+    /// # Errors
+    /// Whatever the terminal says.
+    pub fn draw(&mut self, state: &AppState) -> io::Result<()> {
+        execute!(stdout(), BeginSynchronizedUpdate)?;
+        self.terminal.draw(|frame| draw(state, frame))?;
+        execute!(stdout(), EndSynchronizedUpdate)
+    }
+
+    /// The terminal to draw on.
+    pub fn terminal(&mut self) -> &mut Terminal<CrosstermBackend<Stdout>> {
+        &mut self.terminal
+    }
+}
+
+impl Drop for Tui {
+    fn drop(&mut self) {
+        give_back();
+    }
+}
+
+/// Raw mode, alternate screen, bracketed paste, mouse if wanted.
+fn take(mouse: bool) -> io::Result<()> {
+    enable_raw_mode()?;
+    BORROWED.store(true, Ordering::SeqCst);
+    execute!(stdout(), EnterAlternateScreen, EnableBracketedPaste)?;
+    if mouse { execute!(stdout(), EnableMouseCapture) } else { Ok(()) }
+}
+
+/// Gives the terminal back, once.
+fn give_back() {
+    if !BORROWED.swap(false, Ordering::SeqCst) {
+        return;
+    }
+    // Each on its own: when one fails the others still help.
+    let mut out = stdout();
+    execute!(out, EndSynchronizedUpdate, DisableMouseCapture).ok();
+    execute!(out, DisableBracketedPaste).ok();
+    execute!(out, LeaveAlternateScreen, cursor::Show, style::ResetColor).ok();
+    disable_raw_mode().ok();
+    out.flush().ok();
+}

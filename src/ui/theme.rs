@@ -1,0 +1,180 @@
+//! What colours and marks mean: panels name roles, the theme turns them into styles the terminal can show.
+
+use ratatui::style::{Color, Modifier, Style};
+use ratatui::symbols::Marker;
+
+/// The meaning of a piece of text or a line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::EnumIter)]
+pub enum Role {
+    /// Ordinary text.
+    Text,
+    /// Less important: frames, units, things that are not active.
+    Dim,
+    /// Names of panels and columns.
+    Title,
+    /// What has the focus.
+    Focus,
+    /// As it should be.
+    Ok,
+    /// Needs attention.
+    Warn,
+    /// Wrong.
+    Fault,
+    /// What is active now.
+    Active,
+    /// Where the craft is going.
+    Target,
+    /// Where the craft has been.
+    Track,
+    /// The craft.
+    Craft,
+    /// The geofence.
+    Fence,
+    /// A key that can be pressed.
+    Key,
+    /// A selected row.
+    Selected,
+}
+
+/// How many colours the terminal shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Palette {
+    /// 24-bit colours (a set that colour-blind people can tell apart).
+    #[default]
+    TrueColour,
+    /// The terminal's own sixteen.
+    Ansi16,
+    /// None: weight and reverse only.
+    Mono,
+}
+
+/// Which characters the terminal shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Charset {
+    /// Box drawing, arrows, Braille.
+    #[default]
+    Unicode,
+    /// Seven bits.
+    Ascii,
+}
+
+/// Palette and character set in use.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Theme {
+    /// Colours.
+    pub palette: Palette,
+    /// Characters.
+    pub charset: Charset,
+}
+
+impl Theme {
+    /// The theme that fits the environment: `NO_COLOR`, `COLORTERM`, `TERM`, and the locale variables. Colours are
+    /// decided here because the terminal library, left to itself under `NO_COLOR`, also wipes bold and reverse.
+    #[must_use]
+    pub fn from_environment(get: impl Fn(&str) -> Option<String>) -> Self {
+        let set = |name: &str| get(name).filter(|value| !value.is_empty());
+        let term = set("TERM").unwrap_or_default();
+        let truecolour = set("COLORTERM").is_some_and(|value| value == "truecolor" || value == "24bit");
+        let palette = if set("NO_COLOR").is_some() || term == "dumb" || term.starts_with("vt") {
+            Palette::Mono
+        } else if truecolour || term.contains("direct") {
+            Palette::TrueColour
+        } else {
+            Palette::Ansi16
+        };
+        let locale = set("LC_ALL").or_else(|| set("LC_CTYPE")).or_else(|| set("LANG"));
+        let utf8 = locale.is_none_or(|value| {
+            let value = value.to_ascii_lowercase();
+            value.contains("utf-8") || value.contains("utf8")
+        });
+        let charset = if utf8 && term != "linux" { Charset::Unicode } else { Charset::Ascii };
+        Self { palette, charset }
+    }
+
+    /// The marker lines on the map are drawn with.
+    #[must_use]
+    pub fn marker(&self) -> Marker {
+        match self.charset {
+            Charset::Unicode => Marker::Braille,
+            Charset::Ascii => Marker::Custom('.'),
+        }
+    }
+
+    /// The foreground colour of a role.
+    #[must_use]
+    pub fn colour(&self, role: Role) -> Color {
+        match self.palette {
+            Palette::Mono => Color::Reset,
+            Palette::Ansi16 => match role {
+                Role::Text | Role::Selected => Color::Reset,
+                Role::Dim => Color::DarkGray,
+                Role::Title => Color::Gray,
+                Role::Focus | Role::Key => Color::LightCyan,
+                Role::Ok | Role::Track => Color::LightGreen,
+                Role::Warn | Role::Fence => Color::LightYellow,
+                Role::Fault => Color::LightRed,
+                Role::Active => Color::LightYellow,
+                Role::Target => Color::LightMagenta,
+                Role::Craft => Color::White,
+            },
+            Palette::TrueColour => match role {
+                Role::Text | Role::Selected => Color::Reset,
+                Role::Dim => Color::Rgb(120, 124, 133),
+                Role::Title => Color::Rgb(190, 196, 206),
+                Role::Focus | Role::Key => Color::Rgb(86, 180, 233),
+                Role::Ok => Color::Rgb(0, 186, 136),
+                Role::Track => Color::Rgb(0, 158, 115),
+                Role::Warn => Color::Rgb(240, 176, 32),
+                Role::Fence => Color::Rgb(182, 122, 38),
+                Role::Fault => Color::Rgb(237, 108, 50),
+                Role::Active => Color::Rgb(240, 228, 66),
+                Role::Target => Color::Rgb(214, 140, 186),
+                Role::Craft => Color::Rgb(255, 255, 255),
+            },
+        }
+    }
+
+    /// The style of a role.
+    #[must_use]
+    pub fn style(&self, role: Role) -> Style {
+        let style = Style::new().fg(self.colour(role));
+        match role {
+            Role::Active | Role::Selected => style.add_modifier(Modifier::REVERSED),
+            Role::Fault | Role::Focus | Role::Key | Role::Craft | Role::Target => {
+                style.add_modifier(Modifier::BOLD)
+            }
+            Role::Dim if self.palette == Palette::Mono => style.add_modifier(Modifier::DIM),
+            Role::Text | Role::Dim | Role::Title | Role::Ok | Role::Warn | Role::Track | Role::Fence => style,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn theme(vars: &[(&str, &str)]) -> Theme {
+        Theme::from_environment(|name| {
+            vars.iter().find(|(key, _)| *key == name).map(|(_, value)| (*value).to_owned())
+        })
+    }
+
+    #[test]
+    fn the_environment_chooses_colours_and_characters() {
+        let rich = [("COLORTERM", "truecolor"), ("TERM", "xterm-256color"), ("LANG", "en_GB.UTF-8")];
+        assert_eq!(theme(&rich), Theme { palette: Palette::TrueColour, charset: Charset::Unicode });
+        assert_eq!(theme(&[("TERM", "xterm"), ("LANG", "C")]).charset, Charset::Ascii);
+        assert_eq!(theme(&[("TERM", "xterm"), ("NO_COLOR", "1")]).palette, Palette::Mono);
+        assert_eq!(theme(&[("TERM", "xterm"), ("NO_COLOR", "")]).palette, Palette::Ansi16);
+        assert_eq!(theme(&[("LANG", "C"), ("LC_ALL", "C.utf8")]).charset, Charset::Unicode);
+    }
+
+    #[test]
+    fn without_colours_no_role_names_one() {
+        use strum::IntoEnumIterator as _;
+        let mono = Theme { palette: Palette::Mono, charset: Charset::Unicode };
+        for role in Role::iter() {
+            assert_eq!(mono.colour(role), Color::Reset);
+        }
+    }
+}

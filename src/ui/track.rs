@@ -1,0 +1,150 @@
+//! Where the craft has been: a polyline that never grows beyond a bound.
+
+/// Points kept; when full, every second one is dropped and the spacing doubles.
+const MAX_POINTS: usize = 4096;
+/// Spacing of points at first, m.
+const SPACING_M: f64 = 0.4;
+/// Faster than this is no flight but a jump: a reset, a glitch.
+const JUMP_MPS: f64 = 60.0;
+/// A step that is never a jump, m.
+const STEP_M: f64 = 5.0;
+
+/// A point of the track, metres from the boot place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TrackPoint {
+    /// North, m.
+    pub n: f64,
+    /// East, m.
+    pub e: f64,
+    /// Simulated time, s.
+    pub time_s: f64,
+    /// Whether the autopilot was flying.
+    pub engaged: bool,
+}
+
+/// The flown track.
+#[derive(Debug)]
+pub struct Track {
+    points: Vec<TrackPoint>,
+    spacing_m: f64,
+    /// Where the craft was seen last, though it may have been too near the last point to be kept.
+    seen: Option<TrackPoint>,
+    /// A reset was asked for, so the next jump is one however long ago the last place was.
+    awaits_reset: bool,
+}
+
+impl Default for Track {
+    fn default() -> Self {
+        Self { points: Vec::new(), spacing_m: SPACING_M, seen: None, awaits_reset: false }
+    }
+}
+
+impl Track {
+    /// Appends a point if it is far enough from the last one; a jump starts the track anew.
+    pub fn push(&mut self, point: TrackPoint) {
+        if !(point.n.is_finite() && point.e.is_finite()) {
+            return;
+        }
+        let distance = |from: &TrackPoint| (point.n - from.n).hypot(point.e - from.e);
+        // Measured from the last place seen: since the last point kept a standing craft has had time to go anywhere.
+        let jumped =
+            self.seen.is_some_and(|seen| distance(&seen) > STEP_M + JUMP_MPS * (point.time_s - seen.time_s));
+        if jumped {
+            self.clear();
+        }
+        self.seen = Some(point);
+        let near = |last: &TrackPoint| distance(last) < self.spacing_m && last.engaged == point.engaged;
+        if self.points.last().is_some_and(near) {
+            return;
+        }
+        if self.points.len() == MAX_POINTS {
+            let mut keep = false;
+            self.points.retain(|_| {
+                keep = !keep;
+                keep
+            });
+            self.spacing_m *= 2.0;
+        }
+        self.points.push(point);
+    }
+
+    /// Forgets everything.
+    pub fn clear(&mut self) {
+        *self = Self::default();
+    }
+
+    /// The craft is about to be put somewhere else: once it is `disarmed` away from where it was, the track starts
+    /// anew, even if at high speed of the simulation it could have flown there.
+    pub fn await_reset(&mut self) {
+        self.awaits_reset = true;
+    }
+
+    /// Takes note of a disarmed craft at a place; a reset that was awaited ends the track.
+    pub fn disarmed_at(&mut self, n: f64, e: f64) {
+        let moved = self.seen.is_some_and(|seen| (n - seen.n).hypot(e - seen.e) > STEP_M);
+        if self.awaits_reset && moved {
+            self.clear();
+        }
+    }
+
+    /// The points, the oldest first.
+    #[must_use]
+    pub fn points(&self) -> &[TrackPoint] {
+        &self.points
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_flight_stays_bounded_and_keeps_both_ends() {
+        let mut track = Track::default();
+        for step in 0..50_000 {
+            let n = f64::from(step);
+            track.push(TrackPoint { n, e: 0.0, time_s: n / 10.0, engaged: true });
+        }
+        assert!(track.points().len() <= MAX_POINTS);
+        assert_eq!(track.points().first().map(|p| p.n), Some(0.0));
+        assert!(track.points().last().is_some_and(|p| p.n > 49_980.0));
+    }
+
+    #[test]
+    fn a_reset_after_a_long_stand_starts_a_new_track() {
+        let mut track = Track::default();
+        let at = |n, time_s| TrackPoint { n, e: 0.0, time_s, engaged: false };
+        for second in 0..30 {
+            track.push(at(100.0, f64::from(second)));
+        }
+        track.push(at(0.0, 29.1));
+        assert_eq!(track.points(), [at(0.0, 29.1)]);
+    }
+
+    #[test]
+    fn an_awaited_reset_needs_a_disarmed_craft_elsewhere() {
+        let mut track = Track::default();
+        let at = |n, time_s| TrackPoint { n, e: 0.0, time_s, engaged: false };
+        track.push(at(100.0, 0.0));
+        track.disarmed_at(0.0, 0.0);
+        assert_eq!(track.points().len(), 1, "a landing after a slice as long as this is no reset");
+        track.await_reset();
+        track.disarmed_at(101.0, 0.0);
+        assert_eq!(track.points().len(), 1, "it stands where it stood");
+        track.disarmed_at(0.0, 0.0);
+        assert!(track.points().is_empty());
+    }
+
+    #[test]
+    fn a_reset_starts_a_new_track() {
+        let mut track = Track::default();
+        let at = |n, time_s| TrackPoint { n, e: 0.0, time_s, engaged: true };
+        track.push(at(100.0, 50.0));
+        track.push(at(90.0, 51.0));
+        assert_eq!(track.points().len(), 2);
+        track.push(at(0.0, 51.02));
+        assert_eq!(track.points(), [at(0.0, 51.02)]);
+        track.push(at(f64::NAN, 52.0));
+        assert_eq!(track.points().len(), 1);
+    }
+}

@@ -1,0 +1,99 @@
+//! The mouse: click focuses and sets, drag moves, the wheel zooms and scrolls.
+
+use crossterm::event::{MouseButton, MouseEvent, MouseEventKind};
+use ratatui::layout::Rect;
+
+use crate::ui::hands;
+use crate::ui::layout;
+use crate::ui::map::{Ground, MapMode, Viewport};
+use crate::ui::message::Effect;
+use crate::ui::panel::rc;
+use crate::ui::state::{AppState, Pane};
+
+use super::{ZOOM_STEP, focus, scroll_pane};
+
+/// Lines a turn of the wheel scrolls.
+const WHEEL_LINES: isize = 3;
+
+/// Takes a mouse event in.
+pub fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
+    if !state.layers.is_empty() {
+        return Vec::new();
+    }
+    let Some((pane, area)) = layout::screen(state).and_then(|screen| screen.at(event.column, event.row))
+    else {
+        return Vec::new();
+    };
+    match event.kind {
+        MouseEventKind::Down(MouseButton::Left) => {
+            focus(state, pane);
+            match pane {
+                Pane::Map => {
+                    let centre = Viewport::of(state, layout::inner(area)).centre;
+                    state.drag = Some((event.column, event.row, centre.n, centre.e));
+                    Vec::new()
+                }
+                Pane::Rc => set_channel(state, area, &event),
+                Pane::Plan | Pane::State | Pane::Cli | Pane::Log => Vec::new(),
+            }
+        }
+        MouseEventKind::Drag(MouseButton::Left) => match pane {
+            Pane::Map => {
+                drag_map(state, area, &event);
+                Vec::new()
+            }
+            Pane::Rc => set_channel(state, area, &event),
+            Pane::Plan | Pane::State | Pane::Cli | Pane::Log => Vec::new(),
+        },
+        MouseEventKind::Up(_) => {
+            state.drag = None;
+            Vec::new()
+        }
+        MouseEventKind::ScrollUp => {
+            wheel(state, pane, area, &event, -1);
+            Vec::new()
+        }
+        MouseEventKind::ScrollDown => {
+            wheel(state, pane, area, &event, 1);
+            Vec::new()
+        }
+        _ => Vec::new(),
+    }
+}
+
+fn wheel(state: &mut AppState, pane: Pane, area: Rect, event: &MouseEvent, direction: isize) {
+    if pane != Pane::Map {
+        scroll_pane(state, pane, direction * WHEEL_LINES);
+        return;
+    }
+    let factor = if direction < 0 { 1.0 / ZOOM_STEP } else { ZOOM_STEP };
+    let view = Viewport::of(state, layout::inner(area));
+    state.map.mode = match state.map.mode {
+        MapMode::Follow(scale) => MapMode::Follow(scale * factor),
+        MapMode::Fit | MapMode::Free { .. } => view.zoomed(factor, view.place(event.column, event.row)),
+    };
+}
+
+fn drag_map(state: &mut AppState, area: Rect, event: &MouseEvent) {
+    let Some((column, row, n, e)) = state.drag else { return };
+    let view = Viewport { centre: Ground::new(n, e), ..Viewport::of(state, layout::inner(area)) };
+    let columns = f64::from(column) - f64::from(event.column);
+    let rows = f64::from(row) - f64::from(event.row);
+    if columns != 0.0 || rows != 0.0 {
+        state.map.mode = view.panned(columns, rows);
+    }
+}
+
+fn set_channel(state: &mut AppState, area: Rect, event: &MouseEvent) -> Vec<Effect> {
+    match rc::channel_at(layout::inner(area), state.channel, (event.column, event.row)) {
+        Some((channel, Some(us))) => {
+            state.channel = channel;
+            hands::set(state, channel, us)
+        }
+        Some((channel, None)) => {
+            state.channel = channel;
+            Vec::new()
+        }
+        None => Vec::new(),
+    }
+}

@@ -1,0 +1,341 @@
+//! A flight of the guide's square as the user interface sees it: pictures and events, without firmware or physics.
+
+#![allow(dead_code, reason = "tests and the bench share this file and use different parts")]
+
+use std::time::Duration;
+
+use betadeck::autopilot::io::{Guard, GuardOp, L1Mode, NavEvent, NavState};
+use betadeck::firmware::mode::{Mode, ModeFlags};
+use betadeck::firmware::{DisarmReason, FirmwareEvent};
+use betadeck::geo::{LatLon, LocalFrame};
+use betadeck::plan::{FlightPlan, HoldPattern, Waypoint, WaypointType};
+use betadeck::session::SessionView;
+use betadeck::session::command::DoorView;
+use betadeck::signals::{RcFrame, RcSource, SimTime};
+use betadeck::ui::theme::{Charset, Palette};
+use betadeck::ui::{AppState, CliHelp, Msg, OpenPlan, Theme, UiConfig, update};
+use betadeck::vehicle::snapshot::{ModeRange, SettingsView, TruthView};
+use betadeck::vehicle::{Event, EventKind, Snapshot};
+use nalgebra::{Vector2, Vector3};
+
+/// Where the craft stands at boot.
+pub const HOME: LatLon = LatLon::new(404_635_000, -795_182_000);
+
+/// The guide's square.
+pub fn square() -> FlightPlan {
+    let corner = |lat_e7, lon_e7, kind, duration_ds| Waypoint {
+        position: LatLon::new(lat_e7, lon_e7),
+        alt_cm: 5000,
+        speed_cms: 0,
+        duration_ds,
+        kind,
+        pattern: HoldPattern::Orbit,
+    };
+    let mut plan = FlightPlan::default();
+    plan.waypoints.extend([
+        corner(404_640_000, -795_175_000, WaypointType::Flyover, 0),
+        corner(404_630_000, -795_175_000, WaypointType::Flyby, 0),
+        corner(404_630_000, -795_190_000, WaypointType::Hold, 300),
+        corner(404_640_000, -795_190_000, WaypointType::Land, 0),
+    ]);
+    plan
+}
+
+/// An event as a short sentence.
+fn sentence(event: &Event) -> String {
+    match &event.kind {
+        EventKind::Boot { airframe, .. } => format!("started, airframe {airframe}"),
+        EventKind::Firmware(FirmwareEvent::Armed) => "armed (home 40.4635000,-79.5182000)".to_owned(),
+        EventKind::Firmware(FirmwareEvent::Nav(NavEvent::State { from, to, wp, reason, .. })) => {
+            format!("WP{wp} {reason}: {from} → {to}")
+        }
+        other => format!("{other:?}"),
+    }
+}
+
+/// A user interface at this size, before the first picture.
+pub fn state(size: (u16, u16), theme: Theme) -> AppState {
+    let config = UiConfig {
+        theme,
+        cli: CliHelp {
+            complete: |line| {
+                ["set ap_position_p", "set ap_position_i", "save", "status"]
+                    .into_iter()
+                    .filter(|known| known.starts_with(line))
+                    .map(str::to_owned)
+                    .collect()
+            },
+            hint: |line| line.starts_with("set ap_position_p").then(|| "0 … 200, default 30".to_owned()),
+        },
+        sentence,
+        plan: OpenPlan { name: "square.toml".to_owned(), plan: square(), settings: Vec::new() },
+        mouse: true,
+    };
+    AppState::new(config, size, view(&SimpleFlight::default()))
+}
+
+/// The full theme.
+pub fn colour() -> Theme {
+    Theme { palette: Palette::TrueColour, charset: Charset::Unicode }
+}
+
+/// The seven-bit theme.
+pub fn plain() -> Theme {
+    Theme { palette: Palette::Mono, charset: Charset::Ascii }
+}
+
+/// What differs between the pictures of the flight.
+#[derive(Debug, Clone)]
+pub struct SimpleFlight {
+    pub time_s: f64,
+    pub n: f64,
+    pub e: f64,
+    pub alt: f64,
+    pub heading_deg: f64,
+    pub speed: f64,
+    pub armed: bool,
+    pub fix: bool,
+    pub state: NavState,
+    pub wp: u8,
+    pub guards: Vec<Guard>,
+    pub hold_ds: u16,
+}
+
+impl Default for SimpleFlight {
+    fn default() -> Self {
+        Self {
+            time_s: 2.0,
+            n: 0.0,
+            e: 0.0,
+            alt: 0.0,
+            heading_deg: 0.0,
+            speed: 0.0,
+            armed: false,
+            fix: false,
+            state: NavState::Idle,
+            wp: 0,
+            guards: Vec::new(),
+            hold_ds: 0,
+        }
+    }
+}
+
+/// The picture of a moment.
+pub fn view(flight: &SimpleFlight) -> SessionView {
+    let engaged = !matches!(flight.state, NavState::Idle);
+    let plan = square();
+    let frame = LocalFrame::new(HOME.lat_deg(), HOME.lon_deg(), 0.0);
+    let (lat_deg, lon_deg, _) = frame.to_geodetic(Vector3::new(flight.e, flight.n, 0.0));
+    let wp = plan.waypoints[usize::from(flight.wp)];
+    let target = frame.to_enu(wp.position.lat_deg(), wp.position.lon_deg(), 0.0);
+    let (dn, de) = (target.y - flight.n, target.x - flight.e);
+
+    let mut snapshot = Snapshot { time: SimTime::from_secs_f64(flight.time_s), ..Snapshot::default() };
+    snapshot.truth = Some(TruthView {
+        lat_deg,
+        lon_deg,
+        n: flight.n,
+        e: flight.e,
+        alt: flight.alt,
+        heading_deg: flight.heading_deg,
+        wind_n: -2.2,
+        wind_e: 2.3,
+        on_ground: flight.alt < 0.1,
+        ..TruthView::default()
+    });
+    let estimate = &mut snapshot.estimate;
+    if flight.fix {
+        estimate.n = Some(flight.n + 0.3);
+        estimate.e = Some(flight.e - 0.2);
+    }
+    estimate.alt = Some(flight.alt);
+    estimate.ground_speed_mps = flight.speed;
+    estimate.heading_deg = flight.heading_deg;
+
+    let craft = &mut snapshot.craft;
+    craft.armed = flight.armed;
+    let mut modes = ModeFlags::NONE;
+    for (mode, on) in [
+        (Mode::Arm, flight.armed),
+        (Mode::Angle, flight.armed),
+        (Mode::AltHold, flight.armed),
+        (Mode::PosHold, flight.armed),
+        (Mode::Autopilot, engaged && flight.armed),
+    ] {
+        modes.set(mode, on);
+    }
+    craft.modes = modes;
+    craft.gps_fix = flight.fix;
+    craft.sats = if flight.fix { 12 } else { 3 };
+    craft.home = flight.fix.then_some(HOME);
+    craft.battery_v = Some(11.4);
+    craft.battery_cells = 3;
+    craft.rc_source = Some(RcSource::Sticks);
+    craft.rc_age_s = Some(0.02);
+    craft.rc_link = true;
+    craft.throttle_us = if flight.armed { 1500.0 } else { 1000.0 };
+    craft.channels = RcFrame::SAFE.channels;
+    if flight.armed {
+        craft.channels[2] = 1500;
+        craft.channels[4] = 1900;
+        craft.channels[5] = if engaged { 1900 } else { 1000 };
+        craft.channels[6] = 1900;
+    }
+    if !flight.fix {
+        craft.arming_blocked_by.push("BOOTGRACE");
+    }
+    craft.mode_ranges = [("ARM", 4), ("AUTOPILOT", 5), ("ANGLE", 6), ("ALTHOLD", 6), ("POS HOLD", 6)]
+        .map(|(name, channel)| ModeRange { name, channel, start_us: 1700, end_us: 2100 })
+        .to_vec();
+
+    let nav = &mut snapshot.nav;
+    nav.state = flight.state;
+    nav.engaged = engaged && flight.armed;
+    nav.wp = flight.wp;
+    if nav.engaged {
+        nav.count = 4;
+        nav.kind = Some(wp.kind);
+        nav.distance_m = Some(dn.hypot(de));
+        nav.bearing_rad = Some(de.atan2(dn).rem_euclid(std::f64::consts::TAU));
+        nav.xte_m = Some(0.31);
+        nav.l1_mode = L1Mode::Track;
+        nav.aim_ne = Some(Vector2::new(flight.n + dn * 0.3, flight.e + de * 0.3));
+        nav.home_distance_m = Some(flight.n.hypot(flight.e));
+        nav.fence_margin_m = Some(500.0 - flight.n.hypot(flight.e));
+        nav.eta_s = Some(dn.hypot(de) / flight.speed.max(0.5));
+        nav.hold_remaining_ds = flight.hold_ds;
+        nav.guards = flight.guards.iter().copied().collect();
+        let from = usize::from(flight.wp).checked_sub(1).map_or(HOME, |wp| plan.waypoints[wp].position);
+        nav.leg_start = Some(from);
+        snapshot.active_plan = Some(plan.clone());
+    }
+    snapshot.stored_plan = plan;
+    snapshot.settings = SettingsView {
+        arrival_radius_m: 5.0,
+        hold_radius_m: 2.0,
+        orbit_radius_m: 10.0,
+        figure8_width_m: 20.0,
+        fence_m: Some(500.0),
+        max_angle_deg: 25.0,
+        max_velocity_mps: 5.0,
+        hover_throttle_us: 1500,
+    };
+    let doors = [("ws", "1 client"), ("tcp", "listening"), ("udp", "listening")];
+    SessionView {
+        vehicle: std::sync::Arc::new(snapshot),
+        speed_wanted: 1.0,
+        speed_achieved: 1.0,
+        sticks: RcFrame::SAFE,
+        doors: doors
+            .map(|(name, state)| DoorView { name, state: state.to_owned(), ..DoorView::default() })
+            .to_vec(),
+        ..SessionView::default()
+    }
+}
+
+/// Sends an event of this time.
+pub fn hear(state: &mut AppState, time_s: f64, kind: EventKind) {
+    let event = Event { time: SimTime::from_secs_f64(time_s), kind };
+    update(state, Msg::Event(event));
+}
+
+fn transition(state: &mut AppState, time_s: f64, from: NavState, to: NavState, wp: u8, reason: &'static str) {
+    let event = NavEvent::State {
+        from,
+        to,
+        wp,
+        kind: Some(square().waypoints[usize::from(wp)].kind),
+        reason,
+        guard: None,
+        target: square().waypoints[usize::from(wp)].position,
+        target_alt_m: 50.0,
+    };
+    hear(state, time_s, EventKind::Firmware(FirmwareEvent::Nav(event)));
+}
+
+/// Flies to the middle of the leg to WP1.
+pub fn approach(state: &mut AppState) {
+    update(state, Msg::Clock(Duration::from_secs(60)));
+    let boot = EventKind::Boot { seed: 1, rate_hz: 1000, airframe: "iris".to_owned(), live: false };
+    hear(state, 0.0, boot);
+    hear(state, 29.5, EventKind::Firmware(FirmwareEvent::Armed));
+    transition(state, 31.02, NavState::Idle, NavState::Approaching, 0, "reset");
+    for step in 0..=40 {
+        let t = f64::from(step) / 40.0;
+        fly(state, 31.02 + t * 27.0, (55.5 * t, 59.4 * t), 45.0, 0);
+    }
+    transition(state, 58.31, NavState::Approaching, NavState::Arrived, 0, "plane");
+    transition(state, 58.32, NavState::Arrived, NavState::Approaching, 1, "advance");
+    for step in 0..=20 {
+        let t = f64::from(step) / 20.0;
+        fly(state, 58.32 + t * 9.7, (55.5 - 48.7 * t, 59.4 + 3.0 * (t * 3.1).sin()), 180.0, 1);
+    }
+}
+
+fn fly(state: &mut AppState, time_s: f64, (n, e): (f64, f64), heading_deg: f64, wp: u8) {
+    let guard = |name, value, limit, op, unit| Guard { name, value, limit, op, unit };
+    let guards = match wp {
+        0 => vec![
+            guard("plane", -62.4, 0.0, GuardOp::AtLeast, "m"),
+            guard("lateral", 0.31, 5.0, GuardOp::AtMost, "m"),
+        ],
+        _ => vec![
+            guard("turn radius", 62.4, 5.47, GuardOp::AtMost, "m"),
+            guard("plane", -62.4, 0.0, GuardOp::AtLeast, "m"),
+        ],
+    };
+    let flight = SimpleFlight {
+        time_s,
+        n,
+        e,
+        alt: 50.2,
+        heading_deg,
+        speed: 5.0,
+        armed: true,
+        fix: true,
+        state: NavState::Approaching,
+        wp,
+        guards,
+        hold_ds: 0,
+    };
+    update(state, Msg::View(view(&flight)));
+}
+
+/// Circles at WP2.
+pub fn orbit(state: &mut AppState) {
+    approach(state);
+    transition(state, 90.0, NavState::Holding, NavState::Orbiting, 2, "pattern");
+    let guard = Guard { name: "hold time", value: 11.6, limit: 30.0, op: GuardOp::AtLeast, unit: "s" };
+    let flight = SimpleFlight {
+        time_s: 101.6,
+        n: -47.0,
+        e: -62.0,
+        alt: 50.0,
+        heading_deg: 90.0,
+        speed: 0.5,
+        armed: true,
+        fix: true,
+        state: NavState::Orbiting,
+        wp: 2,
+        guards: vec![guard],
+        hold_ds: 184,
+    };
+    update(state, Msg::View(view(&flight)));
+}
+
+/// Has landed at WP3.
+pub fn complete(state: &mut AppState) {
+    orbit(state);
+    transition(state, 260.0, NavState::Landing, NavState::Complete, 3, "touchdown");
+    hear(state, 260.0, EventKind::Firmware(FirmwareEvent::Disarmed(DisarmReason::Landing)));
+    let flight = SimpleFlight {
+        time_s: 262.0,
+        n: 55.5,
+        e: -67.8,
+        fix: true,
+        state: NavState::Complete,
+        wp: 3,
+        ..SimpleFlight::default()
+    };
+    update(state, Msg::View(view(&flight)));
+}

@@ -1,0 +1,310 @@
+//! What keys, mouse and paste do: messages in, effects out, no terminal.
+
+use std::time::Duration;
+
+use betadeck::session::Command;
+use betadeck::session::command::CliOutput;
+use betadeck::ui::keymap::KeyPress;
+use betadeck::ui::{AppState, Effect, Layer, MapMode, Msg, Pane, layout, update};
+use crossterm::event::{KeyCode, KeyEvent, KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
+
+#[path = "ui/fixture.rs"]
+mod fixture;
+
+use fixture::SimpleFlight;
+
+fn key(state: &mut AppState, code: KeyCode) -> Vec<Effect> {
+    update(state, Msg::Key(KeyEvent::new(code, KeyModifiers::NONE)))
+}
+
+fn press(state: &mut AppState, c: char) -> Vec<Effect> {
+    key(state, KeyCode::Char(c))
+}
+
+fn ctrl_c(state: &mut AppState) -> Vec<Effect> {
+    update(state, Msg::Key(KeyEvent::new(KeyCode::Char('c'), KeyModifiers::CONTROL)))
+}
+
+fn ready() -> AppState {
+    let mut state = fixture::state((120, 40), fixture::colour());
+    update(
+        &mut state,
+        Msg::View(fixture::view(&SimpleFlight { time_s: 8.0, fix: true, ..SimpleFlight::default() })),
+    );
+    state
+}
+
+/// The channels of the sticks that the effects send, if they do.
+fn sticks(effects: &[Effect]) -> Option<[u16; 16]> {
+    effects.iter().find_map(|effect| match effect {
+        Effect::Send(Command::Sticks(frame)) => Some(frame.channels),
+        _ => None,
+    })
+}
+
+#[test]
+fn arm_throttle_and_autopilot_move_the_channels_of_the_mode_conditions() {
+    let mut state = ready();
+    assert_eq!(sticks(&press(&mut state, 'a')).map(|c| c[4]), Some(1900));
+    let after_throttle = sticks(&press(&mut state, 't')).expect("sticks");
+    assert_eq!((after_throttle[2], after_throttle[4]), (1500, 1900), "the arm switch stays on");
+    assert_eq!(after_throttle[6], 1900, "the throttle brings the hold modes");
+    assert_eq!(sticks(&press(&mut state, 'g')).map(|c| (c[5], c[6])), Some((1900, 1900)));
+    assert_eq!(sticks(&press(&mut state, 'g')).map(|c| (c[5], c[6])), Some((1000, 1900)));
+    assert_eq!(sticks(&press(&mut state, 't')).map(|c| (c[2], c[6])), Some((1000, 1000)), "on the ground");
+}
+
+#[test]
+fn arming_too_early_moves_nothing_and_says_why() {
+    let mut state = fixture::state((120, 40), fixture::colour());
+    assert!(press(&mut state, 'a').is_empty());
+    let notice = state.notice.as_ref().map(|notice| notice.text.clone()).unwrap_or_default();
+    assert!(notice.contains("BOOTGRACE") && notice.contains("wait"), "{notice}");
+}
+
+#[test]
+fn f_uploads_first_when_the_craft_has_no_plan_and_stops_the_pilot_when_it_flies() {
+    let mut state = ready();
+    assert!(matches!(press(&mut state, 'F')[..], [Effect::Send(Command::Pilot(true))]));
+
+    let mut view = state.view.clone();
+    std::sync::Arc::make_mut(&mut view.vehicle).stored_plan.waypoints.clear();
+    update(&mut state, Msg::View(view.clone()));
+    let [Effect::Upload { plan, .. }] = &press(&mut state, 'F')[..] else { panic!("an upload first") };
+    assert_eq!(plan.waypoints.len(), 4);
+    let effects = update(&mut state, Msg::UploadReply(Ok(())));
+    assert!(matches!(effects[..], [Effect::Send(Command::Pilot(true))]));
+
+    view.pilot = Some("climbing");
+    update(&mut state, Msg::View(view));
+    assert!(matches!(press(&mut state, 'F')[..], [Effect::Send(Command::Pilot(false))]));
+}
+
+#[test]
+fn a_refused_upload_does_not_fly() {
+    let mut state = ready();
+    std::sync::Arc::make_mut(&mut state.view.vehicle).stored_plan.waypoints.clear();
+    press(&mut state, 'F');
+    assert!(update(&mut state, Msg::UploadReply(Err("WP1 is invalid.".to_owned()))).is_empty());
+    assert!(state.notice.is_some_and(|notice| notice.text.contains("WP1 is invalid.")));
+}
+
+#[test]
+fn the_hand_takes_over_from_the_pilot() {
+    let mut state = ready();
+    state.view.pilot = Some("climbing");
+    let effects = press(&mut state, 't');
+    assert!(matches!(effects[0], Effect::Send(Command::Pilot(false))));
+    assert!(sticks(&effects).is_some());
+}
+
+#[test]
+fn time_keys_pause_step_and_change_speed() {
+    let mut state = ready();
+    assert!(matches!(press(&mut state, ' ')[..], [Effect::Send(Command::Pause(true))]));
+    assert!(matches!(
+        press(&mut state, '.')[..],
+        [Effect::Send(Command::Pause(true)), Effect::Send(Command::Step(10))]
+    ));
+    let speed = |effects: &[Effect]| match effects {
+        [Effect::Send(Command::Speed(speed))] => *speed,
+        other => panic!("a speed expected, got {other:?}"),
+    };
+    for wanted in [2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, f64::INFINITY] {
+        assert_eq!(speed(&press(&mut state, ']')), wanted);
+    }
+    assert!(press(&mut state, ']').is_empty(), "nothing is faster than as fast as possible");
+    assert_eq!(speed(&press(&mut state, '[')), 128.0);
+    assert_eq!(speed(&press(&mut state, '\\')), 1.0);
+}
+
+#[test]
+fn one_key_commands() {
+    let mut state = ready();
+    assert!(matches!(press(&mut state, 'x')[..], [Effect::Send(Command::CutRc(true))]));
+    assert!(matches!(press(&mut state, 'R')[..], [Effect::Send(Command::ResetCraft)]));
+    assert!(matches!(press(&mut state, 'U')[..], [Effect::Upload { .. }]));
+    assert!(press(&mut state, 'H').is_empty(), "nothing to bring home while disarmed");
+    fixture::approach(&mut state);
+    assert!(matches!(press(&mut state, 'H')[..], [Effect::Send(Command::ReturnHome)]));
+}
+
+#[test]
+fn q_asks_while_armed_and_only_then() {
+    let mut state = ready();
+    assert!(matches!(press(&mut state, 'q')[..], [Effect::Quit]));
+    fixture::approach(&mut state);
+    assert!(press(&mut state, 'q').is_empty());
+    assert_eq!(state.layers, [Layer::Quit]);
+    assert!(press(&mut state, 'a').is_empty(), "the question hears keys first");
+    press(&mut state, 'n');
+    assert!(state.layers.is_empty());
+    press(&mut state, 'q');
+    assert!(matches!(press(&mut state, 'y')[..], [Effect::Quit]));
+}
+
+#[test]
+fn ctrl_c_cancels_once_and_quits_twice_within_two_seconds() {
+    let mut state = ready();
+    fixture::approach(&mut state);
+    press(&mut state, '5');
+    for c in "set x".chars() {
+        press(&mut state, c);
+    }
+    let at = |state: &mut AppState, ms| {
+        update(state, Msg::Clock(Duration::from_millis(ms)));
+    };
+    at(&mut state, 100_000);
+    assert!(ctrl_c(&mut state).is_empty());
+    assert_eq!(state.cli.input.value(), "");
+    at(&mut state, 103_000);
+    assert!(ctrl_c(&mut state).is_empty(), "too late for the second");
+    at(&mut state, 104_000);
+    assert!(matches!(ctrl_c(&mut state)[..], [Effect::Quit]), "even while armed");
+}
+
+#[test]
+fn in_the_cli_letters_are_text_until_esc() {
+    let mut state = ready();
+    press(&mut state, '5');
+    for c in "save".chars() {
+        assert!(press(&mut state, c).is_empty());
+    }
+    let effects = key(&mut state, KeyCode::Enter);
+    assert!(matches!(&effects[..], [Effect::Cli(line)] if line == "save"));
+    let output = CliOutput { text: "Saving\r\n".to_owned(), advice: None, restarted: true };
+    assert!(update(&mut state, Msg::CliReply(Some(output))).is_empty());
+    key(&mut state, KeyCode::Esc);
+    assert_eq!(state.focus, Pane::Map);
+    assert!(matches!(press(&mut state, ' ')[..], [Effect::Send(Command::Pause(true))]));
+}
+
+#[test]
+fn tab_completes_in_the_cli_and_moves_on_when_there_is_nothing_to_complete() {
+    let mut state = ready();
+    press(&mut state, '5');
+    for c in "set ap_po".chars() {
+        press(&mut state, c);
+    }
+    key(&mut state, KeyCode::Tab);
+    assert_eq!(state.cli.input.value(), "set ap_position_");
+    ctrl_c(&mut state);
+    key(&mut state, KeyCode::Tab);
+    assert_eq!(state.focus, Pane::Log);
+}
+
+#[test]
+fn pasted_lines_run_one_at_a_time() {
+    let mut state = ready();
+    press(&mut state, '5');
+    let effects = update(&mut state, Msg::Paste("set a = 1\nset b = 2\n".to_owned()));
+    assert!(matches!(&effects[..], [Effect::Cli(line)] if line == "set a = 1"));
+    let effects = update(&mut state, Msg::CliReply(Some(CliOutput::default())));
+    assert!(matches!(&effects[..], [Effect::Cli(line)] if line == "set b = 2"));
+    assert!(update(&mut state, Msg::CliReply(Some(CliOutput::default()))).is_empty());
+}
+
+#[test]
+fn tab_goes_through_all_panels_and_back() {
+    let mut state = ready();
+    let mut seen = Vec::new();
+    for _ in Pane::ALL {
+        seen.push(state.focus);
+        assert!(layout::screen(&state).is_some_and(|screen| screen.pane(state.focus).is_some()), "visible");
+        key(&mut state, KeyCode::Tab);
+    }
+    assert_eq!(seen, Pane::ALL);
+    key(&mut state, KeyCode::BackTab);
+    assert_eq!(state.focus, Pane::Log);
+}
+
+#[test]
+fn the_map_pans_zooms_follows_and_fits() {
+    let mut state = ready();
+    fixture::approach(&mut state);
+    key(&mut state, KeyCode::Left);
+    let MapMode::Free { e: first, .. } = state.map.mode else { panic!("panned") };
+    press(&mut state, 'h');
+    let MapMode::Free { e: second, scale: before, .. } = state.map.mode else { panic!("panned") };
+    assert!(second < first, "left is west");
+    press(&mut state, '+');
+    let MapMode::Free { scale, .. } = state.map.mode else { panic!("zoomed") };
+    assert!(scale < before);
+    press(&mut state, 'f');
+    assert!(matches!(state.map.mode, MapMode::Follow(_)));
+    press(&mut state, '0');
+    assert_eq!(state.map.mode, MapMode::Fit);
+}
+
+#[test]
+fn the_mouse_sets_a_channel_and_drags_the_map() {
+    let mut state = ready();
+    press(&mut state, '4');
+    let area = layout::screen(&state).and_then(|screen| screen.pane(Pane::Rc)).expect("visible");
+    let at = |kind, column, row| Msg::Mouse(MouseEvent { kind, column, row, modifiers: KeyModifiers::NONE });
+    let down = MouseEventKind::Down(MouseButton::Left);
+    let effects = update(&mut state, at(down, area.x + 25, area.y + 2));
+    let channels = sticks(&effects).expect("a click on a bar sets the channel");
+    assert_ne!(channels[1], 1500);
+
+    let area = layout::screen(&state).and_then(|screen| screen.pane(Pane::Map)).expect("visible");
+    update(&mut state, at(down, area.x + 10, area.y + 10));
+    update(&mut state, at(MouseEventKind::Drag(MouseButton::Left), area.x + 14, area.y + 10));
+    assert!(matches!(state.map.mode, MapMode::Free { .. }));
+}
+
+#[test]
+fn help_closes_by_the_key_it_explains() {
+    let mut state = ready();
+    press(&mut state, '?');
+    assert!(matches!(state.layers[..], [Layer::Help { .. }]));
+    assert!(matches!(press(&mut state, ' ')[..], []), "blank scrolls");
+    assert!(matches!(press(&mut state, 'x')[..], [Effect::Send(Command::CutRc(true))]));
+    assert!(state.layers.is_empty());
+}
+
+#[test]
+fn z_zooms_the_focused_panel_and_esc_ends_it() {
+    let mut state = ready();
+    press(&mut state, 'z');
+    let screen = layout::screen(&state).expect("large enough");
+    assert_eq!(screen.panes.len(), 1);
+    key(&mut state, KeyCode::Esc);
+    assert!(layout::screen(&state).is_some_and(|screen| screen.panes.len() > 1));
+}
+
+#[test]
+fn esc_in_the_zoomed_cli_leaves_the_text_first() {
+    let mut state = ready();
+    press(&mut state, 'z');
+    press(&mut state, '5');
+    key(&mut state, KeyCode::Esc);
+    assert!(!state.focus.takes_text());
+    assert!(
+        matches!(press(&mut state, ' ')[..], [Effect::Send(Command::Pause(true))]),
+        "keys are keys again"
+    );
+    key(&mut state, KeyCode::Esc);
+    assert!(!state.zoomed);
+}
+
+#[test]
+fn a_crashed_craft_is_not_flown_but_reset() {
+    let mut state = ready();
+    let vehicle = std::sync::Arc::make_mut(&mut state.view.vehicle);
+    vehicle.truth.as_mut().expect("the fixture tells the truth").crashed = true;
+    assert!(press(&mut state, 'F').is_empty());
+    assert!(state.notice.as_ref().is_some_and(|notice| notice.text.contains("`R`")), "{:?}", state.notice);
+    assert!(matches!(press(&mut state, 'R')[..], [Effect::Send(Command::ResetCraft)]));
+}
+
+#[test]
+fn keys_that_mean_nothing_do_nothing() {
+    let mut state = ready();
+    for text in ["y", "ctrl-x", "f12", "alt-a"] {
+        assert!(KeyPress::parse(text).is_some());
+    }
+    assert!(press(&mut state, 'y').is_empty());
+    assert!(update(&mut state, Msg::Key(KeyEvent::new(KeyCode::F(12), KeyModifiers::NONE))).is_empty());
+    assert!(update(&mut state, Msg::Key(KeyEvent::new(KeyCode::Char('a'), KeyModifiers::ALT))).is_empty());
+}
