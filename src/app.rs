@@ -1,0 +1,84 @@
+//! From arguments to the tasks of one mode.
+
+mod convert;
+mod doctor;
+mod doors;
+mod error;
+mod fly;
+mod layers;
+mod plan;
+mod serve;
+mod setup;
+mod signals;
+mod sitl;
+mod tui;
+
+use std::ffi::OsString;
+
+pub use error::AppError;
+
+use crate::args::{self, Cli, Command, PlanCommand};
+
+/// Runs the program with the given command line (program name first) and gives its exit code.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    // The panic itself is told by the hook, after the terminal was given back.
+    std::panic::catch_unwind(|| outcome(arguments)).unwrap_or(error::INTERNAL)
+}
+
+/// The exit code of the command that was typed.
+fn outcome(arguments: Vec<OsString>) -> u8 {
+    let is_sitl = arguments.get(1).is_some_and(|command| command == "sitl");
+    let layers = layers::read();
+    // Help, completions and the doctor work with a broken configuration file, too.
+    let known = layers.as_ref().cloned().unwrap_or_default();
+    let outcome = match args::parse(arguments, &known) {
+        Ok(cli) => match layers {
+            Err(broken) if reads_layers(cli.command.as_ref()) => Err(broken),
+            _ => dispatch(cli),
+        },
+        Err(error) if is_sitl && let Some(complaint) = args::sitl_complaint(&error) => {
+            Err(AppError { code: error::FAILED, message: complaint })
+        }
+        Err(error) => {
+            // clap prints help on standard output and errors on standard error, coloured where that is wanted.
+            drop(error.print());
+            Ok(u8::try_from(error.exit_code()).unwrap_or(error::USAGE))
+        }
+    };
+    match outcome {
+        Ok(code) => code,
+        Err(error) => {
+            error::tell(&error.message);
+            error.code
+        }
+    }
+}
+
+/// Whether the configuration file matters to a command.
+fn reads_layers(command: Option<&Command>) -> bool {
+    match command {
+        None | Some(Command::Fly(_) | Command::Serve(_) | Command::Sitl(_)) => true,
+        Some(
+            Command::Plan(_)
+            | Command::Convert(_)
+            | Command::Doctor
+            | Command::Completions { .. }
+            | Command::Man,
+        ) => false,
+    }
+}
+
+fn dispatch(cli: Cli) -> Result<u8, AppError> {
+    match cli.command {
+        None => tui::run(&cli.tui),
+        Some(Command::Fly(args)) => fly::run(&args),
+        Some(Command::Sitl(args)) => sitl::run(&args),
+        Some(Command::Serve(args)) => serve::run(&args),
+        Some(Command::Plan(PlanCommand::Show { plan })) => plan::show(&plan),
+        Some(Command::Convert(args)) => convert::run(&args),
+        Some(Command::Doctor) => doctor::run(),
+        Some(Command::Completions { shell }) => error::write_stdout(&args::completions(shell)),
+        Some(Command::Man) => error::write_stdout(&args::man_page().map_err(AppError::internal)?),
+    }
+}

@@ -1,0 +1,55 @@
+//! Errors at the edge: a sentence for a person and an exit code for a script.
+
+use std::io::Write as _;
+
+/// Exit code: an expectation was not met.
+pub const FAILED: u8 = 1;
+/// Exit code: wrong usage or invalid input.
+pub const USAGE: u8 = 2;
+/// Exit code: a file, a port or the terminal.
+pub const ENVIRONMENT: u8 = 3;
+/// Exit code: a defect of this program.
+pub const INTERNAL: u8 = 4;
+/// Exit code: stopped by the user.
+pub const INTERRUPTED: u8 = 130;
+
+/// Why the program ends early.
+#[derive(Debug, thiserror::Error)]
+#[error("{message}")]
+pub struct AppError {
+    /// Exit code.
+    pub code: u8,
+    /// What is wrong, where, and what to do.
+    pub message: String,
+}
+
+impl AppError {
+    /// Invalid input.
+    pub fn input(message: impl Into<String>) -> Self {
+        Self { code: USAGE, message: message.into() }
+    }
+
+    /// A file, a port or the terminal.
+    pub fn environment(message: impl Into<String>) -> Self {
+        Self { code: ENVIRONMENT, message: message.into() }
+    }
+
+    /// A defect of this program.
+    pub fn internal(error: impl std::fmt::Display) -> Self {
+        Self { code: INTERNAL, message: format!("internal error: {error}; please report it") }
+    }
+}
+
+/// Prints a line on standard error. Nobody may be listening any more (`2>&1 | head`), which is no error.
+pub fn tell(line: &str) {
+    writeln!(std::io::stderr(), "{line}").ok();
+}
+
+/// Writes a result to standard output. A reader that went away (`| head`) is no error.
+pub fn write_stdout(text: &[u8]) -> Result<u8, AppError> {
+    match std::io::stdout().write_all(text).and_then(|()| std::io::stdout().flush()) {
+        Ok(()) => Ok(0),
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(0),
+        Err(error) => Err(AppError::environment(format!("cannot write to standard output: {error}"))),
+    }
+}

@@ -1,0 +1,52 @@
+//! Reads what stands outside the command line: environment variables and the configuration file.
+#![allow(clippy::disallowed_methods, reason = "the composition root reads the environment")]
+
+use std::collections::BTreeMap;
+
+use etcetera::BaseStrategy as _;
+
+use super::AppError;
+use crate::args::{ENVIRONMENT_PREFIX, Layers};
+
+/// Name of the program's folder in the user's directories.
+const FOLDER: &str = "betadeck";
+
+/// The user's directories for this program.
+#[derive(Debug, Clone)]
+pub struct Directories {
+    /// Holds `config.toml`.
+    pub config: std::path::PathBuf,
+    /// Holds the stored configuration of the craft.
+    pub state: std::path::PathBuf,
+}
+
+/// Finds the user's directories.
+pub fn directories() -> Result<Directories, AppError> {
+    let strategy = etcetera::choose_base_strategy()
+        .map_err(|error| AppError::environment(format!("cannot find your home directory: {error}")))?;
+    Ok(Directories {
+        config: strategy.config_dir().join(FOLDER),
+        state: strategy.state_dir().unwrap_or_else(|| strategy.data_dir()).join(FOLDER),
+    })
+}
+
+/// Reads the environment and the configuration file, which may be missing.
+pub fn read() -> Result<Layers, AppError> {
+    let environment: BTreeMap<String, String> = std::env::vars_os()
+        .filter_map(|(name, value)| Some((name.into_string().ok()?, value.into_string().ok()?)))
+        .filter(|(name, _)| name.starts_with(ENVIRONMENT_PREFIX))
+        .collect();
+    // Without a home directory there is no configuration file either.
+    let Ok(directories) = directories() else { return Ok(Layers { environment, ..Layers::default() }) };
+    let path = directories.config.join("config.toml");
+    let file_name = path.display().to_string();
+    let text = match std::fs::read_to_string(&path) {
+        Ok(text) => text,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => String::new(),
+        Err(error) => return Err(AppError::environment(format!("cannot read {file_name}: {error}"))),
+    };
+    let file = text.parse().map_err(|error: toml::de::Error| {
+        AppError::input(format!("{file_name}: {error}").trim_end().to_owned())
+    })?;
+    Ok(Layers { environment, file_name, file })
+}

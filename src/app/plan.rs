@@ -1,0 +1,24 @@
+//! `betadeck plan show`: a plan as a table, with distances, times and what is wrong with it.
+
+use super::error::{self, AppError};
+use super::setup;
+use crate::args::{FlightArgs, PlanArg};
+use crate::geo::LatLon;
+use crate::plan::estimate::Assumptions;
+use crate::plan::format;
+use crate::plan::review::{Finding, review};
+
+/// Prints the plan; a plan that the craft would refuse is invalid input.
+pub fn show(plan: &PlanArg) -> Result<u8, AppError> {
+    let file = setup::read_plan(plan)?;
+    let (home, guess) = FlightArgs::default().start(file.home, &file.plan);
+    let home = LatLon::from_degrees(home.lat_deg, home.lon_deg);
+    let mut text = format::table(&file, home);
+    if let Some(guess) = guess {
+        text.push_str(&format!("{guess}\n"));
+    }
+    error::write_stdout(text.as_bytes())?;
+    let refused =
+        review(&file.plan, home, &Assumptions::from_settings(&file.settings)).iter().any(Finding::is_refusal);
+    Ok(if refused { error::USAGE } else { 0 })
+}

@@ -1,0 +1,115 @@
+//! `betadeck serve`: everything but the screen, in real time with all doors open.
+
+use std::fs::File;
+use std::io::{BufWriter, Write};
+
+use super::error::{self, AppError};
+use super::setup::{self, Extras};
+use super::{doors, signals};
+use crate::args::{OutputFile, ServeArgs, Speed};
+use crate::plan::format::PlanFile;
+use crate::record::{json, sentence};
+use crate::session::{self, Command, Handle, SessionConfig};
+use crate::vehicle::Event;
+
+/// Altitude of the scripted pilot, which nobody starts here, m.
+const TAKEOFF_M: f64 = 10.0;
+
+/// Serves until a signal ends it; every event is a line of output.
+pub fn run(args: &ServeArgs) -> Result<u8, AppError> {
+    let mut output = open_output(args)?;
+    let mut notices = Vec::new();
+    let mut store = setup::open_store(&args.flight)?;
+    let extras = Extras { arm_assist: true, live: !args.doors.no_ports, ..Extras::default() };
+    let nowhere = PlanFile::default();
+    let mut vehicle = setup::vehicle(&args.flight, &nowhere, &mut store, extras, &mut notices)?;
+    // RC comes through the doors only; resting virtual sticks would hide the loss of a script.
+    vehicle.hands.cut = true;
+    let runtime = tokio::runtime::Builder::new_multi_thread()
+        .worker_threads(1)
+        .enable_all()
+        .build()
+        .map_err(|error| AppError::environment(format!("cannot start: {error}")))?;
+    runtime.block_on(async {
+        let stop = signals::stop()
+            .map_err(|error| AppError::environment(format!("cannot listen for signals: {error}")))?;
+        let opened = doors::open(&args.doors).await;
+        let (doors, doorway) = match opened {
+            Some(opened) => {
+                notices.extend(opened.notices);
+                (Some(opened.doors), Some(opened.doorway))
+            }
+            None => (None, None),
+        };
+        for notice in notices {
+            vehicle.notice(notice);
+        }
+        let speed = args.flight.speed.map_or(1.0, |Speed(speed)| speed);
+        let session = session::start(SessionConfig { vehicle, store, speed, takeoff_m: TAKEOFF_M, doorway })
+            .map_err(|error| AppError::environment(format!("cannot start a thread: {error}")))?;
+        let outcome = report(session, &mut output, stop).await;
+        if let Some(doors) = doors {
+            doors.close().await;
+        }
+        outcome
+    })
+}
+
+/// Writes events until a signal arrives or the output is gone.
+async fn report(
+    mut session: Handle,
+    output: &mut Output,
+    stop: impl Future<Output = ()>,
+) -> Result<u8, AppError> {
+    tokio::pin!(stop);
+    let outcome = loop {
+        tokio::select! {
+            () = &mut stop => break Ok(error::INTERRUPTED),
+            event = session.events.recv() => match event {
+                None => break Err(AppError::internal("the session ended by itself")),
+                Some(event) => {
+                    if let Err(problem) = output.event(&event) {
+                        break problem;
+                    }
+                }
+            },
+        }
+    };
+    drop(session.commands.send(Command::Quit).await);
+    drop(session.commands);
+    drop(session.thread.join());
+    outcome
+}
+
+/// Where the events go.
+struct Output {
+    lines: BufWriter<Box<dyn Write>>,
+    json: bool,
+}
+
+fn open_output(args: &ServeArgs) -> Result<Output, AppError> {
+    let (target, json): (Box<dyn Write>, bool) = match &args.json {
+        None => (Box::new(std::io::stdout()), false),
+        Some(OutputFile::Stdout) => (Box::new(std::io::stdout()), true),
+        Some(OutputFile::File(path)) => {
+            let file = File::create(path).map_err(|error| {
+                AppError::environment(format!("cannot write {}: {error}", path.display()))
+            })?;
+            (Box::new(file), true)
+        }
+    };
+    Ok(Output { lines: BufWriter::new(target), json })
+}
+
+impl Output {
+    /// Writes an event; an error is what the program ends with. A reader that went away ends it quietly.
+    fn event(&mut self, event: &Event) -> Result<(), Result<u8, AppError>> {
+        let line = if self.json { json::event_line(event) } else { sentence::line(event) };
+        let Some(line) = line else { return Ok(()) };
+        match writeln!(self.lines, "{line}").and_then(|()| self.lines.flush()) {
+            Ok(()) => Ok(()),
+            Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Err(Ok(0)),
+            Err(error) => Err(Err(AppError::environment(format!("cannot write the output: {error}")))),
+        }
+    }
+}

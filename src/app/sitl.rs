@@ -1,0 +1,212 @@
+//! `betadeck sitl`: the firmware alone, as a drop-in for the SITL executable.
+#![allow(clippy::disallowed_methods, reason = "a track is dated by the wall clock")]
+
+use std::fs::File;
+use std::io::{self, BufWriter, Write as _};
+use std::net::{IpAddr, Ipv4Addr};
+use std::path::Path;
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use super::error::{self, AppError};
+use super::signals;
+use crate::args::{Attitude, OnOff, SitlArgs};
+use crate::firmware::cli::{ApplyReport, CliContext, CliFacts, Interpreter, Mode, provision};
+use crate::firmware::{AttitudeSource, Firmware, FirmwareOptions};
+use crate::link::DoorsConfig;
+use crate::link::proto::fdm_link::FdmLinkConfig;
+use crate::link::sitl::{Said, Sitl, SitlConfig, SitlEnd, SitlError, SitlPorts, show_links};
+use crate::record::gpx::{GpxHeader, GpxWriter, TrackPoint, UtcSeconds};
+use crate::storage::Store;
+
+/// Name of the track.
+const TRACK: &str = "sitl_track.gpx";
+
+/// Silence of the GPS that ends the fix, s.
+const GPS_TIMEOUT_S: f64 = 2.5;
+
+/// Declination of the magnetic field that the virtual magnetometer senses, degrees east.
+const DECLINATION_DEG: f64 = 2.0;
+
+/// Runs until a signal, or through a configuration file; gives the exit code.
+pub fn run(args: &SitlArgs) -> Result<u8, AppError> {
+    let runtime = tokio::runtime::Builder::new_multi_thread()
+        .worker_threads(2)
+        .enable_all()
+        .build()
+        .map_err(|error| AppError::environment(format!("cannot start: {error}")))?;
+    let config = config(args);
+    match &args.config {
+        Some(file) => {
+            let Ok(text) = std::fs::read_to_string(file) else {
+                return Err(AppError {
+                    code: error::FAILED,
+                    message: format!("[SITL] Config file not found: {}", file.display()),
+                });
+            };
+            say(Said::Out(format!(
+                "[SITL] Config file: {} (will load, save to EEPROM, and exit)",
+                file.display()
+            )));
+            runtime.block_on(show_links(&config, &mut say));
+            apply(args, file, &text)
+        }
+        None => runtime.block_on(fly(args, config)),
+    }
+}
+
+fn config(args: &SitlArgs) -> SitlConfig {
+    let (doors, ports) = (&args.doors, args.doors.udp_ports());
+    SitlConfig {
+        doors: DoorsConfig {
+            listen: doors.listen,
+            tcp_port: (!doors.no_ports).then_some(doors.tcp_port()),
+            ws_port: (!doors.no_ports).then_some(doors.ws_port()),
+            allow_origin: doors.allow_origin.clone(),
+            ..DoorsConfig::default()
+        },
+        motors_ip: args.ip.unwrap_or(IpAddr::V4(Ipv4Addr::LOCALHOST)),
+        ports: SitlPorts { raw: ports.raw, motors: ports.motors, fdm: ports.fdm, rc: ports.rc },
+        firmware: FirmwareOptions {
+            arm_assist: args.arm_assist.is_none_or(OnOff::is_on),
+            attitude: match args.attitude {
+                Some(Attitude::Estimated) => AttitudeSource::Estimated,
+                Some(Attitude::Truth) | None => AttitudeSource::Truth,
+            },
+            gps_timeout_s: GPS_TIMEOUT_S,
+            declination_deg: DECLINATION_DEG,
+            ..FirmwareOptions::default()
+        },
+        build: super::setup::build_info(),
+        fdm: FdmLinkConfig {
+            dialect: args.fdm_dialect.unwrap_or_default().0,
+            mirror: args.fdm_mirror.unwrap_or_default(),
+            ..FdmLinkConfig::default()
+        },
+        motor_order: args.motor_order.unwrap_or_default(),
+        exit_on_reboot: args.exit_on_reboot,
+    }
+}
+
+fn open_store(args: &SitlArgs) -> Result<Store, AppError> {
+    let directory = args.state_dir.as_deref().unwrap_or(Path::new("."));
+    Store::open(directory, args.overwrite_config).map_err(|error| AppError::environment(error.to_string()))
+}
+
+#[expect(clippy::print_stdout, clippy::print_stderr, reason = "scripts wait for these lines")]
+fn say(said: Said) {
+    match said {
+        Said::Out(line) => {
+            println!("{line}");
+            // A reader that went away is told by nothing else.
+            drop(io::stdout().flush());
+        }
+        Said::Err(line) => eprintln!("{line}"),
+    }
+}
+
+async fn fly(args: &SitlArgs, config: SitlConfig) -> Result<u8, AppError> {
+    let mut print = say;
+    let stop = signals::stop()
+        .map_err(|error| AppError::environment(format!("cannot listen for signals: {error}")))?;
+    let sitl = Sitl::open(config, open_store(args)?, &mut print)
+        .await
+        .map_err(|error: SitlError| AppError::environment(error.to_string()))?;
+    let mut track = Track { wanted: args.gpx, writer: None };
+    let end = sitl.run(&mut print, &mut |firmware| track.record(firmware), stop).await;
+    track.finish();
+    Ok(match end {
+        SitlEnd::Stopped => error::INTERRUPTED,
+        SitlEnd::Rebooted => 0,
+    })
+}
+
+/// Applies the lines of a configuration file and stores the result.
+fn apply(args: &SitlArgs, file: &Path, text: &str) -> Result<u8, AppError> {
+    let mut store = open_store(args)?;
+    let loaded = store.load();
+    loaded.findings.into_iter().for_each(|finding| say(Said::Err(finding)));
+    let mut configuration = loaded.configuration;
+    say(Said::Out(format!("[CONFIG] Processing config file: {}", file.display())));
+    let facts = CliFacts { storage: store.facts(), ..CliFacts::default() };
+    let mut context = CliContext { configuration: &mut configuration, facts: &facts };
+    let mut interpreter = Interpreter::new(Mode::File).lenient(args.lenient);
+    let mut session = String::new();
+    let report = provision(text, &mut interpreter, &mut context, |text| session += text);
+    error::write_stdout(session.as_bytes())?;
+    say(Said::Out(String::new()));
+    tell_failures(&report);
+    if report.batch_failed {
+        say(Said::Out("[CONFIG] prepareSave failed".to_owned()));
+        return Ok(error::FAILED);
+    }
+    store.save(&configuration).map_err(|error| AppError::environment(error.to_string()))?;
+    say(Said::Out("[CONFIG] Config file processed, EEPROM saved".to_owned()));
+    Ok(if args.strict && !report.failed.is_empty() { error::FAILED } else { 0 })
+}
+
+fn tell_failures(report: &ApplyReport) {
+    if report.failed.is_empty() {
+        return;
+    }
+    let numbers: Vec<String> = report.failed.iter().map(|failed| failed.number.to_string()).collect();
+    say(Said::Err(format!(
+        "[CONFIG] {} of {} lines failed: {}",
+        report.failed.len(),
+        report.commands,
+        numbers.join(", ")
+    )));
+}
+
+/// The track, begun at the first position.
+struct Track {
+    wanted: bool,
+    writer: Option<(GpxWriter<BufWriter<File>>, f64)>,
+}
+
+impl Track {
+    fn record(&mut self, firmware: &Firmware) {
+        let facts = firmware.msp_facts(None);
+        if !self.wanted || !facts.gps.fix {
+            return;
+        }
+        let (place, alt_amsl_m) = (facts.gps.position, facts.gps.alt_amsl_m);
+        if self.writer.is_none() {
+            match begin(firmware, alt_amsl_m) {
+                Ok(writer) => self.writer = Some((writer, alt_amsl_m)),
+                Err(error) => return self.give_up(&error),
+            }
+        }
+        let Some((writer, home_amsl_m)) = &mut self.writer else { return };
+        let point = TrackPoint {
+            time: firmware.time(),
+            lat_deg: place.lat_deg(),
+            lon_deg: place.lon_deg(),
+            alt_m: alt_amsl_m - *home_amsl_m,
+        };
+        if let Err(error) = writer.offer(&point) {
+            self.give_up(&error);
+        }
+    }
+
+    fn give_up(&mut self, error: &io::Error) {
+        self.wanted = false;
+        say(Said::Err(format!("cannot write {TRACK}: {error}; the track ends here")));
+    }
+
+    fn finish(self) {
+        if let Some((writer, _)) = self.writer {
+            match writer.finish() {
+                Ok(_) => say(Said::Out(format!("[SITL] GPS track written to {TRACK}"))),
+                Err(error) => say(Said::Err(format!("cannot write {TRACK}: {error}"))),
+            }
+        }
+    }
+}
+
+fn begin(firmware: &Firmware, home_amsl_m: f64) -> io::Result<GpxWriter<BufWriter<File>>> {
+    let now_s = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |elapsed| elapsed.as_secs());
+    // Points count from the firmware's boot.
+    let boot = UtcSeconds(now_s.saturating_sub(firmware.time().0 / 1_000_000));
+    let file = BufWriter::new(File::create(TRACK)?);
+    GpxWriter::new(file, GpxHeader::sitl(home_amsl_m, boot), firmware.stored_plan())
+}

@@ -1,0 +1,84 @@
+//! `betadeck`: the terminal user interface with everything running behind it.
+#![allow(clippy::disallowed_methods, reason = "the composition root reads the environment")]
+
+use std::io::IsTerminal as _;
+
+use super::doors;
+use super::error::{self, AppError};
+use super::setup::{self, Extras};
+use super::signals;
+use crate::args::{PlanArg, Speed, TuiArgs};
+use crate::firmware::cli;
+use crate::plan::builtin::{BuiltinPlan, DEMO};
+use crate::record::sentence;
+use crate::session::{self, SessionConfig};
+use crate::ui::{self, CliHelp, Ending, OpenPlan, SessionLink, Theme, Tui, UiConfig};
+
+/// Altitude to which the `F` key climbs before it engages, m.
+const TAKEOFF_M: f64 = 10.0;
+
+/// Opens the user interface; returns its exit code when the user has left it.
+pub fn run(args: &TuiArgs) -> Result<u8, AppError> {
+    if !std::io::stdout().is_terminal() || !std::io::stdin().is_terminal() {
+        return Err(AppError::environment(
+            "the user interface needs a terminal: run betadeck in one, or fly without a screen with \
+             `betadeck fly PLAN`",
+        ));
+    }
+    let plan = match &args.plan {
+        Some(plan) => setup::read_plan(plan)?,
+        None => setup::read_plan(&PlanArg::Builtin(
+            BuiltinPlan::find(DEMO).ok_or_else(|| AppError::internal("the demo plan is missing"))?,
+        ))?,
+    };
+    let mut notices: Vec<String> = plan.notes.iter().map(ToString::to_string).collect();
+    let mut store = setup::open_store(&args.flight)?;
+    let extras = Extras { arm_assist: true, live: !args.doors.no_ports, ..Extras::default() };
+    let mut vehicle = setup::vehicle(&args.flight, &plan, &mut store, extras, &mut notices)?;
+    let config = UiConfig {
+        theme: Theme::from_environment(|name| std::env::var(name).ok()),
+        cli: CliHelp { complete: |line| cli::complete(line).lines(line), hint: |line| cli::hint(line, None) },
+        sentence: |event| sentence::text(&event.kind).unwrap_or_default(),
+        plan: OpenPlan { name: plan.name, plan: plan.plan, settings: plan.settings },
+        mouse: true,
+    };
+    let problem = |error| AppError::environment(format!("cannot use the terminal: {error}"));
+    let runtime = tokio::runtime::Builder::new_multi_thread()
+        .worker_threads(1)
+        .enable_all()
+        .build()
+        .map_err(problem)?;
+    let ending = runtime.block_on(async {
+        let (doors, doorway) = match doors::open(&args.doors).await {
+            Some(opened) => {
+                notices.extend(opened.notices);
+                (Some(opened.doors), Some(opened.doorway))
+            }
+            None => (None, None),
+        };
+        for notice in notices {
+            vehicle.notice(notice);
+        }
+        let speed = args.flight.speed.map_or(1.0, |Speed(speed)| speed);
+        let session = session::start(SessionConfig { vehicle, store, speed, takeoff_m: TAKEOFF_M, doorway })
+            .map_err(|error| AppError::environment(format!("cannot start a thread: {error}")))?;
+        let link = SessionLink { commands: session.commands, view: session.view, events: session.events };
+        // Before the first frame: whoever sees it may already send one.
+        let stop = signals::stop().map_err(problem)?;
+        let tui = Tui::enter(config.mouse).map_err(problem)?;
+        let ending = ui::run(tui, link, config, stop).await.map_err(problem);
+        // The session ends with its last sender; its thread has nothing left to say.
+        drop(session.thread.join());
+        if let Some(doors) = doors {
+            doors.close().await;
+        }
+        ending
+    })?;
+    runtime.shutdown_background();
+    match ending {
+        Ending::Quit => Ok(0),
+        Ending::Signal => Ok(error::INTERRUPTED),
+        Ending::SessionEnded => Err(AppError::internal("the session ended by itself")),
+        Ending::TerminalLost => Err(AppError::environment("the terminal went away")),
+    }
+}

@@ -1,0 +1,191 @@
+//! The command line: one definition from which parsing, `--help`, completions and the manual page follow.
+//!
+//! A value comes from the first of: the command line, the environment (`BETADECK_…`), the configuration file, the
+//! default. This module only turns texts into values: it reads no file, no environment and no clock.
+
+mod convert;
+mod doors;
+mod flight;
+mod fly;
+mod generate;
+mod help;
+mod layers;
+mod plan_arg;
+mod value;
+
+use std::ffi::OsString;
+
+use clap::error::ErrorKind;
+use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
+
+use crate::nearest::nearest;
+
+pub use convert::ConvertArgs;
+pub use doors::{DoorArgs, FdmDialect, ServeArgs, SitlArgs, UdpPorts, sitl_complaint};
+pub use flight::FlightArgs;
+pub use fly::FlyArgs;
+pub use generate::{completions, man_page};
+pub use layers::{ENVIRONMENT_PREFIX, Layers};
+pub use plan_arg::{PlanArg, PlanArgError};
+pub use value::{Attitude, OnOff, OutputFile, Speed};
+
+/// Flies the Betaflight waypoint autopilot in a simulated quadcopter
+///
+/// An embedded flight controller, a quadcopter in the wind and a ground station in one program. Without a command the
+/// terminal user interface opens with PLAN loaded.
+#[derive(Debug, Parser)]
+#[command(
+    name = "betadeck",
+    version,
+    before_help = help::examples(&[
+        ("betadeck", "the ground station with the demo plan"),
+        ("betadeck my-plan.toml", "the ground station with your plan"),
+        ("betadeck fly square", "fly the demo plan as fast as the machine allows"),
+    ]),
+    after_help = help::LAYERS,
+    args_conflicts_with_subcommands = true,
+    disable_help_subcommand = true,
+    max_term_width = 100
+)]
+pub struct Cli {
+    /// What to do; the terminal user interface when absent.
+    #[command(subcommand)]
+    pub command: Option<Command>,
+
+    /// The options of the terminal user interface.
+    #[command(flatten)]
+    pub tui: TuiArgs,
+}
+
+/// What the terminal user interface starts with.
+#[derive(Debug, clap::Args)]
+pub struct TuiArgs {
+    /// Plan to load: a built-in plan's name or a file (*.toml, *.txt, - for standard input) [default: square]
+    pub plan: Option<PlanArg>,
+
+    /// The doors.
+    #[command(flatten)]
+    pub doors: DoorArgs,
+
+    /// What flies, where and in which air.
+    #[command(flatten)]
+    pub flight: FlightArgs,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Flies a plan without a screen, reports, and tells by the exit code whether the mission completed
+    #[command(before_help = help::examples(&[
+        ("betadeck fly square", "the demo plan, events as sentences"),
+        ("betadeck fly plan.toml --wind 5@270 --json - --samples 10", "JSON lines with ten samples a second"),
+        ("betadeck fly plan.txt --settings diff.txt --gpx track.gpx", "with your craft's configuration"),
+        ("betadeck fly square --rx-loss-at 20 --set ap_rx_loss_policy=LAND", "lose the radio after 20 s"),
+    ]), after_help = help::FLY)]
+    Fly(Box<FlyArgs>),
+
+    /// Firmware and physics in real time with all doors open, without a screen
+    #[command(before_help = help::examples(&[
+        ("betadeck serve", "the Betaflight App connects to ws://localhost:6761, scripts send RC to UDP 9004"),
+        ("betadeck serve --json - --no-ports", "events as JSON lines, no door"),
+    ]))]
+    Serve(Box<ServeArgs>),
+
+    /// Runs the firmware alone, as a drop-in for betaflight_SITL.elf, for an external simulator
+    #[command(before_help = help::examples(&[
+        ("betadeck sitl", "same ports and files as the executable; start Gazebo beside it"),
+        ("betadeck sitl --config quad.txt", "apply CLI lines, save eeprom.bin, exit"),
+        ("betadeck sitl --gpx --exit-on-reboot", "in a script's loop"),
+    ]))]
+    Sitl(Box<SitlArgs>),
+
+    /// Looks at flight plans
+    #[command(subcommand, disable_help_subcommand = true)]
+    Plan(PlanCommand),
+
+    /// Converts a plan file to another format and says what that format cannot carry
+    #[command(before_help = help::examples(&[
+        ("betadeck convert square.txt square.toml", "formats by the files' endings"),
+        ("betadeck convert - plan.toml", "Betaflight CLI text from standard input"),
+        ("betadeck convert plan.toml - --to txt", "to standard output"),
+    ]))]
+    Convert(ConvertArgs),
+
+    /// Checks directories, ports, the terminal and versions
+    Doctor,
+
+    /// Prints a completion script for a shell
+    #[command(before_help = help::examples(&[
+        ("betadeck completions bash > ~/.local/share/bash-completion/completions/betadeck", ""),
+        ("betadeck completions zsh > ~/.zfunc/_betadeck", ""),
+    ]))]
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+
+    /// Prints the manual page
+    #[command(before_help = help::examples(&[("betadeck man | man -l -", "read it")]))]
+    Man,
+}
+
+/// What to do with a plan.
+#[derive(Debug, Subcommand)]
+pub enum PlanCommand {
+    /// Prints a plan as a table with distances, times and what is wrong with it
+    #[command(before_help = help::examples(&[
+        ("betadeck plan show square", "a built-in plan"),
+        ("betadeck plan show plan.txt", "a file"),
+    ]))]
+    Show {
+        /// A built-in plan's name or a file (*.toml, *.txt, - for standard input)
+        plan: PlanArg,
+    },
+}
+
+/// Parses a command line (with the program's name first) over the other layers.
+///
+/// # Errors
+///
+/// Wrong usage with a suggestion; also `--help` and `--version`, as [`clap::Error`] has it: print it and leave with its
+/// exit code.
+pub fn parse(arguments: impl IntoIterator<Item = OsString>, layers: &Layers) -> Result<Cli, clap::Error> {
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    let mut command = Cli::command();
+    let matches = command
+        .try_get_matches_from_mut(&arguments)
+        .map_err(|error| hint_at_command(error, &arguments, &command))?;
+    let typed = Cli::from_arg_matches(&matches)?;
+    let combination = match &typed.command {
+        Some(Command::Fly(fly)) => fly.check(),
+        Some(Command::Convert(convert)) => convert.check(),
+        Some(
+            Command::Serve(_)
+            | Command::Sitl(_)
+            | Command::Plan(_)
+            | Command::Doctor
+            | Command::Completions { .. }
+            | Command::Man,
+        )
+        | None => Ok(()),
+    };
+    combination.map_err(|problem| command.error(ErrorKind::ValueValidation, problem))?;
+    layers::apply(layers, arguments, &matches, &mut command)
+}
+
+/// A misspelt command is taken for a plan, and what follows for too many arguments: says what was meant.
+fn hint_at_command(error: clap::Error, arguments: &[OsString], command: &clap::Command) -> clap::Error {
+    let first = arguments.get(1).and_then(|argument| argument.to_str()).unwrap_or_default();
+    let names = command.get_subcommands().map(clap::Command::get_name);
+    let is_plan = first.starts_with('-') || first.parse::<PlanArg>().is_ok();
+    match nearest(first, names) {
+        Some(name) if name != first && !is_plan && error.use_stderr() => command.clone().error(
+            ErrorKind::InvalidSubcommand,
+            format!("{first} is neither a command nor a plan; did you mean betadeck {name}?"),
+        ),
+        _ => error,
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,72 @@
+//! The arguments of `convert`.
+
+use std::path::Path;
+
+use crate::plan::format::Format;
+
+use super::value::{self, OutputFile};
+use super::{PlanArg, PlanArgError};
+
+/// What to convert.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+pub struct ConvertArgs {
+    /// Plan to read: a built-in plan's name, a file, or - for standard input
+    #[arg(value_name = "IN")]
+    input: String,
+
+    /// File to write, or - for standard output
+    #[arg(value_name = "OUT")]
+    pub output: OutputFile,
+
+    /// Format of IN: toml, txt [default: by its ending]
+    #[arg(long, value_name = "FORMAT", value_parser = value::format)]
+    from: Option<Format>,
+
+    /// Format of OUT: toml, txt [default: by its ending]
+    #[arg(long, value_name = "FORMAT", value_parser = value::format)]
+    to: Option<Format>,
+}
+
+impl ConvertArgs {
+    /// What to read. `--from` makes every name a file's.
+    ///
+    /// # Errors
+    ///
+    /// When the name is no plan's; not after [`super::parse`], which checks it.
+    pub fn source(&self) -> Result<PlanArg, PlanArgError> {
+        match self.from {
+            Some(format) if self.input == "-" => Ok(PlanArg::Stdin(format)),
+            Some(format) => Ok(PlanArg::File(self.input.clone().into(), format)),
+            None => self.input.parse(),
+        }
+    }
+
+    /// What to write.
+    ///
+    /// # Errors
+    ///
+    /// When neither `--to` nor the ending of OUT says it; not after [`super::parse`], which checks it.
+    pub fn target(&self) -> Result<Format, String> {
+        let by_ending = |path: &Path| Format::from_file_name(&path.to_string_lossy());
+        let found = self.to.or_else(|| match &self.output {
+            OutputFile::Stdout => None,
+            OutputFile::File(path) => by_ending(path),
+        });
+        found.ok_or_else(|| match &self.output {
+            OutputFile::Stdout => {
+                "the format of standard output is open: add --to toml or --to txt".to_owned()
+            }
+            OutputFile::File(path) => format!(
+                "{} has none of the endings {}: add --to toml or --to txt",
+                path.display(),
+                Format::endings()
+            ),
+        })
+    }
+
+    /// What is wrong with the combination of what was typed.
+    pub(super) fn check(&self) -> Result<(), String> {
+        self.source().map_err(|error| format!("{}: {error}", self.input))?;
+        self.target().map(drop)
+    }
+}

@@ -1,0 +1,271 @@
+//! The options of the doors: where other programs connect, and the commands that are nothing without them.
+
+use std::net::{IpAddr, Ipv4Addr};
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+
+use super::FlightArgs;
+use super::value::{Attitude, OnOff, OutputFile};
+use crate::link::proto::fdm::Dialect;
+use crate::link::proto::fdm_link::Mirror;
+use crate::link::proto::servo::MotorOrder;
+
+/// Where the doors are; port 0 = the system chooses.
+#[derive(Debug, Clone, Default, PartialEq, Eq, clap::Args)]
+pub struct DoorArgs {
+    /// Address the doors listen on [default: 127.0.0.1; TCP and websocket also ::1]
+    #[arg(long, value_name = "ADDR", help_heading = "Doors")]
+    pub listen: Option<IpAddr>,
+
+    /// Port of the websocket for the Betaflight App; 0 = any free one [default: 6761]
+    #[arg(long, value_name = "PORT", help_heading = "Doors")]
+    pub ws_port: Option<u16>,
+
+    /// Port for CLI and MSP over TCP; 0 = any free one [default: 5761]
+    #[arg(long, value_name = "PORT", help_heading = "Doors")]
+    pub tcp_port: Option<u16>,
+
+    /// UDP ports: raw PWM out, motors out, simulator in, RC in [default: 9001,9002,9003,9004]
+    #[arg(long, value_name = "RAW,MOTORS,FDM,RC", help_heading = "Doors")]
+    pub udp_ports: Option<UdpPorts>,
+
+    /// Opens no door
+    #[arg(long, conflicts_with_all = ["listen", "ws_port", "tcp_port", "udp_ports"], help_heading = "Doors")]
+    pub no_ports: bool,
+
+    /// Serves web pages of this origin on the websocket, too; repeatable
+    ///
+    /// Always served: requests without an origin, loopback hosts, https://app.betaflight.com, and the App's desktop and
+    /// mobile shells.
+    #[arg(long, value_name = "ORIGIN", help_heading = "Doors")]
+    pub allow_origin: Vec<String>,
+}
+
+impl DoorArgs {
+    /// Address the doors listen on.
+    #[must_use]
+    pub fn address(&self) -> IpAddr {
+        self.listen.unwrap_or(IpAddr::V4(Ipv4Addr::LOCALHOST))
+    }
+
+    /// Port of the websocket.
+    #[must_use]
+    pub fn ws_port(&self) -> u16 {
+        self.ws_port.unwrap_or(6761)
+    }
+
+    /// Port of the first serial port.
+    #[must_use]
+    pub fn tcp_port(&self) -> u16 {
+        self.tcp_port.unwrap_or(5761)
+    }
+
+    /// The UDP ports.
+    #[must_use]
+    pub fn udp_ports(&self) -> UdpPorts {
+        self.udp_ports.unwrap_or_default()
+    }
+}
+
+/// The four UDP ports of the simulator link.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct UdpPorts {
+    /// Raw PWM out (RealFlight bridge).
+    pub raw: u16,
+    /// Motor commands out (Gazebo).
+    pub motors: u16,
+    /// Simulator state in.
+    pub fdm: u16,
+    /// RC channels in.
+    pub rc: u16,
+}
+
+impl Default for UdpPorts {
+    fn default() -> Self {
+        Self { raw: 9001, motors: 9002, fdm: 9003, rc: 9004 }
+    }
+}
+
+impl FromStr for UdpPorts {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let port = |text: &str| {
+            text.trim().parse::<u16>().map_err(|_| format!("{text} is not a port; allowed are 0 to 65535"))
+        };
+        let parts = text.split(',').map(port).collect::<Result<Vec<u16>, String>>()?;
+        match parts[..] {
+            [raw, motors, fdm, rc] => Ok(Self { raw, motors, fdm, rc }),
+            _ => Err("write four ports RAW,MOTORS,FDM,RC, such as 9001,9002,9003,9004".to_owned()),
+        }
+    }
+}
+
+/// The options of `serve`: firmware and physics in real time with all doors open, without a screen.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+pub struct ServeArgs {
+    /// Writes events as JSON lines; - is standard output [default: sentences on standard output]
+    #[arg(long, value_name = "FILE|-", help_heading = "Output")]
+    pub json: Option<OutputFile>,
+
+    /// The doors.
+    #[command(flatten)]
+    pub doors: DoorArgs,
+
+    /// What flies, where and in which air.
+    #[command(flatten)]
+    pub flight: FlightArgs,
+}
+
+/// The options of `sitl`: the firmware alone, for an external simulator.
+#[derive(Debug, Clone, PartialEq, Eq, clap::Args)]
+pub struct SitlArgs {
+    /// Address that motor packets are sent to [default: 127.0.0.1]
+    #[arg(long, value_name = "ADDR")]
+    pub ip: Option<IpAddr>,
+
+    /// Applies the CLI lines of FILE, saves and exits
+    #[arg(long, value_name = "FILE")]
+    pub config: Option<PathBuf>,
+
+    /// Writes sitl_track.gpx in the working directory
+    #[arg(long)]
+    pub gpx: bool,
+
+    /// Ends the process when the firmware reboots, instead of restarting it
+    #[arg(long)]
+    pub exit_on_reboot: bool,
+
+    /// With --config: a line that fails makes the exit code 1
+    #[arg(long)]
+    pub strict: bool,
+
+    /// Unknown settings between batch start and batch end do not keep save from storing
+    #[arg(long)]
+    pub lenient: bool,
+
+    /// Lets save replace an eeprom.bin that another firmware wrote
+    #[arg(long)]
+    pub overwrite_config: bool,
+
+    /// What the simulator's packets mean: auto, sitl-gz, gz-plugin or legacy [default: auto]
+    #[arg(long, value_name = "DIALECT", help_heading = "Simulator")]
+    pub fdm_dialect: Option<FdmDialect>,
+
+    /// Whether the simulator's positions are mirrored: auto, on or off [default: auto]
+    #[arg(long, value_name = "auto|on|off", help_heading = "Simulator")]
+    pub fdm_mirror: Option<Mirror>,
+
+    /// Order of the motors in the simulator's model: native, or legacy (before spring 2026) [default: native]
+    #[arg(long, value_name = "native|legacy", help_heading = "Simulator")]
+    pub motor_order: Option<MotorOrder>,
+
+    /// Lets a script arm that holds the ARM switch on from its first packet, or throttle up to 1150 [default: on]
+    #[arg(long, value_enum, help_heading = "Firmware")]
+    pub arm_assist: Option<OnOff>,
+
+    /// Where the attitude comes from: the simulator's packet (truth), or the firmware's estimator [default: truth]
+    #[arg(long, value_enum, help_heading = "Firmware")]
+    pub attitude: Option<Attitude>,
+
+    /// Where eeprom.bin lives [default: the working directory]
+    #[arg(long, value_name = "DIR")]
+    pub state_dir: Option<PathBuf>,
+
+    /// The doors.
+    #[command(flatten)]
+    pub doors: DoorArgs,
+}
+
+/// A dialect by name, or `auto`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct FdmDialect(pub Option<Dialect>);
+
+impl FromStr for FdmDialect {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text == "auto" {
+            return Ok(Self(None));
+        }
+        let known = || format!("{text} is no dialect; use auto, sitl-gz, gz-plugin or legacy");
+        text.parse().map(|dialect| Self(Some(dialect))).map_err(|_| known())
+    }
+}
+
+/// What the reference firmware simulator prints for an argument it does not understand, or one without its value; it
+/// leaves with exit code 1 then. `None` for other errors, `--help` included.
+#[must_use]
+pub fn sitl_complaint(error: &clap::Error) -> Option<String> {
+    if !matches!(error.kind(), ErrorKind::UnknownArgument | ErrorKind::InvalidValue) {
+        return None;
+    }
+    let ContextValue::String(argument) = error.get(ContextKind::InvalidArg)? else { return None };
+    // `--config <FILE>` when its value is missing.
+    let argument = argument.split(" <").next().unwrap_or(argument);
+    Some(format!("[SITL] Unknown argument: {argument} (use --help for usage)"))
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+
+    use super::*;
+
+    #[derive(Debug, Parser)]
+    #[command(name = "x")]
+    enum Doors {
+        Serve(Box<ServeArgs>),
+        Sitl(SitlArgs),
+    }
+
+    #[test]
+    fn doors_have_the_usual_ports() {
+        let Doors::Serve(serve) = Doors::try_parse_from(["x", "serve"]).unwrap() else { panic!() };
+        let doors = serve.doors;
+        assert_eq!((doors.ws_port(), doors.tcp_port(), doors.udp_ports().rc), (6761, 5761, 9004));
+        assert!(doors.address().is_loopback());
+    }
+
+    #[test]
+    fn ports_are_read_and_refused() {
+        let read = |text: &str| {
+            Doors::try_parse_from(["x", "serve", "--udp-ports", text, "--ws-port=0"])
+                .map(|doors| match doors {
+                    Doors::Serve(serve) => serve.doors.udp_ports(),
+                    Doors::Sitl(_) => UdpPorts::default(),
+                })
+                .map_err(|error| error.to_string())
+        };
+        assert_eq!(read("1,2,3,0"), Ok(UdpPorts { raw: 1, motors: 2, fdm: 3, rc: 0 }));
+        assert!(read("1,2,3").unwrap_err().contains("write four ports"));
+        assert!(read("1,2,3,70000").unwrap_err().contains("70000 is not a port"));
+    }
+
+    #[test]
+    fn closed_doors_have_no_ports() {
+        let error = Doors::try_parse_from(["x", "sitl", "--no-ports", "--ws-port", "1"]).unwrap_err();
+        assert!(error.to_string().contains("cannot be used with"));
+        let Doors::Sitl(sitl) = Doors::try_parse_from(["x", "sitl", "--strict", "--ip", "::1"]).unwrap()
+        else {
+            panic!()
+        };
+        assert!(sitl.strict && !sitl.lenient && sitl.ip.is_some_and(|ip| ip.is_loopback()));
+    }
+
+    #[test]
+    fn sitl_complains_like_the_reference() {
+        let complaint = |arguments: &[&str]| {
+            let line = ["x", "sitl"].iter().chain(arguments);
+            sitl_complaint(&Doors::try_parse_from(line).unwrap_err())
+        };
+        let text =
+            |argument: &str| Some(format!("[SITL] Unknown argument: {argument} (use --help for usage)"));
+        assert_eq!(complaint(&["--frobnicate"]), text("--frobnicate"));
+        assert_eq!(complaint(&["what"]), text("what"));
+        assert_eq!(complaint(&["--config"]), text("--config"));
+        assert_eq!(complaint(&["--help"]), None);
+    }
+}

@@ -1,0 +1,98 @@
+//! The options of `fly`.
+
+use std::path::PathBuf;
+
+use crate::sim::ScheduledFault;
+use crate::vehicle::StickInput;
+
+use super::plan_arg::PlanArg;
+use super::value::{self, OutputFile};
+use super::{FlightArgs, Speed, help};
+
+/// The options of `fly`.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+pub struct FlyArgs {
+    /// Plan to fly: a built-in plan's name or a file (*.toml, *.txt, - for standard input)
+    pub plan: PlanArg,
+
+    /// Writes events (and samples) as JSON lines; - is standard output
+    #[arg(long, value_name = "FILE|-", help_heading = "Output")]
+    pub json: Option<OutputFile>,
+
+    /// Samples a second of simulated time in the JSON lines [default: 0, events only]
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true, value_parser = value::samples, help_heading = "Output")]
+    pub samples: Option<f64>,
+
+    /// Writes the track as GPX
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub gpx: Option<PathBuf>,
+
+    /// Altitude of the pilot's climb before the autopilot is engaged, m [default: 10]
+    ///
+    /// With 0 the pilot raises the throttle and engages at once: the autopilot does the climb.
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = value::takeoff, help_heading = "Flight")]
+    pub takeoff: Option<f64>,
+
+    /// Gives up after this many simulated seconds since boot [default: 1800]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = value::timeout, help_heading = "Flight")]
+    pub timeout: Option<f64>,
+
+    /// Sets a setting after all other sources, such as ap_max_angle=25; repeatable
+    #[arg(long, value_name = "NAME=VALUE", value_parser = value::setting, help_heading = "Flight")]
+    pub set: Vec<String>,
+
+    /// Moves a stick or switch: a channel (roll, pitch, throttle, yaw, aux1…aux12), µs, when, how long; repeatable
+    #[arg(long, value_name = "CH=VALUE@T[,FOR]", help_heading = "Flight")]
+    pub stick: Vec<StickInput>,
+
+    /// The radio link is lost at T
+    #[arg(long, value_name = "T[,FOR]", value_parser = value::rx_loss, help_heading = "Faults")]
+    pub rx_loss_at: Option<ScheduledFault>,
+
+    /// The GPS is lost at T
+    #[arg(long, value_name = "T[,FOR]", value_parser = value::gps_loss, help_heading = "Faults")]
+    pub gps_loss_at: Option<ScheduledFault>,
+
+    /// Something goes wrong at T, such as motor@10,,2:0.8 or gps-glitch@10,2,30@90; repeatable
+    #[arg(long, value_name = "NAME@T[,FOR][,VALUE]", long_help = help::faults(), help_heading = "Faults")]
+    pub fault: Vec<ScheduledFault>,
+
+    /// What flies, where and in which air.
+    #[command(flatten)]
+    pub flight: FlightArgs,
+}
+
+impl FlyArgs {
+    /// All faults of the flight.
+    pub fn faults(&self) -> impl Iterator<Item = ScheduledFault> + '_ {
+        self.rx_loss_at.into_iter().chain(self.gps_loss_at).chain(self.fault.iter().copied())
+    }
+
+    /// Times real time; infinite = as fast as the machine allows, the default.
+    #[must_use]
+    pub fn speed(&self) -> f64 {
+        self.flight.speed.map_or(f64::INFINITY, |Speed(speed)| speed)
+    }
+
+    /// Altitude of the pilot's climb, m.
+    #[must_use]
+    pub fn takeoff_m(&self) -> f64 {
+        self.takeoff.unwrap_or(10.0)
+    }
+
+    /// Simulated seconds after boot at which the flight is given up.
+    #[must_use]
+    pub fn timeout_s(&self) -> f64 {
+        self.timeout.unwrap_or(1800.0)
+    }
+
+    /// What is wrong with the combination of what was typed.
+    pub(super) fn check(&self) -> Result<(), String> {
+        if self.samples.is_some_and(|hz| hz > 0.0) && self.json.is_none() {
+            return Err(
+                "--samples needs --json: samples are JSON lines; add --json FILE or --json -".to_owned()
+            );
+        }
+        Ok(())
+    }
+}

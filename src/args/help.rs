@@ -1,0 +1,59 @@
+//! The longer texts of `--help`.
+
+use crate::sim::{FAULTS, SWITCHES};
+
+/// How values are found, for the end of the help of commands that fly.
+pub(super) const LAYERS: &str = "\
+Each option can also be set in the configuration file (wind = \"5@270\") and in the environment
+(BETADECK_WIND=5@270); the command line wins over the environment, that over the file.";
+
+/// The end of the help of `fly`.
+pub(super) const FLY: &str = "\
+T is in simulated seconds from the moment the autopilot engages; boot+T counts from boot.
+
+Exit codes: 0 the mission completed, 1 it did not, 2 wrong usage or input, 3 file or port trouble,
+4 internal error, 130 interrupted.
+
+Each option can also be set in the configuration file (wind = \"5@270\") and in the environment
+(BETADECK_WIND=5@270); the command line wins over the environment, that over the file.";
+
+/// The examples of a command, for the top of its help: what to type and what it does.
+pub(super) fn examples(examples: &[(&str, &str)]) -> String {
+    let mut text = String::from("Examples:");
+    for (line, meaning) in examples {
+        text.push_str(&format!("\n  {line}"));
+        if !meaning.is_empty() {
+            text.push_str(&format!("\n      {meaning}"));
+        }
+    }
+    text
+}
+
+/// All faults, for the long help of `--fault`.
+pub(super) fn faults() -> String {
+    let mut text = String::from(
+        "Something goes wrong at T, for FOR seconds or to the end; repeatable\n\n\
+         motor@10,,2:0.8 weakens motor 2 to 80 % after 10 s, gps-loss@boot+20,6 takes the GPS away for 6 s.\n\n\
+         NAME (VALUE; what it is when left out):\n",
+    );
+    // Those of the external link have nothing to act on when everything is embedded.
+    for fault in FAULTS.iter().filter(|fault| !fault.help.starts_with("external link")) {
+        let value = match (fault.value, fault.default) {
+            ("", _) => String::new(),
+            (value, "") => format!(" ({value})"),
+            (value, default) => format!(" ({value}; {default})"),
+        };
+        text.push_str(&format!("  {}{value}: {}\n", fault.name, fault.help));
+    }
+    text.trim_end().to_owned()
+}
+
+/// All switches of the world, for the long help of `--world`.
+pub(super) fn world_switches() -> String {
+    let mut text =
+        String::from("A rare switch of the simulated world, such as battery_sag=on; repeatable\n\n");
+    for switch in &SWITCHES {
+        text.push_str(&format!("  {}={}: {}\n", switch.name, switch.values, switch.help));
+    }
+    text.trim_end().to_owned()
+}

@@ -1,0 +1,194 @@
+//! The layers under the command line: environment and configuration file.
+//!
+//! Every long option of a command that flies is a key in the file (`wind = "5@270"`) and a variable in the environment
+//! (`BETADECK_WIND`). What a layer gives for an option that no higher layer gave is parsed by the option's own parser,
+//! as if it had been typed.
+
+use std::collections::BTreeMap;
+use std::ffi::OsString;
+
+use clap::error::{ContextKind, ContextValue, ErrorKind};
+use clap::parser::ValueSource;
+use clap::{Arg, ArgAction, ArgMatches, FromArgMatches as _};
+
+use super::Cli;
+use crate::nearest::nearest;
+
+/// Start of the names of environment variables.
+pub const ENVIRONMENT_PREFIX: &str = "BETADECK_";
+
+/// What the shell found outside the command line.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Layers {
+    /// The environment; variables without [`ENVIRONMENT_PREFIX`] do not matter.
+    pub environment: BTreeMap<String, String>,
+    /// Name of the configuration file, for messages.
+    pub file_name: String,
+    /// Contents of the configuration file.
+    pub file: toml::Table,
+}
+
+/// The name of the place where a value was found, and the values there.
+type Found = (String, Vec<String>);
+
+/// Commands whose options come from all layers; the empty name is the terminal user interface.
+const FLYING: [&str; 4] = ["", "fly", "serve", "sitl"];
+
+/// Parses again with what the layers add to the command line.
+pub(super) fn apply(
+    layers: &Layers,
+    mut arguments: Vec<OsString>,
+    matches: &ArgMatches,
+    command: &mut clap::Command,
+) -> Result<Cli, clap::Error> {
+    command.build();
+    layers.refuse_unknown_keys(command)?;
+    let (name, typed) = matches.subcommand().unwrap_or(("", matches));
+    let mut sources = BTreeMap::new();
+    if FLYING.contains(&name) {
+        let definition = command.find_subcommand(name).unwrap_or(command);
+        let added =
+            layers.additions(definition, typed, &mut sources).map_err(|text| problem(command, &text))?;
+        // Behind everything typed, but before a `--` that ends the options.
+        let end = arguments.iter().position(|argument| argument == "--").unwrap_or(arguments.len());
+        arguments.splice(end..end, added);
+    }
+    let matches =
+        command.try_get_matches_from_mut(arguments).map_err(|error| name_source(error, &sources))?;
+    Cli::from_arg_matches(&matches)
+}
+
+/// The options of a command that the layers can give.
+fn options(command: &clap::Command) -> impl Iterator<Item = &Arg> {
+    command
+        .get_arguments()
+        .filter(|arg| !arg.is_positional() && !matches!(arg.get_long(), Some("help" | "version")))
+}
+
+fn is_typed(matches: &ArgMatches, option: &Arg) -> bool {
+    matches.value_source(option.get_id().as_str()) == Some(ValueSource::CommandLine)
+}
+
+/// `--wind=5@270` for each value; a plain flag for `true`, nothing for `false`.
+fn flags(option: &Arg, long: &str, source: &str, values: &[String]) -> Result<Vec<OsString>, String> {
+    match option.get_action() {
+        ArgAction::SetTrue => match values.first().map(|value| value.to_ascii_lowercase()).as_deref() {
+            Some("true" | "on" | "yes" | "1") => Ok(vec![format!("--{long}").into()]),
+            Some("false" | "off" | "no" | "0" | "") | None => Ok(Vec::new()),
+            Some(other) => Err(format!("{source}: {other} is neither true nor false")),
+        },
+        ArgAction::Append => Ok(values.iter().map(|value| format!("--{long}={value}").into()).collect()),
+        _ if values.len() > 1 => Err(format!("{source}: one value is expected, not {}", values.len())),
+        _ => Ok(values.iter().map(|value| format!("--{long}={value}").into()).collect()),
+    }
+}
+
+impl Layers {
+    /// What the layers add to what was typed, the environment first. An option that conflicts with one of a higher layer
+    /// is left out. `sources` gets where each added option comes from.
+    fn additions(
+        &self,
+        definition: &clap::Command,
+        typed: &ArgMatches,
+        sources: &mut BTreeMap<String, String>,
+    ) -> Result<Vec<OsString>, String> {
+        let mut given: Vec<&Arg> = options(definition).filter(|option| is_typed(typed, option)).collect();
+        let mut decided = given.clone();
+        let mut added = Vec::new();
+        for layer in [Self::in_environment, Self::in_file] {
+            let mut here = Vec::new();
+            for option in options(definition) {
+                let clash = |other: &&Arg| {
+                    definition.get_arg_conflicts_with(option).contains(other)
+                        || definition.get_arg_conflicts_with(other).contains(&option)
+                };
+                let blocked = decided.contains(&option) || given.iter().any(clash);
+                let Some(long) = option.get_long().filter(|_| !blocked) else { continue };
+                let Some((source, values)) = layer(self, long)? else { continue };
+                let values = flags(option, long, &source, &values)?;
+                decided.push(option);
+                if !values.is_empty() {
+                    here.push(option);
+                }
+                added.extend(values);
+                sources.insert(long.to_owned(), source);
+            }
+            given.append(&mut here);
+        }
+        Ok(added)
+    }
+
+    /// Where the environment has the option, and its value.
+    fn in_environment(&self, long: &str) -> Result<Option<Found>, String> {
+        let variable = format!("{ENVIRONMENT_PREFIX}{}", long.to_ascii_uppercase().replace('-', "_"));
+        let value = self.environment.get(&variable).filter(|value| !value.is_empty());
+        Ok(value.map(|value| (format!("environment variable {variable}"), vec![value.clone()])))
+    }
+
+    /// Where the file has the option, and its values.
+    fn in_file(&self, long: &str) -> Result<Option<Found>, String> {
+        let Some((key, value)) = self.file.iter().find(|(key, _)| option_name(key) == long) else {
+            return Ok(None);
+        };
+        let source = format!("{}: {key}", self.file_name);
+        let texts = match value {
+            toml::Value::Array(values) => values.iter().map(scalar).collect(),
+            single => scalar(single).map(|text| vec![text]),
+        };
+        match texts {
+            Some(texts) => Ok(Some((source, texts))),
+            None => Err(format!("{source}: a {} is not a value of --{long}", value.type_str())),
+        }
+    }
+
+    fn refuse_unknown_keys(&self, command: &clap::Command) -> Result<(), clap::Error> {
+        let names: Vec<&str> = FLYING
+            .iter()
+            .flat_map(|name| options(command.find_subcommand(name).unwrap_or(command)))
+            .filter_map(Arg::get_long)
+            .collect();
+        let problems: Vec<String> = self
+            .file
+            .keys()
+            .filter(|key| !names.contains(&option_name(key).as_str()))
+            .map(|key| {
+                let guess = nearest(&option_name(key), names.iter().copied());
+                let guess = guess.map_or_else(String::new, |name| format!("; did you mean {name}?"));
+                format!("{}: {key} is not an option{guess}", self.file_name)
+            })
+            .collect();
+        if problems.is_empty() { Ok(()) } else { Err(problem(command, &problems.join("\n"))) }
+    }
+}
+
+/// Keys may be written with `_` as well.
+fn option_name(key: &str) -> String {
+    key.replace('_', "-")
+}
+
+/// A value as it would be typed.
+fn scalar(value: &toml::Value) -> Option<String> {
+    match value {
+        toml::Value::String(text) => Some(text.clone()),
+        toml::Value::Integer(number) => Some(number.to_string()),
+        toml::Value::Float(number) => Some(number.to_string()),
+        toml::Value::Boolean(true) => Some("on".to_owned()),
+        toml::Value::Boolean(false) => Some("off".to_owned()),
+        toml::Value::Datetime(_) | toml::Value::Array(_) | toml::Value::Table(_) => None,
+    }
+}
+
+fn problem(command: &clap::Command, text: &str) -> clap::Error {
+    command.clone().error(ErrorKind::InvalidValue, text)
+}
+
+/// Says where the value came from that an option's parser refused.
+fn name_source(mut error: clap::Error, sources: &BTreeMap<String, String>) -> clap::Error {
+    let Some(ContextValue::String(option)) = error.get(ContextKind::InvalidArg) else { return error };
+    let long = option.trim_start_matches('-').split([' ', '=']).next().unwrap_or_default();
+    if let Some(source) = sources.get(long) {
+        let place = format!("--{long}, from {source}");
+        error.insert(ContextKind::InvalidArg, ContextValue::String(place));
+    }
+    error
+}

@@ -1,0 +1,88 @@
+//! The PLAN argument: a built-in plan, a file, or standard input.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use crate::plan::builtin::{BuiltinPlan, PLANS};
+use crate::plan::format::Format;
+
+/// Where a plan comes from.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum PlanArg {
+    /// A plan of the executable.
+    Builtin(BuiltinPlan),
+    /// Standard input in a format.
+    Stdin(Format),
+    /// A file and the format that its ending names.
+    File(PathBuf, Format),
+}
+
+/// Why a text names no plan.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "it is neither a built-in plan nor a file ending in {endings}{guess} (built in: {builtin})",
+    endings = Format::endings(),
+    builtin = PLANS.iter().map(|plan| plan.name).collect::<Vec<_>>().join(", ")
+)]
+pub struct PlanArgError {
+    guess: String,
+}
+
+impl FromStr for PlanArg {
+    type Err = PlanArgError;
+
+    fn from_str(text: &str) -> Result<Self, PlanArgError> {
+        if text == "-" {
+            return Ok(Self::Stdin(Format::CliText));
+        }
+        if let Some(plan) = BuiltinPlan::find(text) {
+            return Ok(Self::Builtin(plan));
+        }
+        if let Some(format) = Format::from_file_name(text) {
+            return Ok(Self::File(text.into(), format));
+        }
+        let guess = BuiltinPlan::suggest(text);
+        Err(PlanArgError { guess: guess.map_or_else(String::new, |name| format!("; did you mean {name}?")) })
+    }
+}
+
+impl PlanArg {
+    /// The format that the plan's text is in.
+    #[must_use]
+    pub fn format(&self) -> Format {
+        match self {
+            Self::Builtin(_) => Format::Toml,
+            Self::Stdin(format) | Self::File(_, format) => *format,
+        }
+    }
+
+    /// The name to show in messages: the file as given, `-`, or the built-in plan's name.
+    #[must_use]
+    pub fn display_name(&self) -> String {
+        match self {
+            Self::Builtin(plan) => plan.name.to_owned(),
+            Self::Stdin(_) => "-".to_owned(),
+            Self::File(path, _) => path.display().to_string(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_files_and_standard_input() {
+        assert!(matches!("square".parse(), Ok(PlanArg::Builtin(plan)) if plan.name == "square"));
+        assert_eq!("-".parse(), Ok(PlanArg::Stdin(Format::CliText)));
+        assert_eq!("./square.txt".parse(), Ok(PlanArg::File("./square.txt".into(), Format::CliText)));
+        assert_eq!("square.txt".parse::<PlanArg>().unwrap().display_name(), "square.txt");
+    }
+
+    #[test]
+    fn anything_else_is_refused_with_a_guess() {
+        let error = "sqare".parse::<PlanArg>().unwrap_err().to_string();
+        assert!(error.contains(".toml, .txt; did you mean square? (built in: square, flyover"), "{error}");
+        assert!("plan.doc".parse::<PlanArg>().is_err());
+    }
+}

@@ -1,0 +1,185 @@
+//! Tests of the whole command line.
+
+use std::collections::BTreeMap;
+
+use super::*;
+
+fn parse_line(line: &str, layers: &Layers) -> Result<Cli, clap::Error> {
+    parse(line.split(' ').map(OsString::from), layers)
+}
+
+fn fly(line: &str) -> FlyArgs {
+    fly_over(line, &Layers::default())
+}
+
+fn fly_over(line: &str, layers: &Layers) -> FlyArgs {
+    match parse_line(line, layers).unwrap_or_else(|error| panic!("{error}")).command {
+        Some(Command::Fly(fly)) => *fly,
+        other => panic!("{other:?}"),
+    }
+}
+
+fn refusal(line: &str, layers: &Layers) -> String {
+    let error = parse_line(line, layers).expect_err(line);
+    assert_eq!(error.exit_code(), 2, "{error}");
+    error.render().to_string()
+}
+
+fn layers(environment: &[(&str, &str)], file: &str) -> Layers {
+    let pairs = environment.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned()));
+    Layers {
+        environment: BTreeMap::from_iter(pairs),
+        file_name: "config.toml".to_owned(),
+        file: file.parse().unwrap_or_else(|error| panic!("{error}")),
+    }
+}
+
+#[test]
+fn the_definition_is_sound() {
+    Cli::command().debug_assert();
+}
+
+#[test]
+fn without_a_command_the_terminal_opens() {
+    let cli = parse_line("betadeck", &Layers::default()).unwrap();
+    assert!(cli.command.is_none() && cli.tui.plan.is_none());
+    let cli = parse_line("betadeck square --seed 7", &Layers::default()).unwrap();
+    assert_eq!(cli.tui.flight.seed, Some(7));
+}
+
+#[test]
+fn fly_reads_every_option() {
+    let fly = fly(
+        "betadeck fly square --json - --samples 10 --gpx t.gpx --timeout 60 --takeoff 0 --rx-loss-at 14 \
+         --gps-loss-at boot+20,6 --fault motor@10,,2:0.8 --fault gps-loss@1 --stick pitch=2000@30,2 \
+         --set ap_max_angle=25 --set a=b --settings diff.txt --seed 9 --rate 4000 --speed 2 --noise none \
+         --wind 5@270 --gust 2 --turbulence light --world battery_sag=on --airframe five-inch \
+         --home -40,-79,300 --heading -90 --fresh --arm-assist on --attitude truth",
+    );
+    assert_eq!(fly.json, Some(OutputFile::Stdout));
+    assert_eq!(fly.faults().count(), 4);
+    assert_eq!(fly.set, ["ap_max_angle = 25", "a = b"]);
+    assert!(
+        (fly.speed() - 2.0).abs() < 1e-9
+            && fly.takeoff_m().abs() < 1e-9
+            && (fly.timeout_s() - 60.0).abs() < 1e-9
+    );
+    assert_eq!(fly.flight.home.unwrap().to_string(), "-40.0000000,-79.0000000,300");
+    assert!(fly.flight.fresh && fly.flight.arm_assist.is_some_and(OnOff::is_on));
+    assert_eq!(fly.flight.attitude, Some(Attitude::Truth));
+}
+
+#[test]
+fn defaults_of_fly() {
+    let fly = fly("betadeck fly -");
+    assert_eq!(fly.plan, PlanArg::Stdin(crate::plan::format::Format::CliText));
+    assert!(fly.speed().is_infinite());
+    assert!((fly.takeoff_m() - 10.0).abs() < 1e-9 && (fly.timeout_s() - 1800.0).abs() < 1e-9);
+}
+
+#[test]
+fn wrong_values_say_what_is_allowed() {
+    let none = Layers::default();
+    for (line, part) in [
+        ("betadeck fly", "required"),
+        ("betadeck fly sqare", "did you mean square?"),
+        ("betadeck fly square --wnd 5@270", "--wind"),
+        ("betadeck fly square --wind 5", "5@270"),
+        ("betadeck fly square --rate 100", "2.5 ms"),
+        ("betadeck fly square --fault motr@1", "motor"),
+        ("betadeck fly square --samples 10", "--samples needs --json"),
+        ("betadeck fly square --fresh --state-dir x", "cannot be used with"),
+        ("betadeck fly square --home 95,1", "latitude 95 is out of range"),
+        ("betadeck fly square --arm-assist maybe", "possible values: on, off"),
+        ("betadeck flly square", "did you mean betadeck fly?"),
+        ("betadeck convrt", "did you mean betadeck convert?"),
+        ("betadeck convert a.txt -", "add --to toml or --to txt"),
+        ("betadeck convert a.txt b", "b has none of the endings .toml, .txt"),
+        ("betadeck convert a b.txt", "a: it is neither a built-in plan nor a file"),
+        ("betadeck convert a.txt b.toml --from doc", "allowed are toml and txt"),
+    ] {
+        let text = refusal(line, &none);
+        assert!(text.contains(part), "{line}:\n{text}");
+    }
+}
+
+#[test]
+fn convert_knows_its_formats() {
+    use crate::plan::format::Format;
+    let convert = |line: &str| match parse_line(line, &Layers::default()).unwrap().command {
+        Some(Command::Convert(convert)) => (convert.source().unwrap(), convert.target().unwrap()),
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(convert("betadeck convert a.txt b.toml"), ("a.txt".parse().unwrap(), Format::Toml));
+    assert_eq!(
+        convert("betadeck convert - - --from TOML --to txt"),
+        (PlanArg::Stdin(Format::Toml), Format::CliText)
+    );
+    assert_eq!(
+        convert("betadeck convert a b --from txt --to toml").0,
+        PlanArg::File("a".into(), Format::CliText)
+    );
+    assert!(matches!(convert("betadeck convert square b.txt").0, PlanArg::Builtin(_)));
+}
+
+#[test]
+fn the_command_line_wins_over_environment_over_file() {
+    let layers = layers(
+        &[("BETADECK_SEED", "2"), ("BETADECK_RX_LOSS_AT", "14"), ("HOME", "/"), ("BETADECK_WIND", "")],
+        "seed = 3\nwind = \"5@270\"\nrate = 2000\ntakeoff = 12.5\nset = [\"a=1\", \"b=2\"]\narm_assist = true\n",
+    );
+    let fly = fly_over("betadeck fly square --rate 500", &layers);
+    assert_eq!(fly.flight.seed, Some(2));
+    assert_eq!(fly.flight.rate, Some(500));
+    assert_eq!(fly.flight.wind.unwrap().to_string(), "5@270");
+    assert!((fly.takeoff_m() - 12.5).abs() < 1e-9);
+    assert_eq!(fly.set, ["a = 1", "b = 2"]);
+    assert!(fly.rx_loss_at.is_some() && fly.flight.arm_assist == Some(OnOff::On));
+    assert_eq!(fly_over("betadeck fly square --set c=3", &layers).set, ["c = 3"]);
+    // The terminal has no --takeoff: the key is for others.
+    let cli = parse_line("betadeck", &layers).unwrap();
+    assert_eq!(cli.tui.flight.seed, Some(2));
+}
+
+#[test]
+fn a_typed_option_silences_the_layered_one_it_conflicts_with() {
+    let file = layers(&[], "state-dir = \"x\"\n");
+    assert!(fly_over("betadeck fly square", &file).flight.state_dir.is_some());
+    let fly = fly_over("betadeck fly square --fresh", &file);
+    assert!(fly.flight.fresh && fly.flight.state_dir.is_none());
+    let fresh = layers(&[("BETADECK_FRESH", "1")], "");
+    assert!(fly_over("betadeck fly square", &fresh).flight.fresh);
+    assert!(!fly_over("betadeck fly square --state-dir y", &fresh).flight.fresh);
+    let both = layers(&[("BETADECK_FRESH", "1")], "state-dir = \"x\"\n");
+    let fly = fly_over("betadeck fly square", &both);
+    assert!(fly.flight.fresh && fly.flight.state_dir.is_none());
+}
+
+#[test]
+fn wrong_layers_are_named() {
+    for (environment, file, part) in [
+        (&[("BETADECK_WIND", "5")][..], "", "environment variable BETADECK_WIND"),
+        (&[("BETADECK_FRESH", "maybe")][..], "", "BETADECK_FRESH: maybe is neither true nor false"),
+        (&[][..], "wind = \"x\"", "config.toml: wind"),
+        (&[][..], "wnd = \"5@270\"", "config.toml: wnd is not an option; did you mean wind?"),
+        (&[][..], "[wind]\nspeed = 5", "config.toml: wind: a table is not a value of --wind"),
+        (&[][..], "seed = [1, 2]", "one value is expected, not 2"),
+    ] {
+        let text = refusal("betadeck fly square", &layers(environment, file));
+        assert!(text.contains(part), "{text}");
+    }
+}
+
+#[test]
+fn layers_do_not_touch_commands_that_do_not_fly() {
+    let layers = layers(&[("BETADECK_WIND", "nonsense")], "seed = 5");
+    assert!(matches!(parse_line("betadeck doctor", &layers).unwrap().command, Some(Command::Doctor)));
+}
+
+#[test]
+fn help_and_version_are_no_errors() {
+    for line in ["betadeck --help", "betadeck -h", "betadeck fly --help", "betadeck --version"] {
+        let error = parse_line(line, &Layers::default()).expect_err(line);
+        assert_eq!(error.exit_code(), 0, "{line}");
+    }
+}

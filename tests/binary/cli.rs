@@ -1,0 +1,265 @@
+//! The command line: bad input, help, the small commands, and readers that go away.
+
+use std::io::{BufRead as _, BufReader};
+use std::process::Stdio;
+
+use crate::support::{Sandbox, plan};
+
+const BAD: &str = "\
+waypoint insert 0 4O.4640000 -79.5175000 5000 0 FLYOVER 0 ORBIT
+waypoint insert 1 40.4630000 -279.5175000 5000 0 FLYBYE 0 ORBIT
+# a comment
+waypoint insert 7 40.4630000 -79.5175000 5000 99999 FLYBY 0 ORBITT
+waypoint insert 3 40.4630000 -79.5175000 5000 0
+";
+
+#[test]
+fn every_error_of_a_plan_has_its_place_and_the_allowed_range() {
+    let sandbox = Sandbox::new();
+    sandbox.write("bad.txt", BAD);
+    for arguments in [
+        &["fly", "bad.txt"][..],
+        &["plan", "show", "bad.txt"],
+        &["convert", "bad.txt", "out.toml"],
+        &["fly", "--json", "out.json", "bad.txt"],
+    ] {
+        let ran = sandbox.run(arguments).exits(2);
+        assert_eq!(ran.out, "");
+        for place in ["1:19", "2:30", "2:50", "4:17", "4:47", "4:61", "5:"] {
+            assert!(ran.err.contains(&format!("bad.txt:{place}")), "no {place} in\n{}", ran.err);
+        }
+        for help in [
+            "4O.4640000 is not a number",
+            "allowed: -90.0000000 to 90.0000000",
+            "allowed: -180.0000000 to 180.0000000",
+            "did you mean FLYBY?",
+            "did you mean ORBIT?",
+            "allowed: 0 to 65535 cm/s",
+        ] {
+            assert!(ran.err.contains(help), "no {help:?} in\n{}", ran.err);
+        }
+        // The caret stands under the place.
+        let lines: Vec<&str> = ran.err.lines().collect();
+        let shown = lines.iter().position(|line| line.contains("insert 0 4O.46")).expect("the line");
+        assert_eq!(lines[shown].find("4O"), lines[shown + 1].find('^'), "{}", ran.err);
+    }
+    assert_eq!(sandbox.names(), ["bad.txt"], "nothing is written");
+}
+
+#[test]
+fn errors_of_a_toml_plan_have_their_places_too() {
+    let sandbox = Sandbox::new();
+    sandbox.write(
+        "bad.toml",
+        "nmae = \"x\"\n\n[[waypoint]]\ntype = \"FLYOVR\"\nlat_deg = 140.0\nlon_deg = \"a\"\nalt_m = 1e9\nspede = 3\n",
+    );
+    let ran = sandbox.run(&["fly", "bad.toml"]).exits(2);
+    for place in ["1:1", "4:8", "5:11", "6:11", "7:9", "8:1"] {
+        assert!(ran.err.contains(&format!("bad.toml:{place}: ")), "no {place} in\n{}", ran.err);
+    }
+    assert!(ran.err.contains("did you mean FLYOVER?"), "{}", ran.err);
+    sandbox.write("broken.toml", "name = \"x\n");
+    let ran = sandbox.run(&["fly", "broken.toml"]).exits(2);
+    assert!(ran.err.contains("broken.toml:1:"), "{}", ran.err);
+}
+
+#[test]
+fn bad_settings_say_what_is_allowed() {
+    let sandbox = Sandbox::new();
+    let ran = sandbox.run(&["fly", "square", "--set", "ap_max_angle=999"]).exits(2);
+    assert!(ran.err.contains("ap_max_angle") && ran.err.contains("Allowed range: "), "{}", ran.err);
+    let ran = sandbox.run(&["fly", "square", "--set", "ap_max_angel=20"]).exits(2);
+    assert!(ran.err.contains("ap_max_angle"), "the nearest name is told: {}", ran.err);
+    sandbox.write("diff.txt", "# comment\nset ap_max_angle = 25\nset ap_l1_enable = MAYBE\nfrobnicate\n");
+    let ran = sandbox.run(&["fly", "square", "--settings", "diff.txt"]).exits(2);
+    assert!(ran.err.contains("diff.txt:3: ") && ran.err.contains("diff.txt:4: "), "{}", ran.err);
+    assert!(!ran.err.contains("diff.txt:2: "), "{}", ran.err);
+    assert!(ran.err.contains("OFF, ON"), "{}", ran.err);
+}
+
+#[test]
+fn wrong_usage_is_exit_code_2_with_a_suggestion() {
+    let sandbox = Sandbox::new();
+    for (arguments, hint) in [
+        (&["fly", "square", "--sede", "3"][..], "--seed"),
+        (&["fly", "sqare"], "square"),
+        (&["flyy", "square"], "fly"),
+        (&["fly"], "<PLAN>"),
+        (&["fly", "square", "--rate", "100"], "400, 500, 1000, 2000, 4000"),
+        (&["fly", "square", "--home", "91,0"], "-90"),
+        (&["fly", "square", "--fault", "motr@3"], "motor"),
+        (&["fly", "square", "--stick", "aux1=1000@x"], "x"),
+        (&["fly", "square", "--samples", "10"], "--json"),
+        (&["fly", "square", "--airframe", "irs"], "iris"),
+        (&["fly", "square", "--wind", "5"], "--wind"),
+        (&["fly", "square", "--speed", "fast"], "--speed"),
+        (&["fly", "square", "--world", "foo=1"], "wind_profile"),
+        (&["convert", "square", "x.doc"], "--to"),
+    ] {
+        let ran = sandbox.run(arguments).exits(2);
+        assert!(ran.err.contains(hint), "no {hint:?} in\n{}", ran.err);
+        assert_eq!(ran.out, "", "{arguments:?}");
+    }
+    assert_eq!(sandbox.names(), Vec::<String>::new());
+}
+
+#[test]
+fn files_that_cannot_be_read_or_written_are_exit_code_3() {
+    let sandbox = Sandbox::new();
+    for arguments in [
+        &["fly", "missing.toml"][..],
+        &["plan", "show", "missing.txt"],
+        &["fly", "square", "--settings", "missing.txt"],
+        &["fly", "square", "--airframe", "missing.toml"],
+        &["fly", "square", "--json", "missing/flight.json"],
+        &["fly", "square", "--gpx", "missing/track.gpx"],
+        &["convert", "square", "missing/out.txt"],
+    ] {
+        let ran = sandbox.run(arguments).exits(3);
+        assert!(ran.err.contains("missing"), "{}", ran.err);
+    }
+}
+
+#[test]
+fn the_user_interface_without_a_terminal_names_fly() {
+    for arguments in [&[][..], &["square"]] {
+        let ran = Sandbox::new().run(arguments).exits(3);
+        assert_eq!(ran.err.lines().count(), 1, "{}", ran.err);
+        assert!(ran.err.contains("terminal") && ran.err.contains("betadeck fly"), "{}", ran.err);
+        assert_eq!(ran.out, "");
+    }
+}
+
+#[test]
+fn an_unreachable_mission_ends_at_the_timeout_with_the_reason() {
+    let flown = Sandbox::new().fly(&["square", "--timeout", "30"]).ends(1, "timeout");
+    let reason = flown.first("end").text("reason");
+    assert!(reason.contains("30 s") && reason.contains("APPROACHING"), "{reason}");
+    assert!(flown.err.starts_with("timeout: "), "{}", flown.err);
+}
+
+#[test]
+fn plan_show_prints_the_table_and_judges_the_plan() {
+    let sandbox = Sandbox::new();
+    let ran = sandbox.run(&["plan", "show", "square"]).exits(0);
+    for word in ["FLYOVER", "FLYBY", "HOLD", "LAND", "40.4640000", "-79.5175000"] {
+        assert!(ran.out.contains(word), "no {word} in\n{}", ran.out);
+    }
+    sandbox.write("far.txt", "waypoint insert 0 40.9 -79.5182000 1200 0 FLYOVER 0 ORBIT\n");
+    let ran = sandbox
+        .run_with(&["plan", "show", "-"], "waypoint insert 0 40.4637 -79.5182 1200 0 HOLD 10 FIGURE8\n");
+    assert!(ran.exits(0).out.contains("FIGURE8"));
+}
+
+#[test]
+fn converting_there_and_back_keeps_the_plan() {
+    let sandbox = Sandbox::new();
+    for name in
+        ["square.toml", "alt-change.toml", "delay.toml", "yaw-rate.toml", "takeoff.toml", "guide-square.txt"]
+    {
+        let source = plan(name);
+        sandbox.run(&["convert", &source, "a.txt"]).exits(0);
+        sandbox.run(&["convert", "a.txt", "b.toml"]).exits(0);
+        sandbox.run(&["convert", "b.toml", "c.txt"]).exits(0);
+        let waypoints = |name: &str| -> Vec<String> {
+            let text = sandbox.read(name);
+            text.lines().filter(|line| line.starts_with("waypoint insert")).map(str::to_owned).collect()
+        };
+        assert!(!waypoints("a.txt").is_empty(), "{name}");
+        assert_eq!(waypoints("a.txt"), waypoints("c.txt"), "{name}");
+    }
+    let ran = sandbox.run(&["convert", "guide-square.txt", "-", "--to", "toml"]);
+    assert_eq!(ran.code, Some(3), "the file is in another directory: {ran:?}");
+    let ran = sandbox.run(&["convert", &plan("guide-square.txt"), "-", "--to", "toml"]).exits(0);
+    assert!(ran.out.contains("[[waypoint]]"), "{}", ran.out);
+    assert!(ran.err.contains("save"), "what is skipped is said: {}", ran.err);
+}
+
+#[test]
+fn a_converted_plan_flies_as_the_original() {
+    let sandbox = Sandbox::new();
+    sandbox.run(&["convert", &plan("guide-square.txt"), "square.toml"]).exits(0);
+    let (a, b) = (sandbox.fly(&[&plan("guide-square.txt")]), sandbox.fly(&["square.toml"]));
+    let states = |flown: &crate::support::Flown| flown.all("state").cloned().collect::<Vec<_>>();
+    assert_eq!(states(&a), states(&b));
+}
+
+#[test]
+fn help_version_doctor_completions_and_man() {
+    let sandbox = Sandbox::new();
+    let version = sandbox.run(&["--version"]).exits(0).out;
+    assert_eq!(version.trim_end(), format!("betadeck {}", env!("CARGO_PKG_VERSION")));
+    for arguments in
+        [&["--help"][..], &["-h"], &["fly", "--help"], &["plan", "show", "--help"], &["convert", "-h"]]
+    {
+        let ran = sandbox.run(arguments).exits(0);
+        assert!(ran.out.contains("Usage: betadeck") && ran.err.is_empty(), "{arguments:?}");
+    }
+    let doctor = sandbox.run(&["doctor"]).exits(0).out;
+    assert!(doctor.contains(env!("CARGO_PKG_VERSION")) && doctor.contains("state directory"), "{doctor}");
+    for (shell, part) in [("bash", "complete -F"), ("zsh", "#compdef"), ("fish", "complete -c betadeck")] {
+        assert!(sandbox.run(&["completions", shell]).exits(0).out.contains(part), "{shell}");
+    }
+    let man = sandbox.run(&["man"]).exits(0).out;
+    assert!(man.contains(".TH") && man.contains("betadeck"), "{}", &man[..200]);
+    sandbox.run(&["completions", "cmd"]).exits(2);
+    assert_eq!(sandbox.names(), Vec::<String>::new(), "none of them writes a file");
+}
+
+#[test]
+fn options_come_from_the_environment_and_the_configuration_file_too() {
+    let sandbox = Sandbox::new();
+    let boot = |environment: &[(&str, &str)], arguments: &[&str]| -> (i64, i64) {
+        let mut command = sandbox.command(&[&["fly", "land", "--json", "-"], arguments].concat());
+        command.envs(environment.iter().copied());
+        let output = assert_cmd::Command::from_std(command).output().expect("a flight");
+        let text = String::from_utf8(output.stdout).expect("UTF-8");
+        let line: serde_json::Value =
+            serde_json::from_str(text.lines().next().expect("a line")).expect("JSON");
+        (line["seed"].as_i64().expect("a seed"), line["rate"].as_i64().expect("a rate"))
+    };
+    assert_eq!(boot(&[], &[]), (1, 1000));
+    std::fs::create_dir_all(sandbox.path(".config/betadeck")).expect("a directory");
+    sandbox.write(".config/betadeck/config.toml", "seed = 7\nrate = 500\n");
+    assert_eq!(boot(&[], &[]), (7, 500));
+    assert_eq!(boot(&[("BETADECK_SEED", "8")], &[]), (8, 500));
+    assert_eq!(boot(&[("BETADECK_SEED", "8")], &["--seed", "9"]), (9, 500));
+    sandbox.write(".config/betadeck/config.toml", "sede = 7\n");
+    let ran = sandbox.run(&["fly", "land"]).exits(2);
+    assert!(ran.err.contains("config.toml") && ran.err.contains("seed"), "{}", ran.err);
+}
+
+#[test]
+fn a_reader_that_goes_away_is_no_error() {
+    for stream in ["out", "err"] {
+        let sandbox = Sandbox::new();
+        let mut command = sandbox.command(&["fly", "square", "--json", "-", "--samples", "1000"]);
+        let (out, err) =
+            if stream == "out" { (Stdio::piped(), Stdio::null()) } else { (Stdio::null(), Stdio::piped()) };
+        let mut child =
+            command.stdin(Stdio::null()).stdout(out).stderr(err).spawn().expect("the executable runs");
+        if let Some(out) = child.stdout.take() {
+            let mut reader = BufReader::new(out);
+            let mut line = String::new();
+            reader.read_line(&mut line).expect("a line");
+            assert!(line.contains("\"boot\""), "{line}");
+        }
+        drop(child.stderr.take());
+        assert_eq!(child.wait().expect("an end").code(), Some(0), "standard {stream}put closed");
+    }
+    // A long answer of a small command.
+    let sandbox = Sandbox::new();
+    let mut command = sandbox.command(&["man"]);
+    let mut child = command.stdout(Stdio::piped()).spawn().expect("the executable runs");
+    drop(child.stdout.take());
+    assert_eq!(child.wait().expect("an end").code(), Some(0));
+}
+
+#[test]
+fn a_full_disk_is_exit_code_3() {
+    if !std::path::Path::new("/dev/full").exists() {
+        return;
+    }
+    let ran = Sandbox::new().run(&["fly", "square", "--json", "/dev/full", "--samples", "100"]).exits(3);
+    assert!(ran.err.contains("cannot write"), "{}", ran.err);
+}

@@ -1,0 +1,201 @@
+//! The options of `fly`: what goes wrong, what the sticks do, the air, the rates, and the files that are written.
+
+use crate::support::{Flown, Sandbox};
+
+fn fly(arguments: &[&str]) -> Flown {
+    Sandbox::new().fly(arguments)
+}
+
+/// Time of the first transition into a state, from the engagement.
+fn entered(flown: &Flown, state: &str) -> Option<f64> {
+    let line = flown.all("state").find(|line| line.text("to") == state)?;
+    Some(line.time() - flown.engaged_at())
+}
+
+#[test]
+fn a_lost_radio_link_lands_the_craft_here_when_the_policy_says_so() {
+    let flown = fly(&["square", "--rx-loss-at", "20", "--set", "ap_rx_loss_policy=LAND"]).ends(1, "landed");
+    let loss = flown.first("rx_loss").time() - flown.engaged_at();
+    assert!((20.0..21.5).contains(&loss), "lost after {loss} s");
+    assert_eq!(
+        flown.all("plan").next_back().map(|line| line.text("source").to_owned()),
+        Some("emergency".to_owned())
+    );
+    assert!(entered(&flown, "LANDING").expect("a landing") < 25.0);
+    assert_eq!(flown.first("disarmed").text("reason"), "LANDING");
+}
+
+#[test]
+fn a_short_gap_of_the_radio_link_changes_nothing() {
+    let flown = fly(&["hold-none", "--rx-loss-at", "8,0.1"]).ends(0, "complete");
+    assert_eq!(flown.all("failsafe").filter(|line| line.number("stage") > 1.0).count(), 0);
+}
+
+#[test]
+fn a_lost_gps_ends_the_mission() {
+    let flown = fly(&["square", "--gps-loss-at", "10"]);
+    assert_eq!(flown.code, Some(1), "{}", flown.err);
+    let lost = flown.first("gps_lost").time() - flown.engaged_at();
+    assert!((10.0..13.0).contains(&lost), "lost after {lost} s");
+    assert!(entered(&flown, "IDLE").expect("an IDLE") < 14.0);
+}
+
+#[test]
+fn faults_are_reported_with_their_times_and_boot_times_count_from_boot() {
+    let flown = fly(&["hold-none", "--fault", "motor@5,4,2:0.9", "--fault", "gust@boot+4,2,3@90"]);
+    let faults: Vec<(String, f64, bool)> = flown
+        .all("fault")
+        .map(|line| (line.text("name").to_owned(), line.time(), line.value("on").as_bool().expect("a flag")))
+        .collect();
+    let at = |name: &str, on: bool| {
+        let found = faults.iter().find(|fault| fault.0 == name && fault.2 == on);
+        found.unwrap_or_else(|| panic!("{name} {on} in {faults:?}")).1
+    };
+    let engaged = flown.engaged_at();
+    assert!(
+        (at("motor", true) - engaged - 5.0).abs() < 0.01 && (at("motor", false) - engaged - 9.0).abs() < 0.01
+    );
+    assert!((at("gust", true) - 4.0).abs() < 0.01 && (at("gust", false) - 6.0).abs() < 0.01);
+    flown.ends(0, "complete");
+}
+
+#[test]
+fn the_arm_switch_taken_back_in_flight_ends_the_flight() {
+    let flown = fly(&["square", "--stick", "aux1=1000@10"]);
+    assert_eq!(flown.code, Some(1), "{}", flown.err);
+    let disarmed = flown.first("disarmed");
+    assert_eq!(disarmed.text("reason"), "SWITCH");
+    assert!((disarmed.time() - flown.engaged_at() - 10.0).abs() < 0.5);
+    assert!(["disarmed", "crashed"].contains(&flown.first("end").text("result")), "{:?}", flown.first("end"));
+}
+
+#[test]
+fn the_autopilot_switched_off_for_a_while_resumes() {
+    let flown = fly(&["square", "--stick", "aux2=1000@5,4"]).ends(0, "complete");
+    let first: Vec<String> = flown.states().into_iter().take(3).collect();
+    assert_eq!(first, ["APPROACHING 0", "IDLE 0", "APPROACHING 0"]);
+    assert!((entered(&flown, "IDLE").expect("an IDLE") - 5.0).abs() < 0.2);
+}
+
+#[test]
+fn takeoff_zero_leaves_the_climb_to_the_autopilot() {
+    let flown = fly(&["takeoff", "--takeoff", "0", "--samples", "10"]).ends(0, "complete");
+    let engaged = flown.engaged_at();
+    let start = flown.all("sample").find(|line| line.time() >= engaged).expect("a sample");
+    assert!(start.number("alt") < 2.0, "{}", start.number("alt"));
+    assert_eq!(flown.states()[..3], ["APPROACHING 0", "ARRIVED 0", "APPROACHING 1"]);
+}
+
+#[test]
+fn every_rate_flies_the_square() {
+    for rate in ["400", "500", "1000", "2000", "4000", "8000"] {
+        let flown = fly(&["square", "--rate", rate]).ends(0, "complete");
+        assert_eq!(flown.first("boot").number("rate").to_string(), rate);
+        assert_eq!(
+            flown.all("disarmed").map(|line| line.text("reason")).collect::<Vec<_>>(),
+            ["LANDING"],
+            "{rate}"
+        );
+    }
+}
+
+#[test]
+fn the_air_is_what_was_asked_for() {
+    let flown = fly(&["square", "--wind", "5@270", "--world", "wind_profile=flat", "--samples", "2"])
+        .ends(0, "complete");
+    for line in flown.all("sample").filter(|line| line.number("alt") > 5.0) {
+        assert!((line.number("wind_e") - 5.0).abs() < 0.01 && line.number("wind_n").abs() < 0.01, "{line:?}");
+    }
+    let rough = fly(&["square", "--wind", "4@45", "--gust", "2", "--turbulence", "light", "--samples", "2"]);
+    let rough = rough.ends(0, "complete");
+    let speeds: Vec<f64> = rough
+        .all("sample")
+        .filter(|line| line.number("alt") > 5.0)
+        .map(|line| line.number("wind_n").hypot(line.number("wind_e")))
+        .collect();
+    let (low, high) = speeds.iter().fold((f64::MAX, 0.0_f64), |(low, high), &v| (low.min(v), high.max(v)));
+    assert!(high - low > 1.0, "gusts from {low:.1} to {high:.1} m/s");
+}
+
+#[test]
+fn both_airframes_and_both_attitudes_fly() {
+    for arguments in [["--airframe", "five-inch"], ["--airframe", "iris"], ["--attitude", "truth"]] {
+        let flown = fly(&[&["hold-none"], arguments.as_slice()].concat());
+        assert_eq!(flown.code, Some(0), "{arguments:?}: {}", flown.err);
+    }
+}
+
+#[test]
+fn the_craft_stands_where_and_as_it_is_told() {
+    let flown = fly(&["hold-none", "--home", "40.4634,-79.5181,120", "--heading", "90", "--samples", "1"]);
+    let first = flown.first("sample");
+    assert!((first.number("lat") - 40.4634).abs() < 1e-7 && (first.number("lon") + 79.5181).abs() < 1e-7);
+    assert!((first.number("heading") - 90.0).abs() < 0.5, "{first:?}");
+    assert!(
+        first.number("n").abs() < 0.01 && first.number("e").abs() < 0.01 && first.number("alt").abs() < 0.1
+    );
+    flown.ends(0, "complete");
+}
+
+#[test]
+fn settings_come_from_plan_file_and_command_line_and_the_later_wins() {
+    let sandbox = Sandbox::new();
+    sandbox.write("diff.txt", "# diff all\nset ap_max_distance_from_home = 40\nsave\n");
+    // The plan itself says 500 m: the file says 40 m, and the farthest waypoint is farther.
+    sandbox.fly(&["square", "--settings", "diff.txt"]).ends(1, "refused");
+    sandbox
+        .fly(&["square", "--settings", "diff.txt", "--set", "ap_max_distance_from_home=300"])
+        .ends(0, "complete");
+}
+
+#[test]
+fn the_pilot_uses_the_switches_of_the_craft() {
+    let sandbox = Sandbox::new();
+    // ARM on AUX4, AUTOPILOT in the middle of AUX6.
+    sandbox.write("modes.txt", "aux 0 0 3 1700 2100 0 0\naux 1 56 5 1300 1700 0 0\n");
+    sandbox.fly(&["hold-none", "--settings", "modes.txt"]).ends(0, "complete");
+    // The AUTOPILOT condition is gone.
+    sandbox.write("modes.txt", "aux 1 1 2 1700 2100 0 0\n");
+    let ran = sandbox.run(&["fly", "hold-none", "--settings", "modes.txt"]).exits(2);
+    assert!(ran.err.contains("AUTOPILOT"), "{}", ran.err);
+}
+
+#[test]
+fn json_and_gpx_go_to_the_files_and_nothing_else_is_written() {
+    let sandbox = Sandbox::new();
+    let ran = sandbox
+        .run(&["fly", "land", "--json", "flight.json", "--samples", "5", "--gpx", "track.gpx"])
+        .exits(0);
+    assert_eq!(ran.out, "");
+    let lines = crate::lines::Line::read_all(&sandbox.read("flight.json"));
+    let samples: Vec<f64> =
+        lines.iter().filter(|line| line.event() == "sample").map(crate::lines::Line::time).collect();
+    assert!(samples.len() > 100);
+    assert!(samples.windows(2).all(|pair| (pair[1] - pair[0] - 0.2).abs() < 1e-6));
+    let gpx = sandbox.read("track.gpx");
+    assert!(gpx.starts_with("<?xml") && gpx.trim_end().ends_with("</gpx>"), "{}", &gpx[..200]);
+    assert!(gpx.matches("<trkpt ").count() > 30, "{}", gpx.matches("<trkpt ").count());
+    let mut names = sandbox.names();
+    names.sort();
+    assert_eq!(names, ["flight.json", "track.gpx"]);
+}
+
+#[test]
+fn without_json_events_are_sentences_and_the_summary_goes_to_standard_error() {
+    let ran = Sandbox::new().run(&["fly", "land"]).exits(0);
+    for sentence in ["Booted", "GPS fix", "Armed.", "LANDING → COMPLETE", "Disarmed: landed."] {
+        assert!(ran.out.contains(sentence), "no {sentence:?} in\n{}", ran.out);
+    }
+    let summary: Vec<&str> = ran.err.lines().collect();
+    assert!(summary[0].starts_with("complete: ") && summary[1].contains("x real time)"), "{summary:?}");
+}
+
+#[test]
+fn a_state_directory_is_used_only_when_named() {
+    let sandbox = Sandbox::new();
+    sandbox.run(&["fly", "land"]).exits(0);
+    assert_eq!(sandbox.names(), Vec::<String>::new());
+    sandbox.run(&["fly", "land", "--state-dir", "state"]).exits(0);
+    let ran = sandbox.run(&["fly", "land", "--state-dir", "state", "--fresh"]).exits(2);
+    assert!(ran.err.contains("--fresh") && ran.err.contains("--state-dir"), "{}", ran.err);
+}

@@ -1,0 +1,185 @@
+//! JSON lines, checked strictly: which keys an event has, in which order, and of which kind each is.
+
+use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
+use serde_json::Value;
+
+/// One line; its keys in the order in which they were printed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Line(Vec<(String, Value)>);
+
+impl<'de> Deserialize<'de> for Line {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Pairs;
+        impl<'de> Visitor<'de> for Pairs {
+            type Value = Line;
+
+            fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str("an object")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Line, A::Error> {
+                let mut pairs = Vec::new();
+                while let Some(pair) = map.next_entry()? {
+                    pairs.push(pair);
+                }
+                Ok(Line(pairs))
+            }
+        }
+        deserializer.deserialize_map(Pairs)
+    }
+}
+
+impl Line {
+    /// Reads and checks all lines of a flight.
+    #[track_caller]
+    pub fn read_all(text: &str) -> Vec<Self> {
+        assert!(text.ends_with('\n'), "the last line is not ended: {text:?}");
+        let lines: Vec<Self> = text.lines().map(Self::read).collect();
+        assert_eq!(lines.first().map(Self::event), Some("boot"));
+        assert_eq!(lines.iter().position(|line| line.event() == "end"), Some(lines.len() - 1));
+        assert!(lines.windows(2).all(|pair| pair[0].time() <= pair[1].time()), "time runs backwards");
+        lines
+    }
+
+    #[track_caller]
+    fn read(text: &str) -> Self {
+        let line: Self = serde_json::from_str(text).unwrap_or_else(|error| panic!("{error}: {text}"));
+        check(&line.0, &format!("t:num event:text {}", fields(line.event())), text);
+        line
+    }
+
+    /// The value of a key that must be there.
+    #[track_caller]
+    pub fn value(&self, key: &str) -> &Value {
+        let found = self.0.iter().find(|(name, _)| name == key);
+        found.map_or_else(|| panic!("no {key} in {self:?}"), |(_, value)| value)
+    }
+
+    /// Simulated seconds since boot.
+    pub fn time(&self) -> f64 {
+        self.number("t")
+    }
+
+    /// The event's name.
+    pub fn event(&self) -> &str {
+        self.text("event")
+    }
+
+    /// A number.
+    #[track_caller]
+    pub fn number(&self, key: &str) -> f64 {
+        self.value(key).as_f64().unwrap_or_else(|| panic!("{key} is no number in {self:?}"))
+    }
+
+    /// A text; `null` is the empty one.
+    #[track_caller]
+    pub fn text(&self, key: &str) -> &str {
+        match self.value(key) {
+            Value::Null => "",
+            value => value.as_str().unwrap_or_else(|| panic!("{key} is no text in {self:?}")),
+        }
+    }
+}
+
+/// The documented fields of an event with their kinds; `?` = may be `null`. Unknown events are an error.
+fn fields(event: &str) -> &'static str {
+    match event {
+        "boot" => "version:text seed:num rate:num airframe:text live:flag",
+        "gps_fix" | "gps_lost" => "sats:num",
+        "armed" => "",
+        "disarmed" => "reason:word",
+        "mode" => "active:list",
+        "plan" => "source:source count:num waypoints:list",
+        "engage_refused" => "reason:word wp:num? cause:word? text:text",
+        "state" => {
+            "from:state to:state wp:num type:word? reason:text guard:map? target_lat:num target_lon:num target_alt:num"
+        }
+        "climbing" => "on:flag",
+        "geofence" => "distance_m:num limit_m:num action:word",
+        "rx_loss" | "rx_recovered" | "failsafe" => "policy:text? stage:num procedure:text?",
+        "fault" => "name:text on:flag value:text?",
+        "contact" => "impact_mps:num",
+        "touchdown" => "impact_mps:num peak_mps2:num",
+        "crash" => "cause:text",
+        "notice" => "text:text",
+        "sample" => {
+            "lat:num lon:num alt:num n:num e:num vn:num ve:num vu:num roll:num pitch:num heading:num est_n:num? \
+             est_e:num? est_alt:num? throttle_us:num motors:motors battery_v:num battery_a:num battery_mah:num \
+             state:state wp:num? wp_type:word? dist_m:num? bearing:num? xte_m:num? l1_mode:l1 target_n:num? \
+             target_e:num? target_alt:num? hold_remaining_ds:num wind_n:num wind_e:num"
+        }
+        "end" => "result:result reason:text flown_s:num wall_s:num speed_ratio:num",
+        _ => panic!("{event} is not a documented event"),
+    }
+}
+
+/// Checks keys, their order and the kind of each value.
+#[track_caller]
+fn check(pairs: &[(String, Value)], fields: &str, text: &str) {
+    let names: Vec<&str> = pairs.iter().map(|(name, _)| name.as_str()).collect();
+    let expected: Vec<(&str, &str)> =
+        fields.split_whitespace().map(|field| field.split_once(':').expect("name:kind")).collect();
+    assert_eq!(names, expected.iter().map(|(name, _)| *name).collect::<Vec<_>>(), "{text}");
+    for ((name, value), (_, kind)) in pairs.iter().zip(expected) {
+        let nullable = kind.ends_with('?');
+        assert!(
+            nullable && value.is_null() || is(value, kind.trim_end_matches('?')),
+            "{name} is no {kind}: {text}"
+        );
+    }
+    if let Some((_, guard)) = pairs.iter().find(|(name, value)| name == "guard" && !value.is_null()) {
+        let keys = ["name", "value", "limit", "unit", "margin", "op"];
+        assert_eq!(guard.as_object().map(serde_json::Map::len), Some(keys.len()), "{text}");
+        assert!(keys.iter().all(|key| guard.get(key).is_some()), "{text}");
+    }
+    if let Some((_, Value::Array(waypoints))) = pairs.iter().find(|(name, _)| name == "waypoints") {
+        for waypoint in waypoints {
+            let map = waypoint.as_object().expect("a waypoint");
+            assert_eq!(map.len(), 4, "{text}");
+            assert!(["type", "lat", "lon", "alt"].iter().all(|key| map.contains_key(*key)), "{text}");
+        }
+    }
+}
+
+fn is(value: &Value, kind: &str) -> bool {
+    let one_of = |words: &[&str]| value.as_str().is_some_and(|word| words.contains(&word));
+    match kind {
+        "num" => value.as_f64().is_some_and(f64::is_finite),
+        "text" => value.as_str().is_some_and(|text| !text.is_empty()),
+        "flag" => value.is_boolean(),
+        "list" => value.is_array(),
+        "map" => value.is_object(),
+        "word" => value.as_str().is_some_and(|word| {
+            !word.is_empty()
+                && word.bytes().all(|b| b.is_ascii_uppercase() || b.is_ascii_digit() || b == b'_')
+        }),
+        "motors" => value.as_array().is_some_and(|motors| {
+            let share = |motor: &Value| motor.as_f64().is_some_and(|share| (0.0..=1.0).contains(&share));
+            motors.len() == 4 && motors.iter().all(share)
+        }),
+        "state" => one_of(&[
+            "IDLE",
+            "APPROACHING",
+            "ARRIVED",
+            "HOLDING",
+            "ORBITING",
+            "FIGURE8",
+            "LANDING",
+            "COMPLETE",
+        ]),
+        "source" => one_of(&["stored", "rth", "emergency"]),
+        "l1" => one_of(&["TRACK", "DIRECT", "OFF"]),
+        "result" => one_of(&[
+            "complete",
+            "landed",
+            "refused",
+            "aborted",
+            "disarmed",
+            "crashed",
+            "timeout",
+            "diverged",
+            "interrupted",
+        ]),
+        _ => panic!("{kind} is not a kind"),
+    }
+}

@@ -1,0 +1,15 @@
+//! The built executable, used from outside: flights, plans, the command line, and the user interface in a
+//! pseudo-terminal.
+
+mod cli;
+mod fly;
+mod inputs;
+mod lines;
+mod plans;
+#[cfg(unix)]
+mod pty;
+#[cfg(unix)]
+mod signals;
+mod support;
+#[cfg(unix)]
+mod terminal;

@@ -1,0 +1,192 @@
+//! A program in a pseudo-terminal, seen on an emulated screen.
+#![allow(clippy::disallowed_methods, reason = "a deadline for a program that hangs needs the clock")]
+
+use std::io::{Read as _, Write as _};
+use std::num::NonZeroU16;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::time::{Duration, Instant};
+
+use portable_pty::{Child, CommandBuilder, MasterPty, PtySize, native_pty_system};
+use vt100::{MouseProtocolMode, Parser};
+
+use crate::support::Sandbox;
+
+/// When something that is waited for counts as never coming.
+const NEVER: Duration = Duration::from_secs(60);
+
+/// A running program and its screen; killed when dropped.
+pub struct Terminal {
+    child: Box<dyn Child + Send + Sync>,
+    master: Box<dyn MasterPty + Send>,
+    keys: Box<dyn std::io::Write + Send>,
+    output: Receiver<Vec<u8>>,
+    parser: Parser,
+    raw: Vec<u8>,
+    _home: Sandbox,
+}
+
+impl Terminal {
+    /// Starts the executable.
+    pub fn betadeck(columns: u16, rows: u16, arguments: &[&str]) -> Self {
+        Self::start(columns, rows, crate::support::PROGRAM, arguments)
+    }
+
+    /// Starts any program, with a home directory of its own.
+    pub fn start(columns: u16, rows: u16, program: &str, arguments: &[&str]) -> Self {
+        let home = Sandbox::new();
+        let pty = native_pty_system().openpty(size(columns, rows)).expect("a pseudo-terminal");
+        let mut command = CommandBuilder::new(program);
+        command.args(arguments);
+        command.env_clear();
+        for (name, value) in home.environment() {
+            command.env(name, value);
+        }
+        command.env("TERM", "xterm-256color");
+        command.env("LANG", "C.UTF-8");
+        command.env("PATH", "/usr/bin:/bin");
+        command.cwd(home.path("."));
+        let child = pty.slave.spawn_command(command).expect("the program runs");
+        drop(pty.slave);
+        let mut reader = pty.master.try_clone_reader().expect("a reader");
+        let (sender, output) = channel();
+        std::thread::spawn(move || {
+            let mut bytes = [0; 8192];
+            // Ends with the program: then the pseudo-terminal gives an error or nothing.
+            while let Ok(count @ 1..) = reader.read(&mut bytes) {
+                if sender.send(bytes[..count].to_vec()).is_err() {
+                    return;
+                }
+            }
+        });
+        Self {
+            keys: pty.master.take_writer().expect("a writer"),
+            child,
+            master: pty.master,
+            output,
+            parser: Parser::new(cells(rows), cells(columns), 0),
+            raw: Vec::new(),
+            _home: home,
+        }
+    }
+
+    /// Types.
+    pub fn send(&mut self, keys: &str) {
+        self.keys.write_all(keys.as_bytes()).expect("the program listens");
+        self.keys.flush().expect("the program listens");
+    }
+
+    /// Changes the size of the window.
+    pub fn resize(&mut self, columns: u16, rows: u16) {
+        self.master.resize(size(columns, rows)).expect("a new size");
+        self.parser.screen_mut().set_size(cells(rows), cells(columns));
+    }
+
+    /// Sends a signal to the program.
+    pub fn signal(&self, name: &str) {
+        let id = self.child.process_id().expect("a process").to_string();
+        let sent = std::process::Command::new("kill").args(["-s", name, &id]).status().expect("kill");
+        assert!(sent.success());
+    }
+
+    /// The screen as text.
+    pub fn screen(&self) -> String {
+        self.parser.screen().contents()
+    }
+
+    /// A row of the screen, from 0.
+    pub fn row(&self, row: usize) -> String {
+        self.screen().lines().nth(row).unwrap_or("").to_owned()
+    }
+
+    /// All bytes so far.
+    pub fn raw(&self) -> String {
+        String::from_utf8_lossy(&self.raw).into_owned()
+    }
+
+    /// Waits until the screen is as wanted.
+    #[track_caller]
+    pub fn until(&mut self, wanted: &str, is: impl Fn(&Self) -> bool) {
+        self.watch(wanted, |terminal| is(terminal));
+    }
+
+    /// Waits until the screen shows a text.
+    #[track_caller]
+    pub fn until_shown(&mut self, text: &str) {
+        self.watch(text, |terminal| terminal.screen().contains(text));
+    }
+
+    /// Looks at every change of the screen until `done`.
+    #[track_caller]
+    pub fn watch(&mut self, wanted: &str, mut done: impl FnMut(&Self) -> bool) {
+        let deadline = Instant::now() + NEVER;
+        while !done(self) {
+            let left = deadline.saturating_duration_since(Instant::now());
+            match self.output.recv_timeout(left) {
+                Ok(bytes) => {
+                    self.parser.process(&bytes);
+                    self.raw.extend(bytes);
+                }
+                Err(RecvTimeoutError::Timeout) => panic!("never seen: {wanted}\n{}", self.screen()),
+                Err(RecvTimeoutError::Disconnected) => panic!("ended before: {wanted}\n{}", self.raw_tail()),
+            }
+        }
+    }
+
+    /// Waits for the end of the program; gives its exit code. All output has been read then.
+    #[track_caller]
+    pub fn end(&mut self) -> u32 {
+        let deadline = Instant::now() + NEVER;
+        loop {
+            let left = deadline.saturating_duration_since(Instant::now());
+            match self.output.recv_timeout(left) {
+                Ok(bytes) => {
+                    self.parser.process(&bytes);
+                    self.raw.extend(bytes);
+                }
+                Err(RecvTimeoutError::Timeout) => panic!("still running\n{}", self.screen()),
+                Err(RecvTimeoutError::Disconnected) => break,
+            }
+        }
+        self.child.wait().expect("an exit status").exit_code()
+    }
+
+    /// Asserts that the terminal is as a shell wants it: the ordinary screen, a cursor, no mouse, no bracketed paste,
+    /// default colours, and the line discipline `before`.
+    #[track_caller]
+    pub fn assert_given_back(&self) {
+        let screen = self.parser.screen();
+        assert!(!screen.alternate_screen(), "still in the alternate screen: {}", self.raw_tail());
+        assert!(!screen.hide_cursor(), "the cursor is hidden: {}", self.raw_tail());
+        assert!(!screen.bracketed_paste(), "bracketed paste is on: {}", self.raw_tail());
+        assert_eq!(screen.mouse_protocol_mode(), MouseProtocolMode::None, "{}", self.raw_tail());
+        assert_eq!(screen.fgcolor(), vt100::Color::Default);
+        assert!(!screen.bold() && !screen.inverse());
+    }
+
+    /// The line discipline as text.
+    pub fn discipline(&self) -> String {
+        format!("{:?}", self.master.get_termios().expect("a terminal"))
+    }
+
+    fn raw_tail(&self) -> String {
+        let raw = self.raw();
+        let from = raw.char_indices().rev().nth(600).map_or(0, |(at, _)| at);
+        format!("{:?}", &raw[from..])
+    }
+}
+
+impl Drop for Terminal {
+    fn drop(&mut self) {
+        // It may have ended already.
+        drop(self.child.kill());
+        drop(self.child.wait());
+    }
+}
+
+fn size(columns: u16, rows: u16) -> PtySize {
+    PtySize { rows, cols: columns, pixel_width: 0, pixel_height: 0 }
+}
+
+fn cells(count: u16) -> NonZeroU16 {
+    NonZeroU16::new(count).expect("a size")
+}

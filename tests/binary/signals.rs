@@ -1,0 +1,51 @@
+//! Signals to a headless flight.
+#![allow(clippy::disallowed_methods, reason = "a deadline for a program that hangs needs the clock")]
+
+use std::io::{BufRead as _, BufReader, Read as _};
+use std::process::{Child, Stdio};
+
+use crate::lines::Line;
+use crate::support::Sandbox;
+
+/// A process that does not outlive its test.
+struct Guard(Child);
+
+impl Drop for Guard {
+    fn drop(&mut self) {
+        drop(self.0.kill());
+        drop(self.0.wait());
+    }
+}
+
+/// Flies in real time, interrupts after the first line, and gives the exit code, the lines and standard error.
+fn interrupted(signal: &str) -> (Option<i32>, Vec<Line>, String) {
+    let sandbox = Sandbox::new();
+    let mut command =
+        sandbox.command(&["fly", "square", "--speed", "1", "--json", "-", "--gpx", "track.gpx"]);
+    let child =
+        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("a flight");
+    let mut child = Guard(child);
+    let mut reader = BufReader::new(child.0.stdout.take().expect("standard output"));
+    let mut text = String::new();
+    reader.read_line(&mut text).expect("a line, long before the flight is over");
+    let id = child.0.id().to_string();
+    assert!(std::process::Command::new("kill").args(["-s", signal, &id]).status().expect("kill").success());
+    reader.read_to_string(&mut text).expect("the rest");
+    let mut err = String::new();
+    child.0.stderr.take().expect("standard error").read_to_string(&mut err).expect("the summary");
+    let code = child.0.wait().expect("an end").code();
+    assert!(sandbox.read("track.gpx").trim_end().ends_with("</gpx>"), "the track is whole");
+    (code, Line::read_all(&text), err)
+}
+
+#[test]
+fn an_interrupted_flight_says_so_and_leaves_whole_files() {
+    for signal in ["INT", "TERM"] {
+        let (code, lines, err) = interrupted(signal);
+        assert_eq!(code, Some(130), "{signal}: {err}");
+        let end = lines.last().expect("lines");
+        assert_eq!(end.text("result"), "interrupted");
+        assert!(end.time() < 60.0, "{end:?}");
+        assert!(err.starts_with("interrupted: "), "{err}");
+    }
+}

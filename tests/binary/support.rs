@@ -1,0 +1,172 @@
+//! Runs the executable in a home directory of its own.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use tempfile::TempDir;
+
+use crate::lines::Line;
+
+/// The executable.
+pub const PROGRAM: &str = env!("CARGO_BIN_EXE_betadeck");
+
+/// When a run that does not end by itself counts as hung; far above what any of them needs.
+const HUNG: Duration = Duration::from_secs(60);
+
+/// An empty home directory, and the working directory of what is run in it.
+pub struct Sandbox {
+    directory: TempDir,
+}
+
+/// What a run left behind.
+#[derive(Debug)]
+pub struct Ran {
+    /// Exit code; `None` after a signal.
+    pub code: Option<i32>,
+    /// Standard output.
+    pub out: String,
+    /// Standard error.
+    pub err: String,
+}
+
+impl Sandbox {
+    /// A new one.
+    pub fn new() -> Self {
+        Self { directory: tempfile::tempdir().expect("a directory") }
+    }
+
+    /// The path of a file in it.
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.directory.path().join(name)
+    }
+
+    /// Writes a file into it.
+    pub fn write(&self, name: &str, text: &str) {
+        std::fs::write(self.path(name), text).expect("a writable directory");
+    }
+
+    /// Reads a file of it.
+    pub fn read(&self, name: &str) -> String {
+        std::fs::read_to_string(self.path(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+    }
+
+    /// The names of the files in it.
+    pub fn names(&self) -> Vec<String> {
+        let entries = std::fs::read_dir(self.directory.path()).expect("a readable directory");
+        entries.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned()).collect()
+    }
+
+    /// The environment of a run: this home, and nothing of the real one.
+    pub fn environment(&self) -> Vec<(&'static str, PathBuf)> {
+        let home = self.directory.path();
+        vec![
+            ("HOME", home.to_path_buf()),
+            ("XDG_CONFIG_HOME", home.join(".config")),
+            ("XDG_STATE_HOME", home.join(".state")),
+            ("XDG_DATA_HOME", home.join(".data")),
+        ]
+    }
+
+    /// A command of the executable.
+    pub fn command(&self, arguments: &[&str]) -> std::process::Command {
+        let mut command = std::process::Command::new(PROGRAM);
+        command.env_clear().envs(self.environment()).current_dir(self.directory.path()).args(arguments);
+        command
+    }
+
+    /// Runs it to its end.
+    pub fn run(&self, arguments: &[&str]) -> Ran {
+        self.run_with(arguments, "")
+    }
+
+    /// Runs it with this on standard input.
+    pub fn run_with(&self, arguments: &[&str], input: &str) -> Ran {
+        let output = assert_cmd::Command::from_std(self.command(arguments))
+            .timeout(HUNG)
+            .write_stdin(input)
+            .output()
+            .expect("the executable runs");
+        Ran {
+            code: output.status.code(),
+            out: String::from_utf8(output.stdout).expect("UTF-8 on standard output"),
+            err: String::from_utf8(output.stderr).expect("UTF-8 on standard error"),
+        }
+    }
+
+    /// Flies with JSON lines on standard output, every one of them checked.
+    pub fn fly(&self, arguments: &[&str]) -> Flown {
+        let ran = self.run(&[&["fly", "--json", "-"], arguments].concat());
+        let lines = Line::read_all(&ran.out);
+        Flown { code: ran.code, err: ran.err, lines }
+    }
+}
+
+impl Ran {
+    /// Asserts the exit code, showing what was said when it is another.
+    #[track_caller]
+    pub fn exits(self, code: i32) -> Self {
+        assert_eq!(self.code, Some(code), "\n{}\n{}", self.out, self.err);
+        self
+    }
+}
+
+/// A flight.
+#[derive(Debug)]
+pub struct Flown {
+    /// Exit code.
+    pub code: Option<i32>,
+    /// Standard error.
+    pub err: String,
+    /// The JSON lines.
+    pub lines: Vec<Line>,
+}
+
+impl Flown {
+    /// Asserts the exit code and the result of the `end` event.
+    #[track_caller]
+    pub fn ends(self, code: i32, result: &str) -> Self {
+        let end = self.lines.last().expect("lines");
+        assert_eq!(
+            (self.code, end.event(), end.text("result")),
+            (Some(code), "end", result),
+            "\n{}",
+            self.err
+        );
+        let said = self.err.lines().rev().nth(1).expect("a result line");
+        assert!(said.starts_with(&format!("{result}: ")), "{said}");
+        assert!(self.err.lines().last().expect("a summary").starts_with("flown "), "{}", self.err);
+        self
+    }
+
+    /// The lines of this event.
+    pub fn all<'a>(&'a self, event: &'a str) -> impl DoubleEndedIterator<Item = &'a Line> + 'a {
+        self.lines.iter().filter(move |line| line.event() == event)
+    }
+
+    /// The first line of this event.
+    #[track_caller]
+    pub fn first(&self, event: &str) -> &Line {
+        let found = self.lines.iter().find(|line| line.event() == event);
+        found.unwrap_or_else(|| panic!("no {event} in {:#?}", self.lines))
+    }
+
+    /// Simulated time of the first engagement.
+    pub fn engaged_at(&self) -> f64 {
+        self.all("state").find(|line| line.text("from") == "IDLE").expect("an engagement").time()
+    }
+
+    /// The states entered, with the waypoint: `APPROACHING 0`.
+    pub fn states(&self) -> Vec<String> {
+        self.all("state").map(|line| format!("{} {}", line.text("to"), line.number("wp"))).collect()
+    }
+}
+
+/// The folder of the shipped plans.
+pub fn plans() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("plans")
+}
+
+/// A shipped plan's path as an argument.
+pub fn plan(name: &str) -> String {
+    plans().join(name).to_str().expect("a plain path").to_owned()
+}

@@ -1,0 +1,301 @@
+//! The user interface in a pseudo-terminal: a whole flight, sizes, keys, and giving the terminal back.
+
+use crate::pty::Terminal;
+
+/// The states of the demo plan in the order of its transitions.
+const FLIGHT: [&str; 13] = [
+    "IDLE",
+    "APPROACHING",
+    "ARRIVED",
+    "APPROACHING",
+    "ARRIVED",
+    "APPROACHING",
+    "ARRIVED",
+    "HOLDING",
+    "ORBITING",
+    "APPROACHING",
+    "ARRIVED",
+    "LANDING",
+    "COMPLETE",
+];
+
+/// Row of the status line with the state of the autopilot.
+const MISSION: usize = 1;
+
+/// The state in the status line.
+fn state(terminal: &Terminal) -> String {
+    let row = terminal.row(MISSION);
+    row.split_whitespace().nth(1).unwrap_or("").to_owned()
+}
+
+/// The transitions that the log panel shows, the oldest first.
+fn transitions(terminal: &Terminal) -> Vec<(String, String)> {
+    let screen = terminal.screen();
+    let found = screen.lines().filter_map(|line| {
+        let (before, after) = line.split_once(" → ")?;
+        let from = before.split_whitespace().last()?;
+        let to = after.split_whitespace().next()?;
+        let name = |word: &str| word.chars().all(|c| c.is_ascii_uppercase() || c == '8');
+        (name(from) && name(to.trim_end_matches(':'))).then(|| (from.to_owned(), to.to_owned()))
+    });
+    let mut found: Vec<_> = found.collect();
+    found.reverse();
+    found
+}
+
+fn started(columns: u16, rows: u16, arguments: &[&str]) -> Terminal {
+    let mut terminal = Terminal::betadeck(columns, rows, &[arguments, &["--no-ports"]].concat());
+    terminal.until_shown("DISARMED");
+    terminal
+}
+
+#[test]
+fn the_whole_flight_by_keys() {
+    let before = Terminal::start(120, 50, "cat", &[]).discipline();
+    let mut terminal = started(120, 50, &[]);
+    assert_ne!(terminal.discipline(), before, "raw mode");
+    // The log, alone on the screen.
+    terminal.send("8z");
+    terminal.until("the zoomed log", |terminal| {
+        terminal.row(2).contains("Log") && !terminal.screen().contains("Map")
+    });
+    terminal.send("F");
+    terminal.until_shown("GPS fix");
+    // 32 times real time: a second of orbit is some frames, the landing takes seconds.
+    terminal.send("]]]]]");
+    let mut seen = vec![state(&terminal)];
+    terminal.watch("DISARMED after COMPLETE", |terminal| {
+        let now = state(terminal);
+        // Half a frame may show half a name.
+        if FLIGHT.contains(&now.as_str()) && seen.last() != Some(&now) {
+            seen.push(now);
+        }
+        seen.iter().any(|state| state == "COMPLETE") && terminal.row(0).contains("DISARMED")
+    });
+    // Every state that lasts longer than a frame was in the status line, in the order of the flight.
+    let mut order = FLIGHT.iter();
+    assert!(seen.iter().all(|state| order.any(|next| next == state)), "{seen:?}");
+    for state in ["IDLE", "APPROACHING", "ORBITING", "LANDING", "COMPLETE"] {
+        assert!(seen.iter().any(|name| name == state), "no {state} in {seen:?}");
+    }
+    // And all of them, with those of one step, are in the log; a frame may be on its way.
+    let expected: Vec<_> = FLIGHT.windows(2).map(|pair| (pair[0].to_owned(), pair[1].to_owned())).collect();
+    terminal.until(&format!("{expected:?}"), |terminal| transitions(terminal) == expected);
+    terminal.send("q");
+    assert_eq!(terminal.end(), 0);
+    terminal.assert_given_back();
+    assert_eq!(terminal.discipline(), before);
+}
+
+#[test]
+fn a_plan_file_can_be_named() {
+    let mut terminal = started(120, 40, &[&crate::support::plan("hold-figure8.toml")]);
+    terminal.send("F]]]]]]]]]]");
+    terminal.until_shown("FIGURE8");
+    terminal
+        .until("a landing", |terminal| state(terminal) == "COMPLETE" && terminal.row(0).contains("DISARMED"));
+    terminal.send("q");
+    assert_eq!(terminal.end(), 0);
+    terminal.assert_given_back();
+}
+
+#[test]
+fn a_broken_plan_file_is_told_without_taking_the_terminal() {
+    let mut terminal = Terminal::start(
+        80,
+        24,
+        "/bin/sh",
+        &["-c", &format!("echo nonsense = > bad.toml; {} bad.toml", crate::support::PROGRAM)],
+    );
+    assert_eq!(terminal.end(), 2);
+    assert!(terminal.screen().contains("bad.toml:1:"), "{}", terminal.screen());
+    assert!(!terminal.raw().contains("\x1b[?1049h"));
+}
+
+#[test]
+fn quitting_in_flight_asks_first() {
+    let mut terminal = started(80, 24, &[]);
+    terminal.send("F]]]]");
+    terminal.until("an armed craft", |terminal| terminal.row(0).contains("● ARMED"));
+    terminal.send("q");
+    terminal.until("the question", |terminal| terminal.screen().to_lowercase().contains("quit?"));
+    terminal.send("n");
+    terminal.until("no question", |terminal| !terminal.screen().to_lowercase().contains("quit?"));
+    terminal.send("q");
+    terminal.until("the question", |terminal| terminal.screen().to_lowercase().contains("quit?"));
+    terminal.send("y");
+    assert_eq!(terminal.end(), 0);
+    terminal.assert_given_back();
+}
+
+#[test]
+fn ctrl_c_twice_quits_from_anywhere() {
+    // At the map, in the command line with text, in the help, and in flight.
+    for (keys, shown) in [("", "help"), ("5set ap", "set ap"), ("?", "Keys"), ("F]]]", "● ARMED")] {
+        let mut terminal = started(80, 24, &[]);
+        terminal.send(keys);
+        terminal.until_shown(shown);
+        terminal.send("\x03");
+        terminal.until("the hint", |terminal| terminal.screen().contains("Ctrl-C"));
+        terminal.send("\x03");
+        assert_eq!(terminal.end(), 0, "after {keys:?}");
+        terminal.assert_given_back();
+    }
+}
+
+#[test]
+fn every_size_is_survived_in_flight() {
+    let mut terminal = started(80, 24, &[]);
+    terminal.send("F]]]]");
+    terminal.until("an armed craft", |terminal| terminal.row(0).contains("ARMED"));
+    for (columns, rows) in
+        [(200, 60), (20, 5), (1, 1), (300, 2), (2, 100), (59, 20), (60, 19), (60, 20), (120, 40)]
+    {
+        terminal.resize(columns, rows);
+        if columns >= 60 && rows >= 20 {
+            terminal.until("the status line", |terminal| terminal.row(0).contains("ARMED"));
+        } else if columns >= 20 && rows >= 5 {
+            terminal.until("the needed size", |terminal| terminal.screen().contains("60"));
+        }
+    }
+    terminal.until("the map in full", |terminal| terminal.row(39).contains("help"));
+    // Quitting works in a window that is too small, too.
+    terminal.resize(10, 3);
+    terminal.send("\x03\x03");
+    assert_eq!(terminal.end(), 0);
+    terminal.assert_given_back();
+}
+
+#[test]
+fn signals_give_the_terminal_back() {
+    let before = Terminal::start(80, 24, "cat", &[]).discipline();
+    for signal in ["TERM", "INT"] {
+        let mut terminal = started(80, 24, &[]);
+        terminal.signal(signal);
+        assert_eq!(terminal.end(), 130, "{signal}");
+        terminal.assert_given_back();
+        assert_eq!(terminal.discipline(), before);
+    }
+}
+
+#[test]
+fn the_shell_finds_its_line_discipline_unchanged() {
+    let script = format!("stty -g; {} --no-ports; echo \"exit $?\"; stty -g", crate::support::PROGRAM);
+    let mut terminal = Terminal::start(80, 24, "/bin/sh", &["-c", &script]);
+    terminal.until_shown("DISARMED");
+    terminal.send("q");
+    assert_eq!(terminal.end(), 0);
+    terminal.assert_given_back();
+    assert!(terminal.screen().contains("exit 0"), "{}", terminal.screen());
+    let screen = terminal.screen();
+    let lines: Vec<&str> = screen.lines().filter(|line| line.matches(':').count() > 20).collect();
+    // A long line may be wrapped: the emulator joins it again.
+    assert_eq!(lines.len(), 2, "{screen}");
+    assert_eq!(lines[0], lines[1]);
+}
+
+#[test]
+fn a_panic_gives_the_terminal_back_before_it_is_told() {
+    let itself = std::env::current_exe().expect("this test");
+    let arguments = ["--ignored", "--exact", "terminal::panics_with_the_terminal_taken", "--nocapture"];
+    let mut terminal = Terminal::start(80, 24, itself.to_str().expect("a plain path"), &arguments);
+    let before = Terminal::start(80, 24, "cat", &[]).discipline();
+    assert_eq!(terminal.end(), 0, "{}", terminal.raw());
+    terminal.assert_given_back();
+    assert_eq!(terminal.discipline(), before);
+    let raw = terminal.raw();
+    let taken = raw.find("\x1b[?1049h").expect("the alternate screen");
+    let left = raw.find("\x1b[?1049l").expect("the ordinary screen");
+    let told = raw.find("everything is wrong").expect("the message");
+    assert!(taken < left && left < told, "{raw:?}");
+}
+
+/// Run by the test above, in a terminal of its own.
+#[test]
+#[ignore = "takes the terminal it is run in; run by another test"]
+#[should_panic(expected = "everything is wrong")]
+fn panics_with_the_terminal_taken() {
+    let _tui = betadeck::ui::Tui::enter(true).expect("a terminal");
+    panic!("everything is wrong");
+}
+
+#[test]
+fn colours_and_glyphs_can_be_left_out() {
+    let script = format!("NO_COLOR=1 {} --no-ports", crate::support::PROGRAM);
+    let mut terminal = Terminal::start(80, 24, "/bin/sh", &["-c", &script]);
+    terminal.until_shown("DISARMED");
+    terminal.until_shown("help");
+    let raw = terminal.raw();
+    for colour in ["\x1b[31m", "\x1b[32m", "\x1b[33m", "\x1b[38;", "\x1b[48;"] {
+        assert!(!raw.contains(colour), "{colour:?}");
+    }
+    terminal.send("q");
+    assert_eq!(terminal.end(), 0);
+}
+
+#[test]
+fn a_paste_of_garbage_into_the_command_line_breaks_nothing() {
+    let mut terminal = started(120, 40, &[]);
+    terminal.send("5");
+    terminal.until_shown("Enter run");
+    let garbage = "waypoint insert\nset\n\u{fffd}\u{7f}äöü 漢字 \u{1f6e9}\nset ap_max_angle = 9999999999999999999\n\
+                   waypoint insert 0 nan inf 1e400 -1 ORBIT LAND 65536\nversion\n";
+    terminal.send(&format!("\x1b[200~{garbage}\x1b[201~"));
+    terminal.until_shown("ERROR");
+    terminal.until("the last line's answer", |terminal| terminal.screen().contains("Betaflight"));
+    // A long line without an end.
+    terminal.send(&format!("\x1b[200~{}\x1b[201~", "x".repeat(20_000)));
+    terminal.send("\x03\x03");
+    assert_eq!(terminal.end(), 0);
+    terminal.assert_given_back();
+}
+
+#[test]
+fn any_keys_and_clicks_leave_a_program_that_can_be_left() {
+    // Every key of the help, arrows, function keys, clicks, drags and wheels, in an order that is always the same.
+    let named = [
+        "\x1b[A",
+        "\x1b[B",
+        "\x1b[C",
+        "\x1b[D",
+        "\x1b[5~",
+        "\x1b[6~",
+        "\x1b[H",
+        "\x1b[F",
+        "\x1b[Z",
+        "\x1bOP",
+        "\x1b[1;2C",
+        "\x1b[1;2D",
+        "\r",
+        "\t",
+        // Escape alone is the beginning of any of the others; twice it is itself.
+        "\x1b\x1b",
+        " ",
+        "\x7f",
+    ];
+    let mut keys: Vec<String> = named.map(str::to_owned).to_vec();
+    keys.extend(('!'..='~').filter(|key| *key != 'q').map(String::from));
+    for (column, row) in [(1, 1), (10, 10), (70, 8), (40, 20), (120, 50), (500, 500)] {
+        for button in [0, 2, 32, 64, 65] {
+            keys.push(format!("\x1b[<{button};{column};{row}M"));
+            keys.push(format!("\x1b[<{button};{column};{row}m"));
+        }
+    }
+    for (columns, rows) in [(60, 20), (80, 24), (200, 60)] {
+        let mut terminal = started(columns, rows, &[]);
+        let mut at: usize = 7;
+        for round in 0..6 {
+            for _ in 0..100 {
+                at = at.wrapping_mul(1_664_525).wrapping_add(1_013_904_223) % (1 << 31);
+                terminal.send(&keys[(at >> 8) % keys.len()]);
+            }
+            // Out of whatever is open, then a panel: all keys before have been heard when it has the focus.
+            let (key, title) = if round % 2 == 0 { ("\x1b[19~", "▸8 Log") } else { ("\x1bOS", "▸4 RC") };
+            terminal.send(&format!("\x1b\x1b\x1b\x1b{key}"));
+            terminal.until_shown(title);
+        }
+        terminal.send("\x03\x03");
+        assert_eq!(terminal.end(), 0);
+        terminal.assert_given_back();
+    }
+}
