@@ -69,8 +69,9 @@ impl Desk {
                     answer(reply, None);
                     return attended;
                 }
-                answer(reply, outcome.reply);
+                // Links are closed before the answer goes out: who comes back after it is a new client.
                 self.act_on_message(outcome.action, firmware, store, now, &mut attended);
+                answer(reply, outcome.reply);
             }
             Request::EnterCli { interactive, reply, .. } => {
                 let admitted = !firmware.is_armed();
@@ -82,10 +83,10 @@ impl Desk {
             Request::Cli { line, mut interpreter, reply, .. } => {
                 let said = firmware.run_cli(&mut interpreter, &line);
                 let restart = self.act_on_line(&said, firmware, store, &mut attended);
-                answer(reply, CliAnswer { interpreter, reply: said });
                 if let Some(close_links) = restart {
                     self.restart(close_links, firmware, store, &mut attended);
                 }
+                answer(reply, CliAnswer { interpreter, reply: said });
             }
             Request::LeftCli { .. } => firmware.cli_closed(),
             Request::Restart { .. } => self.restart(true, firmware, store, &mut attended),
@@ -131,7 +132,7 @@ impl Desk {
         }
     }
 
-    /// Does what a line asks for; a restart waits until the line is answered: whether it closes the links.
+    /// Does what a line asks for; a restart is left to the caller: whether it closes the links.
     fn act_on_line(
         &mut self,
         said: &CliReply,

@@ -2,7 +2,7 @@
 
 use std::io;
 
-use futures_util::{SinkExt as _, StreamExt as _};
+use futures_util::{SinkExt, StreamExt as _};
 use tokio::io::{AsyncReadExt as _, AsyncWriteExt as _};
 use tokio::net::TcpStream;
 use tokio_tungstenite::WebSocketStream;
@@ -51,7 +51,8 @@ impl Transport {
     pub(super) async fn close(&mut self) -> io::Result<()> {
         match self {
             Self::Tcp(stream) => stream.shutdown().await,
-            Self::WebSocket(socket) => socket.as_mut().close(None).await.or_else(ended),
+            // The sink's close, which also sends the answer to a client that said goodbye first.
+            Self::WebSocket(socket) => SinkExt::close(socket.as_mut()).await.or_else(ended),
         }
     }
 }
