@@ -10,6 +10,7 @@ mod fly;
 mod generate;
 mod help;
 mod layers;
+mod physics;
 mod plan_arg;
 mod value;
 
@@ -21,11 +22,12 @@ use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 use crate::nearest::nearest;
 
 pub use convert::ConvertArgs;
-pub use doors::{DoorArgs, FdmDialect, ServeArgs, SitlArgs, UdpPorts, sitl_complaint};
+pub use doors::{DoorArgs, ServeArgs, SitlArgs, UdpPorts, sitl_complaint};
 pub use flight::FlightArgs;
 pub use fly::FlyArgs;
 pub use generate::{completions, man_page};
 pub use layers::{ENVIRONMENT_PREFIX, Layers};
+pub use physics::{FdmDialect, Physics, PhysicsArgs, SimulatorArgs};
 pub use plan_arg::{PlanArg, PlanArgError};
 pub use value::{Attitude, OnOff, OutputFile, Speed};
 
@@ -44,7 +46,6 @@ pub use value::{Attitude, OnOff, OutputFile, Speed};
     ]),
     after_help = help::LAYERS,
     args_conflicts_with_subcommands = true,
-    disable_help_subcommand = true,
     max_term_width = 100
 )]
 pub struct Cli {
@@ -67,6 +68,10 @@ pub struct TuiArgs {
     #[command(flatten)]
     pub doors: DoorArgs,
 
+    /// Whose physics moves the craft.
+    #[command(flatten)]
+    pub physics: PhysicsArgs,
+
     /// What flies, where and in which air.
     #[command(flatten)]
     pub flight: FlightArgs,
@@ -88,6 +93,7 @@ pub enum Command {
     #[command(before_help = help::examples(&[
         ("betadeck serve", "the Betaflight App connects to ws://localhost:6761, scripts send RC to UDP 9004"),
         ("betadeck serve --json - --no-ports", "events as JSON lines, no door"),
+        ("betadeck serve --physics external", "the craft is moved by Gazebo, which is started beside it"),
     ]))]
     Serve(Box<ServeArgs>),
 
@@ -106,8 +112,9 @@ pub enum Command {
     /// Converts a plan file to another format and says what that format cannot carry
     #[command(before_help = help::examples(&[
         ("betadeck convert square.txt square.toml", "formats by the files' endings"),
-        ("betadeck convert - plan.toml", "Betaflight CLI text from standard input"),
+        ("betadeck convert - plan.toml", "from standard input"),
         ("betadeck convert plan.toml - --to txt", "to standard output"),
+        ("betadeck convert new.txt plan.toml --force", "in place of the plan.toml that is there"),
     ]))]
     Convert(ConvertArgs),
 
@@ -169,8 +176,36 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>, layers: &Layers) -> 
         )
         | None => Ok(()),
     };
-    combination.map_err(|problem| command.error(ErrorKind::ValueValidation, problem))?;
+    combination.map_err(|problem| complaint(ErrorKind::ValueValidation, &problem))?;
     layers::apply(layers, arguments, &matches, &mut command)
+}
+
+/// What is wrong with the environment and the configuration file, a sentence for each problem.
+#[must_use]
+pub fn layer_problems(layers: &Layers) -> Vec<String> {
+    let mut command = Cli::command();
+    command.build();
+    let (known, mut problems) = layers.without_unknown(&command);
+    // One at a time: parsing ends at the first problem.
+    for single in known.singles() {
+        let lines = [
+            &["betadeck"][..],
+            &["betadeck", "fly", "square"],
+            &["betadeck", "serve"],
+            &["betadeck", "sitl"],
+        ];
+        let wrong = lines.iter().find_map(|line| parse(line.iter().map(OsString::from), &single).err());
+        if let Some(error) = wrong {
+            let text = error.to_string();
+            problems.push(text.lines().next().unwrap_or_default().trim_start_matches("error: ").to_owned());
+        }
+    }
+    problems
+}
+
+/// A problem in one sentence: it stands in no option, so no usage line helps.
+fn complaint(kind: ErrorKind, problem: &str) -> clap::Error {
+    clap::Error::raw(kind, format!("{problem}\n"))
 }
 
 /// A misspelt command is taken for a plan, and what follows for too many arguments: says what was meant.

@@ -98,6 +98,7 @@ impl Flight {
                 | EventKind::Fault { .. }
                 | EventKind::Contact { .. }
                 | EventKind::Crash { .. }
+                | EventKind::Doors(_)
                 | EventKind::Notice(_) => {}
             }
             report(Report::Event(&event));

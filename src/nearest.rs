@@ -6,8 +6,11 @@
 pub fn nearest<'a>(typed: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let typed: Vec<char> = typed.chars().take(64).flat_map(char::to_lowercase).collect();
     let allowed = (typed.len() / 3).max(1);
+    // As many slips as the lengths differ by are needed at least.
+    let is_near = |word: &&str| word.chars().count().abs_diff(typed.len()) <= allowed;
     candidates
         .into_iter()
+        .filter(is_near)
         .map(|word| (slips(&typed, &word.chars().flat_map(char::to_lowercase).collect::<Vec<_>>()), word))
         .filter(|&(distance, word)| distance <= allowed && distance < word.chars().count())
         .min_by_key(|&(distance, _)| distance)

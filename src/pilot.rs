@@ -9,6 +9,7 @@
 use crate::firmware::mode::Mode;
 use crate::signals::{RcFrame, SimTime};
 use crate::vehicle::snapshot::ModeRange;
+use crate::vehicle::switch::Switch;
 
 /// Seconds of hover between the climb and the engagement.
 const HOVER_S: f64 = 5.0;
@@ -22,8 +23,6 @@ const FRAME_S: f64 = 0.02;
 const THROTTLE: usize = 2;
 /// Throttle stick at the bottom, µs.
 const LOW_US: f64 = 1000.0;
-/// The least stick that counts as raised, with a margin, µs.
-const RAISED_US: f64 = 1300.0;
 /// The highest stick the pilot uses to climb, µs.
 const CLIMB_STICK_MAX_US: f64 = 1900.0;
 
@@ -46,6 +45,15 @@ pub struct PilotFacts {
     pub climb_mps: f64,
     /// Where the throttle stick rests in ALTHOLD, µs.
     pub hover_stick_us: u16,
+    /// The throttle stick from which the throttle counts as raised, µs.
+    pub raised_stick_us: u16,
+}
+
+impl PilotFacts {
+    /// Where the throttle stick goes to take off, µs: hover, but raised in any case.
+    fn takeoff_stick_us(&self) -> f64 {
+        f64::from(self.hover_stick_us.max(self.raised_stick_us))
+    }
 }
 
 /// What the pilot is doing.
@@ -61,12 +69,12 @@ enum Phase {
     Done,
 }
 
-/// Channel values that switch the pilot's modes on, found from the craft's mode conditions.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+/// The switches of the pilot's modes.
+#[derive(Debug, Clone, Copy, PartialEq)]
 struct Switches {
-    arm: Option<(usize, u16)>,
-    levelling: [Option<(usize, u16)>; 3],
-    autopilot: Option<(usize, u16)>,
+    arm: Switch,
+    levelling: [Option<Switch>; 3],
+    autopilot: Switch,
 }
 
 /// The scripted pilot.
@@ -85,23 +93,12 @@ impl Pilot {
     /// # Errors
     /// The name of the mode that no channel switches: without ARM and AUTOPILOT there is no flight.
     pub fn new(takeoff_m: f64, ranges: &[ModeRange]) -> Result<Self, Mode> {
-        let find = |mode: Mode| {
-            let name = mode.to_string();
-            ranges
-                .iter()
-                .find(|range| range.name == name && range.start_us < range.end_us)
-                .map(|range| (usize::from(range.channel), range.start_us.midpoint(range.end_us)))
-        };
+        let find = |mode| Switch::of(mode, ranges);
         let switches = Switches {
-            arm: find(Mode::Arm),
-            levelling: [find(Mode::Angle), find(Mode::AltHold), find(Mode::PosHold)],
-            autopilot: find(Mode::Autopilot),
+            arm: find(Mode::Arm).ok_or(Mode::Arm)?,
+            levelling: [Mode::Angle, Mode::AltHold, Mode::PosHold].map(find),
+            autopilot: find(Mode::Autopilot).ok_or(Mode::Autopilot)?,
         };
-        for (mode, switch) in [(Mode::Arm, switches.arm), (Mode::Autopilot, switches.autopilot)] {
-            if switch.is_none() {
-                return Err(mode);
-            }
-        }
         Ok(Self { phase: Phase::Waiting, takeoff_m, switches, frame: RcFrame::SAFE })
     }
 
@@ -133,7 +130,7 @@ impl Pilot {
             Phase::Waiting | Phase::Arming | Phase::Done => LOW_US,
             Phase::Raising { since } => {
                 let part = (facts.time.seconds_since(since) / RAISE_S).clamp(0.0, 1.0);
-                LOW_US + part * (f64::from(facts.hover_stick_us).max(RAISED_US) - LOW_US)
+                LOW_US + part * (facts.takeoff_stick_us() - LOW_US)
             }
             Phase::Climbing { stick_us } => stick_us,
             Phase::Hovering { .. } | Phase::Engaging => f64::from(facts.hover_stick_us),
@@ -168,11 +165,11 @@ impl Pilot {
             }
             Phase::Raising { since } => {
                 if facts.time.seconds_since(since) >= RAISE_S {
-                    for switch in self.switches.levelling {
+                    for switch in self.switches.levelling.into_iter().flatten() {
                         self.switch_on(switch);
                     }
                     self.phase = if self.takeoff_m > 0.0 {
-                        Phase::Climbing { stick_us: f64::from(facts.hover_stick_us).max(RAISED_US) }
+                        Phase::Climbing { stick_us: facts.takeoff_stick_us() }
                     } else {
                         self.switch_on(self.switches.autopilot);
                         Phase::Engaging
@@ -202,12 +199,8 @@ impl Pilot {
         }
     }
 
-    fn switch_on(&mut self, switch: Option<(usize, u16)>) {
-        if let Some((channel, value)) = switch
-            && let Some(slot) = self.frame.channels.get_mut(channel)
-        {
-            *slot = value;
-        }
+    fn switch_on(&mut self, switch: Switch) {
+        self.frame.channels[switch.channel] = switch.on_us;
     }
 }
 
@@ -246,6 +239,7 @@ mod tests {
             alt_m: 0.0,
             climb_mps: 0.0,
             hover_stick_us: 1500,
+            raised_stick_us: 1300,
         }
     }
 

@@ -56,7 +56,16 @@ fn help_lines(command: &clap::Command) -> Vec<String> {
 #[test]
 fn what_is_not_built_is_not_advertised() {
     let all = [help(&[], true), help(&["fly"], true)].concat();
-    for word in ["--firmware", "--physics", "compare", "check", "--fdm-dialect", "--plain"] {
+    for word in ["--firmware", "compare", "check", "--plain"] {
         assert!(!all.contains(word), "{word}");
     }
+    let fly = help(&["fly"], true);
+    assert!(!fly.contains("--physics") && !fly.contains("fdm-loss"), "a headless flight has its own world");
+    for command in [&[][..], &["serve"]] {
+        assert!(
+            help(command, true).contains("fdm-loss (fraction 0 to 1; 0.2): external link"),
+            "{command:?}"
+        );
+    }
+    assert!(!help(&["sitl"], true).contains("--fault"));
 }

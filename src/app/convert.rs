@@ -1,5 +1,9 @@
 //! `betadeck convert`: one plan format to another.
 
+use std::fs::{File, OpenOptions};
+use std::io::{ErrorKind, Write as _};
+use std::path::Path;
+
 use super::error::{self, AppError};
 use super::setup;
 use crate::args::{ConvertArgs, OutputFile};
@@ -14,13 +18,32 @@ pub fn run(args: &ConvertArgs) -> Result<u8, AppError> {
         error::tell(&note.to_string());
     }
     let written = format::write(&file, target);
+    match &args.output {
+        OutputFile::Stdout => error::write_stdout(written.text.as_bytes()).map(drop)?,
+        OutputFile::File(path) => write(path, &written.text, args.force)?,
+    }
     for loss in &written.lost {
         error::tell(&format!("not carried: {loss}"));
     }
-    match &args.output {
-        OutputFile::Stdout => error::write_stdout(written.text.as_bytes()),
-        OutputFile::File(path) => std::fs::write(path, &written.text)
-            .map(|()| 0)
-            .map_err(|error| AppError::environment(format!("cannot write {}: {error}", path.display()))),
-    }
+    Ok(0)
+}
+
+/// Writes the file. One that exists is somebody's work: it is replaced only when that was asked for.
+fn write(path: &Path, text: &str, force: bool) -> Result<(), AppError> {
+    let problem = |error| AppError::environment(format!("cannot write {}: {error}", path.display()));
+    let file = match OpenOptions::new().write(true).create_new(true).open(path) {
+        Err(error) if error.kind() == ErrorKind::AlreadyExists => {
+            // Pipes and devices hold nothing that could be lost.
+            let holds_data = std::fs::metadata(path).map_err(problem)?.is_file();
+            if holds_data && !force {
+                return Err(AppError::environment(format!(
+                    "{} exists: name another file, or replace it with --force",
+                    path.display()
+                )));
+            }
+            File::create(path)
+        }
+        opened => opened,
+    };
+    file.and_then(|mut file| file.write_all(text.as_bytes())).map_err(problem)
 }

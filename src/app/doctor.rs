@@ -1,68 +1,145 @@
 //! `betadeck doctor`: is everything here that the program needs?
+#![allow(clippy::disallowed_methods, reason = "it looks at the environment")]
 
 use std::fmt::Write as _;
-use std::io::IsTerminal as _;
+use std::io::{ErrorKind, IsTerminal as _};
+use std::net::{TcpListener, UdpSocket};
 use std::path::Path;
 
 use super::error::{self, AppError};
 use super::layers;
+use crate::args::{self, DoorArgs, Layers};
+use crate::ui::Theme;
 use crate::ui::layout::SMALLEST;
+use crate::ui::theme::{Charset, Palette};
 
 /// Prints what was found; exit code 0 when all is well.
 pub fn run() -> Result<u8, AppError> {
-    let mut report = format!("betadeck {}\n", env!("CARGO_PKG_VERSION"));
-    let mut well = true;
+    let mut report = Report::default();
+    let revision = env!("BETADECK_REVISION");
+    let _ = writeln!(report.text, "betadeck {} ({revision})", env!("CARGO_PKG_VERSION"));
+    let layers = configuration(&mut report);
     match layers::directories() {
-        Ok(directories) => {
-            let config = directories.config.join("config.toml");
-            let found = if config.exists() { "present" } else { "none, defaults apply" };
-            let _ = writeln!(report, "✓ configuration file  {} ({found})", config.display());
-            well &= state_directory(&mut report, &directories.state);
-        }
-        Err(error) => {
-            well = false;
-            let _ = writeln!(report, "✗ directories         {}", error.message);
-        }
+        Ok(directories) => state_directory(&mut report, &directories.state),
+        Err(error) => report.line(false, "directories", &error.message),
     }
-    well &= terminal(&mut report);
-    error::write_stdout(report.as_bytes())?;
-    Ok(if well { 0 } else { error::ENVIRONMENT })
+    terminal(&mut report);
+    // What is wrong with the options was said above; the doors are then those of the defaults.
+    let doors =
+        [layers, Layers::default()].iter().find_map(|layers| args::parse(["betadeck".into()], layers).ok());
+    doors.iter().for_each(|cli| ports(&mut report, &cli.tui.doors));
+    error::write_stdout(report.text.as_bytes())?;
+    Ok(if report.is_bad { error::ENVIRONMENT } else { 0 })
+}
+
+/// What was found.
+#[derive(Debug, Default)]
+struct Report {
+    text: String,
+    is_bad: bool,
+}
+
+impl Report {
+    fn line(&mut self, good: bool, what: &str, found: &str) {
+        self.is_bad |= !good;
+        let mark = if good { '✓' } else { '✗' };
+        let _ = writeln!(self.text, "{mark} {what:<20}  {found}");
+    }
+}
+
+/// The configuration file and the environment, with all their problems.
+fn configuration(report: &mut Report) -> Layers {
+    const FILE: &str = "configuration file";
+    let layers = match layers::read() {
+        Ok(layers) => layers,
+        Err(error) => {
+            report.line(false, FILE, error.message.trim_end());
+            return Layers::default();
+        }
+    };
+    let problems = args::layer_problems(&layers);
+    if problems.is_empty() && !layers.file_name.is_empty() {
+        let found = if Path::new(&layers.file_name).exists() { "present" } else { "none, defaults apply" };
+        report.line(true, FILE, &format!("{} ({found})", layers.file_name));
+    }
+    for problem in problems {
+        report.line(false, "configuration", &problem);
+    }
+    layers
 }
 
 /// The nearest existing folder above decides whether the directory can be made.
-fn state_directory(report: &mut String, path: &Path) -> bool {
+fn state_directory(report: &mut Report, path: &Path) {
     let existing = path.ancestors().find(|folder| folder.exists());
     let writable = existing.is_some_and(|folder| {
         folder.is_dir() && rustix::fs::access(folder, rustix::fs::Access::WRITE_OK).is_ok()
     });
-    let (mark, word) =
-        if writable { ('✓', "writable") } else { ('✗', "not writable: choose one with --state-dir") };
-    let _ = writeln!(report, "{mark} state directory     {} ({word})", path.display());
-    writable
+    let word = if writable { "writable" } else { "not writable: choose one with --state-dir" };
+    report.line(writable, "state directory", &format!("{} ({word})", path.display()));
 }
 
 /// A terminal is needed for the user interface only, so none at all is no fault.
-fn terminal(report: &mut String) -> bool {
+fn terminal(report: &mut Report) {
+    const TERMINAL: &str = "terminal";
     if !std::io::stdout().is_terminal() {
-        let _ = writeln!(report, "✓ terminal            none here; betadeck fly needs none");
-        return true;
+        report.line(true, TERMINAL, "none here; betadeck fly needs none");
+        return;
     }
     match crossterm::terminal::size() {
-        Ok((columns, rows)) if columns >= SMALLEST.0 && rows >= SMALLEST.1 => {
-            let _ = writeln!(report, "✓ terminal            {columns}x{rows}");
-            true
-        }
         Ok((columns, rows)) => {
-            let _ = writeln!(
-                report,
-                "✗ terminal            {columns}x{rows}: needs at least {}x{}",
-                SMALLEST.0, SMALLEST.1
-            );
-            false
+            let theme = Theme::from_environment(|name| std::env::var(name).ok());
+            let colours = match theme.palette {
+                Palette::Mono => "no colours",
+                Palette::Ansi16 => "16 colours",
+                Palette::TrueColour => "all colours",
+            };
+            let characters = match theme.charset {
+                Charset::Unicode => "Unicode characters",
+                Charset::Ascii => "ASCII characters",
+            };
+            let (least_columns, least_rows) = SMALLEST;
+            let enough = columns >= least_columns && rows >= least_rows;
+            let need =
+                if enough { String::new() } else { format!(": needs at least {least_columns}x{least_rows}") };
+            report.line(enough, TERMINAL, &format!("{columns}x{rows}, {colours}, {characters}{need}"));
         }
-        Err(error) => {
-            let _ = writeln!(report, "✗ terminal            size unknown: {error}");
-            false
+        Err(error) => report.line(false, TERMINAL, &format!("size unknown: {error}")),
+    }
+}
+
+/// Which of the doors' ports are free.
+fn ports(report: &mut Report, doors: &DoorArgs) {
+    if doors.no_ports {
+        report.line(true, "ports", "none: doors are closed by no-ports");
+        return;
+    }
+    let udp = doors.udp_ports();
+    let tcp = |port| TcpListener::bind((doors.address(), port)).map(drop);
+    let datagrams = |port| UdpSocket::bind((doors.address(), port)).map(drop);
+    let found = [
+        ("websocket", "--ws-port", doors.ws_port(), tcp(doors.ws_port())),
+        ("TCP", "--tcp-port", doors.tcp_port(), tcp(doors.tcp_port())),
+        ("UDP simulator", "--udp-ports", udp.fdm, datagrams(udp.fdm)),
+        ("UDP RC", "--udp-ports", udp.rc, datagrams(udp.rc)),
+    ];
+    for (name, option, port, bound) in found {
+        let what = format!("port {name}");
+        match bound {
+            Ok(()) if port == 0 => report.line(true, &what, "any free one"),
+            Ok(()) => report.line(true, &what, &format!("{port} is free")),
+            Err(error) if error.kind() == ErrorKind::AddrInUse => report.line(
+                false,
+                &what,
+                &format!("{port} is in use: end the program that has it, or choose another with {option}"),
+            ),
+            Err(error) => report.line(
+                false,
+                &what,
+                &format!(
+                    "{port} cannot be opened on {}: {error}; choose another with {option}",
+                    doors.address()
+                ),
+            ),
         }
     }
 }

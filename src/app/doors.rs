@@ -1,14 +1,18 @@
 //! Opens the doors of a session and keeps their state in view.
 #![allow(clippy::disallowed_methods, reason = "the state of the doors is published at a rhythm of wall time")]
 
-use std::time::Duration;
+use std::net::{IpAddr, Ipv4Addr, SocketAddr};
+use std::time::{Duration, Instant};
 
 use tokio::sync::{mpsc, watch};
 use tokio_util::sync::CancellationToken;
 
-use crate::args::DoorArgs;
-use crate::link::{Desk, Doors, DoorsConfig};
+use super::AppError;
+use crate::args::{DoorArgs, FlightArgs, PhysicsArgs};
+use crate::link::proto::fdm_link::FdmLinkConfig;
+use crate::link::{Desk, DoorKind, Doors, DoorsConfig, ExternalSimulator, MotorPort};
 use crate::session::Doorway;
+use crate::vehicle::DoorPlaces;
 
 /// Requests that may wait for the session.
 const WAITING: usize = 256;
@@ -29,22 +33,33 @@ pub struct Opened {
     pub doors: OpenDoors,
     /// The session's side.
     pub doorway: Doorway,
-    /// Where they are and what is wrong with some of them, as sentences.
+    /// Where they are.
+    pub places: DoorPlaces,
+    /// What is wrong with some of them, as sentences.
     pub notices: Vec<String>,
 }
 
-/// Opens the doors that the options name; none with `--no-ports`. One that cannot be opened is told, the others work.
-pub async fn open(args: &DoorArgs) -> Option<Opened> {
-    if args.no_ports {
-        return None;
+/// Opens the doors that the options name; with `--no-ports` only those of an external simulator. One that cannot be
+/// opened is told, the others work.
+///
+/// # Errors
+/// When there is no socket for the motors of an external simulator.
+pub async fn open(
+    args: &DoorArgs,
+    physics: &PhysicsArgs,
+    flight: &FlightArgs,
+) -> Result<Option<Opened>, AppError> {
+    if args.no_ports && !physics.is_external() {
+        return Ok(None);
     }
     let (request_tx, requests) = mpsc::channel(WAITING);
+    let wanted = |port: u16| (!args.no_ports).then_some(port);
     let config = DoorsConfig {
         listen: args.listen,
-        tcp_port: Some(args.tcp_port()),
-        ws_port: Some(args.ws_port()),
-        rc_port: Some(args.udp_ports().rc),
-        fdm_port: None,
+        tcp_port: wanted(args.tcp_port()),
+        ws_port: wanted(args.ws_port()),
+        rc_port: wanted(args.udp_ports().rc),
+        fdm_port: physics.is_external().then_some(args.udp_ports().fdm),
         allow_origin: args.allow_origin.clone(),
     };
     let (doors, first) = Doors::open(&config, request_tx).await;
@@ -52,16 +67,50 @@ pub async fn open(args: &DoorArgs) -> Option<Opened> {
     if let Some(address) = args.listen.filter(|address| !address.is_loopback()) {
         notices.push(format!("The doors listen on {address}: everybody on that network can fly this craft."));
     }
-    let open = first.iter().filter(|door| !door.fault).map(|door| format!("{} {}", door.name, door.address));
-    let open: Vec<String> = open.collect();
-    if !open.is_empty() {
-        notices.push(format!("Doors open: {}.", open.join(", ")));
-    }
+    let places = DoorPlaces {
+        ws: doors.address(DoorKind::WebSocket),
+        tcp: doors.address(DoorKind::Tcp),
+        fdm: doors.address(DoorKind::Fdm),
+        rc: doors.address(DoorKind::Rc),
+    };
+    let simulator = match physics.is_external() {
+        true => Some(simulator(args, physics, flight, places.fdm, &mut notices)?),
+        false => None,
+    };
     let desk = Desk::new(doors.restart_bell(), true);
     let (view_tx, views) = watch::channel(first);
     let stop = CancellationToken::new();
     let keeper = tokio::spawn(keep(doors, view_tx, stop.clone()));
-    Some(Opened { doors: OpenDoors { stop, keeper }, doorway: Doorway { requests, desk, views }, notices })
+    let doorway = Doorway { requests, desk, views, simulator };
+    Ok(Some(Opened { doors: OpenDoors { stop, keeper }, doorway, places, notices }))
+}
+
+/// The link to the simulator that moves the craft.
+fn simulator(
+    args: &DoorArgs,
+    physics: &PhysicsArgs,
+    flight: &FlightArgs,
+    hears_at: Option<SocketAddr>,
+    notices: &mut Vec<String>,
+) -> Result<ExternalSimulator, AppError> {
+    let to = |port| SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), port);
+    let ports = args.udp_ports();
+    let motors = MotorPort::open(to(ports.motors), to(ports.raw)).map_err(|error| {
+        AppError::environment(format!("cannot send motors to {}: {error}", to(ports.motors)))
+    })?;
+    if let Some(address) = hears_at {
+        notices.push(format!(
+            "A simulator moves the craft: its states come to UDP {address}, motors go to {}. Waiting for it.",
+            to(ports.motors)
+        ));
+    }
+    let speech = &physics.simulator;
+    let config = FdmLinkConfig {
+        dialect: speech.fdm_dialect.unwrap_or_default().0,
+        mirror: speech.fdm_mirror.unwrap_or_default(),
+        tick_us: 1_000_000 / u64::from(flight.rate_hz()),
+    };
+    Ok(ExternalSimulator::start(config, speech.motor_order.unwrap_or_default(), motors, Instant::now()))
 }
 
 /// Publishes the state of the doors when it changes, until it is told to close them.
@@ -92,5 +141,30 @@ impl OpenDoors {
         self.stop.cancel();
         // The keeper does not panic.
         drop(self.keeper.await);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::args::{Physics, UdpPorts};
+
+    #[tokio::test]
+    async fn without_ports_only_those_of_an_external_simulator_are_open() {
+        let ports = UdpPorts { raw: 9, motors: 9, fdm: 0, rc: 0 };
+        let doors = DoorArgs { no_ports: true, udp_ports: Some(ports), ..DoorArgs::default() };
+        let flight = FlightArgs::default();
+        assert!(open(&doors, &PhysicsArgs::default(), &flight).await.unwrap().is_none());
+        let external = PhysicsArgs { physics: Some(Physics::External), ..PhysicsArgs::default() };
+        let opened = open(&doors, &external, &flight).await.unwrap().unwrap();
+        let views = opened.doorway.views.borrow().clone();
+        assert_eq!(views.iter().map(|door| door.name).collect::<Vec<_>>(), ["udp fdm"]);
+        assert!(opened.doorway.simulator.is_some());
+        assert!(
+            opened.notices.iter().any(|notice| notice.contains(&views[0].address)),
+            "{:?}",
+            opened.notices
+        );
+        opened.doors.close().await;
     }
 }

@@ -1,23 +1,26 @@
 //! `betadeck fly`: a whole flight without a screen.
 #![allow(clippy::disallowed_methods, reason = "measures the wall time of the flight and paces it when asked")]
 
-use std::fs::File;
-use std::io::{BufWriter, Write};
+mod output;
+
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use super::error::{self, AppError};
 use super::setup::{self, Extras};
-use crate::args::{FlyArgs, OutputFile};
+use crate::args::FlyArgs;
 use crate::firmware::cli::Interpreter;
-use crate::flight::{Flight, FlightEnd, FlightOptions, FlightResult, Report, Verdict};
+use crate::flight::{Flight, FlightEnd, FlightOptions, FlightResult, Verdict};
 use crate::plan::format::PlanFile;
-use crate::record::{End, GpxHeader, GpxWriter, TrackPoint, UtcSeconds, json, sentence};
+use crate::plan::review::Finding;
+use crate::plan::validate::check_plan;
+use crate::record::End;
 use crate::session::{Pacer, upload};
 use crate::signals::SimTime;
 use crate::storage::Store;
 use crate::vehicle::Vehicle;
+use output::Output;
 
 /// Ticks between two looks at the clock and at an interrupt.
 const SLICE: u64 = 4096;
@@ -25,6 +28,7 @@ const SLICE: u64 = 4096;
 /// Flies and reports; the exit code says whether the mission completed.
 pub fn run(args: &FlyArgs) -> Result<u8, AppError> {
     let plan = setup::read_plan(&args.plan)?;
+    refuse_unflyable(&plan)?;
     let mut notices: Vec<String> = plan.notes.iter().map(ToString::to_string).collect();
     let mut store = open_store(args)?;
     let extras = Extras {
@@ -33,6 +37,7 @@ pub fn run(args: &FlyArgs) -> Result<u8, AppError> {
         plan_settings: plan.settings.clone(),
         arm_assist: false,
         live: false,
+        external: false,
     };
     let mut vehicle = setup::vehicle(&args.flight, &plan, &mut store, extras, &mut notices)?;
     vehicle.hands.inputs.clone_from(&args.stick);
@@ -40,7 +45,6 @@ pub fn run(args: &FlyArgs) -> Result<u8, AppError> {
     for notice in notices {
         vehicle.notice(notice);
     }
-    let mut output = Output::open(args, &vehicle, &plan)?;
     let options = FlightOptions {
         takeoff_m: args.takeoff_m(),
         timeout: SimTime::from_secs_f64(args.timeout_s()),
@@ -51,6 +55,7 @@ pub fn run(args: &FlyArgs) -> Result<u8, AppError> {
             "no channel switches {mode}: the pilot needs one; set it with an aux line in --settings"
         ))
     })?;
+    let mut output = Output::open(args, flight.vehicle(), &plan)?;
     let (end, wall) = fly(flight, args.speed(), &mut output)?;
     let end_record = End {
         result: end.verdict.result.to_string(),
@@ -60,6 +65,14 @@ pub fn run(args: &FlyArgs) -> Result<u8, AppError> {
     };
     output.finish(end.time, &end_record)?;
     Ok(exit_code(end.verdict.result))
+}
+
+/// No craft flies a plan that is refused whatever its settings are, so there is nothing to wait for.
+fn refuse_unflyable(plan: &PlanFile) -> Result<(), AppError> {
+    check_plan(&plan.plan).map_err(|fault| {
+        plan.notes.iter().for_each(|note| error::tell(&note.to_string()));
+        AppError::input(format!("{}: {}", plan.name, Finding::Fault(fault)))
+    })
 }
 
 fn exit_code(result: FlightResult) -> u8 {
@@ -141,7 +154,8 @@ fn fly(mut flight: Flight, speed: f64, output: &mut Output) -> Result<(FlightEnd
     }
 }
 
-/// A flag that SIGINT and SIGTERM set.
+/// A flag that SIGINT, SIGTERM and SIGHUP set. A second signal ends the program at once: the flight may be waiting for a
+/// reader that does not read.
 fn interrupt_flag() -> Result<Arc<AtomicBool>, AppError> {
     let deaf = |error| AppError::environment(format!("cannot listen for signals: {error}"));
     let flag = Arc::new(AtomicBool::new(false));
@@ -156,109 +170,13 @@ fn interrupt_flag() -> Result<Arc<AtomicBool>, AppError> {
         .spawn(move || {
             runtime.block_on(stop);
             raised.store(true, Ordering::Relaxed);
+            runtime.block_on(async {
+                if let Ok(again) = super::signals::stop() {
+                    again.await;
+                    std::process::exit(i32::from(error::INTERRUPTED));
+                }
+            });
         })
         .map_err(|error| AppError::environment(format!("cannot start a thread: {error}")))?;
     Ok(flag)
-}
-
-/// Where the reports go.
-struct Output {
-    lines: Option<BufWriter<Box<dyn Write>>>,
-    /// JSON lines, or sentences.
-    json: bool,
-    gpx: Option<GpxWriter<BufWriter<File>>>,
-}
-
-impl Output {
-    fn open(args: &FlyArgs, vehicle: &Vehicle, plan: &PlanFile) -> Result<Self, AppError> {
-        let stdout = || Box::new(std::io::stdout()) as Box<dyn Write>;
-        let (target, json): (Box<dyn Write>, bool) = match &args.json {
-            None => (stdout(), false),
-            Some(OutputFile::Stdout) => (stdout(), true),
-            Some(OutputFile::File(path)) => (Box::new(create(path)?), true),
-        };
-        let gpx = match &args.gpx {
-            None => None,
-            Some(path) => {
-                let home_amsl_m = vehicle.world().local_frame().alt_amsl_m;
-                let header = GpxHeader {
-                    creator: "betadeck (simulated)".to_owned(),
-                    track: plan.name.clone(),
-                    home_amsl_m,
-                    boot: UtcSeconds::SIMULATED_BOOT,
-                };
-                let file = BufWriter::new(create(path)?);
-                Some(GpxWriter::new(file, header, &plan.plan).map_err(write_failed)?)
-            }
-        };
-        Ok(Self { lines: Some(BufWriter::new(target)), json, gpx })
-    }
-
-    fn report(&mut self, report: &Report) -> Result<(), AppError> {
-        let line = match report {
-            Report::Event(event) if self.json => json::event_line(event),
-            Report::Event(event) => sentence::line(event),
-            Report::Sample(vehicle) => Some(json::sample_line(&vehicle.snapshot())),
-        };
-        line.map_or(Ok(()), |line| self.line(&line))
-    }
-
-    fn line(&mut self, line: &str) -> Result<(), AppError> {
-        let Some(lines) = &mut self.lines else { return Ok(()) };
-        let written = writeln!(lines, "{line}");
-        self.after(written)
-    }
-
-    fn flush(&mut self) -> Result<(), AppError> {
-        let Some(lines) = &mut self.lines else { return Ok(()) };
-        let written = lines.flush();
-        self.after(written)
-    }
-
-    /// A reader that went away has seen enough; the flight and its exit code go on.
-    fn after(&mut self, written: std::io::Result<()>) -> Result<(), AppError> {
-        match written {
-            Ok(()) => Ok(()),
-            Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => {
-                self.lines = None;
-                Ok(())
-            }
-            Err(error) => Err(write_failed(error)),
-        }
-    }
-
-    fn track(&mut self, vehicle: &Vehicle) -> Result<(), AppError> {
-        let Some(gpx) = &mut self.gpx else { return Ok(()) };
-        if !vehicle.time().0.is_multiple_of(1_000_000) {
-            return Ok(());
-        }
-        let truth = vehicle.world().truth();
-        let frame = vehicle.world().local_frame();
-        let (lat_deg, lon_deg, amsl_m) = frame.to_geodetic(truth.pos_enu);
-        let alt_m = amsl_m - frame.alt_amsl_m;
-        gpx.offer(&TrackPoint { time: vehicle.time(), lat_deg, lon_deg, alt_m }).map_err(write_failed)
-    }
-
-    fn finish(mut self, time: SimTime, end: &End) -> Result<(), AppError> {
-        if self.json {
-            self.line(&json::end_line(time, end))?;
-        }
-        self.flush()?;
-        if let Some(gpx) = self.gpx.take() {
-            gpx.finish().map_err(write_failed)?.flush().map_err(write_failed)?;
-        }
-        error::tell(&end.result_line());
-        error::tell(&end.flown_line());
-        Ok(())
-    }
-}
-
-fn create(path: &std::path::Path) -> Result<File, AppError> {
-    File::create(path)
-        .map_err(|error| AppError::environment(format!("cannot write {}: {error}", path.display())))
-}
-
-#[expect(clippy::needless_pass_by_value, reason = "a map_err argument")]
-fn write_failed(error: std::io::Error) -> AppError {
-    AppError::environment(format!("cannot write the output: {error}"))
 }

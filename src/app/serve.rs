@@ -20,7 +20,12 @@ pub fn run(args: &ServeArgs) -> Result<u8, AppError> {
     let mut output = open_output(args)?;
     let mut notices = Vec::new();
     let mut store = setup::open_store(&args.flight)?;
-    let extras = Extras { arm_assist: true, live: !args.doors.no_ports, ..Extras::default() };
+    notices.extend(setup::storage_notice(&store));
+    let external = args.physics.is_external();
+    let live = external || !args.doors.no_ports;
+    let faults = args.physics.fault.clone();
+    let extras = Extras { faults, arm_assist: true, live, external, ..Extras::default() };
+    notices.extend(args.physics.idle_options(&args.flight));
     let nowhere = PlanFile::default();
     let mut vehicle = setup::vehicle(&args.flight, &nowhere, &mut store, extras, &mut notices)?;
     // RC comes through the doors only; resting virtual sticks would hide the loss of a script.
@@ -33,10 +38,11 @@ pub fn run(args: &ServeArgs) -> Result<u8, AppError> {
     runtime.block_on(async {
         let stop = signals::stop()
             .map_err(|error| AppError::environment(format!("cannot listen for signals: {error}")))?;
-        let opened = doors::open(&args.doors).await;
+        let opened = doors::open(&args.doors, &args.physics, &args.flight).await?;
         let (doors, doorway) = match opened {
             Some(opened) => {
                 notices.extend(opened.notices);
+                vehicle.doors_opened(opened.places);
                 (Some(opened.doors), Some(opened.doorway))
             }
             None => (None, None),

@@ -4,12 +4,16 @@ use std::io::Read as _;
 use std::path::Path;
 
 use super::AppError;
+use super::sitl::{DECLINATION_DEG, GPS_TIMEOUT_S};
 use crate::args::{Attitude, FlightArgs, PlanArg};
-use crate::firmware::cli::{BuildInfo, CliContext, CliFacts, Interpreter, Mode, advice, apply_lines};
+use crate::firmware::cli::{
+    BuildInfo, CliContext, CliFacts, CliReply, Interpreter, Mode, advice, apply_lines,
+};
 use crate::firmware::config::Configuration;
+use crate::firmware::settings;
 use crate::firmware::{AttitudeSource, FirmwareOptions};
 use crate::plan::builtin::BuiltinPlan;
-use crate::plan::format::{self, PlanFile};
+use crate::plan::format::{self, PlanFile, Problems, SettingPart};
 use crate::record::UtcSeconds;
 use crate::sim::{Airframe, FaultLink, Noise, ScheduledFault, Wind, WorldConfig};
 use crate::storage::Store;
@@ -26,11 +30,12 @@ pub fn read_plan(plan: &PlanArg) -> Result<PlanFile, AppError> {
         PlanArg::Stdin(_) => read_text(std::io::stdin().lock(), "standard input")?,
         PlanArg::File(path, _) => read_file(path)?,
     };
-    format::parse(&name, &text, plan.format())
+    format::parse_checked(&name, &text, plan.format(&text), settings::judge)
         .map_err(|errors| AppError::input(format::report(&errors).trim_end().to_owned()))
 }
 
-fn read_file(path: &Path) -> Result<String, AppError> {
+/// Reads a text file of sensible size.
+pub fn read_file(path: &Path) -> Result<String, AppError> {
     let name = path.display().to_string();
     let file = std::fs::File::open(path)
         .map_err(|error| AppError::environment(format!("cannot open {name}: {error}")))?;
@@ -62,6 +67,8 @@ pub struct Extras {
     pub arm_assist: bool,
     /// Doors or files can influence the flight.
     pub live: bool,
+    /// A simulator outside moves the craft.
+    pub external: bool,
 }
 
 /// Builds a vehicle at boot. Notices for the user are added to `notices`.
@@ -72,10 +79,50 @@ pub fn vehicle(
     extras: Extras,
     notices: &mut Vec<String>,
 ) -> Result<Vehicle, AppError> {
+    let rate_hz = args.rate_hz();
+    let usual = if extras.external { Attitude::Truth } else { Attitude::Estimated };
+    let mut firmware = FirmwareOptions {
+        rate_hz,
+        arm_assist: args.arm_assist.map_or(extras.arm_assist, crate::args::OnOff::is_on),
+        attitude: match args.attitude.unwrap_or(usual) {
+            Attitude::Truth => AttitudeSource::Truth,
+            Attitude::Estimated => AttitudeSource::Estimated,
+        },
+        ..FirmwareOptions::default()
+    };
+    let world = if extras.external {
+        firmware.gps_timeout_s = GPS_TIMEOUT_S;
+        firmware.declination_deg = DECLINATION_DEG;
+        let seed = args.seed.unwrap_or(WorldConfig::default().seed);
+        WorldConfig { rate_hz, seed, faults: extras.faults, ..WorldConfig::default() }
+    } else {
+        world(args, plan, rate_hz, extras.faults, notices)?
+    };
+    let mut configuration = load(store, notices);
+    let plan_lines = set_lines(&extras.plan_settings);
+    apply(&mut configuration, &plan_lines, &format!("settings of plan {}", plan.name))?;
+    if let Some(path) = &args.settings {
+        apply(&mut configuration, &read_file(path)?, &path.display().to_string())?;
+    }
+    apply(&mut configuration, &set_lines(&extras.set), "--set")?;
+    let config = VehicleConfig { world, firmware, configuration, live: extras.live };
+    let vehicle = if extras.external { Vehicle::moved_from_outside(config) } else { Vehicle::new(config) };
+    let mut vehicle = vehicle.map_err(|error| AppError::input(error.to_string()))?;
+    vehicle.firmware_mut().set_build(build_info());
+    Ok(vehicle)
+}
+
+/// The embedded world.
+fn world(
+    args: &FlightArgs,
+    plan: &PlanFile,
+    rate_hz: u32,
+    faults: Vec<ScheduledFault>,
+    notices: &mut Vec<String>,
+) -> Result<WorldConfig, AppError> {
     let (home, guess) = args.start(plan.home, &plan.plan);
     notices.extend(guess);
-    let rate_hz = args.rate.unwrap_or(1000);
-    let world = WorldConfig {
+    Ok(WorldConfig {
         airframe: airframe(args.airframe.as_deref())?,
         home,
         rate_hz,
@@ -85,29 +132,9 @@ pub fn vehicle(
         gust_mps: args.gust.unwrap_or(0.0),
         turbulence: args.turbulence.unwrap_or_default(),
         switches: args.switches().map_err(|error| AppError::input(error.to_string()))?,
-        faults: extras.faults,
+        faults,
         link: FaultLink::Embedded,
-    };
-    let firmware = FirmwareOptions {
-        rate_hz,
-        arm_assist: args.arm_assist.map_or(extras.arm_assist, crate::args::OnOff::is_on),
-        attitude: match args.attitude {
-            Some(Attitude::Truth) => AttitudeSource::Truth,
-            Some(Attitude::Estimated) | None => AttitudeSource::Estimated,
-        },
-        ..FirmwareOptions::default()
-    };
-    let mut configuration = load(store, notices);
-    let plan_lines = set_lines(&extras.plan_settings);
-    apply(&mut configuration, &plan_lines, &format!("settings of plan {}", plan.name))?;
-    if let Some(path) = &args.settings {
-        apply(&mut configuration, &read_file(path)?, &path.display().to_string())?;
-    }
-    apply(&mut configuration, &set_lines(&extras.set), "--set")?;
-    let mut vehicle = Vehicle::new(VehicleConfig { world, firmware, configuration, live: extras.live })
-        .map_err(|error| AppError::input(error.to_string()))?;
-    vehicle.firmware_mut().set_build(build_info());
-    Ok(vehicle)
+    })
 }
 
 /// What the CLI's `version` and MSP tell about this executable.
@@ -136,25 +163,40 @@ fn set_lines(settings: &[String]) -> String {
     settings.iter().map(|setting| format!("set {setting}\n")).collect()
 }
 
-/// Applies command lines at boot, as if typed; all refused lines are reported.
+/// Applies command lines at boot, as if typed; all refused lines are reported with their places.
 fn apply(configuration: &mut Configuration, text: &str, source: &str) -> Result<(), AppError> {
     let facts = CliFacts::default();
     let mut context = CliContext { configuration, facts: &facts };
     let mut reasons = Vec::new();
     let report = apply_lines(text.lines(), &mut Interpreter::new(Mode::File), &mut context, |line, reply| {
         if reply.failed {
-            // The refusal, the allowed values and the nearest word.
-            let said = reply.text.lines().map(str::to_owned).filter(|line| !line.is_empty());
-            reasons.push(said.chain(advice(line, reply)).collect::<Vec<_>>().join(" "));
+            reasons.push(refusal(line, reply));
         }
     });
-    if report.failed.is_empty() {
+    let mut problems = Problems::new(source, text);
+    for (failed, (span, message, hint)) in std::iter::zip(&report.failed, reasons) {
+        problems.add_line_part(failed.number, span, message, hint);
+    }
+    if problems.is_empty() {
         return Ok(());
     }
-    let problems: Vec<String> = std::iter::zip(&report.failed, reasons)
-        .map(|(failed, reason)| format!("{source}:{}: {}: {reason}", failed.number, failed.line))
-        .collect();
-    Err(AppError::input(problems.join("\n")))
+    Err(AppError::input(format::report(&problems.into_errors())))
+}
+
+/// The part of a refused line that is wrong, what is wrong with it, and what is allowed.
+fn refusal(line: &str, reply: &CliReply) -> (String, String, String) {
+    let setting =
+        line.split_once(' ').filter(|(word, _)| word.eq_ignore_ascii_case("set")).map(|(_, rest)| rest);
+    if let Some((name, value)) = setting.and_then(|rest| rest.split_once('='))
+        && let Err(fault) = settings::judge(name.trim(), value.trim())
+    {
+        let part = if fault.part == SettingPart::Name { name } else { value };
+        return (part.trim().to_owned(), fault.message, fault.hint);
+    }
+    let mut said = reply.text.lines().filter(|line| !line.is_empty());
+    let message = said.next().unwrap_or("refused").trim_matches('#').to_owned();
+    let hint = said.map(str::to_owned).chain(advice(line, reply)).collect::<Vec<_>>().join(" ");
+    (line.to_owned(), message, hint)
 }
 
 fn airframe(name: Option<&str>) -> Result<Airframe, AppError> {
@@ -179,4 +221,9 @@ pub fn open_store(args: &FlightArgs) -> Result<Store, AppError> {
         None => super::layers::directories()?.state,
     };
     Store::open(&directory, false).map_err(|error| AppError::environment(error.to_string()))
+}
+
+/// Why `save` cannot work, as a sentence: better known at the start than when it is typed.
+pub fn storage_notice(store: &Store) -> Option<String> {
+    store.refusal().map(|refusal| format!("`save` cannot work: {refusal}."))
 }

@@ -8,6 +8,7 @@ use std::path::Path;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use super::error::{self, AppError};
+use super::setup::read_file;
 use super::signals;
 use crate::args::{Attitude, OnOff, SitlArgs};
 use crate::firmware::cli::{ApplyReport, CliContext, CliFacts, Interpreter, Mode, provision};
@@ -21,11 +22,11 @@ use crate::storage::Store;
 /// Name of the track.
 const TRACK: &str = "sitl_track.gpx";
 
-/// Silence of the GPS that ends the fix, s.
-const GPS_TIMEOUT_S: f64 = 2.5;
+/// Silence of the GPS that ends the fix while a simulator outside moves the craft, s.
+pub(super) const GPS_TIMEOUT_S: f64 = 2.5;
 
 /// Declination of the magnetic field that the virtual magnetometer senses, degrees east.
-const DECLINATION_DEG: f64 = 2.0;
+pub(super) const DECLINATION_DEG: f64 = 2.0;
 
 /// Runs until a signal, or through a configuration file; gives the exit code.
 pub fn run(args: &SitlArgs) -> Result<u8, AppError> {
@@ -37,12 +38,13 @@ pub fn run(args: &SitlArgs) -> Result<u8, AppError> {
     let config = config(args);
     match &args.config {
         Some(file) => {
-            let Ok(text) = std::fs::read_to_string(file) else {
-                return Err(AppError {
-                    code: error::FAILED,
-                    message: format!("[SITL] Config file not found: {}", file.display()),
-                });
-            };
+            let text = read_file(file).map_err(|error| {
+                let message = match error.code {
+                    error::ENVIRONMENT => format!("Config file not found: {}", file.display()),
+                    _ => format!("Config file not used: {error}"),
+                };
+                AppError { code: error::FAILED, message: format!("[SITL] {message}") }
+            })?;
             say(Said::Out(format!(
                 "[SITL] Config file: {} (will load, save to EEPROM, and exit)",
                 file.display()
@@ -78,11 +80,11 @@ fn config(args: &SitlArgs) -> SitlConfig {
         },
         build: super::setup::build_info(),
         fdm: FdmLinkConfig {
-            dialect: args.fdm_dialect.unwrap_or_default().0,
-            mirror: args.fdm_mirror.unwrap_or_default(),
+            dialect: args.simulator.fdm_dialect.unwrap_or_default().0,
+            mirror: args.simulator.fdm_mirror.unwrap_or_default(),
             ..FdmLinkConfig::default()
         },
-        motor_order: args.motor_order.unwrap_or_default(),
+        motor_order: args.simulator.motor_order.unwrap_or_default(),
         exit_on_reboot: args.exit_on_reboot,
     }
 }

@@ -33,7 +33,12 @@ pub fn run(args: &TuiArgs) -> Result<u8, AppError> {
     };
     let mut notices: Vec<String> = plan.notes.iter().map(ToString::to_string).collect();
     let mut store = setup::open_store(&args.flight)?;
-    let extras = Extras { arm_assist: true, live: !args.doors.no_ports, ..Extras::default() };
+    notices.extend(setup::storage_notice(&store));
+    let external = args.physics.is_external();
+    let live = external || !args.doors.no_ports;
+    let faults = args.physics.fault.clone();
+    let extras = Extras { faults, arm_assist: true, live, external, ..Extras::default() };
+    notices.extend(args.physics.idle_options(&args.flight));
     let mut vehicle = setup::vehicle(&args.flight, &plan, &mut store, extras, &mut notices)?;
     let config = UiConfig {
         theme: Theme::from_environment(|name| std::env::var(name).ok()),
@@ -49,9 +54,10 @@ pub fn run(args: &TuiArgs) -> Result<u8, AppError> {
         .build()
         .map_err(problem)?;
     let ending = runtime.block_on(async {
-        let (doors, doorway) = match doors::open(&args.doors).await {
+        let (doors, doorway) = match doors::open(&args.doors, &args.physics, &args.flight).await? {
             Some(opened) => {
                 notices.extend(opened.notices);
+                vehicle.doors_opened(opened.places);
                 (Some(opened.doors), Some(opened.doorway))
             }
             None => (None, None),

@@ -18,13 +18,17 @@ pub struct ConvertArgs {
     #[arg(value_name = "OUT")]
     pub output: OutputFile,
 
-    /// Format of IN: toml, txt [default: by its ending]
+    /// Format of IN: toml, txt [default: by its ending; of standard input: by its text]
     #[arg(long, value_name = "FORMAT", value_parser = value::format)]
     from: Option<Format>,
 
     /// Format of OUT: toml, txt [default: by its ending]
     #[arg(long, value_name = "FORMAT", value_parser = value::format)]
     to: Option<Format>,
+
+    /// Replaces OUT when it exists
+    #[arg(long)]
+    pub force: bool,
 }
 
 impl ConvertArgs {
@@ -35,7 +39,7 @@ impl ConvertArgs {
     /// When the name is no plan's; not after [`super::parse`], which checks it.
     pub fn source(&self) -> Result<PlanArg, PlanArgError> {
         match self.from {
-            Some(format) if self.input == "-" => Ok(PlanArg::Stdin(format)),
+            Some(format) if self.input == "-" => Ok(PlanArg::Stdin(Some(format))),
             Some(format) => Ok(PlanArg::File(self.input.clone().into(), format)),
             None => self.input.parse(),
         }

@@ -7,10 +7,8 @@ use std::str::FromStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
 use super::FlightArgs;
+use super::physics::{PhysicsArgs, SimulatorArgs};
 use super::value::{Attitude, OnOff, OutputFile};
-use crate::link::proto::fdm::Dialect;
-use crate::link::proto::fdm_link::Mirror;
-use crate::link::proto::servo::MotorOrder;
 
 /// Where the doors are; port 0 = the system chooses.
 #[derive(Debug, Clone, Default, PartialEq, Eq, clap::Args)]
@@ -31,7 +29,7 @@ pub struct DoorArgs {
     #[arg(long, value_name = "RAW,MOTORS,FDM,RC", help_heading = "Doors")]
     pub udp_ports: Option<UdpPorts>,
 
-    /// Opens no door
+    /// Opens no door but those of an external simulator
     #[arg(long, conflicts_with_all = ["listen", "ws_port", "tcp_port", "udp_ports"], help_heading = "Doors")]
     pub no_ports: bool,
 
@@ -114,6 +112,10 @@ pub struct ServeArgs {
     #[command(flatten)]
     pub doors: DoorArgs,
 
+    /// Whose physics moves the craft.
+    #[command(flatten)]
+    pub physics: PhysicsArgs,
+
     /// What flies, where and in which air.
     #[command(flatten)]
     pub flight: FlightArgs,
@@ -150,17 +152,9 @@ pub struct SitlArgs {
     #[arg(long)]
     pub overwrite_config: bool,
 
-    /// What the simulator's packets mean: auto, sitl-gz, gz-plugin or legacy [default: auto]
-    #[arg(long, value_name = "DIALECT", help_heading = "Simulator")]
-    pub fdm_dialect: Option<FdmDialect>,
-
-    /// Whether the simulator's positions are mirrored: auto, on or off [default: auto]
-    #[arg(long, value_name = "auto|on|off", help_heading = "Simulator")]
-    pub fdm_mirror: Option<Mirror>,
-
-    /// Order of the motors in the simulator's model: native, or legacy (before spring 2026) [default: native]
-    #[arg(long, value_name = "native|legacy", help_heading = "Simulator")]
-    pub motor_order: Option<MotorOrder>,
+    /// How to speak with the simulator.
+    #[command(flatten)]
+    pub simulator: SimulatorArgs,
 
     /// Lets a script arm that holds the ARM switch on from its first packet, or throttle up to 1150 [default: on]
     #[arg(long, value_enum, help_heading = "Firmware")]
@@ -177,22 +171,6 @@ pub struct SitlArgs {
     /// The doors.
     #[command(flatten)]
     pub doors: DoorArgs,
-}
-
-/// A dialect by name, or `auto`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct FdmDialect(pub Option<Dialect>);
-
-impl FromStr for FdmDialect {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        if text == "auto" {
-            return Ok(Self(None));
-        }
-        let known = || format!("{text} is no dialect; use auto, sitl-gz, gz-plugin or legacy");
-        text.parse().map(|dialect| Self(Some(dialect))).map_err(|_| known())
-    }
 }
 
 /// What the reference firmware simulator prints for an argument it does not understand, or one without its value; it

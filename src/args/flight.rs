@@ -10,7 +10,7 @@ use crate::sim::{self, Noise, Switches, Turbulence, Wind};
 use super::help;
 use super::value::{self, Attitude, OnOff, Speed};
 
-/// Beyond this distance between the default home and the first waypoint the craft starts at the waypoint, m.
+/// Beyond this distance from home the first waypoint is far: a default home moves there, m.
 const FAR_FROM_HOME_M: f64 = 10_000.0;
 
 /// The options that all flying commands share; `None` = the command's default.
@@ -46,7 +46,7 @@ pub struct FlightArgs {
     #[arg(long, help_heading = "Craft")]
     pub fresh: bool,
 
-    /// Where the attitude comes from: estimated, truth [default: estimated]
+    /// Where the attitude comes from: estimated, truth [default: estimated; external simulator: truth]
     #[arg(long, value_name = "SOURCE", hide_possible_values = true, help_heading = "Craft")]
     pub attitude: Option<Attitude>,
 
@@ -55,11 +55,11 @@ pub struct FlightArgs {
     pub arm_assist: Option<OnOff>,
 
     /// Mean wind: m/s and the direction it blows from in degrees, such as 5@270 [default: calm]
-    #[arg(long, value_name = "SPEED@FROM", help_heading = "Air")]
+    #[arg(long, value_name = "SPEED@FROM", allow_hyphen_values = true, help_heading = "Air")]
     pub wind: Option<Wind>,
 
     /// Strength of random gusts, m/s [default: 0]
-    #[arg(long, value_name = "SPEED", value_parser = value::gust, help_heading = "Air")]
+    #[arg(long, value_name = "SPEED", allow_negative_numbers = true, value_parser = value::gust, help_heading = "Air")]
     pub gust: Option<f64>,
 
     /// Turbulence: none, light, moderate, severe [default: none]
@@ -75,15 +75,15 @@ pub struct FlightArgs {
     pub world: Vec<String>,
 
     /// Seed of all randomness [default: 1]
-    #[arg(long, value_name = "N", allow_negative_numbers = true, help_heading = "Time")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = value::seed, help_heading = "Time")]
     pub seed: Option<u64>,
 
     /// Steps of physics and control a second: 400, 500, 1000, 2000, 4000, 8000 [default: 1000]
-    #[arg(long, value_name = "HZ", value_parser = value::rate, help_heading = "Time")]
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true, value_parser = value::rate, help_heading = "Time")]
     pub rate: Option<u32>,
 
     /// Times real time, or max for as fast as the machine allows [default: 1; fly: max]
-    #[arg(long, value_name = "X|max", help_heading = "Time")]
+    #[arg(long, value_name = "X|max", allow_negative_numbers = true, help_heading = "Time")]
     pub speed: Option<Speed>,
 }
 
@@ -101,7 +101,13 @@ impl FlightArgs {
         Ok(switches)
     }
 
-    /// Where the craft stands at boot, and a sentence for the user when that is a guess.
+    /// Steps of control a second.
+    #[must_use]
+    pub fn rate_hz(&self) -> u32 {
+        self.rate.unwrap_or(1000)
+    }
+
+    /// Where the craft stands at boot, and a sentence for the user when that is a guess or far from the plan.
     #[must_use]
     pub fn start(&self, plan_home: Option<Home>, plan: &FlightPlan) -> (sim::Home, Option<String>) {
         let default = sim::Home { heading_deg: self.heading.unwrap_or(0.0), ..sim::Home::default() };
@@ -111,23 +117,27 @@ impl FlightArgs {
             alt_amsl_m: home.amsl_m.unwrap_or(default.alt_amsl_m),
             ..default
         };
-        if let Some(home) = self.home.or(plan_home) {
-            return (at(home), None);
-        }
-        let here = LatLon::from_degrees(default.lat_deg, default.lon_deg);
+        let chosen = self.home.or(plan_home);
+        let home = chosen.map_or(default, at);
+        let place = LatLon::from_degrees(home.lat_deg, home.lon_deg);
         let first = plan.waypoints.iter().find(|waypoint| waypoint.kind.uses_position());
-        let first = first.map(|waypoint| waypoint.position);
-        match first.filter(|&first| distance_bearing(here, first).0 > FAR_FROM_HOME_M) {
-            Some(first) => {
-                let kilometres = distance_bearing(here, first).0 / 1000.0;
-                let notice = format!(
-                    "The plan is {kilometres:.0} km from the default home: the craft starts at its first waypoint, \
-                     {first} (--home chooses another place)."
-                );
-                (at(Home { position: first, amsl_m: None }), Some(notice))
-            }
-            None => (default, None),
+        let Some((first, distance_m)) = first
+            .map(|first| (first.position, distance_bearing(place, first.position).0))
+            .filter(|&(_, distance_m)| distance_m > FAR_FROM_HOME_M)
+        else {
+            return (home, None);
+        };
+        let kilometres = distance_m / 1000.0;
+        if chosen.is_some() {
+            let notice =
+                format!("The plan's first waypoint, {first}, is {kilometres:.0} km from home, {place}.");
+            return (home, Some(notice));
         }
+        let notice = format!(
+            "The plan is {kilometres:.0} km from the default home: the craft starts at its first waypoint, {first} \
+             (--home chooses another place)."
+        );
+        (at(Home { position: first, amsl_m: None }), Some(notice))
     }
 }
 
@@ -163,6 +173,25 @@ mod tests {
         assert!(notice.unwrap().contains("50.0000000,-79.5182000"));
         let (home, notice) = FlightArgs::default().start(None, &plan_at(405_500_000));
         assert_eq!((home, notice), (sim::Home::default(), None));
+    }
+
+    #[test]
+    fn a_chosen_home_far_from_the_plan_stays_with_a_notice() {
+        let far: Option<Home> = "10,10".parse().ok();
+        for (typed, of_plan) in [(far, None), (None, far)] {
+            let flight = FlightArgs { home: typed, ..FlightArgs::default() };
+            let (home, notice) = flight.start(of_plan, &plan_at(404_640_000));
+            assert!((home.lat_deg - 10.0).abs() < 1e-9);
+            let notice = notice.expect("a notice");
+            assert!(
+                notice.contains("40.4640000,-79.5182000, is 9631 km from home, 10.0000000,10.0000000"),
+                "{notice}"
+            );
+        }
+        assert_eq!(
+            FlightArgs { home: far, ..FlightArgs::default() }.start(None, &FlightPlan::default()).1,
+            None
+        );
     }
 
     #[test]

@@ -24,7 +24,7 @@ pub struct FlyArgs {
     pub samples: Option<f64>,
 
     /// Writes the track as GPX
-    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    #[arg(long, value_name = "FILE", value_parser = value::output_path, help_heading = "Output")]
     pub gpx: Option<PathBuf>,
 
     /// Altitude of the pilot's climb before the autopilot is engaged, m [default: 10]
@@ -46,15 +46,15 @@ pub struct FlyArgs {
     pub stick: Vec<StickInput>,
 
     /// The radio link is lost at T
-    #[arg(long, value_name = "T[,FOR]", value_parser = value::rx_loss, help_heading = "Faults")]
+    #[arg(long, value_name = "T[,FOR]", allow_hyphen_values = true, value_parser = value::rx_loss, help_heading = "Faults")]
     pub rx_loss_at: Option<ScheduledFault>,
 
     /// The GPS is lost at T
-    #[arg(long, value_name = "T[,FOR]", value_parser = value::gps_loss, help_heading = "Faults")]
+    #[arg(long, value_name = "T[,FOR]", allow_hyphen_values = true, value_parser = value::gps_loss, help_heading = "Faults")]
     pub gps_loss_at: Option<ScheduledFault>,
 
     /// Something goes wrong at T, such as motor@10,,2:0.8 or gps-glitch@10,2,30@90; repeatable
-    #[arg(long, value_name = "NAME@T[,FOR][,VALUE]", long_help = help::faults(), help_heading = "Faults")]
+    #[arg(long, value_name = "NAME@T[,FOR][,VALUE]", value_parser = value::fault, long_help = help::faults(), help_heading = "Faults")]
     pub fault: Vec<ScheduledFault>,
 
     /// What flies, where and in which air.

@@ -1,6 +1,6 @@
 //! The longer texts of `--help`.
 
-use crate::sim::{FAULTS, SWITCHES};
+use crate::sim::{FAULTS, FaultInfo, SWITCHES};
 
 /// How values are found, for the end of the help of commands that fly.
 pub(super) const LAYERS: &str = "\
@@ -37,15 +37,25 @@ pub(super) fn faults() -> String {
          NAME (VALUE; what it is when left out):\n",
     );
     // Those of the external link have nothing to act on when everything is embedded.
-    for fault in FAULTS.iter().filter(|fault| !fault.help.starts_with("external link")) {
-        let value = match (fault.value, fault.default) {
-            ("", _) => String::new(),
-            (value, "") => format!(" ({value})"),
-            (value, default) => format!(" ({value}; {default})"),
-        };
-        text.push_str(&format!("  {}{value}: {}\n", fault.name, fault.help));
-    }
+    text.extend(FAULTS.iter().filter(|fault| !fault.needs_link()).map(fault_line));
     text.trim_end().to_owned()
+}
+
+/// All faults, for the long help of `--fault` where the simulator may be outside.
+pub(super) fn faults_with_link() -> String {
+    let mut text = faults();
+    text.push_str("\n\nWith --physics external: rx-loss, gps-loss and\n");
+    text.extend(FAULTS.iter().filter(|fault| fault.needs_link()).map(fault_line));
+    text.trim_end().to_owned()
+}
+
+fn fault_line(fault: &FaultInfo) -> String {
+    let value = match (fault.value, fault.default) {
+        ("", _) => String::new(),
+        (value, "") => format!(" ({value})"),
+        (value, default) => format!(" ({value}; {default})"),
+    };
+    format!("  {}{value}: {}\n", fault.name, fault.help)
 }
 
 /// All switches of the world, for the long help of `--world`.

@@ -42,13 +42,15 @@ pub(super) fn apply(
     command: &mut clap::Command,
 ) -> Result<Cli, clap::Error> {
     command.build();
-    layers.refuse_unknown_keys(command)?;
     let (name, typed) = matches.subcommand().unwrap_or(("", matches));
     let mut sources = BTreeMap::new();
     if FLYING.contains(&name) {
+        let unknown = layers.unknown_keys(command);
+        if !unknown.is_empty() {
+            return Err(problem(&unknown.join("\n")));
+        }
         let definition = command.find_subcommand(name).unwrap_or(command);
-        let added =
-            layers.additions(definition, typed, &mut sources).map_err(|text| problem(command, &text))?;
+        let added = layers.additions(definition, typed, &mut sources).map_err(|text| problem(&text))?;
         // Behind everything typed, but before a `--` that ends the options.
         let end = arguments.iter().position(|argument| argument == "--").unwrap_or(arguments.len());
         arguments.splice(end..end, added);
@@ -141,24 +143,65 @@ impl Layers {
         }
     }
 
-    fn refuse_unknown_keys(&self, command: &clap::Command) -> Result<(), clap::Error> {
-        let names: Vec<&str> = FLYING
-            .iter()
-            .flat_map(|name| options(command.find_subcommand(name).unwrap_or(command)))
-            .filter_map(Arg::get_long)
-            .collect();
-        let problems: Vec<String> = self
-            .file
-            .keys()
-            .filter(|key| !names.contains(&option_name(key).as_str()))
+    /// The layers without what names no option, and a sentence for each of that.
+    pub(super) fn without_unknown(&self, command: &clap::Command) -> (Self, Vec<String>) {
+        let names = all_names(command);
+        let mut problems = self.unknown_keys(command);
+        let mut known = self.clone();
+        known.file.retain(|key, _| names.contains(&option_name(key)));
+        for variable in self.environment.keys() {
+            let Some(name) = variable.strip_prefix(ENVIRONMENT_PREFIX) else { continue };
+            let name = option_name(&name.to_ascii_lowercase());
+            if !names.contains(&name) {
+                let guess =
+                    nearest(&name, names.iter().map(String::as_str)).map_or_else(String::new, |name| {
+                        format!(
+                            "; did you mean {ENVIRONMENT_PREFIX}{}?",
+                            name.to_ascii_uppercase().replace('-', "_")
+                        )
+                    });
+                problems.push(format!("environment variable {variable} is not an option{guess}"));
+            }
+        }
+        (known, problems)
+    }
+
+    /// The layers taken apart: each with one variable or one key.
+    pub(super) fn singles(&self) -> impl Iterator<Item = Self> + '_ {
+        let empty = || Self { file_name: self.file_name.clone(), ..Self::default() };
+        let variables = self.environment.iter().map(move |(name, value)| Self {
+            environment: BTreeMap::from([(name.clone(), value.clone())]),
+            ..empty()
+        });
+        let keys = self.file.iter().map(move |(key, value)| Self {
+            file: toml::Table::from_iter([(key.clone(), value.clone())]),
+            ..empty()
+        });
+        variables.chain(keys)
+    }
+
+    /// A sentence for each key of the file that names no option.
+    fn unknown_keys(&self, command: &clap::Command) -> Vec<String> {
+        let names = all_names(command);
+        let unknown = self.file.keys().filter(|key| !names.contains(&option_name(key)));
+        unknown
             .map(|key| {
-                let guess = nearest(&option_name(key), names.iter().copied());
+                let guess = nearest(&option_name(key), names.iter().map(String::as_str));
                 let guess = guess.map_or_else(String::new, |name| format!("; did you mean {name}?"));
                 format!("{}: {key} is not an option{guess}", self.file_name)
             })
-            .collect();
-        if problems.is_empty() { Ok(()) } else { Err(problem(command, &problems.join("\n"))) }
+            .collect()
     }
+}
+
+/// The names of all options that a layer can give.
+fn all_names(command: &clap::Command) -> Vec<String> {
+    FLYING
+        .iter()
+        .flat_map(|name| options(command.find_subcommand(name).unwrap_or(command)))
+        .filter_map(Arg::get_long)
+        .map(str::to_owned)
+        .collect()
 }
 
 /// Keys may be written with `_` as well.
@@ -178,8 +221,8 @@ fn scalar(value: &toml::Value) -> Option<String> {
     }
 }
 
-fn problem(command: &clap::Command, text: &str) -> clap::Error {
-    command.clone().error(ErrorKind::InvalidValue, text)
+fn problem(text: &str) -> clap::Error {
+    super::complaint(ErrorKind::InvalidValue, text)
 }
 
 /// Says where the value came from that an option's parser refused.

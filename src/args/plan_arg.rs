@@ -11,8 +11,8 @@ use crate::plan::format::Format;
 pub enum PlanArg {
     /// A plan of the executable.
     Builtin(BuiltinPlan),
-    /// Standard input in a format.
-    Stdin(Format),
+    /// Standard input in a format; `None` = the one that the text shows.
+    Stdin(Option<Format>),
     /// A file and the format that its ending names.
     File(PathBuf, Format),
 }
@@ -33,7 +33,7 @@ impl FromStr for PlanArg {
 
     fn from_str(text: &str) -> Result<Self, PlanArgError> {
         if text == "-" {
-            return Ok(Self::Stdin(Format::CliText));
+            return Ok(Self::Stdin(None));
         }
         if let Some(plan) = BuiltinPlan::find(text) {
             return Ok(Self::Builtin(plan));
@@ -47,12 +47,13 @@ impl FromStr for PlanArg {
 }
 
 impl PlanArg {
-    /// The format that the plan's text is in.
+    /// The format that `text`, read from there, is in.
     #[must_use]
-    pub fn format(&self) -> Format {
+    pub fn format(&self, text: &str) -> Format {
         match self {
             Self::Builtin(_) => Format::Toml,
-            Self::Stdin(format) | Self::File(_, format) => *format,
+            Self::Stdin(format) => format.unwrap_or_else(|| Format::of_text(text)),
+            Self::File(_, format) => *format,
         }
     }
 
@@ -74,7 +75,9 @@ mod tests {
     #[test]
     fn names_files_and_standard_input() {
         assert!(matches!("square".parse(), Ok(PlanArg::Builtin(plan)) if plan.name == "square"));
-        assert_eq!("-".parse(), Ok(PlanArg::Stdin(Format::CliText)));
+        assert_eq!("-".parse(), Ok(PlanArg::Stdin(None)));
+        assert_eq!(PlanArg::Stdin(None).format("name = 'x'"), Format::Toml);
+        assert_eq!(PlanArg::Stdin(Some(Format::CliText)).format("name = 'x'"), Format::CliText);
         assert_eq!("./square.txt".parse(), Ok(PlanArg::File("./square.txt".into(), Format::CliText)));
         assert_eq!("square.txt".parse::<PlanArg>().unwrap().display_name(), "square.txt");
     }

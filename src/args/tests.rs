@@ -52,13 +52,13 @@ fn fly_reads_every_option() {
     let fly = fly(
         "betadeck fly square --json - --samples 10 --gpx t.gpx --timeout 60 --takeoff 0 --rx-loss-at 14 \
          --gps-loss-at boot+20,6 --fault motor@10,,2:0.8 --fault gps-loss@1 --stick pitch=2000@30,2 \
-         --set ap_max_angle=25 --set a=b --settings diff.txt --seed 9 --rate 4000 --speed 2 --noise none \
+         --set ap_max_angle=25 --set gps_sbas_mode=AUTO --settings diff.txt --seed 9 --rate 4000 --speed 2 --noise none \
          --wind 5@270 --gust 2 --turbulence light --world battery_sag=on --airframe five-inch \
          --home -40,-79,300 --heading -90 --fresh --arm-assist on --attitude truth",
     );
     assert_eq!(fly.json, Some(OutputFile::Stdout));
     assert_eq!(fly.faults().count(), 4);
-    assert_eq!(fly.set, ["ap_max_angle = 25", "a = b"]);
+    assert_eq!(fly.set, ["ap_max_angle = 25", "gps_sbas_mode = AUTO"]);
     assert!(
         (fly.speed() - 2.0).abs() < 1e-9
             && fly.takeoff_m().abs() < 1e-9
@@ -72,7 +72,7 @@ fn fly_reads_every_option() {
 #[test]
 fn defaults_of_fly() {
     let fly = fly("betadeck fly -");
-    assert_eq!(fly.plan, PlanArg::Stdin(crate::plan::format::Format::CliText));
+    assert_eq!(fly.plan, PlanArg::Stdin(None));
     assert!(fly.speed().is_infinite());
     assert!((fly.takeoff_m() - 10.0).abs() < 1e-9 && (fly.timeout_s() - 1800.0).abs() < 1e-9);
 }
@@ -88,6 +88,13 @@ fn wrong_values_say_what_is_allowed() {
         ("betadeck fly square --rate 100", "2.5 ms"),
         ("betadeck fly square --fault motr@1", "motor"),
         ("betadeck fly square --samples 10", "--samples needs --json"),
+        ("betadeck fly square --set ap_max_angel=1", "did you mean ap_max_angle?"),
+        ("betadeck fly square --gust -1", "out of range"),
+        ("betadeck fly square --wind -5@20", "wind"),
+        ("betadeck fly square --rx-loss-at -1", "time T -1 is out of range"),
+        ("betadeck fly square --seed -1", "whole numbers from 0"),
+        ("betadeck fly square --speed -1", "0.05 to 1000"),
+        ("betadeck fly square --gpx -", "not to standard output"),
         ("betadeck fly square --fresh --state-dir x", "cannot be used with"),
         ("betadeck fly square --home 95,1", "latitude 95 is out of range"),
         ("betadeck fly square --arm-assist maybe", "possible values: on, off"),
@@ -113,7 +120,7 @@ fn convert_knows_its_formats() {
     assert_eq!(convert("betadeck convert a.txt b.toml"), ("a.txt".parse().unwrap(), Format::Toml));
     assert_eq!(
         convert("betadeck convert - - --from TOML --to txt"),
-        (PlanArg::Stdin(Format::Toml), Format::CliText)
+        (PlanArg::Stdin(Some(Format::Toml)), Format::CliText)
     );
     assert_eq!(
         convert("betadeck convert a b --from txt --to toml").0,
@@ -126,16 +133,16 @@ fn convert_knows_its_formats() {
 fn the_command_line_wins_over_environment_over_file() {
     let layers = layers(
         &[("BETADECK_SEED", "2"), ("BETADECK_RX_LOSS_AT", "14"), ("HOME", "/"), ("BETADECK_WIND", "")],
-        "seed = 3\nwind = \"5@270\"\nrate = 2000\ntakeoff = 12.5\nset = [\"a=1\", \"b=2\"]\narm_assist = true\n",
+        "seed = 3\nwind = \"5@270\"\nrate = 2000\ntakeoff = 12.5\nset = [\"ap_max_angle=11\", \"ap_max_angle=12\"]\narm_assist = true\n",
     );
     let fly = fly_over("betadeck fly square --rate 500", &layers);
     assert_eq!(fly.flight.seed, Some(2));
     assert_eq!(fly.flight.rate, Some(500));
     assert_eq!(fly.flight.wind.unwrap().to_string(), "5@270");
     assert!((fly.takeoff_m() - 12.5).abs() < 1e-9);
-    assert_eq!(fly.set, ["a = 1", "b = 2"]);
+    assert_eq!(fly.set, ["ap_max_angle = 11", "ap_max_angle = 12"]);
     assert!(fly.rx_loss_at.is_some() && fly.flight.arm_assist == Some(OnOff::On));
-    assert_eq!(fly_over("betadeck fly square --set c=3", &layers).set, ["c = 3"]);
+    assert_eq!(fly_over("betadeck fly square --set ap_max_angle=13", &layers).set, ["ap_max_angle = 13"]);
     // The terminal has no --takeoff: the key is for others.
     let cli = parse_line("betadeck", &layers).unwrap();
     assert_eq!(cli.tui.flight.seed, Some(2));
@@ -171,14 +178,37 @@ fn wrong_layers_are_named() {
 }
 
 #[test]
+fn all_problems_of_the_layers_are_found_at_once() {
+    let layers = layers(
+        &[("BETADECK_SEED", "x"), ("BETADECK_SEDE", "1"), ("BETADECK_RATE", "500"), ("HOME", "/")],
+        "wnd = \"5@270\"\ngust = -1\nws-port = 70000\n",
+    );
+    let problems = layer_problems(&layers);
+    let named = ["config.toml: wnd", "BETADECK_SEDE is not an option; did you mean BETADECK_SEED?"];
+    let named = named.into_iter().chain(["environment variable BETADECK_SEED", "config.toml: gust"]);
+    for part in named.chain(["config.toml: ws-port"]) {
+        assert!(problems.iter().any(|problem| problem.contains(part)), "{part} in {problems:#?}");
+    }
+    assert_eq!(problems.len(), 5, "{problems:#?}");
+    assert_eq!(layer_problems(&Layers::default()), Vec::<String>::new());
+}
+
+#[test]
 fn layers_do_not_touch_commands_that_do_not_fly() {
-    let layers = layers(&[("BETADECK_WIND", "nonsense")], "seed = 5");
+    let layers = layers(&[("BETADECK_WIND", "nonsense")], "seed = 5\nnonsense = 1");
     assert!(matches!(parse_line("betadeck doctor", &layers).unwrap().command, Some(Command::Doctor)));
 }
 
 #[test]
 fn help_and_version_are_no_errors() {
-    for line in ["betadeck --help", "betadeck -h", "betadeck fly --help", "betadeck --version"] {
+    for line in [
+        "betadeck --help",
+        "betadeck -h",
+        "betadeck fly --help",
+        "betadeck help",
+        "betadeck help plan show",
+        "betadeck -V",
+    ] {
         let error = parse_line(line, &Layers::default()).expect_err(line);
         assert_eq!(error.exit_code(), 0, "{line}");
     }

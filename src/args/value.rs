@@ -4,6 +4,7 @@ use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use crate::firmware::settings;
 use crate::nearest::nearest;
 use crate::plan::format::{Format, setting_line};
 use crate::signals::RC_CHANNELS;
@@ -91,6 +92,7 @@ impl FromStr for StickInput {
     fn from_str(text: &str) -> Result<Self, String> {
         let usage = "write CH=VALUE@T[,FOR], such as pitch=2000@30,2 or aux2=1000@boot+60";
         let (channel, rest) = text.split_once('=').ok_or(usage)?;
+        let channel = channel_index(channel)?;
         let (value, times) = rest.split_once('@').ok_or(usage)?;
         let value_us = value
             .parse()
@@ -101,7 +103,7 @@ impl FromStr for StickInput {
             times.split_once(',').map_or((times, None), |(start, for_s)| (start, Some(for_s)));
         let from_boot = start.strip_prefix("boot+");
         Ok(Self {
-            channel: channel_index(channel)?,
+            channel,
             value_us,
             at_s: seconds(from_boot.unwrap_or(start))?,
             for_s: for_s.map(seconds).transpose()?,
@@ -201,19 +203,41 @@ pub(super) fn world_switch(text: &str) -> Result<String, ParseError> {
     Switches::default().set(text).map(|()| text.to_owned())
 }
 
+/// A fault, `NAME@T[,FOR][,VALUE]`.
+pub(super) fn fault(text: &str) -> Result<ScheduledFault, String> {
+    text.parse().map_err(|error: ParseError| error.problem().to_owned())
+}
+
 /// The loss of the RC link at `T[,FOR]`.
-pub(super) fn rx_loss(text: &str) -> Result<ScheduledFault, ParseError> {
-    format!("rx-loss@{text}").parse()
+pub(super) fn rx_loss(text: &str) -> Result<ScheduledFault, String> {
+    fault(&format!("rx-loss@{text}"))
 }
 
 /// The loss of the GPS at `T[,FOR]`.
-pub(super) fn gps_loss(text: &str) -> Result<ScheduledFault, ParseError> {
-    format!("gps-loss@{text}").parse()
+pub(super) fn gps_loss(text: &str) -> Result<ScheduledFault, String> {
+    fault(&format!("gps-loss@{text}"))
 }
 
-/// A setting, `NAME=VALUE`, kept as `name = value`.
+/// A setting that the craft takes, `NAME=VALUE`, kept as `name = value`.
 pub(super) fn setting(text: &str) -> Result<String, String> {
-    setting_line(text).ok_or_else(|| "write NAME=VALUE, such as ap_max_angle=25".to_owned())
+    let line = setting_line(text).ok_or("write NAME=VALUE, such as ap_max_angle=25")?;
+    let (name, value) = line.split_once(" = ").unwrap_or((&line, ""));
+    settings::judge(name, value).map(|()| line.clone()).map_err(|fault| fault.to_string())
+}
+
+/// The seed of all randomness.
+pub(super) fn seed(text: &str) -> Result<u64, String> {
+    text.parse()
+        .map_err(|_| format!("{text} is not a seed; allowed are whole numbers from 0 to {}", u64::MAX))
+}
+
+/// A file to write that cannot be standard output.
+pub(super) fn output_path(text: &str) -> Result<PathBuf, String> {
+    match text {
+        "" => Err("write a file name".to_owned()),
+        "-" => Err("this goes to a file, not to standard output; write a file name".to_owned()),
+        file => Ok(file.into()),
+    }
 }
 
 /// A plan format.
@@ -249,6 +273,8 @@ mod tests {
     fn wrong_sticks_say_why() {
         for (text, part) in [
             ("roll", "write CH=VALUE@T[,FOR]"),
+            ("foo=x@3", "foo is not a channel"),
+            ("foo=", "foo is not a channel"),
             ("roll=1500", "write CH=VALUE@T[,FOR]"),
             ("rol=1500@1", "did you mean roll?"),
             ("aux13=1500@1", "is not a channel"),
@@ -268,13 +294,30 @@ mod tests {
     fn losses_are_faults() {
         assert_eq!(rx_loss("14").unwrap().to_string(), "rx-loss@14");
         assert_eq!(gps_loss("boot+20,6").unwrap().to_string(), "gps-loss@boot+20,6");
-        assert!(gps_loss("soon").unwrap_err().to_string().contains("soon is not a number"));
+        assert!(gps_loss("soon").unwrap_err().starts_with("time T soon is not a number"));
+        assert!(fault("motr@1").unwrap_err().starts_with("there is no fault \"motr\"; did you mean motor?"));
     }
 
     #[test]
     fn settings_are_normalised() {
         assert_eq!(setting("ap_max_angle=25"), Ok("ap_max_angle = 25".to_owned()));
         assert!(setting("ap_max_angle 25").is_err());
+        assert_eq!(
+            setting("ap_max_angle=999").unwrap_err(),
+            "ap_max_angle 999 is out of range; allowed: 10 to 70"
+        );
+        assert!(setting("ap_max_angel=9").unwrap_err().contains("did you mean ap_max_angle?"));
+    }
+
+    #[test]
+    fn seeds_and_files_that_are_none() {
+        assert_eq!(seed("18446744073709551615"), Ok(u64::MAX));
+        for wrong in ["-1", "18446744073709551616", "x", ""] {
+            assert!(seed(wrong).unwrap_err().contains("whole numbers from 0"), "{wrong}");
+        }
+        assert_eq!(output_path("./-"), Ok("./-".into()));
+        assert!(output_path("-").unwrap_err().contains("not to standard output"));
+        assert!(output_path("").is_err());
     }
 
     #[test]

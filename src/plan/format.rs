@@ -23,7 +23,7 @@ pub use field::degrees_e7;
 pub use home::{Home, HomeError};
 pub use note::{Note, NoteKind};
 pub use problem::{PlanError, Problems, report};
-pub use setting::setting_line;
+pub use setting::{SettingCheck, SettingFault, SettingPart, setting_line};
 pub use table::table;
 
 /// A file format for plans. `Display` and `FromStr` use the names of `convert --from` and `--to`.
@@ -33,23 +33,33 @@ pub enum Format {
     /// The project's own format, `*.toml`.
     #[strum(serialize = "toml")]
     Toml,
-    /// Betaflight CLI text, `*.txt` and standard input.
+    /// Betaflight CLI text, `*.txt`.
     #[strum(serialize = "txt")]
     CliText,
 }
 
 impl Format {
-    /// The format that a file name stands for: by its ending; `-` (standard input) is CLI text.
+    /// The format that a file name stands for, by its ending.
     #[must_use]
     pub fn from_file_name(name: &str) -> Option<Self> {
-        if name == "-" {
-            return Some(Self::CliText);
-        }
         let (stem, ending) = name.rsplit_once('.')?;
         if stem.is_empty() || ending.contains(['/', '\\']) {
             return None;
         }
         ending.parse().ok()
+    }
+
+    /// The format that a text without a file name is in: TOML when its first line that is no comment heads a table or
+    /// gives one of the keys of a plan file, else CLI text.
+    #[must_use]
+    pub fn of_text(text: &str) -> Self {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let first = text.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#'));
+        let is_toml = first.is_some_and(|line| {
+            let key = line.split_once('=').map_or("", |(key, _)| key.trim());
+            line.starts_with('[') || native_read::FILE_KEYS.contains(&key)
+        });
+        if is_toml { Self::Toml } else { Self::CliText }
     }
 
     /// What the format is, in words.
@@ -94,7 +104,16 @@ pub struct Written {
     pub lost: Vec<String>,
 }
 
-/// Reads a plan file.
+/// Reads a plan file, whatever settings it has: see [`parse_checked`].
+///
+/// # Errors
+///
+/// All problems of the file, in the order of their places.
+pub fn parse(name: &str, text: &str, format: Format) -> Result<PlanFile, Vec<PlanError>> {
+    parse_checked(name, text, format, |_, _| Ok(()))
+}
+
+/// Reads a plan file whose settings `check` knows.
 ///
 /// `name` is the file's name as the user gave it: it heads the error messages and names a plan that has no name of
 /// its own.
@@ -102,11 +121,16 @@ pub struct Written {
 /// # Errors
 ///
 /// All problems of the file, in the order of their places.
-pub fn parse(name: &str, text: &str, format: Format) -> Result<PlanFile, Vec<PlanError>> {
+pub fn parse_checked(
+    name: &str,
+    text: &str,
+    format: Format,
+    check: SettingCheck,
+) -> Result<PlanFile, Vec<PlanError>> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut problems = Problems::new(name, text);
     let mut file = match format {
-        Format::Toml => native_read::read(text, &mut problems),
+        Format::Toml => native_read::read(text, check, &mut problems),
         Format::CliText => cli_text::read(text, &mut problems),
     };
     let errors = problems.into_errors();
@@ -143,11 +167,21 @@ mod tests {
     fn endings_choose_the_format() {
         assert_eq!(Format::from_file_name("a/b.TOML"), Some(Format::Toml));
         assert_eq!(Format::from_file_name("b.txt"), Some(Format::CliText));
-        assert_eq!(Format::from_file_name("-"), Some(Format::CliText));
+        assert_eq!(Format::from_file_name("-"), None);
         assert_eq!(Format::from_file_name("square"), None);
         assert_eq!(Format::from_file_name("dir.txt/square"), None);
         assert_eq!(Format::from_file_name(".txt"), None);
         assert_eq!(Format::endings(), ".toml, .txt");
+    }
+
+    #[test]
+    fn a_nameless_text_shows_its_format() {
+        for text in ["name = \"x\"", "\u{feff}# mine\n\n[[waypoint]]", "waypoint = [{type='LAND'}]"] {
+            assert_eq!(Format::of_text(text), Format::Toml, "{text}");
+        }
+        for text in ["", "# dump\nbatch start", "waypoint insert 0 1 2", "set name = x", "=", "x = 1"] {
+            assert_eq!(Format::of_text(text), Format::CliText, "{text}");
+        }
     }
 
     #[test]

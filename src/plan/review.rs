@@ -168,7 +168,7 @@ mod tests {
 
     #[test]
     fn refusals_are_named() {
-        assert_eq!(say(&[], None), ["refused: the plan has no waypoints: upload one"]);
+        assert_eq!(say(&[], None), ["refused: the plan has no waypoints: add one"]);
         let fence = say(&[(WaypointType::Land, 0, 0)], Some(100.0));
         assert_eq!(
             fence,

@@ -6,7 +6,7 @@ use super::{FlightPlan, MAX_WAYPOINTS, Waypoint};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, thiserror::Error)]
 pub enum PlanFault {
     /// It is empty.
-    #[error("the plan has no waypoints: upload one")]
+    #[error("the plan has no waypoints: add one")]
     Empty,
     /// The stored count is impossible.
     #[error("the stored plan is damaged (it claims {0} waypoints, {max} is the most): upload it again", max = MAX_WAYPOINTS)]

@@ -28,6 +28,13 @@ impl<const D: i32> Serialize for Decimals<D> {
     }
 }
 
+/// A direction, degrees clockwise from north: from 0 to just below 360, also after rounding.
+pub(super) fn compass<const D: i32>(degrees: f64) -> Decimals<D> {
+    let turn = degrees.rem_euclid(360.0);
+    let scale = 10_f64.powi(D);
+    if (turn * scale).round() >= 360.0 * scale { Decimals(0.0) } else { Decimals(turn) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -44,5 +51,21 @@ mod tests {
         assert_eq!(print::<3>(f64::NAN), "null");
         assert_eq!(print::<3>(f64::INFINITY), "null");
         assert_eq!(print::<3>(f64::MAX), "1.7976931348623157e+308");
+    }
+
+    #[test]
+    fn directions_stay_below_360_degrees() {
+        let print = |degrees| serde_json::to_string(&compass::<3>(degrees)).unwrap();
+        for (degrees, text) in [
+            (359.999_4, "359.999"),
+            (359.999_6, "0.0"),
+            (360.0, "0.0"),
+            (-1e-17, "0.0"),
+            (-90.0, "270.0"),
+            (725.5, "5.5"),
+            (f64::NAN, "null"),
+        ] {
+            assert_eq!(print(degrees), text, "{degrees}");
+        }
     }
 }

@@ -3,7 +3,7 @@
 use crate::autopilot::io::{Guard, NavEvent, NavState, PlanSource};
 use crate::firmware::{DisarmReason, FirmwareEvent};
 use crate::plan::{FlightPlan, WaypointType};
-use crate::vehicle::{Event, EventKind};
+use crate::vehicle::{DoorPlaces, Event, EventKind};
 
 /// `  12.4 s  Armed.`; `None` for the few events that only matter inside the craft.
 #[must_use]
@@ -29,8 +29,16 @@ pub fn text(kind: &EventKind) -> Option<String> {
             format!("Touchdown: came down at {impact_mps:.2} m/s, peak {peak_mps2:.1} m/s².")
         }
         EventKind::Crash { cause } => format!("Crashed: {}", sentence_end(cause)),
+        EventKind::Doors(places) => doors(places),
         EventKind::Notice(notice) => sentence_end(notice),
     })
+}
+
+fn doors(places: &DoorPlaces) -> String {
+    let named = [("ws", places.ws), ("tcp", places.tcp), ("udp fdm", places.fdm), ("udp rc", places.rc)];
+    let open = named.iter().filter_map(|(name, place)| place.map(|place| format!("{name} {place}")));
+    let open: Vec<_> = open.collect();
+    if open.is_empty() { "No door is open.".to_owned() } else { format!("Doors open: {}.", open.join(", ")) }
 }
 
 fn firmware(event: &FirmwareEvent) -> Option<String> {
@@ -199,6 +207,17 @@ mod tests {
             say(FirmwareEvent::Nav(NavEvent::Refused(refused))),
             "The autopilot does not engage. Waypoint 3 is 150 m from home, the fence is 100 m."
         );
+    }
+
+    #[test]
+    fn open_doors_are_listed() {
+        let places = DoorPlaces {
+            tcp: "127.0.0.1:5761".parse().ok(),
+            rc: "127.0.0.1:9004".parse().ok(),
+            ..DoorPlaces::default()
+        };
+        assert_eq!(doors(&places), "Doors open: tcp 127.0.0.1:5761, udp rc 127.0.0.1:9004.");
+        assert_eq!(doors(&DoorPlaces::default()), "No door is open.");
     }
 
     #[test]

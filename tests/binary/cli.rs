@@ -67,14 +67,45 @@ fn errors_of_a_toml_plan_have_their_places_too() {
 fn bad_settings_say_what_is_allowed() {
     let sandbox = Sandbox::new();
     let ran = sandbox.run(&["fly", "square", "--set", "ap_max_angle=999"]).exits(2);
-    assert!(ran.err.contains("ap_max_angle") && ran.err.contains("Allowed range: "), "{}", ran.err);
+    assert!(ran.err.contains("ap_max_angle 999 is out of range; allowed: 10 to 70"), "{}", ran.err);
     let ran = sandbox.run(&["fly", "square", "--set", "ap_max_angel=20"]).exits(2);
-    assert!(ran.err.contains("ap_max_angle"), "the nearest name is told: {}", ran.err);
-    sandbox.write("diff.txt", "# comment\nset ap_max_angle = 25\nset ap_l1_enable = MAYBE\nfrobnicate\n");
+    assert!(ran.err.contains("did you mean ap_max_angle?"), "{}", ran.err);
+    sandbox.write(
+        "diff.txt",
+        "# comment\nset ap_max_angle = 25\nset ap_l1_enable = MAYBE\nfrobnicate\nsett a = 1\n",
+    );
     let ran = sandbox.run(&["fly", "square", "--settings", "diff.txt"]).exits(2);
-    assert!(ran.err.contains("diff.txt:3: ") && ran.err.contains("diff.txt:4: "), "{}", ran.err);
-    assert!(!ran.err.contains("diff.txt:2: "), "{}", ran.err);
-    assert!(ran.err.contains("OFF, ON"), "{}", ran.err);
+    for part in [
+        "diff.txt:3:20: MAYBE is not a value of ap_l1_enable",
+        "^^^^^ allowed: OFF, ON",
+        "diff.txt:4:1: ",
+        "diff.txt:5:1: ",
+        "Did you mean set?",
+        "diff.txt: 3 problems; nothing was changed",
+    ] {
+        assert!(ran.err.contains(part), "no {part:?} in\n{}", ran.err);
+    }
+}
+
+#[test]
+fn settings_of_a_plan_are_judged_where_they_stand_by_every_command() {
+    let sandbox = Sandbox::new();
+    sandbox.write(
+        "bad.toml",
+        "settings = [\n  \"ap_max_angle = 999\",\n  \"ap_max_angel = 20\",\n]\n[[waypoint]]\ntype = \"LAND\"\n\
+         lat_deg = 40.4635\nlon_deg = -79.5182\nalt_m = 10\n",
+    );
+    for arguments in
+        [&["fly", "bad.toml"][..], &["plan", "show", "bad.toml"], &["convert", "bad.toml", "out.txt"]]
+    {
+        let ran = sandbox.run(arguments).exits(2);
+        for part in
+            ["bad.toml:2:19: ap_max_angle 999 is out of range", "bad.toml:3:4: ap_max_angel is not a setting"]
+        {
+            assert!(ran.err.contains(part), "no {part:?} in\n{}", ran.err);
+        }
+    }
+    assert_eq!(sandbox.names(), ["bad.toml"]);
 }
 
 #[test]
@@ -94,13 +125,82 @@ fn wrong_usage_is_exit_code_2_with_a_suggestion() {
         (&["fly", "square", "--wind", "5"], "--wind"),
         (&["fly", "square", "--speed", "fast"], "--speed"),
         (&["fly", "square", "--world", "foo=1"], "wind_profile"),
+        (&["fly", "square", "--stick", "foo=x@3"], "foo is not a channel"),
+        (&["fly", "square", "--fault", "stall@3"], "leave it out"),
+        (&["fly", "square", "--gpx", "-"], "not to standard output"),
         (&["convert", "square", "x.doc"], "--to"),
     ] {
         let ran = sandbox.run(arguments).exits(2);
         assert!(ran.err.contains(hint), "no {hint:?} in\n{}", ran.err);
         assert_eq!(ran.out, "", "{arguments:?}");
     }
+    let offered = sandbox.run(&["fly", "square", "--fault", "banana@3"]).exits(2).err;
+    assert!(offered.contains("payload") && !offered.contains("fdm-loss"), "{offered}");
     assert_eq!(sandbox.names(), Vec::<String>::new());
+}
+
+#[test]
+fn a_plan_that_no_craft_flies_is_refused_at_once() {
+    let sandbox = Sandbox::new();
+    sandbox.write("empty.txt", "# nothing\nset ap_max_angle = 25\n");
+    let sentence = "refused: the plan has no waypoints";
+    let shown = sandbox.run(&["plan", "show", "empty.txt"]).exits(2);
+    assert!(shown.out.contains(sentence), "{}", shown.out);
+    let ran = sandbox.run(&["fly", "empty.txt", "--json", "flight.json"]).exits(2);
+    assert!(ran.err.contains(&format!("empty: {sentence}")) && ran.err.contains("`set` line"), "{}", ran.err);
+    assert_eq!((ran.out.as_str(), sandbox.names().len()), ("", 1));
+}
+
+#[test]
+fn a_flight_writes_over_none_of_its_own_files() {
+    let sandbox = Sandbox::new();
+    let text = std::fs::read_to_string(plan("land.toml")).expect("a plan");
+    sandbox.write("land.toml", &text);
+    sandbox.write("diff.txt", "set ap_max_angle = 25\n");
+    for arguments in [
+        &["--json", "land.toml"][..],
+        &["--json", "./land.toml"],
+        &["--gpx", "land.toml"],
+        &["--settings", "diff.txt", "--gpx", "diff.txt"],
+        &["--json", "same", "--gpx", "same"],
+    ] {
+        let ran = sandbox.run(&[&["fly", "land.toml"], arguments].concat()).exits(2);
+        assert!(ran.err.contains("would write over"), "{}", ran.err);
+    }
+    assert_eq!(sandbox.read("land.toml"), text);
+    assert_eq!(sandbox.names().len(), 2);
+    // What holds no data may be named twice.
+    sandbox.run(&["fly", "land.toml", "--json", "/dev/null", "--gpx", "/dev/null"]).exits(0);
+}
+
+#[test]
+fn convert_replaces_a_file_only_when_told() {
+    let sandbox = Sandbox::new();
+    sandbox.write("plan.toml", "mine\n");
+    let ran = sandbox.run(&["convert", "square", "plan.toml"]).exits(3);
+    assert!(ran.err.contains("plan.toml exists") && ran.err.contains("--force"), "{}", ran.err);
+    assert_eq!(sandbox.read("plan.toml"), "mine\n");
+    sandbox.run(&["convert", "square", "plan.toml", "--force"]).exits(0);
+    assert!(sandbox.read("plan.toml").contains("[[waypoint]]"));
+    sandbox.run(&["convert", "square", "/dev/null", "--to", "txt"]).exits(0);
+}
+
+#[test]
+fn standard_input_shows_its_format() {
+    let sandbox = Sandbox::new();
+    let text = std::fs::read_to_string(plan("land.toml")).expect("a plan");
+    let ran = sandbox.run_with(&["plan", "show", "-"], &text).exits(0);
+    assert!(ran.out.starts_with("land: "), "{}", ran.out);
+    let ran = sandbox.run_with(&["convert", "-", "-", "--from", "txt", "--to", "toml"], &text).exits(2);
+    assert!(ran.err.contains("[[waypoint]] is not a command"), "{}", ran.err);
+}
+
+#[test]
+fn a_simulation_that_leaves_its_range_is_exit_code_4() {
+    let far: Vec<String> =
+        (0..12).map(|i| format!("--fault=teleport@boot+{},,10000,0,0", 3.0 + 0.1 * f64::from(i))).collect();
+    let far: Vec<&str> = far.iter().map(String::as_str).collect();
+    Sandbox::new().fly(&[&["land"], far.as_slice()].concat()).ends(4, "diverged");
 }
 
 #[test]
@@ -145,7 +245,12 @@ fn plan_show_prints_the_table_and_judges_the_plan() {
     for word in ["FLYOVER", "FLYBY", "HOLD", "LAND", "40.4640000", "-79.5175000"] {
         assert!(ran.out.contains(word), "no {word} in\n{}", ran.out);
     }
-    sandbox.write("far.txt", "waypoint insert 0 40.9 -79.5182000 1200 0 FLYOVER 0 ORBIT\n");
+    sandbox.write(
+        "fence.toml",
+        &std::fs::read_to_string(plan("square.toml")).expect("a plan").replace("home = 500", "home = 50"),
+    );
+    let refused = sandbox.run(&["plan", "show", "fence.toml"]).exits(2);
+    assert!(refused.out.contains("refused: waypoint 0 is "), "{}", refused.out);
     let ran = sandbox
         .run_with(&["plan", "show", "-"], "waypoint insert 0 40.4637 -79.5182 1200 0 HOLD 10 FIGURE8\n");
     assert!(ran.exits(0).out.contains("FIGURE8"));
@@ -158,9 +263,9 @@ fn converting_there_and_back_keeps_the_plan() {
         ["square.toml", "alt-change.toml", "delay.toml", "yaw-rate.toml", "takeoff.toml", "guide-square.txt"]
     {
         let source = plan(name);
-        sandbox.run(&["convert", &source, "a.txt"]).exits(0);
-        sandbox.run(&["convert", "a.txt", "b.toml"]).exits(0);
-        sandbox.run(&["convert", "b.toml", "c.txt"]).exits(0);
+        for (from, to) in [(source.as_str(), "a.txt"), ("a.txt", "b.toml"), ("b.toml", "c.txt")] {
+            sandbox.run(&["convert", from, to, "--force"]).exits(0);
+        }
         let waypoints = |name: &str| -> Vec<String> {
             let text = sandbox.read(name);
             text.lines().filter(|line| line.starts_with("waypoint insert")).map(str::to_owned).collect()
@@ -185,18 +290,21 @@ fn a_converted_plan_flies_as_the_original() {
 }
 
 #[test]
-fn help_version_doctor_completions_and_man() {
+fn help_version_completions_and_man() {
     let sandbox = Sandbox::new();
     let version = sandbox.run(&["--version"]).exits(0).out;
     assert_eq!(version.trim_end(), format!("betadeck {}", env!("CARGO_PKG_VERSION")));
-    for arguments in
-        [&["--help"][..], &["-h"], &["fly", "--help"], &["plan", "show", "--help"], &["convert", "-h"]]
-    {
+    for arguments in [
+        &["--help"][..],
+        &["-h"],
+        &["fly", "--help"],
+        &["plan", "show", "--help"],
+        &["convert", "-h"],
+        &["help", "fly"],
+    ] {
         let ran = sandbox.run(arguments).exits(0);
         assert!(ran.out.contains("Usage: betadeck") && ran.err.is_empty(), "{arguments:?}");
     }
-    let doctor = sandbox.run(&["doctor"]).exits(0).out;
-    assert!(doctor.contains(env!("CARGO_PKG_VERSION")) && doctor.contains("state directory"), "{doctor}");
     for (shell, part) in [("bash", "complete -F"), ("zsh", "#compdef"), ("fish", "complete -c betadeck")] {
         assert!(sandbox.run(&["completions", shell]).exits(0).out.contains(part), "{shell}");
     }
@@ -204,6 +312,35 @@ fn help_version_doctor_completions_and_man() {
     assert!(man.contains(".TH") && man.contains("betadeck"), "{}", &man[..200]);
     sandbox.run(&["completions", "cmd"]).exits(2);
     assert_eq!(sandbox.names(), Vec::<String>::new(), "none of them writes a file");
+}
+
+/// A configuration file with these lines.
+fn configured(sandbox: &Sandbox, lines: &str) {
+    std::fs::create_dir_all(sandbox.path(".config/betadeck")).expect("a directory");
+    sandbox.write(".config/betadeck/config.toml", lines);
+}
+
+#[test]
+fn the_doctor_finds_what_is_wrong() {
+    const ANY_PORT: &str = "ws-port = 0\ntcp-port = 0\nudp-ports = \"0,0,0,0\"\n";
+    let sandbox = Sandbox::new();
+    configured(&sandbox, ANY_PORT);
+    let well = sandbox.run(&["doctor"]).exits(0).out;
+    for part in [env!("CARGO_PKG_VERSION"), "(present)", "state directory", "terminal", "port TCP"] {
+        assert!(well.contains(part), "no {part} in\n{well}");
+    }
+    assert!(!well.contains('✗'), "{well}");
+    let taken = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
+    let port = taken.local_addr().expect("an address").port();
+    configured(&sandbox, &ANY_PORT.replace("tcp-port = 0", &format!("tcp-port = {port}")));
+    let busy = sandbox.run(&["doctor"]).exits(3).out;
+    assert!(busy.contains(&format!("{port} is in use")) && busy.contains("--tcp-port"), "{busy}");
+    configured(&sandbox, &format!("sede = 1\nrate = 3\n{ANY_PORT}"));
+    let wrong = sandbox.run(&["doctor"]).exits(3).out;
+    assert!(wrong.contains("did you mean seed?") && wrong.contains("2.5 ms"), "{wrong}");
+    configured(&sandbox, "seed = ");
+    assert!(sandbox.run(&["doctor"]).out.contains("config.toml: "), "a broken file is told");
+    assert_eq!(sandbox.names(), [".config"], "it writes nothing");
 }
 
 #[test]
@@ -219,12 +356,14 @@ fn options_come_from_the_environment_and_the_configuration_file_too() {
         (line["seed"].as_i64().expect("a seed"), line["rate"].as_i64().expect("a rate"))
     };
     assert_eq!(boot(&[], &[]), (1, 1000));
-    std::fs::create_dir_all(sandbox.path(".config/betadeck")).expect("a directory");
-    sandbox.write(".config/betadeck/config.toml", "seed = 7\nrate = 500\n");
+    configured(&sandbox, "seed = 7\nrate = 500\n");
     assert_eq!(boot(&[], &[]), (7, 500));
     assert_eq!(boot(&[("BETADECK_SEED", "8")], &[]), (8, 500));
     assert_eq!(boot(&[("BETADECK_SEED", "8")], &["--seed", "9"]), (9, 500));
-    sandbox.write(".config/betadeck/config.toml", "sede = 7\n");
+    configured(&sandbox, "sede = 7\n");
+    // What needs no option does not mind.
+    sandbox.run(&["plan", "show", "land"]).exits(0);
+    sandbox.run(&["completions", "bash"]).exits(0);
     let ran = sandbox.run(&["fly", "land"]).exits(2);
     assert!(ran.err.contains("config.toml") && ran.err.contains("seed"), "{}", ran.err);
 }
@@ -262,4 +401,19 @@ fn a_full_disk_is_exit_code_3() {
     }
     let ran = Sandbox::new().run(&["fly", "square", "--json", "/dev/full", "--samples", "100"]).exits(3);
     assert!(ran.err.contains("cannot write"), "{}", ran.err);
+}
+
+#[test]
+fn a_configuration_file_that_is_none_is_refused_and_nothing_is_stored() {
+    let sandbox = Sandbox::new();
+    sandbox.write("large.txt", &"#".repeat((4 << 20) + 1));
+    for (file, said) in [
+        ("missing.txt", "[SITL] Config file not found: missing.txt"),
+        ("large.txt", "[SITL] Config file not used: large.txt is larger than 4 MiB"),
+        ("/dev/zero", "[SITL] Config file not used: /dev/zero is larger than 4 MiB"),
+    ] {
+        let ran = sandbox.run(&["sitl", "--config", file]).exits(1);
+        assert!(ran.err.contains(said), "{}", ran.err);
+    }
+    assert!(!sandbox.names().contains(&"eeprom.bin".to_owned()));
 }

@@ -138,7 +138,7 @@ fn legs_are_flown_at_their_speed() {
 fn the_same_seed_gives_the_same_bytes_and_another_seed_does_not() {
     let sandbox = Sandbox::new();
     let run = |seed: &str| {
-        let name = format!("{seed}.json");
+        let (name, track) = (format!("{seed}.json"), format!("{seed}.gpx"));
         let arguments = [
             "fly",
             "square",
@@ -148,6 +148,8 @@ fn the_same_seed_gives_the_same_bytes_and_another_seed_does_not() {
             "50",
             "--json",
             &name,
+            "--gpx",
+            &track,
             "--wind",
             "4@200",
             "--gust",
@@ -158,7 +160,7 @@ fn the_same_seed_gives_the_same_bytes_and_another_seed_does_not() {
         let (head, end) = text.trim_end().rsplit_once('\n').expect("lines");
         let (kept, clock) = end.split_once(",\"wall_s\":").expect("a wall time");
         assert!(clock.contains(",\"speed_ratio\":") && clock.matches(':').count() == 1, "{clock}");
-        format!("{head}\n{kept}")
+        format!("{head}\n{kept}\n{}", sandbox.read(&track))
     };
     let (first, again, other) = (run("1"), run("1"), run("2"));
     assert!(first.len() > 1_000_000);

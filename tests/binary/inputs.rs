@@ -33,8 +33,7 @@ fn a_short_gap_of_the_radio_link_changes_nothing() {
 
 #[test]
 fn a_lost_gps_ends_the_mission() {
-    let flown = fly(&["square", "--gps-loss-at", "10"]);
-    assert_eq!(flown.code, Some(1), "{}", flown.err);
+    let flown = fly(&["square", "--gps-loss-at", "10"]).ends(1, "aborted");
     let lost = flown.first("gps_lost").time() - flown.engaged_at();
     assert!((10.0..13.0).contains(&lost), "lost after {lost} s");
     assert!(entered(&flown, "IDLE").expect("an IDLE") < 14.0);
@@ -61,12 +60,16 @@ fn faults_are_reported_with_their_times_and_boot_times_count_from_boot() {
 
 #[test]
 fn the_arm_switch_taken_back_in_flight_ends_the_flight() {
-    let flown = fly(&["square", "--stick", "aux1=1000@10"]);
-    assert_eq!(flown.code, Some(1), "{}", flown.err);
+    let flown = fly(&["square", "--stick", "aux1=1000@10"]).ends(1, "disarmed");
     let disarmed = flown.first("disarmed");
     assert_eq!(disarmed.text("reason"), "SWITCH");
     assert!((disarmed.time() - flown.engaged_at() - 10.0).abs() < 0.5);
-    assert!(["disarmed", "crashed"].contains(&flown.first("end").text("result")), "{:?}", flown.first("end"));
+}
+
+#[test]
+fn a_dead_motor_is_a_crash() {
+    let flown = fly(&["square", "--fault", "motor@10,,1:0"]).ends(1, "crashed");
+    assert!(flown.first("crash").text("cause").contains("ground"), "{:?}", flown.first("crash"));
 }
 
 #[test]

@@ -2,6 +2,8 @@
 //! pseudo-terminal.
 
 mod cli;
+#[cfg(unix)]
+mod docs;
 mod fly;
 mod inputs;
 mod lines;

@@ -1,5 +1,7 @@
 //! Every shipped plan is executed, and other ways to hand a plan over.
 
+use betadeck::plan::format::{Format, parse};
+
 use crate::support::{Flown, Sandbox, plan, plans};
 
 /// The guide's upload block.
@@ -16,17 +18,34 @@ fn every_shipped_plan_flies_to_its_end() {
     for entry in std::fs::read_dir(plans()).expect("the plans") {
         let path = entry.expect("a file").path();
         let name = path.file_name().and_then(|name| name.to_str()).expect("a plain name");
-        if path.is_dir() || name == "README.md" {
-            continue;
-        }
+        let Some(format) = Format::from_file_name(name) else { continue };
+        let text = std::fs::read_to_string(&path).expect("a readable plan");
+        let file = parse(name, &text, format).unwrap_or_else(|errors| panic!("{errors:?}"));
         let flight = Sandbox::new().fly(&[&plan(name)]);
         assert_eq!(flight.code, Some(0), "{name}: {}", flight.err);
         let flight = flight.ends(0, "complete");
         assert_eq!(flight.first("disarmed").text("reason"), "LANDING", "{name}");
-        assert_eq!(reached(&flight).last(), Some(&"LAND"), "{name}");
+        let places = file.plan.waypoints.iter().filter(|waypoint| waypoint.kind.is_positional());
+        let places: Vec<String> = places.map(|waypoint| waypoint.kind.to_string()).collect();
+        assert_eq!(reached(&flight), places, "{name}");
         flown += 1;
     }
     assert!(flown >= 12, "only {flown} plans");
+}
+
+#[test]
+fn the_guides_block_flies_with_the_guides_settings_as_the_demo_does() {
+    let sandbox = Sandbox::new();
+    let text = std::fs::read_to_string(plan("square.toml")).expect("the square");
+    let square = parse("square.toml", &text, Format::Toml).expect("the square reads");
+    let lines: String = square.settings.iter().map(|line| format!("set {line}\n")).collect();
+    sandbox.write("settings.txt", &lines);
+    let guide = plan("guide-square.txt");
+    let from_text =
+        sandbox.fly(&[&guide, "--settings", "settings.txt", "--noise", "none"]).ends(0, "complete");
+    let built_in = sandbox.fly(&["square", "--noise", "none"]).ends(0, "complete");
+    let states = |flown: &Flown| flown.all("state").cloned().collect::<Vec<_>>();
+    assert_eq!(states(&from_text), states(&built_in));
 }
 
 #[test]
@@ -95,6 +114,9 @@ fn a_far_plan_flies_where_it_lies_or_where_home_says() {
     let near =
         sandbox.fly(&["sydney.txt", "--home", "-33.8568,151.2150,40", "--samples", "1"]).ends(0, "complete");
     assert!((near.first("sample").number("lon") - 151.2150).abs() < 1e-6);
+    // A home that was chosen stays, and how far it is is said.
+    let far = sandbox.fly(&["hold-none", "--home", "10,10", "--timeout", "5"]).ends(1, "timeout");
+    assert!(far.all("notice").any(|line| line.text("text").contains(" km from home")), "{far:?}");
     // A home on the other side of the world, and the date line in the middle of the plan.
     sandbox.write(
         "date-line.txt",

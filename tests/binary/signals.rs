@@ -49,3 +49,25 @@ fn an_interrupted_flight_says_so_and_leaves_whole_files() {
         assert!(err.starts_with("interrupted: "), "{err}");
     }
 }
+
+#[test]
+fn a_second_signal_ends_a_flight_that_nobody_reads() {
+    let sandbox = Sandbox::new();
+    let mut command = sandbox.command(&["fly", "square", "--json", "-", "--samples", "1000"]);
+    let child =
+        command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().expect("a flight");
+    let mut child = Guard(child);
+    let mut reader = BufReader::with_capacity(64, child.0.stdout.take().expect("standard output"));
+    reader.read_line(&mut String::new()).expect("a line: from here on signals are heard");
+    // The pipe is full long before the flight is over. Two signals in quick succession may arrive as one.
+    let id = child.0.id().to_string();
+    let code = loop {
+        if let Some(status) = child.0.try_wait().expect("a child") {
+            break status.code();
+        }
+        assert!(
+            std::process::Command::new("kill").args(["-s", "INT", &id]).status().expect("kill").success()
+        );
+    };
+    assert_eq!(code, Some(130));
+}

@@ -1,6 +1,9 @@
 //! The user interface in a pseudo-terminal: a whole flight, sizes, keys, and giving the terminal back.
 
+use betadeck::storage::Store;
+
 use crate::pty::Terminal;
+use crate::support::Sandbox;
 
 /// The states of the demo plan in the order of its transitions.
 const FLIGHT: [&str; 13] = [
@@ -88,6 +91,38 @@ fn the_whole_flight_by_keys() {
 }
 
 #[test]
+fn flying_by_hand_takes_off_comes_down_and_disarms() {
+    let mut terminal = started(120, 40, &[]);
+    terminal.send("]]]");
+    terminal.until_shown("has no plan.");
+    terminal.send("U");
+    terminal.until_shown("Ready.");
+    terminal.send("a");
+    terminal.until_shown("● ARMED");
+    terminal.send("t");
+    terminal.until_shown("Armed, on the ground");
+    terminal.send("g");
+    terminal.until_shown("◆ APPROACHING");
+    terminal.send("q");
+    terminal.until_shown("Quit?");
+    terminal.send("n");
+    terminal.send("g");
+    terminal.until_shown("Holds its place");
+    terminal.send("H");
+    terminal.until_shown("stop return");
+    terminal.send("H");
+    terminal.until_shown("Holds its place");
+    terminal.send("t");
+    terminal.until_shown("Coming down");
+    terminal.until_shown("Armed, on the ground");
+    terminal.send("a");
+    terminal.until_shown("○ DISARMED");
+    terminal.send("q");
+    assert_eq!(terminal.end(), 0);
+    terminal.assert_given_back();
+}
+
+#[test]
 fn a_plan_file_can_be_named() {
     let mut terminal = started(120, 40, &[&crate::support::plan("hold-figure8.toml")]);
     terminal.send("F]]]]]]]]]]");
@@ -169,7 +204,7 @@ fn every_size_is_survived_in_flight() {
 #[test]
 fn signals_give_the_terminal_back() {
     let before = Terminal::start(80, 24, "cat", &[]).discipline();
-    for signal in ["TERM", "INT"] {
+    for signal in ["TERM", "INT", "HUP"] {
         let mut terminal = started(80, 24, &[]);
         terminal.signal(signal);
         assert_eq!(terminal.end(), 130, "{signal}");
@@ -298,4 +333,17 @@ fn any_keys_and_clicks_leave_a_program_that_can_be_left() {
         assert_eq!(terminal.end(), 0);
         terminal.assert_given_back();
     }
+}
+
+#[test]
+fn a_second_one_in_the_same_directory_says_that_it_cannot_save() {
+    let folder = Sandbox::new();
+    let directory = folder.path("state");
+    let first = Store::open(&directory, false).expect("a store");
+    let mut terminal = started(120, 40, &["--state-dir", directory.to_str().expect("a name")]);
+    terminal.send("8z");
+    terminal.until_shown("`save` cannot work: another betadeck uses");
+    drop(first);
+    terminal.send("q");
+    assert_eq!(terminal.end(), 0);
 }

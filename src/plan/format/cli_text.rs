@@ -17,6 +17,18 @@ const VALUES: [&str; 8] =
 /// The sub-commands of `waypoint`.
 const OPERATIONS: [&str; 6] = ["insert", "update", "remove", "clear", "list", "status"];
 
+/// Most values of a line that are looked at: one more than any operation takes, and the two words before them.
+const MOST_WORDS: usize = VALUES.len() + 3;
+
+/// Most waypoints that are remembered while lines may still remove some.
+const MOST_INSERTED: usize = 1000;
+
+/// Most different commands that are counted one by one.
+const MOST_NOTES: usize = 30;
+
+/// Longest name of a command that is noted.
+const LONGEST_NAME: usize = 40;
+
 /// What the reader knows after some lines.
 struct Reader<'p, 'a> {
     problems: &'p mut Problems<'a>,
@@ -24,6 +36,8 @@ struct Reader<'p, 'a> {
     notes: Vec<Note>,
     /// Where the first waypoint that does not fit is.
     overflow: Option<Range<usize>>,
+    /// There were more waypoints than are remembered: what follows cannot be carried out.
+    gave_up: bool,
 }
 
 /// A word of a line and its byte range in the text.
@@ -31,18 +45,20 @@ type Word<'a> = (&'a str, Range<usize>);
 
 /// Reads the text; problems are added to `problems`.
 pub(super) fn read(text: &str, problems: &mut Problems<'_>) -> PlanFile {
-    let mut reader = Reader { problems, waypoints: Vec::new(), notes: Vec::new(), overflow: None };
+    let mut reader =
+        Reader { problems, waypoints: Vec::new(), notes: Vec::new(), overflow: None, gave_up: false };
     let mut start = 0;
     for (index, line) in text.split_inclusive('\n').enumerate() {
         reader.line(index + 1, line, start);
         start += line.len();
     }
     let most = reader.waypoints.len();
+    let at_least = if reader.gave_up { "more than " } else { "" };
     if let Some(span) = reader.overflow.take() {
         let hint = format!("a plan holds at most {MAX_WAYPOINTS} waypoints");
         reader.problems.add(
             span,
-            format!("waypoint {MAX_WAYPOINTS} does not fit: {most} are inserted"),
+            format!("waypoint {MAX_WAYPOINTS} does not fit: {at_least}{most} are inserted"),
             hint,
         );
     }
@@ -65,6 +81,7 @@ impl Reader<'_, '_> {
             return;
         };
         match command.to_ascii_lowercase().as_str() {
+            "waypoint" if self.gave_up => {}
             "waypoint" => self.waypoint(&words, start + code.trim_end().len()),
             "set" => self.note(NoteKind::Setting, number),
             other if nearest(other, ["waypoint"]).is_some() => self.problems.add(
@@ -72,11 +89,16 @@ impl Reader<'_, '_> {
                 format!("{command} is not a command"),
                 "did you mean waypoint?",
             ),
-            other => self.note(NoteKind::Command(other.to_owned()), number),
+            other if other.len() <= LONGEST_NAME => self.note(NoteKind::Command(other.to_owned()), number),
+            _ => self.note(NoteKind::Others, number),
         }
     }
 
     fn note(&mut self, kind: NoteKind, line: usize) {
+        let is_new_command =
+            matches!(kind, NoteKind::Command(_)) && self.notes.iter().all(|note| note.kind != kind);
+        let is_full = self.notes.len() >= MOST_NOTES;
+        let kind = if is_new_command && is_full { NoteKind::Others } else { kind };
         match self.notes.iter_mut().find(|note| note.kind == kind) {
             Some(note) => note.count += 1,
             None => self.notes.push(Note { kind, count: 1, first_line: line }),
@@ -91,7 +113,7 @@ impl Reader<'_, '_> {
             "update" => self.insert_or_update(arguments, line_end, false),
             "remove" => self.remove(arguments, line_end),
             "clear" => {
-                if self.no_more_than(0, arguments, "waypoint clear takes no value") {
+                if self.no_more_than(0, arguments, line_end, "waypoint clear takes no value") {
                     self.waypoints.clear();
                     self.overflow = None;
                 }
@@ -117,7 +139,7 @@ impl Reader<'_, '_> {
             );
         }
         let too_many = format!("waypoint {operation} takes {} values", VALUES.len());
-        self.no_more_than(VALUES.len(), arguments, &too_many);
+        self.no_more_than(VALUES.len(), arguments, line_end, &too_many);
         let index = arguments.first().and_then(|word| self.index(word, insert));
         let waypoint = Waypoint {
             position: LatLon::new(
@@ -130,7 +152,9 @@ impl Reader<'_, '_> {
             duration_ds: self.value(arguments.get(6), field::duration_ds),
             pattern: self.value(arguments.get(7), field::pattern),
         };
-        if insert {
+        if insert && self.waypoints.len() == MOST_INSERTED {
+            self.gave_up = true;
+        } else if insert {
             // A faulty waypoint still takes its place, so that the lines after it are not blamed for it.
             let index = index.unwrap_or(self.waypoints.len());
             self.waypoints.insert(index, waypoint);
@@ -147,7 +171,7 @@ impl Reader<'_, '_> {
             self.problems.add(line_end..line_end, "the index is missing", "write waypoint remove <index>");
             return;
         };
-        if self.no_more_than(1, arguments, "waypoint remove takes one value")
+        if self.no_more_than(1, arguments, line_end, "waypoint remove takes one value")
             && let Some(index) = self.index(word, false)
         {
             self.waypoints.remove(index);
@@ -191,18 +215,17 @@ impl Reader<'_, '_> {
         })
     }
 
-    fn no_more_than(&mut self, count: usize, arguments: &[Word<'_>], message: &str) -> bool {
-        let (Some((_, first)), Some((_, last))) = (arguments.get(count), arguments.last()) else {
-            return true;
-        };
-        self.problems.add(first.start..last.end, message, "remove the rest of the line");
+    fn no_more_than(&mut self, count: usize, arguments: &[Word<'_>], line_end: usize, message: &str) -> bool {
+        let Some((_, first)) = arguments.get(count) else { return true };
+        self.problems.add(first.start..line_end, message, "remove the rest of the line");
         false
     }
 }
 
-/// The words of a line that starts at byte `start` of the text.
+/// The words of a line that starts at byte `start` of the text, no more than are looked at.
 fn words(line: &str, start: usize) -> Vec<Word<'_>> {
     line.split_ascii_whitespace()
+        .take(MOST_WORDS)
         .map(|word| {
             let at = start + (word.as_ptr() as usize - line.as_ptr() as usize);
             (word, at..at + word.len())
@@ -291,6 +314,11 @@ mod tests {
         assert!(notes[3].starts_with("Skipped 1 `set` line (first: line 7)"));
         assert!(notes[3].contains("--settings"));
         assert_eq!(notes[4], "Skipped 1 `save` line (first: line 11)");
+        let many: String = (0..100).map(|at| format!("other{at}\nother0\n")).collect();
+        let notes = read_text(&format!("{TWO}{many}{}", "x".repeat(99))).notes;
+        assert_eq!(notes.len(), MOST_NOTES + 1);
+        assert_eq!(notes[0].count, 101);
+        assert_eq!(notes[MOST_NOTES].to_string(), "Skipped 71 other lines (first: line 64)");
         assert_eq!(read_text("save").notes.last().unwrap().kind, NoteKind::NoWaypoints);
     }
 
@@ -346,6 +374,8 @@ mod tests {
         assert_eq!(headlines(&lines(33)), ["plan.txt:31:17: waypoint 30 does not fit: 33 are inserted"]);
         assert_eq!(read_text(&format!("{}waypoint remove 3", lines(31))).plan.waypoints.len(), 30);
         assert_eq!(read_text(&format!("{}waypoint clear", lines(40))).plan.waypoints.len(), 0);
+        let far_too_many = headlines(&format!("{}waypoint clear", lines(MOST_INSERTED + 1)));
+        assert_eq!(far_too_many, ["plan.txt:31:17: waypoint 30 does not fit: more than 1000 are inserted"]);
     }
 
     #[test]

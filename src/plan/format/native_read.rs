@@ -8,13 +8,13 @@ use toml::de::{DeString, DeTable, DeValue};
 
 use super::field::{self, FieldError};
 use super::home::{self, Home};
-use super::setting::setting_line;
+use super::setting::{SettingCheck, SettingPart, setting_line};
 use super::{PlanFile, Problems};
 use crate::geo::LatLon;
 use crate::plan::{FlightPlan, HoldPattern, MAX_WAYPOINTS, Waypoint, WaypointType};
 
 /// Keys of the whole file.
-const FILE_KEYS: &[&str] = &["name", "description", "settings", "home", "waypoint"];
+pub(super) const FILE_KEYS: &[&str] = &["name", "description", "settings", "home", "waypoint"];
 
 /// Keys of `[home]`.
 const HOME_KEYS: &[&str] = &["lat_deg", "lon_deg", "alt_amsl_m"];
@@ -35,7 +35,7 @@ struct Table<'t, 'i> {
 }
 
 /// Reads the text; problems are added to `problems`.
-pub(super) fn read(text: &str, problems: &mut Problems<'_>) -> PlanFile {
+pub(super) fn read(text: &str, check: SettingCheck, problems: &mut Problems<'_>) -> PlanFile {
     let (document, syntax) = DeTable::parse_recoverable(text);
     for error in &syntax {
         let message = error.message().replace('\n', ", ");
@@ -52,7 +52,10 @@ pub(super) fn read(text: &str, problems: &mut Problems<'_>) -> PlanFile {
         name: file.string("name", problems).unwrap_or_default(),
         description: file.string("description", problems).unwrap_or_default(),
         home: file.get("home").and_then(|value| read_home(value, problems)),
-        settings: file.get("settings").map(|value| read_settings(value, problems)).unwrap_or_default(),
+        settings: file
+            .get("settings")
+            .map(|value| read_settings(value, text, check, problems))
+            .unwrap_or_default(),
         plan: file.get("waypoint").map(|value| read_waypoints(value, problems)).unwrap_or_default(),
         notes: Vec::new(),
     }
@@ -70,23 +73,41 @@ fn read_home(value: &Value<'_>, problems: &mut Problems<'_>) -> Option<Home> {
     Some(Home { position: LatLon::new(lat?, lon?), amsl_m })
 }
 
-fn read_settings(value: &Value<'_>, problems: &mut Problems<'_>) -> Vec<String> {
+fn read_settings(
+    value: &Value<'_>,
+    text: &str,
+    check: SettingCheck,
+    problems: &mut Problems<'_>,
+) -> Vec<String> {
     let DeValue::Array(lines) = value.get_ref() else {
         problems.add(value.span(), "settings is not a list", "write settings = [\"ap_max_angle = 25\"]");
         return Vec::new();
     };
     let mut settings = Vec::new();
     for line in lines.iter() {
-        match line.get_ref().as_str().and_then(setting_line) {
-            Some(setting) => settings.push(setting),
-            None => problems.add(
+        let Some(setting) = line.get_ref().as_str().and_then(setting_line) else {
+            problems.add(
                 line.span(),
                 "this is not a setting",
                 "write a text of name and value, such as \"ap_max_angle = 25\"",
-            ),
+            );
+            continue;
+        };
+        if let Some((name, value)) = setting.split_once(" = ")
+            && let Err(fault) = check(name, value)
+        {
+            let part = if fault.part == SettingPart::Name { name } else { value };
+            problems.add(place_of(part, text, line.span()), fault.message, fault.hint);
         }
+        settings.push(setting);
     }
     settings
+}
+
+/// Where a part of a text stands in its quotes; all of it when an escape hides the part.
+fn place_of(part: &str, text: &str, quoted: Range<usize>) -> Range<usize> {
+    let found = text.get(quoted.clone()).and_then(|inside| inside.rfind(part));
+    found.map_or(quoted.clone(), |at| quoted.start + at..quoted.start + at + part.len())
 }
 
 fn read_waypoints(value: &Value<'_>, problems: &mut Problems<'_>) -> FlightPlan {
@@ -195,6 +216,10 @@ fn number<T>(
     let text = match value.get_ref() {
         DeValue::Integer(integer) if integer.radix() == 10 => integer.as_str(),
         DeValue::Float(float) => float.as_str(),
+        DeValue::Integer(_) => {
+            problems.add(value.span(), "a decimal number is expected here", "write 12.5");
+            return None;
+        }
         other => {
             let what = other.type_str();
             problems.add(value.span(), format!("a number is expected here, not a TOML {what}"), "write 12.5");
@@ -366,6 +391,30 @@ pattern = "FIGURE8"
                 "p.toml:15:1: type is missing in waypoint 2",
                 "p.toml:16:1: lat is not a key of waypoint 2",
             ]
+        );
+    }
+
+    #[test]
+    fn settings_are_judged_where_they_stand() {
+        fn check(name: &str, value: &str) -> Result<(), super::super::SettingFault> {
+            let part = match (name, value) {
+                ("bad", _) => SettingPart::Name,
+                (_, "z") => SettingPart::Value,
+                _ => return Ok(()),
+            };
+            Err(super::super::SettingFault { part, message: format!("{name} {value}"), hint: String::new() })
+        }
+        let text = "settings = [\n  \"set good=1\", 'bad = 5',\n  \"ap_z = z\", \"a = \\u007A\"]\n";
+        let errors = super::super::parse_checked("p.toml", text, Format::Toml, check).unwrap_err();
+        let places: Vec<_> = errors.iter().map(|e| (e.line, e.column, e.width, e.message.as_str())).collect();
+        assert_eq!(places, [(2, 18, 3, "bad 5"), (3, 11, 1, "ap_z z"), (3, 15, 12, "a z")]);
+    }
+
+    #[test]
+    fn numbers_are_decimal() {
+        assert_eq!(
+            headlines("[[waypoint]]\ntype='ALT_CHANGE'\nalt_m = 0x10"),
+            ["p.toml:3:9: a decimal number is expected here"]
         );
     }
 

@@ -22,6 +22,8 @@ pub enum NoteKind {
     Setting,
     /// Other CLI commands, by name.
     Command(String),
+    /// Lines with still other words, when there are many.
+    Others,
     /// The file has no waypoint line at all.
     NoWaypoints,
 }
@@ -40,6 +42,7 @@ impl fmt::Display for Note {
             NoteKind::Command(name) => {
                 write!(f, "Skipped {count} `{name}` {lines} (first: line {first_line})")
             }
+            NoteKind::Others => write!(f, "Skipped {count} other {lines} (first: line {first_line})"),
             NoteKind::NoWaypoints => write!(f, "The file has no `waypoint insert` line: the plan is empty"),
         }
     }

@@ -3,6 +3,11 @@
 use std::fmt;
 use std::ops::Range;
 
+use crate::excerpt::{Excerpt, excerpt, shortened};
+
+/// Most problems of a file that are listed; the others are counted.
+const MOST_LISTED: usize = 100;
+
 /// One problem of a file. `Display` is the whole report: `FILE:LINE:COLUMN: MESSAGE`, the line, and carets under the
 /// place with what is allowed.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -13,14 +18,16 @@ pub struct PlanError {
     pub line: usize,
     /// Column in characters, from 1.
     pub column: usize,
-    /// Characters that are wrong, at least 1.
+    /// Characters that are wrong, as far as `source` shows them, at least 1.
     pub width: usize,
     /// What is wrong.
     pub message: String,
     /// What is allowed or what to do; may be empty.
     pub hint: String,
-    /// The text of the line, tabs replaced by spaces.
-    pub source_line: String,
+    /// The line, or the part of it around the place.
+    pub source: Excerpt,
+    /// Problems behind this one that are not listed.
+    pub unlisted: usize,
 }
 
 impl PlanError {
@@ -35,12 +42,12 @@ impl fmt::Display for PlanError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let number = self.line.to_string();
         let gutter = " ".repeat(number.len());
-        let indent = " ".repeat(self.column.saturating_sub(1));
+        let indent = " ".repeat(self.source.column.saturating_sub(1));
         let carets = "^".repeat(self.width);
         let hint = if self.hint.is_empty() { String::new() } else { format!(" {}", self.hint) };
         writeln!(f, "{}", self.headline())?;
         writeln!(f, "{gutter} |")?;
-        writeln!(f, "{number} | {}", self.source_line)?;
+        writeln!(f, "{number} | {}", self.source.text)?;
         write!(f, "{gutter} | {indent}{carets}{hint}")
     }
 }
@@ -53,7 +60,10 @@ pub fn report(errors: &[PlanError]) -> String {
     let mut text = errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n");
     if errors.len() > 1 {
         let file = errors.first().map_or("", |error| error.file.as_str());
-        text.push_str(&format!("\n{file}: {} problems; nothing was changed", errors.len()));
+        let all = errors.iter().map(|error| 1 + error.unlisted).sum::<usize>();
+        let listed =
+            if all > errors.len() { format!(" ({} are shown)", errors.len()) } else { String::new() };
+        text.push_str(&format!("\n{file}: {all} problems{listed}; nothing was changed"));
     }
     text
 }
@@ -63,39 +73,71 @@ pub fn report(errors: &[PlanError]) -> String {
 pub struct Problems<'a> {
     file: &'a str,
     text: &'a str,
+    /// Where each line begins.
+    lines: Vec<usize>,
     errors: Vec<(usize, PlanError)>,
+    unlisted: usize,
 }
 
 impl<'a> Problems<'a> {
     /// No problems yet; `text` is what all spans refer to.
     #[must_use]
     pub fn new(file: &'a str, text: &'a str) -> Self {
-        Self { file, text, errors: Vec::new() }
+        let lines = std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect();
+        Self { file, text, lines, errors: Vec::new(), unlisted: 0 }
     }
 
     /// Records a problem at a byte range of the text; ranges that are not on character boundaries are widened.
     pub fn add(&mut self, span: Range<usize>, message: impl Into<String>, hint: impl Into<String>) {
+        if self.errors.len() == MOST_LISTED {
+            self.unlisted += 1;
+            return;
+        }
         let start = floor_boundary(self.text, span.start);
-        let line_start = self.text[..start].rfind('\n').map_or(0, |i| i + 1);
-        let line_end = self.text[start..].find('\n').map_or(self.text.len(), |i| start + i);
+        let line = self.lines.partition_point(|&begin| begin <= start).max(1);
+        let line_start = self.lines[line - 1];
+        let line_end = self.lines.get(line).map_or(self.text.len(), |&next| next - 1);
         let end = floor_boundary(self.text, span.end.min(line_end)).max(start);
-        let shown = self.text[line_start..line_end].trim_end_matches('\r');
+        let column = self.text[line_start..start].chars().count() + 1;
+        let source = excerpt(self.text[line_start..line_end].trim_end_matches('\r'), column);
+        let shown = (source.text.chars().count() + 1).saturating_sub(source.column);
         let error = PlanError {
             file: self.file.to_owned(),
-            line: self.text[..start].matches('\n').count() + 1,
-            column: self.text[line_start..start].chars().count() + 1,
-            width: self.text[start..end].trim_end().chars().count().max(1),
-            message: message.into(),
+            line,
+            column,
+            width: self.text[start..end].trim_end().chars().count().min(shown).max(1),
+            message: shortened(message.into()),
             hint: hint.into(),
-            source_line: shown.replace(|c: char| c.is_control(), " "),
+            source,
+            unlisted: 0,
         };
         self.errors.push((start, error));
+    }
+
+    /// Records a problem of a part of a line, counted from 1: the last place where `part` stands in front of a `#`
+    /// comment, else the whole line.
+    pub fn add_line_part(
+        &mut self,
+        line: usize,
+        part: impl AsRef<str>,
+        message: impl Into<String>,
+        hint: impl Into<String>,
+    ) {
+        let at = |line: usize| self.lines.get(line).copied().unwrap_or(self.text.len());
+        let (start, end) = (at(line.saturating_sub(1)), at(line));
+        let (text, part) = (&self.text[start..end], part.as_ref());
+        let code = text.split('#').next().unwrap_or(text);
+        let span = code.rfind(part).map_or_else(
+            || text.len() - text.trim_start().len()..text.len(),
+            |found| found..found + part.len(),
+        );
+        self.add(start + span.start..start + span.end, message, hint);
     }
 
     /// How many problems there are so far.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.errors.len()
+        self.errors.len() + self.unlisted
     }
 
     /// Whether no problem was found so far.
@@ -108,6 +150,9 @@ impl<'a> Problems<'a> {
     #[must_use]
     pub fn into_errors(mut self) -> Vec<PlanError> {
         self.errors.sort_by_key(|&(start, _)| start);
+        if let Some((_, last)) = self.errors.last_mut() {
+            last.unlisted = self.unlisted;
+        }
         self.errors.into_iter().map(|(_, error)| error).collect()
     }
 }
@@ -139,6 +184,18 @@ mod tests {
     }
 
     #[test]
+    fn parts_of_lines_are_found_else_the_line_is_marked() {
+        let mut problems = Problems::new("f", "one\n  two = 2 # 2\nthree");
+        problems.add_line_part(2, "four", "a", "");
+        problems.add_line_part(2, "2", "b", "");
+        problems.add_line_part(3, "three", "c", "");
+        problems.add_line_part(9, "x", "d", "");
+        let errors = problems.into_errors();
+        let places: Vec<_> = errors.iter().map(|e| (e.line, e.column, e.width)).collect();
+        assert_eq!(places, [(2, 3, 11), (2, 9, 1), (3, 1, 5), (3, 6, 1)]);
+    }
+
+    #[test]
     fn spans_outside_the_text_do_not_panic() {
         let mut problems = Problems::new("f", "é\n");
         problems.add(1..99, "a", "");
@@ -147,5 +204,20 @@ mod tests {
         assert_eq!((errors[0].line, errors[0].column, errors[0].width), (1, 1, 1));
         assert_eq!((errors[1].line, errors[1].column), (2, 1));
         assert!(report(&errors).ends_with("f: 2 problems; nothing was changed"));
+    }
+
+    #[test]
+    fn a_million_problems_in_one_long_line_are_counted_and_some_are_shown() {
+        let text = "x".repeat(1_000_000);
+        let mut problems = Problems::new("f", &text);
+        for at in 0..text.len() {
+            problems.add(at..text.len(), "a", "");
+        }
+        assert_eq!(problems.len(), text.len());
+        let errors = problems.into_errors();
+        assert_eq!(errors.len(), MOST_LISTED);
+        let report = report(&errors);
+        assert!(report.ends_with("f: 1000000 problems (100 are shown); nothing was changed"));
+        assert!(report.len() < 100_000, "{} bytes", report.len());
     }
 }

@@ -1,4 +1,28 @@
-//! A setting as one line of text.
+//! A setting as one line of text, and what may be wrong with it.
+
+/// A part of a setting's line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SettingPart {
+    /// The name.
+    Name,
+    /// The value.
+    Value,
+}
+
+/// What is wrong with a setting, in sentences for people.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{message}{}{hint}", if hint.is_empty() { "" } else { "; " })]
+pub struct SettingFault {
+    /// What of it is wrong.
+    pub part: SettingPart,
+    /// What is wrong.
+    pub message: String,
+    /// What is allowed; may be empty.
+    pub hint: String,
+}
+
+/// Who knows which settings there are: judges a name and a value.
+pub type SettingCheck = fn(&str, &str) -> Result<(), SettingFault>;
 
 /// A line `name = value`, `set name = value` or `name=value` in its canonical form `name = value`; `None` when it is
 /// none of them, or would not survive the CLI it goes through.

@@ -75,7 +75,7 @@ fn row(index: usize, waypoint: &Waypoint, leg: &Leg) -> [String; 10] {
         if has_altitude { format!("{:.2} m", leg.alt_m) } else { String::new() },
         speed,
         leg.distance_m.map_or_else(String::new, |distance| format!("{distance:.1} m")),
-        leg.bearing_deg.map_or_else(String::new, |bearing| format!("{bearing:.0}°")),
+        leg.bearing_deg.map_or_else(String::new, |bearing| format!("{:.0}°", bearing.round() % 360.0)),
         stay,
         done,
     ]
@@ -139,6 +139,14 @@ mod tests {
 
         2 waypoints, 80 m, at least 1:21 from engagement
         ");
+    }
+
+    #[test]
+    fn a_bearing_just_west_of_north_is_none_of_360_degrees() {
+        let text = "waypoint insert 0 40.5 -79.5183 1000 0 LAND 0 NONE";
+        let file = super::super::parse("x.txt", text, super::super::Format::CliText).unwrap();
+        let table = table(&file, LatLon::new(404_635_000, -795_182_000));
+        assert!(table.contains(" 0°") && !table.contains("360°"), "{table}");
     }
 
     #[test]

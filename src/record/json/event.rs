@@ -1,6 +1,7 @@
 //! The fields of each event.
 
 use std::borrow::Cow;
+use std::net::SocketAddr;
 
 use serde::Serialize;
 
@@ -8,7 +9,7 @@ use super::super::number::{Decimals, Milli};
 use crate::autopilot::io::{Guard, NavEvent, PlanSource, Refusal};
 use crate::firmware::FirmwareEvent;
 use crate::plan::{FlightPlan, WaypointType};
-use crate::vehicle::EventKind;
+use crate::vehicle::{DoorPlaces, EventKind};
 
 /// A number of degrees with the resolution of plans: 1e-7.
 type Degrees = Decimals<7>;
@@ -32,6 +33,7 @@ pub(super) enum Fields<'a> {
     Contact { impact_mps: Milli },
     Touchdown { impact_mps: Milli, peak_mps2: Milli },
     Crash { cause: &'a str },
+    Doors { ws: Option<SocketAddr>, tcp: Option<SocketAddr>, fdm: Option<SocketAddr>, rc: Option<SocketAddr> },
     Notice { text: &'a str },
 }
 
@@ -90,6 +92,10 @@ impl<'a> Fields<'a> {
                 ("touchdown", Self::Touchdown { impact_mps, peak_mps2 })
             }
             EventKind::Crash { cause } => ("crash", Self::Crash { cause }),
+            EventKind::Doors(places) => {
+                let DoorPlaces { ws, tcp, fdm, rc } = **places;
+                ("doors", Self::Doors { ws, tcp, fdm, rc })
+            }
             EventKind::Notice(text) => ("notice", Self::Notice { text }),
         })
     }
@@ -234,6 +240,15 @@ mod tests {
         assert_eq!(
             line(EventKind::Touchdown { impact_mps: 0.47, peak_mps2: 43.123_456 }),
             r#"{"t":12.34,"event":"touchdown","impact_mps":0.47,"peak_mps2":43.123}"#
+        );
+        let places = DoorPlaces {
+            ws: "127.0.0.1:6761".parse().ok(),
+            rc: "[::1]:9004".parse().ok(),
+            ..DoorPlaces::default()
+        };
+        assert_eq!(
+            line(EventKind::Doors(Box::new(places))),
+            r#"{"t":12.34,"event":"doors","ws":"127.0.0.1:6761","tcp":null,"fdm":null,"rc":"[::1]:9004"}"#
         );
         assert_eq!(
             line(EventKind::Notice("a \"b\"".to_owned())),

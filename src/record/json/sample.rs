@@ -4,7 +4,7 @@
 
 use serde::Serialize;
 
-use super::super::number::{Centi, Decimals, Milli, Place};
+use super::super::number::{Centi, Decimals, Milli, Place, compass};
 use crate::vehicle::Snapshot;
 use crate::vehicle::snapshot::TruthView;
 
@@ -63,7 +63,7 @@ impl Fields {
             vu: truth(|truth| truth.vu),
             roll: truth(|truth| truth.roll_deg),
             pitch: truth(|truth| truth.pitch_deg),
-            heading: truth(|truth| truth.heading_deg),
+            heading: snapshot.truth.as_ref().map(|truth| compass(truth.heading_deg)),
             est_n: estimate.n.map(Decimals),
             est_e: estimate.e.map(Decimals),
             est_alt: estimate.alt.map(Decimals),
@@ -76,7 +76,7 @@ impl Fields {
             wp: nav.kind.map(|_| nav.wp),
             wp_type: nav.kind.map(|kind| kind.to_string()),
             dist_m: nav.distance_m.map(Decimals),
-            bearing: nav.bearing_rad.map(|bearing| Decimals(bearing.to_degrees())),
+            bearing: nav.bearing_rad.map(|bearing| compass(bearing.to_degrees())),
             xte_m: nav.xte_m.map(Decimals),
             l1_mode: nav.l1_mode.to_string(),
             target_n: nav.target_ne.map(|target| Decimals(target.x)),
@@ -155,10 +155,12 @@ mod tests {
                 lat_deg: 40.123_456_789_12,
                 n: 1.0 / 3.0,
                 pitch_deg: -7.9,
+                heading_deg: 359.999_9,
                 ..TruthView::default()
             }),
             ..Snapshot::default()
         };
+        assert!(sample_line(&snapshot).contains(r#""heading":0.0"#));
         snapshot.nav.bearing_rad = Some(std::f64::consts::FRAC_PI_2);
         snapshot.craft.motors = [0.502_565_52, 0.0, 1.0, 0.25];
         let line = sample_line(&snapshot);

@@ -1,0 +1,156 @@
+//! Where the reports of a headless flight go: lines, a track, and the last words on standard error.
+
+use std::fs::File;
+use std::io::{BufWriter, Write};
+use std::path::Path;
+
+use crate::app::error::{self, AppError};
+use crate::args::{FlyArgs, OutputFile, PlanArg};
+use crate::flight::Report;
+use crate::plan::format::PlanFile;
+use crate::record::{End, GpxHeader, GpxWriter, TrackPoint, UtcSeconds, json, sentence};
+use crate::signals::SimTime;
+use crate::vehicle::Vehicle;
+
+/// Where the reports go.
+pub(super) struct Output {
+    lines: Option<BufWriter<Box<dyn Write>>>,
+    /// JSON lines, or sentences.
+    json: bool,
+    gpx: Option<GpxWriter<BufWriter<File>>>,
+}
+
+impl Output {
+    /// Opens what the options name; what is read must not be among it.
+    pub(super) fn open(args: &FlyArgs, vehicle: &Vehicle, plan: &PlanFile) -> Result<Self, AppError> {
+        refuse_overwriting(args)?;
+        let stdout = || Box::new(std::io::stdout()) as Box<dyn Write>;
+        let (target, json): (Box<dyn Write>, bool) = match &args.json {
+            None => (stdout(), false),
+            Some(OutputFile::Stdout) => (stdout(), true),
+            Some(OutputFile::File(path)) => (Box::new(create(path)?), true),
+        };
+        let gpx = match &args.gpx {
+            None => None,
+            Some(path) => {
+                let home_amsl_m = vehicle.world().local_frame().alt_amsl_m;
+                let header = GpxHeader {
+                    creator: "betadeck (simulated)".to_owned(),
+                    track: plan.name.clone(),
+                    home_amsl_m,
+                    boot: UtcSeconds::SIMULATED_BOOT,
+                };
+                let file = BufWriter::new(create(path)?);
+                Some(GpxWriter::new(file, header, &plan.plan).map_err(write_failed)?)
+            }
+        };
+        Ok(Self { lines: Some(BufWriter::new(target)), json, gpx })
+    }
+
+    /// Writes an event or a sample.
+    pub(super) fn report(&mut self, report: &Report) -> Result<(), AppError> {
+        let line = match report {
+            Report::Event(event) if self.json => json::event_line(event),
+            Report::Event(event) => sentence::line(event),
+            Report::Sample(vehicle) => Some(json::sample_line(&vehicle.snapshot())),
+        };
+        line.map_or(Ok(()), |line| self.line(&line))
+    }
+
+    fn line(&mut self, line: &str) -> Result<(), AppError> {
+        let Some(lines) = &mut self.lines else { return Ok(()) };
+        let written = writeln!(lines, "{line}");
+        self.after(written)
+    }
+
+    /// Lets a reader see what was written.
+    pub(super) fn flush(&mut self) -> Result<(), AppError> {
+        let Some(lines) = &mut self.lines else { return Ok(()) };
+        let written = lines.flush();
+        self.after(written)
+    }
+
+    /// A reader that went away has seen enough; the flight and its exit code go on.
+    fn after(&mut self, written: std::io::Result<()>) -> Result<(), AppError> {
+        match written {
+            Ok(()) => Ok(()),
+            Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => {
+                self.lines = None;
+                Ok(())
+            }
+            Err(error) => Err(write_failed(error)),
+        }
+    }
+
+    /// Writes a point of the track when a second is full.
+    pub(super) fn track(&mut self, vehicle: &Vehicle) -> Result<(), AppError> {
+        let Some(gpx) = &mut self.gpx else { return Ok(()) };
+        if !vehicle.time().0.is_multiple_of(1_000_000) {
+            return Ok(());
+        }
+        let truth = vehicle.world().truth();
+        let frame = vehicle.world().local_frame();
+        let (lat_deg, lon_deg, amsl_m) = frame.to_geodetic(truth.pos_enu);
+        let alt_m = amsl_m - frame.alt_amsl_m;
+        gpx.offer(&TrackPoint { time: vehicle.time(), lat_deg, lon_deg, alt_m }).map_err(write_failed)
+    }
+
+    /// Ends the files and says how the flight ended.
+    pub(super) fn finish(mut self, time: SimTime, end: &End) -> Result<(), AppError> {
+        if self.json {
+            self.line(&json::end_line(time, end))?;
+        }
+        self.flush()?;
+        if let Some(gpx) = self.gpx.take() {
+            gpx.finish().map_err(write_failed)?.flush().map_err(write_failed)?;
+        }
+        error::tell(&end.result_line());
+        error::tell(&end.flown_line());
+        Ok(())
+    }
+}
+
+/// A flight must not write over what it was read from, nor twice into one file.
+fn refuse_overwriting(args: &FlyArgs) -> Result<(), AppError> {
+    // A file that does not exist yet is only as the other option names it.
+    let same = |a: &Path, b: &Path| match (a.canonicalize(), b.canonicalize()) {
+        (Ok(a), Ok(b)) => a == b && a.is_file(),
+        _ => a == b,
+    };
+    let json = match &args.json {
+        Some(OutputFile::File(path)) => Some(("--json", path.as_path())),
+        Some(OutputFile::Stdout) | None => None,
+    };
+    let gpx = args.gpx.as_deref().map(|path| ("--gpx", path));
+    let plan = match &args.plan {
+        PlanArg::File(path, _) => Some(("the plan", path.as_path())),
+        PlanArg::Builtin(_) | PlanArg::Stdin(_) => None,
+    };
+    let settings = args.flight.settings.as_deref().map(|path| ("--settings", path));
+    let airframe = args.flight.airframe.as_deref().map(Path::new);
+    let airframe = airframe.filter(|name| name.extension().is_some()).map(|file| ("--airframe", file));
+    let inputs: Vec<_> = [plan, settings, airframe].into_iter().flatten().collect();
+    let clash = |(option, path): (&'static str, &Path)| {
+        inputs
+            .iter()
+            .chain(gpx.iter().filter(|_| option == "--json"))
+            .find(|(_, other)| same(path, other))
+            .map(|(other, _)| {
+                AppError::input(format!(
+                    "{option} {} would write over {other}: name another file",
+                    path.display()
+                ))
+            })
+    };
+    json.into_iter().chain(gpx).find_map(clash).map_or(Ok(()), Err)
+}
+
+fn create(path: &Path) -> Result<File, AppError> {
+    File::create(path)
+        .map_err(|error| AppError::environment(format!("cannot write {}: {error}", path.display())))
+}
+
+#[expect(clippy::needless_pass_by_value, reason = "a map_err argument")]
+fn write_failed(error: std::io::Error) -> AppError {
+    AppError::environment(format!("cannot write the output: {error}"))
+}

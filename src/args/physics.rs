@@ -1,0 +1,130 @@
+//! Whose physics moves the craft, and how to speak with a simulator outside.
+
+use std::str::FromStr;
+
+use super::{FlightArgs, help, value};
+use crate::link::proto::fdm::Dialect;
+use crate::link::proto::fdm_link::Mirror;
+use crate::link::proto::servo::MotorOrder;
+use crate::sim::ScheduledFault;
+
+/// Whose physics moves the craft.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
+pub enum Physics {
+    /// The world inside.
+    #[default]
+    Embedded,
+    /// A simulator outside, over UDP.
+    External,
+}
+
+/// The choice of the physics, and what goes wrong with it.
+#[derive(Debug, Clone, Default, PartialEq, clap::Args)]
+pub struct PhysicsArgs {
+    /// What moves the craft: embedded, or external: a simulator such as Gazebo over UDP [default: embedded]
+    ///
+    /// An external simulator is served as the SITL executable does: its state comes to UDP 9003, motors go to 9002 and
+    /// 9001 (--udp-ports), and its stamps are the time. What makes the embedded world (--wind, --airframe, --speed …)
+    /// has no effect then.
+    #[arg(long, value_name = "WHERE", hide_possible_values = true, help_heading = "Simulator")]
+    pub physics: Option<Physics>,
+
+    /// How to speak with it.
+    #[command(flatten)]
+    pub simulator: SimulatorArgs,
+
+    /// Something goes wrong at T, such as motor@10,,2:0.8 or gps-loss@boot+60,6; repeatable
+    #[arg(long, value_name = "NAME@T[,FOR][,VALUE]", value_parser = value::fault, long_help = help::faults_with_link(), help_heading = "Faults")]
+    pub fault: Vec<ScheduledFault>,
+}
+
+/// How to speak with a simulator outside.
+#[derive(Debug, Clone, Default, PartialEq, Eq, clap::Args)]
+pub struct SimulatorArgs {
+    /// What the simulator's packets mean: auto, sitl-gz, gz-plugin or legacy [default: auto]
+    #[arg(long, value_name = "DIALECT", help_heading = "Simulator")]
+    pub fdm_dialect: Option<FdmDialect>,
+
+    /// Whether the simulator's positions are mirrored: auto, on or off [default: auto]
+    #[arg(long, value_name = "auto|on|off", help_heading = "Simulator")]
+    pub fdm_mirror: Option<Mirror>,
+
+    /// Order of the motors in the simulator's model: native, or legacy (before spring 2026) [default: native]
+    #[arg(long, value_name = "native|legacy", help_heading = "Simulator")]
+    pub motor_order: Option<MotorOrder>,
+}
+
+impl PhysicsArgs {
+    /// Whether a simulator outside moves the craft.
+    #[must_use]
+    pub fn is_external(&self) -> bool {
+        self.physics == Some(Physics::External)
+    }
+
+    /// What was given but has no effect with this physics, as a sentence.
+    #[must_use]
+    pub fn idle_options(&self, flight: &FlightArgs) -> Option<String> {
+        let (names, why) = if self.is_external() {
+            let given = [
+                ("--home", flight.home.is_some()),
+                ("--heading", flight.heading.is_some()),
+                ("--airframe", flight.airframe.is_some()),
+                ("--wind", flight.wind.is_some()),
+                ("--gust", flight.gust.is_some()),
+                ("--turbulence", flight.turbulence.is_some()),
+                ("--noise", flight.noise.is_some()),
+                ("--world", !flight.world.is_empty()),
+                ("--speed", flight.speed.is_some()),
+            ];
+            (given.to_vec(), "the external simulator decides that")
+        } else {
+            let simulator = &self.simulator;
+            let given = [
+                ("--fdm-dialect", simulator.fdm_dialect.is_some()),
+                ("--fdm-mirror", simulator.fdm_mirror.is_some()),
+                ("--motor-order", simulator.motor_order.is_some()),
+            ];
+            (given.to_vec(), "the physics is embedded (--physics external)")
+        };
+        let given: Vec<&str> = names.iter().filter(|(_, given)| *given).map(|(name, _)| *name).collect();
+        let has = if given.len() == 1 { "has" } else { "have" };
+        (!given.is_empty()).then(|| format!("{} {has} no effect: {why}.", given.join(", ")))
+    }
+}
+
+/// A dialect by name, or `auto`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct FdmDialect(pub Option<Dialect>);
+
+impl FromStr for FdmDialect {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text == "auto" {
+            return Ok(Self(None));
+        }
+        let known = || format!("{text} is no dialect; use auto, sitl-gz, gz-plugin or legacy");
+        text.parse().map(|dialect| Self(Some(dialect))).map_err(|_| known())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::args::Speed;
+
+    #[test]
+    fn options_without_effect_are_named() {
+        let flight =
+            FlightArgs { wind: "5@270".parse().ok(), speed: Some(Speed(2.0)), ..FlightArgs::default() };
+        let embedded = PhysicsArgs::default();
+        assert_eq!(embedded.idle_options(&flight), None);
+        let external = PhysicsArgs { physics: Some(Physics::External), ..PhysicsArgs::default() };
+        assert_eq!(external.idle_options(&FlightArgs::default()), None);
+        let sentence = external.idle_options(&flight).unwrap();
+        assert_eq!(sentence, "--wind, --speed have no effect: the external simulator decides that.");
+        let simulator = SimulatorArgs { motor_order: Some(MotorOrder::Legacy), ..SimulatorArgs::default() };
+        let sentence = PhysicsArgs { simulator, ..embedded }.idle_options(&flight).unwrap();
+        assert_eq!(sentence, "--motor-order has no effect: the physics is embedded (--physics external).");
+    }
+}

@@ -1,0 +1,74 @@
+//! The part of a line that a message shows: files may have lines of any length, people and terminals do not read them.
+
+/// Most characters of a line that are shown.
+const MOST: usize = 200;
+/// Most characters before the place.
+const BEFORE: usize = 100;
+/// Most characters of a text from a file in a sentence.
+const SENTENCE: usize = 300;
+
+/// A line, or the part of it around a place.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Excerpt {
+    /// The text; control characters are replaced by spaces, and `…` stands where it was cut.
+    pub text: String,
+    /// Column of the place in the text, in characters, from 1.
+    pub column: usize,
+}
+
+/// What is shown of a line to point at a column, in characters, from 1.
+#[must_use]
+pub fn excerpt(line: &str, column: usize) -> Excerpt {
+    let shown = |c: char| if c.is_control() { ' ' } else { c };
+    let is_short = line.chars().nth(MOST).is_none();
+    let first = if is_short { 0 } else { column.saturating_sub(BEFORE + 1) };
+    let mut text = if first > 0 { "…".to_owned() } else { String::new() };
+    let mut rest = line.chars().skip(first);
+    text.extend(rest.by_ref().take(MOST).map(shown));
+    if rest.next().is_some() {
+        text.push('…');
+    }
+    Excerpt { text, column: column - first + usize::from(first > 0) }
+}
+
+/// A sentence about a file without the middle of what makes it too long.
+#[must_use]
+pub fn shortened(sentence: String) -> String {
+    let Some((start, _)) = sentence.char_indices().nth(SENTENCE / 2) else { return sentence };
+    match sentence.char_indices().nth_back(SENTENCE / 2 - 1) {
+        Some((end, _)) if end > start => format!("{}…{}", &sentence[..start], &sentence[end..]),
+        _ => sentence,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_short_line_is_shown_whole() {
+        assert_eq!(excerpt("a\tb", 3), Excerpt { text: "a b".to_owned(), column: 3 });
+        assert_eq!(excerpt("", 1), Excerpt { text: String::new(), column: 1 });
+        assert_eq!(excerpt(&"x".repeat(MOST), 150).text, "x".repeat(MOST));
+    }
+
+    #[test]
+    fn a_long_line_is_cut_around_the_place() {
+        let line: String = ('a'..='z').cycle().take(1_000_000).collect();
+        for column in [1, 100, 101, 102, 5000, 999_999, 1_000_000, 1_000_001] {
+            let Excerpt { text, column: place } = excerpt(&line, column);
+            assert!(text.chars().count() <= MOST + 2, "{column}");
+            assert_eq!(text.chars().nth(place - 1).filter(|c| *c != '…'), line.chars().nth(column - 1));
+        }
+        assert_eq!(excerpt(&line, 5000).column, BEFORE + 2);
+    }
+
+    #[test]
+    fn a_long_sentence_keeps_its_ends() {
+        assert_eq!(shortened("é is no number".to_owned()), "é is no number");
+        let long = shortened(format!("latitude {} is not a number", "é".repeat(1_000_000)));
+        assert!(long.starts_with("latitude éé") && long.ends_with("éé is not a number"), "{long}");
+        assert_eq!(long.chars().count(), SENTENCE + 1);
+        assert_eq!(shortened("é".repeat(SENTENCE)), "é".repeat(SENTENCE));
+    }
+}

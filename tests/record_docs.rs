@@ -1,0 +1,160 @@
+//! `docs/headless.md` against the code: every event of the JSON lines with its fields in their order, and the sample.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use betadeck::autopilot::io::{AbortReason, Guard, GuardOp, NavEvent, NavState, PlanSource, Refusal};
+use betadeck::firmware::mode::ModeFlags;
+use betadeck::firmware::{DisarmReason, FirmwareEvent};
+use betadeck::geo::LatLon;
+use betadeck::plan::{FlightPlan, Waypoint, WaypointType};
+use betadeck::record::{End, json};
+use betadeck::signals::SimTime;
+use betadeck::vehicle::{DoorPlaces, Event, EventKind, Snapshot};
+
+/// One event of each kind.
+fn one_of_each() -> Vec<EventKind> {
+    let mut plan = Box::<FlightPlan>::default();
+    plan.waypoints.push(Waypoint::default());
+    let guard = Guard { name: "arrival", value: 4.0, limit: 5.0, op: GuardOp::AtMost, unit: "m" };
+    let nav = [
+        NavEvent::Plan { source: PlanSource::Stored, plan },
+        NavEvent::State {
+            from: NavState::Approaching,
+            to: NavState::Arrived,
+            wp: 1,
+            kind: Some(WaypointType::Hold),
+            reason: "arrival",
+            guard: Some(guard),
+            target: LatLon::new(1, 2),
+            target_alt_m: 3.0,
+        },
+        NavEvent::Climbing(true),
+        NavEvent::Geofence { distance_m: 101.0, limit_m: 100.0, action: "RTH" },
+        NavEvent::Refused(Refusal::Aborted(AbortReason::Flyaway)),
+        NavEvent::Disarm,
+    ];
+    let firmware = [
+        FirmwareEvent::GpsFix { sats: 7 },
+        FirmwareEvent::GpsLost { sats: 2 },
+        FirmwareEvent::Armed,
+        FirmwareEvent::Disarmed(DisarmReason::Landing),
+        FirmwareEvent::Mode(ModeFlags::NONE),
+        FirmwareEvent::RxLoss,
+        FirmwareEvent::RxRecovered,
+        FirmwareEvent::Failsafe { policy: "LAND", stage: 2, procedure: "LAND" },
+        FirmwareEvent::Notice("a notice"),
+    ];
+    let firmware = firmware.into_iter().chain(nav.map(FirmwareEvent::Nav)).map(EventKind::Firmware);
+    let vehicle = [
+        EventKind::Boot { seed: 1, rate_hz: 1000, airframe: "iris".to_owned(), live: false },
+        EventKind::Fault { name: "motor", on: true, value: "2:0.8".to_owned() },
+        EventKind::Contact { impact_mps: 0.5 },
+        EventKind::Touchdown { impact_mps: 0.5, peak_mps2: 20.0 },
+        EventKind::Crash { cause: "a tree".to_owned() },
+        EventKind::Doors(Box::<DoorPlaces>::default()),
+        EventKind::Notice("a notice".to_owned()),
+    ];
+    firmware.chain(vehicle).collect()
+}
+
+/// The name on the page. A new kind of event stops the build here: it needs a row there and one above.
+fn name(kind: &EventKind) -> Option<&'static str> {
+    Some(match kind {
+        EventKind::Boot { .. } => "boot",
+        EventKind::Fault { .. } => "fault",
+        EventKind::Contact { .. } => "contact",
+        EventKind::Touchdown { .. } => "touchdown",
+        EventKind::Crash { .. } => "crash",
+        EventKind::Doors(_) => "doors",
+        EventKind::Notice(_) => "notice",
+        EventKind::Firmware(event) => match event {
+            FirmwareEvent::GpsFix { .. } => "gps_fix",
+            FirmwareEvent::GpsLost { .. } => "gps_lost",
+            FirmwareEvent::Armed => "armed",
+            FirmwareEvent::Disarmed(_) => "disarmed",
+            FirmwareEvent::Mode(_) => "mode",
+            FirmwareEvent::RxLoss => "rx_loss",
+            FirmwareEvent::RxRecovered => "rx_recovered",
+            FirmwareEvent::Failsafe { .. } => "failsafe",
+            FirmwareEvent::Notice(_) => "notice",
+            FirmwareEvent::Nav(event) => match event {
+                NavEvent::Plan { .. } => "plan",
+                NavEvent::State { .. } => "state",
+                NavEvent::Climbing(_) => "climbing",
+                NavEvent::Geofence { .. } => "geofence",
+                NavEvent::Refused(_) => "engage_refused",
+                NavEvent::Disarm => return None,
+            },
+        },
+    })
+}
+
+/// The rows of a table of the page, as the names in backticks of each cell.
+fn rows(table: &str) -> Vec<Vec<Vec<String>>> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/headless.md");
+    let page = std::fs::read_to_string(path).expect("docs/headless.md");
+    let (_, rest) = page.split_once(&format!("<!-- {table} -->")).expect("the table");
+    let (text, _) = rest.split_once(&format!("<!-- end of {table} -->")).expect("its end");
+    let names = |cell: &str| cell.split('`').skip(1).step_by(2).map(str::to_owned).collect();
+    let rows = text.lines().filter(|line| line.starts_with("| `"));
+    rows.map(|row| row.trim_matches('|').split(" | ").map(names).collect()).collect()
+}
+
+/// The keys of a line after `t` and `event`, in their order; and the object under `nested`, if there is one.
+#[track_caller]
+fn check(line: &str, event: &str, fields: &[String]) {
+    let value: serde_json::Value =
+        serde_json::from_str(line).unwrap_or_else(|error| panic!("{error}: {line}"));
+    assert_eq!(value["event"], event, "{line}");
+    let object = value.as_object().expect("an object");
+    let keys: BTreeSet<&str> = object.keys().map(String::as_str).collect();
+    let expected = ["t", "event"].into_iter().chain(fields.iter().map(String::as_str));
+    assert_eq!(keys, expected.clone().collect(), "{line}");
+    let places: Vec<_> = expected.map(|key| line.find(&format!("\"{key}\":"))).collect();
+    assert!(places.is_sorted(), "another order than on the page: {line}");
+}
+
+#[test]
+fn every_event_is_on_the_page_with_its_fields() {
+    let rows = rows("events");
+    let row = |name: &str| {
+        let found = rows.iter().find(|row| row[0] == [name]);
+        found.unwrap_or_else(|| panic!("{name} is not on the page"))
+    };
+    let mut seen = BTreeSet::from(["end"]);
+    for kind in one_of_each() {
+        let expected = name(&kind);
+        let line = json::event_line(&Event { time: SimTime(1_000_000), kind });
+        assert_eq!(line.is_some(), expected.is_some(), "{expected:?}");
+        if let (Some(line), Some(event)) = (line, expected) {
+            check(&line, event, &row(event)[1]);
+            seen.insert(event);
+        }
+    }
+    let end = End { result: "complete".to_owned(), reason: "it is".to_owned(), flown_s: 1.0, wall_s: 1.0 };
+    check(&json::end_line(SimTime(1), &end), "end", &row("end")[1]);
+    let listed: BTreeSet<&str> = rows.iter().map(|row| row[0][0].as_str()).collect();
+    assert_eq!(listed, seen, "the page has events that do not exist");
+}
+
+#[test]
+fn the_nested_objects_are_as_the_page_says() {
+    let rows = rows("events");
+    for kind in one_of_each() {
+        let Some(event @ ("plan" | "state")) = name(&kind) else { continue };
+        let line = json::event_line(&Event { time: SimTime(1), kind }).expect("a line");
+        let value: serde_json::Value = serde_json::from_str(&line).expect("an object");
+        let nested = if event == "plan" { &value["waypoints"][0] } else { &value["guard"] };
+        let told = &rows.iter().find(|row| row[0] == [event]).expect("the row")[2];
+        let keys: Vec<&String> = nested.as_object().expect("an object").keys().collect();
+        assert!(!keys.is_empty() && keys.iter().all(|key| told.contains(key)), "{keys:?} in {told:?}");
+    }
+}
+
+#[test]
+fn the_sample_has_the_fields_of_the_page() {
+    let fields: Vec<String> = rows("sample").into_iter().flat_map(|row| row[0].clone()).collect();
+    assert_eq!(fields.len(), 32);
+    check(&json::sample_line(&Snapshot::default()), "sample", &fields);
+}
