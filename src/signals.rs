@@ -73,6 +73,19 @@ impl Default for SensorFrame {
     }
 }
 
+/// Where an external simulator says the craft is, as no sensor shows it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pose {
+    /// Latitude and longitude, degrees; `None` when the simulator gives none.
+    pub place_deg: Option<(f64, f64)>,
+    /// Altitude above the simulator's datum, m.
+    pub alt_m: f64,
+    /// Velocity, ENU, m/s.
+    pub vel_enu: Vector3<f64>,
+    /// Attitude, body FLU → ENU.
+    pub attitude: UnitQuaternion<f64>,
+}
+
 /// One GPS navigation solution.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct GpsSample {

@@ -85,7 +85,7 @@ fn a_flight_with_faults_wind_and_a_crash_allocates_nothing() {
         }
     }
     assert_eq!(allocations(), before, "steps allocate");
-    assert!(world.truth().crashed && events > 25, "{events} events");
+    assert!(world.truth().crashed && events > 20, "{events} events");
 }
 
 #[test]

@@ -37,6 +37,11 @@ pub enum WorldCommand {
 }
 
 impl WorldCommand {
+    /// Whether the command is about faults and nothing else.
+    pub(super) fn is_about_faults(&self) -> bool {
+        matches!(self, Self::FaultOn(..) | Self::FaultOff(_) | Self::ClearFaults | Self::Schedule(_))
+    }
+
     /// Whether the numbers of the command are in range.
     pub(super) fn check(&self) -> Result<(), WorldError> {
         match *self {

@@ -80,10 +80,19 @@ pub enum WorldError {
     Home(&'static str, f64, f64, f64),
     /// A fault of the external link in a world without one.
     #[error(
-        "fault {0} acts on the link to an external firmware or simulator, and there is none; \
-         leave it out or use --firmware PATH"
+        "fault {0} acts on the link to an external simulator, and this flight has none; leave it out, or use betadeck serve --physics external"
     )]
     NeedsLink(&'static str),
+    /// A fault of the craft or the air when a simulator outside has both.
+    #[error(
+        "fault {0} is up to the simulator that moves the craft: make it there; here there are rx-loss, gps-loss, stall, fdm-loss, fdm-late, fdm-dup and fdm-jitter"
+    )]
+    OutsideFault(&'static str),
+    /// A change of the air, the sensors or the craft's place when a simulator outside has them.
+    #[error(
+        "the simulator makes the air and places the craft: change that there; here there are faults of the links (fault=NAME, end=NAME)"
+    )]
+    Outside,
     /// More faults than can be kept.
     #[error("there can be at most {0} faults, waiting and active ones together")]
     TooManyFaults(usize),

@@ -8,7 +8,7 @@ use std::fmt;
 use nalgebra::Vector3;
 
 use super::airframe::ROTORS;
-use super::config::Wind;
+use super::config::{Wind, WorldError};
 
 mod board;
 mod effects;
@@ -187,13 +187,19 @@ impl Fault {
         matches!(self, Self::Push(..) | Self::Teleport(_))
     }
 
-    /// Whether the fault acts on the link to an external firmware or simulator.
+    /// Whether the fault acts on the link to an external simulator.
     #[must_use]
     pub fn needs_link(&self) -> bool {
         matches!(
             self,
             Self::Stall | Self::FdmLoss(_) | Self::FdmLate(_) | Self::FdmDup(_) | Self::FdmJitter(_)
         )
+    }
+
+    /// Whether the fault can act when a simulator outside moves the craft: it is on the way into the firmware.
+    #[must_use]
+    pub fn is_on_the_way_in(&self) -> bool {
+        self.needs_link() || matches!(self, Self::RxLoss | Self::GpsLoss)
     }
 
     /// What distinguishes faults that can be on together; of faults with the same key the later takes the place of the
@@ -263,7 +269,7 @@ impl fmt::Display for Fault {
 /// When a fault begins.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum FaultStart {
-    /// Seconds after the autopilot engaged for the first time.
+    /// Seconds after the autopilot engaged for the first time since boot or reset.
     Engagement(f64),
     /// Seconds after boot.
     Boot(f64),
@@ -299,12 +305,23 @@ impl fmt::Display for ScheduledFault {
     }
 }
 
-/// Whether there is a link to an external firmware or simulator for link faults to act on.
+/// Whether a simulator outside moves the craft, over a link for faults to act on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum FaultLink {
     /// Everything is embedded: link faults are refused.
     #[default]
     Embedded,
-    /// There is one.
+    /// One does: only faults on the way into the firmware are allowed, the rest of the world is its.
     External,
+}
+
+impl FaultLink {
+    /// Whether a fault has something to act on.
+    pub(super) fn allows(self, fault: &Fault) -> Result<(), WorldError> {
+        match self {
+            Self::Embedded if fault.needs_link() => Err(WorldError::NeedsLink(fault.name())),
+            Self::External if !fault.is_on_the_way_in() => Err(WorldError::OutsideFault(fault.name())),
+            Self::Embedded | Self::External => Ok(()),
+        }
+    }
 }

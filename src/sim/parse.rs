@@ -13,6 +13,12 @@ impl ParseError {
     pub(super) fn new(what: &'static str, text: &str, problem: impl Into<String>) -> Self {
         Self { what, text: text.to_owned(), problem: problem.into() }
     }
+
+    /// What is wrong, for a message that shows the text already.
+    #[must_use]
+    pub fn problem(&self) -> &str {
+        &self.problem
+    }
 }
 
 /// A finite number, or what is wrong with it.

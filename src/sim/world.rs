@@ -13,7 +13,7 @@ use super::body::{AirSample, BodyState, Loads, Plant};
 use super::command::{check_wind, in_range};
 use super::config::{Wind, WorldConfig, WorldError, step_us};
 use super::event::{CrashCause, DivergeCause, WorldEvent, WorldEventKind};
-use super::fault::{ActiveFault, Effects, FaultBoard, FaultLink, LinkFaults, MAX_FAULTS, ScheduledFault};
+use super::fault::{ActiveFault, Effects, FaultBoard, FaultLink, LinkFaults, MAX_FAULTS};
 use super::ground::{FREE_FEET, Feet, Touch};
 use super::sensors::{Scene, Sensors};
 use super::switches::Switches;
@@ -37,6 +37,7 @@ pub struct World {
     airframe: Airframe,
     start: BodyState,
     link: FaultLink,
+    seed: u64,
     switches: Switches,
     step_us: u64,
     step_s: f64,
@@ -88,11 +89,12 @@ impl World {
         let loads = plant.loads(&start, &rotors, &air_now, &feet);
         let touch = plant.ground().touch(&start);
         let battery = full_battery(&config.airframe, &config.switches);
-        let WorldConfig { airframe, switches, faults, link, .. } = config;
+        let WorldConfig { airframe, switches, faults, link, seed, .. } = config;
         let mut world = Self {
             airframe,
             start,
             link,
+            seed,
             switches,
             step_us,
             step_s,
@@ -145,6 +147,14 @@ impl World {
         self.watch_ground(&before);
     }
 
+    /// Lets one step pass in which nothing moves, for a craft that a simulator outside moves: faults begin and end.
+    pub fn pass(&mut self) {
+        self.time.0 += self.step_us;
+        if self.faults.is_due(self.time) {
+            self.run_faults();
+        }
+    }
+
     /// The sensor readings of the present instant.
     #[must_use]
     pub fn sensors(&self) -> &SensorFrame {
@@ -186,9 +196,21 @@ impl World {
         self.events.pop_at(0)
     }
 
-    /// Tells that the autopilot engaged: faults without `boot+` count from the first call on.
+    /// Tells that the autopilot engaged: faults without `boot+` count from the first call after boot or reset.
     pub fn set_engaged(&mut self, time: SimTime) {
         self.faults.set_engaged(time);
+    }
+
+    /// The seed of all randomness.
+    #[must_use]
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// Whether the `gps-loss` fault is on.
+    #[must_use]
+    pub fn gps_lost(&self) -> bool {
+        self.effects.gps.loss
     }
 
     /// Whether the `rx-loss` fault is on: no RC frame reaches the receiver.
@@ -203,7 +225,7 @@ impl World {
         self.effects.rx_jitter
     }
 
-    /// What the active faults do to an external link.
+    /// What the active faults do to the packets of an external simulator.
     #[must_use]
     pub fn link_faults(&self) -> LinkFaults {
         self.effects.link
@@ -213,12 +235,6 @@ impl World {
     #[must_use]
     pub fn active_faults(&self) -> &[ActiveFault] {
         self.faults.active()
-    }
-
-    /// The faults that wait for their time.
-    #[must_use]
-    pub fn waiting_faults(&self) -> &[ScheduledFault] {
-        self.faults.waiting()
     }
 
     /// Takes commands at the border: finite ones, limited to 0…1.
@@ -312,7 +328,10 @@ impl World {
         let touch = self.touch;
         let force = self.truth.specific_force_flu.norm();
         let event = self.watch.update(self.time, touch, before, &self.body, force);
-        if let Some(kind) = event {
+        // A wreck that bounces and settles has nothing more to tell.
+        if let Some(kind) = event
+            && !self.crashed
+        {
             self.tell(kind);
         }
         if self.crashed || !(touch.any_leg || touch.hull) {
@@ -349,9 +368,7 @@ fn check(config: &WorldConfig) -> Result<(), WorldError> {
     }
     for scheduled in &config.faults {
         scheduled.check()?;
-        if scheduled.fault.needs_link() && config.link == FaultLink::Embedded {
-            return Err(WorldError::NeedsLink(scheduled.fault.name()));
-        }
+        config.link.allows(&scheduled.fault)?;
     }
     Ok(())
 }

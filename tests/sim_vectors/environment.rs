@@ -1,6 +1,7 @@
 //! Air, earth, magnetic field, turbulence scales and gusts.
 
 use betadeck::geo::LocalFrame;
+use betadeck::link::proto::fdm;
 use betadeck::sim::{
     DrydenScales, SITL_DECLINATION_DEG, Turbulence, density, magnetic_field_enu, one_minus_cosine,
     pressure_pa, temperature_k,
@@ -19,6 +20,35 @@ fn standard_atmosphere() {
         // What Betaflight's SITL computes from the altitude is the same to its resolution of 1 Pa.
         close(pressure_pa(h), num(&row["sitl_formula_Pa"]), 0.01);
         assert_eq!(pressure_pa(h).trunc(), num(&row["sitl_int_Pa"]));
+    }
+}
+
+/// The pressure that we write to a simulator's peer, as a stock SITL takes it and shows it.
+#[test]
+fn pressure_of_the_doors_as_an_executable_shows_it() {
+    for row in rows(&section("environment")["isa"]) {
+        let h = num(&row["h"]);
+        near(fdm::pressure_pa(h), num(&row["sitl_formula_Pa"]), 1e-9);
+        let whole = fdm::pressure_pa(h).trunc();
+        let shown_cm = (1.0 - (whole / 101_325.0).powf(0.190_295)) * 4_433_000.0;
+        close(shown_cm, num(&row["bf_altitude_cm_from_int"]), 1e-6);
+        // One pascal, and 0.03 % between the two formulas.
+        close(shown_cm / 100.0, h, 0.11 + 4e-4 * h.abs());
+    }
+}
+
+/// gz-math 7 turns the plane by 180°: taken at the other side of home, its positions are the true ones.
+#[test]
+fn mirrored_positions_of_gz_math_are_the_true_ones() {
+    for row in rows(&section("environment")["geodesy"]) {
+        let (home, enu, wire) = (vec3(&row["home"]), vec3(&row["enu"]), vec3(&row["gz_math7_local_lla"]));
+        assert!(fdm::Dialect::GzPlugin.mirrors());
+        let (lat, lon) = (fdm::mirrored(home.x, wire.x), fdm::mirrored(home.y, wire.y));
+        let off = LocalFrame::new(home.x, home.y, home.z).to_enu(lat, lon, wire.z) - enu;
+        let scale = (enu.xy().norm() / 250.0).powi(2).max(0.05);
+        // Twice the curvature that the radii formula leaves out, once on each side of home.
+        assert!(off.xy().norm() < 0.013 * scale, "{} m off at {enu:?}", off.xy().norm());
+        assert!(off.z.abs() < 0.0055 * scale, "{} m high at {enu:?}", off.z);
     }
 }
 

@@ -196,14 +196,17 @@ fn wind_faults_blow_for_their_time() {
 
 #[test]
 fn receiver_and_link_faults_are_told_to_their_owners() {
+    let (mut embedded, _) = hovering();
+    put_on(&mut embedded, "rx-loss", None);
+    put_on(&mut embedded, "rx-jitter=0.3", None);
+    assert!(embedded.rx_lost());
+    assert_eq!(embedded.rx_drop_fraction(), 0.3);
     let config = WorldConfig { link: betadeck::sim::FaultLink::External, ..ideal() };
     let mut world = world(config);
-    for text in ["rx-loss", "rx-jitter=0.3", "stall", "fdm-loss=0.1", "fdm-late=20", "fdm-dup", "fdm-jitter"]
-    {
+    for text in ["rx-loss", "gps-loss", "stall", "fdm-loss=0.1", "fdm-late=20", "fdm-dup", "fdm-jitter"] {
         put_on(&mut world, text, None);
     }
-    assert!(world.rx_lost());
-    assert_eq!(world.rx_drop_fraction(), 0.3);
+    assert!(world.rx_lost() && world.gps_lost());
     let link = world.link_faults();
     assert!(link.stall);
     assert_eq!((link.loss, link.late_ms, link.duplicated, link.jitter_ms), (0.1, 20.0, 0.2, 5.0));

@@ -205,6 +205,60 @@ mod tests {
         }
     }
 
+    /// One-sided power density of a frequency, (m/s)²/Hz: Hann windows of 100 s, averaged.
+    fn density(samples: &[f64], frequency_hz: f64) -> f64 {
+        const SEGMENT: usize = 10_000;
+        let (mut sum, mut count) = (0.0, 0.0);
+        for segment in samples.chunks_exact(SEGMENT) {
+            let (mut re, mut im) = (0.0, 0.0);
+            for (i, sample) in segment.iter().enumerate() {
+                let window = 1.0 - (std::f64::consts::TAU * i as f64 / SEGMENT as f64).cos();
+                let (sin, cos) = (std::f64::consts::TAU * frequency_hz * 0.01 * i as f64).sin_cos();
+                re += window * sample * cos;
+                im += window * sample * sin;
+            }
+            // The squares of the window add up to 1.5 a sample.
+            sum += 2.0 * (re * re + im * im) * 0.01 / (1.5 * SEGMENT as f64);
+            count += 1.0;
+        }
+        sum / count
+    }
+
+    #[test]
+    fn every_level_has_the_spectra_of_dryden() {
+        for level in [Turbulence::Light, Turbulence::Moderate, Turbulence::Severe] {
+            let mut filter = TurbulenceFilter::new(7, level);
+            let mut axes = [Vec::new(), Vec::new(), Vec::new()];
+            for _ in 0..2_000_000 {
+                filter.advance(15.24, 5.0, 0.01);
+                let uvw = filter.velocity_uvw();
+                axes.iter_mut().zip(uvw.iter()).for_each(|(axis, value)| axis.push(*value));
+            }
+            let scales = DrydenScales::at(15.24, level.wind_at_20ft_kt());
+            let (uv, w) = (
+                (scales.sigma_uv_mps, scales.length_uv_m / 5.0),
+                (scales.sigma_w_mps, scales.length_w_m / 5.0),
+            );
+            for frequency_hz in [0.05, 0.1, 0.3, 1.0, 3.0] {
+                // Squared phase of the frequency and power at rest, of a first-order filter.
+                let shape = |(sigma, lag): (f64, f64)| {
+                    ((std::f64::consts::TAU * frequency_hz * lag).powi(2), sigma * sigma * lag)
+                };
+                let first = |(x2, power): (f64, f64)| 4.0 * power / (1.0 + x2);
+                let second = |(x2, power): (f64, f64)| 2.0 * power * (1.0 + 3.0 * x2) / (1.0 + x2).powi(2);
+                let want = [first(shape(uv)), second(shape(uv)), second(shape(w))];
+                for (axis, want) in axes.iter().zip(want) {
+                    // Two hundred windows: 7 % of scatter.
+                    let got = density(axis, frequency_hz);
+                    assert!(
+                        (got / want - 1.0).abs() < 0.25,
+                        "{level} at {frequency_hz} Hz: {got} instead of {want}"
+                    );
+                }
+            }
+        }
+    }
+
     #[test]
     fn smooth_air_is_still_and_draws_nothing() {
         let mut filter = TurbulenceFilter::new(1, Turbulence::None);

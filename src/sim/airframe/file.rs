@@ -12,6 +12,7 @@ use nalgebra::Vector3;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use crate::excerpt::{Excerpt, excerpt, shortened};
 use crate::sim::suggest::did_you_mean;
 
 use super::{Airframe, MAX_LEGS, ROTORS, check};
@@ -67,6 +68,9 @@ const BATTERY: &str = "battery";
 /// Nominal voltage of a cell where the file gives none for the pack, V.
 const NOMINAL_CELL_V: f64 = 3.7;
 
+/// Most problems of a file that are listed; the others are counted.
+const MOST_LISTED: usize = 100;
+
 /// A key's place in the text.
 type Places = BTreeMap<String, Range<usize>>;
 
@@ -76,7 +80,7 @@ impl Airframe {
     /// # Errors
     /// When the text is no TOML, a key is missing, unknown or of the wrong form, or the craft could not fly.
     pub fn from_toml(text: &str) -> Result<Self, AirframeFileError> {
-        let mut reading = Reading { text, problems: Vec::new() };
+        let mut reading = Reading { text, problems: Vec::new(), unlisted: 0 };
         match DeTable::parse(text) {
             Ok(table) => reading.airframe(table.get_ref()),
             Err(error) => {
@@ -85,7 +89,7 @@ impl Airframe {
             }
         }
         .filter(|_| reading.problems.is_empty())
-        .ok_or(AirframeFileError { problems: reading.problems })
+        .ok_or(AirframeFileError { problems: reading.problems, unlisted: reading.unlisted })
     }
 }
 
@@ -93,6 +97,7 @@ impl Airframe {
 struct Reading<'a> {
     text: &'a str,
     problems: Vec<AirframeProblem>,
+    unlisted: usize,
 }
 
 impl Reading<'_> {
@@ -164,11 +169,15 @@ impl Reading<'_> {
     }
 
     fn problem(&mut self, place: Range<usize>, text: String) {
+        if self.problems.len() == MOST_LISTED {
+            self.unlisted += 1;
+            return;
+        }
         let before = self.text.get(..place.start).unwrap_or_default();
         let line = before.matches('\n').count() + 1;
         let column = before.chars().rev().take_while(|&c| c != '\n').count() + 1;
-        let source = self.text.lines().nth(line - 1).unwrap_or_default().to_owned();
-        self.problems.push(AirframeProblem { line, column, source, text });
+        let source = excerpt(self.text.lines().nth(line - 1).unwrap_or_default(), column);
+        self.problems.push(AirframeProblem { line, column, source, text: shortened(text) });
     }
 }
 
@@ -179,8 +188,8 @@ pub struct AirframeProblem {
     pub line: usize,
     /// Column in characters, from 1.
     pub column: usize,
-    /// The line itself.
-    pub source: String,
+    /// The line, or the part of it around the place.
+    pub source: Excerpt,
     /// What is wrong.
     pub text: String,
 }
@@ -188,8 +197,8 @@ pub struct AirframeProblem {
 impl fmt::Display for AirframeProblem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "{}:{}: {}", self.line, self.column, self.text)?;
-        writeln!(f, "  {}", self.source)?;
-        write!(f, "  {:>width$}", "^", width = self.column)
+        writeln!(f, "  {}", self.source.text)?;
+        write!(f, "  {:>width$}", "^", width = self.source.column)
     }
 }
 
@@ -198,21 +207,30 @@ impl fmt::Display for AirframeProblem {
 pub struct AirframeFileError {
     /// At least one problem, in the order of the keys.
     pub problems: Vec<AirframeProblem>,
+    /// Problems that are not listed.
+    pub unlisted: usize,
 }
 
 impl AirframeFileError {
     /// The problems as `FILE:LINE:COLUMN: …`, each with its line.
     #[must_use]
     pub fn in_file(&self, file: &str) -> String {
-        let problems: Vec<String> = self.problems.iter().map(|problem| format!("{file}:{problem}")).collect();
-        problems.join("\n")
+        self.lines(|problem| format!("{file}:{problem}"))
+    }
+
+    fn lines(&self, line: impl Fn(&AirframeProblem) -> String) -> String {
+        let mut lines: Vec<String> = self.problems.iter().map(line).collect();
+        if self.unlisted > 0 {
+            let problems = if self.unlisted == 1 { "problem" } else { "problems" };
+            lines.push(format!("and {} more {problems}", self.unlisted));
+        }
+        lines.join("\n")
     }
 }
 
 impl fmt::Display for AirframeFileError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let problems: Vec<String> = self.problems.iter().map(ToString::to_string).collect();
-        f.write_str(&problems.join("\n"))
+        f.write_str(&self.lines(ToString::to_string))
     }
 }
 
@@ -367,6 +385,25 @@ capacity_ah = 3.3
             error.in_file("x.toml"),
             "x.toml:2:12: tau_up_s must be at least 0.002, not 0\n  tau_up_s = 0\n             ^"
         );
+    }
+
+    #[test]
+    fn many_problems_in_one_long_line_are_counted_and_some_are_shown() {
+        let keys: Vec<String> = (0..20_000).map(|at| format!("key{at}=1")).collect();
+        let error = Airframe::from_toml(&format!("battery = {{{}}}", keys.join(","))).unwrap_err();
+        assert_eq!(error.problems.len(), MOST_LISTED);
+        let message = error.to_string();
+        let missing = KEYS.iter().filter(|key| key.required).count();
+        assert!(
+            message.ends_with(&format!("\nand {} more problems", 20_000 + missing - MOST_LISTED)),
+            "{message}"
+        );
+        assert!(message.len() < 100_000, "{} bytes", message.len());
+
+        let far_right = format!("base = \"iris\"\nbattery = {{{}volts = 2}}", " ".repeat(70_000));
+        let message = Airframe::from_toml(&far_right).unwrap_err().to_string();
+        assert!(message.starts_with("2:70012: battery.volts is not a key"), "{message}");
+        assert!(message.ends_with(&format!("\n  {}^", " ".repeat(101))), "{message}");
     }
 
     proptest::proptest! {

@@ -31,13 +31,16 @@ pub(in crate::sim) struct FaultBoard {
     waiting: Vec<ScheduledFault>,
     active: ArrayVec<ActiveFault, MAX_FAULTS>,
     engaged: Option<SimTime>,
+    /// Those that the engagement has begun: the next flight begins them again.
+    spent: ArrayVec<ScheduledFault, MAX_FAULTS>,
     /// When the next one begins or ends, µs; `u64::MAX` when none will.
     next_us: u64,
 }
 
 impl FaultBoard {
     pub fn new(waiting: Vec<ScheduledFault>) -> Self {
-        let mut board = Self { waiting, active: ArrayVec::new(), engaged: None, next_us: 0 };
+        let mut board =
+            Self { waiting, active: ArrayVec::new(), engaged: None, spent: ArrayVec::new(), next_us: 0 };
         board.look_ahead();
         board
     }
@@ -64,7 +67,12 @@ impl FaultBoard {
             .filter_map(|i| Some((self.due(&self.waiting[i])?, i)))
             .filter(|&(due, _)| due <= now)
             .min()?;
-        let ScheduledFault { fault, for_s, .. } = self.waiting.remove(index);
+        let scheduled = self.waiting.remove(index);
+        if matches!(scheduled.start, FaultStart::Engagement(_)) {
+            // There is room: together with those that wait they are at most MAX_FAULTS.
+            let _ = self.spent.try_push(scheduled);
+        }
+        let ScheduledFault { fault, for_s, .. } = scheduled;
         let until = for_s.map(|seconds| SimTime(due.0.saturating_add(SimTime::from_secs_f64(seconds).0)));
         Some(Switch::On(self.insert(fault, until)))
     }
@@ -83,7 +91,7 @@ impl FaultBoard {
 
     /// Whether another fault can be put on or scheduled.
     pub fn has_room(&self) -> bool {
-        self.active.len() + self.waiting.len() < MAX_FAULTS
+        self.active.len() + self.waiting.len() + self.spent.len() < MAX_FAULTS
     }
 
     /// Changes when an active fault ends.
@@ -102,9 +110,21 @@ impl FaultBoard {
         Some(fault)
     }
 
+    /// Ends the first active fault of the link that lasts until `time` or less.
+    pub fn end_link_fault(&mut self, time: SimTime) -> Option<Fault> {
+        let over = |active: &ActiveFault| {
+            active.fault.needs_link() && active.until.is_some_and(|until| until <= time)
+        };
+        let index = self.active.iter().position(over)?;
+        let fault = self.active.remove(index).fault;
+        self.look_ahead();
+        Some(fault)
+    }
+
     /// Forgets the faults that wait.
     pub fn forget_waiting(&mut self) {
         self.waiting.clear();
+        self.spent.clear();
         self.look_ahead();
     }
 
@@ -114,7 +134,22 @@ impl FaultBoard {
         self.look_ahead();
     }
 
-    /// Tells the time from which faults without `boot+` count; only the first call matters.
+    /// The flight is over: faults without `boot+` wait for the next engagement, those that it has begun too. To be
+    /// called until there is none left; gives one that was active and ends now.
+    pub fn wait_for_next_flight(&mut self) -> Option<Fault> {
+        self.engaged = None;
+        let mut ended = None;
+        while ended.is_none()
+            && let Some(scheduled) = self.spent.pop()
+        {
+            self.waiting.push(scheduled);
+            ended = self.end_first(|fault| *fault == scheduled.fault);
+        }
+        self.look_ahead();
+        ended
+    }
+
+    /// Tells the time from which faults without `boot+` count; of a flight only the first call matters.
     pub fn set_engaged(&mut self, time: SimTime) {
         if self.engaged.is_none() {
             self.engaged = Some(time);
@@ -195,6 +230,20 @@ mod tests {
         board.set_engaged(SimTime::from_secs_f64(200.0));
         assert_eq!(switches(&mut board, 100.5), []);
         assert_eq!(switches(&mut board, 101.0), [("gps-loss", true)]);
+    }
+
+    #[test]
+    fn after_a_reset_the_faults_of_the_flight_wait_for_the_next_one() {
+        let mut board = board(&["gps-loss@1", "mag-off@5", "rx-loss@boot+1"]);
+        board.set_engaged(SimTime::from_secs_f64(100.0));
+        assert_eq!(switches(&mut board, 101.0), [("rx-loss", true), ("gps-loss", true)]);
+        assert_eq!(board.wait_for_next_flight().map(|fault| fault.name()), Some("gps-loss"));
+        assert_eq!(board.wait_for_next_flight(), None);
+        assert_eq!(switches(&mut board, 300.0), [], "nothing is engaged");
+        board.set_engaged(SimTime::from_secs_f64(300.0));
+        assert_eq!(switches(&mut board, 301.0), [("gps-loss", true)]);
+        assert_eq!(switches(&mut board, 305.0), [("mag-off", true)]);
+        assert_eq!(board.active().len(), 3, "what counts from boot stays on");
     }
 
     #[test]

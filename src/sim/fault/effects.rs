@@ -44,7 +44,7 @@ pub struct GpsFaults {
     pub noise_factor: f64,
 }
 
-/// What is wrong with the link to an external firmware or simulator.
+/// What is wrong with the link to an external simulator.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LinkFaults {
     /// Nothing is sent.

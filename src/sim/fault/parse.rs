@@ -23,6 +23,14 @@ pub struct FaultInfo {
     pub help: &'static str,
 }
 
+impl FaultInfo {
+    /// Whether the fault acts on the link to an external simulator.
+    #[must_use]
+    pub fn needs_link(&self) -> bool {
+        self.help.starts_with("external link")
+    }
+}
+
 const fn info(
     name: &'static str,
     value: &'static str,
@@ -153,9 +161,10 @@ impl FromStr for FaultKey {
 
 fn find(name: &str) -> Result<&'static FaultInfo, String> {
     FAULTS.iter().find(|info| info.name == name).ok_or_else(|| {
-        let names = FAULTS.map(|info| info.name);
-        let hint = did_you_mean(name, names);
-        format!("there is no fault {name:?}{hint}; there are {}", names.join(", "))
+        let hint = did_you_mean(name, FAULTS.map(|info| info.name));
+        // Those of the external link are of no use to most flights.
+        let names = FAULTS.iter().filter(|info| !info.needs_link()).map(|info| info.name);
+        format!("there is no fault {name:?}{hint}; there are {}", names.collect::<Vec<_>>().join(", "))
     })
 }
 
@@ -318,6 +327,21 @@ mod tests {
             let error = text.parse::<ScheduledFault>().unwrap_err().to_string();
             assert!(error.contains(part), "{text}: {error}");
         }
+    }
+
+    #[test]
+    fn link_faults_are_known_and_not_offered() {
+        for info in &FAULTS {
+            let fault = build(info.name, if info.default.is_empty() { "1" } else { info.default });
+            if let Ok(fault) = fault {
+                assert_eq!(fault.needs_link(), info.needs_link(), "{}", info.name);
+            }
+        }
+        let offered = "banana@1".parse::<ScheduledFault>().unwrap_err().to_string();
+        assert!(
+            offered.contains("payload") && !offered.contains("fdm-") && !offered.contains("stall"),
+            "{offered}"
+        );
     }
 
     proptest::proptest! {

@@ -25,6 +25,9 @@ impl World {
     /// When a value is not allowed; then nothing has changed.
     pub fn apply(&mut self, command: WorldCommand) -> Result<(), WorldError> {
         command.check()?;
+        if self.link == FaultLink::External && !command.is_about_faults() {
+            return Err(WorldError::Outside);
+        }
         match command {
             WorldCommand::SetWind(wind) => self.air.change_wind(wind, self.time),
             WorldCommand::SetGust(size) => self.air.gusts.set_size(size, self.time),
@@ -68,9 +71,7 @@ impl World {
 
     fn check_fault(&self, fault: &Fault) -> Result<(), WorldError> {
         fault.check()?;
-        if fault.needs_link() && self.link == FaultLink::Embedded {
-            return Err(WorldError::NeedsLink(fault.name()));
-        }
+        self.link.allows(fault)?;
         if self.faults.has_room() { Ok(()) } else { Err(WorldError::TooManyFaults(MAX_FAULTS)) }
     }
 
@@ -138,7 +139,24 @@ impl World {
         }
     }
 
+    /// The flight is over: faults that count from the engagement wait for the next one.
+    pub fn wait_for_next_flight(&mut self) {
+        while let Some(ended) = self.faults.wait_for_next_flight() {
+            self.end_fault(&ended);
+        }
+    }
+
+    /// Ends faults of the link whose time is over when this much more has passed than the clock shows, µs: a clock that
+    /// goes by what the link brings stands still while it brings nothing.
+    pub fn end_link_faults(&mut self, ahead_us: u64) {
+        let time = SimTime(self.time.0.saturating_add(ahead_us));
+        while let Some(ended) = self.faults.end_link_fault(time) {
+            self.end_fault(&ended);
+        }
+    }
+
     fn reset_to_home(&mut self) {
+        self.wait_for_next_flight();
         self.body = self.start;
         self.rotors = [0.0; ROTORS];
         self.feet = FREE_FEET;

@@ -3,7 +3,7 @@
 use super::*;
 use crate::sim::command::WorldCommand;
 use crate::sim::config::{Noise, Turbulence};
-use crate::sim::fault::{Fault, FaultStart};
+use crate::sim::fault::{FAULTS, Fault, FaultStart, ScheduledFault};
 
 fn ideal() -> WorldConfig {
     WorldConfig { noise: Noise::None, ..WorldConfig::default() }
@@ -95,6 +95,7 @@ fn a_fall_is_a_crash_and_stops_the_rotors() {
         matches!(seen[1], WorldEventKind::Crash { cause: CrashCause::HardLanding(speed) } if speed > 3.0),
         "{seen:?}"
     );
+    assert_eq!(seen.len(), 2, "a wreck tells no more: {seen:?}");
     assert!(world.truth().crashed);
     assert!(world.truth().rotor_speeds.iter().all(|&speed| speed < 1e-3));
     world.apply(WorldCommand::ResetToHome).unwrap();
@@ -115,6 +116,9 @@ fn a_dead_motor_tips_the_craft_over_and_names_no_nan() {
     run(&mut world, 10.0, [hover; 4]);
     let truth = *world.truth();
     assert!(truth.crashed && !truth.diverged);
+    let touches = events(&mut world);
+    let contacts = touches.iter().filter(|event| matches!(event, WorldEventKind::Contact { .. }));
+    assert_eq!(contacts.count(), 1, "a wreck that bounces tells no more: {touches:?}");
     assert!(truth.pos_enu.z.abs() < 0.5 && truth.pos_enu.iter().all(|v| v.is_finite()));
 }
 
@@ -205,6 +209,42 @@ fn link_faults_are_refused_without_a_link() {
     assert_eq!(refused.err(), Some(WorldError::NeedsLink("stall")));
     let accepted = World::new(WorldConfig { faults, link: FaultLink::External, ..ideal() });
     assert!(accepted.is_ok());
+}
+
+#[test]
+fn with_a_link_only_what_comes_in_can_fail() {
+    for info in FAULTS {
+        let Ok(fault) = Fault::parse(info.name, None) else { continue };
+        let start = FaultStart::Boot(5.0);
+        let faults = vec![ScheduledFault { fault, start, for_s: None }];
+        let made = World::new(WorldConfig { faults, link: FaultLink::External, ..ideal() });
+        match info.name {
+            "rx-loss" | "gps-loss" => assert!(made.is_ok(), "{}", info.name),
+            name if info.needs_link() => assert!(made.is_ok(), "{name}"),
+            name => assert_eq!(made.err(), Some(WorldError::OutsideFault(name))),
+        }
+    }
+    let mut world = World::new(WorldConfig { link: FaultLink::External, ..ideal() }).unwrap();
+    assert_eq!(world.apply(WorldCommand::SetGust(3.0)), Err(WorldError::Outside));
+}
+
+#[test]
+fn time_passes_without_motion_and_faults_of_the_link_end_ahead_of_it() {
+    let faults = ["gps-loss@boot+0.1,1", "fdm-loss@boot+0.1,1", "stall@boot+0.1"];
+    let faults = faults.map(|fault| fault.parse().unwrap()).to_vec();
+    let mut world = World::new(WorldConfig { faults, link: FaultLink::External, ..ideal() }).unwrap();
+    let place = world.truth().pos_enu;
+    for _ in 0..200 {
+        world.pass();
+    }
+    assert_eq!((world.time().0, world.truth().pos_enu), (200_000, place));
+    let active = |world: &World| world.active_faults().iter().map(|on| on.fault.name()).collect::<Vec<_>>();
+    assert_eq!(active(&world), ["gps-loss", "fdm-loss", "stall"]);
+    world.end_link_faults(899_999);
+    assert_eq!(active(&world).len(), 3);
+    world.end_link_faults(900_000);
+    assert_eq!(active(&world), ["gps-loss", "stall"], "a fault without an end goes on");
+    assert!(!world.link_faults().loss.is_normal() && world.link_faults().stall);
 }
 
 #[test]
