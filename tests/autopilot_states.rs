@@ -116,6 +116,30 @@ fn legal(from: NavState, to: NavState) -> bool {
     }
 }
 
+/// Limits of throttle (µs) and lean (degrees), the widest of those that are being changed.
+#[derive(Debug, Clone, Copy)]
+struct Limits {
+    low_us: f64,
+    high_us: f64,
+    lean_deg: f64,
+}
+
+impl Limits {
+    fn of(params: &Params) -> Self {
+        let low_us = f64::from(params.throttle_min);
+        let high_us = f64::from(params.throttle_max).max(low_us);
+        Self { low_us, high_us, lean_deg: f64::from(params.max_angle) }
+    }
+
+    fn widest(self, other: Self) -> Self {
+        Self {
+            low_us: self.low_us.min(other.low_us),
+            high_us: self.high_us.max(other.high_us),
+            lean_deg: self.lean_deg.max(other.lean_deg),
+        }
+    }
+}
+
 struct Run {
     flight: Flight,
     /// The plan that comes back after it was cleared.
@@ -126,13 +150,16 @@ struct Run {
     last: NavState,
     arrived_for: u32,
     limits_changed_at: u32,
+    /// The limits that may be in force.
+    limits: Limits,
     seen: BTreeSet<(NavState, NavState)>,
 }
 
 impl Run {
     fn happen(&mut self, what: &Happening, update: u32) {
         let flight = &mut self.flight;
-        let rescue = Rescue { altitude_m: 40.0, climb_mps: 5.0, speed_mps: 8.0, descend_mps: 2.0 };
+        let rescue =
+            Rescue { altitude_m: 40.0, climb_mps: 5.0, speed_mps: 8.0, descend_mps: 2.0, is_watched: true };
         self.heals_at = update + HEALS;
         // Refusals are part of the game.
         match what {
@@ -171,7 +198,11 @@ impl Run {
             }
             Happening::Teleport(north, east) => flight.plant.pos = Vector2::new(*north, *east),
             Happening::Parameter(field, share) => {
+                if update > self.limits_changed_at + SETTLE {
+                    self.limits = Limits::of(&flight.params);
+                }
                 set_share(&mut flight.params, *field, *share);
+                self.limits = self.limits.widest(Limits::of(&flight.params));
                 self.limits_changed_at = update;
             }
             Happening::Wind(north, east) => flight.plant.wind = Vector2::new(*north, *east),
@@ -252,15 +283,11 @@ impl Run {
             let out = sample.out;
             prop_assert!(out.throttle.is_finite() && (0.0..=1.0).contains(&out.throttle));
             prop_assert!(sample.demand_deg.is_finite() && out.yaw_rate_rps.is_none_or(f64::is_finite));
-            if update > self.limits_changed_at + SETTLE {
-                let (low, high) = (f64::from(params.throttle_min), f64::from(params.throttle_max));
-                prop_assert!((low..=high.max(low)).contains(&out.throttle_us), "{} µs", out.throttle_us);
-                prop_assert!(
-                    sample.demand_deg <= f64::from(params.max_angle) + 1e-6,
-                    "{}°",
-                    sample.demand_deg
-                );
-            }
+            let limits =
+                if update > self.limits_changed_at + SETTLE { Limits::of(params) } else { self.limits };
+            prop_assert!((limits.low_us..=limits.high_us).contains(&out.throttle_us), "{:?} {limits:?}", out);
+            let lean = sample.demand_deg;
+            prop_assert!(lean <= limits.lean_deg + 1e-6, "{lean}° {limits:?}");
         } else if let Some(refusal) = refusal {
             prop_assert_eq!(telemetry.refusal, Some(refusal), "IDLE without a reason");
         }
@@ -288,6 +315,7 @@ fn fly(
         last: NavState::Idle,
         arrived_for: 0,
         limits_changed_at: 0,
+        limits: Limits::of(&params),
         seen: BTreeSet::new(),
     };
     let mut due = happenings.iter();

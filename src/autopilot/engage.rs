@@ -1,9 +1,9 @@
-//! Why the autopilot engages, or not: the preconditions in their order, with words for the OSD and for people.
+//! Why the autopilot engages, or not: the preconditions in their order, with words for people.
 
 use std::borrow::Cow;
 
 use super::fence;
-use super::io::{AbortReason, NavState, Refusal};
+use super::io::{AbortReason, Refusal};
 use super::params::Params;
 use crate::geo::LatLon;
 use crate::plan::FlightPlan;
@@ -80,29 +80,6 @@ pub fn check_craft(facts: &EngageFacts) -> Result<(), Refusal> {
 }
 
 impl Refusal {
-    /// Words for the on-screen display, at most 14 characters.
-    #[must_use]
-    pub fn osd(&self) -> Cow<'static, str> {
-        match self {
-            Self::NotArmed => "AP NOT ARMED".into(),
-            Self::Throttle => "AP THROTTLE".into(),
-            Self::NoFix => "AP NO FIX".into(),
-            Self::NoAltitude => "AP NO ALT".into(),
-            Self::NoPlan => "AP NO PLAN".into(),
-            Self::PlanCorrupt => "AP BAD PLAN".into(),
-            Self::BadWaypoint(wp) => format!("AP BAD WP {wp}").into(),
-            Self::NoHome => "AP NO HOME".into(),
-            Self::Geofence { wp, .. } => format!("AP FENCE WP {wp}").into(),
-            Self::Failsafe => "AP FAILSAFE".into(),
-            Self::Aborted(why) => match why {
-                AbortReason::Stalled => "AP STALLED".into(),
-                AbortReason::Flyaway => "AP FLYAWAY".into(),
-                AbortReason::GpsLost => "AP GPS LOST".into(),
-                AbortReason::NoPlan => "AP NO PLAN".into(),
-            },
-        }
-    }
-
     /// One sentence: what is missing and what to do.
     #[must_use]
     pub fn sentence(&self) -> Cow<'static, str> {
@@ -140,21 +117,6 @@ impl Refusal {
     }
 }
 
-/// Words for the on-screen display while the autopilot flies; `None` when the state needs no warning.
-#[must_use]
-pub fn osd_in_flight(state: NavState) -> Option<&'static str> {
-    match state {
-        NavState::Landing => Some("AP LANDING"),
-        NavState::Complete => Some("AP COMPLETE"),
-        NavState::Idle
-        | NavState::Approaching
-        | NavState::Arrived
-        | NavState::Holding
-        | NavState::Orbiting
-        | NavState::Figure8 => None,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -163,7 +125,6 @@ mod tests {
     fn a_fence_refusal_says_both_distances() {
         let refusal = Refusal::Geofence { wp: 3, distance_cm: 15_040, limit_m: 100 };
         assert_eq!(refusal.to_string(), "GEOFENCE");
-        assert_eq!(refusal.osd(), "AP FENCE WP 3");
         assert_eq!(refusal.sentence(), "Waypoint 3 is 150 m from home, the fence is 100 m.");
     }
 }

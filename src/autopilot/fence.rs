@@ -1,6 +1,6 @@
 //! The fence: a greatest horizontal distance from home. Exactly on it is inside.
 
-use super::io::{NavState, PlanSource, Refusal};
+use super::io::{Guard, GuardOp, NavState, PlanSource, Refusal};
 use super::params::FenceAction;
 use crate::geo::{LatLon, distance_bearing};
 use crate::plan::{FlightPlan, WaypointType};
@@ -33,6 +33,12 @@ pub fn armed(facts: &FenceFacts) -> Option<(f64, f64)> {
     };
     let stored = facts.source == PlanSource::Stored;
     facts.distance_m.zip(facts.limit_m).filter(|_| live && stored)
+}
+
+/// The guard of the fence, for events and displays.
+#[must_use]
+pub fn guard(distance_m: f64, limit_m: f64) -> Guard {
+    Guard { name: "fence", value: distance_m, limit: limit_m, op: GuardOp::Above, unit: "m" }
 }
 
 /// What leaving the fence asks for now, if the craft is outside.

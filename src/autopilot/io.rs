@@ -111,6 +111,9 @@ pub struct NavOutput {
     pub throttle: f64,
     /// The same throttle as RC µs.
     pub throttle_us: f64,
+    /// A landing craft does not sink although the throttle was taken off: it stands on its legs, and controllers should
+    /// forget what they gathered against the ground.
+    pub stands: bool,
 }
 
 /// Comparison a guard makes.

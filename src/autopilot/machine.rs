@@ -170,6 +170,8 @@ impl Default for Facts {
 pub enum Outcome {
     /// The mission is over: IDLE.
     Abort(AbortReason),
+    /// A return home is given up: land here, on an injected plan.
+    LandHere,
     /// Outside the fence: land here or return home, on an injected plan.
     Fence(FenceAction),
     /// The climb before the first leg is done; stays APPROACHING.
@@ -200,7 +202,7 @@ impl Outcome {
     pub fn state(self) -> NavState {
         match self {
             Self::Abort(_) => NavState::Idle,
-            Self::Fence(FenceAction::Land) | Self::Land => NavState::Landing,
+            Self::LandHere | Self::Fence(FenceAction::Land) | Self::Land => NavState::Landing,
             Self::Fence(FenceAction::Rth) | Self::Climbed | Self::Missed | Self::Next => {
                 NavState::Approaching
             }
@@ -220,7 +222,7 @@ impl Outcome {
             Self::Abort(AbortReason::NoPlan) => "mission off, reason NO_PLAN",
             Self::Abort(AbortReason::Stalled) => "mission off until the switch is cycled, reason STALLED",
             Self::Abort(AbortReason::Flyaway) => "mission off until the switch is cycled, reason FLYAWAY",
-            Self::Fence(FenceAction::Land) => "active plan: LAND here",
+            Self::LandHere | Self::Fence(FenceAction::Land) => "active plan: LAND here",
             Self::Fence(FenceAction::Rth) => "active plan: FLYOVER home, LAND home",
             Self::Climbed => "climb over, the leg starts here",
             Self::Missed => "the waypoint becomes a stop",

@@ -74,6 +74,10 @@ struct Landing {
     rate_mps: f64,
     /// When it was first too fast over ground for the last metres.
     fast_since: Option<SimTime>,
+    /// Climb rate without the jolts of the legs, m/s.
+    climb_mps: f64,
+    /// Throttle taken off to feel for the ground, µs.
+    felt_us: f64,
 }
 
 /// A mission that was begun since arming and may be resumed.
@@ -227,18 +231,18 @@ impl Navigator {
         let now = self.sane(inputs);
         self.follow_arming(&now);
         self.follow_fix(&now);
-        let output = if self.is_flying() {
+        if self.is_flying() {
             if self.source == PlanSource::Stored && stored.waypoints.is_empty() {
                 self.active.waypoints.clear();
             }
             self.prepare(&now, params);
             let facts = self.facts(&now, params);
             self.step(&facts, &now, params);
-            if self.is_flying() { self.fly(&now, params) } else { NavOutput::default() }
         } else {
             self.watch(&now, params);
-            NavOutput::default()
-        };
+            self.keep_inside(&now, params);
+        }
+        let output = if self.is_flying() { self.fly(&now, params) } else { NavOutput::default() };
         self.previous = Some(now.pos_ne);
         self.report(&now, params, output);
         output

@@ -8,6 +8,12 @@ use crate::autopilot::params::Params;
 const SETPOINT_ACCEL: f64 = 2.0;
 /// Deceleration with which the setpoint approaches its target, m/s².
 const SETPOINT_BRAKE: f64 = 1.0;
+/// Targets this near to home's altitude lie close above the ground that home stands on, m.
+const LOW_TARGET_M: f64 = 3.0;
+/// Share of the height above home that a descent to a low target takes in a second, 1/s.
+const FLARE: f64 = 0.25;
+/// Slowest descent to a low target, m/s.
+const SLOWEST_FLARE_MPS: f64 = 0.3;
 /// Limit of the integral, µs.
 const INTEGRAL_LIMIT_US: f64 = 200.0;
 /// Fastest change of the throttle, µs/s.
@@ -93,6 +99,8 @@ pub struct AltitudeController {
     integral_us: f64,
     /// Throttle of the last update, µs.
     throttle_us: f64,
+    /// Throttle taken off the law's, µs.
+    relief_us: f64,
     limits_us: Option<(f64, f64)>,
     params: Option<Params>,
     blend: Blend,
@@ -116,6 +124,7 @@ impl AltitudeController {
         let rate = params.climb_rate_mps();
         self.setpoint_rate = now.climb_mps.clamp(-rate, rate);
         self.integral_us = 0.0;
+        self.relief_us = 0.0;
         self.limits_us = None;
         self.params = Some(*params);
         let law = self.terms(now).throttle_us(params);
@@ -145,6 +154,11 @@ impl AltitudeController {
         }
     }
 
+    /// Takes this much (µs) off the throttle of the law from now on: a landing that feels for the ground.
+    pub fn set_relief_us(&mut self, relief_us: f64) {
+        self.relief_us = relief_us;
+    }
+
     /// Throttle of the last update, µs.
     #[must_use]
     pub fn throttle_us(&self) -> f64 {
@@ -172,7 +186,7 @@ impl AltitudeController {
             self.blend.start(before, terms.throttle_us(params));
             self.params = Some(*params);
         }
-        let wanted = self.blend.apply(self.terms(now).throttle_us(params), dt);
+        let wanted = self.blend.apply(self.terms(now).throttle_us(params), dt) - self.relief_us;
         let (min, max) = self.slew_limits(params, dt);
         let step = THROTTLE_SLEW_US_PER_S * dt;
         let slewed = wanted.clamp(self.throttle_us - step, self.throttle_us + step);
@@ -204,7 +218,9 @@ impl AltitudeController {
         match target {
             AltitudeTarget::Altitude(altitude_m) => {
                 let left = altitude_m - self.setpoint_m;
-                let speed = climb_rate.min((2.0 * SETPOINT_BRAKE * left.abs()).sqrt());
+                let speed = climb_rate
+                    .min((2.0 * SETPOINT_BRAKE * left.abs()).sqrt())
+                    .min(flare_mps(self.setpoint_m, altitude_m));
                 let wanted = speed.copysign(left);
                 self.setpoint_rate += (wanted - self.setpoint_rate).clamp(-change, change);
                 let step = self.setpoint_rate * dt;
@@ -237,7 +253,13 @@ impl AltitudeController {
         let error_cm = (self.setpoint_m - now.altitude_m) * 100.0;
         let share = if error_cm.abs() > 200.0 && !landing { 0.1 } else { 1.0 };
         self.integral_us += 0.003 * f64::from(params.altitude_i) * error_cm * share * dt;
-        let taken = self.hover.learn(self.integral_us, self.setpoint_rate, dt);
+        // What holds a craft that stands is no throttle to hover with.
+        let stands = self.relief_us > 0.0;
+        let taken = if stands {
+            0.0
+        } else {
+            self.hover.learn(self.integral_us, error_cm / 100.0, self.setpoint_rate, dt)
+        };
         self.integral_us = (self.integral_us - taken).clamp(-INTEGRAL_LIMIT_US, INTEGRAL_LIMIT_US);
     }
 
@@ -255,6 +277,13 @@ impl AltitudeController {
     }
 }
 
+/// Greatest speed of the setpoint towards a target, m/s. A craft lags behind its setpoint and swings below it by a metre
+/// or two after a quick descent, which close above the ground is too much: there it comes down the slower the lower it is.
+fn flare_mps(setpoint_m: f64, target_m: f64) -> f64 {
+    let flares = target_m.abs() < LOW_TARGET_M && (0.0..).contains(&setpoint_m) && target_m < setpoint_m;
+    if flares { (FLARE * setpoint_m).max(SLOWEST_FLARE_MPS) } else { f64::INFINITY }
+}
+
 fn balance(now: &AltitudeMeasurement, params: &Params) -> Balance {
     Balance {
         throttle_us: now.throttle_us,
@@ -262,5 +291,28 @@ fn balance(now: &AltitudeMeasurement, params: &Params) -> Balance {
         climb_mps: now.climb_mps,
         altitude_m: now.altitude_m,
         cos_tilt: now.cos_tilt,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_a_descent_to_a_low_target_is_slowed() {
+        let rows = [
+            // setpoint, target, greatest speed
+            (20.0, 1.0, 5.0),
+            (4.0, 1.0, 1.0),
+            (1.0, 0.5, 0.3),
+            (0.0, -1.0, 0.3),
+            (-0.1, -1.0, f64::INFINITY),
+            (4.0, -60.0, f64::INFINITY),
+            (4.0, 3.0, f64::INFINITY),
+            (1.0, 2.0, f64::INFINITY),
+        ];
+        for (setpoint_m, target_m, speed_mps) in rows {
+            assert_eq!(flare_mps(setpoint_m, target_m), speed_mps, "{setpoint_m} m to {target_m} m");
+        }
     }
 }

@@ -10,10 +10,12 @@ pub const HOVER_MAX_US: f64 = 1700.0;
 const FILTER_S: f64 = 0.15;
 /// Time constant of the estimate while watching and right after engaging, s.
 const FAST_S: f64 = 0.8;
-/// How long after engaging the estimate is followed, s.
+/// How long the estimate is followed after engaging, s of quiet flight.
 const FAST_FOR_S: f64 = 5.0;
 /// Time constant with which the altitude integral becomes hover throttle, s.
 const SLOW_S: f64 = 10.0;
+/// Altitude error beyond which the integral of the altitude nearly rests, m.
+const FAR_M: f64 = 2.0;
 /// Wanted climb rate at which learning counts half, m/s: climbing and sinking take another throttle than hovering.
 const HALF_CLIMB_MPS: f64 = 1.0;
 /// How long the craft must have been airborne before an estimate counts at engaging, s.
@@ -32,7 +34,8 @@ pub struct HoverLearner {
     throttle_filter: f64,
     climb_filter: f64,
     airborne_s: f64,
-    engaged_s: f64,
+    /// Quiet time in the air since engaging, s.
+    followed_s: f64,
 }
 
 impl Default for HoverLearner {
@@ -43,7 +46,7 @@ impl Default for HoverLearner {
             throttle_filter: 0.0,
             climb_filter: 0.0,
             airborne_s: 0.0,
-            engaged_s: 0.0,
+            followed_s: 0.0,
         }
     }
 }
@@ -95,23 +98,29 @@ impl HoverLearner {
     pub fn engage(&mut self, configured_us: f64) {
         let held = self.estimate_us.filter(|_| self.airborne_s >= SETTLED_S);
         self.hover_us = held.unwrap_or(configured_us).clamp(HOVER_MIN_US, HOVER_MAX_US);
-        self.engaged_s = 0.0;
+        self.followed_s = 0.0;
     }
 
-    /// Follows the estimate in the first seconds, later takes over the altitude `integral_us` bit by bit; returns what
-    /// the integral has to give up. Learns little while a climb is wanted.
-    pub fn learn(&mut self, integral_us: f64, wanted_climb_mps: f64, dt: f64) -> f64 {
+    /// Follows the estimate in the first quiet seconds in the air, and whenever the altitude error is so large that the
+    /// integral rests; otherwise takes over the altitude `integral_us` bit by bit. Returns what the integral has to give
+    /// up. Learns little while a climb is wanted.
+    pub fn learn(&mut self, integral_us: f64, error_m: f64, wanted_climb_mps: f64, dt: f64) -> f64 {
         let before = self.hover_us;
         let quiet = 1.0 / (1.0 + (wanted_climb_mps / HALF_CLIMB_MPS).powi(2));
-        if self.engaged_s < FAST_FOR_S {
-            // An average over the time since engaging, never faster than the estimate itself.
-            let step = quiet * dt / (FAST_S + self.engaged_s);
+        let is_new = self.followed_s < FAST_FOR_S;
+        if is_new || error_m.abs() > FAR_M {
+            // An average over the quiet time since engaging, never faster than the estimate itself; a climb tells
+            // nothing.
+            let quiet = quiet * quiet;
+            let step = quiet * dt / (FAST_S + self.followed_s);
             let estimate = self.estimate_us.unwrap_or(before);
             // A craft that stands on the ground needs at least the throttle that did not lift it.
             let estimate = if self.airborne_s > 0.0 { estimate } else { estimate.max(before) };
             self.hover_us += (estimate - before) * step;
             self.hover_us = self.hover_us.clamp(HOVER_MIN_US, HOVER_MAX_US);
-            self.engaged_s += dt;
+            if is_new && self.airborne_s > 0.0 {
+                self.followed_s += quiet * dt;
+            }
             return 0.0;
         }
         self.hover_us = (before + integral_us * quiet * dt / SLOW_S).clamp(HOVER_MIN_US, HOVER_MAX_US);

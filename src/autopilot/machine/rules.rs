@@ -5,7 +5,7 @@ use arrayvec::ArrayVec;
 use super::{DESCENT_M, Facts, Outcome, Rule, Rules, STALL_S};
 use crate::autopilot::fence;
 use crate::autopilot::guidance::PlaneCrossing;
-use crate::autopilot::io::{AbortReason, Guard, GuardOp, NavState};
+use crate::autopilot::io::{AbortReason, Guard, GuardOp, NavState, PlanSource};
 use crate::plan::{HoldPattern, WaypointType};
 
 /// Name of the guard on the GPS fix.
@@ -52,8 +52,7 @@ pub(super) fn common(state: NavState, facts: &Facts, list: &mut Rules) {
     list.push(rule([plan], Outcome::Abort(AbortReason::NoPlan), "NO_PLAN"));
     let fence = fence::FenceFacts { state, ..facts.fence };
     if let Some((distance, limit)) = fence::armed(&fence) {
-        let outside = guard("fence", distance, GuardOp::Above, limit, "m");
-        list.push(rule([outside], Outcome::Fence(fence.action), "fence"));
+        list.push(rule([fence::guard(distance, limit)], Outcome::Fence(fence.action), "fence"));
     }
 }
 
@@ -83,13 +82,17 @@ fn approaching(facts: &Facts, list: &mut Rules) {
     }
 }
 
-/// The progress monitors, unless they are paused.
+/// The progress monitors, unless they are paused. A return home that cannot be made is not left hanging in the air.
 pub(super) fn monitors(facts: &Facts, list: &mut Rules) {
+    let give_up = |why| match facts.fence.source {
+        PlanSource::Stored => Outcome::Abort(why),
+        PlanSource::Rth | PlanSource::Emergency => Outcome::LandHere,
+    };
     if let Some(progress) = facts.progress {
         let stalled = guard("no progress", progress.no_progress_s, GuardOp::AtLeast, STALL_S, "s");
-        list.push(rule([stalled], Outcome::Abort(AbortReason::Stalled), "STALLED"));
+        list.push(rule([stalled], give_up(AbortReason::Stalled), "STALLED"));
         let away = guard("flyaway", progress.distance_m, GuardOp::Above, progress.flyaway_m, "m");
-        list.push(rule([away], Outcome::Abort(AbortReason::Flyaway), "FLYAWAY"));
+        list.push(rule([away], give_up(AbortReason::Flyaway), "FLYAWAY"));
     }
 }
 

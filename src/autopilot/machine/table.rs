@@ -7,7 +7,7 @@ use strum::IntoEnumIterator as _;
 use super::rules::{common, monitors, own};
 use super::{Facts, Outcome, ProgressFacts, Rules};
 use crate::autopilot::guidance::{PlaneCrossing, TouchdownFacts};
-use crate::autopilot::io::{Guard, NavState};
+use crate::autopilot::io::{Guard, NavState, PlanSource};
 use crate::autopilot::params::{FenceAction, Params};
 use crate::plan::{HoldPattern, WaypointType};
 
@@ -66,11 +66,17 @@ fn on_the_way() -> Vec<Situation> {
     let approaching = |waypoint, facts: &Facts| own_rules(NavState::Approaching, waypoint, facts);
     let climbing = Facts { climb: Some((0.0, 5.0)), ..Facts::default() };
     let progress = ProgressFacts { no_progress_s: 0.0, distance_m: 0.0, flyaway_m: 20.0 };
-    let mut watched = Rules::new();
-    monitors(&Facts { progress: Some(progress), ..Facts::default() }, &mut watched);
+    let watched = |source, waypoint| {
+        let mut facts = Facts { progress: Some(progress), ..Facts::default() };
+        facts.fence.source = source;
+        let mut rules = Rules::new();
+        monitors(&facts, &mut rules);
+        Situation { state: NavState::Approaching.to_string(), waypoint, rules }
+    };
     let mut list = vec![
         approaching("any, while CLIMBING", &climbing),
-        Situation { state: NavState::Approaching.to_string(), waypoint: "any", rules: watched },
+        watched(PlanSource::Stored, "any of the stored plan"),
+        watched(PlanSource::Rth, "any of a return home"),
     ];
     for (kind, between, last) in [
         (WaypointType::Flyover, "FLYOVER, not last", "FLYOVER last, co-located or missed"),

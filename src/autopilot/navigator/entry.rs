@@ -21,6 +21,8 @@ pub struct Rescue {
     pub speed_mps: f64,
     /// Sink rate down to the last 4 m, m/s.
     pub descend_mps: f64,
+    /// It is given up when it makes no progress or flies away from home.
+    pub is_watched: bool,
 }
 
 impl Navigator {
@@ -72,7 +74,8 @@ impl Navigator {
         self.fix_since.is_some_and(|since| inputs.time.seconds_since(since) >= FIX_BACK_S)
     }
 
-    fn refuse(&mut self, refusal: Refusal) {
+    /// Says why nothing is flown although it is asked for; an event tells each cause once.
+    pub fn refuse(&mut self, refusal: Refusal) {
         if self.refused != Some(refusal) {
             self.push(NavEvent::Refused(refusal));
         }
@@ -151,6 +154,7 @@ impl Navigator {
             self.position.engage(&super::fly::horizontal(inputs));
             self.yaw.reset();
         }
+        self.stop_climbing();
         self.climb = Climb::default();
         self.clear_clocks();
         self.yaw_cap_dps = None;
@@ -191,6 +195,8 @@ impl Navigator {
 
     /// Jumps to waypoint `index` of the stored plan; before a mission, makes it the one to begin with. Returns whether
     /// it was accepted: not out of range, not while an injected plan flies.
+    ///
+    /// Neither the command line nor MSP has a message for it; it is for programs that drive a navigator themselves.
     pub fn set_current(
         &mut self,
         index: u8,

@@ -46,13 +46,7 @@ impl Navigator {
                 co_located: self.co_located(),
                 missed: self.leg.missed,
             },
-            fence: FenceFacts {
-                limit_m: params.fence_m(),
-                distance_m: now.home.map(|home| (local_offset(now.origin, home) - now.pos_ne).norm()),
-                state: self.state,
-                source: self.source,
-                action: params.geofence_action,
-            },
+            fence: self.fence_facts(now, params),
             approach: ApproachFacts {
                 distance_m: (target - now.pos_ne).norm(),
                 altitude_error_m: self.leg.altitude_m - now.alt_m,
@@ -72,6 +66,16 @@ impl Navigator {
             ground: self.ground_facts(now, params),
             touchdown_held_us: self.touchdown_held_us,
             detection_time_ds: params.landing_detection_time,
+        }
+    }
+
+    pub(super) fn fence_facts(&self, now: &NavInputs, params: &Params) -> FenceFacts {
+        FenceFacts {
+            limit_m: params.fence_m(),
+            distance_m: now.home.map(|home| (local_offset(now.origin, home) - now.pos_ne).norm()),
+            state: self.state,
+            source: self.source,
+            action: params.geofence_action,
         }
     }
 
@@ -123,7 +127,9 @@ impl Navigator {
 
     /// The monitors run on a leg, and begin anew whenever the craft was not free to make progress.
     fn update_progress(&mut self, now: &NavInputs) {
-        if self.state != NavState::Approaching || self.stick_override || self.climb.at.is_some() {
+        let unwatched = self.rescue.is_some_and(|rescue| !rescue.is_watched);
+        let free = self.state == NavState::Approaching && !self.stick_override && self.climb.at.is_none();
+        if !free || unwatched {
             self.progress = None;
             return;
         }

@@ -23,6 +23,25 @@ const TOUCHDOWN_MPS: f64 = 2.0;
 const FAST_PATIENCE_S: f64 = 30.0;
 /// Below this altitude a rescue sinks at the landing rate, m.
 const SLOW_LANDING_M: f64 = 4.0;
+/// The landing altitude that counts when the parameter is lower, m.
+const LOWEST_LANDING_M: f64 = 1.0;
+/// Share of the descent rate below which a landing neither sinks nor climbs.
+const STILL_SHARE: f64 = 0.25;
+/// Time over which the climb rate of a craft that bounces is averaged, s.
+const JOLT_S: f64 = 0.3;
+/// Rate at which the setpoint of a landing comes down to a craft that stopped below it, m/s.
+const CATCH_UP_MPS: f64 = 2.0;
+/// How far the setpoint must be below a craft that does not sink, m.
+const FELT_BELOW_M: f64 = 0.3;
+/// Rates at which the throttle is taken off while the ground is felt, and given back, µs/s.
+const FEEL_US_PER_S: f64 = 120.0;
+const LET_GO_US_PER_S: f64 = 300.0;
+/// Most throttle taken off, µs: the floor of the parameters is reached in any case.
+const FEEL_LIMIT_US: f64 = 600.0;
+/// Throttle taken off at which the craft is flown level, µs.
+const LEVEL_US: f64 = 80.0;
+/// Throttle taken off at which a craft that does not sink is sure to stand, µs.
+const STANDS_US: f64 = 120.0;
 /// Deflection of a stick at its end.
 const FULL_STICK: f64 = 500.0;
 
@@ -74,6 +93,7 @@ impl Navigator {
         let params = &self.with_rescue_climb(params);
         let target = self.horizontal_target(now, params);
         let altitude = self.altitude_target(now, params);
+        self.altitude.set_relief_us(self.landing.map_or(0.0, |landing| landing.felt_us));
         let throttle_us = self.altitude.update(&vertical(now), altitude, params, now.dt);
         self.target_alt_m = match altitude {
             AltitudeTarget::Altitude(altitude_m) => altitude_m,
@@ -86,7 +106,8 @@ impl Navigator {
                 .cap_magnitude(1.0)
                 * params.max_lean_rad()
         } else {
-            earth_to_body(self.position.update(&horizontal(now), &target, params, now.dt), now.heading_rad)
+            let demand = self.position.update(&horizontal(now), &target, params, now.dt);
+            earth_to_body(demand, now.heading_rad) * self.lean_share()
         };
         NavOutput {
             roll_rad: lean.y,
@@ -94,6 +115,7 @@ impl Navigator {
             yaw_rate_rps: self.yaw_rate(now, params),
             throttle: throttle_share(throttle_us, params),
             throttle_us,
+            stands: self.landing.is_some_and(|landing| landing.felt_us >= STANDS_US),
         }
     }
 
@@ -239,7 +261,7 @@ impl Navigator {
     fn altitude_target(&mut self, now: &NavInputs, params: &Params) -> AltitudeTarget {
         match self.state {
             NavState::Landing => {
-                let landing = self.landing_now(now, params);
+                let landing = self.feel_for_ground(now, params);
                 let setpoint_m = landing_setpoint_m(
                     landing.rate_start_m,
                     landing.rate_mps,
@@ -277,6 +299,8 @@ impl Navigator {
             rate_start_m: now.alt_m,
             rate_mps: rate,
             fast_since: None,
+            climb_mps: now.climb_mps,
+            felt_us: 0.0,
         });
         #[expect(clippy::float_cmp, reason = "the rate is copied, not computed")]
         if landing.rate_mps != rate {
@@ -304,6 +328,31 @@ impl Navigator {
         };
         let since = *landing.fast_since.get_or_insert(now.time);
         now.time.seconds_since(since) < FAST_PATIENCE_S
+    }
+
+    /// Low and still although it should sink, the craft stands, or the air carries it. Below the landing altitude it
+    /// does not climb back to a setpoint above it but goes on down from where it is, and it takes the throttle off bit
+    /// by bit: on the ground until it stands firmly, in the air until it sinks again.
+    fn feel_for_ground(&mut self, now: &NavInputs, params: &Params) -> Landing {
+        let mut landing = self.landing_now(now, params);
+        let is_low = now.alt_m < f64::from(params.landing_altitude_m).max(LOWEST_LANDING_M);
+        landing.climb_mps += (now.climb_mps - landing.climb_mps) * (now.dt / (JOLT_S + now.dt));
+        let still = STILL_SHARE * params.descent_rate_mps();
+        let is_down = landing.rate_mps > 0.0 && is_low;
+        let below = now.alt_m - self.altitude.setpoint_m();
+        if is_down && landing.climb_mps > -still && below < 0.0 {
+            landing.rate_start_m -= CATCH_UP_MPS * now.dt;
+        }
+        let feels = is_down && landing.climb_mps.abs() < still && below > FELT_BELOW_M;
+        let rate = if feels { FEEL_US_PER_S } else { -LET_GO_US_PER_S };
+        landing.felt_us = (landing.felt_us + rate * now.dt).clamp(0.0, FEEL_LIMIT_US);
+        self.landing = Some(landing);
+        landing
+    }
+
+    /// Share of the lean demand that is flown: a craft that stands is not tilted on its legs.
+    fn lean_share(&self) -> f64 {
+        self.landing.map_or(1.0, |landing| 1.0 - (landing.felt_us / LEVEL_US).min(1.0))
     }
 
     fn yaw_rate(&mut self, now: &NavInputs, params: &Params) -> Option<f64> {

@@ -2,6 +2,7 @@
 
 use super::Navigator;
 use super::entry::here;
+use crate::autopilot::fence::{self, FenceFacts};
 use crate::autopilot::io::{AbortReason, Guard, NavEvent, NavInputs, NavState};
 use crate::autopilot::machine::{Facts, Outcome, transition};
 use crate::autopilot::params::{FenceAction, Params};
@@ -16,7 +17,8 @@ impl Navigator {
         let (reason, guard) = (decision.reason, decision.guard);
         match outcome {
             Outcome::Abort(why) => self.abort(why, reason, guard),
-            Outcome::Fence(action) => self.fence(action, reason, guard, facts, now, params),
+            Outcome::Fence(action) => self.fence(action, reason, guard, &facts.fence, now, params),
+            Outcome::LandHere => self.land_here(reason, guard, now, params),
             Outcome::Climbed => {
                 self.stop_climbing();
                 self.leg.start = here(now);
@@ -98,18 +100,33 @@ impl Navigator {
         action: FenceAction,
         reason: &'static str,
         guard: Option<Guard>,
-        facts: &Facts,
+        fence: &FenceFacts,
         now: &NavInputs,
         params: &Params,
     ) {
         self.push(NavEvent::Geofence {
-            distance_m: facts.fence.distance_m.unwrap_or_default(),
-            limit_m: facts.fence.limit_m.unwrap_or_default(),
+            distance_m: fence.distance_m.unwrap_or_default(),
+            limit_m: fence.limit_m.unwrap_or_default(),
             action: action.into(),
         });
         match action {
             FenceAction::Land => self.land_here(reason, guard, now, params),
             FenceAction::Rth => self.fly_home(reason, guard, None, now, params),
+        }
+    }
+
+    /// A mission that was given up leaves the craft where the wind takes it: the fence stays up until the switch is
+    /// cycled.
+    pub(super) fn keep_inside(&mut self, now: &NavInputs, params: &Params) {
+        let given_up = matches!(self.aborted, Some(AbortReason::Stalled | AbortReason::Flyaway));
+        if !given_up || !now.armed || !now.fix || !now.altitude_valid || now.failsafe {
+            return;
+        }
+        // As on the leg that was given up.
+        let fence = FenceFacts { state: NavState::Approaching, ..self.fence_facts(now, params) };
+        let guard = fence::armed(&fence).map(|(distance, limit)| fence::guard(distance, limit));
+        if let Some(action) = fence::in_flight(&fence) {
+            self.fence(action, "fence", guard, &fence, now, params);
         }
     }
 

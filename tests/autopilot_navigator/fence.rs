@@ -1,0 +1,97 @@
+//! The fence, before the flight and in it.
+
+use betadeck::autopilot::io::{NavEvent, NavState, PlanSource, Refusal};
+use betadeck::autopilot::params::FenceAction;
+use betadeck::autopilot::{Navigator, Params};
+use betadeck::plan::WaypointType::{Flyover, Hold};
+
+use crate::flight::{Flight, guide, inputs, plan, waypoint, worst};
+
+fn fence_flight(action: FenceAction) -> Flight {
+    let params = Params { max_distance_from_home: 100, geofence_action: action, ..guide() };
+    let mut flight = Flight::new(params, &[waypoint(Hold, 80.0, 0.0, 30.0, 5.0)], 30.0).launch();
+    assert!(flight.until(40.0, |f| f.nav.state() == NavState::Holding));
+    flight.run(5.0);
+    flight.inputs.stick_pitch = 500.0;
+    assert!(flight.until(40.0, |f| f.nav.source() != PlanSource::Stored));
+    flight.inputs.stick_pitch = 0.0;
+    flight
+}
+
+#[test]
+fn leaving_the_fence_lands() {
+    let mut flight = fence_flight(FenceAction::Land);
+    let before = flight.plan.clone();
+    let trigger = flight.log[flight.log.len() - 1].pos;
+    assert!((100.0..100.2).contains(&trigger.x), "{trigger}");
+    assert_eq!(flight.nav.state(), NavState::Landing);
+    assert!(flight.until(120.0, |f| f.disarmed));
+    assert!((flight.plant.pos - trigger).norm() <= 2.0);
+    assert!(worst(flight.log.iter().map(|s| s.pos.norm())) <= 120.0);
+    assert_eq!(flight.plan, before);
+    let fences = flight.events.iter().filter(|(_, event)| matches!(event, NavEvent::Geofence { .. })).count();
+    assert_eq!(fences, 1);
+}
+
+#[test]
+fn leaving_the_fence_returns_home() {
+    let mut flight = fence_flight(FenceAction::Rth);
+    let began = flight.t();
+    assert_eq!((flight.nav.state(), flight.nav.index()), (NavState::Approaching, 0));
+    let altitudes: Vec<_> = flight.nav.active_plan().waypoints.iter().map(|wp| wp.alt_cm).collect();
+    assert!(altitudes.iter().all(|alt| (alt - 3000).abs() <= 50), "{altitudes:?}");
+    assert!(flight.until(60.0, |f| f.nav.state() == NavState::Arrived));
+    assert!((12.0..=24.0).contains(&(flight.t() - began)), "{}", flight.t() - began);
+    assert!(flight.until(120.0, |f| f.disarmed));
+    assert!(flight.plant.pos.norm() <= 1.0);
+}
+
+#[test]
+fn a_plan_outside_the_fence_is_refused_once_with_its_distance() {
+    let params = Params { max_distance_from_home: 100, ..guide() };
+    let stored = plan(&[waypoint(Flyover, 150.0, 0.0, 20.0, 5.0)]);
+    let mut nav = Navigator::new();
+    for _ in 0..10 {
+        nav.update(&inputs(), &params, &stored);
+        let refusal = nav.engage(&inputs(), &params, &stored).unwrap_err();
+        assert!(matches!(refusal, Refusal::Geofence { wp: 0, distance_cm: 14_990..=15_010, limit_m: 100 }));
+    }
+    assert_eq!(nav.state(), NavState::Idle);
+    assert_eq!(nav.drain_events().count(), 1);
+    nav.update(&inputs(), &params, &stored);
+    assert!(nav.telemetry().refusal.is_some());
+}
+
+/// A mission that was given up because the craft was carried away, and the craft then beyond the fence.
+fn carried_away(params: Params) -> Flight {
+    let mut flight = Flight::new(params, &[waypoint(Hold, 60.0, 0.0, 30.0, 5.0)], 30.0).launch();
+    flight.run(1.0);
+    flight.plant.pos.x = -25.0;
+    flight.run(0.1);
+    assert_eq!((flight.nav.state(), flight.nav.telemetry().reason), (NavState::Idle, "FLYAWAY"));
+    flight.plant.pos.x = -99.0;
+    flight.run(0.1);
+    assert_eq!(flight.nav.state(), NavState::Idle);
+    flight.plant.pos.x = -101.0;
+    flight.tick();
+    flight
+}
+
+#[test]
+fn the_fence_stays_up_after_a_mission_was_given_up() {
+    let fenced = Params { max_distance_from_home: 100, ..guide() };
+    let mut flight = carried_away(fenced);
+    assert_eq!((flight.nav.state(), flight.nav.source()), (NavState::Landing, PlanSource::Emergency));
+    let guard = flight.events.iter().rev().find_map(|(_, event)| match event {
+        NavEvent::State { guard, .. } => *guard,
+        _ => None,
+    });
+    assert!(guard.is_some_and(|guard| guard.name == "fence" && guard.holds()), "{guard:?}");
+    let out = flight.log.last().unwrap().out;
+    assert!(out.throttle_us >= 1100.0, "it is flown at once: {out:?}");
+    assert!(flight.until(120.0, |f| f.disarmed));
+    let home = carried_away(Params { geofence_action: FenceAction::Rth, ..fenced });
+    assert_eq!((home.nav.state(), home.nav.source()), (NavState::Approaching, PlanSource::Rth));
+    let free = carried_away(Params { max_distance_from_home: 0, ..fenced });
+    assert_eq!(free.nav.state(), NavState::Idle);
+}

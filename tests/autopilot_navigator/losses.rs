@@ -1,0 +1,92 @@
+//! What goes wrong: fix, progress, broken inputs.
+
+use betadeck::autopilot::io::{AbortReason, NavState, Refusal};
+use betadeck::autopilot::{Navigator, Params};
+use betadeck::signals::SimTime;
+use nalgebra::Vector2;
+
+use crate::{flying, three};
+
+#[test]
+fn a_lost_fix_idles_and_resumes_two_seconds_after_it_is_back() {
+    let stored = three();
+    let params = Params::default();
+    let (mut nav, mut at) = flying(1, &stored, &params);
+    let mut tick = |nav: &mut Navigator, fix: bool| {
+        at.time = SimTime(at.time.0 + 10_000);
+        at.fix = fix;
+        let engaged = nav.engage(&at, &params, &stored);
+        nav.update(&at, &params, &stored);
+        engaged
+    };
+    tick(&mut nav, false).unwrap();
+    assert_eq!((nav.state(), nav.telemetry().reason), (NavState::Idle, "GPS_LOST"));
+    for _ in 0..50 {
+        assert_eq!(tick(&mut nav, false), Err(Refusal::Aborted(AbortReason::GpsLost)));
+    }
+    let mut waited = 0;
+    while tick(&mut nav, true).is_err() {
+        waited += 1;
+        assert!(waited < 300);
+    }
+    assert!((199..=202).contains(&waited), "{waited}");
+    assert_eq!((nav.state(), nav.index()), (NavState::Approaching, 1));
+}
+
+#[test]
+fn a_stalled_craft_gives_up_until_the_switch_is_cycled() {
+    let stored = three();
+    let params = Params::default();
+    let (mut nav, mut at) = flying(0, &stored, &params);
+    let began = at.time;
+    while nav.is_flying() {
+        at.time = SimTime(at.time.0 + 10_000);
+        nav.update(&at, &params, &stored);
+        assert!(at.time.seconds_since(began) < 31.0);
+    }
+    assert!((at.time.seconds_since(began) - 30.0).abs() < 0.05);
+    let stalled = Err(Refusal::Aborted(AbortReason::Stalled));
+    assert_eq!(nav.engage(&at, &params, &stored), stalled);
+    nav.disengage();
+    assert_eq!(nav.engage(&at, &params, &stored), Ok(()));
+}
+
+#[test]
+fn a_craft_that_flies_away_gives_up_but_not_while_the_pilot_flies() {
+    let stored = three();
+    let params = Params::default();
+    for (stick, aborts) in [(0.0, true), (300.0, false)] {
+        let (mut nav, mut at) = flying(0, &stored, &params);
+        at.stick_roll = stick;
+        for step in 0..400 {
+            at.time = SimTime(at.time.0 + 10_000);
+            at.pos_ne = Vector2::new(-0.1 * f64::from(step), 0.0);
+            nav.update(&at, &params, &stored);
+        }
+        assert_eq!(nav.telemetry().reason == "FLYAWAY", aborts);
+    }
+}
+
+#[test]
+fn nothing_but_finite_numbers_comes_out_of_broken_inputs() {
+    let stored = three();
+    let params = Params::default();
+    let (mut nav, good) = flying(0, &stored, &params);
+    let mut at = good.clone();
+    at.alt_m = f64::NAN;
+    at.climb_mps = f64::INFINITY;
+    at.heading_rad = f64::NAN;
+    at.cos_tilt = f64::NAN;
+    at.accel_ne = Vector2::repeat(f64::NAN);
+    at.throttle_us = f64::NAN;
+    at.dt = f64::NAN;
+    for _ in 0..5 {
+        let out = nav.update(&at, &params, &stored);
+        assert!((out.roll_rad + out.pitch_rad + out.throttle + out.yaw_rate_rps.unwrap()).is_finite());
+    }
+    let out = nav.update(&good, &params, &stored);
+    assert!(out.throttle.is_finite() && nav.state() == NavState::Approaching);
+    at.pos_ne.x = f64::NAN;
+    nav.update(&at, &params, &stored);
+    assert_eq!((nav.state(), nav.telemetry().reason), (NavState::Idle, "GPS_LOST"));
+}

@@ -1,0 +1,40 @@
+//! The navigator as a whole, on a point mass.
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test may stop at a surprise and say what it measured"
+)]
+
+mod fence;
+#[path = "../autopilot_support/flight.rs"]
+mod flight;
+mod landing;
+mod legs;
+mod losses;
+mod orders;
+mod pilot;
+mod states;
+mod vectors;
+
+use betadeck::autopilot::io::NavInputs;
+use betadeck::autopilot::{Navigator, Params};
+use betadeck::plan::FlightPlan;
+use betadeck::plan::WaypointType::Flyover;
+use betadeck::signals::SimTime;
+use flight::{inputs, plan, waypoint};
+
+/// Three FLYOVERs on a line north.
+fn three() -> FlightPlan {
+    plan(&[60.0, 120.0, 180.0].map(|north| waypoint(Flyover, north, 0.0, 20.0, 5.0)))
+}
+
+/// A navigator that flies `three` and stands before waypoint `index`.
+fn flying(index: u8, stored: &FlightPlan, params: &Params) -> (Navigator, NavInputs) {
+    let mut nav = Navigator::new();
+    let mut at = inputs();
+    nav.engage(&at, params, stored).unwrap();
+    assert!(index == 0 || nav.set_current(index, &at, params, stored));
+    at.time = SimTime(at.time.0 + 10_000);
+    nav.update(&at, params, stored);
+    (nav, at)
+}
