@@ -60,11 +60,12 @@ use crate::geo::LatLon;
 use crate::signals::{MotorCommand, RcFrame, RcSource, SensorFrame, SimTime};
 
 use arming::Arming;
+use arming::crash::CrashDetector;
 use arming::impact::Impact;
 use arming::runaway::Runaway;
 use battery::Battery;
 use cli::{BuildInfo, StorageFacts};
-use config::{Configuration, MixerKind};
+use config::{Configuration, Feature, MixerKind};
 use control::hold::Holds;
 use estimate::{Estimator, EstimatorOptions};
 use failsafe::{Failsafe, LinkMonitor};
@@ -127,6 +128,7 @@ pub struct Firmware {
     // Arming.
     arming: Arming,
     runaway: Runaway,
+    crash: CrashDetector,
     impact: Impact,
     last_disarm: Option<DisarmReason>,
     home: Option<LatLon>,
@@ -157,6 +159,7 @@ impl Firmware {
     /// Boots with this configuration, made consistent.
     #[must_use]
     pub fn new(mut configuration: Configuration, options: FirmwareOptions) -> Self {
+        let had_gps = configuration.features.has(Feature::Gps);
         config::correct(&mut configuration);
         let boot = BootChoices::new(&configuration);
         let parameters = Parameters::new(&configuration, &boot, &options);
@@ -167,7 +170,7 @@ impl Firmware {
                 "This mixer type does not fly here: QUADX, QUADP, QUADX1234 and CUSTOM do; QUADX is flown instead.",
             ));
         }
-        Self {
+        let mut firmware = Self {
             options,
             build: BuildInfo::default(),
             storage: StorageFacts::default(),
@@ -185,6 +188,7 @@ impl Firmware {
             modes: ModeFlags::NONE,
             arming: Arming::default(),
             runaway: Runaway::default(),
+            crash: CrashDetector::default(),
             impact: Impact::default(),
             last_disarm: None,
             home: None,
@@ -205,7 +209,9 @@ impl Firmware {
             holds: Holds::default(),
             no_position: false,
             outbox,
-        }
+        };
+        firmware.tell_lost_gps(had_gps);
+        firmware
     }
 
     /// One step: one frame of the sensors in, one command for the motors out.
@@ -232,12 +238,15 @@ impl Firmware {
             sticks: self.rx.sticks(),
             rc_frame: std::mem::take(&mut self.rc_frame),
             airmode: self.airmode(),
+            anti_gravity: self.parameters.anti_gravity || self.boxes.has(modes::boxes::ANTI_GRAVITY),
             motor_stop: self.parameters.motor_stop,
             failsafe: self.failsafe.active(),
+            levels_after_crash: self.crash.is_levelling(),
             headfree_rad: self.headfree_rad,
         };
         let motors = self.flight.step(&step, estimate);
         self.runaway_pass();
+        self.crash_pass();
         motors
     }
 

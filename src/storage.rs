@@ -218,12 +218,12 @@ impl Directory {
         }
         match read_image(&self.files.backup) {
             Ok(Some(image)) if decode(&image).is_ok() => {
-                findings.push("the previous copy was loaded, what was saved last is lost".to_owned());
+                findings.push("The previous copy was loaded: what was saved last is lost.".to_owned());
                 (Some(image), findings)
             }
             _ => {
                 if !findings.is_empty() {
-                    findings.push("there is no good copy, defaults are used".to_owned());
+                    findings.push("There is no good copy: defaults are used.".to_owned());
                 }
                 (None, findings)
             }

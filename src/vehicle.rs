@@ -7,16 +7,21 @@
 //! 3. the world steps with them, which makes the sensor frame of the next instant.
 //!
 //! A clone is a frozen vehicle: going on from it gives the same trajectory to the last bit.
+//!
+//! A vehicle that is moved from outside has a firmware and hands, but no world that moves: each [`Vehicle::tick_on`]
+//! steps the firmware on what a simulator outside measured, and [`Vehicle::see`] tells where that has put the craft.
 
 pub mod event;
 mod hands;
+mod outside;
 pub mod snapshot;
+pub mod switch;
 mod view;
 
 use rand::RngExt as _;
 use rand_chacha::ChaCha8Rng;
 
-pub use event::{Event, EventKind};
+pub use event::{DoorPlaces, Event, EventKind};
 pub use hands::{Hands, StickInput};
 pub use snapshot::Snapshot;
 
@@ -26,8 +31,12 @@ use crate::firmware::mode::Mode;
 use crate::firmware::{Firmware, FirmwareEvent, FirmwareOptions};
 use crate::pilot::{Pilot, PilotFacts};
 use crate::plan::FlightPlan;
-use crate::signals::{RcSource, SimTime};
-use crate::sim::{Stream, World, WorldCommand, WorldConfig, WorldError, WorldEventKind};
+use crate::signals::{RcSource, SensorFrame, SimTime};
+use crate::sim::{FaultLink, Stream, World, WorldCommand, WorldConfig, WorldError, WorldEventKind};
+use outside::Outside;
+
+/// What stands for the airframe when a simulator outside has it.
+const EXTERNAL: &str = "external";
 
 /// What a vehicle is made of.
 #[derive(Debug, Clone)]
@@ -47,6 +56,8 @@ pub struct VehicleConfig {
 pub struct Vehicle {
     firmware: Firmware,
     world: World,
+    /// What a simulator outside tells, when one moves the craft; the world then has only the time and the faults.
+    outside: Option<Outside>,
     /// Who moves the sticks.
     pub hands: Hands,
     rx_jitter: ChaCha8Rng,
@@ -61,10 +72,29 @@ impl Vehicle {
     /// # Errors
     /// When the world cannot be built.
     pub fn new(config: VehicleConfig) -> Result<Self, WorldError> {
+        Self::build(config, None)
+    }
+
+    /// A vehicle at boot that a simulator outside moves: of the world, only step rate, seed and faults count.
+    ///
+    /// # Errors
+    /// When the step rate is not allowed, or a fault.
+    pub fn moved_from_outside(config: VehicleConfig) -> Result<Self, WorldError> {
+        Self::build(config, Some(Outside::default()))
+    }
+
+    fn build(mut config: VehicleConfig, outside: Option<Outside>) -> Result<Self, WorldError> {
+        if outside.is_some() {
+            config.world.link = FaultLink::External;
+        }
+        let airframe = match outside {
+            None => config.world.airframe.name.clone(),
+            Some(_) => EXTERNAL.to_owned(),
+        };
         let boot = EventKind::Boot {
             seed: config.world.seed,
             rate_hz: config.world.rate_hz,
-            airframe: config.world.airframe.name.clone(),
+            airframe,
             live: config.live,
         };
         let mut events = Vec::with_capacity(64);
@@ -72,6 +102,7 @@ impl Vehicle {
         Ok(Self {
             rx_jitter: Stream::RxJitter.rng(config.world.seed),
             world: World::new(config.world)?,
+            outside,
             firmware: Firmware::new(config.configuration, config.firmware),
             hands: Hands::default(),
             engaged_at: None,
@@ -103,13 +134,13 @@ impl Vehicle {
         &mut self.firmware
     }
 
-    /// The world.
+    /// The world; nothing in it moves when the craft is moved from outside.
     #[must_use]
     pub fn world(&self) -> &World {
         &self.world
     }
 
-    /// When the autopilot engaged for the first time.
+    /// When the autopilot engaged for the first time since boot or reset.
     #[must_use]
     pub fn engaged_at(&self) -> Option<SimTime> {
         self.engaged_at
@@ -132,22 +163,32 @@ impl Vehicle {
         Ok(())
     }
 
-    /// Puts the craft back home, undamaged and disarmed; plan, settings, air and faults stay.
+    /// Puts the craft back home, undamaged and disarmed; plan, settings, air and faults stay, and what counts from the
+    /// engagement waits for the next one. A craft that is moved from outside is disarmed only, and starts where it is
+    /// seen next.
     pub fn reset_craft(&mut self) {
+        self.engaged_at = None;
         self.hands.pilot = None;
         self.hands.sticks = crate::signals::RcFrame::SAFE;
         self.firmware.restart_in_place();
+        if let Some(outside) = &mut self.outside {
+            outside.forget();
+            self.world.wait_for_next_flight();
+            return;
+        }
         // Returning home is always allowed.
         let _ = self.world.apply(WorldCommand::ResetToHome);
         self.notice("The craft is back home, undamaged and disarmed.");
     }
 
-    /// One step of simulated time.
+    /// One step of simulated time. When the craft is moved from outside: a step in which nothing is sensed.
     pub fn tick(&mut self) {
-        let now = self.world.time();
-        if now.0.is_multiple_of(hands::FRAME_US) {
-            self.send_rc();
+        if self.outside.is_some() {
+            self.tick_on(&SensorFrame::default());
+            return;
         }
+        self.send_due_rc();
+        self.lose_rc();
         let command = self.firmware.step(self.world.sensors());
         self.world.step(&command);
         self.collect_events();
@@ -163,12 +204,17 @@ impl Vehicle {
         self.events.push(Event { time: self.time(), kind: EventKind::Notice(text.into()) });
     }
 
+    /// Says where other programs reach the vehicle.
+    pub fn doors_opened(&mut self, places: DoorPlaces) {
+        self.events.push(Event { time: self.time(), kind: EventKind::Doors(Box::new(places)) });
+    }
+
     /// What a pilot sees.
     #[must_use]
     pub fn pilot_facts(&self) -> PilotFacts {
         let fw = &self.firmware;
         PilotFacts {
-            time: self.world.time(),
+            time: self.time(),
             fix: fw.gps_fix(),
             arming_blocked: !fw.arming_flags().is_empty(),
             armed: fw.is_armed(),
@@ -176,16 +222,18 @@ impl Vehicle {
             alt_m: fw.altitude_m(),
             climb_mps: fw.climb_mps(),
             hover_stick_us: fw.hover_stick_us(),
+            raised_stick_us: fw.raised_stick_us(),
         }
     }
 
-    fn send_rc(&mut self) {
+    fn send_due_rc(&mut self) {
+        if !self.time().0.is_multiple_of(hands::FRAME_US) {
+            return;
+        }
         let facts = self.pilot_facts();
         let frame = self.hands.frame(&facts, self.engaged_at);
-        let dropped = self.world.rx_lost() || {
-            let fraction = self.world.rx_drop_fraction();
-            fraction > 0.0 && self.rx_jitter.random::<f64>() < fraction
-        };
+        let fraction = self.world.rx_drop_fraction();
+        let dropped = !self.world.rx_lost() && fraction > 0.0 && self.rx_jitter.random::<f64>() < fraction;
         if let Some(frame) = frame
             && !dropped
         {
@@ -193,13 +241,26 @@ impl Vehicle {
         }
     }
 
+    /// With the `rx-loss` fault no frame reaches the receiver, whoever sent it.
+    fn lose_rc(&mut self) {
+        if self.world.rx_lost() {
+            self.firmware.lose_rc();
+        }
+    }
+
     fn collect_events(&mut self) {
-        let time = self.world.time();
+        let time = self.time();
         while let Some(event) = self.firmware.take_event() {
             if let FirmwareEvent::Nav(nav) = &event {
                 self.note_nav_event(nav, time);
             }
             self.events.push(Event { time, kind: EventKind::Firmware(event) });
+        }
+        let lost = self.firmware.take_events_lost();
+        if lost > 0 {
+            self.notice(format!(
+                "Too many events of the firmware came between two steps; lost: the last {lost}."
+            ));
         }
         while let Some(event) = self.world.take_event() {
             let kind = match event.kind {
@@ -238,22 +299,88 @@ impl Vehicle {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geo::LatLon;
     use crate::sim::Fault;
 
-    #[test]
-    fn a_craft_put_back_home_knows_nothing_of_the_fall() {
-        let mut vehicle = Vehicle::new(VehicleConfig {
+    fn config() -> VehicleConfig {
+        VehicleConfig {
             world: WorldConfig::default(),
             firmware: FirmwareOptions::default(),
             configuration: Configuration::default(),
             live: false,
-        })
-        .unwrap();
-        let run = |vehicle: &mut Vehicle, until_s: f64| {
-            while vehicle.time().as_secs_f64() < until_s {
-                vehicle.tick();
+        }
+    }
+
+    fn vehicle() -> Vehicle {
+        Vehicle::new(config()).unwrap()
+    }
+
+    fn run(vehicle: &mut Vehicle, until_s: f64) {
+        while vehicle.time().as_secs_f64() < until_s {
+            vehicle.tick();
+        }
+    }
+
+    #[test]
+    fn lost_events_are_told() {
+        let mut vehicle = vehicle();
+        for _ in 0..100 {
+            // Refused, for the craft is not armed.
+            assert!(vehicle.firmware_mut().return_to_home().is_err());
+        }
+        vehicle.tick();
+        let mut notices = Vec::new();
+        vehicle.drain_events(|event| {
+            if let EventKind::Notice(text) = event.kind {
+                notices.push(text);
             }
-        };
+        });
+        assert_eq!(notices, ["Too many events of the firmware came between two steps; lost: the last 36."]);
+    }
+
+    #[test]
+    fn after_a_reset_faults_and_sticks_count_from_the_next_engagement() {
+        counts_from_the_next_engagement(vehicle());
+        counts_from_the_next_engagement(Vehicle::moved_from_outside(config()).unwrap());
+    }
+
+    fn counts_from_the_next_engagement(mut vehicle: Vehicle) {
+        vehicle.hands.inputs.push(StickInput {
+            channel: 0,
+            value_us: 1900,
+            at_s: 0.5,
+            for_s: Some(0.2),
+            from_boot: false,
+        });
+        vehicle.change_world(WorldCommand::parse("fault=gps-loss@0.5").unwrap()).unwrap();
+        for engaged_s in [1.0, 3.0] {
+            run(&mut vehicle, engaged_s);
+            assert_eq!(vehicle.engaged_at(), None);
+            let engaged = NavEvent::State {
+                from: NavState::Idle,
+                to: NavState::Approaching,
+                wp: 0,
+                kind: None,
+                reason: "reset",
+                guard: None,
+                target: LatLon::default(),
+                target_alt_m: 0.0,
+            };
+            vehicle.note_nav_event(&engaged, vehicle.time());
+            run(&mut vehicle, engaged_s + 0.4);
+            let stick = |vehicle: &Vehicle| {
+                vehicle.hands.clone().frame(&vehicle.pilot_facts(), vehicle.engaged_at()).unwrap().channels[0]
+            };
+            assert_eq!((stick(&vehicle), vehicle.world().status().faults.len()), (1500, 0));
+            run(&mut vehicle, engaged_s + 0.6);
+            assert_eq!((stick(&vehicle), vehicle.world().status().faults.len()), (1900, 1));
+            vehicle.reset_craft();
+        }
+    }
+
+    #[test]
+    fn a_craft_put_back_home_knows_nothing_of_the_fall() {
+        let mut vehicle = vehicle();
         run(&mut vehicle, 4.0);
         vehicle.change_world(WorldCommand::FaultOn(Fault::Teleport([0.0, 0.0, 30.0]), None)).unwrap();
         // A slow tick, so that barometer and GPS have just spoken.

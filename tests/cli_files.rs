@@ -10,7 +10,8 @@ use proptest::prelude::*;
 
 const STEP_5: &str = include_str!("vectors/guide-step5.txt");
 const STEP_7: &str = include_str!("vectors/guide-step7.txt");
-const QUAD: &str = include_str!("corpus/cli/quad-4.5-diff-all.txt");
+const FIVE_INCH: &str = include_str!("corpus/cli/five-inch-4.5-diff-all.txt");
+const QUAD: &str = include_str!("corpus/settings_file/quad-4.5-diff-all.txt");
 
 fn run(configuration: &mut Configuration, interpreter: &mut Interpreter, line: &str) -> CliReply {
     interpreter.run(line, &mut CliContext { configuration, facts: &CliFacts::default() })
@@ -77,6 +78,58 @@ fn a_real_quads_configuration_loads_and_is_complete_when_dumped() {
     }
     assert_eq!(text(&craft, "get dyn_idle_min"), "dyn_idle_min_rpm = 40\r\n");
     assert_eq!(text(&craft, "get pilot_name"), "pilot_name = someone\r\n");
+}
+
+#[test]
+fn a_five_inch_quads_refused_line_is_named_and_blocks_saving_until_it_is_gone() {
+    // A debug mode of that release that this one has under another name.
+    let refused = "set debug_mode = GYRO_SCALED";
+    let mut craft = Configuration::default();
+    let replies = typed(&mut craft, FIVE_INCH);
+    let failed: Vec<_> =
+        replies.iter().filter(|(_, reply)| reply.failed).map(|(line, _)| line.as_str()).collect();
+    assert_eq!(failed, [refused, "save"]);
+    let (_, saved) = replies.last().expect("the last line");
+    assert!(saved.text.contains("PLEASE FIX ERRORS THEN 'SAVE'") && saved.actions.is_empty());
+
+    let mut craft = Configuration::default();
+    let good = FIVE_INCH.replace(&format!("{refused}\n"), "");
+    let mut replies = typed(&mut craft, &good);
+    let (_, saved) = replies.pop().expect("the last line");
+    assert_eq!(saved.actions, [CliAction::Save, CliAction::Restart { close_links: true }]);
+    for (line, reply) in &replies {
+        assert!(!reply.failed, "{line}: {}", reply.text);
+    }
+    // What a craft like this has no use for says so, line by line.
+    let kept = |line: &str| {
+        let (_, reply) = replies.iter().find(|(typed, _)| typed == line).expect("a line of the file");
+        reply.text.starts_with("# ") && reply.text.ends_with(": not used by this vehicle, kept\r\n")
+    };
+    for line in [
+        "set dyn_notch_count = 1",
+        "set gps_rescue_max_angle = 45",
+        "set d_min_roll = 39",
+        "vtx 0 7 0 0 1 900 1100",
+    ] {
+        assert!(kept(line), "{line}");
+    }
+    let (craft, findings) = decode(&encode(&craft)).expect("a good image");
+    assert_eq!(findings, Vec::<String>::new());
+    let dump = text(&craft, "diff all");
+    // Not shown again: what this vehicle has not, what equals its defaults, and D max below the new D.
+    let same = ["feature", "mcu_id", "signature", "serial", "rxfail 5 h", "set d_max"];
+    let fresh = text(&Configuration::default(), "dump all");
+    let commands = good.lines().filter(|line| !line.starts_with('#') && !line.is_empty() && *line != "save");
+    for line in commands.filter(|line| !same.iter().any(|word| line.starts_with(word))) {
+        let line = line.trim();
+        assert!(
+            dump.contains(&format!("{line}\r\n")) || fresh.contains(&format!("{line}\r\n")),
+            "{line}\n{dump}"
+        );
+    }
+    assert_eq!(craft.settings.number("thrust_linear"), 20);
+    assert_eq!(text(&craft, "get vtx_low_power"), "vtx_low_power_disarm = UNTIL_FIRST_ARM\r\n");
+    assert_round_trip(&craft, "diff all");
 }
 
 /// Feeds a dump to a fresh craft and expects the same configuration without an error.
@@ -200,6 +253,31 @@ fn provisioning_stops_at_save_and_skips_what_leaves() {
     assert_eq!(craft.settings.number("small_angle"), 180);
     assert_eq!((report.commands, report.failed.len(), report.batch_failed), (3, 1, false));
     assert!(shown.contains("set small_angle = 180\r\nsmall_angle set to 180\r\n# "), "{shown}");
+}
+
+#[test]
+fn lines_of_a_file_are_cut_as_at_a_prompt() {
+    let mut craft = Configuration::default();
+    let blanks = " ".repeat(300);
+    let report = apply(
+        &mut craft,
+        &format!("{blanks}set small_angle = 99\nset craft_name = {}\n{blanks}save\n", "x".repeat(300)),
+    );
+    assert_eq!(craft.settings.number("small_angle"), 99);
+    assert_eq!((report.commands, report.failed.len()), (2, 1));
+    assert_eq!(report.failed[0].line.len(), 255);
+    let mut context = CliContext { configuration: &mut craft, facts: &CliFacts::default() };
+    let stop = format!("{blanks}save\nset small_angle = 50");
+    assert_eq!(provision(&stop, &mut Interpreter::new(Mode::File), &mut context, |_| ()).commands, 0);
+}
+
+#[test]
+fn what_would_disconnect_a_real_craft_is_not_kept_for_it() {
+    let mut craft = Configuration::default();
+    let replies = typed(&mut craft, "batch start\nresource MOTOR 1 B00\nmsc\n");
+    assert!(!replies[1].1.failed && replies[2].1.failed);
+    let diff = text(&craft, "diff all");
+    assert!(diff.contains("resource MOTOR 1 B00\r\n") && !diff.contains("msc"), "{diff}");
 }
 
 #[test]

@@ -168,3 +168,15 @@ fn hard_flying_is_never_taken_for_standing() {
         assert!(!rig.truth().on_ground);
     }
 }
+
+#[test]
+fn a_position_hold_without_a_source_is_only_levelled() {
+    for (source, holds) in [(0, true), (1, true), (2, false)] {
+        let mut settings = settings();
+        settings.set_number("poshold_position_source", source).expect("in range");
+        let mut rig = Rig::airborne(windy(Noise::None, 0.0), &settings);
+        rig.run(0.1);
+        assert_eq!(rig.hold.lean.is_some(), holds, "{source}");
+        assert_eq!(rig.hold.no_position, !holds, "{source}");
+    }
+}

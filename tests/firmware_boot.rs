@@ -123,7 +123,7 @@ fn restart_boots_again_and_drops_what_was_not_stored() {
     bench.firmware.cli_opened();
     bench.sticks.channels[4] = 2000;
     bench.run(5.2);
-    assert_eq!(bench.flags(), "CLI ARM_SWITCH");
+    assert_eq!(bench.flags(), "CLI REBOOT_REQD ARM_SWITCH");
     bench.sticks.channels[4] = 1000;
     bench.firmware.restart(stored);
     bench.run(6.0);
@@ -206,4 +206,55 @@ fn mixer_that_cannot_fly_is_told_at_boot() {
     let mut firmware = Firmware::new(configuration, FirmwareOptions::default());
     assert!(matches!(firmware.take_event(), Some(FirmwareEvent::Notice(_))));
     assert_eq!(firmware.take_event(), None);
+}
+
+#[test]
+fn tasks_and_smoothing_tell_the_rates_of_this_firmware() {
+    let mut bench = Bench::new();
+    bench.type_line("set pid_process_denom = 2");
+    bench.type_line("set imu_process_denom = 4");
+    let running = bench.type_line("tasks");
+    let rate = |tasks: &str, name: &str| {
+        let row = tasks.lines().find(|line| line.contains(&format!("{name})"))).expect("a row");
+        row[22..].split_ascii_whitespace().next().expect("a rate").to_owned()
+    };
+    assert_eq!((rate(&running, "GYRO"), rate(&running, "PID")), ("1000".to_owned(), "1000".to_owned()));
+    assert_eq!(rate(&running, "ATTITUDE"), "250", "in force at once");
+    bench.firmware.restart_in_place();
+    let restarted = bench.type_line("tasks");
+    assert_eq!((rate(&restarted, "GYRO"), rate(&restarted, "PID")), ("1000".to_owned(), "500".to_owned()));
+    bench.run(3.0);
+    let info = bench.type_line("rc_smoothing_info");
+    assert!(info.contains("50Hz") && info.contains("FF cutoff: 19Hz (auto)"), "{info}");
+    bench.type_line("set rc_smoothing_setpoint_cutoff = 33");
+    bench.run(3.1);
+    assert!(bench.type_line("rc_smoothing_info").contains("FF cutoff: 33Hz (manual)"));
+}
+
+#[test]
+fn losing_the_gps_to_a_real_quads_receiver_is_told() {
+    let told = |bench: &Bench| {
+        bench
+            .events
+            .iter()
+            .filter(|event| matches!(event, FirmwareEvent::Notice(text) if text.starts_with("GPS is off")))
+            .count()
+    };
+    let mut bench = Bench::new();
+    bench.run(0.1);
+    bench.type_line("set gps_provider = UBLOX");
+    bench.run(0.2);
+    assert_eq!(told(&bench), 0, "not before it happens");
+    bench.type_line("save");
+    bench.run(0.3);
+    assert_eq!(told(&bench), 1);
+    bench.firmware.restart_in_place();
+    bench.run(0.4);
+    assert_eq!(told(&bench), 1, "it was off already");
+    let mut asked = Configuration::default();
+    let provider = betadeck::firmware::settings::find("gps_provider").expect("a setting");
+    asked.settings.assign(provider, "UBLOX").expect("a provider");
+    bench.firmware.restart(asked);
+    bench.run(0.5);
+    assert_eq!(told(&bench), 2);
 }

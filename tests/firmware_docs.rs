@@ -34,9 +34,11 @@ fn boxes_are_those_of_the_code() {
 
 #[test]
 fn arming_flags_are_those_of_the_code() {
-    let mut table = String::from("| bit | flag | what to do |\n| --- | --- | --- |\n");
+    let mut table = String::from("| bit | flag | set by | what to do |\n| --- | --- | --- | --- |\n");
     for flag in ArmingFlag::iter() {
-        table += &format!("| {} | {flag} | {} |\n", flag as u8, flag.hint());
+        let cause = flag.cause();
+        let hint = if cause.starts_with("never") { "" } else { flag.hint() };
+        table += &format!("| {} | {flag} | {cause} | {hint} |\n", flag as u8);
     }
     assert_on_page(&table);
 }

@@ -3,6 +3,7 @@
 //! The flags are judged at every RC update while disarmed; a flag that stands while the ARM switch is on sets
 //! ARM_SWITCH, which stays until the switch goes off.
 
+pub mod crash;
 pub mod flags;
 pub mod impact;
 pub mod runaway;
@@ -19,8 +20,6 @@ use super::rx::Sticks;
 const SWITCH_OFF_UPDATES: u8 = 4;
 /// How long a stick command must be held, s.
 const STICK_COMMAND_S: f64 = 0.5;
-/// Yaw stick beyond this counts as a stick command, RC units.
-const STICK_COMMAND_YAW: f64 = 400.0;
 /// Throttle that counts as low with arm assist, µs.
 const ASSIST_LOW_THROTTLE_US: f64 = 1150.0;
 
@@ -45,6 +44,8 @@ pub struct ArmingConfig {
     pub rescue_min_sats: u8,
     /// Arming is allowed although rescue cannot work.
     pub rescue_allow_without_fix: bool,
+    /// Yaw stick beyond this is fully to the right, or to the left, RC units.
+    pub full_yaw: f64,
     /// Arming by stick command, when no mode condition for ARM exists.
     pub stick_arming: bool,
     /// Low throttle for this long disarms a stick-armed craft whose motors stand still then, s; `None` = never.
@@ -53,6 +54,12 @@ pub struct ArmingConfig {
     pub raised_throttle_us: f64,
     /// The rules are softened for RC from UDP, so that a simple script can arm.
     pub assist: bool,
+    /// The first arming since boot calibrates the gyro and waits for it.
+    pub calibrate_gyro_first: bool,
+    /// The motor protocol was DISABLED at boot.
+    pub motors_disabled: bool,
+    /// The configuration in memory differs from the running one in something that needs a restart.
+    pub reboot_required: bool,
 }
 
 impl Default for ArmingConfig {
@@ -67,10 +74,14 @@ impl Default for ArmingConfig {
             rescue_configured: false,
             rescue_min_sats: 8,
             rescue_allow_without_fix: false,
+            full_yaw: 400.0,
             stick_arming: false,
             auto_disarm_s: None,
             raised_throttle_us: 1287.5,
             assist: false,
+            calibrate_gyro_first: false,
+            motors_disabled: false,
+            reboot_required: false,
         }
     }
 }
@@ -110,8 +121,19 @@ pub enum ArmingChange {
         /// Arm assist was needed.
         assisted: bool,
     },
+    /// Everything is fine, but the gyro is to be calibrated before the first arming; it goes on when that is done.
+    CalibrateGyro,
     /// Disarmed.
     Disarmed(DisarmReason),
+}
+
+/// The gyro calibration before the first arming, where one is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+enum FirstCalibration {
+    #[default]
+    Missing,
+    Running,
+    Done,
 }
 
 /// The state of arming.
@@ -122,6 +144,7 @@ pub struct Arming {
     flags: ArmingFlags,
     latched: ArmingFlags,
     ever_armed: bool,
+    first_calibration: FirstCalibration,
     link_was_good: bool,
     prearm_used: bool,
     assist_used: bool,
@@ -216,7 +239,7 @@ impl Arming {
             }
             return (self.off_updates >= SWITCH_OFF_UPDATES).then_some(DisarmReason::Switch);
         }
-        let shown = low && facts.sticks.yaw <= -STICK_COMMAND_YAW;
+        let shown = low && facts.sticks.yaw <= -config.full_yaw;
         let held = self.stick_command_held(shown && listens_to_sticks(config, facts), facts.now);
         if facts.signal && held {
             return Some(DisarmReason::Sticks);
@@ -244,12 +267,19 @@ impl Arming {
         let assist = config.assist && facts.from_udp;
         self.update_latches(switch, assist, facts);
 
+        if self.first_calibration == FirstCalibration::Running && !facts.calibrating {
+            self.first_calibration = FirstCalibration::Done;
+        }
+
         let strict = self.judge(config, facts, config.min_check_us);
         let mut flags = match assist {
             true => self.judge(config, facts, config.min_check_us.max(ASSIST_LOW_THROTTLE_US)),
             false => strict,
         };
-        let would_latch = switch && !strict.is_empty();
+        // The calibration that this switch started is waited for; the switch need not be cycled after it.
+        let waits = self.first_calibration == FirstCalibration::Running;
+        let latching = if waits { strict.without(ArmingFlag::Calibrating) } else { strict };
+        let would_latch = switch && !latching.is_empty();
         if would_latch && !assist {
             self.latched.set(ArmingFlag::ArmSwitch, true);
         }
@@ -259,10 +289,14 @@ impl Arming {
 
         let by_stick = !config.has_arm_condition && listens_to_sticks(config, facts) && {
             let low = facts.sticks.throttle_us < config.min_check_us;
-            self.stick_command_held(low && facts.sticks.yaw >= STICK_COMMAND_YAW, facts.now)
+            self.stick_command_held(low && facts.sticks.yaw >= config.full_yaw, facts.now)
         };
         if !(switch || by_stick) || !flags.is_empty() {
             return None;
+        }
+        if config.calibrate_gyro_first && self.first_calibration == FirstCalibration::Missing {
+            self.first_calibration = FirstCalibration::Running;
+            return Some(ArmingChange::CalibrateGyro);
         }
         self.armed = true;
         self.ever_armed = true;
@@ -321,6 +355,9 @@ impl Arming {
             config.rescue_configured && !can_rescue && !config.rescue_allow_without_fix && !self.ever_armed,
         );
         raise(ArmingFlag::RescueSwitch, config.rescue_configured && on(boxes::GPS_RESCUE));
+        raise(ArmingFlag::RebootRequired, config.reboot_required);
+        raise(ArmingFlag::MotorProtocol, config.motors_disabled);
+        raise(ArmingFlag::FlipSwitch, on(boxes::CRASH_FLIP));
         raise(ArmingFlag::AltHoldSwitch, on(boxes::ALTHOLD));
         raise(ArmingFlag::PosHoldSwitch, on(boxes::POS_HOLD));
         raise(ArmingFlag::AutopilotSwitch, on(boxes::AUTOPILOT));

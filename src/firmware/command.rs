@@ -1,12 +1,12 @@
 //! What the owner of the firmware can ask of it: command line, plans, return home, restart.
 
 use crate::autopilot::io::{NavEvent, Refusal};
-use crate::plan::FlightPlan;
 use crate::signals::{RcFrame, RcSource};
 
 use super::Firmware;
 use super::cli::{BuildInfo, CliAction, CliContext, CliReply, Interpreter, StorageFacts};
-use super::config::{Configuration, correct};
+use super::config::{Configuration, Feature, correct};
+use super::estimate::NotTurned;
 use super::event::{DisarmReason, FirmwareEvent};
 use super::parameters::Parameters;
 use super::settings::Value;
@@ -15,6 +15,11 @@ impl Firmware {
     /// Takes an RC frame for the next step, where its age begins; of one source only the newest counts.
     pub fn receive_rc(&mut self, frame: &RcFrame, source: RcSource) {
         self.inbox[source as usize] = Some(*frame);
+    }
+
+    /// The frames that came since the last step never arrived: the receiver hears nothing.
+    pub fn lose_rc(&mut self) {
+        self.inbox.fill(None);
     }
 
     /// Lets the virtual sticks win over the other sources of RC, or ends that.
@@ -26,11 +31,15 @@ impl Firmware {
     /// owner: the reply says so.
     pub fn run_cli(&mut self, session: &mut Interpreter, line: &str) -> CliReply {
         let facts = self.cli_facts();
+        let had_gps = self.configuration.features.has(Feature::Gps);
         let reply =
             session.run(line, &mut CliContext { configuration: &mut self.configuration, facts: &facts });
         for action in &reply.actions {
             match *action {
-                CliAction::Save => correct(&mut self.configuration),
+                CliAction::Save => {
+                    correct(&mut self.configuration);
+                    self.tell_lost_gps(had_gps);
+                }
                 CliAction::Leave => self.flight.end_motor_test(),
                 CliAction::MotorTest { motor, output_us } => self.flight.test_motor(motor, output_us),
                 CliAction::PlanChanged | CliAction::Restart { .. } => {}
@@ -38,6 +47,15 @@ impl Firmware {
         }
         self.refresh();
         reply
+    }
+
+    /// Says so when making the configuration consistent took the GPS away.
+    pub(super) fn tell_lost_gps(&mut self, had_gps: bool) {
+        if had_gps && !self.configuration.features.has(Feature::Gps) {
+            self.outbox.push(FirmwareEvent::Notice(
+                "GPS is off: gps_provider wants a receiver on a serial port; set gps_provider = VIRTUAL, feature GPS, save.",
+            ));
+        }
     }
 
     /// A command line session was opened on a serial link: no arming until reboot.
@@ -53,13 +71,6 @@ impl Firmware {
     /// What the commands tell about the stored configuration.
     pub fn set_storage_facts(&mut self, facts: StorageFacts) {
         self.storage = facts;
-    }
-
-    /// Changes the configuration from outside the command line (MSP, an upload); the firmware follows at once.
-    pub fn edit_configuration<R>(&mut self, edit: impl FnOnce(&mut Configuration) -> R) -> R {
-        let result = edit(&mut self.configuration);
-        self.refresh();
-        result
     }
 
     /// Restarts with this configuration; the flight is over, the receiver's sources keep their order.
@@ -91,11 +102,6 @@ impl Firmware {
         self.restart(configuration);
     }
 
-    /// Replaces the stored flight plan in memory; the mission being flown is not touched (clearing it ends it).
-    pub fn set_plan(&mut self, plan: FlightPlan) {
-        self.configuration.plan = plan;
-    }
-
     /// Flies home and lands, whatever the AUTOPILOT switch says.
     ///
     /// # Errors
@@ -122,15 +128,10 @@ impl Firmware {
         done
     }
 
-    /// Takes [`Firmware::return_to_home`] or [`Firmware::emergency_land`] back: the switch decides again.
+    /// Takes [`Firmware::return_to_home`] or [`Firmware::emergency_land`] back: the switch decides again, and starts its
+    /// mission again if it is on. Without such a command nothing happens.
     pub fn cancel_command(&mut self) {
-        self.orders.cancel();
-    }
-
-    /// Jumps to a waypoint of the mission, or chooses where the next one begins; `false` = not possible.
-    pub fn set_current_waypoint(&mut self, index: u8) -> bool {
-        let plan = &self.configuration.plan;
-        self.navigator.set_current(index, &self.nav_inputs, &self.parameters.nav, plan)
+        self.orders.take_back(&mut self.navigator);
     }
 
     /// Calibrates the accelerometer; the craft must stand level. Ignored while armed.
@@ -140,16 +141,41 @@ impl Firmware {
         }
     }
 
-    /// Puts the result of a calibration into the configuration, the flag behind the three offsets kept.
-    pub(super) fn keep_acc_calibration(&mut self, offsets: [i64; 3]) {
-        let settings = &mut self.configuration.settings;
-        let mut values = settings.array("acc_calibration").to_vec();
-        for (value, offset) in values.iter_mut().zip(offsets) {
-            *value = offset;
+    /// Calibrates the magnetometer: for 30 s the craft is to be turned about all its axes. Ignored while armed or
+    /// without a magnetometer.
+    pub fn calibrate_magnetometer(&mut self) {
+        if !self.arming.armed() && self.boot.mag {
+            self.estimator.calibrate_magnetometer();
         }
-        // The estimator's offsets fit the setting's type.
-        let _kept = settings.set("acc_calibration", Value::Array(values));
+    }
+
+    /// Puts the result of an accelerometer calibration into the configuration: it includes what the trims levelled.
+    pub(super) fn keep_acc_calibration(&mut self, offsets: [i64; 3]) {
+        const DONE: i64 = 1;
+        let [x, y, z] = offsets;
+        let settings = &mut self.configuration.settings;
+        // The estimator's offsets fit the setting's type, and 0 is in every trim's range.
+        let _kept = settings.set("acc_calibration", Value::Array(vec![x, y, z, DONE]));
+        let _level = [settings.set_number("acc_trim_roll", 0), settings.set_number("acc_trim_pitch", 0)];
         self.refresh();
+        self.outbox.push(FirmwareEvent::Notice("Accelerometer calibrated; save keeps the result."));
+    }
+
+    /// Puts the result of a magnetometer calibration into the configuration.
+    pub(super) fn keep_mag_calibration(&mut self, result: Result<[i64; 3], NotTurned>) {
+        let notice = match result {
+            Err(NotTurned) => {
+                "Magnetometer not calibrated: the craft was not turned about all its axes; its offsets stay."
+            }
+            Ok(offsets) => {
+                match self.configuration.settings.set("mag_calibration", Value::Array(offsets.to_vec())) {
+                    Ok(()) => "Magnetometer calibrated; save keeps the result.",
+                    Err(_) => "Magnetometer not calibrated: its field is out of range; its offsets stay.",
+                }
+            }
+        };
+        self.refresh();
+        self.outbox.push(FirmwareEvent::Notice(notice));
     }
 
     /// Version and build that the firmware announces.

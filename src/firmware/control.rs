@@ -15,6 +15,7 @@
 use crate::firmware::estimate::DueTasks;
 use crate::signals::MotorCommand;
 
+mod boost;
 mod controller;
 mod curve;
 mod derived;
@@ -30,7 +31,9 @@ mod tuning;
 
 pub use controller::Controller;
 pub use curve::{RateCurve, RatesType, ThrottleCurve, ThrottleLimit};
-pub use tuning::{AxisGains, ItermRelax, LevelTuning, MixerTuning, RateTuning, Tuning};
+pub use tuning::{
+    AxisGains, BoostTuning, DynamicD, ItermRelax, LevelTuning, MixerTuning, RateTuning, TiltThrottle, Tuning,
+};
 
 /// How the sticks are understood.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -78,8 +81,12 @@ pub struct ControlInput {
     pub yaw_rate_rps: Option<f64>,
     /// Throttle demanded instead of the pilot's, 0…1.
     pub throttle: Option<f64>,
+    /// The navigator feels the ground: what the integrals gathered against it is dropped.
+    pub stands: bool,
     /// Full stabilisation at zero throttle: the AIRMODE feature or its switch, once the throttle was raised.
     pub airmode: bool,
+    /// Gains rise in quick throttle changes: the ANTI_GRAVITY feature or its switch.
+    pub anti_gravity: bool,
     /// Motors stop at low throttle: the MOTOR_STOP feature.
     pub motor_stop: bool,
     /// A failsafe procedure runs.
@@ -107,7 +114,9 @@ impl Default for ControlInput {
             lean: None,
             yaw_rate_rps: None,
             throttle: None,
+            stands: false,
             airmode: false,
+            anti_gravity: false,
             motor_stop: false,
             failsafe: false,
             headfree_reference_rad: None,

@@ -40,6 +40,7 @@ mod schedule;
 mod tuning;
 mod vertical;
 
+pub use calibration::NotTurned;
 pub use estimator::Estimator;
 pub use gps::GpsStatus;
 pub use schedule::DueTasks;

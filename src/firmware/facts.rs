@@ -4,15 +4,11 @@ use super::Firmware;
 use super::cli::{
     BatteryFacts, CliFacts, GpsFacts, GpsSolutionFacts, LoopFacts, NavFacts, SmoothingFacts, TaskFacts,
 };
-use super::mode::Mode;
 
 /// Housekeeping rate, Hz.
 const SYSTEM_HZ: u32 = 10;
 /// Rate of receiver passes without frames, Hz.
 const RX_IDLE_HZ: u32 = 20;
-
-/// Lowest automatic cutoff of the RC smoothing, Hz.
-const SMOOTHING_MIN_HZ: f64 = 15.0;
 
 impl Firmware {
     /// The figures that the command line prints.
@@ -21,6 +17,7 @@ impl Firmware {
         let signal = self.rx.signal();
         let rx_hz = if signal { self.rx.sources().rate_hz().round() as u32 } else { 0 };
         let battery = self.battery.sample();
+        let [setpoint_hz, throttle_hz] = self.flight.smoothing_hz().map(|hz| hz.round() as u32);
         CliFacts {
             build: self.build.clone(),
             armed: self.arming.armed(),
@@ -44,26 +41,11 @@ impl Firmware {
                 system_hz: SYSTEM_HZ,
             },
             tasks: self.tasks(rx_hz),
-            smoothing: SmoothingFacts {
-                rx_hz: signal.then_some(rx_hz),
-                setpoint_hz: self.smoothing_hz("rc_smoothing_setpoint_cutoff", "rc_smoothing_auto_factor"),
-                throttle_hz: self
-                    .smoothing_hz("rc_smoothing_throttle_cutoff", "rc_smoothing_auto_factor_throttle"),
-            },
+            smoothing: SmoothingFacts { rx_hz: signal.then_some(rx_hz), setpoint_hz, throttle_hz },
             nav: NavFacts {
                 telemetry: self.navigator.telemetry().clone(),
                 active_plan: self.active_plan().cloned(),
             },
-        }
-    }
-
-    /// Cutoff of a smoothing filter: as set, or automatic from the frame rate.
-    fn smoothing_hz(&self, manual: &str, factor: &str) -> u32 {
-        let settings = &self.configuration.settings;
-        let automatic = self.rx.sources().rate_hz() * 1.5 / (1.0 + settings.number(factor) as f64 / 10.0);
-        match settings.number(manual) {
-            0 => automatic.max(SMOOTHING_MIN_HZ).round() as u32,
-            hz => hz.clamp(0, 1000) as u32,
         }
     }
 
@@ -82,16 +64,16 @@ impl Firmware {
     /// The tasks with their nominal rates; a deterministic firmware has no run times to show.
     fn tasks(&self, rx_hz: u32) -> Vec<TaskFacts> {
         let rate = self.options.rate_hz;
-        let levelling = self.modes.has(Mode::Angle) || self.modes.has(Mode::Horizon);
-        let attitude = if levelling { 500.min(rate) } else { 100 };
+        let attitude_hz = (1_000_000 / self.parameters.estimator.attitude_us.max(1)) as u32;
+        let pid = rate / u32::from(self.boot.pid_denominator.max(1));
         [
             (0, "SYSTEM", SYSTEM_HZ),
             (1, "SYSTEM", 1000),
             (2, "GYRO", rate),
-            (3, "FILTER", rate),
-            (4, "PID", rate),
+            (3, "FILTER", pid),
+            (4, "PID", pid),
             (5, "ACC", rate),
-            (6, "ATTITUDE", attitude),
+            (6, "ATTITUDE", attitude_hz.min(rate)),
             (7, "RX", rx_hz.max(RX_IDLE_HZ)),
             (8, "SERIAL", 100),
             (9, "DISPATCH", 1000),

@@ -20,6 +20,8 @@ pub struct Demand {
     pub yaw_rate_rps: Option<f64>,
     /// Throttle into the mixer, 0…1.
     pub throttle: Option<f64>,
+    /// The craft stands on its legs.
+    pub stands: bool,
 }
 
 impl From<NavOutput> for Demand {
@@ -28,6 +30,7 @@ impl From<NavOutput> for Demand {
             lean: Some(LeanDemand { roll_rad: output.roll_rad, pitch_rad: output.pitch_rad }),
             yaw_rate_rps: output.yaw_rate_rps,
             throttle: Some(output.throttle),
+            stands: output.stands,
         }
     }
 }
@@ -47,13 +50,20 @@ pub struct FlightStep<'a> {
     pub rc_frame: bool,
     /// Full stabilisation at zero throttle.
     pub airmode: bool,
+    /// Gains rise in quick throttle changes.
+    pub anti_gravity: bool,
     /// Motors stand still at low throttle.
     pub motor_stop: bool,
     /// A failsafe procedure runs.
     pub failsafe: bool,
+    /// The craft is levelled after a crash, whatever the sticks say.
+    pub levels_after_crash: bool,
     /// Heading at arming, rad: what HEADFREE refers to.
     pub headfree_rad: f64,
 }
+
+/// What a craft that is levelled after a crash leans to.
+const LEVEL: LeanDemand = LeanDemand { roll_rad: 0.0, pitch_rad: 0.0 };
 
 /// The controller and the demands in force.
 #[derive(Debug, Clone)]
@@ -105,9 +115,15 @@ impl Flight {
         self.motor_test_us = [MOTOR_STOP_US; 4];
     }
 
+    /// Turns the heading that MAG holds to this one, rad clockwise from north; nothing while it holds none.
+    pub fn hold_heading(&mut self, heading_rad: f64) {
+        self.controller.hold_heading(heading_rad);
+    }
+
     /// One step.
     pub fn step(&mut self, step: &FlightStep<'_>, estimate: &Estimate) -> MotorCommand {
-        let sticks = step.sticks;
+        let centred = Sticks { throttle_us: step.sticks.throttle_us, ..Sticks::default() };
+        let sticks = if step.levels_after_crash { &centred } else { step.sticks };
         let input = ControlInput {
             due: step.due,
             armed: step.armed,
@@ -117,10 +133,12 @@ impl Flight {
             stick_yaw: sticks.yaw,
             throttle_us: sticks.throttle_us,
             rc_frame: step.rc_frame,
-            lean: self.demand.lean,
+            lean: self.demand.lean.or(step.levels_after_crash.then_some(LEVEL)),
+            stands: self.demand.stands,
             yaw_rate_rps: self.demand.yaw_rate_rps,
             throttle: self.demand.throttle,
             airmode: step.airmode,
+            anti_gravity: step.anti_gravity,
             motor_stop: step.motor_stop,
             failsafe: step.failsafe,
             headfree_reference_rad: headfree(step).then_some(step.headfree_rad),
@@ -128,6 +146,12 @@ impl Flight {
             motor_test_us: self.motor_test_us,
         };
         self.controller.step(&input, estimate, self.step_s).motors
+    }
+
+    /// Cutoffs of the smoothing of sticks and throttle in use, Hz; 0 while nothing is smoothed.
+    #[must_use]
+    pub fn smoothing_hz(&self) -> [f64; 2] {
+        self.controller.smoothing_hz()
     }
 
     /// What the controller did in the last step.

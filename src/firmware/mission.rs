@@ -10,7 +10,8 @@ use crate::plan::FlightPlan;
 
 use super::failsafe::{MissionStatus, Procedure, Response};
 use super::modes::AfterAbort;
-use super::parameters::{RescueAltitude, RescueConfig};
+use super::parameters::{RescueAltitude, RescueCause, RescueConfig, RescueSanity};
+use crate::geo::local_offset;
 
 /// A lost fix must be back this long before an order is repeated, s.
 const FIX_BACK_S: f64 = 2.0;
@@ -51,7 +52,8 @@ pub struct Orders {
     switch_spent: bool,
     rescue_was: bool,
     by_rescue_switch: bool,
-    after_abort: AfterAbort,
+    /// Why the last mission was given up, while its order stays.
+    aborted: Option<AbortReason>,
     highest_m: f64,
 }
 
@@ -59,7 +61,11 @@ impl Orders {
     /// What a given-up mission leaves behind while its order stays.
     #[must_use]
     pub fn after_abort(&self) -> AfterAbort {
-        self.after_abort
+        match self.aborted {
+            None => AfterAbort::Nothing,
+            Some(AbortReason::GpsLost) => AfterAbort::Altitude,
+            Some(AbortReason::Stalled | AbortReason::Flyaway | AbortReason::NoPlan) => AfterAbort::Position,
+        }
     }
 
     /// How the navigator's mission stands, for the failsafe.
@@ -68,7 +74,7 @@ impl Orders {
         match (navigator.is_flying(), navigator.state()) {
             (true, NavState::Complete) => MissionStatus::Over,
             (true, _) => MissionStatus::Flying,
-            (false, _) if self.after_abort != AfterAbort::Nothing => MissionStatus::Over,
+            (false, _) if self.aborted.is_some() => MissionStatus::Over,
             (false, _) => MissionStatus::Absent,
         }
     }
@@ -87,7 +93,7 @@ impl Orders {
         navigator.return_to_home(inputs, params, rescue)?;
         self.order = Some(Order::ReturnHome(rescue));
         self.by_rescue_switch = false;
-        self.after_abort = AfterAbort::Nothing;
+        self.aborted = None;
         Ok(())
     }
 
@@ -104,22 +110,32 @@ impl Orders {
         navigator.emergency_land(inputs, params)?;
         self.order = Some(Order::Land);
         self.by_rescue_switch = false;
-        self.after_abort = AfterAbort::Nothing;
+        self.aborted = None;
         Ok(())
     }
 
-    /// Takes a command back: the switch decides again.
-    pub fn cancel(&mut self) {
+    /// Whether a command, not a switch, has the craft fly home or land.
+    #[must_use]
+    pub fn is_commanded(&self) -> bool {
+        self.order.is_some() && !self.by_rescue_switch
+    }
+
+    /// Takes a command back: the switch decides again, and starts its mission again if it is on.
+    pub fn take_back(&mut self, navigator: &mut Navigator) {
+        if self.is_commanded() {
+            self.cancel();
+            navigator.disengage();
+        }
+    }
+
+    fn cancel(&mut self) {
         self.order = None;
         self.by_rescue_switch = false;
     }
 
     /// Remembers why the navigator gave a mission up.
     pub fn mission_aborted(&mut self, why: AbortReason) {
-        self.after_abort = match why {
-            AbortReason::GpsLost => AfterAbort::Altitude,
-            AbortReason::Stalled | AbortReason::Flyaway | AbortReason::NoPlan => AfterAbort::Position,
-        };
+        self.aborted = Some(why);
     }
 
     /// One update, before the navigator's own.
@@ -136,7 +152,7 @@ impl Orders {
         let was_armed = std::mem::replace(&mut self.was_armed, inputs.armed);
         if !inputs.armed {
             self.cancel();
-            self.after_abort = AfterAbort::Nothing;
+            self.aborted = None;
         }
         self.switch_spent = facts.autopilot_switch && (self.switch_spent || was_armed && !inputs.armed);
         if facts.failsafe_active {
@@ -152,7 +168,7 @@ impl Orders {
             std::mem::replace(&mut self.switch_was, facts.autopilot_switch) && !facts.autopilot_switch;
         if released {
             self.cancel();
-            self.after_abort = AfterAbort::Nothing;
+            self.aborted = None;
             navigator.disengage();
         }
         self.follow_rescue_switch(navigator, inputs, params, rescue, facts);
@@ -165,17 +181,44 @@ impl Orders {
             return;
         }
         if !wanted {
-            self.after_abort = AfterAbort::Nothing;
+            self.aborted = None;
             return;
         }
         let engaged = match self.order {
             None => navigator.engage(inputs, params, stored).is_ok(),
-            Some(_) if facts.fix_for_s < FIX_BACK_S => false,
-            Some(Order::ReturnHome(rescue)) => navigator.return_to_home(inputs, params, rescue).is_ok(),
-            Some(Order::Land) => navigator.emergency_land(inputs, params).is_ok(),
+            Some(order) => match self.repeat(order, navigator, inputs, params, facts.fix_for_s) {
+                Ok(()) => true,
+                Err(refusal) => {
+                    navigator.refuse(refusal);
+                    false
+                }
+            },
         };
         if engaged {
-            self.after_abort = AfterAbort::Nothing;
+            self.aborted = None;
+        }
+    }
+
+    /// Tries an order again whose flight was given up.
+    fn repeat(
+        &self,
+        order: Order,
+        navigator: &mut Navigator,
+        inputs: &NavInputs,
+        params: &Params,
+        fix_for_s: f64,
+    ) -> Result<(), Refusal> {
+        // What made no progress is not tried again until it is asked for again.
+        if let Some(why @ (AbortReason::Stalled | AbortReason::Flyaway | AbortReason::NoPlan)) = self.aborted
+        {
+            return Err(Refusal::Aborted(why));
+        }
+        if fix_for_s < FIX_BACK_S {
+            return Err(Refusal::Aborted(AbortReason::GpsLost));
+        }
+        match order {
+            Order::ReturnHome(rescue) => navigator.return_to_home(inputs, params, rescue),
+            Order::Land => navigator.emergency_land(inputs, params),
         }
     }
 
@@ -189,7 +232,7 @@ impl Orders {
     ) {
         let was = std::mem::replace(&mut self.rescue_was, facts.rescue_switch);
         if facts.rescue_switch && !was {
-            let flight = self.rescue_flight(rescue, inputs);
+            let flight = self.rescue_flight(rescue, inputs, RescueCause::Switch);
             self.by_rescue_switch = self.return_to_home(navigator, inputs, params, Some(flight)).is_ok();
         } else if was && !facts.rescue_switch && self.by_rescue_switch {
             self.cancel();
@@ -200,10 +243,13 @@ impl Orders {
         }
     }
 
-    /// How a rescue that starts now flies home.
+    /// How a rescue that starts now flies home. Next to home there is nothing to climb over on the way.
     #[must_use]
-    pub fn rescue_flight(&self, config: &RescueConfig, inputs: &NavInputs) -> Rescue {
+    pub fn rescue_flight(&self, config: &RescueConfig, inputs: &NavInputs, cause: RescueCause) -> Rescue {
+        let distance_m = inputs.home.map(|home| (local_offset(inputs.origin, home) - inputs.pos_ne).norm());
+        let is_near = distance_m.is_some_and(|distance| distance < config.min_start_dist_m);
         let altitude_m = match config.altitude {
+            _ if is_near => inputs.alt_m,
             RescueAltitude::HighestOfFlight => self.highest_m.max(inputs.alt_m) + config.initial_climb_m,
             RescueAltitude::Fixed => config.return_alt_m,
             RescueAltitude::Present => inputs.alt_m + config.initial_climb_m,
@@ -213,6 +259,11 @@ impl Orders {
             climb_mps: config.ascend_mps,
             speed_mps: config.ground_speed_mps,
             descend_mps: config.descend_mps,
+            is_watched: match config.sanity {
+                RescueSanity::Off => false,
+                RescueSanity::On => true,
+                RescueSanity::FailsafeOnly => cause == RescueCause::Failsafe,
+            },
         }
     }
 }

@@ -5,7 +5,7 @@
 pub struct ModeFlags(u32);
 
 /// A mode that can be active. `Display` gives the box name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::EnumIter)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::EnumIter, strum::IntoStaticStr)]
 #[repr(u8)]
 pub enum Mode {
     /// Motors may run.

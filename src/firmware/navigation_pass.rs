@@ -10,6 +10,7 @@ use super::flight::Demand;
 use super::mission::{OrderFacts, failsafe_response};
 use super::mode::{Mode, ModeFlags};
 use super::modes::{ModeFacts, boxes, flight_modes};
+use super::parameters::RescueCause;
 
 impl Firmware {
     /// The hundred-a-second part, `dt` seconds after the last.
@@ -41,7 +42,7 @@ impl Firmware {
         self.no_position = held.no_position;
         self.flight.set_demand(match self.nav_output {
             Some(output) => Demand::from(output),
-            None => Demand { lean: held.lean, throttle: held.throttle, yaw_rate_rps: None },
+            None => Demand { lean: held.lean, throttle: held.throttle, ..Demand::default() },
         });
         if held.touchdown {
             self.disarm(DisarmReason::Landing);
@@ -131,7 +132,11 @@ impl Firmware {
                 Ok(())
             }
             Response::Procedure(Procedure::GpsRescue) => {
-                let rescue = self.orders.rescue_flight(&self.parameters.rescue, &self.nav_inputs);
+                let rescue = self.orders.rescue_flight(
+                    &self.parameters.rescue,
+                    &self.nav_inputs,
+                    RescueCause::Failsafe,
+                );
                 self.navigator.return_to_home(&self.nav_inputs, nav, Some(rescue))
             }
             Response::EmergencyLand => self.navigator.emergency_land(&self.nav_inputs, nav),

@@ -31,10 +31,9 @@ impl Outbox {
         self.events.is_empty()
     }
 
-    /// How many events were lost since boot because nobody drained in time.
-    #[must_use]
-    pub fn lost(&self) -> u32 {
-        self.lost
+    /// How many events were lost since the last call because nobody drained in time.
+    pub fn take_lost(&mut self) -> u32 {
+        std::mem::take(&mut self.lost)
     }
 }
 
@@ -48,7 +47,8 @@ mod tests {
         for _ in 0..CAPACITY + 3 {
             outbox.push(FirmwareEvent::Armed);
         }
-        assert_eq!(outbox.lost(), 3);
+        assert_eq!(outbox.take_lost(), 3);
+        assert_eq!(outbox.take_lost(), 0);
         assert_eq!(std::iter::from_fn(|| outbox.take()).count(), CAPACITY);
         assert!(outbox.is_empty());
     }

@@ -7,6 +7,7 @@ use crate::autopilot::Params;
 
 use super::FirmwareOptions;
 use super::arming::ArmingConfig;
+use super::arming::crash::{CrashAction, CrashConfig};
 use super::arming::runaway::RunawayConfig;
 use super::battery::BatteryConfig;
 use super::config::{
@@ -21,6 +22,9 @@ use super::failsafe::{FailsafeConfig, Procedure, SwitchMode};
 use super::modes::boxes;
 use super::rx::{ChannelConfig, RxConfig, StickConfig};
 use super::settings::Settings;
+
+/// Deflection of the yaw stick that the stick commands need at least, RC units.
+const LEAST_FULL_YAW: f64 = 100.0;
 
 /// What changes only with a restart.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,6 +43,14 @@ pub struct BootChoices {
     pub custom_mix: [MixRow; MAX_MIX_ROWS],
     /// Gyro samples for each run of the rate loop.
     pub pid_denominator: u8,
+    /// `motor_pwm_protocol`, as a number.
+    pub motor_protocol: u8,
+    /// The motor protocol is DISABLED: the motors cannot turn.
+    pub motors_disabled: bool,
+    /// `gps_provider`, as a number.
+    pub gps_provider: u8,
+    /// Ports of `msp_uart_1` to `msp_uart_3`.
+    pub msp_ports: [u8; 3],
 }
 
 impl BootChoices {
@@ -54,6 +66,10 @@ impl BootChoices {
             mixer: configuration.mixer,
             custom_mix: configuration.custom_mix,
             pid_denominator: small(settings, "pid_process_denom"),
+            motor_protocol: small(settings, "motor_pwm_protocol"),
+            motors_disabled: settings.text("motor_pwm_protocol") == "DISABLED",
+            gps_provider: small(settings, "gps_provider"),
+            msp_ports: ["msp_uart_1", "msp_uart_2", "msp_uart_3"].map(|name| small(settings, name)),
         }
     }
 }
@@ -68,6 +84,27 @@ pub enum RescueAltitude {
     Fixed,
     /// The present one and the initial climb on top.
     Present,
+}
+
+/// When a rescue that makes no progress is given up.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum RescueSanity {
+    /// Never.
+    Off,
+    /// Always.
+    On,
+    /// When the failsafe flies it, not when the pilot's switch does.
+    #[default]
+    FailsafeOnly,
+}
+
+/// Who asks for a rescue.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RescueCause {
+    /// The GPS RESCUE switch.
+    Switch,
+    /// The failsafe.
+    Failsafe,
 }
 
 /// Settings of GPS rescue.
@@ -85,6 +122,10 @@ pub struct RescueConfig {
     pub descend_mps: f64,
     /// Speed on the way home, m/s.
     pub ground_speed_mps: f64,
+    /// Nearer to home than this it does not climb first, m.
+    pub min_start_dist_m: f64,
+    /// When it is given up.
+    pub sanity: RescueSanity,
     /// Satellites that make home and rescue trustworthy.
     pub min_sats: u8,
     /// Home stays where the craft was armed first.
@@ -104,6 +145,8 @@ pub struct Parameters {
     pub arming: ArmingConfig,
     /// Runaway take-off prevention.
     pub runaway: RunawayConfig,
+    /// Crash detection.
+    pub crash: CrashConfig,
     /// Jerk that ends a landing, setting units; 0 = off.
     pub landing_disarm_threshold: f64,
     /// Mode conditions.
@@ -116,6 +159,8 @@ pub struct Parameters {
     pub gps: bool,
     /// Airmode is always on.
     pub airmode: bool,
+    /// The gains always rise in quick throttle changes.
+    pub anti_gravity: bool,
     /// Motors stand still at low throttle.
     pub motor_stop: bool,
     /// Altitude and position hold.
@@ -134,8 +179,6 @@ impl Parameters {
     pub fn new(configuration: &Configuration, boot: &BootChoices, options: &FirmwareOptions) -> Self {
         let settings = &configuration.settings;
         let number = |name| settings.number(name) as f64;
-        let motor_stop = boot.features.has(Feature::MotorStop);
-        let airmode = boot.features.has(Feature::AirMode);
         Self {
             rx: receiver(configuration, boot),
             link: LinkConfig {
@@ -143,19 +186,21 @@ impl Parameters {
                 recovery_delay_s: number("failsafe_recovery_delay") / 10.0,
             },
             failsafe: failsafe(settings),
-            arming: arming(configuration, options, motor_stop && !airmode),
+            arming: arming(configuration, boot, options),
             runaway: RunawayConfig {
                 enabled: settings.flag("runaway_takeoff_prevention"),
                 deactivate_delay_s: number("runaway_takeoff_deactivate_delay") / 1000.0,
                 deactivate_throttle_percent: number("runaway_takeoff_deactivate_throttle_percent"),
             },
+            crash: crash(settings),
             landing_disarm_threshold: number("landing_disarm_threshold"),
             modes: configuration.modes,
             rescue: rescue(settings),
             battery: battery(settings),
             gps: boot.features.has(Feature::Gps),
-            airmode,
-            motor_stop,
+            airmode: boot.features.has(Feature::AirMode),
+            anti_gravity: boot.features.has(Feature::AntiGravity),
+            motor_stop: boot.features.has(Feature::MotorStop),
             hold: HoldTuning::from_settings(settings),
             nav: navigator(settings),
             estimator: EstimatorTuning { has_mag: boot.mag, ..EstimatorTuning::from_settings(settings) },
@@ -222,7 +267,8 @@ fn failsafe(settings: &Settings) -> FailsafeConfig {
     }
 }
 
-fn arming(configuration: &Configuration, options: &FirmwareOptions, motors_stop: bool) -> ArmingConfig {
+fn arming(configuration: &Configuration, boot: &BootChoices, options: &FirmwareOptions) -> ArmingConfig {
+    let motors_stop = boot.features.has(Feature::MotorStop) && !boot.features.has(Feature::AirMode);
     let settings = &configuration.settings;
     let number = |name| settings.number(name) as f64;
     let has =
@@ -241,12 +287,36 @@ fn arming(configuration: &Configuration, options: &FirmwareOptions, motors_stop:
         rescue_configured: has(boxes::GPS_RESCUE) || settings.text("failsafe_procedure") == "GPS-RESCUE",
         rescue_min_sats: small(settings, "gps_rescue_min_sats"),
         rescue_allow_without_fix: settings.flag("gps_rescue_allow_arming_without_fix"),
+        // A stick at rest is no command, whatever `max_check` says.
+        full_yaw: (number("max_check") - number("mid_rc")).max(LEAST_FULL_YAW),
         stick_arming,
         auto_disarm_s: (motors_stop && stick_arming)
             .then(|| number("auto_disarm_delay"))
             .filter(|&delay| delay > 0.0),
         raised_throttle_us: min_check_us + raised_part * (2000.0 - min_check_us),
         assist: options.arm_assist,
+        calibrate_gyro_first: settings.flag("gyro_cal_on_first_arm"),
+        motors_disabled: boot.motors_disabled,
+        reboot_required: BootChoices::new(configuration) != *boot,
+    }
+}
+
+fn crash(settings: &Settings) -> CrashConfig {
+    const SLOPE_UNIT_DPS2: f64 = 1000.0;
+    let number = |name| settings.number(name) as f64;
+    CrashConfig {
+        action: match settings.text("crash_recovery") {
+            "ON" | "BEEP" => CrashAction::Level,
+            "DISARM" => CrashAction::Disarm,
+            _ => CrashAction::Off,
+        },
+        slope_dps2: SLOPE_UNIT_DPS2 * number("crash_dthreshold"),
+        error_dps: number("crash_gthreshold"),
+        setpoint_dps: number("crash_setpoint_threshold"),
+        delay_s: number("crash_delay") / 1000.0,
+        time_s: number("crash_time") / 1000.0,
+        done_tilt_rad: number("crash_recovery_angle").to_radians(),
+        done_rate_dps: number("crash_recovery_rate"),
     }
 }
 
@@ -263,6 +333,12 @@ fn rescue(settings: &Settings) -> RescueConfig {
         ascend_mps: number("gps_rescue_ascend_rate") / 100.0,
         descend_mps: number("gps_rescue_descend_rate") / 100.0,
         ground_speed_mps: number("gps_rescue_ground_speed") / 100.0,
+        min_start_dist_m: number("gps_rescue_min_start_dist"),
+        sanity: match settings.text("gps_rescue_sanity_checks") {
+            "RESCUE_SANITY_OFF" => RescueSanity::Off,
+            "RESCUE_SANITY_ON" => RescueSanity::On,
+            _ => RescueSanity::FailsafeOnly,
+        },
         min_sats: small(settings, "gps_rescue_min_sats"),
         home_once: settings.flag("gps_set_home_point_once"),
     }
@@ -288,46 +364,4 @@ fn navigator(settings: &Settings) -> Params {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::super::settings::find;
-    use super::*;
-
-    #[test]
-    fn defaults_of_settings_and_modules_agree() {
-        let configuration = Configuration::default();
-        let boot = BootChoices::new(&configuration);
-        let parameters = Parameters::new(&configuration, &boot, &FirmwareOptions::default());
-        assert_eq!(parameters.rx, RxConfig::default());
-        assert_eq!(parameters.link, LinkConfig::default());
-        assert_eq!(parameters.failsafe, FailsafeConfig::default());
-        assert_eq!(parameters.runaway, RunawayConfig::default());
-        assert_eq!(parameters.nav, Params::default());
-        assert_eq!(parameters.battery, BatteryConfig::default());
-        let arming = ArmingConfig {
-            has_arm_condition: false,
-            small_angle_rad: Some(25_f64.to_radians()),
-            ..ArmingConfig::default()
-        };
-        assert_eq!(parameters.arming, arming);
-    }
-
-    #[test]
-    fn what_needs_a_restart_waits_for_it() {
-        let mut configuration = Configuration::default();
-        let boot = BootChoices::new(&configuration);
-        configuration.channel_map = ChannelMap::parse("TAER1234").unwrap();
-        configuration.settings.set_number("max_aux_channels", 2).unwrap();
-        configuration.settings.set_number("mid_rc", 1480).unwrap();
-        configuration.mixer = MixerKind::QuadP;
-        configuration.settings.set_number("pid_process_denom", 4).unwrap();
-        let mag = find("mag_hardware").unwrap();
-        configuration.settings.assign(mag, "NONE").unwrap();
-        let parameters = Parameters::new(&configuration, &boot, &FirmwareOptions::default());
-        assert_eq!(parameters.rx.channels.map, ChannelMap::default());
-        assert_eq!(parameters.rx.channels.max_aux, 6);
-        assert_eq!(parameters.rx.channels.mid_us, 1480);
-        assert_eq!(parameters.control.mixer, Tuning::default().mixer);
-        assert_eq!(parameters.control.rate.denominator, 1);
-        assert!(parameters.estimator.has_mag);
-    }
-}
+mod tests;

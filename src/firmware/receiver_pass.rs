@@ -3,6 +3,7 @@
 use crate::signals::{RcSource, SimTime};
 
 use super::Firmware;
+use super::arming::crash::{CrashAction, CrashFacts};
 use super::arming::impact::ImpactFacts;
 use super::arming::runaway::RunawayFacts;
 use super::arming::{ArmingChange, ArmingFacts};
@@ -64,6 +65,10 @@ impl Firmware {
         };
         match self.arming.update(&self.parameters.arming, &facts) {
             Some(ArmingChange::Armed { assisted }) => self.on_arm(assisted),
+            Some(ArmingChange::CalibrateGyro) => {
+                self.estimator.calibrate_gyro();
+                self.outbox.push(FirmwareEvent::Notice("Calibrating the gyro before the first arming."));
+            }
             Some(ArmingChange::Disarmed(reason)) => self.on_disarm(reason),
             None => {}
         }
@@ -122,6 +127,37 @@ impl Firmware {
         };
         if self.runaway.update(&self.parameters.runaway, &facts) {
             self.disarm(DisarmReason::RunawayTakeoff);
+        }
+    }
+
+    /// Watches for a crash, where the settings ask for it.
+    pub(super) fn crash_pass(&mut self) {
+        let config = &self.parameters.crash;
+        if config.action == CrashAction::Off || !self.arming.armed() || !self.arming.raised() {
+            // Also when it is switched off while it levels: the sticks are the pilot's again.
+            self.crash.reset();
+            return;
+        }
+        let state = self.flight.state();
+        let motors = &state.motors_us;
+        let spread = motors.iter().copied().fold(f64::NEG_INFINITY, f64::max)
+            - motors.iter().copied().fold(f64::INFINITY, f64::min);
+        let mixer = &self.parameters.control.mixer;
+        let facts = CrashFacts {
+            now: self.now,
+            gyro_dps: state.gyro_dps,
+            setpoint_dps: state.setpoint_dps,
+            motor_spread: spread / (mixer.max_us - mixer.idle_us).max(1.0),
+            tilt_rad: self.estimator.estimate().cos_tilt.clamp(-1.0, 1.0).acos(),
+        };
+        if !self.crash.update(config, &facts) {
+            return;
+        }
+        if config.action == CrashAction::Disarm {
+            self.disarm(DisarmReason::CrashProtection);
+        } else {
+            self.outbox
+                .push(FirmwareEvent::Notice("Crash detected: the craft is levelled, the sticks rest."));
         }
     }
 

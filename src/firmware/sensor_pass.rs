@@ -7,7 +7,7 @@ use super::battery::BatteryState;
 use super::event::FirmwareEvent;
 
 impl Firmware {
-    /// Tells what the sensors have to say for themselves, and keeps the result of a calibration.
+    /// Tells what the sensors have to say for themselves, and keeps the results of calibrations.
     pub(super) fn sensor_pass(&mut self) {
         let frozen = self.estimator.estimate().imu_frozen;
         if frozen && !self.imu_frozen {
@@ -16,6 +16,9 @@ impl Firmware {
         self.imu_frozen = frozen;
         if let Some(offsets) = self.estimator.take_acc_calibration() {
             self.keep_acc_calibration(offsets);
+        }
+        if let Some(result) = self.estimator.take_mag_calibration() {
+            self.keep_mag_calibration(result);
         }
     }
 

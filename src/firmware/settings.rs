@@ -2,17 +2,20 @@
 //!
 //! * [`SETTINGS`] describes every setting: name, type, range, default, meaning.
 //! * [`Settings`] holds the values, including those of the PID, rate and battery profiles.
+//! * [`judge`] says what is wrong with a setting before a craft gets it.
 //! * [`foreign_name`] knows the settings of other builds, which are kept but have no effect.
 //!
 //! The control code reads settings by name, outside the tick: it keeps typed coefficients and refreshes them when
 //! [`Settings::generation`] changes.
 
 mod foreign;
+mod judge;
 mod parse;
 mod store;
 mod table;
 
 pub use foreign::foreign_name;
+pub use judge::judge;
 pub use parse::AssignError;
 pub use store::{Settings, Value};
 pub use table::{PORT_NAMES, SETTINGS, find, group_of, needs_restart};
@@ -130,9 +133,6 @@ pub enum Kind {
 pub enum Role {
     /// It changes how the vehicle behaves.
     Live,
-    /// It changes behaviour where that optional part is built, and is carried otherwise.
-    #[strum(to_string = "optional")]
-    Opt,
     /// It is validated, stored and printed, and has no effect.
     #[strum(to_string = "carried")]
     Carry,

@@ -18,16 +18,21 @@ use super::parameters::Parameters;
 use super::rx::{Receiver, channels};
 use super::{Firmware, battery};
 
+/// How far above the threshold a raised throttle stick is put, µs.
+const RAISED_MARGIN_US: f64 = 12.5;
+/// A sink rate that no landing gear minds, m/s.
+const GENTLE_SINK_MPS: f64 = 1.0;
+
 impl Firmware {
     /// Takes the oldest event that was not taken yet.
     pub fn take_event(&mut self) -> Option<FirmwareEvent> {
         self.outbox.take()
     }
 
-    /// How many events were lost because nobody drained in time; 0 when drained after every step.
-    #[must_use]
-    pub fn events_lost(&self) -> u32 {
-        self.outbox.lost()
+    /// How many events were lost since the last call because nobody took them in time; 0 when they are taken after every
+    /// step.
+    pub fn take_events_lost(&mut self) -> u32 {
+        self.outbox.take_lost()
     }
 
     /// Whether the craft is armed.
@@ -108,10 +113,26 @@ impl Firmware {
         self.estimate().origin
     }
 
-    /// Where the throttle stick rests in ALTHOLD, µs.
+    /// Where the throttle stick rests in ALTHOLD, µs: the hover throttle, or the middle when it is to be learned.
     #[must_use]
     pub fn hover_stick_us(&self) -> u16 {
-        self.parameters.nav.hover_throttle.clamp(1100, 1900)
+        match self.parameters.nav.hover_throttle {
+            0 => self.parameters.hold.mid_us as u16,
+            us => us.clamp(1100, 1900),
+        }
+    }
+
+    /// The throttle stick from which the throttle counts as raised, with a margin for what the radio link rounds, µs.
+    #[must_use]
+    pub fn raised_stick_us(&self) -> u16 {
+        (self.parameters.arming.raised_throttle_us + RAISED_MARGIN_US).min(2000.0) as u16
+    }
+
+    /// The throttle stick that brings a craft down gently in ALTHOLD, µs; `None` when no stick does.
+    #[must_use]
+    pub fn sink_stick_us(&self) -> Option<u16> {
+        let stick = self.parameters.hold.sink_stick_us(GENTLE_SINK_MPS, &self.parameters.nav)?;
+        Some(stick.round() as u16)
     }
 
     /// Home, when known.
@@ -182,6 +203,7 @@ impl Firmware {
             rc_age_s: self.rx.last_frame().map(|last| self.now.seconds_since(last)),
             rc_link: self.rx.signal(),
             failsafe_stage: self.failsafe.stage(),
+            commanded: self.orders.is_commanded(),
             mode_ranges: self.mode_ranges(),
         }
     }
@@ -218,7 +240,9 @@ impl Firmware {
             fence_m: nav.fence_m(),
             max_angle_deg: f64::from(nav.max_angle),
             max_velocity_mps: nav.max_velocity_mps(),
-            hover_throttle_us: nav.hover_throttle,
+            hover_stick_us: self.hover_stick_us(),
+            raised_stick_us: self.raised_stick_us(),
+            sink_stick_us: self.sink_stick_us(),
         }
     }
 

@@ -1,5 +1,7 @@
 //! Everything that happens to the vehicle, with its time.
 
+use std::net::SocketAddr;
+
 use crate::firmware::FirmwareEvent;
 use crate::signals::SimTime;
 
@@ -54,6 +56,21 @@ pub enum EventKind {
         /// What went wrong, as a sentence.
         cause: String,
     },
+    /// The doors were opened.
+    Doors(Box<DoorPlaces>),
     /// A notice for the user, as a sentence.
     Notice(String),
+}
+
+/// Where other programs reach the vehicle; `None` = that door is closed.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct DoorPlaces {
+    /// The websocket of the Betaflight App.
+    pub ws: Option<SocketAddr>,
+    /// Command line and MSP over TCP.
+    pub tcp: Option<SocketAddr>,
+    /// States from an external simulator, UDP.
+    pub fdm: Option<SocketAddr>,
+    /// RC from scripts, UDP.
+    pub rc: Option<SocketAddr>,
 }

@@ -58,11 +58,11 @@ pub struct TruthView {
     pub heading_deg: f64,
     /// Motor commands M1…M4, 0…1.
     pub motors: [f64; 4],
-    /// Wind at the craft, towards north, m/s.
+    /// Wind at the craft, towards north, m/s; 0 from an external simulator, which does not tell.
     pub wind_n: f64,
-    /// Wind at the craft, towards east, m/s.
+    /// Wind at the craft, towards east, m/s; likewise.
     pub wind_e: f64,
-    /// Standing on the ground.
+    /// Standing on the ground; with an external simulator: low and slow.
     pub on_ground: bool,
     /// Crashed.
     pub crashed: bool,
@@ -134,6 +134,8 @@ pub struct CraftView {
     pub rc_link: bool,
     /// Failsafe stage: 0 none, 1 guard time, 2 procedure.
     pub failsafe_stage: u8,
+    /// A command, not a switch, has the craft fly home or land.
+    pub commanded: bool,
     /// The mode conditions in force: what the RC panel draws on the AUX bars.
     pub mode_ranges: Vec<ModeRange>,
 }
@@ -151,7 +153,15 @@ pub struct ModeRange {
     pub end_us: u16,
 }
 
-/// The settings that shape what a map draws, in SI units.
+impl ModeRange {
+    /// Whether a value is inside.
+    #[must_use]
+    pub fn contains(&self, us: u16) -> bool {
+        (self.start_us..self.end_us).contains(&us)
+    }
+}
+
+/// The settings that displays and hands need, in SI units.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SettingsView {
     /// `ap_waypoint_arrival_radius`, m.
@@ -168,8 +178,12 @@ pub struct SettingsView {
     pub max_angle_deg: f64,
     /// `ap_max_velocity`, m/s.
     pub max_velocity_mps: f64,
-    /// `ap_hover_throttle`, µs.
-    pub hover_throttle_us: u16,
+    /// Where the throttle stick rests in ALTHOLD, µs.
+    pub hover_stick_us: u16,
+    /// The throttle stick from which the throttle counts as raised, µs.
+    pub raised_stick_us: u16,
+    /// The throttle stick that brings the craft down gently in ALTHOLD, µs; `None` when no stick does.
+    pub sink_stick_us: Option<u16>,
 }
 
 /// The air and what is wrong with the craft.

@@ -2,9 +2,10 @@
 
 use nalgebra::Vector2;
 
-use super::Vehicle;
+use super::outside::Outside;
 use super::snapshot::{EstimateView, Snapshot, TruthView, WorldView};
-use crate::geo::offset_to_degrees;
+use super::{EXTERNAL, Vehicle};
+use crate::geo::{LocalFrame, offset_to_degrees};
 use crate::sim::Noise;
 
 impl Vehicle {
@@ -18,7 +19,7 @@ impl Vehicle {
         }
         Snapshot {
             time: self.time(),
-            truth: Some(self.truth_view()),
+            truth: self.truth_view(),
             estimate: self.estimate_view(),
             craft: firmware.craft_view(),
             active_plan: nav.engaged.then(|| self.active_plan.as_deref().cloned()).flatten(),
@@ -34,12 +35,24 @@ impl Vehicle {
     fn count_from_boot_place(&self, ne: Vector2<f64>) -> Vector2<f64> {
         let Some(origin) = self.firmware.origin() else { return ne };
         let (lat_deg, lon_deg) = offset_to_degrees(origin, ne);
-        let frame = self.world.local_frame();
+        let Some(frame) = self.local_frame() else { return ne };
         let enu = frame.to_enu(lat_deg, lon_deg, frame.alt_amsl_m);
         Vector2::new(enu.y, enu.x)
     }
 
-    fn truth_view(&self) -> TruthView {
+    /// The frame whose origin is the boot place; `None` before a simulator outside has told where that is.
+    fn local_frame(&self) -> Option<&LocalFrame> {
+        self.outside.as_ref().map_or_else(|| Some(self.world.local_frame()), Outside::frame)
+    }
+
+    fn truth_view(&self) -> Option<TruthView> {
+        match &self.outside {
+            Some(outside) => outside.truth_view(self.firmware.control().motors.0),
+            None => Some(self.world_truth_view()),
+        }
+    }
+
+    fn world_truth_view(&self) -> TruthView {
         let truth = self.world.truth();
         let (lat_deg, lon_deg, _) = self.world.local_frame().to_geodetic(truth.pos_enu);
         TruthView {
@@ -74,6 +87,12 @@ impl Vehicle {
 
     fn world_view(&self) -> WorldView {
         let status = self.world.status();
+        let faults =
+            status.faults.iter().map(|(fault, left)| (fault.name(), fault.to_string(), *left)).collect();
+        if self.outside.is_some() {
+            let airframe = EXTERNAL.to_owned();
+            return WorldView { airframe, turbulence: "none", faults, ..WorldView::default() };
+        }
         WorldView {
             airframe: self.world.airframe().name.clone(),
             wind_mps: status.wind.speed_mps,
@@ -81,11 +100,7 @@ impl Vehicle {
             gust_mps: status.gust_mps,
             turbulence: status.turbulence.into(),
             noise: status.noise == Noise::Real,
-            faults: status
-                .faults
-                .iter()
-                .map(|(fault, left)| (fault.name(), fault.to_string(), *left))
-                .collect(),
+            faults,
         }
     }
 }

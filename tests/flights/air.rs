@@ -2,7 +2,7 @@
 
 use crate::checks::{Checks, assert_met, greatest, mean};
 use crate::rig::{Rig, Sample, world};
-use betadeck::autopilot::io::NavState;
+use betadeck::autopilot::io::{NavEvent, NavState};
 use betadeck::firmware::{DisarmReason, FirmwareEvent};
 use betadeck::sim::{Fault, Wind, WorldCommand};
 use betadeck::vehicle::EventKind;
@@ -123,6 +123,51 @@ fn biased_inertial_sensors_still_hold() {
     assert!(far <= 2.0, "{far}");
 }
 
+fn at_the_fence(rig: &Rig) -> bool {
+    let fence =
+        |kind: &EventKind| matches!(kind, EventKind::Firmware(FirmwareEvent::Nav(NavEvent::Geofence { .. })));
+    rig.event_at(fence).is_some()
+}
+
+#[test]
+fn craft_that_cannot_come_back_is_landed_at_the_fence() {
+    // Carried off before it engages, the craft gives up and holds as well as it can.
+    let (mut world, _) = world(0);
+    world.wind = "14@0".parse().unwrap();
+    let lines = "set ap_max_distance_from_home = 100
+waypoint insert 0 40.4635000 -79.5182000 2000 500 HOLD 0 NONE";
+    for (action, path) in [
+        ("LAND", "APPROACHING 0, IDLE 0, LANDING 0, COMPLETE 0"),
+        ("RTH", "APPROACHING 0, IDLE 0, APPROACHING 0, LANDING 0, COMPLETE 0"),
+    ] {
+        let lines = format!("{lines}\nset ap_geofence_action = {action}");
+        let mut rig = Rig::new(world.clone(), &lines, 20.0);
+        rig.engaged().until(60.0, "giving up", |rig| rig.path().ends_with("IDLE 0"));
+        rig.until(120.0, "the fence", at_the_fence);
+        rig.until(120.0, "disarm", |rig| rig.disarmed().is_some());
+        assert_eq!(rig.path(), path);
+        assert_eq!(rig.disarmed().unwrap().1, DisarmReason::Landing);
+    }
+}
+
+#[test]
+fn weak_motor_in_cruise_costs_a_degree() {
+    let line = "waypoint insert 0 40.4635901 -79.5182000 2000 500 FLYOVER 0 NONE
+waypoint insert 1 40.4662000 -79.5182000 2000 500 FLYOVER 0 NONE";
+    assert_met([0, 1].map(|seed| {
+        let mut rig = Rig::new(world(seed).0, line, 20.0);
+        rig.engaged().fly(20.0);
+        let start = rig.t();
+        let before = greatest(rig.span(start - 5.0, start).map(Sample::lean));
+        rig.vehicle.change_world(fault("motor", "2:0.8")).unwrap();
+        rig.fly(15.0);
+        let mut checks = Checks::default();
+        checks.at_most("lean", greatest(rig.span(start, 1e9).map(Sample::lean)), before + 1.0);
+        checks.at_most("altitude", greatest(rig.span(start, 1e9).map(|s| (s.alt - 20.0).abs())), 1.0);
+        checks.verdict(&format!("weak motor in cruise, seed {seed}"), &rig.story())
+    }));
+}
+
 #[test]
 fn wind_near_the_limit_is_held_and_beyond_it_ends_at_the_fence() {
     let mut rig = holding(0, "12@0", 0.0);
@@ -137,15 +182,7 @@ fn wind_near_the_limit_is_held_and_beyond_it_ends_at_the_fence() {
     rig.engaged().until_state(60.0, NavState::Holding).fly(5.0);
     rig.vehicle.change_world(WorldCommand::SetWind("14@0".parse().unwrap())).unwrap();
     let start = rig.t();
-    rig.until(1200.0, "the fence", |rig| {
-        rig.event_at(|kind| {
-            matches!(
-                kind,
-                EventKind::Firmware(FirmwareEvent::Nav(betadeck::autopilot::io::NavEvent::Geofence { .. }))
-            )
-        })
-        .is_some()
-    });
+    rig.until(1200.0, "the fence", at_the_fence);
     let lean: Vec<f64> = rig.span(start + 15.0, 1e9).map(Sample::lean).collect();
     let middle = mean(lean.iter().copied());
     let swing = greatest(lean.iter().map(|lean| (lean - middle).abs()));

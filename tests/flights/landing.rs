@@ -4,7 +4,7 @@ use crate::checks::{Checks, assert_met, greatest};
 use crate::rig::{Rig, SEEDS, Sample, world};
 use betadeck::autopilot::io::NavState;
 use betadeck::firmware::DisarmReason;
-use betadeck::sim::Wind;
+use betadeck::sim::{Turbulence, Wind};
 use betadeck::vehicle::EventKind;
 
 fn landing(seed: u64, wind: Wind) -> Option<String> {
@@ -61,4 +61,32 @@ fn landing(seed: u64, wind: Wind) -> Option<String> {
 fn landing_in_calm_and_in_wind() {
     let winds = [Wind::CALM, "3@200".parse().unwrap()];
     assert_met(SEEDS.into_iter().flat_map(|seed| winds.map(|wind| landing(seed, wind))));
+}
+
+/// The first seconds on the ground are the ones in which wind tips a craft over that leans against it.
+fn rough_landing(seed: u64) -> Option<String> {
+    let (mut world, _) = world(seed);
+    world.wind = Wind { speed_mps: 5.0, from_deg: (37.0 * seed as f64) % 360.0 };
+    world.turbulence = Turbulence::Moderate;
+    let mut rig = Rig::new(world, "waypoint insert 0 40.4635000 -79.5182000 1200 0 LAND 0 NONE", 12.0);
+    rig.engaged().until(120.0, "disarm", |rig| rig.disarmed().is_some()).fly(3.0);
+    let mut checks = Checks::default();
+    let (disarm, reason) = rig.disarmed().unwrap();
+    checks.same("reason", reason, DisarmReason::Landing);
+    // On its way up the craft has left the ground, too.
+    let contact = rig.span(5.0, disarm).find(|s| s.alt < 0.01).map_or(f64::INFINITY, |s| s.t);
+    checks.within("disarm after contact", disarm - contact, 1.0, 9.0);
+    let rest = rig.at(disarm);
+    checks.at_most("lean at the end", rest.lean(), 3.0);
+    checks.at_most("lean afterwards", greatest(rig.span(disarm, 1e9).map(Sample::lean)), 3.0);
+    checks.at_most("height at the disarm", rest.alt, 0.03);
+    checks.at_most("place", rest.from(rig.waypoint(0)), 2.5);
+    let moved = greatest(rig.span(disarm, 1e9).map(|s| (s.n - rest.n).hypot(s.e - rest.e)));
+    checks.at_most("stays", moved, 0.1);
+    checks.verdict(&format!("landing in rough air, seed {seed}"), &rig.story())
+}
+
+#[test]
+fn landing_in_rough_air_stands_level() {
+    assert_met((1..=20).map(rough_landing));
 }

@@ -8,10 +8,12 @@
 )]
 
 mod air;
+mod by_hand;
 mod checks;
 mod corners;
 mod geofence;
 mod gps;
+mod hover;
 mod landing;
 mod leaving;
 mod orbit;

@@ -58,3 +58,30 @@ fn response_by_policy_procedure_and_flight() {
         }
     }
 }
+
+/// Cuts the link in a mission, 12 to 20 m from home: how much higher than the craft the rescue returns.
+fn rescue_climb(min_start_dist_m: u32) -> f64 {
+    let lines = format!(
+        "set gps_rescue_min_start_dist = {min_start_dist_m}\nset failsafe_procedure = GPS-RESCUE{MISSION}"
+    );
+    let mut rig = Rig::new(world(0).0, &lines, 10.0);
+    rig.engaged();
+    rig.until(60.0, "12 m from home", |rig| {
+        rig.samples.last().is_some_and(|now| now.from([0.0, 0.0]) > 12.0)
+    });
+    rig.vehicle.hands.cut = true;
+    let plans = rig.plans().len();
+    rig.until(10.0, "the rescue", |rig| rig.plans().len() > plans);
+    let now = *rig.samples.last().unwrap();
+    assert!(now.from([0.0, 0.0]) < 28.0, "{}", now.from([0.0, 0.0]));
+    let (_, plan) = rig.plans().pop().unwrap();
+    f64::from(plan.waypoints[0].alt_cm) / 100.0 - now.alt
+}
+
+#[test]
+fn rescue_climbs_first_only_away_from_home() {
+    let near = rescue_climb(30);
+    assert!(near.abs() < 1.0, "{near}");
+    let far = rescue_climb(5);
+    assert!((9.0..12.0).contains(&far), "the initial climb: {far}");
+}

@@ -10,33 +10,10 @@ use betadeck::signals::SimTime;
 use betadeck::sim::{Noise, Switches, WindProfile, WorldConfig};
 use betadeck::vehicle::{Event, EventKind, Vehicle, VehicleConfig};
 
-/// The guide's configuration, Step 5.
-pub const GUIDE_SETTINGS: &str = "
-set ap_position_p = 40
-set ap_position_i = 10
-set ap_position_d = 30
-set ap_position_a = 20
-set ap_position_cutoff = 5
-set ap_altitude_p = 50
-set ap_altitude_i = 30
-set ap_altitude_d = 20
-set ap_altitude_f = 10
-set ap_hover_throttle = 1500
-set ap_waypoint_arrival_radius = 500
-set ap_waypoint_hold_radius = 200
-set ap_max_angle = 25
-set ap_l1_enable = ON
-set ap_l1_period = 20
-set ap_l1_min_lookahead = 1000
-set ap_l1_max_lookahead = 10000
-set ap_landing_descent_rate = 50
-set ap_landing_detection_time = 10
-set ap_landing_velocity_threshold = 50
-set ap_yaw_mode = VELOCITY
-set ap_max_yaw_rate = 90
-set ap_max_distance_from_home = 500
-set ap_geofence_action = LAND
-";
+/// The guide's configuration, Step 5, without its `save`: nothing restarts here.
+pub fn guide_settings() -> impl Iterator<Item = &'static str> {
+    include_str!("../vectors/guide-step5.txt").lines().filter(|line| line.starts_with("set "))
+}
 
 /// What a flight looks like from outside, a hundred times a second.
 #[derive(Debug, Clone, Copy)]
@@ -109,7 +86,7 @@ impl Rig {
         let vehicle = Vehicle::new(VehicleConfig { world, firmware, configuration, live: false }).unwrap();
         let standing_m = vehicle.world().truth().pos_enu.z;
         let mut rig = Self { vehicle, events: Vec::new(), samples: Vec::new(), standing_m };
-        rig.cli(GUIDE_SETTINGS);
+        rig.cli(&guide_settings().collect::<Vec<_>>().join("\n"));
         rig.cli("set ap_geofence_action = LAND");
         rig.cli(lines);
         rig.vehicle.start_pilot(takeoff_m).unwrap();

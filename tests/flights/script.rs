@@ -1,6 +1,6 @@
 //! The guide's RC script, which holds the ARM switch on and the throttle at 1100 from its first packet.
 
-use crate::rig::{GUIDE_SETTINGS, world};
+use crate::rig::{guide_settings, world};
 use betadeck::autopilot::io::NavState;
 use betadeck::firmware::cli::Interpreter;
 use betadeck::firmware::config::Configuration;
@@ -37,7 +37,7 @@ impl Bench {
         let options = FirmwareOptions { arm_assist, ..FirmwareOptions::default() };
         let mut firmware = Firmware::new(Configuration::default(), options);
         let mut session = Interpreter::default();
-        for line in GUIDE_SETTINGS.lines().chain(MODES_AND_PLAN.lines()) {
+        for line in guide_settings().chain(MODES_AND_PLAN.lines()) {
             assert!(!firmware.run_cli(&mut session, line).failed, "{line}");
         }
         Self { firmware, world: World::new(world(1).0).unwrap() }

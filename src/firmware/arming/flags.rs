@@ -83,17 +83,47 @@ pub enum ArmingFlag {
     ArmSwitch = 29,
 }
 
-/// Flags that tell a pilot most, first; the others follow in bit order, and the two that only say "again" come last.
-const MOST_USEFUL: [ArmingFlag; 5] = [
-    ArmingFlag::Cli,
-    ArmingFlag::RxLoss,
-    ArmingFlag::BootGrace,
-    ArmingFlag::Calibrating,
-    ArmingFlag::Throttle,
-];
-const LEAST_USEFUL: [ArmingFlag; 2] = [ArmingFlag::NotDisarmed, ArmingFlag::ArmSwitch];
-
 impl ArmingFlag {
+    /// What sets it, as a phrase; for flags that are known but never set here, why not.
+    #[must_use]
+    pub fn cause(self) -> &'static str {
+        match self {
+            Self::NoGyro => "never: the simulated gyro is always there",
+            Self::Failsafe => "a failsafe landing ended the flight, until the link is good again",
+            Self::RxLoss => "no valid RC for 150 ms, until it is back for `failsafe_recovery_delay`",
+            Self::NotDisarmed => "the link appeared with ARM on, until ARM goes off",
+            Self::BoxFailsafe => "the FAILSAFE switch is on",
+            Self::Runaway => "runaway take-off prevention disarmed, until ARM goes off",
+            Self::Crash => "crash detection disarmed, until ARM goes off",
+            Self::Throttle => "the throttle is at `min_check` or above",
+            Self::Angle => "tilted more than `small_angle`, or the attitude is not known yet",
+            Self::BootGrace => "`pwr_on_arm_grace` after boot is not over",
+            Self::NoPrearm => "PREARM is bound and not switched on for this arming",
+            Self::Load => "never: simulated time has no overload",
+            Self::Calibrating => "a calibration of gyro, accelerometer or magnetometer runs",
+            Self::Cli => "a CLI session was opened on a link, until reboot",
+            Self::Cms => "never: there is no on-screen menu",
+            Self::Bst => "never: there is no BST device",
+            Self::Msp => "never: in a simulator the configurator may stay connected",
+            Self::Paralyze => "the PARALYZE switch was on, until reboot",
+            Self::Gps => {
+                "GPS rescue is bound or the failsafe procedure, without its satellites, before the first arming"
+            }
+            Self::RescueSwitch => "the GPS RESCUE switch is on",
+            Self::DshotTelem | Self::DshotBitbang => "never: there is no DShot hardware",
+            Self::RebootRequired => "a change in memory needs a restart, until then or taken back",
+            Self::NoAccCal => "never: the simulated accelerometer needs no calibration",
+            Self::MotorProtocol => "`motor_pwm_protocol` was DISABLED at boot",
+            Self::FlipSwitch => "the FLIP OVER AFTER CRASH switch is on",
+            Self::AltHoldSwitch => "the ALTHOLD switch is on",
+            Self::PosHoldSwitch => "the POS HOLD switch is on",
+            Self::AutopilotSwitch => "the AUTOPILOT switch is on",
+            Self::ArmSwitch => {
+                "another flag stood while ARM was on, or a touchdown disarmed; until ARM goes off"
+            }
+        }
+    }
+
     /// What to do about it, as a phrase.
     #[must_use]
     pub fn hint(self) -> &'static str {
@@ -121,7 +151,7 @@ impl ArmingFlag {
             Self::DshotTelem | Self::DshotBitbang => "DShot trouble",
             Self::RebootRequired => "save and reboot",
             Self::NoAccCal => "calibrate the accelerometer",
-            Self::MotorProtocol => "choose another motor protocol",
+            Self::MotorProtocol => "set motor_pwm_protocol to another value, then save",
             Self::FlipSwitch => "switch crash flip off",
             Self::AltHoldSwitch => "switch ALTHOLD off",
             Self::PosHoldSwitch => "switch POS HOLD off",
@@ -172,13 +202,6 @@ impl ArmingFlags {
     pub fn iter(self) -> impl Iterator<Item = ArmingFlag> {
         ArmingFlag::iter().filter(move |&flag| self.has(flag))
     }
-
-    /// The flags with the most telling first.
-    pub fn by_usefulness(self) -> impl Iterator<Item = ArmingFlag> {
-        let middle =
-            ArmingFlag::iter().filter(|flag| !MOST_USEFUL.contains(flag) && !LEAST_USEFUL.contains(flag));
-        MOST_USEFUL.into_iter().chain(middle).chain(LEAST_USEFUL).filter(move |&flag| self.has(flag))
-    }
 }
 
 #[cfg(test)]
@@ -197,19 +220,5 @@ mod tests {
         for (bit, flag) in ArmingFlag::iter().enumerate() {
             assert_eq!(flag as usize, bit);
         }
-    }
-
-    #[test]
-    fn again_flags_come_last() {
-        let mut flags = ArmingFlags::NONE;
-        for flag in [ArmingFlag::NotDisarmed, ArmingFlag::Angle, ArmingFlag::Throttle, ArmingFlag::ArmSwitch]
-        {
-            flags.set(flag, true);
-        }
-        let order: Vec<_> = flags.by_usefulness().collect();
-        assert_eq!(
-            order,
-            [ArmingFlag::Throttle, ArmingFlag::Angle, ArmingFlag::NotDisarmed, ArmingFlag::ArmSwitch]
-        );
     }
 }

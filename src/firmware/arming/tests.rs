@@ -1,3 +1,5 @@
+use strum::IntoEnumIterator as _;
+
 use super::*;
 
 /// A craft that may be armed: everything fine, ARM off.
@@ -37,9 +39,9 @@ struct Row {
 const SAME: fn(&mut ArmingConfig) = |_| {};
 const BACK_TO_READY: fn(&mut ArmingFacts) = |_| {};
 
-#[test]
-fn each_situation_sets_its_flag_and_its_end_clears_it() {
-    let rows = [
+/// Every situation that sets a flag and passes with its cause.
+fn situations() -> Vec<Row> {
+    vec![
         Row { name: "FAILSAFE", config: SAME, set: |f| f.failsafe_landed = true, clear: BACK_TO_READY },
         Row { name: "RXLOSS", config: SAME, set: |f| f.link_good = false, clear: BACK_TO_READY },
         Row { name: "BOXFAILSAFE", config: SAME, set: |f| f.boxes.set(27, true), clear: BACK_TO_READY },
@@ -90,8 +92,13 @@ fn each_situation_sets_its_flag_and_its_end_clears_it() {
         Row { name: "ALT_HOLD_SW", config: SAME, set: |f| f.boxes.set(3, true), clear: BACK_TO_READY },
         Row { name: "POS_HOLD_SW", config: SAME, set: |f| f.boxes.set(11, true), clear: BACK_TO_READY },
         Row { name: "AUTOPILOT_SW", config: SAME, set: |f| f.boxes.set(56, true), clear: BACK_TO_READY },
-    ];
-    for row in rows {
+        Row { name: "FLIP_SWITCH", config: SAME, set: |f| f.boxes.set(35, true), clear: BACK_TO_READY },
+    ]
+}
+
+#[test]
+fn each_situation_sets_its_flag_and_its_end_clears_it() {
+    for row in situations() {
         let mut config = ArmingConfig::default();
         (row.config)(&mut config);
         let (mut bad, mut good) = (ready(), ready());
@@ -117,6 +124,73 @@ fn each_situation_sets_its_flag_and_its_end_clears_it() {
         held.update(&config, &good);
         assert_eq!(names(held.flags()), "");
     }
+}
+
+/// A change of what the configuration says.
+type Change = fn(&mut ArmingConfig);
+
+/// Flags that come from the configuration; they end when it is taken back, or with a restart.
+const BY_CONFIGURATION: [(&str, Change); 2] =
+    [("REBOOT_REQD", |c| c.reboot_required = true), ("MOTOR_PROTO", |c| c.motors_disabled = true)];
+
+#[test]
+fn configuration_sets_its_flags_while_it_lasts() {
+    for (name, change) in BY_CONFIGURATION {
+        let mut changed = ArmingConfig::default();
+        change(&mut changed);
+        let mut arming = Arming::default();
+        assert_eq!(arming.update(&changed, &ready()), None);
+        assert_eq!(names(arming.flags()), name);
+        assert_eq!(arming.update(&changed, &with(ready(), boxes::ARM)), None);
+        assert_eq!(names(arming.flags()), format!("{name} ARM_SWITCH"));
+        arming.update(&ArmingConfig::default(), &ready());
+        assert_eq!(names(arming.flags()), "", "{name}");
+        assert!(arming.update(&ArmingConfig::default(), &with(ready(), boxes::ARM)).is_some());
+    }
+}
+
+/// Flags that remember: the tests below show what sets and what clears each.
+const LATCHES: [&str; 6] = ["NOT_DISARMED", "RUNAWAY", "CRASH", "CLI", "PARALYZE", "ARM_SWITCH"];
+
+#[test]
+fn every_flag_has_its_situation_or_says_why_it_never_comes() {
+    let situations = situations();
+    for flag in ArmingFlag::iter() {
+        let name = flag.to_string();
+        let shown = situations.iter().any(|row| row.name == name)
+            || BY_CONFIGURATION.iter().any(|(row, _)| *row == name)
+            || LATCHES.contains(&name.as_str());
+        assert_ne!(shown, flag.cause().starts_with("never: "), "{name}: {}", flag.cause());
+    }
+}
+
+#[test]
+fn first_arming_waits_for_the_gyro_when_asked_to() {
+    let config = ArmingConfig { calibrate_gyro_first: true, ..ArmingConfig::default() };
+    let on = with(ready(), boxes::ARM);
+    let calibrating = ArmingFacts { calibrating: true, ..on };
+    let mut arming = Arming::default();
+    arming.update(&config, &ready());
+    assert_eq!(arming.update(&config, &on), Some(ArmingChange::CalibrateGyro));
+    for _ in 0..50 {
+        assert_eq!(arming.update(&config, &calibrating), None);
+        assert_eq!(names(arming.flags()), "CALIB", "the switch need not be cycled");
+    }
+    assert_eq!(arming.update(&config, &on), Some(ArmingChange::Armed { assisted: false }));
+    arming.disarm(DisarmReason::Switch);
+    arming.update(&config, &ready());
+    assert_eq!(arming.update(&config, &on), Some(ArmingChange::Armed { assisted: false }), "only once");
+}
+
+#[test]
+fn first_calibration_does_not_arm_a_craft_whose_switch_went_off() {
+    let config = ArmingConfig { calibrate_gyro_first: true, ..ArmingConfig::default() };
+    let mut arming = Arming::default();
+    arming.update(&config, &ready());
+    assert_eq!(arming.update(&config, &with(ready(), boxes::ARM)), Some(ArmingChange::CalibrateGyro));
+    arming.update(&config, &ArmingFacts { calibrating: true, ..ready() });
+    assert_eq!(arming.update(&config, &ready()), None);
+    assert!(arming.update(&config, &with(ready(), boxes::ARM)).is_some());
 }
 
 #[test]

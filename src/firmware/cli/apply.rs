@@ -4,6 +4,7 @@
 //! `defaults` resets without saving.
 
 use super::super::config::correct;
+use super::interpreter::code_of;
 use super::{CliContext, CliReply, Interpreter};
 
 /// One line that was refused.
@@ -11,7 +12,7 @@ use super::{CliContext, CliReply, Interpreter};
 pub struct FailedLine {
     /// Its number, from 1.
     pub number: usize,
-    /// The line without its comment.
+    /// The line without its comment and what exceeds the longest line.
     pub line: String,
     /// The first line of the refusal.
     pub reason: String,
@@ -38,7 +39,7 @@ enum Wish<'l> {
 }
 
 fn wish(line: &str) -> Wish<'_> {
-    let code = line.split('#').next().unwrap_or("").trim();
+    let code = code_of(line);
     match code.split_ascii_whitespace().next().unwrap_or("").to_ascii_lowercase().as_str() {
         "" => Wish::Nothing,
         "save" => Wish::Save,

@@ -140,8 +140,8 @@ fn setting_hint(setting: &Setting, settings: Option<&Settings>) -> String {
     };
     let effect = match setting.role {
         Role::Carry => " No effect here.",
-        Role::Live | Role::Opt if needs_restart(setting.name) => " Works after save.",
-        Role::Live | Role::Opt => "",
+        Role::Live if needs_restart(setting.name) => " Works after save.",
+        Role::Live => "",
     };
     format!("{}{now} (default {default}; {range}): {}{effect}", setting.name, setting.help)
 }

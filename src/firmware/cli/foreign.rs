@@ -16,7 +16,6 @@ const NAMES: &[&str] = &[
     "gyroregisters",
     "led",
     "mode_color",
-    "msc",
     "resource",
     "sd_info",
     "servo",

@@ -112,8 +112,10 @@ fn unknown(session: &mut Session<'_>, line: &str) {
     session.fail();
 }
 
-/// The part of a line before its comment, without surrounding blanks, cut to the longest line.
-fn code_of(line: &str) -> &str {
+/// The part of a line before its comment, without surrounding blanks, cut to the longest line. As at a prompt, blanks
+/// before the first word do not count.
+pub(super) fn code_of(line: &str) -> &str {
+    let line = line.trim_start();
     let end = line.char_indices().nth(MAX_LINE).map_or(line.len(), |(at, _)| at);
     let line = line.get(..end).unwrap_or(line);
     line.split_once('#').map_or(line, |(code, _)| code).trim()

@@ -207,8 +207,13 @@ pub(super) fn rc_smoothing_info(session: &mut Session<'_>, _rest: &str) {
     let switch = session.configuration.settings.text("rc_smoothing").to_owned();
     session.line(format_args!("# RC Smoothing: {switch}"));
     if switch == "ON" {
-        session.line(format_args!("# Active setpoint and FF cutoff: {}Hz (auto)", smoothing.setpoint_hz));
-        session.line(format_args!("# Active throttle cutoff: {}Hz (auto)", smoothing.throttle_hz));
+        for (what, hz, setting) in [
+            ("setpoint and FF", smoothing.setpoint_hz, "rc_smoothing_setpoint_cutoff"),
+            ("throttle", smoothing.throttle_hz, "rc_smoothing_throttle_cutoff"),
+        ] {
+            let by = if session.configuration.settings.number(setting) == 0 { "auto" } else { "manual" };
+            session.line(format_args!("# Active {what} cutoff: {hz}Hz ({by})"));
+        }
     }
 }
 

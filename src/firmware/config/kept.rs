@@ -3,7 +3,7 @@
 use super::super::settings::Scope;
 
 /// The most characters kept, far above what a whole `dump all` of any build contains.
-const MAX_CHARACTERS: usize = 1 << 18;
+const MAX_CHARACTERS: usize = 1 << 17;
 /// What a line costs beside its own characters.
 const LINE_COST: usize = 64;
 
@@ -26,45 +26,62 @@ impl KeptLine {
     pub fn command(&self) -> String {
         if self.name.is_empty() { self.text.clone() } else { format!("set {} = {}", self.name, self.text) }
     }
+
+    fn cost(&self) -> usize {
+        self.name.len() + self.text.len() + LINE_COST
+    }
 }
 
 /// All kept lines, section by section, in the order in which they came.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct KeptLines(Vec<KeptLine>);
+pub struct KeptLines {
+    lines: Vec<KeptLine>,
+    /// What all of them cost.
+    cost: usize,
+}
 
 impl KeptLines {
     /// Keeps a line: a setting replaces its earlier value, a command already kept is not repeated. `false` when there
     /// is no room.
     pub fn keep(&mut self, mut line: KeptLine) -> bool {
-        line.text = line.text.replace(char::is_control, " ");
+        // As it would be typed again.
+        line.text = line.text.replace(char::is_control, " ").trim().to_owned();
+        // From the end: lines of a family begin alike, and a file may have very many of them.
+        let is_same = |a: &str, b: &str| a.len() == b.len() && a.bytes().rev().eq(b.bytes().rev());
         let same_place = |old: &&mut KeptLine| {
             old.scope == line.scope
                 && old.instance == line.instance
-                && old.name == line.name
-                && (!line.name.is_empty() || old.text == line.text)
+                && is_same(&old.name, &line.name)
+                && (!line.name.is_empty() || is_same(&old.text, &line.text))
         };
-        if let Some(old) = self.0.iter_mut().find(same_place) {
+        let cost = self.cost + line.cost();
+        if let Some(old) = self.lines.iter_mut().find(same_place) {
+            let cost = cost - old.cost();
+            if cost > MAX_CHARACTERS {
+                return false;
+            }
+            self.cost = cost;
             old.text = line.text;
             return true;
         }
-        let cost = |line: &KeptLine| line.name.len() + line.text.len() + LINE_COST;
-        let room = self.0.iter().map(cost).sum::<usize>() + cost(&line) <= MAX_CHARACTERS;
+        let room = cost <= MAX_CHARACTERS;
         if room {
+            self.cost = cost;
             let place = |line: &KeptLine| (line.scope, line.instance);
-            let end = self.0.partition_point(|old| place(old) <= place(&line));
-            self.0.insert(end, line);
+            let end = self.lines.partition_point(|old| place(old) <= place(&line));
+            self.lines.insert(end, line);
         }
         room
     }
 
     /// All lines in order.
     pub fn iter(&self) -> impl Iterator<Item = &KeptLine> {
-        self.0.iter()
+        self.lines.iter()
     }
 
     /// The lines of one section.
     pub fn of(&self, scope: Scope, instance: u8) -> impl Iterator<Item = &KeptLine> {
-        self.0.iter().filter(move |line| line.scope == scope && line.instance == instance)
+        self.lines.iter().filter(move |line| line.scope == scope && line.instance == instance)
     }
 }
 
@@ -84,12 +101,12 @@ mod tests {
             line(0, "dyn_idle_min_rpm", "20"),
             line(1, "", "led 0 0,0::C:0"),
             line(1, "", "led 0 0,0::C:0"),
-            line(1, "dyn_idle_min_rpm", "40\t\r"),
+            line(1, "dyn_idle_min_rpm", " 4\t0\t\r"),
         ] {
             assert!(kept.keep(kept_line));
         }
         let commands: Vec<String> = kept.iter().map(KeptLine::command).collect();
-        assert_eq!(commands, ["set dyn_idle_min_rpm = 20", "set dyn_idle_min_rpm = 40  ", "led 0 0,0::C:0"]);
+        assert_eq!(commands, ["set dyn_idle_min_rpm = 20", "set dyn_idle_min_rpm = 4 0", "led 0 0,0::C:0"]);
     }
 
     #[test]
@@ -98,6 +115,17 @@ mod tests {
         let stored = (0..10_000)
             .take_while(|at| kept.keep(line(0, "", &format!("led {at} {}", "x".repeat(200)))))
             .count();
-        assert!((500..2000).contains(&stored), "{stored}");
+        assert!((300..1000).contains(&stored), "{stored}");
+    }
+
+    #[test]
+    fn a_new_value_needs_room_too() {
+        let mut kept = KeptLines::default();
+        assert!(kept.keep(line(0, "a", "short")));
+        let half = "x".repeat(MAX_CHARACTERS / 2);
+        assert!(kept.keep(line(0, "b", &half)));
+        assert!(!kept.keep(line(0, "a", &half)));
+        assert_eq!(kept.iter().next().map(KeptLine::command).as_deref(), Some("set a = short"));
+        assert!(kept.keep(line(0, "b", "short")) && kept.keep(line(0, "a", &half)));
     }
 }

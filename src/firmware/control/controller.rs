@@ -1,5 +1,6 @@
 //! The controller: one step from demands and motion to motor commands.
 
+use super::boost::{GainBoost, ThrottleBoost};
 use super::derived::Derived;
 use super::ground::Legs;
 use super::gyro::GyroFilter;
@@ -31,6 +32,11 @@ pub struct Controller {
     /// Setpoints (°/s) and throttle (0…1) of the sticks before smoothing, and the sticks they belong to.
     raw: [f64; 4],
     raw_sticks: [f64; 4],
+    /// Setpoints of the sticks after their acceleration was limited, °/s.
+    limited: [f64; 3],
+    throttle_boost: ThrottleBoost,
+    /// Throttle added for the tilt.
+    tilt_throttle: f64,
     heading_hold: HeadingHold,
     level: Level,
     horizon: Horizon,
@@ -59,6 +65,9 @@ impl Controller {
             smoothing: Smoothing::new(),
             raw: [0.0; 4],
             raw_sticks: [f64::NAN; 4],
+            limited: [0.0; 3],
+            throttle_boost: ThrottleBoost::default(),
+            tilt_throttle: 0.0,
             heading_hold: HeadingHold::default(),
             level: Level::default(),
             horizon: Horizon::default(),
@@ -104,10 +113,17 @@ impl Controller {
         &self.state
     }
 
+    /// Turns the heading that is held to this one, rad clockwise from north; nothing while none is held.
+    pub fn hold_heading(&mut self, heading_rad: f64) {
+        self.heading_hold.turn_to(heading_rad);
+    }
+
     /// The craft was armed: nothing of the flight before is remembered.
     pub fn on_arm(&mut self) {
         self.rate_loop = RateLoop::default();
         self.was_raised = false;
+        self.throttle_boost = ThrottleBoost::default();
+        self.tilt_throttle = 0.0;
         self.level.release();
     }
 
@@ -166,7 +182,16 @@ impl Controller {
                 self.tuning.throttle.throttle(input.throttle_us),
             ];
         }
-        self.smoothing.apply(&self.raw, input.rc_frame, &self.tuning, dt)
+        let mut smooth = self.smoothing.apply(&self.raw, input.rc_frame, &self.tuning, dt);
+        for ((setpoint, last), limit) in
+            smooth.iter_mut().zip(&mut self.limited).zip(self.tuning.accel_limit_dps2)
+        {
+            if limit > 0.0 {
+                *setpoint = *last + (*setpoint - *last).clamp(-limit * dt, limit * dt);
+            }
+            *last = *setpoint;
+        }
+        smooth
     }
 
     /// Disarmed: motors stand or follow the `motor` command.
@@ -192,12 +217,13 @@ impl Controller {
         held.unwrap_or(stick_dps)
     }
 
-    /// Lets the angle loop shape the setpoints; says whether roll and pitch are fully its own.
-    fn levelling(&mut self, input: &ControlInput, estimate: &Estimate, setpoint: &mut [f64; 3]) -> bool {
+    /// Lets the angle loop shape the setpoints; says which axes are fully its own.
+    fn levelling(&mut self, input: &ControlInput, estimate: &Estimate, setpoint: &mut [f64; 3]) -> [bool; 3] {
         if input.lean.is_none() && input.mode == StickMode::Acro {
             self.level.release();
             self.state.angle_demand_rad = None;
-            return false;
+            self.tilt_throttle = 0.0;
+            return [false; 3];
         }
         let is_horizon = input.lean.is_none() && input.mode == StickMode::Horizon;
         if self.is_level_due {
@@ -212,6 +238,7 @@ impl Controller {
             self.since_level_s = 0.0;
             self.level.update(&demand, &self.state.gyro_dps, &self.tuning.level, dt);
             self.state.angle_demand_rad = Some(target.map(f64::to_radians));
+            self.tilt_throttle = self.tuning.tilt_throttle.at(estimate.cos_tilt);
             if is_horizon {
                 let stick = input.stick_roll.abs().max(input.stick_pitch.abs()) / FULL_STICK;
                 let tilt = estimate.cos_tilt.clamp(-1.0, 1.0).acos().to_degrees();
@@ -220,13 +247,14 @@ impl Controller {
         }
         let level = self.level.rates(&self.derived);
         let share = if is_horizon { self.horizon_strength } else { 1.0 };
-        for axis in 0..2 {
+        let by_rate = input.lean.is_none() && !is_horizon && self.tuning.level.race_mode;
+        for axis in 0..if by_rate { 1 } else { 2 } {
             setpoint[axis] += share * (level[axis] - setpoint[axis]);
         }
         if !is_horizon {
             setpoint[2] *= self.level.yaw_share();
         }
-        !is_horizon
+        [!is_horizon, !is_horizon && !by_rate, false]
     }
 
     /// Demanded roll and pitch, °: the navigator's, or the sticks' within the angle limit.
@@ -243,21 +271,26 @@ impl Controller {
         [0, 1].map(|axis| limit * (setpoint[axis] / self.full_rates[axis]).clamp(-1.0, 1.0))
     }
 
-    fn fly(&mut self, input: &ControlInput, setpoint: [f64; 3], lift: f64, levelling: bool) {
+    fn fly(&mut self, input: &ControlInput, setpoint: [f64; 3], lift: f64, levelled: [bool; 3]) {
         let is_held = input.throttle.is_some();
-        let throttle = input.throttle.filter(|t| t.is_finite()).unwrap_or(lift).clamp(0.0, 1.0);
-        let airmode = input.airmode || is_held;
+        let (lead, gain_boost) = self.throttle_boost.step(lift, &self.tuning.boost, &self.derived);
         let is_low = !is_held && input.throttle_us < self.tuning.throttle.zero_us;
+        let by_pilot = if input.failsafe || is_low { lift } else { lead + self.tilt_throttle };
+        let throttle = input.throttle.filter(|t| t.is_finite()).unwrap_or(by_pilot).clamp(0.0, 1.0);
+        let airmode = input.airmode || is_held;
         if self.is_level_due {
             self.derived.follow_throttle(&self.tuning, throttle);
         }
         let demand = RateDemand {
             setpoint,
             gyro: self.state.gyro_dps,
-            levelling,
+            levelled,
             deflection: [input.stick_roll, input.stick_pitch, input.stick_yaw].map(|s| s.abs() / FULL_STICK),
             attenuation: self.attenuation(lift),
-            integrate: (airmode || !is_low) && !(input.lean.is_some() && self.legs.are_loaded()),
+            // A throttle that somebody else holds does not jump with the stick.
+            boost: if input.anti_gravity && !is_held { gain_boost } else { GainBoost::NONE },
+            integrate: (airmode || !is_low)
+                && !(input.stands || input.lean.is_some() && self.legs.are_loaded()),
         };
         let rate = &self.tuning.rate;
         let sums = self.rate_loop.step(&demand, rate, &self.derived);
@@ -292,115 +325,4 @@ impl Controller {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::firmware::estimate::DueTasks;
-
-    const DT: f64 = 0.001;
-    const DUE: DueTasks = DueTasks { attitude: true, navigation: false };
-
-    fn flying() -> ControlInput {
-        ControlInput { armed: true, airmode: true, throttle_us: 1525.0, due: DUE, ..ControlInput::default() }
-    }
-
-    fn run(controller: &mut Controller, input: &ControlInput, steps: usize) -> ControlState {
-        for _ in 0..steps {
-            controller.step(input, &Estimate::default(), DT);
-        }
-        *controller.state()
-    }
-
-    #[test]
-    fn disarmed_motors_stand_or_follow_the_motor_command() {
-        let mut controller = Controller::new(Tuning::default(), DT);
-        assert_eq!(run(&mut controller, &ControlInput::default(), 10).motors.0, [0.0; 4]);
-        let test =
-            ControlInput { motor_test_us: [1100.0, 1000.0, 1000.0, 1250.0], ..ControlInput::default() };
-        assert_eq!(run(&mut controller, &test, 1).motors.0, [0.1, 0.0, 0.0, 0.25]);
-    }
-
-    #[test]
-    fn half_stick_is_half_throttle_above_idle() {
-        let mut controller = Controller::new(Tuning::default(), DT);
-        let state = run(&mut controller, &flying(), 1000);
-        for motor in state.motors_us {
-            assert!((motor - (1055.0 + 945.0 * 0.5)).abs() < 0.1, "{motor}");
-        }
-        assert!((state.throttle_us - 1525.0).abs() < 0.1);
-    }
-
-    #[test]
-    fn right_sticks_roll_right_pitch_down_and_turn_clockwise() {
-        for (stick, raised) in [(0, [2, 3]), (1, [0, 2]), (2, [1, 2])] {
-            let mut controller = Controller::new(Tuning::default(), DT);
-            let mut input = flying();
-            *[&mut input.stick_roll, &mut input.stick_pitch, &mut input.stick_yaw][stick] = 100.0;
-            let state = run(&mut controller, &input, 300);
-            let mean = state.motors_us.iter().sum::<f64>() / 4.0;
-            for (motor, pulse) in state.motors_us.iter().enumerate() {
-                assert_eq!(*pulse > mean, raised.contains(&motor), "stick {stick} motor {motor}");
-            }
-            assert!(state.setpoint_dps[stick] > 10.0);
-        }
-    }
-
-    #[test]
-    fn a_demanded_lean_takes_the_place_of_the_sticks() {
-        let mut controller = Controller::new(Tuning::default(), DT);
-        let lean = super::super::LeanDemand { roll_rad: 0.2, pitch_rad: -0.1 };
-        let input = ControlInput { lean: Some(lean), stick_roll: -500.0, throttle: Some(0.4), ..flying() };
-        let state = run(&mut controller, &input, 100);
-        assert!(state.setpoint_dps[0] > 0.0 && state.setpoint_dps[1] < 0.0);
-        let [roll, pitch] = state.angle_demand_rad.unwrap();
-        assert!((roll - 0.2).abs() < 1e-9 && (pitch + 0.1).abs() < 1e-9);
-        assert!((state.throttle_us - (1050.0 + 950.0 * 0.4)).abs() < 0.1);
-    }
-
-    #[test]
-    fn integrals_are_empty_before_the_throttle_is_raised() {
-        let mut controller = Controller::new(Tuning::default(), DT);
-        let low = ControlInput { airmode: false, throttle_us: 1000.0, stick_yaw: 100.0, ..flying() };
-        run(&mut controller, &low, 500);
-        let once = controller.state().pid_sum[2];
-        run(&mut controller, &low, 500);
-        assert!((controller.state().pid_sum[2] - once).abs() < 0.2);
-        let stopped = ControlInput { motor_stop: true, ..low };
-        assert_eq!(run(&mut controller, &stopped, 1).motors_us, [1000.0; 4]);
-    }
-
-    #[test]
-    fn a_slower_rate_loop_hears_every_fresh_attitude() {
-        let mut settings = crate::firmware::settings::Settings::default();
-        settings.set_number("pid_process_denom", 2).unwrap();
-        let tuning = Tuning::from_settings(&settings, crate::firmware::config::MixerKind::QuadX, &[]);
-        for first in 0..2 {
-            let mut controller = Controller::new(tuning, DT);
-            for step in 0..20 {
-                let due = DueTasks { attitude: step % 2 == first, navigation: false };
-                let input = ControlInput { mode: StickMode::Angle, stick_roll: 200.0, due, ..flying() };
-                controller.step(&input, &Estimate::default(), DT);
-            }
-            assert!(controller.state().setpoint_dps[0] > 1.0);
-        }
-    }
-
-    #[test]
-    fn gains_fall_with_throttle_and_before_take_off() {
-        let mut controller = Controller::new(Tuning::default(), DT);
-        assert!((controller.attenuation(0.0) - 0.8).abs() < 1e-9);
-        assert!((controller.attenuation(0.2) - 1.0).abs() < 1e-9);
-        assert!((controller.attenuation(0.0) - 1.0).abs() < 1e-9);
-        assert!((controller.attenuation(1.0) - 0.35).abs() < 1e-9);
-    }
-
-    #[test]
-    fn a_lost_gyro_leaves_finite_outputs() {
-        let mut controller = Controller::new(Tuning::default(), DT);
-        let mut estimate = Estimate::default();
-        estimate.rates.roll = f64::NAN;
-        for _ in 0..10 {
-            let state = controller.step(&flying(), &estimate, DT);
-            assert!(state.motors.0.iter().all(|motor| motor.is_finite()));
-        }
-    }
-}
+mod tests;

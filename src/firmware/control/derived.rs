@@ -6,6 +6,9 @@ use crate::firmware::filter::{LowPass, Pt3, pt1_gain};
 /// Cutoff of the demanded rates of the angle loop, Hz.
 const LEVEL_RATE_HZ: f64 = 50.0;
 
+/// Cutoff of the boost of D, Hz.
+const D_BOOST_HZ: f64 = 20.0;
+
 /// Coefficients of the fixed filters.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Derived {
@@ -20,6 +23,11 @@ pub(super) struct Derived {
     pub yaw_lowpass: f64,
     pub relax: f64,
     pub level_rate: f64,
+    /// Low-passes of the throttle that tell its quick changes.
+    pub anti_gravity: f64,
+    pub throttle_boost: f64,
+    /// How fast D follows fast moves.
+    pub d_boost: f64,
 }
 
 impl Derived {
@@ -36,6 +44,9 @@ impl Derived {
             yaw_lowpass: pt1_gain(rate.yaw_lowpass_hz, pid_dt),
             relax: pt1_gain(rate.relax.cutoff_hz, pid_dt),
             level_rate: Pt3::gain(LEVEL_RATE_HZ, pid_dt),
+            anti_gravity: pt1_gain(tuning.boost.anti_gravity_cutoff_hz, pid_dt),
+            throttle_boost: pt1_gain(tuning.boost.throttle_cutoff_hz, pid_dt),
+            d_boost: pt1_gain(D_BOOST_HZ, pid_dt),
         };
         derived.follow_throttle(tuning, 0.0);
         derived

@@ -29,6 +29,13 @@ impl HeadingHold {
         let error = wrap_pi(self.held_rad? - heading_rad);
         Some((GAIN * error.to_degrees()).clamp(-LIMIT_DPS, LIMIT_DPS))
     }
+
+    /// Holds this heading instead of the one that is held; while none is, the pilot's stick decides which will be.
+    pub fn turn_to(&mut self, heading_rad: f64) {
+        if let Some(held) = &mut self.held_rad {
+            *held = heading_rad;
+        }
+    }
 }
 
 /// Roll and pitch sticks, given relative to `reference_rad`, as the craft heading `heading_rad` must take them.
@@ -50,6 +57,17 @@ mod tests {
         assert_eq!(hold.rate_dps(true, 100.0, 1.1, 0.0), None);
         assert_eq!(hold.rate_dps(true, 0.0, 2.0, 50.0), None);
         assert_eq!(hold.rate_dps(true, 0.0, 2.2, 5.0), Some(0.0));
+    }
+
+    #[test]
+    fn a_held_heading_can_be_changed() {
+        let mut hold = HeadingHold::default();
+        hold.turn_to(2.0);
+        assert_eq!(hold.rate_dps(true, 0.0, 1.0, 0.0), Some(0.0), "none was held");
+        hold.turn_to(1.1);
+        assert!(hold.rate_dps(true, 0.0, 1.0, 0.0).unwrap() > 10.0);
+        hold.turn_to(1.0 + std::f64::consts::TAU);
+        assert!(hold.rate_dps(true, 0.0, 1.0, 0.0).unwrap().abs() < 1e-6);
     }
 
     #[test]

@@ -42,6 +42,8 @@ pub struct HoldTuning {
     pub mid_us: f64,
     /// Below this the throttle stick does nothing, µs.
     pub low_us: f64,
+    /// The position may come from the GPS; there is nothing else here.
+    pub uses_gps: bool,
 }
 
 impl Default for HoldTuning {
@@ -60,7 +62,16 @@ impl HoldTuning {
             stick_deadband: number("pos_hold_deadband") / 100.0,
             mid_us: number("mid_rc"),
             low_us: number("min_check"),
+            uses_gps: settings.text("poshold_position_source") != "OPTICALFLOW_ONLY",
         }
+    }
+}
+
+impl HoldTuning {
+    /// The throttle stick that makes ALTHOLD sink at a rate (m/s), µs; `None` when no stick does.
+    #[must_use]
+    pub fn sink_stick_us(&self, rate_mps: f64, params: &Params) -> Option<f64> {
+        altitude::sink_stick_us(rate_mps, params, self)
     }
 }
 
@@ -90,12 +101,6 @@ impl Holds {
         *self = Self::default();
     }
 
-    /// Altitude that is held, m above home, while it is.
-    #[must_use]
-    pub fn altitude_target_m(&self) -> Option<f64> {
-        self.altitude.target_m()
-    }
-
     /// One update. `throttle_stick_us` is the pilot's throttle; while the navigator flies, no mode is on.
     pub fn update(
         &mut self,
@@ -113,7 +118,7 @@ impl Holds {
             self.altitude.watch(now, params);
             (None, false)
         };
-        let lean = if modes.position && now.fix {
+        let lean = if modes.position && now.fix && tuning.uses_gps {
             Some(self.position.update(now, params, tuning))
         } else {
             self.position.watch(now);

@@ -49,14 +49,35 @@ pub(super) fn mix(demand: &MixDemand, tuning: &MixerTuning) -> [f64; 4] {
     }
     (low, high) = (low * scale, high * scale);
     // −low ≤ 1 − high, because the scaled range is at most 1; `max` keeps rounding from turning them round.
-    let throttle = demand.throttle.clamp(-low, (1.0 - high).max(-low));
+    let throttle = before_boost(demand.throttle, tuning.thrust_linear).clamp(-low, (1.0 - high).max(-low));
     let ceiling = tuning.stop_us + (tuning.max_us - tuning.stop_us) * tuning.output_limit;
     let idle = tuning.idle_us.min(ceiling);
     let floor = if demand.may_stop { tuning.stop_us } else { idle };
     std::array::from_fn(|motor| {
-        let output = idle + (ceiling - idle) * (mixes[motor] + throttle * tuning.rows[motor].throttle);
+        let share = boosted(mixes[motor] + throttle * tuning.rows[motor].throttle, tuning.thrust_linear);
+        let output = idle + (ceiling - idle) * share;
         output.clamp(floor, ceiling)
     })
+}
+
+/// An output (0…1) for thrust that is more linear: propellers give little of it at low outputs, so these are raised, by
+/// k·x·(1 − x)².
+fn boosted(output: f64, k: f64) -> f64 {
+    if k <= 0.0 {
+        return output;
+    }
+    let output = output.clamp(0.0, 1.0);
+    output * (1.0 + k * (1.0 - output).powi(2))
+}
+
+/// The throttle whose boosted output is this one, so that the throttle stick feels as before. The fixed point is
+/// approached from above; a few rounds come within a hundredth.
+fn before_boost(throttle: f64, k: f64) -> f64 {
+    const ROUNDS: usize = 12;
+    if k <= 0.0 {
+        return throttle;
+    }
+    (0..ROUNDS).fold(throttle, |before, _| 0.5 * (before + throttle / (1.0 + k * (1.0 - before).powi(2))))
 }
 
 /// The command for a pulse.
@@ -106,6 +127,26 @@ mod tests {
         let limited = MixerTuning { output_limit: 0.5, ..quad() };
         assert_eq!(mix(&demand([0.0; 3], 1.0, true), &limited), [1500.0; 4]);
         assert_eq!(mix(&demand([0.0; 3], 0.0, true), &limited), [1055.0; 4]);
+    }
+
+    #[test]
+    fn linear_thrust_keeps_the_hover_and_steers_harder_at_low_throttle() {
+        let outputs = |k: f64, throttle: f64, roll: f64| {
+            mix(&demand([roll, 0.0, 0.0], throttle, true), &MixerTuning { thrust_linear: k, ..quad() })
+        };
+        for k in [0.2, 0.5, 1.5] {
+            for throttle in [0.0, 0.1, 0.3, 0.5, 0.9, 1.0] {
+                let [plain, linear] = [outputs(0.0, throttle, 0.0)[0], outputs(k, throttle, 0.0)[0]];
+                assert!((plain - linear).abs() < 15.0, "{k} {throttle}: {plain} {linear}");
+            }
+        }
+        let authority = [0.0, 0.2, 0.5, 1.5].map(|k| {
+            let pulses = outputs(k, 0.2, 50.0);
+            pulses[2] - pulses[0]
+        });
+        assert!(authority.windows(2).all(|pair| pair[0] < pair[1]), "{authority:?}");
+        let rising: Vec<f64> = (0..=20).map(|at| boosted(f64::from(at) / 20.0, 1.5)).collect();
+        assert!(rising.windows(2).all(|pair| pair[0] < pair[1]), "{rising:?}");
     }
 
     #[test]

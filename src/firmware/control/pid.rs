@@ -1,7 +1,8 @@
 //! The rate loop.
 
+use super::boost::GainBoost;
 use super::derived::Derived;
-use super::tuning::{AxisGains, RateTuning};
+use super::tuning::{DynamicD, RateTuning};
 use crate::firmware::filter::{LowPassState, Pt1};
 
 /// Index of yaw among the axes.
@@ -17,12 +18,14 @@ pub(super) struct RateDemand {
     pub setpoint: [f64; 3],
     /// Filtered gyro, °/s.
     pub gyro: [f64; 3],
-    /// Roll and pitch are levelled: their setpoints come from the angle loop.
-    pub levelling: bool,
+    /// Axes that are levelled: their setpoints come from the angle loop.
+    pub levelled: [bool; 3],
     /// Greatest deflection of the stick of each axis, 0…1.
     pub deflection: [f64; 3],
     /// Gains of D (and P) fall by this factor.
     pub attenuation: f64,
+    /// Rise of the gains in quick throttle changes.
+    pub boost: GainBoost,
     /// The integrals work.
     pub integrate: bool,
 }
@@ -37,6 +40,7 @@ struct Axis {
     slow_setpoint: Pt1,
     slow_gyro: Pt1,
     p_filter: Pt1,
+    d_boost: Pt1,
 }
 
 /// The rate loop of three axes.
@@ -53,14 +57,34 @@ impl RateLoop {
         }
     }
 
+    /// Turns the integrals against the turn of the craft (°/s): as a vector they stay where they push in the world.
+    /// Yaw counts clockwise, the opposite of the axis that makes a right-handed system with roll and pitch.
+    fn rotate_integrals(&mut self, gyro: &[f64; 3], dt: f64) {
+        let turn = gyro.map(|rate| rate.to_radians() * dt);
+        let [roll, pitch, yaw] = [0, 1, 2].map(|axis| self.axes[axis].integral);
+        let change = [
+            pitch * -turn[2] + yaw * turn[1],
+            -yaw * turn[0] + roll * turn[2],
+            -(roll * turn[1] - pitch * turn[0]),
+        ];
+        for (axis, change) in self.axes.iter_mut().zip(change) {
+            if change.is_finite() {
+                axis.integral += change;
+            }
+        }
+    }
+
     /// One step; sums in thousandths of the mixer's range, before their limits.
     pub fn step(&mut self, demand: &RateDemand, tuning: &RateTuning, derived: &Derived) -> [f64; 3] {
         let mut sums = [0.0; 3];
         let rate_hz = 1.0 / derived.pid_dt;
+        if tuning.rotates_integrals {
+            self.rotate_integrals(&demand.gyro, derived.pid_dt);
+        }
         for (index, (axis, sum)) in self.axes.iter_mut().zip(&mut sums).enumerate() {
             let gains = &tuning.gains[index];
             let (setpoint, gyro) = (demand.setpoint[index], demand.gyro[index]);
-            let is_level = demand.levelling && index != YAW;
+            let is_level = demand.levelled[index];
             let error = setpoint - gyro;
             let mut p = gains.p * error;
             if tuning.tpa_on_p {
@@ -68,18 +92,26 @@ impl RateLoop {
             }
             if index == YAW {
                 p = axis.p_filter.apply(p, derived.yaw_lowpass);
+            } else {
+                p *= demand.boost.p;
             }
             let relaxed = axis.relax(index, error, demand, is_level, tuning, derived);
             if demand.integrate {
                 let limit = tuning.integral_limit[index];
-                let grown = axis.integral + gains.i * relaxed * derived.pid_dt;
+                let grown = axis.integral + gains.i * demand.boost.i * relaxed * derived.pid_dt;
                 axis.integral = grown.clamp(-limit, limit);
             } else {
                 axis.integral = 0.0;
             }
-            let d = axis.derivative(gyro, gains, rate_hz, derived) * demand.attenuation;
             let setpoint_rate = (setpoint - axis.last_setpoint) * rate_hz;
             axis.last_setpoint = setpoint;
+            let d = if gains.d == 0.0 && tuning.dynamic_d.most[index] == 0.0 {
+                0.0
+            } else {
+                let slope = axis.slope(gyro, rate_hz, derived);
+                let moved = slope.abs().max(tuning.dynamic_d.setpoint_share * setpoint_rate.abs());
+                -axis.d_gain(gains.d, index, moved, &tuning.dynamic_d, derived) * slope * demand.attenuation
+            };
             let f = if is_level {
                 0.0
             } else {
@@ -97,15 +129,23 @@ impl RateLoop {
 }
 
 impl Axis {
-    fn derivative(&mut self, gyro: f64, gains: &AxisGains, rate_hz: f64, derived: &Derived) -> f64 {
-        if gains.d == 0.0 {
-            return 0.0;
-        }
+    /// Acceleration, filtered, °/s².
+    fn slope(&mut self, gyro: f64, rate_hz: f64, derived: &Derived) -> f64 {
         let first = self.d_filters[0].apply(gyro, &derived.d_lpf1);
         let filtered = self.d_filters[1].apply(first, &derived.d_lpf2);
         let slope = (filtered - self.last_d_input) * rate_hz;
         self.last_d_input = filtered;
-        -gains.d * slope
+        slope
+    }
+
+    /// D between its base and its greatest, by how fast the craft moves, °/s².
+    fn d_gain(&mut self, base: f64, index: usize, moved: f64, dynamic: &DynamicD, derived: &Derived) -> f64 {
+        let most = dynamic.most[index];
+        if dynamic.readiness <= 0.0 || most <= base {
+            return base;
+        }
+        let share = self.d_boost.apply((dynamic.readiness * moved).min(1.0), derived.d_boost);
+        base + (most - base) * share
     }
 
     /// The error as the integral sees it: a setpoint that moves fast is no reason to wind up.
@@ -152,9 +192,10 @@ mod tests {
         RateDemand {
             setpoint: [setpoint; 3],
             gyro: [gyro; 3],
-            levelling: false,
+            levelled: [false; 3],
             deflection: [1.0; 3],
             attenuation: 1.0,
+            boost: GainBoost::NONE,
             integrate: true,
         }
     }
@@ -202,6 +243,83 @@ mod tests {
         assert!((sums[0] - 10.0 * tuning.rate.gains[0].p).abs() < 0.5);
         tuning.rate.at_min_throttle = false;
         assert_eq!(rate_loop.step(&idle, &tuning.rate, &derived), [0.0; 3]);
+    }
+
+    #[test]
+    fn d_rises_in_fast_moves_as_far_as_it_may() {
+        // The D part of a gyro that accelerates at 4000 °/s², and with it a setpoint.
+        let d = |gain: i64, advance: i64, most: i64, slope: f64| {
+            let mut settings = crate::firmware::settings::Settings::default();
+            for (name, value) in [
+                ("d_max_gain", gain),
+                ("d_max_advance", advance),
+                ("d_max_roll", most),
+                ("p_roll", 0),
+                ("i_roll", 0),
+            ] {
+                settings.set_number(name, value).unwrap();
+            }
+            let kind = crate::firmware::config::MixerKind::QuadX;
+            let tuning = Tuning::from_settings(&settings, kind, &[]);
+            let derived = Derived::new(&tuning, 0.001);
+            let mut rate_loop = RateLoop::default();
+            let mut sum = 0.0;
+            for step in 0..200 {
+                let gyro = slope * 0.001 * f64::from(step);
+                sum = -rate_loop.step(&demand(0.0, gyro), &tuning.rate, &derived)[0];
+            }
+            sum / slope
+        };
+        let base = 30.0 * 0.000_529;
+        assert!((d(0, 100, 60, 4000.0) / base - 1.0).abs() < 0.02, "no gain, no rise");
+        assert!((d(50, 0, 20, 4000.0) / base - 1.0).abs() < 0.02, "below the base it is nothing");
+        let by_gain = [0, 10, 30, 60].map(|gain| d(gain, 0, 60, 4000.0));
+        assert!(by_gain.windows(2).all(|pair| pair[0] < pair[1]), "{by_gain:?}");
+        assert!((by_gain[3] / base - 2.0).abs() < 0.02, "60 is twice 30: {by_gain:?}");
+        let by_speed = [500.0, 2000.0, 4000.0].map(|slope| d(30, 0, 60, slope));
+        assert!(by_speed.windows(2).all(|pair| pair[0] < pair[1]), "{by_speed:?}");
+    }
+
+    #[test]
+    fn a_moving_setpoint_raises_d_by_the_advance() {
+        let dynamic = |advance: f64| DynamicD { most: [1.0; 3], readiness: 1e-4, setpoint_share: advance };
+        let sums = [0.0, 0.5, 2.0].map(|advance| {
+            let mut tuning = Tuning::default();
+            tuning.rate.dynamic_d = dynamic(advance);
+            let derived = Derived::new(&tuning, 0.001);
+            let mut rate_loop = RateLoop::default();
+            for step in 0..100 {
+                let at = f64::from(step);
+                rate_loop.step(&demand(4.0 * at, 0.5 * at), &tuning.rate, &derived);
+            }
+            rate_loop.axes[0].d_boost.state()
+        });
+        assert!(sums.windows(2).all(|pair| pair[0] < pair[1]), "{sums:?}");
+    }
+
+    #[test]
+    fn integrals_turn_with_the_craft() {
+        let mut tuning = Tuning::default();
+        let turned = |rotates: bool, gyro: [f64; 3], tuning: &mut Tuning| {
+            tuning.rate.rotates_integrals = rotates;
+            for gains in &mut tuning.rate.gains {
+                gains.i = 0.0;
+            }
+            let derived = Derived::new(tuning, 0.001);
+            let mut rate_loop = RateLoop::default();
+            rate_loop.axes[0].integral = 100.0;
+            for _ in 0..1000 {
+                rate_loop.step(&RateDemand { gyro, ..demand(0.0, 0.0) }, &tuning.rate, &derived);
+            }
+            rate_loop.axes.map(|axis| axis.integral.round())
+        };
+        // A quarter turn clockwise: what rolled the craft to the right is now what pushes its nose down.
+        let quarter = [0.0, 0.0, 90.0];
+        assert_eq!(turned(false, quarter, &mut tuning), [100.0, 0.0, 0.0]);
+        let [roll, pitch, yaw] = turned(true, quarter, &mut tuning);
+        assert_eq!((roll.abs(), pitch, yaw), (0.0, 100.0, 0.0));
+        let [roll, pitch, yaw] = turned(true, [0.0, 90.0, 0.0], &mut tuning);
+        assert_eq!((roll.abs(), pitch, yaw), (0.0, 0.0, -100.0));
     }
 
     #[test]

@@ -62,6 +62,32 @@ pub struct ItermRelax {
     pub cutoff_hz: f64,
 }
 
+/// Settings of what quick throttle changes do.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct BoostTuning {
+    /// Rise of I for a change over the whole throttle range, as a factor on top of 1.
+    pub anti_gravity_i: f64,
+    /// The same of P, before its scale.
+    pub anti_gravity_p: f64,
+    /// Slower throttle changes than this do not count, Hz.
+    pub anti_gravity_cutoff_hz: f64,
+    /// Throttle on top per quick throttle change.
+    pub throttle: f64,
+    /// Slower throttle changes than this do not count, Hz.
+    pub throttle_cutoff_hz: f64,
+}
+
+/// D that rises in fast moves.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct DynamicD {
+    /// What D rises to on roll, pitch and yaw, per °/s²; not above the base: it stays.
+    pub most: [f64; 3],
+    /// Share of the way for each °/s² of movement; 0: it stays at the base.
+    pub readiness: f64,
+    /// How much a moving setpoint counts against a moving craft.
+    pub setpoint_share: f64,
+}
+
 /// Settings of the rate loop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RateTuning {
@@ -71,6 +97,10 @@ pub struct RateTuning {
     pub sum_limit: [f64; 3],
     /// Greatest integrals.
     pub integral_limit: [f64; 3],
+    /// D in fast moves.
+    pub dynamic_d: DynamicD,
+    /// The integrals turn with the craft, so that they go on pushing into the same direction of the world.
+    pub rotates_integrals: bool,
     /// First and second gyro filter.
     pub gyro_lpf1: DynamicLowPass,
     /// See [`RateTuning::gyro_lpf1`].
@@ -118,6 +148,8 @@ pub struct LevelTuning {
     pub earth_reference: f64,
     /// Angles of a level craft, ° roll right and pitch nose down.
     pub trim_deg: [f64; 2],
+    /// ANGLE levels roll only; pitch is flown by rate.
+    pub race_mode: bool,
     /// HORIZON: share of levelling at the centre, 0…1.
     pub horizon_strength: f64,
     /// HORIZON: stick share where levelling ends.
@@ -145,6 +177,30 @@ pub struct MixerTuning {
     pub max_us: f64,
     /// Share of the range that is used, 0…1.
     pub output_limit: f64,
+    /// Slope that is added at zero output so that thrust is more linear in it, 0…1.5.
+    pub thrust_linear: f64,
+}
+
+/// Throttle added in level modes for what a tilted craft loses of its lift.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct TiltThrottle {
+    /// At the tilt below, share of the throttle range.
+    pub share: f64,
+    /// Tilt at which it is complete, rad.
+    pub complete_rad: f64,
+}
+
+impl TiltThrottle {
+    /// The throttle to add at a tilt.
+    #[must_use]
+    pub fn at(&self, cos_tilt: f64) -> f64 {
+        if self.share <= 0.0 {
+            return 0.0;
+        }
+        let tilt = cos_tilt.clamp(-1.0, 1.0).acos();
+        let way = (tilt / self.complete_rad.max(1e-3)).min(1.0);
+        self.share * (way * std::f64::consts::FRAC_PI_2).sin()
+    }
 }
 
 /// Everything the controller takes from the settings.
@@ -156,6 +212,12 @@ pub struct Tuning {
     pub yaw_stick_reversed: bool,
     /// Throttle curve.
     pub throttle: ThrottleCurve,
+    /// Throttle for tilt.
+    pub tilt_throttle: TiltThrottle,
+    /// Quick throttle changes.
+    pub boost: BoostTuning,
+    /// Greatest change of the stick setpoints of roll, pitch and yaw, °/s²; 0 = any.
+    pub accel_limit_dps2: [f64; 3],
     /// Sticks are smoothed.
     pub smoothing: bool,
     /// `rc_smoothing_auto_factor` for sticks and throttle.
@@ -182,6 +244,10 @@ const I_SCALE: f64 = 0.244_381;
 const D_SCALE: f64 = 0.000_529;
 const F_SCALE: f64 = 0.013_754 / 100.0;
 const YAW_I_FACTOR: f64 = 2.5;
+/// Unit of `acc_limit`, °/s².
+const ACCEL_LIMIT_UNIT_DPS2: f64 = 100.0;
+/// Acceleration of the craft or its setpoint (°/s²) at which D is at its greatest with a `d_max_gain` of 1.
+const FULL_D_DPS2: f64 = 200_000.0;
 /// The value of `angle_feedforward` that leads the whole angle. It is a little above the default, because the rate
 /// loop lags and the angle loop adds what is missing.
 const FULL_ANGLE_FEEDFORWARD: f64 = 67.0;
@@ -195,6 +261,13 @@ impl Tuning {
             rates: [reader.curve("roll"), reader.curve("pitch"), reader.curve("yaw")],
             yaw_stick_reversed: settings.flag("yaw_control_reversed"),
             throttle: reader.throttle(),
+            tilt_throttle: TiltThrottle {
+                share: reader.number("thr_corr_value") / 1000.0,
+                complete_rad: (reader.number("thr_corr_angle") / 10.0).to_radians(),
+            },
+            boost: reader.boost(),
+            accel_limit_dps2: ["acc_limit", "acc_limit", "acc_limit_yaw"]
+                .map(|name| ACCEL_LIMIT_UNIT_DPS2 * reader.number(name)),
             smoothing: settings.flag("rc_smoothing"),
             smoothing_factor: [
                 reader.number("rc_smoothing_auto_factor"),
@@ -242,7 +315,7 @@ impl Reader<'_> {
     fn throttle(&self) -> ThrottleCurve {
         let limit = u8::try_from(self.0.number("throttle_limit_type")).ok();
         ThrottleCurve {
-            zero_us: self.number("min_check").max(1000.0),
+            zero_us: self.number("min_check").clamp(1000.0, 1900.0),
             mid: self.number("thr_mid") / 100.0,
             hover: self.number("thr_hover") / 100.0,
             expo: self.number("thr_expo") / 100.0,
@@ -276,6 +349,25 @@ impl Reader<'_> {
         (first, second)
     }
 
+    fn boost(&self) -> BoostTuning {
+        let gain = self.number("anti_gravity_gain") / 10.0;
+        BoostTuning {
+            anti_gravity_i: gain,
+            anti_gravity_p: gain * self.number("anti_gravity_p_gain") / 100.0,
+            anti_gravity_cutoff_hz: self.number("anti_gravity_cutoff_hz"),
+            throttle: self.number("throttle_boost") / 10.0,
+            throttle_cutoff_hz: self.number("throttle_boost_cutoff"),
+        }
+    }
+
+    fn dynamic_d(&self) -> DynamicD {
+        DynamicD {
+            most: ["roll", "pitch", "yaw"].map(|axis| D_SCALE * self.of("d_max_", axis, "")),
+            readiness: self.number("d_max_gain") / FULL_D_DPS2,
+            setpoint_share: self.number("d_max_advance") / 100.0,
+        }
+    }
+
     fn rate(&self) -> RateTuning {
         let (gyro_lpf1, gyro_lpf2) = self.lpf("gyro");
         let (d_lpf1, d_lpf2) = self.lpf("dterm");
@@ -287,6 +379,8 @@ impl Reader<'_> {
             gains: [self.gains("roll", 1.0), self.gains("pitch", 1.0), self.gains("yaw", YAW_I_FACTOR)],
             sum_limit: [sum, sum, sum_yaw],
             integral_limit: [sum * windup, sum * windup, sum_yaw * windup],
+            dynamic_d: self.dynamic_d(),
+            rotates_integrals: self.0.flag("iterm_rotation"),
             gyro_lpf1,
             gyro_lpf2,
             d_lpf1,
@@ -318,6 +412,7 @@ impl Reader<'_> {
             smoothing_s: self.number("angle_feedforward_smoothing_ms") / 1000.0,
             earth_reference: self.number("angle_earth_ref") / 100.0,
             trim_deg: [self.number("acc_trim_roll") / 10.0, self.number("acc_trim_pitch") / 10.0],
+            race_mode: self.0.flag("level_race_mode"),
             horizon_strength: self.number("horizon_level_strength") / 100.0,
             horizon_stick_limit: self.number("horizon_limit_sticks") / 100.0,
             horizon_tilt_limit_deg: self.number("horizon_limit_degrees"),
@@ -340,6 +435,7 @@ impl Reader<'_> {
             idle_us: stop_us + self.number("motor_idle") / 10.0,
             max_us: self.number("max_throttle").max(stop_us + 1.0),
             output_limit: self.number("motor_output_limit") / 100.0,
+            thrust_linear: self.number("thrust_linear") / 100.0,
         }
     }
 }
@@ -347,6 +443,7 @@ impl Reader<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::autopilot::Params;
 
     #[test]
     fn default_gains_and_limits() {
@@ -356,6 +453,18 @@ mod tests {
         assert_eq!((rate.integral_limit[0], rate.integral_limit[2]), (400.0, 320.0));
         assert!((rate.tpa_slope - 1.0).abs() < 1e-12);
         assert_eq!(rate.relax.axes, [true, true, false]);
+    }
+
+    #[test]
+    fn mixer_and_navigator_agree_on_zero_throttle() {
+        let mut settings = Settings::default();
+        for min_check in [750, 1050, 1900, 2000, 2250] {
+            settings.set_number("min_check", min_check).unwrap();
+            let zero_us = Tuning::from_settings(&settings, MixerKind::QuadX, &[]).throttle.zero_us;
+            let params = Params { min_check: min_check as u16, ..Params::default() };
+            assert_eq!(zero_us, params.throttle_zero_us(), "{min_check}");
+            assert!(zero_us < 2000.0, "{min_check}");
+        }
     }
 
     #[test]

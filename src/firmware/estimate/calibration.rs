@@ -1,6 +1,6 @@
 //! Removing the constant errors of the inertial sensors while the craft stands still.
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix4, Vector3, Vector4};
 
 use crate::geo::GRAVITY;
 
@@ -8,6 +8,13 @@ use crate::geo::GRAVITY;
 const GYRO_UNITS: f64 = 16.4 * 180.0 / std::f64::consts::PI;
 /// Samples of an accelerometer calibration, one every 10 ms.
 const ACC_SAMPLES: u32 = 400;
+/// How long a magnetometer calibration lasts, s.
+const MAG_CALIBRATION_S: f64 = 30.0;
+/// The least span of an axis over the greatest, and the greatest over the farthest sample, of a craft that was turned.
+const LEAST_ROUNDNESS: f64 = 0.5;
+const LEAST_SPAN: f64 = 0.5;
+/// A field in sensor units that keeps the numbers of the fit near one.
+const MAG_UNIT: f64 = 1000.0;
 /// Accelerometer units of the stored calibration per g.
 const ACC_UNITS_PER_G: f64 = 2048.0;
 
@@ -27,8 +34,13 @@ pub(super) struct GyroCalibration {
 
 impl GyroCalibration {
     pub fn new() -> Self {
+        Self::after(Vector3::zeros())
+    }
+
+    /// Begins anew; the offset that was known (rad/s) is used until there is another.
+    pub fn after(bias: Vector3<f64>) -> Self {
         let zero = Vector3::zeros();
-        Self { first: zero, sum: zero, squares: zero, samples: 0, elapsed_s: 0.0, bias: zero, done: false }
+        Self { first: zero, sum: zero, squares: zero, samples: 0, elapsed_s: 0.0, bias, done: false }
     }
 
     /// One sample (rad/s). `duration_s` of samples whose standard deviation stays below `noise_limit` (gyro units; 0:
@@ -53,7 +65,7 @@ impl GyroCalibration {
             self.bias = self.first + mean;
             self.done = true;
         } else {
-            *self = Self::new();
+            *self = Self::after(self.bias);
         }
     }
 }
@@ -83,6 +95,68 @@ impl AccCalibration {
     }
 }
 
+/// A magnetometer calibration ended without the craft having been turned about all its axes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct NotTurned;
+
+/// A running magnetometer calibration. While the craft is turned about all axes, the field draws a part of a sphere
+/// about the offset of the sensor: |m − c|² = r², which is linear in c and r² − |c|². The least squares of that.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct MagCalibration {
+    normal: Matrix4<f64>,
+    right: Vector4<f64>,
+    low: Vector3<f64>,
+    high: Vector3<f64>,
+    left_s: f64,
+}
+
+impl MagCalibration {
+    pub fn new() -> Self {
+        let limit = Vector3::repeat(f64::INFINITY);
+        Self {
+            normal: Matrix4::zeros(),
+            right: Vector4::zeros(),
+            low: limit,
+            high: -limit,
+            left_s: MAG_CALIBRATION_S,
+        }
+    }
+
+    /// Takes a sample (sensor units, uncorrected).
+    pub fn feed(&mut self, field: &Vector3<f64>) {
+        self.low = self.low.inf(field);
+        self.high = self.high.sup(field);
+        let scaled = field / MAG_UNIT;
+        let row = (2.0 * scaled).push(1.0);
+        self.normal += row * row.transpose();
+        self.right += row * scaled.norm_squared();
+    }
+
+    /// Lets `dt` seconds pass; at the end the offset in units of the setting.
+    pub fn wait(&mut self, dt: f64) -> Option<Result<[i64; 3], NotTurned>> {
+        self.left_s -= dt;
+        if self.left_s > 0.0 {
+            return None;
+        }
+        let span = self.high - self.low;
+        let farthest = self.high.abs().sup(&self.low.abs()).norm();
+        let turned = span.min() >= LEAST_ROUNDNESS * span.max() && span.max() >= LEAST_SPAN * farthest;
+        let centre = self.normal.lu().solve(&self.right).map(|fit| fit.xyz() * MAG_UNIT);
+        let found = centre.filter(|centre| turned && centre.iter().all(|axis| axis.is_finite()));
+        Some(
+            found
+                .map(|centre| [centre.x, centre.y, centre.z].map(|axis| axis.round() as i64))
+                .ok_or(NotTurned),
+        )
+    }
+}
+
+/// The magnetometer offset (sensor units) that a stored calibration stands for.
+pub(super) fn mag_offset(units: &[i64]) -> Vector3<f64> {
+    let axis = |at: usize| units.get(at).map_or(0.0, |&value| value as f64);
+    Vector3::new(axis(0), axis(1), axis(2))
+}
+
 /// The accelerometer offset (m/s²) that a stored calibration stands for.
 pub(super) fn acc_offset(units: &[i64]) -> Vector3<f64> {
     let axis = |at: usize| units.get(at).map_or(0.0, |&value| value as f64 * GRAVITY / ACC_UNITS_PER_G);
@@ -91,6 +165,8 @@ pub(super) fn acc_offset(units: &[i64]) -> Vector3<f64> {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::UnitQuaternion;
+
     use super::*;
 
     #[test]
@@ -105,6 +181,47 @@ mod tests {
         }
         assert!(gyro.done);
         assert!((gyro.bias.z - 0.02).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_gyro_that_is_calibrated_again_keeps_its_offset_meanwhile() {
+        let mut gyro = GyroCalibration::after(Vector3::new(0.1, 0.0, 0.0));
+        for step in 0..2000 {
+            gyro.feed(&Vector3::new(f64::from(step) * 0.001, 0.0, 0.0), 0.001, 1.25, 48.0);
+        }
+        assert_eq!((gyro.done, gyro.bias.x), (false, 0.1));
+    }
+
+    #[test]
+    fn turning_the_craft_finds_the_magnetometer_offset() {
+        let offset = Vector3::new(300.0, -120.0, 45.0);
+        let field = Vector3::new(2046.8, -71.5, -3547.2);
+        let mut mag = MagCalibration::new();
+        let mut result = None;
+        for step in 0..3000 {
+            let t = f64::from(step) * 0.01;
+            let turn = UnitQuaternion::from_euler_angles(1.3 * t, 0.9 * t, 0.4 * t);
+            mag.feed(&(turn * field + offset));
+            result = mag.wait(0.01).or(result);
+        }
+        let found = mag_offset(&result.unwrap().unwrap());
+        assert!((found - offset).norm() < 2.0, "{found}");
+    }
+
+    #[test]
+    fn a_craft_that_stands_or_only_spins_keeps_its_magnetometer_offset() {
+        for spin in [0.0, 1.0] {
+            let mut mag = MagCalibration::new();
+            let mut result = None;
+            for step in 0..3000 {
+                let turn = UnitQuaternion::from_euler_angles(0.0, 0.0, spin * f64::from(step) * 0.01);
+                mag.feed(&(turn * Vector3::new(2046.8, -71.5, -3547.2)));
+                result = mag.wait(0.01).or(result);
+            }
+            assert_eq!(result, Some(Err(NotTurned)), "{spin}");
+        }
+        let mut silent = MagCalibration::new();
+        assert_eq!(silent.wait(31.0), Some(Err(NotTurned)));
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use nalgebra::{Rotation3, Vector2, Vector3};
 
 use super::attitude::{Attitude, VerticalGains, steady_missing};
-use super::calibration::{AccCalibration, GyroCalibration};
+use super::calibration::{AccCalibration, GyroCalibration, MagCalibration, NotTurned};
 use super::gps::GpsMonitor;
 use super::heading::{CourseComparison, MagTrust, magnetic_error};
 use super::horizontal::Horizontal;
@@ -55,6 +55,8 @@ pub struct Estimator {
     gyro: GyroCalibration,
     acc: Option<AccCalibration>,
     acc_result: Option<[i64; 3]>,
+    mag: Option<MagCalibration>,
+    mag_result: Option<Result<[i64; 3], NotTurned>>,
     attitude: Attitude,
     /// Sum of the specific force since the last attitude step, body axes, and how many samples.
     force_sum: Vector3<f64>,
@@ -96,6 +98,8 @@ impl Estimator {
             gyro: GyroCalibration::new(),
             acc: None,
             acc_result: None,
+            mag: None,
+            mag_result: None,
             attitude: Attitude::new(),
             force_sum: Vector3::zeros(),
             force_samples: 0.0,
@@ -153,12 +157,25 @@ impl Estimator {
 
     /// Starts a calibration of the gyro.
     pub fn calibrate_gyro(&mut self) {
-        self.gyro = GyroCalibration::new();
+        self.gyro = GyroCalibration::after(self.gyro.bias);
+        self.estimate.calibrating = true;
     }
 
     /// Starts a calibration of the accelerometer; the craft must stand level.
     pub fn calibrate_accelerometer(&mut self) {
         self.acc = Some(AccCalibration::new());
+        self.estimate.calibrating = true;
+    }
+
+    /// Starts a calibration of the magnetometer: for half a minute the craft is to be turned about all its axes.
+    pub fn calibrate_magnetometer(&mut self) {
+        self.mag = Some(MagCalibration::new());
+        self.estimate.calibrating = true;
+    }
+
+    /// The result of a magnetometer calibration that has just ended, for `mag_calibration`. Given once.
+    pub fn take_mag_calibration(&mut self) -> Option<Result<[i64; 3], NotTurned>> {
+        self.mag_result.take()
     }
 
     /// The result of an accelerometer calibration that has just ended, for the first three elements of
@@ -188,7 +205,7 @@ impl Estimator {
                 self.attitude.integrate(&rate, dt);
             }
         }
-        let due = self.schedule.due(now);
+        let due = self.schedule.due(now, self.tuning.attitude_us);
         if due.attitude {
             self.attitude_step();
         }
@@ -259,6 +276,14 @@ impl Estimator {
         {
             (self.acc, self.acc_result) = (None, Some(result));
         }
+        if let Some(mag) = &mut self.mag {
+            if let Some(sample) = &self.pending_mag {
+                mag.feed(sample);
+            }
+            if let Some(result) = mag.wait(dt) {
+                (self.mag, self.mag_result) = (None, Some(result));
+            }
+        }
         let felt = Vector2::new(force.y, force.x);
         self.horizontal.predict(felt, dt);
         self.vertical.predict(force.z - GRAVITY, dt);
@@ -318,7 +343,7 @@ impl Estimator {
             set => set,
         };
         let sample = self.pending_mag.take().filter(|_| self.tuning.has_mag);
-        if let Some(mag) = sample
+        if let Some(mag) = sample.map(|mag| mag - self.tuning.mag_offset_flu)
             && let Some(error) = magnetic_error(&self.attitude.matrix, &mag, declination.to_radians())
         {
             if !self.estimate.heading_valid {
@@ -397,7 +422,7 @@ impl Estimator {
         estimate.alt_m = self.vertical.altitude();
         estimate.climb_mps = self.vertical.climb();
         estimate.gps = self.gps.status;
-        estimate.calibrating = !self.gyro.done || self.acc.is_some();
+        estimate.calibrating = !self.gyro.done || self.acc.is_some() || self.mag.is_some();
     }
 }
 

@@ -2,15 +2,13 @@
 
 use crate::signals::SimTime;
 
-/// Period of the attitude loop, µs: 500 Hz.
-const ATTITUDE_US: u64 = 2_000;
 /// Period of estimation, navigator and holds, µs: 100 Hz.
 const NAVIGATION_US: u64 = 10_000;
 
 /// Which slower loops run in this step. Everybody follows these, so that they stay in phase.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct DueTasks {
-    /// Roll and pitch are fresh: the angle loop runs (500 Hz, or each step where 500 does not divide the rate).
+    /// Roll and pitch are fresh: the angle loop runs (500 Hz by default; each step where that does not divide the rate).
     pub attitude: bool,
     /// Position and altitude are fresh: navigator, holds and modes run (100 Hz).
     pub navigation: bool,
@@ -24,10 +22,10 @@ pub(super) struct Schedule {
 }
 
 impl Schedule {
-    /// The loops due at `now`. Both are due in the first step.
-    pub fn due(&mut self, now: SimTime) -> DueTasks {
+    /// The loops due at `now`, the attitude's every `attitude_us`. Both are due in the first step.
+    pub fn due(&mut self, now: SimTime, attitude_us: u64) -> DueTasks {
         let navigation = pass(&mut self.navigation, now, NAVIGATION_US);
-        let attitude = pass(&mut self.attitude, now, ATTITUDE_US);
+        let attitude = pass(&mut self.attitude, now, attitude_us);
         DueTasks { attitude: attitude || navigation, navigation }
     }
 }
@@ -53,7 +51,7 @@ mod tests {
             let step = 1_000_000 / rate;
             let (mut attitude, mut navigation) = (0, Vec::new());
             for tick in 0..rate {
-                let due = schedule.due(SimTime(tick * step));
+                let due = schedule.due(SimTime(tick * step), 2000);
                 attitude += u64::from(due.attitude);
                 if due.navigation {
                     navigation.push(tick * step);
@@ -65,11 +63,21 @@ mod tests {
     }
 
     #[test]
+    fn the_attitude_period_follows_its_setting() {
+        for (period_us, per_second) in [(1000, 1000), (2000, 500), (4000, 300)] {
+            let mut schedule = Schedule::default();
+            let due = (0..1000).filter(|tick| schedule.due(SimTime(tick * 1000), period_us).attitude);
+            // With every navigation step comes a fresh attitude, too: half of those fall between two of 4 ms.
+            assert_eq!(due.count(), per_second, "{period_us}");
+        }
+    }
+
+    #[test]
     fn a_stall_is_not_made_up_for() {
         let mut schedule = Schedule::default();
-        schedule.due(SimTime(0));
-        assert!(schedule.due(SimTime(5_003_000)).navigation);
-        assert!(!schedule.due(SimTime(5_004_000)).navigation);
-        assert!(schedule.due(SimTime(5_010_000)).navigation);
+        schedule.due(SimTime(0), 2000);
+        assert!(schedule.due(SimTime(5_003_000), 2000).navigation);
+        assert!(!schedule.due(SimTime(5_004_000), 2000).navigation);
+        assert!(schedule.due(SimTime(5_010_000), 2000).navigation);
     }
 }

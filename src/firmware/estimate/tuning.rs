@@ -1,6 +1,6 @@
 //! What of the settings the estimator uses.
 
-use super::calibration::acc_offset;
+use super::calibration::{acc_offset, mag_offset};
 use super::vertical::AltitudeSource;
 use crate::firmware::settings::Settings;
 use nalgebra::Vector3;
@@ -51,10 +51,14 @@ pub struct EstimatorTuning {
     pub acc_lpf_hz: f64,
     /// Accelerometer zero, body forward-left-up, m/s².
     pub acc_offset_flu: Vector3<f64>,
+    /// Magnetometer zero, body forward-left-up, sensor units.
+    pub mag_offset_flu: Vector3<f64>,
     /// Quiet time of a gyro calibration, s.
     pub gyro_calibration_s: f64,
     /// Standard deviation that restarts it, gyro units; 0 = any will do.
     pub gyro_noise_limit: f64,
+    /// Period of the attitude loop, µs.
+    pub attitude_us: u64,
     /// Whether there is a magnetometer.
     pub has_mag: bool,
     /// Whether it is trusted in flight.
@@ -91,8 +95,10 @@ impl EstimatorTuning {
             ki: number("imu_dcm_ki") * 1e-4,
             acc_lpf_hz: number("acc_lpf_hz"),
             acc_offset_flu: acc_offset(settings.array("acc_calibration")),
+            mag_offset_flu: mag_offset(settings.array("mag_calibration")),
             gyro_calibration_s: number("gyro_calib_duration") * 0.01,
             gyro_noise_limit: number("gyro_calib_noise_limit"),
+            attitude_us: 1000 * settings.number("imu_process_denom").clamp(1, 4).unsigned_abs(),
             has_mag: settings.text("mag_hardware") != "NONE",
             trust_mag: settings.flag("trust_mag"),
             declination_deg: number("mag_declination") * 0.1,

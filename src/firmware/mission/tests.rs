@@ -63,16 +63,18 @@ struct Flight {
     orders: Orders,
     navigator: Navigator,
     inputs: NavInputs,
+    rescue: RescueConfig,
 }
 
 impl Flight {
     fn new() -> Self {
-        Self { orders: Orders::default(), navigator: Navigator::new(), inputs: hovering() }
+        let rescue = RescueConfig { initial_climb_m: 10.0, ..RescueConfig::default() };
+        Self { orders: Orders::default(), navigator: Navigator::new(), inputs: hovering(), rescue }
     }
 
     fn update(&mut self, facts: OrderFacts) {
         let params = Params::default();
-        let rescue = RescueConfig { initial_climb_m: 10.0, ..RescueConfig::default() };
+        let rescue = self.rescue;
         self.inputs.time.0 += 10_000;
         self.orders.update(&mut self.navigator, &self.inputs, &params, &rescue, &plan(), &facts);
         self.navigator.update(&self.inputs, &params, &plan());
@@ -117,6 +119,27 @@ fn command_flies_without_the_switch_until_the_switch_goes_off() {
 }
 
 #[test]
+fn a_command_taken_back_leaves_the_craft_to_the_switch() {
+    for (switch, after) in [(false, None), (true, Some(PlanSource::Stored))] {
+        let facts = OrderFacts { autopilot_switch: switch, ..CALM };
+        let mut flight = Flight::new();
+        flight.update(facts);
+        flight.orders.take_back(&mut flight.navigator);
+        flight.update(facts);
+        assert_eq!(flight.navigator.is_flying(), switch, "without a command nothing is taken back");
+        let done =
+            flight.orders.return_to_home(&mut flight.navigator, &flight.inputs, &Params::default(), None);
+        assert_eq!((done, flight.orders.is_commanded()), (Ok(()), true));
+        flight.update(facts);
+        assert_eq!(flight.navigator.source(), PlanSource::Rth);
+        flight.orders.take_back(&mut flight.navigator);
+        flight.update(facts);
+        let flown = flight.navigator.is_flying().then(|| flight.navigator.source());
+        assert_eq!((flown, flight.orders.is_commanded()), (after, false));
+    }
+}
+
+#[test]
 fn rescue_switch_flies_home_higher_and_lets_go() {
     let mut flight = Flight::engaged();
     let on = OrderFacts { autopilot_switch: true, rescue_switch: true, ..CALM };
@@ -153,6 +176,33 @@ fn lost_fix_keeps_the_altitude_and_resumes() {
     }
     assert_eq!(flight.navigator.state(), NavState::Approaching);
     assert_eq!(flight.orders.after_abort(), AfterAbort::Nothing);
+}
+
+#[test]
+fn an_order_that_waits_says_what_for() {
+    let mut flight = Flight::new();
+    flight.update(CALM);
+    let done = flight.orders.return_to_home(&mut flight.navigator, &flight.inputs, &Params::default(), None);
+    assert_eq!(done, Ok(()));
+    flight.inputs.fix = false;
+    flight.update(OrderFacts { fix_for_s: 0.0, ..CALM });
+    assert_eq!(flight.navigator.state(), NavState::Idle);
+    flight.orders.mission_aborted(AbortReason::GpsLost);
+    let waits = Some(Refusal::Aborted(AbortReason::GpsLost));
+    for (fix, fix_for_s) in [(false, 0.0), (true, 1.9)] {
+        flight.inputs.fix = fix;
+        flight.update(OrderFacts { fix_for_s, ..CALM });
+        assert_eq!(flight.navigator.telemetry().refusal, waits, "fix for {fix_for_s} s");
+    }
+    flight.update(OrderFacts { fix_for_s: 2.0, ..CALM });
+    assert_eq!(flight.navigator.source(), PlanSource::Rth);
+    assert_eq!(flight.navigator.telemetry().refusal, None);
+    for why in [AbortReason::Stalled, AbortReason::Flyaway] {
+        flight.navigator.disengage();
+        flight.orders.mission_aborted(why);
+        flight.update(CALM);
+        assert_eq!(flight.navigator.telemetry().refusal, Some(Refusal::Aborted(why)));
+    }
 }
 
 #[test]
@@ -215,7 +265,58 @@ fn rescue_altitude_by_mode() {
         (RescueAltitude::Fixed, 30.0),
         (RescueAltitude::Present, 30.0),
     ] {
-        let flight = orders.rescue_flight(&RescueConfig { altitude, ..config }, &hovering());
+        let config = RescueConfig { altitude, ..config };
+        let flight = orders.rescue_flight(&config, &hovering(), RescueCause::Switch);
         assert_eq!(flight.altitude_m, expected);
+    }
+}
+
+#[test]
+fn rescue_next_to_home_does_not_climb_first() {
+    let config = RescueConfig { initial_climb_m: 10.0, min_start_dist_m: 15.0, ..RescueConfig::default() };
+    let orders = Orders::default();
+    for (distance_m, altitude_m) in [(0.0, 20.0), (14.9, 20.0), (15.1, 30.0)] {
+        let inputs = NavInputs { pos_ne: Vector2::new(0.0, distance_m), ..hovering() };
+        let flight = orders.rescue_flight(&config, &inputs, RescueCause::Failsafe);
+        assert_eq!(flight.altitude_m, altitude_m, "{distance_m}");
+    }
+    let inputs = NavInputs { home: None, ..hovering() };
+    assert_eq!(orders.rescue_flight(&config, &inputs, RescueCause::Failsafe).altitude_m, 30.0);
+}
+
+#[test]
+fn sanity_checks_by_setting_and_cause() {
+    for (sanity, by_switch, by_failsafe) in [
+        (RescueSanity::Off, false, false),
+        (RescueSanity::On, true, true),
+        (RescueSanity::FailsafeOnly, false, true),
+    ] {
+        let config = RescueConfig { sanity, ..RescueConfig::default() };
+        let watched = |cause| Orders::default().rescue_flight(&config, &hovering(), cause).is_watched;
+        assert_eq!((watched(RescueCause::Switch), watched(RescueCause::Failsafe)), (by_switch, by_failsafe));
+    }
+}
+
+#[test]
+fn rescue_that_does_not_come_nearer_is_given_up_when_watched() {
+    for (sanity, given_up) in [(RescueSanity::On, true), (RescueSanity::Off, false)] {
+        let mut flight = Flight::new();
+        flight.rescue.sanity = sanity;
+        // Held by a storm, 100 m from home, at the altitude of the way.
+        flight.inputs.pos_ne = Vector2::new(100.0, 0.0);
+        flight.inputs.alt_m = 40.0;
+        let switch = OrderFacts { rescue_switch: true, ..CALM };
+        flight.rescue.altitude = RescueAltitude::Fixed;
+        flight.update(CALM);
+        for _ in 0..3200 {
+            flight.update(switch);
+            flight.navigator.drain_events();
+        }
+        let state = if given_up { NavState::Landing } else { NavState::Approaching };
+        assert_eq!(flight.navigator.state(), state, "{sanity:?}");
+        // Asked for again it is tried again.
+        flight.update(CALM);
+        flight.update(switch);
+        assert!(flight.navigator.is_flying());
     }
 }

@@ -14,6 +14,8 @@ pub const ANGLE: BoxId = 1;
 pub const HORIZON: BoxId = 2;
 /// ALTHOLD.
 pub const ALTHOLD: BoxId = 3;
+/// ANTI GRAVITY: the gains rise in quick throttle changes.
+pub const ANTI_GRAVITY: BoxId = 4;
 /// MAG: hold the heading while the yaw stick is centred.
 pub const MAG: BoxId = 5;
 /// HEADFREE: sticks relative to the heading at arming.
@@ -26,6 +28,8 @@ pub const POS_HOLD: BoxId = 11;
 pub const FAILSAFE: BoxId = 27;
 /// AIR MODE.
 pub const AIR_MODE: BoxId = 28;
+/// FLIP OVER AFTER CRASH: blocks arming, since nothing here can be flipped.
+pub const CRASH_FLIP: BoxId = 35;
 /// PREARM.
 pub const PREARM: BoxId = 36;
 /// PARALYZE: no arming until reboot.
@@ -85,7 +89,7 @@ pub const BOXES: [BoxInfo; 50] = [
     full(POS_HOLD, "POS HOLD"),
     full(GPS_RESCUE, "GPS RESCUE"),
     full(AUTOPILOT, "AUTOPILOT"),
-    name(4, "ANTI GRAVITY"),
+    full(ANTI_GRAVITY, "ANTI GRAVITY"),
     full(HEADADJ, "HEADADJ"),
     name(8, "CAMSTAB"),
     flag(13, "BEEPER"),
@@ -104,7 +108,7 @@ pub const BOXES: [BoxInfo; 50] = [
     flag(32, "CAMERA CONTROL 1"),
     flag(33, "CAMERA CONTROL 2"),
     flag(34, "CAMERA CONTROL 3"),
-    name(35, "FLIP OVER AFTER CRASH"),
+    name(CRASH_FLIP, "FLIP OVER AFTER CRASH"),
     full(PREARM, "PREARM"),
     flag(37, "GPS BEEP SATELLITE COUNT"),
     name(39, "VTX PIT MODE"),
@@ -144,6 +148,8 @@ pub struct Equipment {
     pub gps: bool,
     /// Feature AIRMODE: airmode is on by itself and needs no box.
     pub airmode_feature: bool,
+    /// Feature ANTI_GRAVITY: likewise.
+    pub anti_gravity_feature: bool,
     /// A magnetometer is present.
     pub mag: bool,
 }
@@ -154,6 +160,7 @@ pub fn listed(equipment: Equipment) -> impl Iterator<Item = &'static BoxInfo> {
         MAG => equipment.mag,
         POS_HOLD | GPS_RESCUE | AUTOPILOT | 37 => equipment.gps,
         AIR_MODE => !equipment.airmode_feature,
+        ANTI_GRAVITY => !equipment.anti_gravity_feature,
         // Need hardware that a simulated craft does not have.
         17 | 40..=43 => false,
         _ => entry.level != BoxLevel::Name,
@@ -189,7 +196,9 @@ mod tests {
     #[test]
     fn default_list_is_the_one_configurators_know() {
         let ids: Vec<_> =
-            listed(Equipment { gps: true, airmode_feature: true, mag: true }).map(|entry| entry.id).collect();
+            listed(Equipment { gps: true, airmode_feature: true, anti_gravity_feature: true, mag: true })
+                .map(|entry| entry.id)
+                .collect();
         assert_eq!(
             ids,
             [0, 1, 2, 5, 3, 6, 27, 11, 46, 56, 7, 13, 19, 26, 30, 32, 33, 34, 36, 37, 45, 49, 51, 52, 53, 57]
@@ -198,9 +207,10 @@ mod tests {
 
     #[test]
     fn equipment_changes_the_list() {
-        let bare: Vec<_> = listed(Equipment { gps: false, airmode_feature: false, mag: false })
-            .map(|entry| entry.id)
-            .collect();
+        let bare: Vec<_> =
+            listed(Equipment { gps: false, airmode_feature: false, anti_gravity_feature: false, mag: false })
+                .map(|entry| entry.id)
+                .collect();
         for missing in [MAG, POS_HOLD, GPS_RESCUE, AUTOPILOT] {
             assert!(!bare.contains(&missing));
         }

@@ -21,6 +21,10 @@ const REBOOT_FLASH_LOADER: u8 = 4;
 
 pub(super) fn reboot(call: &mut Call<'_>) -> Result<(), Refused> {
     let kind = call.request.u8();
+    // The command line refuses it, too: an armed craft would fall from the sky.
+    if call.facts.armed {
+        return Err(Refused);
+    }
     // There is no mass storage. The boot loaders of a simulator start the firmware again.
     if !matches!(kind, REBOOT_FIRMWARE | REBOOT_ROM_LOADER | REBOOT_FLASH_LOADER) {
         return Err(Refused);

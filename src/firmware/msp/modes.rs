@@ -21,6 +21,7 @@ fn listed(configuration: &Configuration, facts: &MspFacts) -> impl Iterator<Item
     boxes::listed(Equipment {
         gps: configuration.features.has(Feature::Gps),
         airmode_feature: configuration.features.has(Feature::AirMode),
+        anti_gravity_feature: configuration.features.has(Feature::AntiGravity),
         mag: facts.has_mag,
     })
 }

@@ -3,6 +3,7 @@
 use super::{
     Access, BatteryReading, BatteryState, GpsReading, HomeReading, MspAction, MspFacts, Outcome, UtcTime,
 };
+use crate::firmware::config::{Feature, correct};
 use crate::firmware::{Firmware, battery};
 use crate::geo::distance_bearing;
 use crate::signals::{RC_CHANNELS, RcSource};
@@ -16,13 +17,17 @@ impl Firmware {
     /// are left to the owner: the outcome says so. `clock` is the time of day, when somebody set it.
     pub fn run_msp(&mut self, code: u16, request: &[u8], clock: Option<UtcTime>) -> Outcome {
         let facts = self.msp_facts(clock);
+        let had_gps = self.configuration.features.has(Feature::Gps);
         let outcome = super::handle(code, request, &mut self.configuration, &facts);
         let writes = super::table::find(code).is_some_and(|message| message.access == Access::Write);
         if writes && outcome.reply.is_some() && changes_configuration(outcome.action) {
             self.refresh();
         }
         match outcome.action {
-            Some(MspAction::Save) => crate::firmware::config::correct(&mut self.configuration),
+            Some(MspAction::Save) => {
+                correct(&mut self.configuration);
+                self.tell_lost_gps(had_gps);
+            }
             Some(MspAction::RawRc(frame)) => self.receive_rc(&frame, RcSource::Msp),
             Some(MspAction::MotorTest(motors)) => {
                 for (motor, output_us) in (0..).zip(motors) {
@@ -30,9 +35,11 @@ impl Firmware {
                 }
             }
             Some(MspAction::CalibrateAcc) => self.calibrate_accelerometer(),
+            Some(MspAction::CalibrateMag) => self.calibrate_magnetometer(),
             Some(MspAction::RunawayPrevention(on)) => self.parameters.runaway.enabled &= on,
-            // Nothing here to calibrate, steer or feed: the simulated sensors are what they are.
-            Some(MspAction::CalibrateMag | MspAction::HoldHeading(_) | MspAction::RawGps { .. }) => {}
+            Some(MspAction::HoldHeading(deg)) => self.flight.hold_heading(f64::from(deg).to_radians()),
+            // Nothing here to feed: positions come from the simulator.
+            Some(MspAction::RawGps { .. }) => {}
             Some(MspAction::Reboot | MspAction::SaveAndReboot | MspAction::SetClock { .. }) | None => {}
         }
         outcome
@@ -49,14 +56,14 @@ impl Firmware {
             modes: self.modes,
             switches: self.boxes,
             arming_blocks: if self.is_armed() { 0 } else { self.arming_flags().bits() },
-            reboot_required: false,
+            reboot_required: self.parameters.arming.reboot_required,
             cycle_time_us: 1_000_000 / self.options.rate_hz.max(1),
             cpu_load_percent: 0,
             gyro_hz: self.options.rate_hz,
             has_mag: self.configuration.settings.text("mag_hardware") != "NONE",
             specific_force_flu: estimate.force_flu,
             rate_flu: Vector3::new(rates.roll, rates.pitch, -rates.yaw),
-            mag_flu: self.mag_flu,
+            mag_flu: self.mag_flu - self.parameters.estimator.mag_offset_flu,
             attitude: estimate.attitude,
             roll_deg: estimate.roll_rad.to_degrees(),
             pitch_deg: -estimate.pitch_rad.to_degrees(),
@@ -128,5 +135,13 @@ impl Firmware {
 
 /// Whether a message that was carried out may have changed a setting.
 fn changes_configuration(action: Option<MspAction>) -> bool {
-    !matches!(action, Some(MspAction::RawRc(_) | MspAction::MotorTest(_) | MspAction::RawGps { .. }))
+    !matches!(
+        action,
+        Some(
+            MspAction::RawRc(_)
+                | MspAction::MotorTest(_)
+                | MspAction::RawGps { .. }
+                | MspAction::HoldHeading(_)
+        )
+    )
 }

@@ -1,8 +1,8 @@
 //! Reads the records of an image, taking what it can.
 
 use super::super::config::{
-    AdjustmentRange, ChannelMap, Configuration, Features, KeptLine, MixRow, MixerKind, ModeCondition,
-    ModeLogic, RxFail, RxFailMode, RxRange, SerialRow,
+    AdjustmentRange, BOARD_NAME_MAX, ChannelMap, Configuration, Features, KeptLine, MANUFACTURER_ID_MAX,
+    MixRow, MixerKind, ModeCondition, ModeLogic, RxFail, RxFailMode, RxRange, SerialRow,
 };
 use super::super::settings::{Scope, find};
 use crate::geo::LatLon;
@@ -10,24 +10,47 @@ use crate::plan::{HoldPattern, Waypoint, WaypointType};
 use std::str::FromStr;
 use strum::IntoEnumIterator;
 
+/// Most fields of a record that are looked at; no record has as many.
+const MOST_FIELDS: usize = 16;
+/// Most bytes of the records of other versions that are kept.
+const MOST_UNKNOWN: usize = 1 << 16;
+/// What such a record costs beside its own bytes.
+const UNKNOWN_COST: usize = 32;
+/// Most records that are named in what could not be used; the others are counted.
+const MOST_NAMED: usize = 20;
+/// Most characters of a name in what could not be used.
+const LONGEST_NAME: usize = 40;
+
 /// Builds a configuration from a payload; the sentences tell what could not be used.
 pub(super) fn configuration(payload: &str) -> (Configuration, Vec<String>) {
     let mut configuration = Configuration::default();
     let mut findings = Vec::new();
     let mut plan_is_too_long = false;
+    let (mut unknown, mut dropped, mut unnamed) = (0, 0_usize, 0_usize);
     for line in payload.lines().filter(|line| !line.is_empty()) {
         let (kind, rest) = line.split_once('\t').unwrap_or((line, ""));
-        let fields: Vec<&str> = rest.split('\t').collect();
+        let fields: Vec<&str> = rest.split('\t').take(MOST_FIELDS).collect();
         match record(&mut configuration, kind, &fields) {
             Outcome::Taken => {}
-            Outcome::Unknown => configuration.unknown_records.push(line.to_owned()),
+            Outcome::Unknown if unknown + line.len() + UNKNOWN_COST > MOST_UNKNOWN => dropped += 1,
+            Outcome::Unknown => {
+                unknown += line.len() + UNKNOWN_COST;
+                configuration.unknown_records.push(line.to_owned());
+            }
+            Outcome::Refused if findings.len() == MOST_NAMED => unnamed += 1,
             Outcome::Refused => findings.push(describe(kind, &fields)),
             Outcome::PlanFull => plan_is_too_long = true,
         }
     }
+    if unnamed > 0 {
+        findings.push(format!("More stored values are not allowed ({unnamed}): their defaults are used."));
+    }
+    if dropped > 0 {
+        findings.push(format!("Records of another version do not fit ({dropped}): they are lost."));
+    }
     if plan_is_too_long {
         configuration.plan.waypoints.clear();
-        findings.push("stored plan has more waypoints than fit, it was emptied".to_owned());
+        findings.push("The stored plan has more waypoints than fit: it was emptied.".to_owned());
     }
     (configuration, findings)
 }
@@ -35,11 +58,11 @@ pub(super) fn configuration(payload: &str) -> (Configuration, Vec<String>) {
 fn describe(kind: &str, fields: &[&str]) -> String {
     let what = match fields.first() {
         Some(first) if matches!(kind, "setting" | "mode" | "mix" | "rxfail" | "rxrange" | "serial") => {
-            format!("{kind} {first}")
+            format!("{kind} {}", first.chars().take(LONGEST_NAME).collect::<String>())
         }
         _ => kind.to_owned(),
     };
-    format!("the stored value of {what} is not allowed, its default is used")
+    format!("The stored value of {what} is not allowed: its default is used.")
 }
 
 enum Outcome {
@@ -77,8 +100,8 @@ fn record(configuration: &mut Configuration, kind: &str, fields: &[&str]) -> Out
         "rxrange" => rx_range(configuration, fields),
         "rxfail" => rx_fail(configuration, fields),
         "serial" => serial(configuration, fields),
-        "board" => fields.first().map(|name| configuration.board_name = (*name).to_owned()),
-        "manufacturer" => fields.first().map(|id| configuration.manufacturer_id = (*id).to_owned()),
+        "board" => identity(fields, BOARD_NAME_MAX).map(|name| configuration.board_name = name),
+        "manufacturer" => identity(fields, MANUFACTURER_ID_MAX).map(|id| configuration.manufacturer_id = id),
         "kept" => kept(configuration, fields),
         _ => return Outcome::Unknown,
     }
@@ -112,6 +135,13 @@ fn setting(configuration: &mut Configuration, fields: &[&str]) -> Outcome {
 fn active(configuration: &mut Configuration, fields: &[&str]) -> Option<()> {
     let scope = scope(fields.first()?)?;
     configuration.settings.select(scope, number(fields, 1)?).then_some(())
+}
+
+/// The name of a board, as the command line would take it.
+fn identity(fields: &[&str], max: usize) -> Option<String> {
+    let name = fields.first()?;
+    let is_typed = name.bytes().all(|byte| (b' '..=b'~').contains(&byte) && byte != b'#');
+    (is_typed && name.len() <= max && name.trim() == *name).then(|| (*name).to_owned())
 }
 
 fn mix(configuration: &mut Configuration, fields: &[&str]) -> Option<()> {

@@ -61,11 +61,6 @@ impl AltitudeHold {
         self.controller.watch(&measurement(now), params, now.dt);
     }
 
-    /// Altitude held or aimed at, m.
-    pub fn target_m(&self) -> Option<f64> {
-        (self.phase != Phase::Off).then(|| self.controller.setpoint_m())
-    }
-
     /// Whether the descent has ended on the ground.
     pub fn has_touched_down(&self) -> bool {
         matches!(self.phase, Phase::Descending(_)) && self.grounded_s >= self.grounded_limit_s
@@ -180,9 +175,8 @@ fn climb_share(stick_us: f64, hover_us: f64, tuning: &HoldTuning) -> f64 {
     if stick_us < tuning.low_us {
         return 0.0;
     }
-    let low = hover_us.min(tuning.mid_us);
+    let low = sink_edge_us(hover_us, tuning);
     let high = hover_us.max(tuning.mid_us);
-    let low = low - tuning.throttle_deadband * (low - tuning.low_us).max(0.0);
     let high = high + tuning.throttle_deadband * (2000.0 - high).max(0.0);
     if stick_us > high {
         ((stick_us - high) / (2000.0 - high).max(1.0)).min(1.0)
@@ -191,6 +185,23 @@ fn climb_share(stick_us: f64, hover_us: f64, tuning: &HoldTuning) -> f64 {
     } else {
         0.0
     }
+}
+
+/// Below this the throttle stick makes the craft sink, µs.
+fn sink_edge_us(hover_us: f64, tuning: &HoldTuning) -> f64 {
+    let low = hover_us.min(tuning.mid_us);
+    low - tuning.throttle_deadband * (low - tuning.low_us).max(0.0)
+}
+
+/// The throttle stick that makes the craft sink at a rate (m/s), or as fast as it can; `None` when it cannot.
+pub(super) fn sink_stick_us(rate_mps: f64, params: &Params, tuning: &HoldTuning) -> Option<f64> {
+    let hover_us = match params.hover_throttle {
+        0 => tuning.mid_us,
+        us => f64::from(us),
+    };
+    let edge_us = sink_edge_us(hover_us, tuning);
+    let share = (rate_mps / params.climb_rate_mps()).min(1.0);
+    (edge_us > tuning.low_us).then_some(edge_us - share * (edge_us - tuning.low_us))
 }
 
 fn measurement(now: &NavInputs) -> AltitudeMeasurement {
@@ -215,6 +226,19 @@ mod tests {
         assert!((climb_share(2000.0, 1275.0, &tuning) - 1.0).abs() < 1e-9);
         assert!((climb_share(1050.0, 1275.0, &tuning) + 1.0).abs() < 1e-9);
         assert!((climb_share(1800.0, 1500.0, &tuning) - 0.5).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_sinking_stick_sinks_at_the_rate_asked_for() {
+        let tuning = HoldTuning::default();
+        for hover_throttle in [0, 1275, 1500] {
+            let params = Params { hover_throttle, ..Params::default() };
+            let stick = sink_stick_us(1.0, &params, &tuning).unwrap();
+            let hover_us = if hover_throttle == 0 { 1500.0 } else { f64::from(hover_throttle) };
+            let rate = climb_share(stick, hover_us, &tuning) * params.climb_rate_mps();
+            assert!((rate + 1.0).abs() < 1e-9, "{hover_throttle}: {stick} {rate}");
+        }
+        assert_eq!(sink_stick_us(1.0, &Params { hover_throttle: 1050, ..Params::default() }, &tuning), None);
     }
 
     #[test]

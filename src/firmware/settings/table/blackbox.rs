@@ -1,6 +1,6 @@
 //! Flight recording.
 
-use super::super::Role::{Carry, Opt};
+use super::super::Role::Carry;
 use super::super::Scope;
 use super::super::Width::{U8, U32};
 use super::{BAUD, Group, choice, port, switch};
@@ -11,8 +11,8 @@ pub(super) const BLACKBOX: Group = Group {
     title: "Blackbox",
     scope: Scope::Master,
     settings: &[
-        choice("blackbox_sample_rate", U8, &["1/1", "1/2", "1/4", "1/8", "1/16"], 2, Opt, "Share of control loops that are recorded."),
-        choice("blackbox_device", U8, &["NONE", "SPIFLASH", "SDCARD", "SERIAL", "VIRTUAL"], 0, Opt, "Where flights are recorded.").hardware(),
+        choice("blackbox_sample_rate", U8, &["1/1", "1/2", "1/4", "1/8", "1/16"], 2, Carry, "Share of control loops that are recorded."),
+        choice("blackbox_device", U8, &["NONE", "SPIFLASH", "SDCARD", "SERIAL", "VIRTUAL"], 0, Carry, "Where flights are recorded.").hardware(),
         switch("blackbox_disable_pids", U32, false, Carry, "Leave the PID terms out of recordings."),
         switch("blackbox_disable_rc", U32, false, Carry, "Leave the sticks out of recordings."),
         switch("blackbox_disable_setpoint", U32, false, Carry, "Leave the setpoints out of recordings."),
@@ -27,7 +27,7 @@ pub(super) const BLACKBOX: Group = Group {
         switch("blackbox_disable_debug", U32, false, Carry, "Leave the debug values out of recordings."),
         switch("blackbox_disable_motors", U32, false, Carry, "Leave the motors out of recordings."),
         switch("blackbox_disable_gps", U32, false, Carry, "Leave the GPS out of recordings."),
-        choice("blackbox_mode", U8, &["NORMAL", "MOTOR_TEST", "ALWAYS"], 0, Opt, "When flights are recorded."),
+        choice("blackbox_mode", U8, &["NORMAL", "MOTOR_TEST", "ALWAYS"], 0, Carry, "When flights are recorded."),
         switch("blackbox_high_resolution", U8, false, Carry, "Record with ten times finer values."),
         port("blackbox_uart", 0, Carry, "Serial port of the recorder."),
         choice("blackbox_baud", U8, BAUD, 5, Carry, "Speed of the recorder's port."),

@@ -1,6 +1,6 @@
 //! GPS and the return-to-home rescue.
 
-use super::super::Role::{Carry, Live, Opt};
+use super::super::Role::{Carry, Live};
 use super::super::Scope;
 use super::super::Width::{U8, U16};
 use super::{BAUD, Group, choice, number, port, switch, text};
@@ -22,7 +22,7 @@ pub(super) const GPS: Group = Group {
         switch("gps_ublox_use_galileo", U8, false, Carry, "Use Galileo satellites."),
         switch("gps_ublox_enable_ana", U8, false, Carry, "Use predicted orbits for a faster fix."),
         switch("gps_set_home_point_once", U8, false, Live, "Keep the first home instead of setting it at each arming."),
-        switch("gps_use_3d_speed", U8, false, Opt, "Show speed along the path instead of over ground."),
+        switch("gps_use_3d_speed", U8, false, Carry, "Show speed along the path instead of over ground."),
         switch("gps_sbas_integrity", U8, false, Carry, "Accept only augmentation with integrity data."),
         text("gps_nmea_custom_commands", 64, Carry, "Commands sent to a real NMEA receiver."),
         port("gps_uart", 0, Carry, "Serial port of the GPS."),
@@ -36,17 +36,17 @@ pub(super) const GPS_RESCUE: Group = Group {
     title: "GPS rescue",
     scope: Scope::Master,
     settings: &[
-        number("gps_rescue_min_start_dist", U16, 5, 30, 15, Live, "Nearer to home than this a rescue lands at once, m."),
+        number("gps_rescue_min_start_dist", U16, 5, 30, 15, Live, "Nearer to home than this a rescue does not climb first: it flies over home as it is and lands, m."),
         choice("gps_rescue_alt_mode", U8, &["MAX_ALT", "FIXED_ALT", "CURRENT_ALT"], 0, Live, "Altitude of the way home."),
         number("gps_rescue_initial_climb", U16, 0, 100, 10, Live, "Climb above the reference altitude, m."),
         number("gps_rescue_ascend_rate", U16, 50, 2500, 750, Live, "Climb rate of a rescue, cm/s."),
         number("gps_rescue_return_alt", U16, 5, 1000, 30, Live, "Altitude of the way home in mode FIXED_ALT, m."),
         number("gps_rescue_ground_speed", U16, 0, 3000, 750, Live, "Speed of the way home, cm/s."),
-        number("gps_rescue_descent_dist", U16, 5, 500, 20, Live, "Distance from home at which the descent starts, m."),
+        number("gps_rescue_descent_dist", U16, 5, 500, 20, Carry, "Distance from home at which a real craft starts its descent, m; here it descends over home."),
         number("gps_rescue_descend_rate", U16, 25, 500, 150, Live, "Descent rate of a rescue, cm/s."),
-        choice("gps_rescue_sanity_checks", U8, &["RESCUE_SANITY_OFF", "RESCUE_SANITY_ON", "RESCUE_SANITY_FS_ONLY"], 2, Live, "When a rescue that makes no progress is given up."),
+        choice("gps_rescue_sanity_checks", U8, &["RESCUE_SANITY_OFF", "RESCUE_SANITY_ON", "RESCUE_SANITY_FS_ONLY"], 2, Live, "When a rescue that makes no progress or flies away is given up: never, always, or when the failsafe flies it."),
         number("gps_rescue_min_sats", U8, 5, 50, 8, Live, "Satellites needed for home and rescue."),
         switch("gps_rescue_allow_arming_without_fix", U8, false, Live, "Arm although a rescue would have no home."),
-        number("gps_rescue_yaw_p", U8, 0, 200, 20, Live, "How sharply a rescue turns towards home."),
+        number("gps_rescue_yaw_p", U8, 0, 200, 20, Carry, "How sharply a real rescue turns towards home; here ap_yaw_p says so."),
     ],
 };

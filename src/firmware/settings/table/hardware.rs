@@ -1,6 +1,6 @@
 //! Buses, ports and peripherals of real boards.
 
-use super::super::Role::{Carry, Live};
+use super::super::Role::Carry;
 use super::super::Scope;
 use super::super::Width::{U8, U16, U32};
 use super::{BAUD, Group, choice, number, port, switch};
@@ -33,8 +33,8 @@ pub(super) const SERIAL_PORTS: Group = Group {
     scope: Scope::Master,
     settings: &[
         switch("serialmsp_halfduplex", U8, false, Carry, "MSP on a single wire."),
-        port("msp_uart_1", 1, Live, "First serial port that speaks MSP; UARTn listens on TCP port 5760 + n."),
-        choice("msp_baud_1", U8, BAUD, 5, Live, "Speed of the first MSP port."),
+        port("msp_uart_1", 1, Carry, "Serial port for MSP and CLI; which doors open is chosen at the start of the program."),
+        choice("msp_baud_1", U8, BAUD, 5, Carry, "Speed of the first MSP port."),
         port("msp_uart_2", 0, Carry, "Second serial port that speaks MSP."),
         choice("msp_baud_2", U8, BAUD, 5, Carry, "Speed of the second MSP port."),
         port("msp_uart_3", 0, Carry, "Third serial port that speaks MSP."),

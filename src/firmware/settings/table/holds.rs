@@ -14,7 +14,7 @@ pub(super) const HOLD: Group = Group {
         number("alt_hold_climb_rate", U8, 0, 200, 50, Live, "Climb rate at full stick in altitude hold, 0.1 m/s."),
         number("alt_hold_deadband", U8, 0, 70, 20, Live, "Throttle stick around hover that keeps the altitude, percent."),
         number("pos_hold_deadband", U8, 0, 50, 5, Live, "Stick movement beyond which the pilot steers in position hold, percent."),
-        choice("poshold_position_source", U8, &["AUTO", "GPS_ONLY", "OPTICALFLOW_ONLY"], 0, Live, "Where position hold takes its position from."),
+        choice("poshold_position_source", U8, &["AUTO", "GPS_ONLY", "OPTICALFLOW_ONLY"], 0, Live, "Where position hold takes its position from; with OPTICALFLOW_ONLY there is none here."),
         number("poshold_opticalflow_quality_min", U8, 0, 100, 30, Carry, "Least quality of optical flow, percent."),
         number("poshold_opticalflow_max_range", U16, 50, 1000, 400, Carry, "Greatest height for optical flow, cm."),
     ],

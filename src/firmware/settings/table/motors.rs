@@ -1,6 +1,6 @@
 //! Motors, throttle correction and mixer.
 
-use super::super::Role::{Carry, Live, Opt};
+use super::super::Role::{Carry, Live};
 use super::super::Scope;
 use super::super::Width::{I8, U8, U16};
 use super::{Group, array, choice, number, switch};
@@ -15,8 +15,8 @@ pub(super) const MOTORS: Group = Group {
         number("min_command", U16, 750, 2250, 1000, Live, "Motor output while disarmed, µs."),
         number("motor_kv", U16, 1, 40000, 1960, Carry, "Motor constant, rpm per volt.").hardware(),
         number("motor_idle", U16, 0, 2000, 550, Live, "Motor output at zero throttle while armed, 0.01 percent of the range."),
-        switch("use_unsynced_pwm", U8, true, Live, "Motor output at its own rate instead of that of the control loop."),
-        choice("motor_pwm_protocol", U8, &["PWM", "ONESHOT125", "ONESHOT42", "MULTISHOT", "BRUSHED", "DSHOT150", "DSHOT300", "DSHOT600", "PROSHOT1000", "DISABLED", "DRONECAN"], 0, Live, "Language of the ESCs; every value flies here."),
+        switch("use_unsynced_pwm", U8, true, Carry, "Motor output at its own rate instead of that of the control loop; here it is always that of the loop."),
+        choice("motor_pwm_protocol", U8, &["PWM", "ONESHOT125", "ONESHOT42", "MULTISHOT", "BRUSHED", "DSHOT150", "DSHOT300", "DSHOT600", "PROSHOT1000", "DISABLED", "DRONECAN"], 0, Live, "Language of the ESCs; every value but DISABLED flies here."),
         number("motor_pwm_rate", U16, 200, 32000, 480, Carry, "Rate of unsynced motor output, Hz."),
         switch("motor_pwm_inversion", U8, false, Carry, "Invert the motor signal."),
         number("motor_poles", U8, 4, 255, 14, Carry, "Magnets of a motor, to turn ESC telemetry into rpm."),
@@ -30,8 +30,8 @@ pub(super) const THROTTLE_CORRECTION: Group = Group {
     title: "Throttle correction",
     scope: Scope::Master,
     settings: &[
-        number("thr_corr_value", U8, 0, 150, 0, Opt, "Throttle added in level modes at full tilt."),
-        number("thr_corr_angle", U16, 1, 900, 800, Opt, "Tilt at which that throttle is complete, 0.1 deg."),
+        number("thr_corr_value", U8, 0, 150, 0, Live, "Throttle added in level modes at full tilt, 0.1 percent."),
+        number("thr_corr_angle", U16, 1, 900, 800, Live, "Tilt at which that throttle is complete, 0.1 deg."),
     ],
 };
 
@@ -42,7 +42,7 @@ pub(super) const MIXER: Group = Group {
     scope: Scope::Master,
     settings: &[
         switch("yaw_motors_reversed", I8, false, Live, "The motors turn the other way round."),
-        choice("mixer_type", U8, &["LEGACY", "LINEAR", "DYNAMIC", "EZLANDING"], 0, Live, "How throttle gives way when the motors saturate; LEGACY is flown here."),
+        choice("mixer_type", U8, &["LEGACY", "LINEAR", "DYNAMIC", "EZLANDING"], 0, Carry, "How throttle gives way when the motors saturate; LEGACY is flown here."),
         number("crashflip_motor_percent", U8, 0, 100, 0, Carry, "Motor output of a flip that the sticks do not ask for, percent."),
         number("crashflip_rate", U8, 0, 250, 0, Carry, "How fast a flip after a crash may turn."),
         switch("crashflip_auto_rearm", I8, false, Carry, "Arm again by itself after a flip."),

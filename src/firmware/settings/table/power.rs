@@ -1,6 +1,6 @@
 //! Battery sensing.
 
-use super::super::Role::{Carry, Live};
+use super::super::Role::Carry;
 use super::super::Scope;
 use super::super::Width::{I16, U8, U16};
 use super::{Group, choice, number, switch};
@@ -13,7 +13,7 @@ pub(super) const POWER: Group = Group {
     settings: &[
         number("vbat_hysteresis", U8, 0, 250, 1, Carry, "Voltage by which a battery alarm must clear, 0.01 V."),
         choice("current_meter", U8, &["NONE", "ADC", "VIRTUAL", "ESC", "MSP"], 2, Carry, "Source of the current measurement.").hardware(),
-        choice("battery_meter", U8, &["NONE", "ADC", "ESC"], 0, Live, "Source of the voltage measurement.").hardware(),
+        choice("battery_meter", U8, &["NONE", "ADC", "ESC"], 0, Carry, "Source of the voltage measurement; the simulated battery is always measured.").hardware(),
         number("vbat_detect_cell_voltage", U16, 0, 2000, 300, Carry, "Voltage a cell must show to be counted, 0.01 V."),
         switch("use_vbat_alerts", U8, true, Carry, "Warn by voltage."),
         switch("use_cbat_alerts", U8, false, Carry, "Warn by capacity used."),

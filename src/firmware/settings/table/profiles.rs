@@ -14,7 +14,7 @@ pub(super) const BATTERY_PROFILE: Group = Group {
         text("battery_profile_name", 8, Live, "Name of the battery profile."),
         number("bat_capacity", U16, 0, 20000, 0, Live, "Capacity of the battery, mAh; 0 for unknown."),
         number("vbat_max_cell_voltage", U16, 100, 500, 430, Live, "Voltage above which a cell is not one cell, 0.01 V."),
-        number("vbat_full_cell_voltage", U16, 100, 500, 410, Live, "Voltage of a full cell, 0.01 V."),
+        number("vbat_full_cell_voltage", U16, 100, 500, 410, Carry, "Voltage of a full cell, 0.01 V."),
         number("vbat_min_cell_voltage", U16, 100, 500, 330, Live, "Voltage at which a cell is critical, 0.01 V."),
         number("vbat_warning_cell_voltage", U16, 100, 500, 350, Live, "Voltage at which a cell is low, 0.01 V."),
         number("cbat_alert_percent", U8, 0, 100, 10, Carry, "Capacity left that warns, percent."),

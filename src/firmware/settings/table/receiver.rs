@@ -1,6 +1,6 @@
 //! Receiver, sticks and failsafe.
 
-use super::super::Role::{Carry, Live, Opt};
+use super::super::Role::{Carry, Live};
 use super::super::Scope;
 use super::super::Width::{I8, U8, U16, U32};
 use super::{Group, choice, number, port, switch};
@@ -22,10 +22,10 @@ pub(super) const RECEIVER: Group = Group {
         number("rssi_src_frame_lpf_period", U8, 0, 255, 30, Carry, "Smoothing of the strength derived from lost frames, 0.1 s."),
         number("rssi_smoothing", U8, 0, 255, 125, Carry, "Smoothing of the shown signal strength."),
         switch("rc_smoothing", U8, true, Live, "Smooth the steps between receiver frames."),
-        number("rc_smoothing_auto_factor", U8, 0, 250, 30, Opt, "Strength of the automatic stick smoothing; more is smoother and later."),
-        number("rc_smoothing_auto_factor_throttle", U8, 0, 250, 30, Opt, "Strength of the automatic throttle smoothing."),
-        number("rc_smoothing_setpoint_cutoff", U8, 0, 255, 0, Opt, "Fixed cutoff of the stick smoothing, Hz; 0 is automatic."),
-        number("rc_smoothing_throttle_cutoff", U8, 0, 255, 0, Opt, "Fixed cutoff of the throttle smoothing, Hz; 0 is automatic."),
+        number("rc_smoothing_auto_factor", U8, 0, 250, 30, Live, "Strength of the automatic stick smoothing; more is smoother and later."),
+        number("rc_smoothing_auto_factor_throttle", U8, 0, 250, 30, Live, "Strength of the automatic throttle smoothing."),
+        number("rc_smoothing_setpoint_cutoff", U8, 0, 255, 0, Live, "Fixed cutoff of the stick smoothing, Hz; 0 is automatic."),
+        number("rc_smoothing_throttle_cutoff", U8, 0, 255, 0, Live, "Fixed cutoff of the throttle smoothing, Hz; 0 is automatic."),
         choice("rc_smoothing_debug_axis", U8, &["ROLL", "PITCH", "YAW", "THROTTLE"], 0, Carry, "Axis that the smoothing debug mode shows."),
         number("fpv_mix_degrees", U8, 0, 90, 0, Carry, "Camera tilt for which yaw and roll are mixed in FPV ANGLE MIX, deg."),
         number("max_aux_channels", U8, 0, 14, 6, Live, "How many switch channels are evaluated; the others read 1500 µs."),
@@ -34,8 +34,8 @@ pub(super) const RECEIVER: Group = Group {
         number("rx_max_usec", U16, 750, 2250, 2115, Live, "Longest valid pulse, µs."),
         switch("serialrx_halfduplex", U8, false, Carry, "Receiver on a single wire."),
         port("rx_uart", 0, Carry, "Serial port of the receiver."),
-        number("msp_override_channels_mask", U32, 0, 262143, 0, Opt, "Channels that MSP may override, one bit each."),
-        switch("msp_override_failsafe", U8, false, Opt, "Let overridden channels keep flying through a failsafe.").hardware(),
+        number("msp_override_channels_mask", U32, 0, 262143, 0, Carry, "Channels that MSP may override, one bit each."),
+        switch("msp_override_failsafe", U8, false, Carry, "Let overridden channels keep flying through a failsafe.").hardware(),
     ],
 };
 

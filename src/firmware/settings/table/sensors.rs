@@ -1,6 +1,6 @@
 //! Gyro, accelerometer, magnetometer, barometer, alignment and the attitude estimate.
 
-use super::super::Role::{Carry, Live, Opt};
+use super::super::Role::{Carry, Live};
 use super::super::Scope;
 use super::super::Width::{I16, U8, U16};
 use super::{ACC_HARDWARE, Group, array, choice, number, switch};
@@ -24,8 +24,8 @@ pub(super) const GYRO: Group = Group {
         number("gyro_calib_noise_limit", U8, 0, 200, 48, Live, "Movement above which the gyro calibration starts again, gyro units; 0 accepts any."),
         number("gyro_offset_yaw", I16, -1000, 1000, 0, Carry, "Fixed correction of the yaw rate, for gyros that drift."),
         choice("gyro_overflow_detect", U8, &["OFF", "YAW", "ALL"], 2, Carry, "Axes on which an overflowing gyro is caught."),
-        choice("yaw_spin_recovery", U8, &["OFF", "ON", "AUTO"], 2, Opt, "Give up roll and pitch while the craft spins faster than the threshold."),
-        number("yaw_spin_threshold", U16, 500, 1950, 1950, Opt, "Yaw rate that counts as a spin, deg/s."),
+        choice("yaw_spin_recovery", U8, &["OFF", "ON", "AUTO"], 2, Carry, "Give up roll and pitch while the craft spins faster than the threshold."),
+        number("yaw_spin_threshold", U16, 500, 1950, 1950, Carry, "Yaw rate that counts as a spin, deg/s."),
         number("gyro_lpf1_dyn_min_hz", U16, 0, 1000, 250, Live, "Cutoff of the first gyro low-pass at idle, Hz; 0 makes it static."),
         number("gyro_lpf1_dyn_max_hz", U16, 0, 1000, 500, Live, "Cutoff of the first gyro low-pass at full throttle, Hz."),
         number("gyro_lpf1_dyn_expo", U8, 0, 10, 5, Live, "How early the cutoff rises with the throttle; 0 is linear."),
@@ -62,7 +62,7 @@ pub(super) const MAGNETOMETER: Group = Group {
         number("mag_i2c_address", U8, 0, 119, 0, Carry, "I2C address of a real compass.").hardware(),
         number("mag_spi_device", U8, 0, 0, 0, Carry, "SPI bus of a real compass.").hardware(),
         choice("mag_hardware", U8, &["AUTO", "NONE", "HMC5883", "AK8975", "AK8963", "QMC5883L", "LIS2MDL", "LIS3MDL", "MPU925X_AK8963", "IST8310", "MMC560X", "QMC5883P"], 0, Live, "Compass chip; NONE switches the simulated compass off, any other value leaves it on."),
-        array("mag_calibration", I16, &[0, 0, 0], Live, "Zero offsets of the compass on x, y, z."),
+        array("mag_calibration", I16, &[0, 0, 0], Live, "Zero offsets of the compass on x, y, z (forward, left, up), in its own units."),
     ],
 };
 

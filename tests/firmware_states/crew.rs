@@ -1,0 +1,101 @@
+//! The people who put a craft that came down back into the air.
+
+use rand::RngExt as _;
+use rand_chacha::ChaCha8Rng;
+
+use betadeck::signals::RcFrame;
+use betadeck::sim::WorldCommand;
+
+use super::{ARM, AUTOPILOT, HOLDS, Run, THROTTLE};
+
+/// Longest wait for a craft that can be armed, updates: a cold GPS is part of it.
+const PATIENCE: u32 = 6000;
+/// How long a craft lies disarmed before somebody comes, updates.
+const LEFT_ALONE: u32 = 200;
+const CLIMB: u32 = 500;
+/// Greatest lean a craft is armed with, cosine.
+const UPRIGHT: f64 = 0.95;
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+enum Work {
+    #[default]
+    Come,
+    Wait,
+    Arm,
+    Climb,
+    Done,
+}
+
+/// Where the work stands.
+#[derive(Debug, Clone, Default)]
+pub struct Crew {
+    work: Work,
+    since: u32,
+    lying: u32,
+}
+
+impl Crew {
+    /// Nothing to do.
+    pub fn done() -> Self {
+        Self { work: Work::Done, ..Self::default() }
+    }
+
+    pub fn is_done(&self) -> bool {
+        self.work == Work::Done
+    }
+
+    /// Comes when the craft has been lying for a while; now and then it is left to itself longer.
+    pub fn watch(&mut self, run: &Run, rng: &mut ChaCha8Rng) {
+        self.lying = if run.vehicle.firmware().is_armed() { 0 } else { self.lying + 1 };
+        if self.is_done() && self.lying > LEFT_ALONE && rng.random_bool(0.02) {
+            *self = Self::default();
+        }
+    }
+
+    fn next(&mut self, work: Work) {
+        self.work = work;
+        self.since = 0;
+    }
+
+    /// One update of work.
+    pub fn work(&mut self, run: &mut Run) {
+        self.since += 1;
+        match self.work {
+            Work::Come => {
+                let truth = run.vehicle.world().truth();
+                let upright = run.vehicle.firmware().estimate().cos_tilt > UPRIGHT;
+                if truth.crashed || !upright {
+                    run.restart(true);
+                }
+                run.frame = RcFrame::SAFE;
+                run.link = true;
+                run.vehicle.change_world(WorldCommand::ClearFaults).unwrap();
+                self.next(Work::Wait);
+            }
+            Work::Wait => {
+                let flags = run.vehicle.firmware().arming_flags();
+                if run.vehicle.firmware().arming_flags().is_empty() && run.vehicle.firmware().gps_fix() {
+                    run.switch(ARM, true);
+                    self.next(Work::Arm);
+                }
+                assert!(self.since < PATIENCE, "can never be armed: {:?}", flags.iter().collect::<Vec<_>>());
+            }
+            Work::Arm => {
+                if run.vehicle.firmware().is_armed() {
+                    run.switch(HOLDS, true);
+                    run.frame.channels[THROTTLE] = 1750;
+                    self.next(Work::Climb);
+                }
+                assert!(self.since < 100, "nothing blocks arming, and it does not arm");
+            }
+            Work::Climb => {
+                if self.since >= CLIMB || !run.vehicle.firmware().is_armed() {
+                    run.frame.channels[THROTTLE] = 1500;
+                    run.switch(AUTOPILOT, true);
+                    self.next(Work::Done);
+                }
+            }
+            Work::Done => {}
+        }
+    }
+}
