@@ -1,8 +1,10 @@
 //! Owns the vehicle and the clock; takes commands, publishes snapshots and events.
 
+mod arming;
 pub mod command;
 mod pacer;
 mod runtime;
+mod simulator;
 pub mod upload;
 
 pub use command::{Command, SessionView};

@@ -4,10 +4,10 @@
 
 use std::time::Duration;
 
-use betadeck::firmware::cli::CliReply;
+use betadeck::firmware::cli::{CliReply, MAX_LINE};
 use betadeck::link::proto::conversation::{Ask, Conversation};
 use betadeck::link::proto::fdm::{self, Dialect, Gravity, Packet, Refusal, State};
-use betadeck::link::proto::msp::{Decoder, Form, Frame, Kind};
+use betadeck::link::proto::msp::{Decoder, Dropped, Form, Frame, Kind};
 use betadeck::link::proto::{rc, servo};
 use betadeck::signals::RcFrame;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
@@ -112,6 +112,85 @@ proptest! {
     }
 
     #[test]
+    fn garbage_between_frames_costs_none_of_them(
+        frames in prop::collection::vec(any_frame(Kind::Request, 186), 1..6),
+        garbage in prop::collection::vec(prop::collection::vec(any::<u8>(), 0..40), 6),
+    ) {
+        let mut stream = Vec::new();
+        for (frame, garbage) in frames.iter().zip(&garbage) {
+            // What begins like a frame may be one.
+            stream.extend(garbage.iter().filter(|byte| **byte != b'$'));
+            frame.encode(&mut stream);
+        }
+        let (found, decoder) = decode_all(Decoder::server(), &stream);
+        prop_assert_eq!(found, frames);
+        prop_assert_eq!(decoder.dropped(), Dropped::default());
+    }
+
+    #[test]
+    fn a_truncated_frame_costs_at_most_what_it_announced(
+        frame in any_frame(Kind::Request, 186),
+        cut in 1_usize..200,
+    ) {
+        let mut stream = frame.to_bytes();
+        stream.truncate(stream.len().saturating_sub(cut).max(1));
+        // Zeros complete what was announced, and are no frame themselves.
+        stream.extend(vec![0_u8; 200]);
+        let good = Frame::request(Form::V1, 1, &[]);
+        good.encode(&mut stream);
+        let (found, decoder) = decode_all(Decoder::server(), &stream);
+        prop_assert_eq!(found.last(), Some(&good));
+        prop_assert!(decoder.is_between_frames());
+    }
+
+    #[test]
+    fn an_oversized_frame_is_dropped_before_its_payload(
+        form in prop_oneof![Just(Form::V1), Just(Form::V2), Just(Form::V2OverV1)],
+        code in any::<u8>(),
+        size in 193_usize..1000,
+    ) {
+        let code = u16::from(code % 255);
+        let mut stream = Frame::request(form, code, &vec![0; size]).to_bytes();
+        let good = Frame::request(Form::V2, 101, &[]);
+        good.encode(&mut stream);
+        let (found, decoder) = decode_all(Decoder::server(), &stream);
+        prop_assert_eq!(found, vec![good]);
+        prop_assert_eq!(decoder.dropped().oversized, 1);
+    }
+
+    #[test]
+    fn whatever_comes_little_is_kept_and_sent(
+        pieces in prop::collection::vec(
+            (prop_oneof![any::<u8>(), Just(b'x'), Just(b'#'), Just(0x02), Just(b'\n'), Just(b'$')], 1_usize..5000),
+            0..40,
+        ),
+    ) {
+        let mut conversation = Conversation::default();
+        for (k, (byte, count)) in (1..).zip(pieces) {
+            // These ask for the list of what could follow.
+            let byte = if matches!(byte, b'\t' | b'?') { b'x' } else { byte };
+            conversation.push(&vec![byte; count]);
+            let now = Duration::from_secs(k);
+            let mut sent = 0;
+            while let Some(ask) = conversation.next(now) {
+                match &ask {
+                    Ask::Request(frame) => conversation.reply(frame, None),
+                    Ask::Flush => sent += conversation.take_output().len(),
+                    Ask::EnterCli { .. } => conversation.admit(true, now),
+                    Ask::Line { line, .. } => {
+                        prop_assert!(line.len() <= MAX_LINE);
+                        let _stays = conversation.answer(&CliReply::default());
+                    }
+                    Ask::Restart | Ask::LeftCli => {}
+                }
+            }
+            // Echo and error frames of what has come, no more.
+            sent += conversation.take_output().len();
+            prop_assert!(sent <= 40 * count + 2000, "{} bytes for {} times {}", sent, count, byte);
+        }
+    }
+
+    #[test]
     fn a_damaged_frame_does_not_cost_the_next_but_one(
         bytes in prop::collection::vec(any::<u8>(), 0..64),
     ) {
@@ -154,7 +233,7 @@ fn found_in(pieces: &[&[u8]]) -> (Vec<Ask>, Vec<u8>) {
                     let reply = CliReply { text: "ok\r\n".to_owned(), ..CliReply::default() };
                     assert!(!conversation.answer(&reply));
                 }
-                Ask::Restart | Ask::LeftCli => {}
+                Ask::Flush | Ask::Restart | Ask::LeftCli => {}
             }
             all.push(ask);
         }

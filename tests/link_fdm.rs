@@ -4,10 +4,13 @@
 
 use std::collections::VecDeque;
 
+use betadeck::firmware::config::Configuration;
+use betadeck::firmware::{AttitudeSource, Firmware, FirmwareEvent, FirmwareOptions};
 use betadeck::link::proto::fdm::{Dialect, GZ_PLUGIN_SIZE, Packet, State, pressure_pa};
 use betadeck::link::proto::fdm_link::{
     Answer, FdmLink, FdmLinkConfig, LinkState, Mirror, Notice, Received, Verdict,
 };
+use betadeck::signals::SimTime;
 use nalgebra::{UnitQuaternion, Vector3};
 
 const MS: u64 = 1000;
@@ -149,6 +152,47 @@ fn a_position_off_the_globe_is_no_fix_and_harms_nothing_else() {
         }
     }
     assert!(last_fix >= 3400);
+}
+
+#[test]
+fn a_firmware_loses_the_fix_2500_ms_after_the_last_position_and_nothing_else() {
+    let options =
+        FirmwareOptions { attitude: AttitudeSource::Truth, gps_timeout_s: 2.5, ..FirmwareOptions::default() };
+    let mut firmware = Firmware::new(Configuration::default(), options);
+    let mut link = FdmLink::new(FdmLinkConfig::default(), 0);
+    let mut time_ms = 0;
+    let (mut lost_ms, mut back_ms) = (None, None);
+    const GONE_MS: u64 = 4000;
+    const HERE_MS: u64 = 7000;
+    for ms in 0..8000 {
+        let mut state = at_rest(ms as f64 * 1e-3);
+        if (GONE_MS..HERE_MS).contains(&ms) {
+            state.lat_deg = 999.0;
+        }
+        let received = link.receive(&bytes(Dialect::SitlGz, &state), ms * MS);
+        let Some(mut sensors) = received.sensors else { continue };
+        for _ in 0..received.ticks {
+            time_ms += 1;
+            sensors.time = SimTime(time_ms * MS);
+            firmware.step(&sensors);
+            (sensors.pressure_pa, sensors.mag_flu, sensors.gps) = (None, None, None);
+        }
+        while let Some(event) = firmware.take_event() {
+            match event {
+                FirmwareEvent::GpsLost { .. } => lost_ms = Some(ms),
+                FirmwareEvent::GpsFix { .. } if ms > GONE_MS => back_ms = Some(ms),
+                _ => {}
+            }
+        }
+        if ms > 1000 {
+            let facts = firmware.msp_facts(None);
+            assert!(facts.roll_deg.abs() < 0.1 && facts.pitch_deg.abs() < 0.1, "level at {ms} ms");
+        }
+    }
+    // A position comes every 100 ms, the last good one up to that long before the bad ones.
+    let (lost_ms, back_ms) = (lost_ms.unwrap(), back_ms.unwrap());
+    assert!((GONE_MS + 2400..=GONE_MS + 2700).contains(&lost_ms), "{lost_ms}");
+    assert!((HERE_MS..=HERE_MS + 200).contains(&back_ms), "{back_ms}");
 }
 
 #[test]

@@ -176,6 +176,8 @@ async fn a_simulator_and_a_script_arm_the_craft() {
         lines.iter().any(|line| line.starts_with("[SITL] new rc 40: t:0.000000 AETR: 1500 1500 1100 1500"))
     );
     assert!(lines.iter().any(|line| line == "New connection on UART1, 0"));
+    let websocket = "[SITL] websocket for the Betaflight App: ws://127.0.0.1:";
+    assert!(lines.iter().any(|line| line.starts_with(websocket) && !line.ends_with(":0")), "{lines:?}");
     assert_eq!(rig.stop().await, SitlEnd::Stopped);
 }
 

@@ -437,6 +437,8 @@ fn commands_ask_the_owner() {
         assert_eq!(handle(code, &[], &mut craft(), &armed).action, None, "message {code} while armed");
     }
     assert_eq!(handle(214, &[0; 8], &mut craft(), &armed).action, None);
+    let reboot = handle(68, &[], &mut craft(), &armed);
+    assert_eq!((reboot.reply, reboot.action), (None, None), "an armed craft is not restarted");
 }
 
 #[test]

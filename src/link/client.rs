@@ -20,8 +20,6 @@ use crate::firmware::cli::{Interpreter, Mode};
 const IDLE: Duration = Duration::from_secs(120);
 /// A client that does not take what it asked for within this time is closed.
 const SLOW: Duration = Duration::from_secs(10);
-/// Output that is sent before more is asked for, bytes.
-const OUTPUT_MAX: usize = 64 * 1024;
 /// How long a goodbye may take.
 const GOODBYE: Duration = Duration::from_secs(1);
 
@@ -140,14 +138,12 @@ impl Client {
                         Interpreter::new(if interactive { Mode::Interactive } else { Mode::Framed });
                 }
                 Ask::Line { line, mode } => self.run(line, mode).await?,
+                Ask::Flush => self.flush().await?,
                 Ask::Restart => {
                     self.tell(Request::Restart { client: self.id }).await?;
                     return Err(Stop::Ended);
                 }
                 Ask::LeftCli => self.tell(Request::LeftCli { client: self.id }).await?,
-            }
-            if self.conversation.output_len() > OUTPUT_MAX {
-                self.flush().await?;
             }
         }
         if self.conversation.dropped() != before {

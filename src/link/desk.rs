@@ -1,12 +1,14 @@
 //! Answers the clients of the doors from a firmware and its store. Whoever owns the firmware calls it between two
 //! steps.
 
+use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
 
 use tokio::sync::oneshot;
 
 use super::doors::RestartBell;
-use super::request::{CliAnswer, Request};
+use super::request::{CliAnswer, ClientId, Request};
+use super::upkeep;
 use crate::firmware::Firmware;
 use crate::firmware::cli::{CliAction, CliReply};
 use crate::firmware::msp::{MspAction, UtcTime};
@@ -27,11 +29,10 @@ pub struct Attended {
     pub fdm: Option<(Vec<u8>, Instant)>,
 }
 
-/// The newest frame that came through a socket.
+/// The newest frame of a source that comes through a socket.
 #[derive(Debug, Clone, Copy)]
 struct HeardRc {
     frame: RcFrame,
-    source: RcSource,
     at: Instant,
 }
 
@@ -41,7 +42,12 @@ pub struct Desk {
     bell: RestartBell,
     starter_modes: bool,
     clock: Option<(UtcTime, Instant)>,
-    rc: Option<HeardRc>,
+    udp: Option<HeardRc>,
+    msp: Option<HeardRc>,
+    /// Clients with an open command line that blocks arming.
+    people: BTreeSet<ClientId>,
+    /// The client whose command line turned motors on the bench last.
+    bench: Option<ClientId>,
     told_plan: bool,
 }
 
@@ -50,7 +56,16 @@ impl Desk {
     /// the usual ones at every start.
     #[must_use]
     pub fn new(bell: RestartBell, starter_modes: bool) -> Self {
-        Self { bell, starter_modes, clock: None, rc: None, told_plan: false }
+        Self {
+            bell,
+            starter_modes,
+            clock: None,
+            udp: None,
+            msp: None,
+            people: BTreeSet::new(),
+            bench: None,
+            told_plan: false,
+        }
     }
 
     /// Attends to a request at `now`.
@@ -65,7 +80,10 @@ impl Desk {
         match request {
             Request::Msp { code, payload, reply, .. } => {
                 let outcome = firmware.run_msp(code, &payload, self.clock_at(now));
-                if outcome.action == Some(MspAction::Save) && !save(firmware, store, &mut attended) {
+                if outcome.action == Some(MspAction::Save)
+                    && let Err(notice) = upkeep::save(firmware, store)
+                {
+                    attended.notices.push(notice);
                     answer(reply, None);
                     return attended;
                 }
@@ -73,24 +91,36 @@ impl Desk {
                 self.act_on_message(outcome.action, firmware, store, now, &mut attended);
                 answer(reply, outcome.reply);
             }
-            Request::EnterCli { interactive, reply, .. } => {
+            Request::EnterCli { client, interactive, reply } => {
                 let admitted = !firmware.is_armed();
                 if admitted && interactive {
+                    self.people.insert(client);
                     firmware.cli_opened();
                 }
                 answer(reply, admitted);
             }
-            Request::Cli { line, mut interpreter, reply, .. } => {
+            Request::Cli { client, line, mut interpreter, reply } => {
                 let said = firmware.run_cli(&mut interpreter, &line);
-                let restart = self.act_on_line(&said, firmware, store, &mut attended);
+                let restart = self.act_on_line(client, &said, firmware, store, &mut attended);
                 if let Some(close_links) = restart {
                     self.restart(close_links, firmware, store, &mut attended);
                 }
                 answer(reply, CliAnswer { interpreter, reply: said });
             }
-            Request::LeftCli { .. } => firmware.cli_closed(),
+            Request::LeftCli { client } => {
+                self.people.remove(&client);
+                // Motors that somebody else turns go on.
+                if self.bench.take_if(|bench| *bench == client).is_some() {
+                    firmware.cli_closed();
+                }
+            }
+            // The command line was opened before the craft was armed; it does not fall from the sky for that.
+            Request::Restart { .. } if firmware.is_armed() => {}
             Request::Restart { .. } => self.restart(true, firmware, store, &mut attended),
-            Request::Rc { frame, at, .. } => self.hear(frame, RcSource::Udp, at, firmware),
+            Request::Rc { frame, at, .. } => {
+                self.udp = Some(HeardRc { frame, at });
+                firmware.receive_rc(&frame, RcSource::Udp);
+            }
             Request::Fdm { datagram, at, .. } => attended.fdm = Some((datagram, at)),
             Request::Notice(text) => attended.notices.push(text),
         }
@@ -108,7 +138,7 @@ impl Desk {
         match action {
             Some(MspAction::Reboot) => self.restart(true, firmware, store, attended),
             Some(MspAction::SaveAndReboot) => {
-                save(firmware, store, attended);
+                attended.notices.extend(upkeep::save(firmware, store).err());
                 self.restart(true, firmware, store, attended);
             }
             Some(MspAction::SetClock { unix_s, millis }) => {
@@ -116,7 +146,7 @@ impl Desk {
             }
             // The firmware has used it; from here on it ages in wall time.
             Some(MspAction::RawRc(frame)) => {
-                self.rc = Some(HeardRc { frame, source: RcSource::Msp, at: now });
+                self.msp = Some(HeardRc { frame, at: now });
             }
             // The firmware itself has carried these out.
             Some(
@@ -135,6 +165,7 @@ impl Desk {
     /// Does what a line asks for; a restart is left to the caller: whether it closes the links.
     fn act_on_line(
         &mut self,
+        client: ClientId,
         said: &CliReply,
         firmware: &mut Firmware,
         store: &mut Store,
@@ -143,15 +174,14 @@ impl Desk {
         let mut restart = None;
         for action in &said.actions {
             match *action {
-                CliAction::Save => {
-                    save(firmware, store, attended);
-                }
+                CliAction::Save => attended.notices.extend(upkeep::save(firmware, store).err()),
                 CliAction::Restart { close_links } => restart = Some(close_links),
                 CliAction::PlanChanged if !self.told_plan => {
                     self.told_plan = true;
-                    attended.notices.push("waypoint altitudes count from home, in centimetres".to_owned());
+                    attended.notices.push("Waypoint altitudes count from home, in centimetres.".to_owned());
                 }
-                CliAction::PlanChanged | CliAction::Leave | CliAction::MotorTest { .. } => {}
+                CliAction::MotorTest { .. } => self.bench = Some(client),
+                CliAction::PlanChanged | CliAction::Leave => {}
             }
         }
         restart
@@ -164,35 +194,38 @@ impl Desk {
         store: &mut Store,
         attended: &mut Attended,
     ) {
-        let loaded = store.load();
-        attended.notices.extend(loaded.findings);
-        let mut configuration = loaded.configuration;
-        if self.starter_modes {
-            configuration.starter_modes();
-        }
-        firmware.restart(configuration);
-        firmware.set_storage_facts(store.facts());
-        self.rc = None;
+        attended.notices.extend(upkeep::restart(firmware, store, self.starter_modes));
         attended.restarted = true;
-        if close_links {
-            self.bell.ring();
-        }
+        self.after_restart(close_links, firmware);
     }
 
-    fn hear(&mut self, frame: RcFrame, source: RcSource, at: Instant, firmware: &mut Firmware) {
-        self.rc = Some(HeardRc { frame, source, at });
-        firmware.receive_rc(&frame, source);
+    /// Puts the clients' side in order after the firmware started anew: closes the links, or, where they are kept,
+    /// lets those who are at a command line block arming as before.
+    pub fn after_restart(&mut self, close_links: bool, firmware: &mut Firmware) {
+        (self.udp, self.msp, self.bench) = (None, None, None);
+        if close_links {
+            self.people.clear();
+            self.bell.ring();
+        } else if !self.people.is_empty() {
+            firmware.cli_opened();
+        }
     }
 
     /// Keeps RC from sockets alive while simulated time runs `speed` times faster than the wall clock: a script sends
     /// 50 frames of wall time a second, and the firmware would miss it. To be called about every 20 ms of simulated
     /// time.
     pub fn keep_rc_fresh(&self, firmware: &mut Firmware, speed: f64, now: Instant) {
-        let Some(heard) = self.rc.filter(|_| speed > 1.0) else { return };
+        if speed <= 1.0 {
+            return;
+        }
         // The firmware itself notices a loss after as much simulated time.
         let patience = RC_FRESH.mul_f64(1.0 - 1.0 / speed);
-        if now.saturating_duration_since(heard.at) < patience {
-            firmware.receive_rc(&heard.frame, heard.source);
+        for (source, heard) in [(RcSource::Udp, self.udp), (RcSource::Msp, self.msp)] {
+            if let Some(HeardRc { frame, at }) = heard
+                && now.saturating_duration_since(at) < patience
+            {
+                firmware.receive_rc(&frame, source);
+            }
         }
     }
 
@@ -204,18 +237,6 @@ impl Desk {
             unix_s: set.unix_s.wrapping_add((millis / 1000) as u32),
             millis: (millis % 1000) as u16,
         })
-    }
-}
-
-fn save(firmware: &mut Firmware, store: &mut Store, attended: &mut Attended) -> bool {
-    let saved = store.save(firmware.configuration());
-    firmware.set_storage_facts(store.facts());
-    match saved {
-        Ok(()) => true,
-        Err(error) => {
-            attended.notices.push(format!("not saved: {error}"));
-            false
-        }
     }
 }
 

@@ -86,10 +86,20 @@ impl ExternalSimulator {
     #[must_use]
     pub fn view(&self, now: Instant) -> DoorView {
         let state = self.state(now);
+        let mut words = state.to_string();
+        if let Some(dialect) = self.link.dialect().filter(|_| state == LinkState::Flowing) {
+            words += &format!(", {dialect}");
+        }
+        let Counters { senseless, old, .. } = self.link.counters();
+        for (count, what) in [(senseless, "refused"), (old, "old")] {
+            if count > 0 {
+                words += &format!(", {count} {what}");
+            }
+        }
         DoorView {
             name: "udp motors",
             address: self.port.address().map_or_else(String::new, |address| address.to_string()),
-            state: state.to_string(),
+            state: words,
             fault: state == LinkState::Silent,
         }
     }

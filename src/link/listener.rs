@@ -49,6 +49,15 @@ pub(super) enum Kind {
     },
 }
 
+impl Kind {
+    fn name(&self) -> &'static str {
+        match self {
+            Self::Tcp => "TCP",
+            Self::WebSocket { .. } => "websocket",
+        }
+    }
+}
+
 /// Lets clients in until the doors close.
 pub(super) async fn listen(
     listener: TcpListener,
@@ -57,6 +66,7 @@ pub(super) async fn listen(
     gauge: Arc<Gauge>,
     tasks: TaskTracker,
 ) {
+    let mut told_full = false;
     loop {
         let stream = tokio::select! {
             () = reception.shutdown.cancelled() => return,
@@ -72,6 +82,14 @@ pub(super) async fn listen(
         if gauge.client_came() > CLIENTS_MAX {
             gauge.client_left();
             gauge.error();
+            if !std::mem::replace(&mut told_full, true) {
+                let notice = format!(
+                    "The {} door serves {CLIENTS_MAX} clients at once: another one was turned away.",
+                    kind.name()
+                );
+                // When nobody has time to listen, it is seen in the door's count of errors.
+                drop(reception.requests.try_send(Request::Notice(notice)));
+            }
             continue;
         }
         let (kind, reception, gauge) = (kind.clone(), reception.clone(), Arc::clone(&gauge));
@@ -114,8 +132,8 @@ async fn admit(stream: TcpStream, kind: &Kind, reception: &Reception) -> Option<
         && is_news(told, &origin)
     {
         let notice = format!(
-            "a web page of {origin} tried to reach the craft through the websocket and was refused: start with \
-             --allow-origin {origin} to serve it"
+            "A web page of {origin} tried to reach the craft through the websocket and was refused: start with \
+             --allow-origin {origin} to serve it."
         );
         let _session_gone = reception.requests.send(Request::Notice(notice)).await;
     }

@@ -22,8 +22,8 @@ pub(super) enum Datagrams {
 /// More than any datagram that is looked at.
 const BUFFER: usize = 2048;
 
-/// Hands datagrams to the session until the doors close. The session is never waited for: when it does not keep up,
-/// newer datagrams replace those that were not taken.
+/// Hands datagrams to the session until the doors close. The session is never waited for: what comes while its inbox is
+/// full is dropped and counted as an error.
 #[allow(clippy::disallowed_methods, reason = "the age of RC counts in wall time from its arrival")]
 pub(super) async fn receive(
     socket: UdpSocket,

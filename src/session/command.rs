@@ -2,9 +2,17 @@
 
 use std::sync::Arc;
 
+use crate::link::proto::fdm_link::LinkState;
 use crate::plan::FlightPlan;
 use crate::signals::RcFrame;
 use crate::vehicle::Snapshot;
+
+/// Why time cannot be paused, stepped or made faster while a simulator outside moves the craft.
+pub const TIME_IS_OUTSIDE: &str = "The simulator sets the time: pause it or change its speed there.";
+
+/// Why the craft cannot be put back home while a simulator outside moves it.
+pub const PLACE_IS_OUTSIDE: &str =
+    "The simulator places the craft: reset its world there, and the firmware starts anew by itself.";
 
 /// A request to the session. Requests are carried out between two ticks, in the order they were sent.
 #[derive(Debug)]
@@ -39,6 +47,8 @@ pub enum Command {
     Pilot(bool),
     /// Fly home and land.
     ReturnHome,
+    /// Take [`Command::ReturnHome`] back: the AUTOPILOT switch decides again.
+    CancelReturn,
     /// Put the craft back home, disarmed; plan and settings are kept.
     ResetCraft,
     /// Change the air, the noise or a fault: `wind=5@270`, `fault=motor,,2:0.8`, `end=all`…
@@ -82,6 +92,8 @@ pub struct SessionView {
     pub pilot: Option<&'static str>,
     /// One line a door: name, address and state in words.
     pub doors: Vec<DoorView>,
+    /// Whether the simulator outside speaks that moves the craft; `None` when the world is inside.
+    pub simulator: Option<LinkState>,
     /// Files or doors influence the flight: not repeatable.
     pub live: bool,
 }

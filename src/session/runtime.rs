@@ -2,14 +2,19 @@
 #![allow(clippy::disallowed_methods, reason = "this is where wall time meets simulated time")]
 
 use std::sync::Arc;
+use std::task::{Context, Poll, Wake, Waker};
+use std::thread::Thread;
 use std::time::{Duration, Instant};
 
 use tokio::sync::{mpsc, watch};
 
-use super::command::{CliOutput, Command, DoorView, SessionView};
+use super::arming::ArmingWatch;
+use super::command::{CliOutput, Command, DoorView, PLACE_IS_OUTSIDE, SessionView, TIME_IS_OUTSIDE};
 use super::pacer::Pacer;
+use super::simulator::{RC_REPEAT_US, Simulator};
 use crate::firmware::cli::{CliAction, CliReply, Interpreter, advice};
-use crate::link::{Desk, Request};
+use crate::link::proto::fdm_link::LinkState;
+use crate::link::{Attended, Desk, ExternalSimulator, Request, Trouble, upkeep};
 use crate::plan::FlightPlan;
 use crate::signals::RcSource;
 use crate::sim::WorldCommand;
@@ -22,8 +27,8 @@ const PICTURE: Duration = Duration::from_millis(16);
 const BEAT: Duration = Duration::from_millis(2);
 /// Rhythm of the loop while nothing moves.
 const PAUSED_BEAT: Duration = Duration::from_millis(8);
-/// How often frames from sockets are repeated while time runs fast, µs of simulated time.
-const RC_REPEAT_US: u64 = 20_000;
+/// Most wall time that clients get in one round of the loop; what they asked beyond that waits for the next.
+const ATTENTION: Duration = Duration::from_millis(1);
 /// Ticks between two looks at the clock and the commands.
 const SLICE: u64 = 500;
 
@@ -36,6 +41,8 @@ pub struct Doorway {
     pub desk: Desk,
     /// The state of the doors.
     pub views: watch::Receiver<Vec<DoorView>>,
+    /// The simulator that moves the craft, when the vehicle is moved from outside.
+    pub simulator: Option<ExternalSimulator>,
 }
 
 /// What a session starts with.
@@ -70,7 +77,9 @@ pub struct Handle {
 ///
 /// # Errors
 /// When the system gives no thread.
-pub fn start(config: SessionConfig) -> std::io::Result<Handle> {
+pub fn start(mut config: SessionConfig) -> std::io::Result<Handle> {
+    let simulator = config.doorway.as_mut().and_then(|doorway| doorway.simulator.take());
+    let trouble = Trouble::new(config.vehicle.world().seed());
     let (command_tx, command_rx) = mpsc::channel(256);
     let (event_tx, event_rx) = mpsc::unbounded_channel();
     let mut session = Session {
@@ -79,10 +88,13 @@ pub fn start(config: SessionConfig) -> std::io::Result<Handle> {
         vehicle: config.vehicle,
         store: config.store,
         takeoff_m: config.takeoff_m,
+        simulator: simulator.map(|link| Simulator::new(link, trouble, Instant::now())),
         doorway: config.doorway,
         commands: command_rx,
         events: event_tx,
+        arming: ArmingWatch::default(),
         changed: true,
+        more_waits: false,
         quit: false,
     };
     let (view_tx, view_rx) = watch::channel(session.view());
@@ -97,42 +109,79 @@ struct Session {
     pacer: Pacer,
     console: Interpreter,
     takeoff_m: f64,
+    simulator: Option<Simulator>,
     doorway: Option<Doorway>,
     commands: mpsc::Receiver<Command>,
     events: mpsc::UnboundedSender<Event>,
+    arming: ArmingWatch,
     /// Something other than time changed what the picture shows.
     changed: bool,
+    /// Clients asked more than one round of the loop has time for.
+    more_waits: bool,
     quit: bool,
+}
+
+/// Wakes the session's thread when a command or a request comes.
+struct Bell(Thread);
+
+impl Wake for Bell {
+    fn wake(self: Arc<Self>) {
+        self.0.unpark();
+    }
 }
 
 impl Session {
     fn run(&mut self, view: &watch::Sender<SessionView>) {
+        let bell = Waker::from(Arc::new(Bell(std::thread::current())));
+        let mut bell = Context::from_waker(&bell);
         let start = Instant::now();
         let mut pictured = Duration::ZERO;
+        let mut moved = false;
         self.flush_events();
         while !self.quit {
-            self.take_commands(start.elapsed());
-            self.attend_doors();
+            self.take_commands(start.elapsed(), &mut bell);
+            let flown = self.attend_doors(&mut bell);
             let now = start.elapsed();
-            let due = self.pacer.due(now, SLICE);
+            let due = if self.follows_wall_clock() { self.pacer.due(now, SLICE) } else { 0 };
             for _ in 0..due {
                 self.keep_rc_fresh();
                 self.vehicle.tick();
             }
+            let ticks = flown + due;
             let after = start.elapsed();
-            self.pacer.ran(due, after);
-            if due > 0 || self.changed {
+            self.pacer.ran(ticks, after);
+            if ticks > 0 || self.changed {
                 self.flush_events();
             }
-            if self.changed || due > 0 && after - pictured >= PICTURE {
+            moved |= ticks > 0;
+            if self.changed || moved && after - pictured >= PICTURE {
                 pictured = after;
-                self.changed = false;
-                view.send_replace(self.view());
+                (self.changed, moved) = (false, false);
+                let seen = self.view();
+                if let Some(notice) = self.arming.look(&seen.vehicle) {
+                    self.vehicle.notice(notice);
+                }
+                view.send_replace(seen);
             }
-            if due < SLICE {
-                let beat = if self.pacer.is_paused() { PAUSED_BEAT } else { BEAT };
-                std::thread::sleep(beat.saturating_sub(start.elapsed().saturating_sub(now)));
+            if ticks < SLICE && !self.more_waits {
+                std::thread::park_timeout(self.rest().saturating_sub(start.elapsed().saturating_sub(now)));
             }
+        }
+    }
+
+    /// Until a simulator outside speaks, and without one, time passes as on the wall.
+    fn follows_wall_clock(&self) -> bool {
+        self.simulator.as_ref().is_none_or(|simulator| simulator.state() == LinkState::Waiting)
+    }
+
+    /// How long the thread may sleep when nothing comes.
+    fn rest(&self) -> Duration {
+        match &self.simulator {
+            Some(simulator) if !self.follows_wall_clock() => {
+                PAUSED_BEAT.min(simulator.patience(Instant::now()))
+            }
+            _ if self.pacer.is_paused() => PAUSED_BEAT,
+            _ => BEAT,
         }
     }
 
@@ -140,14 +189,24 @@ impl Session {
         SessionView {
             vehicle: Arc::new(self.vehicle.snapshot()),
             paused: self.pacer.is_paused(),
-            speed_wanted: self.pacer.speed(),
+            speed_wanted: match self.simulator {
+                Some(_) => f64::INFINITY,
+                None => self.pacer.speed(),
+            },
             speed_achieved: self.pacer.achieved(),
             sticks: self.vehicle.hands.sticks,
             rc_cut: self.vehicle.hands.cut,
             pilot: self.vehicle.hands.pilot.as_ref().map(crate::pilot::Pilot::doing),
-            doors: self.doorway.as_ref().map_or_else(Vec::new, |way| way.views.borrow().clone()),
+            doors: self.doors(),
+            simulator: self.simulator.as_ref().map(Simulator::state),
             live: self.doorway.is_some(),
         }
+    }
+
+    fn doors(&self) -> Vec<DoorView> {
+        let mut doors = self.doorway.as_ref().map_or_else(Vec::new, |way| way.views.borrow().clone());
+        doors.extend(self.simulator.as_ref().map(|simulator| simulator.view(Instant::now())));
+        doors
     }
 
     fn flush_events(&mut self) {
@@ -156,34 +215,55 @@ impl Session {
         self.vehicle.drain_events(|event| drop(events.send(event)));
     }
 
-    fn take_commands(&mut self, now: Duration) {
+    fn take_commands(&mut self, now: Duration, bell: &mut Context<'_>) {
         loop {
-            match self.commands.try_recv() {
-                Ok(command) => {
+            match self.commands.poll_recv(bell) {
+                Poll::Ready(Some(command)) => {
                     self.changed = true;
                     self.carry_out(command, now);
                 }
-                Err(mpsc::error::TryRecvError::Empty) => return,
-                Err(mpsc::error::TryRecvError::Disconnected) => {
+                Poll::Ready(None) => {
                     self.quit = true;
                     return;
                 }
+                Poll::Pending => return,
             }
         }
     }
 
-    fn attend_doors(&mut self) {
-        let Some(doorway) = &mut self.doorway else { return };
-        while let Ok(request) = doorway.requests.try_recv() {
-            self.changed = true;
+    /// Attends to what waits at the doors; gives the ticks that a simulator outside made the craft fly.
+    fn attend_doors(&mut self, bell: &mut Context<'_>) -> u64 {
+        // Otherwise the next picture is due soon.
+        let time_stands_still = self.pacer.is_paused() || !self.follows_wall_clock();
+        let Some(doorway) = &mut self.doorway else { return 0 };
+        let mut flown = 0;
+        let until = Instant::now() + ATTENTION;
+        self.more_waits = true;
+        while flown < SLICE && Instant::now() < until {
+            let Poll::Ready(Some(request)) = doorway.requests.poll_recv(bell) else {
+                self.more_waits = false;
+                break;
+            };
+            // A simulator's packets change the picture like time does, at its own rhythm.
+            self.changed |= time_stands_still && !matches!(request, Request::Fdm { .. });
             let firmware = self.vehicle.firmware_mut();
-            let attended = doorway.desk.attend(request, firmware, &mut self.store, Instant::now());
-            for notice in attended.notices {
+            let Attended { notices, restarted, fdm } =
+                doorway.desk.attend(request, firmware, &mut self.store, Instant::now());
+            for notice in notices {
                 self.vehicle.notice(notice);
             }
-            if attended.restarted {
+            if restarted {
                 self.console = Interpreter::default();
             }
+            if let (Some((datagram, at)), Some(simulator)) = (fdm, &mut self.simulator) {
+                let speed = self.pacer.achieved();
+                flown += simulator.hear(datagram, at, &mut self.vehicle, &mut doorway.desk, speed);
+            }
+        }
+        if let Some(simulator) = &mut self.simulator {
+            let speed = self.pacer.achieved();
+            flown += simulator.watch(Instant::now(), &mut self.vehicle, &mut doorway.desk, speed);
+            self.changed |= simulator.take_news();
         }
         let sources = self.vehicle.firmware().receiver().sources();
         let from_outside = matches!(sources.in_charge(), Some(RcSource::Udp | RcSource::Msp));
@@ -197,6 +277,7 @@ impl Session {
             doorway.views.mark_unchanged();
             self.changed = true;
         }
+        flown
     }
 
     /// A script sends fifty frames of wall time a second; at a higher speed the receiver would miss it.
@@ -212,6 +293,9 @@ impl Session {
 
     fn carry_out(&mut self, command: Command, now: Duration) {
         match command {
+            Command::Pause(_) | Command::Step(_) | Command::Speed(_) if self.simulator.is_some() => {
+                self.vehicle.notice(TIME_IS_OUTSIDE);
+            }
             Command::Pause(paused) => self.pacer.set_paused(paused, now),
             Command::Step(ticks) => {
                 for _ in 0..ticks {
@@ -244,16 +328,36 @@ impl Session {
                     self.vehicle.notice(format!("No return home: {}", refusal.sentence()));
                 }
             }
-            Command::ResetCraft => self.vehicle.reset_craft(),
+            Command::CancelReturn => self.vehicle.firmware_mut().cancel_command(),
+            Command::ResetCraft => self.reset_craft(),
             Command::World { line, reply } => {
-                let changed =
-                    WorldCommand::parse(&line).map_err(|error| error.to_string()).and_then(|command| {
-                        self.vehicle.change_world(command).map_err(|error| error.to_string())
-                    });
+                let changed = self.change_world(&line);
                 drop(reply.send(changed));
             }
             Command::Quit => self.quit = true,
         }
+    }
+
+    fn reset_craft(&mut self) {
+        match &self.simulator {
+            Some(simulator) if simulator.state() == LinkState::Flowing => {
+                self.vehicle.notice(PLACE_IS_OUTSIDE);
+                return;
+            }
+            Some(_) => {
+                self.vehicle.reset_craft();
+                self.vehicle.notice("The firmware started anew, disarmed; the simulator places the craft.");
+            }
+            None => self.vehicle.reset_craft(),
+        }
+        if let Some(doorway) = &mut self.doorway {
+            doorway.desk.after_restart(false, self.vehicle.firmware_mut());
+        }
+    }
+
+    fn change_world(&mut self, line: &str) -> Result<(), String> {
+        let command = WorldCommand::parse(line).map_err(|error| error.to_string())?;
+        self.vehicle.change_world(command).map_err(|error| error.to_string())
     }
 
     fn set_pilot(&mut self, on: bool) {
@@ -276,18 +380,15 @@ impl Session {
     /// Does what a command line asked the owner of the firmware to do; says whether the firmware restarted.
     fn act_on(&mut self, reply: &CliReply) -> bool {
         let mut restarted = false;
+        let mut notices = Vec::new();
         for action in &reply.actions {
             match action {
                 CliAction::Save => {
-                    if let Err(error) = self.store.save(self.vehicle.firmware().configuration()) {
-                        self.vehicle.notice(format!("Not saved: {error}."));
-                    }
-                    self.vehicle.firmware_mut().set_storage_facts(self.store.facts());
+                    notices.extend(upkeep::save(self.vehicle.firmware_mut(), &mut self.store).err());
                 }
                 CliAction::Restart { .. } => {
-                    let mut configuration = self.store.load().configuration;
-                    configuration.starter_modes();
-                    self.vehicle.firmware_mut().restart(configuration);
+                    let firmware = self.vehicle.firmware_mut();
+                    notices.extend(upkeep::restart(firmware, &mut self.store, true));
                     self.console = Interpreter::default();
                     restarted = true;
                 }
@@ -295,6 +396,10 @@ impl Session {
                 CliAction::Leave | CliAction::MotorTest { .. } | CliAction::PlanChanged => {}
             }
         }
+        if restarted && let Some(doorway) = &mut self.doorway {
+            doorway.desk.after_restart(true, self.vehicle.firmware_mut());
+        }
+        notices.into_iter().for_each(|notice| self.vehicle.notice(notice));
         restarted
     }
 

@@ -4,11 +4,13 @@
 //! bytes ─▶ push() ─▶ next() ─┬─ Request ────▶ reply()
 //!                            ├─ EnterCli ───▶ admit()        answers go to the output, in the order of
 //!                            ├─ Line ───────▶ answer()       the questions: at most one is open at a time
+//!                            ├─ Flush ──────▶ take_output()
 //!                            └─ Restart, LeftCli
 //! ```
 //!
 //! The owner of the stream reads more bytes only when [`Conversation::next`] has nothing left, so memory is bounded by
-//! what it reads at once.
+//! what it reads at once, [`OUTPUT_MAX`] and one reply. One byte may cause kilobytes of output: a tab that lists all
+//! settings.
 
 use std::time::Duration;
 
@@ -21,6 +23,9 @@ const STX: u8 = 0x02;
 
 /// How long the stream must be quiet after a `#` for it to mean the command line.
 const ENTRY_QUIET: Duration = Duration::from_millis(100);
+
+/// Output that is sent before more is asked for, bytes.
+pub const OUTPUT_MAX: usize = 64 * 1024;
 
 /// What the stream wants.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -39,6 +44,8 @@ pub enum Ask {
         /// What kind of session it comes from.
         mode: Mode,
     },
+    /// Send what there is: [`Conversation::take_output`].
+    Flush,
     /// The firmware is to start anew, and the link to be closed.
     Restart,
     /// The command line was left.
@@ -86,6 +93,9 @@ impl Conversation {
     /// arrival.
     pub fn next(&mut self, now: Duration) -> Option<Ask> {
         loop {
+            if self.output.len() > OUTPUT_MAX {
+                return Some(Ask::Flush);
+            }
             if let Some(line) = self.line.take() {
                 let mode = if self.editor.mode() == LinkMode::Interactive {
                     Mode::Interactive
@@ -178,12 +188,6 @@ impl Conversation {
     /// What is to be sent, taken away.
     pub fn take_output(&mut self) -> Vec<u8> {
         std::mem::take(&mut self.output)
-    }
-
-    /// Bytes that wait to be sent.
-    #[must_use]
-    pub fn output_len(&self) -> usize {
-        self.output.len()
     }
 
     /// When [`Self::next`] will have something even without bytes.

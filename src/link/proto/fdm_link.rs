@@ -18,7 +18,7 @@ mod sensors;
 mod surroundings;
 
 use super::fdm::{Dialect, Packet, Refusal};
-use crate::signals::SensorFrame;
+use crate::signals::{Pose, SensorFrame};
 use clock::StampClock;
 use kicks::Kicks;
 use sensors::Sensors;
@@ -123,6 +123,8 @@ pub struct Received {
     pub verdict: Verdict,
     /// The sensors to run the firmware on, for [`Verdict::State`]; their time is the caller's to set.
     pub sensors: Option<Box<SensorFrame>>,
+    /// Where the craft is, for [`Verdict::State`], mirroring undone.
+    pub pose: Option<Pose>,
     /// Ticks by which the firmware advances, before the answer.
     pub ticks: u32,
     /// What to send, after the ticks.
@@ -133,7 +135,14 @@ pub struct Received {
 
 impl Received {
     fn only(verdict: Verdict) -> Self {
-        Self { verdict, sensors: None, ticks: 0, answer: Answer::Nothing, notices: arrayvec::ArrayVec::new() }
+        Self {
+            verdict,
+            sensors: None,
+            pose: None,
+            ticks: 0,
+            answer: Answer::Nothing,
+            notices: arrayvec::ArrayVec::new(),
+        }
     }
 }
 
@@ -265,6 +274,12 @@ impl FdmLink {
             (state.lat_deg, state.lon_deg) = (lat_deg, lon_deg);
         }
 
+        received.pose = Some(Pose {
+            place_deg: position,
+            alt_m: state.alt_m,
+            vel_enu: state.vel_enu,
+            attitude: state.attitude,
+        });
         received.sensors = Some(Box::new(self.sensors.frame(&state, position.is_some(), elapsed_us)));
         received.ticks = ticks;
         received.answer = if self.kicks.withhold() { Answer::Nothing } else { Answer::Both };

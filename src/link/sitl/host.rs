@@ -129,6 +129,9 @@ impl Sitl {
         if let Some(address) = doors.address(DoorKind::Tcp) {
             print(Said::Err(format!("bind port {} for UART1", address.port())));
         }
+        if let Some(address) = doors.address(DoorKind::WebSocket) {
+            print(Said::Err(format!("[SITL] websocket for the Betaflight App: ws://{address}")));
+        }
         let loaded = store.load();
         loaded.findings.into_iter().for_each(|finding| print(Said::Err(finding)));
         let mut firmware = Firmware::new(loaded.configuration, config.firmware);
@@ -271,6 +274,7 @@ impl Sitl {
         self.saw_fdm |= !matches!(received.verdict, Verdict::Refused(_));
         if received.verdict == (Verdict::Resync { restarted: true }) {
             self.firmware.restart_in_place();
+            self.desk.after_restart(false, &mut self.firmware);
         }
         for notice in received.notices {
             print(Said::Err(notice.to_string()));
@@ -335,6 +339,10 @@ async fn open_links(
         Some(_) => OpenResult::Done,
         None => OpenResult::BindFailed,
     };
+    // A port that the system chose is known only now.
+    let chosen = |door, wanted| doors.address(door).map_or(wanted, |address| address.port());
+    let ports =
+        SitlPorts { fdm: chosen(DoorKind::Fdm, ports.fdm), rc: chosen(DoorKind::Rc, ports.rc), ..ports };
     let links = lines::link_lines(&ip, ports, motors_opened, opened(DoorKind::Fdm), opened(DoorKind::Rc));
     links.into_iter().for_each(|line| print(Said::Out(line)));
     (doors, motors.map_err(|error| SitlError::Motors { to: to(ports.motors), error }))

@@ -1,0 +1,110 @@
+//! Says why a script that holds the ARM switch on does not arm: it cannot see what blocks arming.
+
+use strum::IntoEnumIterator as _;
+
+use crate::firmware::arming::ArmingFlag;
+use crate::firmware::mode::Mode;
+use crate::signals::{RcSource, SimTime};
+use crate::vehicle::Snapshot;
+use crate::vehicle::switch;
+
+/// How long the switch is on before the user is told, s.
+const PATIENCE_S: f64 = 1.0;
+
+/// Looks at the ARM switch of RC from outside.
+#[derive(Debug, Default)]
+pub(super) struct ArmingWatch {
+    request: Option<Request>,
+}
+
+/// The switch is on.
+#[derive(Debug)]
+struct Request {
+    since: SimTime,
+    /// It has armed, or it was told why not.
+    done: bool,
+}
+
+impl ArmingWatch {
+    /// Looks at the craft; gives the sentence for the user, once each time the switch is moved in vain.
+    pub(super) fn look(&mut self, vehicle: &Snapshot) -> Option<String> {
+        let craft = &vehicle.craft;
+        let from_outside = matches!(craft.rc_source, Some(RcSource::Udp | RcSource::Msp));
+        if !from_outside || !switch::is_on(Mode::Arm, &craft.mode_ranges, &craft.channels) {
+            self.request = None;
+            return None;
+        }
+        let request = self.request.get_or_insert(Request { since: vehicle.time, done: false });
+        request.done |= craft.armed;
+        if request.done || vehicle.time.seconds_since(request.since) < PATIENCE_S {
+            return None;
+        }
+        let causes: Vec<String> = craft.arming_blocked_by.iter().filter_map(|name| cause(name)).collect();
+        if causes.is_empty() {
+            return None;
+        }
+        request.done = true;
+        Some(format!("ARM is switched on from outside, but arming is blocked: {}.", causes.join(", ")))
+    }
+}
+
+/// A flag and the way out; not for those that only say that the switch must be moved again then.
+fn cause(name: &str) -> Option<String> {
+    let flag = ArmingFlag::iter().find(|flag| name == <&str>::from(flag))?;
+    let is_cause = !matches!(flag, ArmingFlag::ArmSwitch | ArmingFlag::NotDisarmed);
+    is_cause.then(|| format!("{name} ({})", flag.hint()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::vehicle::snapshot::ModeRange;
+
+    /// A craft whose script holds the ARM switch on.
+    fn vehicle(seconds: f64, flags: &[&'static str]) -> Snapshot {
+        let mut vehicle = Snapshot { time: SimTime::from_secs_f64(seconds), ..Snapshot::default() };
+        let craft = &mut vehicle.craft;
+        craft.mode_ranges =
+            std::iter::once(ModeRange { name: "ARM", channel: 4, start_us: 1700, end_us: 2100 }).collect();
+        craft.rc_source = Some(RcSource::Udp);
+        craft.channels[4] = 2000;
+        craft.arming_blocked_by.extend(flags.iter().copied());
+        vehicle
+    }
+
+    #[test]
+    fn a_switch_that_is_on_in_vain_is_told_once() {
+        let mut watch = ArmingWatch::default();
+        let blocked = |seconds| vehicle(seconds, &["THROTTLE", "CLI", "ARM_SWITCH"]);
+        assert_eq!(watch.look(&blocked(10.0)), None);
+        assert_eq!(watch.look(&blocked(10.9)), None);
+        let told = watch.look(&blocked(11.0)).expect("a sentence");
+        assert!(told.contains("THROTTLE (lower the throttle), CLI (a CLI session was opened: "), "{told}");
+        assert!(!told.contains("ARM_SWITCH"), "{told}");
+        assert_eq!(watch.look(&blocked(20.0)), None);
+        let mut off = blocked(21.0);
+        off.craft.channels[4] = 1000;
+        assert_eq!(watch.look(&off), None);
+        assert_eq!(watch.look(&blocked(22.0)), None);
+        assert!(watch.look(&blocked(23.0)).is_some());
+    }
+
+    #[test]
+    fn the_switch_that_stays_on_after_a_flight_is_no_news() {
+        let mut watch = ArmingWatch::default();
+        let mut flying = vehicle(10.0, &[]);
+        flying.craft.armed = true;
+        assert_eq!(watch.look(&flying), None);
+        assert_eq!(watch.look(&vehicle(99.0, &["THROTTLE", "ARM_SWITCH"])), None);
+    }
+
+    #[test]
+    fn own_sticks_have_the_screen() {
+        let mut watch = ArmingWatch::default();
+        for seconds in [10.0, 20.0] {
+            let mut own = vehicle(seconds, &["THROTTLE"]);
+            own.craft.rc_source = Some(RcSource::Sticks);
+            assert_eq!(watch.look(&own), None);
+        }
+    }
+}

@@ -1,0 +1,177 @@
+//! A simulator outside that moves the craft: its packets are the time, its silence stops it.
+
+use std::time::{Duration, Instant};
+
+use arrayvec::ArrayVec;
+
+use crate::link::proto::fdm::Refusal;
+use crate::link::proto::fdm_link::{LinkState, Verdict};
+use crate::link::{Desk, ExternalSimulator, Trouble};
+use crate::session::command::DoorView;
+use crate::vehicle::Vehicle;
+
+/// How often frames from sockets are repeated while time runs fast, µs of simulated time.
+pub(super) const RC_REPEAT_US: u64 = 20_000;
+
+/// Kinds of refusals, each of which is told once.
+const REFUSALS: usize = 6;
+
+/// The simulator of a session.
+#[derive(Debug)]
+pub(super) struct Simulator {
+    link: ExternalSimulator,
+    /// What goes wrong before its packets arrive.
+    trouble: Trouble,
+    /// The state that was told last.
+    state: LinkState,
+    /// When it spoke last.
+    heard: Instant,
+    told_refusals: ArrayVec<Refusal, REFUSALS>,
+    /// Something was told that the picture should show at once.
+    news: bool,
+}
+
+impl Simulator {
+    pub(super) fn new(link: ExternalSimulator, trouble: Trouble, now: Instant) -> Self {
+        Self {
+            link,
+            trouble,
+            state: LinkState::Waiting,
+            heard: now,
+            told_refusals: ArrayVec::new(),
+            news: false,
+        }
+    }
+
+    /// Whether it speaks, as the user was told.
+    pub(super) fn state(&self) -> LinkState {
+        self.state
+    }
+
+    /// How long to wait at most until [`Self::watch`] has something to do.
+    pub(super) fn patience(&self, now: Instant) -> Duration {
+        let due = self.trouble.due().map_or(self.link.due(), |arrives| arrives.min(self.link.due()));
+        due.saturating_duration_since(now)
+    }
+
+    /// The line about it among the doors.
+    pub(super) fn view(&self, now: Instant) -> DoorView {
+        self.link.view(now)
+    }
+
+    /// Takes a datagram that was sent at `at`, while simulated time has run `speed` times as fast as the wall clock;
+    /// flies on with what has arrived by then and gives the ticks.
+    pub(super) fn hear(
+        &mut self,
+        datagram: Vec<u8>,
+        at: Instant,
+        vehicle: &mut Vehicle,
+        desk: &mut Desk,
+        speed: f64,
+    ) -> u64 {
+        self.end_faults(at, vehicle);
+        self.trouble.send(datagram, at, &vehicle.world().link_faults());
+        self.take_arrived(at, vehicle, desk, speed)
+    }
+
+    /// Flies on with what has arrived by `now`.
+    fn take_arrived(&mut self, now: Instant, vehicle: &mut Vehicle, desk: &mut Desk, speed: f64) -> u64 {
+        let mut ticks = 0;
+        while let Some((datagram, at)) = self.trouble.arrived(now) {
+            ticks += self.fly(&datagram, at, vehicle, desk, speed);
+        }
+        ticks
+    }
+
+    /// The firmware's time stands still while nothing arrives: that of the faults which are the reason goes on.
+    fn end_faults(&mut self, now: Instant, vehicle: &mut Vehicle) {
+        if self.state != LinkState::Waiting {
+            let silence = now.saturating_duration_since(self.heard);
+            self.news |= vehicle.end_link_faults(silence.as_micros() as u64);
+        }
+    }
+
+    fn fly(
+        &mut self,
+        datagram: &[u8],
+        at: Instant,
+        vehicle: &mut Vehicle,
+        desk: &mut Desk,
+        speed: f64,
+    ) -> u64 {
+        let received = self.link.receive(datagram, at, |sensors, ticks| {
+            let mut frame = *sensors;
+            for _ in 0..ticks {
+                if vehicle.time().0.is_multiple_of(RC_REPEAT_US) {
+                    desk.keep_rc_fresh(vehicle.firmware_mut(), speed, at);
+                }
+                vehicle.tick_on(&frame);
+                // Held inputs; a sample is new only once.
+                (frame.pressure_pa, frame.mag_flu, frame.gps) = (None, None, None);
+            }
+            vehicle.firmware().control().motors
+        });
+        if let Verdict::Refused(refusal) = received.verdict {
+            self.tell_refusal(refusal, vehicle);
+            return 0;
+        }
+        self.tell_return(at, vehicle);
+        if received.verdict == (Verdict::Resync { restarted: true }) {
+            vehicle.reset_craft();
+            desk.after_restart(false, vehicle.firmware_mut());
+        }
+        for notice in received.notices {
+            self.news = true;
+            vehicle.notice(sentence(&notice.to_string()));
+        }
+        if let Some(pose) = received.pose {
+            vehicle.see(pose);
+        }
+        u64::from(received.ticks)
+    }
+
+    /// Carries out what is due by time, as [`Self::hear`] does; gives the ticks.
+    pub(super) fn watch(&mut self, now: Instant, vehicle: &mut Vehicle, desk: &mut Desk, speed: f64) -> u64 {
+        self.end_faults(now, vehicle);
+        let ticks = self.take_arrived(now, vehicle, desk, speed);
+        self.link.poll(now);
+        if self.state == LinkState::Flowing && self.link.state(now) == LinkState::Silent {
+            self.state = LinkState::Silent;
+            self.news = true;
+            vehicle.notice("The simulator is silent: time stands still until it speaks again.");
+        }
+        ticks
+    }
+
+    /// Whether there is something to show at once.
+    pub(super) fn take_news(&mut self) -> bool {
+        std::mem::take(&mut self.news)
+    }
+
+    fn tell_return(&mut self, at: Instant, vehicle: &mut Vehicle) {
+        let silence = at.saturating_duration_since(std::mem::replace(&mut self.heard, at));
+        let before = std::mem::replace(&mut self.state, LinkState::Flowing);
+        self.news |= before != LinkState::Flowing;
+        match before {
+            LinkState::Waiting => vehicle.notice("The simulator speaks: the craft's time is its time now."),
+            LinkState::Silent => vehicle.notice(format!(
+                "The simulator speaks again after {:.1} s of silence.",
+                silence.as_secs_f64()
+            )),
+            LinkState::Flowing => {}
+        }
+    }
+
+    fn tell_refusal(&mut self, refusal: Refusal, vehicle: &mut Vehicle) {
+        if !self.told_refusals.contains(&refusal) && self.told_refusals.try_push(refusal).is_ok() {
+            self.news = true;
+            vehicle.notice(format!("Packets of the simulator are refused: {refusal}."));
+        }
+    }
+}
+
+/// A remark of the link as a sentence.
+fn sentence(remark: &str) -> String {
+    let mut letters = remark.chars();
+    letters.next().map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
+}

@@ -1,0 +1,169 @@
+//! A running `betadeck`, ended when dropped.
+
+use std::io::{BufRead, BufReader, Read};
+use std::net::SocketAddr;
+use std::process::{Child, Command, Stdio};
+use std::sync::mpsc;
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+
+/// Nothing in these tests takes this long unless it hangs.
+pub const PATIENCE: Duration = Duration::from_secs(120);
+
+/// A process whose output is read line by line.
+pub struct Program {
+    child: Child,
+    lines: mpsc::Receiver<String>,
+    seen: Vec<String>,
+    /// Its home, so that it sees nothing of the user's configuration.
+    _home: tempfile::TempDir,
+}
+
+impl Program {
+    pub fn start(arguments: &[&str]) -> Self {
+        let home = tempfile::tempdir().unwrap();
+        let mut child = Command::new(env!("CARGO_BIN_EXE_betadeck"))
+            .args(arguments)
+            .env_clear()
+            .env("HOME", home.path())
+            .current_dir(home.path())
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let (sender, lines) = mpsc::channel();
+        pass_on(child.stdout.take().unwrap(), sender.clone());
+        pass_on(child.stderr.take().unwrap(), sender);
+        Self { child, lines, seen: Vec::new(), _home: home }
+    }
+
+    /// The next line for which `wanted` gives something; panics with everything said when none comes.
+    pub fn wait<T>(&mut self, what: &str, wanted: impl Fn(&str) -> Option<T>) -> T {
+        let end = Instant::now() + PATIENCE;
+        loop {
+            let left = end.saturating_duration_since(Instant::now());
+            let Ok(line) = self.lines.recv_timeout(left) else {
+                panic!("no {what} after:\n{}", self.seen.join("\n"))
+            };
+            let found = wanted(&line);
+            self.seen.push(line);
+            if let Some(found) = found {
+                return found;
+            }
+        }
+    }
+
+    /// All lines so far.
+    pub fn seen(&mut self) -> &[String] {
+        self.seen.extend(self.lines.try_iter());
+        &self.seen
+    }
+}
+
+impl Drop for Program {
+    fn drop(&mut self) {
+        // One that is gone already has nothing to be ended.
+        drop(self.child.kill());
+        drop(self.child.wait());
+    }
+}
+
+fn pass_on(output: impl Read + Send + 'static, lines: mpsc::Sender<String>) {
+    std::thread::spawn(move || {
+        for line in BufReader::new(output).lines().map_while(Result::ok) {
+            if lines.send(line).is_err() {
+                break;
+            }
+        }
+    });
+}
+
+/// `betadeck serve` with all its doors on ports of the system's choice.
+pub struct Serve {
+    program: Program,
+    pub websocket: SocketAddr,
+    pub tcp: SocketAddr,
+    pub rc: SocketAddr,
+}
+
+impl Serve {
+    /// Serves a craft without stored settings at this many times real time.
+    pub fn start(speed: &str) -> Self {
+        let options = "serve --fresh --json - --ws-port 0 --tcp-port 0 --udp-ports 0,0,0,0 --speed";
+        let mut arguments: Vec<&str> = options.split(' ').collect();
+        arguments.push(speed);
+        let mut program = Program::start(&arguments);
+        let doors = program.wait("place of the doors", |line| {
+            let event: Value = serde_json::from_str(line).ok()?;
+            (event["event"] == "doors").then_some(event)
+        });
+        let address = |door: &str| doors[door].as_str().unwrap().parse().unwrap();
+        Self { websocket: address("ws"), tcp: address("tcp"), rc: address("rc"), program }
+    }
+
+    /// The next event for which `wanted` is true.
+    pub fn wait(&mut self, what: &str, wanted: impl Fn(&Value) -> bool) -> Value {
+        self.program.wait(what, |line| {
+            let event: Value = serde_json::from_str(line).ok()?;
+            wanted(&event).then_some(event)
+        })
+    }
+
+    /// The next event of that name.
+    pub fn event(&mut self, name: &str) -> Value {
+        self.wait(name, |event| event["event"] == name)
+    }
+
+    /// Whether an event of that name has come so far.
+    pub fn has_seen(&mut self, name: &str) -> bool {
+        let key = format!("\"event\":\"{name}\"");
+        self.program.seen().iter().any(|line| line.contains(&key))
+    }
+
+    /// How many notices so far hold this text.
+    pub fn notices(&mut self, text: &str) -> usize {
+        let holds = |line: &&String| line.contains("\"event\":\"notice\"") && line.contains(text);
+        self.program.seen().iter().filter(holds).count()
+    }
+}
+
+/// `betadeck sitl` with its doors on ports of the system's choice.
+pub struct Sitl {
+    /// Ended with this.
+    _program: Program,
+    pub fdm: SocketAddr,
+    pub rc: SocketAddr,
+    pub tcp: SocketAddr,
+}
+
+impl Sitl {
+    /// Sends motors to these ports.
+    pub fn start(raw: u16, motors: u16) -> Self {
+        let ports = format!("{raw},{motors},0,0");
+        // `eeprom.bin` lies in its directory.
+        let mut program =
+            Program::start(&["sitl", "--ws-port", "0", "--tcp-port", "0", "--udp-ports", &ports]);
+        // Two streams, so in any order.
+        let (mut udp, mut tcp) = (Vec::new(), None);
+        while udp.len() < 2 || tcp.is_none() {
+            let (is_udp, place) = program.wait("line of a door", |line| {
+                let udp =
+                    line.strip_prefix("[SITL] start UDP server @").and_then(|rest| rest.strip_suffix("...0"));
+                let tcp = line.strip_prefix("bind port ").and_then(|rest| rest.strip_suffix(" for UART1"));
+                udp.or(tcp).map(|text| (udp.is_some(), port(text)))
+            });
+            if is_udp {
+                udp.push(place);
+            } else {
+                tcp = Some(place);
+            }
+        }
+        Self { _program: program, fdm: udp[0], rc: udp[1], tcp: tcp.unwrap() }
+    }
+}
+
+fn port(text: &str) -> SocketAddr {
+    SocketAddr::from(([127, 0, 0, 1], text.parse().unwrap()))
+}

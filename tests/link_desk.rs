@@ -1,0 +1,278 @@
+//! The desk between the doors and a firmware, told the time: RC that comes in wall time, and what clients can do to
+//! each other.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::disallowed_methods,
+    reason = "tests may panic, and give the desk its time"
+)]
+
+use std::net::SocketAddr;
+use std::time::{Duration, Instant};
+
+use betadeck::firmware::arming::ArmingFlag;
+use betadeck::firmware::cli::{CliReply, Interpreter, Mode};
+use betadeck::firmware::config::Configuration;
+use betadeck::firmware::{Firmware, FirmwareEvent, FirmwareOptions};
+use betadeck::link::{Attended, CliAnswer, ClientId, Desk, Doors, DoorsConfig, Request};
+use betadeck::signals::{MotorCommand, RcFrame, RcSource, SensorFrame, SimTime};
+use betadeck::storage::Store;
+use tokio::sync::{mpsc, oneshot};
+
+const TICK: Duration = Duration::from_millis(1);
+/// How often the desk looks after RC, ticks.
+const LOOK: u64 = 20;
+
+/// A firmware on a bench behind a desk, with a wall clock of its own.
+struct Bench {
+    firmware: Firmware,
+    store: Store,
+    desk: Desk,
+    ticks: u64,
+    wall: Instant,
+    /// Ticks that the wall clock is worth but that were not run.
+    owed: f64,
+    motors: MotorCommand,
+    lost: bool,
+}
+
+impl Bench {
+    async fn new() -> Self {
+        let closed = DoorsConfig { tcp_port: None, ws_port: None, rc_port: None, ..DoorsConfig::default() };
+        let (doors, _) = Doors::open(&closed, mpsc::channel(1).0).await;
+        let mut configuration = Configuration::default();
+        configuration.starter_modes();
+        Self {
+            firmware: Firmware::new(
+                configuration,
+                FirmwareOptions { arm_assist: true, ..FirmwareOptions::default() },
+            ),
+            store: Store::in_memory(),
+            desk: Desk::new(doors.restart_bell(), true),
+            ticks: 0,
+            wall: Instant::now(),
+            owed: 0.0,
+            motors: MotorCommand::default(),
+            lost: false,
+        }
+    }
+
+    fn tick(&mut self, speed: f64) {
+        if self.ticks.is_multiple_of(LOOK) {
+            self.desk.keep_rc_fresh(&mut self.firmware, speed, self.wall);
+        }
+        let sensors = SensorFrame { time: SimTime(self.ticks * 1000), ..SensorFrame::default() };
+        self.motors = self.firmware.step(&sensors);
+        self.ticks += 1;
+        while let Some(event) = self.firmware.take_event() {
+            match event {
+                FirmwareEvent::RxLoss => self.lost = true,
+                FirmwareEvent::RxRecovered => self.lost = false,
+                _ => {}
+            }
+        }
+    }
+
+    /// A millisecond of the wall clock, at `speed` times real time.
+    fn pass(&mut self, speed: f64) {
+        self.wall += TICK;
+        self.owed += speed;
+        while self.owed >= 1.0 {
+            self.owed -= 1.0;
+            self.tick(speed);
+        }
+    }
+
+    fn attend(&mut self, request: Request) -> Attended {
+        self.desk.attend(request, &mut self.firmware, &mut self.store, self.wall)
+    }
+
+    fn hear_udp(&mut self, frame: RcFrame) {
+        let from: SocketAddr = "127.0.0.1:9".parse().unwrap();
+        self.attend(Request::Rc { stamp_s: 0.0, frame, from, at: self.wall });
+    }
+
+    fn ask(&mut self, client: u64, code: u16, payload: &[u8]) -> Option<Vec<u8>> {
+        let (reply, mut answer) = oneshot::channel();
+        self.attend(Request::Msp { client: ClientId(client), code, payload: payload.to_vec(), reply });
+        answer.try_recv().unwrap()
+    }
+
+    fn enter(&mut self, client: u64, interactive: bool) -> bool {
+        let (reply, mut answer) = oneshot::channel();
+        self.attend(Request::EnterCli { client: ClientId(client), interactive, reply });
+        answer.try_recv().unwrap()
+    }
+
+    fn line(&mut self, client: u64, mode: Mode, line: &str) -> CliReply {
+        let (reply, mut answer) = oneshot::channel();
+        let interpreter = Interpreter::new(mode);
+        self.attend(Request::Cli { client: ClientId(client), line: line.to_owned(), interpreter, reply });
+        let CliAnswer { reply, .. } = answer.try_recv().unwrap();
+        reply
+    }
+
+    fn leave(&mut self, client: u64) {
+        self.attend(Request::LeftCli { client: ClientId(client) });
+    }
+
+    fn arming_is_blocked_by_cli(&self) -> bool {
+        self.firmware.arming_flags().has(ArmingFlag::Cli)
+    }
+
+    fn second_motor(&mut self) -> f64 {
+        self.tick(1.0);
+        self.motors.0[1]
+    }
+}
+
+/// Half a second of a script, then silence: after how much wall time the link is lost.
+async fn wall_time_to_loss(speed: f64) -> Duration {
+    let mut bench = Bench::new().await;
+    for ms in 0..500_u32 {
+        if ms.is_multiple_of(20) {
+            bench.hear_udp(RcFrame::SAFE);
+        }
+        bench.pass(speed);
+        // The link is good after half a second of frames.
+        assert!(!bench.lost, "lost after {ms} ms at speed {speed}");
+    }
+    // The last packet came 20 ms ago.
+    let last = bench.wall - Duration::from_millis(20);
+    while !bench.lost {
+        bench.pass(speed);
+        assert!(bench.wall - last < Duration::from_secs(10), "never lost at speed {speed}");
+    }
+    bench.wall - last
+}
+
+#[tokio::test]
+async fn a_script_is_lost_after_the_same_wall_time_at_any_speed() {
+    for speed in [1.0, 2.0, 4.0, 10.0, 50.0, 1000.0] {
+        let lost = wall_time_to_loss(speed).await.as_millis();
+        assert!((145..=210).contains(&lost), "{lost} ms at speed {speed}");
+    }
+    // Slower than the wall: the firmware's own 150 ms.
+    let lost = wall_time_to_loss(0.5).await.as_millis();
+    assert!((290..=420).contains(&lost), "{lost} ms at half speed");
+}
+
+#[tokio::test]
+async fn a_script_is_not_lost_while_time_stands_still() {
+    let mut bench = Bench::new().await;
+    for ms in 0..500_u32 {
+        if ms.is_multiple_of(20) {
+            bench.hear_udp(RcFrame::SAFE);
+        }
+        bench.pass(1.0);
+    }
+    // Paused for a minute: no tick, no look.
+    bench.wall += Duration::from_secs(60);
+    assert!(!bench.lost && bench.firmware.receiver().signal());
+}
+
+#[tokio::test]
+async fn the_script_stays_in_charge_beside_a_client_that_speaks_msp_however_fast_time_runs() {
+    let mut bench = Bench::new().await;
+    let mut udp = RcFrame::SAFE;
+    udp.channels[0] = 1600;
+    let payload: Vec<u8> = RcFrame::SAFE.channels.iter().flat_map(|channel| channel.to_le_bytes()).collect();
+    for ms in 0..600_u32 {
+        match ms % 20 {
+            0 => bench.hear_udp(udp),
+            10 => assert!(bench.ask(1, 200, &payload).is_some()),
+            _ => {}
+        }
+        bench.pass(50.0);
+        if ms > 100 {
+            assert_eq!(bench.firmware.receiver().sources().in_charge(), Some(RcSource::Udp), "{ms} ms");
+        }
+    }
+}
+
+#[tokio::test]
+async fn only_who_turned_the_motors_stops_them_by_leaving() {
+    let mut bench = Bench::new().await;
+    assert!(bench.enter(1, true) && bench.enter(2, false));
+    bench.line(1, Mode::Interactive, "motor 1 1200");
+    assert!(bench.second_motor() > 0.1);
+    bench.leave(2);
+    assert!(bench.second_motor() > 0.1, "another client left");
+    bench.leave(1);
+    assert!(bench.second_motor() < 0.1);
+}
+
+#[tokio::test]
+async fn a_client_of_the_time_before_a_restart_does_nothing_to_those_after_it() {
+    let mut bench = Bench::new().await;
+    bench.enter(1, true);
+    bench.line(1, Mode::Interactive, "motor 1 1200");
+    assert_eq!(bench.ask(2, 68, &[]), Some(vec![0]));
+    assert!(bench.second_motor() < 0.1, "a restart stops the motors");
+    bench.enter(3, true);
+    bench.line(3, Mode::Interactive, "motor 1 1300");
+    bench.leave(1);
+    assert!(bench.second_motor() > 0.1);
+    assert!(bench.arming_is_blocked_by_cli());
+}
+
+#[tokio::test]
+async fn a_command_line_blocks_arming_until_the_restart_that_ends_it() {
+    let mut bench = Bench::new().await;
+    bench.enter(1, false);
+    assert!(!bench.arming_is_blocked_by_cli(), "one batch of lines blocks nothing");
+    bench.enter(1, true);
+    bench.leave(1);
+    assert!(bench.arming_is_blocked_by_cli(), "also when it was left");
+
+    // Somebody else saves a flight plan: that restarts the craft, and keeps the links.
+    bench.enter(2, true);
+    assert!(bench.enter(3, false));
+    bench.line(3, Mode::Framed, "feature TELEMETRY");
+    let reply = bench.line(3, Mode::Framed, "save");
+    assert!(!reply.failed, "{}", reply.text);
+    assert!(bench.arming_is_blocked_by_cli(), "the second is still there");
+    bench.leave(2);
+    bench.line(3, Mode::Framed, "save");
+    assert!(!bench.arming_is_blocked_by_cli(), "nobody is");
+}
+
+#[tokio::test]
+async fn an_armed_craft_is_not_restarted() {
+    let mut bench = Bench::new().await;
+    let mut frame = RcFrame::SAFE;
+    bench.enter(1, true);
+    // The craft put back home: the command line is open, but blocks nothing.
+    bench.firmware.restart_in_place();
+    for ms in 0..7000_u32 {
+        frame.channels[4] = if ms > 6500 { 2000 } else { 1000 };
+        if ms.is_multiple_of(20) {
+            bench.hear_udp(frame);
+        }
+        bench.pass(1.0);
+    }
+    assert!(bench.firmware.is_armed(), "{:?}", bench.firmware.arming_flags());
+    assert!(!bench.attend(Request::Restart { client: ClientId(1) }).restarted);
+    assert_eq!(bench.ask(2, 68, &[]), None);
+    assert_eq!(bench.ask(2, 208, &[]), Some(vec![0]));
+    assert!(!bench.enter(3, true) && !bench.enter(3, false));
+    assert!(bench.firmware.is_armed());
+}
+
+#[tokio::test]
+async fn what_cannot_be_saved_is_told_in_a_sentence() {
+    let directory = tempfile::tempdir().unwrap();
+    let folder = directory.path().join("state");
+    let mut bench = Bench::new().await;
+    bench.store = Store::open(&folder, false).unwrap();
+    // A file where the directory was.
+    if folder.exists() {
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+    std::fs::write(&folder, "").unwrap();
+    let (reply, mut answer) = oneshot::channel();
+    let attended = bench.attend(Request::Msp { client: ClientId(1), code: 250, payload: Vec::new(), reply });
+    assert_eq!(answer.try_recv().unwrap(), None);
+    let [notice] = &attended.notices[..] else { panic!("{:?}", attended.notices) };
+    assert!(notice.starts_with("Not saved: ") && notice.ends_with('.'), "{notice}");
+}

@@ -1,0 +1,272 @@
+//! Open doors, a desk behind them that answers as the session does, and programs that come in.
+
+use std::net::SocketAddr;
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+use betadeck::firmware::cli::{CliAction, CliContext, CliFacts, CliReply};
+use betadeck::firmware::config::{Configuration, ModeCondition};
+use betadeck::firmware::msp::{GpsReading, MspAction, MspFacts, handle};
+use betadeck::geo::LatLon;
+use betadeck::link::{CliAnswer, DoorKind, Doors, DoorsConfig, Request, RestartBell};
+use betadeck::plan::{HoldPattern, Waypoint, WaypointType};
+use futures_util::{SinkExt, StreamExt};
+use tokio::io::{AsyncReadExt, AsyncWriteExt};
+use tokio::net::TcpStream;
+use tokio::sync::mpsc;
+use tokio_tungstenite::WebSocketStream;
+use tokio_tungstenite::tungstenite::client::IntoClientRequest;
+use tokio_tungstenite::tungstenite::http::HeaderValue;
+use tokio_tungstenite::tungstenite::{Error, Message};
+
+/// Nothing in these tests takes this long unless it hangs.
+pub const PATIENCE: Duration = Duration::from_secs(120);
+
+pub const API_VERSION: &str = "244d3c000101";
+pub const API_REPLY: &str = "244d3e030100013132";
+pub const GREETING: &str = "\r\nEntering CLI Mode, type 'exit' to reboot, or 'help'\r\n\r\n# ";
+
+pub fn unhex(text: &str) -> Vec<u8> {
+    (0..text.len() / 2).map(|i| u8::from_str_radix(&text[2 * i..2 * i + 2], 16).unwrap()).collect()
+}
+
+pub fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// The craft behind the doors.
+#[derive(Debug, Default)]
+pub struct Craft {
+    pub configuration: Configuration,
+    pub msp: MspFacts,
+    pub cli: CliFacts,
+    pub saves: u32,
+    pub left_cli: u32,
+    pub entered: Vec<bool>,
+}
+
+pub type Shared = Arc<Mutex<Craft>>;
+
+/// The craft of the captured exchanges.
+pub fn captured_craft() -> Craft {
+    let mut craft = Craft::default();
+    let settings = &mut craft.configuration.settings;
+    settings.set_text("craft_name", "SITLQUAD").unwrap();
+    settings.set_number("small_angle", 180).unwrap();
+    for (slot, box_id) in [0, 56, 1, 46].into_iter().enumerate() {
+        craft.configuration.modes[slot] = ModeCondition {
+            box_id,
+            aux_channel: slot as u8,
+            start_us: 1700,
+            end_us: 2100,
+            ..ModeCondition::default()
+        };
+    }
+    let first = Waypoint {
+        position: LatLon::new(-274_973_051, 1_530_000_000),
+        alt_cm: 4000,
+        speed_cms: 500,
+        ..Waypoint::default()
+    };
+    let second = Waypoint {
+        position: LatLon::new(-274_973_051, 1_530_015_191),
+        alt_cm: 5000,
+        duration_ds: 50,
+        kind: WaypointType::Hold,
+        pattern: HoldPattern::Orbit,
+        ..first
+    };
+    craft.configuration.plan.waypoints.extend([first, second]);
+    craft.msp.cycle_time_us = 939;
+    craft.msp.heading_deg = 358.0;
+    craft.msp.channels[3..10].fill(1000);
+    craft.msp.gps = GpsReading {
+        fix: true,
+        sats: 12,
+        position: LatLon::new(-275_000_000, 1_530_000_000),
+        alt_amsl_m: 30.0,
+        ..GpsReading::default()
+    };
+    craft.msp.build.date = "Nov 21 2026".to_owned();
+    craft.msp.build.time = "02:51:34".to_owned();
+    craft.msp.build.revision = "301d01a".to_owned();
+    craft
+}
+
+/// Answers requests until the doors are gone.
+pub async fn desk(
+    craft: Shared,
+    mut requests: mpsc::Receiver<Request>,
+    bell: RestartBell,
+    others: mpsc::Sender<Request>,
+) {
+    while let Some(request) = requests.recv().await {
+        let mut restart = false;
+        match request {
+            Request::Msp { code, payload, reply, .. } => {
+                let craft = &mut *craft.lock().unwrap();
+                let outcome = handle(code, &payload, &mut craft.configuration, &craft.msp);
+                craft.saves += u32::from(outcome.action == Some(MspAction::Save));
+                restart = matches!(outcome.action, Some(MspAction::Reboot | MspAction::SaveAndReboot));
+                let _gone = reply.send(outcome.reply);
+            }
+            Request::EnterCli { interactive, reply, .. } => {
+                let mut craft = craft.lock().unwrap();
+                craft.entered.push(interactive);
+                let _gone = reply.send(!craft.msp.armed);
+            }
+            Request::Cli { line, mut interpreter, reply, .. } => {
+                let craft = &mut *craft.lock().unwrap();
+                let mut context = CliContext { configuration: &mut craft.configuration, facts: &craft.cli };
+                let answer: CliReply = interpreter.run(&line, &mut context);
+                craft.saves += u32::from(answer.actions.contains(&CliAction::Save));
+                restart = answer.actions.contains(&CliAction::Restart { close_links: true });
+                let _gone = reply.send(CliAnswer { interpreter, reply: answer });
+            }
+            Request::LeftCli { .. } => craft.lock().unwrap().left_cli += 1,
+            Request::Restart { .. } => restart = true,
+            other @ (Request::Rc { .. } | Request::Fdm { .. } | Request::Notice(_)) => {
+                let _nobody_looks = others.try_send(other);
+            }
+        }
+        if restart {
+            bell.ring();
+        }
+    }
+}
+
+/// Open doors with a desk.
+pub struct House {
+    pub doors: Doors,
+    pub craft: Shared,
+    pub others: mpsc::Receiver<Request>,
+}
+
+impl House {
+    pub async fn open(config: DoorsConfig) -> Self {
+        let (requests, inbox) = mpsc::channel(64);
+        let (doors, views) = Doors::open(&config, requests).await;
+        assert!(views.iter().all(|view| !view.fault), "{views:?}");
+        let craft = Arc::new(Mutex::new(captured_craft()));
+        let (others_in, others) = mpsc::channel(256);
+        tokio::spawn(desk(Arc::clone(&craft), inbox, doors.restart_bell(), others_in));
+        Self { doors, craft, others }
+    }
+
+    pub async fn usual() -> Self {
+        Self::open(DoorsConfig {
+            tcp_port: Some(0),
+            ws_port: Some(0),
+            rc_port: Some(0),
+            fdm_port: Some(0),
+            ..DoorsConfig::default()
+        })
+        .await
+    }
+
+    pub fn address(&self, kind: DoorKind) -> SocketAddr {
+        self.doors.address(kind).unwrap()
+    }
+
+    pub async fn tcp(&self) -> Client {
+        Client::Tcp(TcpStream::connect(self.address(DoorKind::Tcp)).await.unwrap())
+    }
+
+    pub async fn websocket(&self) -> Client {
+        let (socket, protocol) = self.handshake(None, Some("binary")).await.unwrap();
+        assert_eq!(protocol.as_deref(), Some("binary"));
+        Client::WebSocket(Box::new(socket))
+    }
+
+    /// A websocket and the sub-protocol that was chosen.
+    pub async fn handshake(
+        &self,
+        origin: Option<&str>,
+        protocol: Option<&str>,
+    ) -> Result<(WebSocketStream<TcpStream>, Option<String>), Error> {
+        let address = self.address(DoorKind::WebSocket);
+        let mut request = format!("ws://{address}/").into_client_request().unwrap();
+        if let Some(origin) = origin {
+            request.headers_mut().insert("Origin", HeaderValue::from_str(origin).unwrap());
+        }
+        if let Some(protocol) = protocol {
+            request.headers_mut().insert("Sec-WebSocket-Protocol", HeaderValue::from_str(protocol).unwrap());
+        }
+        let stream = TcpStream::connect(address).await.unwrap();
+        let (socket, response) = tokio_tungstenite::client_async(request, stream).await?;
+        let chosen = response.headers().get("Sec-WebSocket-Protocol");
+        Ok((socket, chosen.map(|value| value.to_str().unwrap().to_owned())))
+    }
+}
+
+/// A program that speaks with the craft.
+pub enum Client {
+    Tcp(TcpStream),
+    WebSocket(Box<WebSocketStream<TcpStream>>),
+}
+
+impl Client {
+    pub async fn send(&mut self, bytes: &[u8]) {
+        match self {
+            Self::Tcp(stream) => stream.write_all(bytes).await.unwrap(),
+            Self::WebSocket(socket) => socket.send(Message::Binary(bytes.to_vec().into())).await.unwrap(),
+        }
+    }
+
+    /// The next bytes; none when the link was closed.
+    pub async fn receive(&mut self) -> Vec<u8> {
+        let receive = async {
+            match self {
+                Self::Tcp(stream) => {
+                    let mut chunk = [0; 65_536];
+                    let count = stream.read(&mut chunk).await.unwrap_or(0);
+                    chunk[..count].to_vec()
+                }
+                Self::WebSocket(socket) => match socket.next().await {
+                    Some(Ok(Message::Binary(bytes))) => bytes.to_vec(),
+                    Some(Ok(Message::Close(_)) | Err(_)) | None => Vec::new(),
+                    Some(Ok(other)) => panic!("{other:?} instead of binary"),
+                },
+            }
+        };
+        tokio::time::timeout(PATIENCE, receive).await.unwrap()
+    }
+
+    /// Exactly this many bytes.
+    pub async fn receive_exactly(&mut self, count: usize) -> Vec<u8> {
+        let mut all = Vec::new();
+        while all.len() < count {
+            let more = self.receive().await;
+            assert!(!more.is_empty(), "closed after {}", hex(&all));
+            all.extend(more);
+        }
+        assert_eq!(all.len(), count, "{}", hex(&all));
+        all
+    }
+
+    /// Text up to and including `end`.
+    pub async fn receive_until(&mut self, end: &str) -> String {
+        let mut all = Vec::new();
+        while !all.ends_with(end.as_bytes()) {
+            let more = self.receive().await;
+            assert!(!more.is_empty(), "closed after {:?}", String::from_utf8_lossy(&all));
+            all.extend(more);
+        }
+        String::from_utf8(all).unwrap()
+    }
+
+    /// Whether the server closes the link and sends nothing more.
+    pub async fn is_closed(&mut self) -> bool {
+        self.receive().await.is_empty()
+    }
+
+    pub async fn assert_speaks_msp(&mut self) {
+        self.send(&unhex(API_VERSION)).await;
+        assert_eq!(hex(&self.receive_exactly(9).await), API_REPLY);
+    }
+
+    pub async fn enter_cli(&mut self) {
+        self.send(b"#").await;
+        assert_eq!(self.receive_until("# ").await, GREETING);
+    }
+}

@@ -1,0 +1,7 @@
+//! The doors over real sockets, with a desk behind them that answers as the session does. Ports come from the system.
+
+#![allow(clippy::unwrap_used, clippy::disallowed_methods, reason = "tests may panic and wait")]
+
+mod clients;
+mod house;
+mod packets;

@@ -1,0 +1,12 @@
+//! The firmware flown by a simulator in another process: `betadeck sitl` and `betadeck serve --physics external` against
+//! the project's own plant, which speaks as Gazebo's plugin does.
+//!
+//! The plant waits for the motors before it moves on, so that a flight is the same on a slow machine and on a fast one.
+
+mod child;
+mod plant;
+mod rates;
+mod serve;
+mod simulator;
+mod square;
+mod trouble;

@@ -1,0 +1,83 @@
+//! The project's plant, and the packets in which a simulator speaks of it.
+
+use betadeck::link::proto::fdm::{Dialect, GZ_PLUGIN_SIZE, State, mirrored, pressure_pa};
+use betadeck::signals::MotorCommand;
+use betadeck::sim::{Noise, World, WorldConfig, WorldEventKind};
+
+/// A craft at home, or in flight.
+pub struct Plant {
+    /// The world.
+    pub world: World,
+    dialect: Dialect,
+    crash: Option<String>,
+    impact_mps: f64,
+}
+
+impl Plant {
+    /// A craft at home.
+    pub fn new(dialect: Dialect) -> Self {
+        let world =
+            World::new(WorldConfig { noise: Noise::None, ..WorldConfig::default() }).expect("a world");
+        Self { world, dialect, crash: None, impact_mps: 0.0 }
+    }
+
+    /// Simulated time, ms.
+    pub fn time_ms(&self) -> u64 {
+        self.world.time().0 / 1000
+    }
+
+    /// Lets this much time pass with these motors.
+    pub fn advance(&mut self, ms: u64, motors: [f32; 4]) {
+        let command = MotorCommand(motors.map(f64::from));
+        for _ in 0..ms {
+            self.world.step(&command);
+            while let Some(event) = self.world.take_event() {
+                match event.kind {
+                    WorldEventKind::Crash { cause } => self.crash = Some(cause.to_string()),
+                    WorldEventKind::Contact { impact_mps } => self.impact_mps = impact_mps,
+                    WorldEventKind::Diverged { cause } => self.crash = Some(cause.to_string()),
+                    WorldEventKind::Touchdown { .. } | WorldEventKind::Fault { .. } => {}
+                }
+            }
+        }
+    }
+
+    /// What went wrong, if something did.
+    pub fn crash(&self) -> Option<&str> {
+        self.crash.as_deref()
+    }
+
+    /// Speed of the last touch of the ground, m/s.
+    pub fn impact_mps(&self) -> f64 {
+        self.impact_mps
+    }
+
+    /// Height above home, m.
+    pub fn height_m(&self) -> f64 {
+        self.world.truth().pos_enu.z - self.world.airframe().standing_height_m()
+    }
+
+    /// The state of the craft as the dialect says it, positions mirrored about home where it does so.
+    pub fn packet(&self) -> Vec<u8> {
+        let (truth, frame) = (self.world.truth(), self.world.local_frame());
+        let (lat_deg, lon_deg, alt_m) = frame.to_geodetic(truth.pos_enu);
+        let wire = |home: f64, value: f64| if self.dialect.mirrors() { mirrored(home, value) } else { value };
+        let state = State {
+            stamp_s: self.time_ms() as f64 * 1e-3,
+            rate_flu: truth.rate_flu,
+            specific_force_flu: truth.specific_force_flu,
+            attitude: truth.attitude,
+            vel_enu: truth.vel_enu,
+            lon_deg: wire(frame.lon_deg, lon_deg),
+            lat_deg: wire(frame.lat_deg, lat_deg),
+            alt_m,
+            pressure_pa: pressure_pa(alt_m),
+        };
+        let mut bytes = self.dialect.encode(&state).to_bytes().to_vec();
+        if self.dialect == Dialect::GzPlugin {
+            // What the plugin leaves uninitialised.
+            bytes.resize(GZ_PLUGIN_SIZE, 0xff);
+        }
+        bytes
+    }
+}

@@ -1,0 +1,225 @@
+//! A simulator that keeps the rules of Gazebo's plugin: in each step it reads one packet of motors, waits for it if there
+//! is none, moves the craft and sends its state. And the hand on the transmitter, which works by simulated time.
+
+use std::net::{Ipv4Addr, UdpSocket};
+
+use betadeck::link::proto::fdm::Dialect;
+use betadeck::link::proto::{rc, servo};
+use betadeck::signals::RcFrame;
+
+use crate::child::NEVER;
+use crate::plant::Plant;
+use crate::square::Flown;
+
+/// Interval of RC packets, ms.
+const RC_MS: u64 = 20;
+/// When the transmitter switches ARM on, ms: the firmware is up and has a fix.
+const ARM_MS: u64 = 6000;
+/// A motor above this turns because the craft is armed.
+const IDLE: f32 = 0.03;
+/// A flight that takes longer has gone wrong, ms.
+const LONGEST_MS: u64 = 400_000;
+
+/// What the hand on the transmitter does.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Hand {
+    /// Waits until the craft is ready.
+    Waits,
+    /// Holds ARM on until the motors turn.
+    Arms,
+    /// Has engaged the autopilot and watches.
+    Watches,
+    /// The craft has landed and disarmed by itself.
+    Done,
+}
+
+/// The simulator, its sockets and the transmitter.
+pub struct Simulator {
+    /// What it simulates.
+    pub plant: Plant,
+    /// What was flown.
+    pub flown: Flown,
+    /// The transmitter.
+    pub hand: Hand,
+    /// Part of the packets of both sides that is lost, 0…1.
+    pub loss: f64,
+    dice: u64,
+    motors_in: UdpSocket,
+    raw_in: UdpSocket,
+    out: UdpSocket,
+    fdm_port: u16,
+    rc_port: u16,
+    motors: [f32; 4],
+    next_rc_ms: u64,
+}
+
+impl Simulator {
+    /// A simulator with open sockets whose firmware is not known yet.
+    pub fn new(dialect: Dialect) -> Self {
+        let socket = || {
+            let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).expect("a socket");
+            socket.set_read_timeout(Some(NEVER)).expect("a timeout");
+            socket
+        };
+        let plant = Plant::new(dialect);
+        Self {
+            flown: Flown::new(plant.world.local_frame()),
+            plant,
+            hand: Hand::Waits,
+            loss: 0.0,
+            dice: 1,
+            motors_in: socket(),
+            raw_in: socket(),
+            out: socket(),
+            fdm_port: 0,
+            rc_port: 0,
+            motors: [0.0; 4],
+            next_rc_ms: 0,
+        }
+    }
+
+    /// Where it reads motors: normalised and raw.
+    pub fn ports(&self) -> (u16, u16) {
+        let port = |socket: &UdpSocket| socket.local_addr().expect("an address").port();
+        (port(&self.motors_in), port(&self.raw_in))
+    }
+
+    /// Speaks to the firmware behind these doors from now on; its first packet of motors is read.
+    pub fn connect(&mut self, (fdm_port, rc_port): (u16, u16)) {
+        (self.fdm_port, self.rc_port) = (fdm_port, rc_port);
+        self.read_motors();
+    }
+
+    /// Moves on by `ms` with the newest motors, tells the state, and waits for the answer. A packet that is lost on its
+    /// way is not waited for: the craft flies on with the motors it has.
+    pub fn step(&mut self, ms: u64) {
+        self.advance(ms);
+        if self.is_lost() {
+            return;
+        }
+        self.send_state();
+        let before = self.motors;
+        self.read_motors();
+        if self.is_lost() {
+            self.motors = before;
+        }
+    }
+
+    /// The world goes on, and nobody hears of it.
+    pub fn advance(&mut self, ms: u64) {
+        self.plant.advance(ms, self.motors);
+        assert_eq!(self.plant.crash(), None, "at {} ms: {:?}", self.plant.time_ms(), self.flown);
+        assert!(self.plant.time_ms() < LONGEST_MS, "{:?}: {:?}", self.hand, self.flown);
+        self.flown.look(self.plant.world.truth().pos_enu.xy(), self.plant.height_m());
+        self.move_hand();
+    }
+
+    /// Flies on in steps of `ms` until the craft has landed and disarmed.
+    pub fn fly(&mut self, ms: u64) {
+        while self.hand != Hand::Done {
+            self.step(ms);
+        }
+        self.flown.impact_mps = self.plant.impact_mps();
+    }
+
+    /// Flies on in steps of `ms` until the craft is on its way and this high.
+    pub fn fly_up_to(&mut self, ms: u64, height_m: f64) {
+        while self.plant.height_m() < height_m {
+            self.step(ms);
+        }
+    }
+
+    /// Sends a datagram to the door of states.
+    pub fn send(&self, datagram: &[u8]) {
+        self.out.send_to(datagram, (Ipv4Addr::LOCALHOST, self.fdm_port)).expect("it is sent");
+    }
+
+    /// Tells the state of the craft.
+    pub fn send_state(&self) {
+        self.send(&self.plant.packet());
+    }
+
+    /// Reads one packet of motors, waiting for it.
+    pub fn read_motors(&mut self) {
+        let mut bytes = [0; 64];
+        let size = self.motors_in.recv(&mut bytes).expect("motors, long before");
+        assert_eq!(size, servo::SIZE);
+        self.motors = servo::decode(&bytes[..size]).expect("motors");
+    }
+
+    /// The newest motors.
+    pub fn motors(&self) -> [f32; 4] {
+        self.motors
+    }
+
+    /// The transmitter works by the time of a new world.
+    pub fn begin_rc_anew(&mut self) {
+        self.next_rc_ms = 0;
+    }
+
+    /// The simulator ends: its sockets are closed and its world is gone. What is left is the way to start it again.
+    pub fn end(self) -> Ended {
+        let (motors, raw) = self.ports();
+        Ended { motors, raw, doors: (self.fdm_port, self.rc_port) }
+    }
+
+    /// Whether a packet gets lost; the same ones in every run.
+    fn is_lost(&mut self) -> bool {
+        self.dice = self.dice.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        ((self.dice >> 33) as f64 / f64::from(1_u32 << 31)) < self.loss
+    }
+
+    fn move_hand(&mut self) {
+        let turning = self.motors.iter().all(|motor| *motor > IDLE);
+        let still = self.motors.iter().all(|motor| *motor == 0.0);
+        let time_ms = self.plant.time_ms();
+        self.hand = match self.hand {
+            Hand::Waits if time_ms >= ARM_MS => Hand::Arms,
+            Hand::Arms if turning => Hand::Watches,
+            Hand::Watches if still => Hand::Done,
+            same => same,
+        };
+        if self.plant.time_ms() >= self.next_rc_ms {
+            self.next_rc_ms = self.plant.time_ms() + RC_MS;
+            self.send_rc();
+        }
+    }
+
+    fn send_rc(&mut self) {
+        let mut frame = RcFrame::SAFE;
+        match self.hand {
+            Hand::Waits | Hand::Done => {}
+            Hand::Arms => frame.channels[4] = 2000,
+            Hand::Watches => {
+                frame.channels[2] = 1500;
+                frame.channels[4..7].fill(2000);
+            }
+        }
+        if !self.is_lost() {
+            let datagram = rc::encode(0.0, &frame);
+            self.out.send_to(&datagram, (Ipv4Addr::LOCALHOST, self.rc_port)).expect("it is sent");
+        }
+    }
+}
+
+/// What is left of a simulator that ended.
+pub struct Ended {
+    motors: u16,
+    raw: u16,
+    doors: (u16, u16),
+}
+
+impl Ended {
+    /// Starts it anew: the craft stands at home, time begins at zero. It reads motors as soon as they come.
+    pub fn start(self, dialect: Dialect) -> Simulator {
+        let again = |port| {
+            let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, port)).expect("the port of before");
+            socket.set_read_timeout(Some(NEVER)).expect("a timeout");
+            socket
+        };
+        let mut simulator = Simulator::new(dialect);
+        (simulator.motors_in, simulator.raw_in) = (again(self.motors), again(self.raw));
+        simulator.connect(self.doors);
+        simulator
+    }
+}
