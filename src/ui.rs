@@ -40,6 +40,7 @@ mod update;
 
 pub use cli::CliHelp;
 pub use draw::draw;
+pub use log::Level;
 pub use map::MapMode;
 pub use message::{Effect, Msg};
 pub use run::{Ending, SessionLink, run};

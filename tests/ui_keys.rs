@@ -126,7 +126,36 @@ fn one_key_commands() {
     assert!(matches!(press(&mut state, 'U')[..], [Effect::Upload { .. }]));
     assert!(press(&mut state, 'H').is_empty(), "nothing to bring home while disarmed");
     fixture::approach(&mut state);
-    assert!(matches!(press(&mut state, 'H')[..], [Effect::Send(Command::ReturnHome)]));
+    assert!(matches!(press(&mut state, 'H').last(), Some(Effect::Send(Command::ReturnHome))));
+    std::sync::Arc::make_mut(&mut state.view.vehicle).craft.commanded = true;
+    assert!(matches!(press(&mut state, 'H')[..], [Effect::Send(Command::CancelReturn)]));
+}
+
+#[test]
+fn the_throttle_key_is_refused_while_the_autopilot_flies() {
+    let mut state = ready();
+    fixture::approach(&mut state);
+    assert!(press(&mut state, 't').is_empty(), "later the stick would take the craft by surprise");
+    assert!(state.notice.as_ref().is_some_and(|notice| notice.text.contains("`g`")), "{:?}", state.notice);
+}
+
+#[test]
+fn scrolling_ends_where_the_oldest_line_is_visible_and_turns_at_once() {
+    let mut state = ready();
+    press(&mut state, '8');
+    let long = "a sentence that is longer than the panel is wide, so that it takes several rows of it";
+    for line in 0..40 {
+        state.notify(betadeck::ui::Level::Info, format!("{line} {long}"));
+    }
+    key(&mut state, KeyCode::End);
+    let end = state.scrolls.log;
+    assert!(end > 30, "{end}");
+    press(&mut state, 'j');
+    assert_eq!(state.scrolls.log, end, "there is no more");
+    press(&mut state, 'k');
+    assert_eq!(state.scrolls.log, end - 1);
+    key(&mut state, KeyCode::Home);
+    assert_eq!(state.scrolls.log, 0);
 }
 
 #[test]

@@ -1,10 +1,13 @@
 //! What the user interface shows: whole screens, and that no size and no picture breaks it.
 
+use betadeck::autopilot::io::NavState;
+use betadeck::session::command::CliOutput;
 use betadeck::ui::picture::svg;
-use betadeck::ui::{AppState, Msg, Pane, Theme, draw, update};
+use betadeck::ui::{AppState, Level, Msg, Pane, Theme, draw, update};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
+use strum::IntoEnumIterator as _;
 
 #[path = "ui/fixture.rs"]
 mod fixture;
@@ -103,6 +106,139 @@ fn help_and_quit_are_always_offered() {
                 assert!(screen.contains(word), "{word} missing at {size:?} in {pane:?}\n{screen}");
             }
         }
+    }
+}
+
+#[test]
+fn what_does_not_fit_the_status_line_ends_in_an_ellipsis() {
+    let mut state = fixture::state((60, 20), fixture::colour());
+    fixture::approach(&mut state);
+    let screen = text(&state);
+    let first = screen.lines().next().expect("a status line");
+    assert!(first.contains("● ARMED AUTOPILOT …  ⌖ 3D 12 sats"), "{first}");
+    let second = screen.lines().nth(1).expect("a status line");
+    assert!(second.contains("62.3 m") && second.contains("50.2 m"), "distance and height first: {second}");
+}
+
+#[test]
+fn the_speed_is_the_wanted_one_until_it_is_measured() {
+    let mut state = fixture::state((80, 24), fixture::colour());
+    for (achieved, shown) in [(0.0, " 8× "), (7.9, " 8× "), (3.0, " 3× ")] {
+        state.view.speed_wanted = 8.0;
+        state.view.speed_achieved = achieved;
+        let screen = text(&state);
+        let second = screen.lines().nth(1).expect("a status line");
+        assert!(second.contains(shown), "{achieved}: {second}");
+    }
+}
+
+#[test]
+fn a_busy_door_is_marked_and_named_where_there_is_room() {
+    for (width, shown) in [(80, "✗rc "), (120, "✗rc busy ")] {
+        let mut state = fixture::state((width, 40), fixture::colour());
+        let door = betadeck::session::command::DoorView {
+            name: "udp rc",
+            state: "busy".to_owned(),
+            fault: true,
+            ..Default::default()
+        };
+        state.view.doors = vec![door];
+        let screen = text(&state);
+        assert!(screen.contains(shown), "{screen}");
+    }
+}
+
+#[test]
+fn a_notice_leaves_the_hints_alone_and_loses_no_word() {
+    let long = "Cannot arm, THROTTLE: lower the throttle with `t`, then wait until the craft has found out where it \
+                is and press the key once more.";
+    for size in [(60, 20), (80, 24), (200, 60)] {
+        let mut state = fixture::state(size, fixture::colour());
+        let hints = |screen: &str| screen.lines().last().map(str::to_owned);
+        let before = hints(&text(&state));
+        state.notify(Level::Warn, long);
+        // Where the log would show it, too.
+        state.focus = Pane::Rc;
+        state.slots.visit(Pane::Rc);
+        state.zoomed = true;
+        let screen = text(&state);
+        assert!(
+            before.is_some_and(|line| line.contains("? help"))
+                && hints(&screen).is_some_and(|line| line.contains("? help")),
+            "{screen}"
+        );
+        for word in long.split_whitespace().filter(|_| size.0 >= 80) {
+            assert!(screen.contains(word), "{word} missing at {size:?}\n{screen}");
+        }
+    }
+}
+
+#[test]
+fn long_lines_of_the_cli_wrap_and_scroll_to_the_first() {
+    let mut state = fixture::state((80, 24), fixture::colour());
+    press(&mut state, '5');
+    for line in 0..30 {
+        let text = format!("waypoint insert {line} 40.4640000 -79.5175000 5000 0 FLYOVER {line} ORBIT\r\n");
+        state.cli.answer(Some(&CliOutput { text, ..CliOutput::default() }));
+    }
+    let screen = text(&state);
+    assert!(screen.contains("29 ORBIT") && !screen.contains('…'), "{screen}");
+    for _ in 0..10 {
+        update(&mut state, Msg::Key(KeyEvent::new(KeyCode::PageUp, KeyModifiers::NONE)));
+    }
+    let screen = text(&state);
+    let first = screen.lines().nth(3).expect("a row");
+    assert!(first.contains("waypoint insert 0 "), "{screen}");
+}
+
+#[test]
+fn a_long_plan_scrolls_to_its_last_waypoint_whatever_stands_below() {
+    for far_ones in [0, 1, 3] {
+        let mut state = fixture::state((80, 24), fixture::colour());
+        let waypoints = &mut state.plan.plan.waypoints;
+        let corner = waypoints[0];
+        waypoints.clear();
+        waypoints.extend(std::iter::repeat_n(corner, 30));
+        // Outside the geofence: what is wrong stands below the waypoints.
+        waypoints.iter_mut().take(far_ones).for_each(|waypoint| waypoint.position.lat_e7 += 10_000_000);
+        press(&mut state, '2');
+        press(&mut state, 'z');
+        update(&mut state, Msg::Key(KeyEvent::new(KeyCode::End, KeyModifiers::NONE)));
+        let screen = text(&state);
+        assert!(screen.contains(" 29 FLYOVER") && !screen.contains("  0 FLYOVER"), "{screen}");
+        let end = state.scrolls.plan;
+        press(&mut state, 'k');
+        assert_eq!(state.scrolls.plan, end - 1);
+    }
+}
+
+#[test]
+fn landing_80x24_shows_the_whole_machine_and_every_guard() {
+    let mut state = fixture::state((80, 24), fixture::colour());
+    fixture::land(&mut state);
+    let words = text(&state);
+    for name in NavState::iter() {
+        assert!(words.contains(&name.to_string()), "{name} missing\n{words}");
+    }
+    for guard in ["altitude", "speed", "throttle", "sink", "below hover", "time"] {
+        assert!(words.contains(guard), "{guard} missing\n{words}");
+    }
+    insta::assert_snapshot!(screen(&state));
+}
+
+#[test]
+fn a_long_advice_leaves_the_machine_on_an_80x24_screen() {
+    let mut state = fixture::state((80, 24), fixture::colour());
+    let mut view = state.view.clone();
+    let vehicle = std::sync::Arc::make_mut(&mut view.vehicle);
+    vehicle.craft.gps_fix = true;
+    vehicle.craft.arming_blocked_by.clear();
+    vehicle.craft.arming_blocked_by.push("MOTOR_PROTO");
+    update(&mut state, Msg::View(view));
+    let screen = text(&state);
+    assert!(screen.contains("motor_pwm_protocol"), "{screen}");
+    for name in NavState::iter() {
+        assert!(screen.contains(&name.to_string()), "{name} missing\n{screen}");
     }
 }
 

@@ -1,7 +1,11 @@
 //! Everything a key can do, by name: the one table behind keymap, hint bar and help.
 
+use crate::firmware::mode::Mode;
+
 use super::hands;
 use super::state::{AppState, Pane};
+use crate::link::proto::fdm_link::LinkState;
+use crate::session::command::{PLACE_IS_OUTSIDE, TIME_IS_OUTSIDE};
 
 /// Where a key means what its action says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,11 +27,11 @@ pub enum Action {
     Fly,
     /// The ARM switch.
     Arm,
-    /// The throttle stick to hover or to low.
+    /// The throttle stick to hover, down gently, or low.
     Throttle,
     /// The AUTOPILOT switch.
     Autopilot,
-    /// Fly home and land.
+    /// Fly home and land, or take that back.
     ReturnHome,
     /// Cut or restore the RC link.
     CutRc,
@@ -152,7 +156,7 @@ pub const ACTIONS: &[Spec] = &[
         Action::Throttle,
         "flight.throttle",
         "throttle",
-        "Throttle to hover in ANGLE, ALTHOLD, POS HOLD; or back to low",
+        "Throttle up and hold the place; in the air come down; else low",
         &["t"],
         Global,
     ),
@@ -164,7 +168,14 @@ pub const ACTIONS: &[Spec] = &[
         &["g"],
         Global,
     ),
-    spec(Action::ReturnHome, "flight.home", "home", "Return to home and land there", &["H"], Global),
+    spec(
+        Action::ReturnHome,
+        "flight.home",
+        "home",
+        "Return to home and land there (again: take it back)",
+        &["H"],
+        Global,
+    ),
     spec(Action::CutRc, "rc.cut", "cut RC", "Cut or restore the RC link of the sticks", &["x"], Global),
     spec(Action::Upload, "plan.upload", "upload", "Upload the plan to the craft", &["U"], Global),
     spec(
@@ -313,8 +324,19 @@ impl Context {
 pub fn enabled(state: &AppState, action: Action) -> Result<(), String> {
     let craft = &state.view.vehicle.craft;
     match action {
+        Action::Pause | Action::Step | Action::Slower | Action::Faster | Action::RealTime
+            if state.view.simulator.is_some() =>
+        {
+            Err(TIME_IS_OUTSIDE.to_owned())
+        }
+        Action::ResetCraft if state.view.simulator == Some(LinkState::Flowing) => {
+            Err(PLACE_IS_OUTSIDE.to_owned())
+        }
         Action::Arm => hands::can_arm(state),
-        Action::Autopilot => hands::switch_channel(state, "AUTOPILOT").map(drop),
+        Action::Autopilot => hands::switch(state, Mode::Autopilot).map(drop),
+        Action::Throttle if state.view.vehicle.nav.engaged => {
+            Err("The autopilot has the throttle: `g` switches it off.".to_owned())
+        }
         Action::ReturnHome if !craft.armed => {
             Err("Nothing to bring home: the craft is disarmed. `F` flies the plan.".to_owned())
         }
@@ -343,7 +365,21 @@ pub fn is_wrecked(state: &AppState) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::session::SessionView;
     use strum::IntoEnumIterator as _;
+
+    #[test]
+    fn a_simulator_outside_keeps_time_and_place_to_itself() {
+        let mut state = AppState::bare((80, 24), SessionView::default());
+        let times = [Action::Pause, Action::Step, Action::Slower, Action::Faster, Action::RealTime];
+        let refused = |state: &AppState| times.iter().all(|&action| enabled(state, action).is_err());
+        assert!(!refused(&state) && enabled(&state, Action::ResetCraft).is_ok());
+        state.view.simulator = Some(LinkState::Flowing);
+        assert!(refused(&state));
+        assert_eq!(enabled(&state, Action::ResetCraft), Err(PLACE_IS_OUTSIDE.to_owned()));
+        state.view.simulator = Some(LinkState::Silent);
+        assert!(refused(&state) && enabled(&state, Action::ResetCraft).is_ok(), "it disarms at least");
+    }
 
     #[test]
     fn every_action_has_a_row_a_key_and_a_name_of_its_own() {

@@ -2,9 +2,10 @@
 
 use crate::autopilot::io::{AbortReason, NavState, Refusal};
 use crate::firmware::mode::Mode;
+use crate::link::proto::fdm_link::LinkState;
 use crate::plan::FlightPlan;
 
-use super::hands;
+use super::hands::{self, ThrottleMove};
 use super::log::Level;
 use super::state::AppState;
 
@@ -74,6 +75,20 @@ pub fn arming_hint(flag: &str) -> &'static str {
 pub fn now(state: &AppState) -> Option<Advice> {
     let vehicle = &state.view.vehicle;
     let craft = &vehicle.craft;
+    match state.view.simulator {
+        Some(LinkState::Silent) => {
+            return advice(
+                Level::Fault,
+                "The simulator is silent: time stands still.",
+                "let it go on, or start it again",
+            );
+        }
+        Some(LinkState::Waiting) => {
+            let fix = "start it; its states come to the door udp fdm";
+            return advice(Level::Warn, "No simulator yet.", fix);
+        }
+        Some(LinkState::Flowing) | None => {}
+    }
     if let Some(truth) = &vehicle.truth {
         if truth.crashed {
             return advice(Level::Fault, "The craft crashed.", "R puts it back home");
@@ -89,7 +104,7 @@ pub fn now(state: &AppState) -> Option<Advice> {
     if vehicle.nav.engaged {
         return None;
     }
-    let switched_on = hands::switch_is_on(state, "AUTOPILOT");
+    let switched_on = hands::switch_is_on(state, Mode::Autopilot);
     if state.view.rc_cut {
         return advice(Level::Fault, "The RC link is cut.", "x restores it");
     }
@@ -104,19 +119,16 @@ pub fn now(state: &AppState) -> Option<Advice> {
         if let Some(doing) = state.view.pilot {
             return advice(Level::Info, format!("The pilot flies: {doing}."), "F stops it");
         }
-        if craft.throttle_us < 1288.0 && craft.channels[2] < 1288 {
-            return advice(Level::Info, "Armed, throttle low.", "t raises it and holds, then g engages");
-        }
-        if craft.modes.has(Mode::AltHold) && craft.modes.has(Mode::PosHold) {
-            return advice(Level::Info, "Armed, holds its place.", "g engages the autopilot");
-        }
-        return advice(Level::Info, "Armed, flown by hand.", "g engages the autopilot");
+        return by_hand(state);
     }
+    let outside = state.view.simulator.is_some();
     if vehicle.truth.as_ref().is_some_and(|truth| !truth.on_ground && truth.alt > 1.0) {
-        return advice(Level::Fault, "Disarmed in the air.", "R puts the craft back home");
+        let fix = if outside { "reset the simulator's world" } else { "R puts the craft back home" };
+        return advice(Level::Fault, "Disarmed in the air.", fix);
     }
     if vehicle.nav.state == NavState::Complete {
-        return advice(Level::Good, "Mission complete.", "R puts the craft back home, F flies again");
+        let fix = if outside { "F flies again" } else { "R puts the craft back home, F flies again" };
+        return advice(Level::Good, "Mission complete.", fix);
     }
     if let Some(doing) = state.view.pilot {
         if craft.gps_fix && !craft.arming_blocked_by.is_empty() {
@@ -145,6 +157,23 @@ pub fn now(state: &AppState) -> Option<Advice> {
         return advice(Level::Warn, "AUTOPILOT is on while disarmed.", "g switches it off, then a arms");
     }
     advice(Level::Good, "Ready.", "F flies the plan; by hand: a, t, g")
+}
+
+/// An armed craft on the sticks: where it is, and the keys that lead on from there.
+fn by_hand(state: &AppState) -> Option<Advice> {
+    let craft = &state.view.vehicle.craft;
+    let (what, fix) = match (hands::is_standing(state), hands::throttle_move(state)) {
+        (true, ThrottleMove::Low) => ("Armed, on the ground.", "g takes off; t low, then a disarms"),
+        (true, _) => ("Armed, throttle low.", "t raises it and holds, then g engages"),
+        (false, _) if hands::is_sinking(state) => ("Coming down.", "t stops that; on the ground a disarms"),
+        (false, ThrottleMove::Sink(_)) if craft.modes.has(Mode::PosHold) => {
+            ("Holds its place.", "g engages, t comes down, H flies home")
+        }
+        (false, ThrottleMove::Sink(_)) => ("Holds its height.", "g engages, t comes down"),
+        (false, ThrottleMove::Hover) => ("Flown by hand.", "t holds the place, g engages"),
+        (false, ThrottleMove::Low) => ("Flown by hand.", "g engages the autopilot"),
+    };
+    advice(Level::Info, what, fix)
 }
 
 /// The sentence of a refusal, and the way out.

@@ -25,6 +25,7 @@ pub fn draw(state: &AppState, frame: &mut Frame<'_>) {
                 cursor = cursor.or(pane_with_frame(state, pane, area, buffer));
             }
             status::hints(state, screen.hints, buffer);
+            status::notice(state, screen.hints, buffer);
             cursor
         }
         None => {
@@ -53,7 +54,7 @@ fn pane_with_frame(state: &AppState, pane: Pane, area: Rect, buffer: &mut Buffer
     let title = match pane {
         Pane::Map => panel::map::title(state),
         Pane::Plan => panel::plan::title(state),
-        Pane::State => Pane::State.title().to_owned(),
+        Pane::State => panel::state::title(state),
         Pane::Rc => panel::rc::title(state),
         Pane::Cli => panel::cli::title(state),
         Pane::Log => panel::log::title(state),

@@ -120,12 +120,12 @@ pub fn divided(state: &AppState, (width, height): (u16, u16)) -> Option<Screen> 
 }
 
 fn small(body: Rect, slots: Slots) -> Vec<(Pane, Rect)> {
-    let side = (body.width * 29 / 100).clamp(23, 46);
+    let side = (body.width * 29 / 100).clamp(26, 46);
     if slots.main != Pane::Map {
         let [main, state] = columns(body, [body.width - side, side]);
         return vec![(slots.main, main), (Pane::State, state)];
     }
-    let log = (body.height * 3 / 10).max(5);
+    let log = (body.height / 4).max(5);
     let [top, bottom] = rows(body, [body.height - log, log]);
     let [map, state] = columns(top, [top.width - side, side]);
     vec![(Pane::Map, map), (Pane::State, state), (Pane::Log, bottom)]

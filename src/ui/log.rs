@@ -32,7 +32,10 @@ impl Level {
     #[must_use]
     pub fn of(kind: &EventKind) -> Self {
         match kind {
-            EventKind::Boot { .. } | EventKind::Contact { .. } | EventKind::Notice(_) => Self::Info,
+            EventKind::Boot { .. }
+            | EventKind::Contact { .. }
+            | EventKind::Doors(_)
+            | EventKind::Notice(_) => Self::Info,
             EventKind::Touchdown { .. } => Self::Good,
             EventKind::Fault { on, .. } => {
                 if *on {
@@ -50,7 +53,8 @@ impl Level {
         match event {
             FirmwareEvent::GpsFix { .. } | FirmwareEvent::RxRecovered | FirmwareEvent::Armed => Self::Good,
             FirmwareEvent::Disarmed(DisarmReason::Landing) => Self::Good,
-            FirmwareEvent::Disarmed(DisarmReason::Switch)
+            // A restart was asked for.
+            FirmwareEvent::Disarmed(DisarmReason::Switch | DisarmReason::System)
             | FirmwareEvent::Mode(_)
             | FirmwareEvent::Notice(_) => Self::Info,
             FirmwareEvent::Disarmed(_) | FirmwareEvent::Failsafe { .. } => Self::Fault,
@@ -121,6 +125,11 @@ impl LogState {
         self.lines.iter().rev()
     }
 
+    /// The lines, the oldest first.
+    pub fn oldest_first(&self) -> impl Iterator<Item = &LogLine> {
+        self.lines.iter()
+    }
+
     /// How many lines there are.
     #[must_use]
     pub fn len(&self) -> usize {
@@ -131,6 +140,13 @@ impl LogState {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_restart_that_was_asked_for_is_no_fault() {
+        let disarmed = |reason| Level::of(&EventKind::Firmware(FirmwareEvent::Disarmed(reason)));
+        assert_eq!(disarmed(DisarmReason::System), Level::Info);
+        assert_eq!(disarmed(DisarmReason::Failsafe), Level::Fault);
+    }
 
     #[test]
     fn the_log_is_bounded_and_keeps_the_newest() {

@@ -246,7 +246,6 @@ pub fn round_length(metres: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::plan::Waypoint;
-    use crate::ui::{CliHelp, OpenPlan, Theme, UiConfig};
     use crate::vehicle::snapshot::TruthView;
 
     fn viewport() -> Viewport {
@@ -279,14 +278,7 @@ mod tests {
 
     #[test]
     fn the_fitted_map_shows_the_craft_however_far_plan_and_craft_are() {
-        let config = UiConfig {
-            theme: Theme::default(),
-            cli: CliHelp::default(),
-            sentence: |_| String::new(),
-            plan: OpenPlan::default(),
-            mouse: false,
-        };
-        let mut state = AppState::new(config, (80, 24), SessionView::default());
+        let mut state = AppState::bare((80, 24), SessionView::default());
         let far = LatLon::new(470_000_000, 80_000_000);
         for position in [LatLon::new(404_640_000, -795_175_000), far] {
             state.plan.plan.waypoints.clear();

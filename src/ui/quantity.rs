@@ -11,9 +11,7 @@ pub fn fixed(value: Option<f64>, width: usize, decimals: usize) -> String {
     let Some(value) = value.filter(|value| value.is_finite()) else {
         return format!("{:>width$}", "—");
     };
-    // No "-0.0".
-    let floor = 0.5 * 0.1_f64.powi(decimals as i32);
-    let value = if value.abs() < floor { 0.0 } else { value };
+    let value = without_negative_zero(value, decimals);
     for decimals in (0..=decimals).rev() {
         let text = format!("{value:>width$.decimals$}");
         if text.len() <= width {
@@ -23,11 +21,18 @@ pub fn fixed(value: Option<f64>, width: usize, decimals: usize) -> String {
     format!("{:>width$}", "…")
 }
 
+/// No "-0.0".
+fn without_negative_zero(value: f64, decimals: usize) -> f64 {
+    let floor = 0.5 * 0.1_f64.powi(decimals as i32);
+    if value.abs() < floor { 0.0 } else { value }
+}
+
 /// Like [`fixed`], with a sign always shown.
 #[must_use]
 pub fn signed(value: Option<f64>, width: usize, decimals: usize) -> String {
     match value.filter(|value| value.is_finite()) {
         Some(value) => {
+            let value = without_negative_zero(value, decimals);
             let text = format!("{value:>+width$.decimals$}");
             if text.len() <= width { text } else { fixed(Some(value), width, decimals) }
         }
@@ -104,6 +109,7 @@ mod tests {
         assert_eq!(fixed(Some(12_345.6), 5, 1), "12346");
         assert_eq!(fixed(Some(1e9), 5, 1), "    …");
         assert_eq!(signed(Some(0.3), 5, 1), " +0.3");
+        assert_eq!(signed(Some(-0.04), 5, 1), " +0.0");
     }
 
     #[test]

@@ -101,7 +101,7 @@ pub struct UiConfig {
     pub mouse: bool,
 }
 
-/// A sentence that takes the place of the hints for a moment.
+/// A sentence that is shown for a moment.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Notice {
     /// The sentence.
@@ -195,6 +195,21 @@ pub struct AppState {
     pub drag: Option<(u16, u16, f64, f64)>,
 }
 
+#[cfg(test)]
+impl AppState {
+    /// A user interface with nothing but a picture.
+    pub(super) fn bare(size: (u16, u16), view: SessionView) -> Self {
+        let config = UiConfig {
+            theme: Theme::default(),
+            cli: CliHelp::default(),
+            sentence: |_| String::new(),
+            plan: OpenPlan::default(),
+            mouse: false,
+        };
+        Self::new(config, size, view)
+    }
+}
+
 impl AppState {
     /// The state at start.
     #[must_use]
@@ -228,7 +243,7 @@ impl AppState {
         }
     }
 
-    /// Says something to the user: in the hint bar for a moment, in the log for good.
+    /// Says something to the user: on the screen for a moment, in the log for good.
     pub fn notify(&mut self, level: Level, text: impl Into<String>) {
         let text = text.into();
         self.log.push(self.view.vehicle.time, level, text.clone());

@@ -1,4 +1,4 @@
-//! The lines that are always there: two of status above, one of hints below.
+//! The lines that are always there: two of status above, one of hints below, and for a moment the newest notice.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -7,18 +7,23 @@ use unicode_width::UnicodeWidthStr as _;
 
 use crate::autopilot::io::NavState;
 use crate::firmware::mode::Mode;
+use crate::link::proto::fdm_link::LinkState;
 use crate::signals::RcSource;
 
 use super::action::{Action, enabled, is_wrecked, spec_of};
-use super::hands;
+use super::hands::{self, ThrottleMove};
 use super::keymap::shown;
-use super::panel::span;
+use super::panel::{span, wrapped};
 use super::quantity::{clock, clock_ms, cut, factor, fixed, signed, within};
 use super::state::{AppState, Pane};
 use super::theme::{Role, Theme};
 
-/// How long a notice stays in the place of the hints.
-const NOTICE_FOR: std::time::Duration = std::time::Duration::from_secs(6);
+/// How long a notice stays.
+const NOTICE_FOR: std::time::Duration = std::time::Duration::from_secs(8);
+/// Rows a notice takes at most.
+const NOTICE_ROWS: usize = 2;
+/// Width from which a door says what is wrong with it.
+const WIDE: u16 = 120;
 /// Empty and full cell, V.
 const CELL_V: (f64, f64) = (3.3, 4.2);
 /// Parts of the battery bar.
@@ -34,12 +39,17 @@ pub fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     sides(buffer, second, &mission(state, room), &time);
 }
 
-/// Left and right part of a line; the right one is never cut.
+/// Left and right part of a line; the right one is never cut, the left one ends in an ellipsis where it must.
 fn sides(buffer: &mut Buffer, area: Rect, left: &[Span<'static>], right: &[Span<'static>]) {
     let right = Line::from(right.to_vec());
     let width = (right.width() as u16).min(area.width);
     let room = area.width - width;
-    buffer.set_line(area.x, area.y, &Line::from(left.to_vec()), room);
+    let mut left = Line::from(left.to_vec());
+    if left.width() > usize::from(room) {
+        while left.width() + 2 > usize::from(room) && left.spans.pop().is_some() {}
+        left.push_span("…");
+    }
+    buffer.set_line(area.x, area.y, &left, room);
     buffer.set_line(area.x + room, area.y, &right, width);
 }
 
@@ -119,7 +129,8 @@ pub fn rc(state: &AppState) -> (String, Role) {
     }
 }
 
-/// State, waypoint and the numbers of the leg; a part that does not fit is left out as a whole.
+/// State, waypoint and the numbers of the leg; without a mission those of the craft alone. A part that does not fit is
+/// left out as a whole, the least important first.
 fn mission(state: &AppState, room: usize) -> Vec<Span<'static>> {
     let theme = &state.theme;
     let vehicle = &state.view.vehicle;
@@ -130,40 +141,31 @@ fn mission(state: &AppState, room: usize) -> Vec<Span<'static>> {
         NavState::Complete => Role::Ok,
         _ => Role::Target,
     };
-    let target = match nav.kind {
-        Some(kind) if nav.engaged => format!("WP{} {kind}", nav.wp),
-        _ => state.view.pilot.map_or_else(String::new, |doing| format!("pilot: {doing}")),
-    };
-    let bearing = nav.bearing_rad.map(|rad| rad.to_degrees().rem_euclid(360.0));
-    let leg = if nav.hold_remaining_ds > 0 {
-        let left = (nav.hold_remaining_ds != u16::MAX).then(|| f64::from(nav.hold_remaining_ds) / 10.0);
-        let text = left.map_or_else(|| "∞".to_owned(), |left| fixed(Some(left), 5, 1));
-        (" hold", format!("{text:>5}"), "s")
-    } else {
-        ("  xte", signed(nav.xte_m, 5, 1), "m")
+    let (target, columns) = match nav.kind {
+        Some(kind) if nav.engaged => (format!("WP{} {kind}", nav.wp), 12),
+        _ => (state.view.pilot.unwrap_or_default().to_owned(), 15),
     };
     let estimate = &vehicle.estimate;
-    let parts = [
-        ("", fixed(nav.distance_m, 5, 1), " m"),
-        ("", fixed(bearing, 4, 0), "°"),
-        leg,
-        ("", fixed(Some(estimate.ground_speed_mps), 5, 1), " m/s"),
-        ("", fixed(estimate.alt, 6, 1), " m"),
-        ("  climb", signed(Some(estimate.climb_mps), 6, 1), " m/s"),
-        ("  home", fixed(nav.home_distance_m, 6, 0), " m"),
-        ("  fence", fixed(nav.fence_margin_m, 6, 0), " m left"),
+    let leg = if nav.engaged { leg(state) } else { Vec::new() };
+    // How important, label, value, unit.
+    let craft = [
+        (2, "", fixed(Some(estimate.ground_speed_mps), 5, 1), " m/s"),
+        (1, "", fixed(estimate.alt, 6, 1), " m"),
+        (5, "  climb", signed(Some(estimate.climb_mps), 6, 1), " m/s"),
+        (6, "  home", fixed(nav.home_distance_m, 6, 0), " m"),
+        (7, "  fence", fixed(nav.fence_margin_m, 6, 0), " m left"),
     ];
     let mut spans = vec![
         span(theme, role, format!(" ◆ {name:<11} ")),
-        span(theme, Role::Text, format!("{:<12}", cut(&target, 12))),
+        span(theme, Role::Text, format!("{:<columns$}", cut(&target, columns))),
     ];
-    let mut used = 27;
-    for (label, value, unit) in parts {
-        let width = label.width() + value.width() + unit.width();
-        if used + width > room {
-            break;
-        }
-        used += width;
+    let parts: Vec<_> = leg.into_iter().chain(craft).collect();
+    let width =
+        |(_, label, value, unit): &(u8, &str, String, &str)| label.width() + value.width() + unit.width();
+    let fits = |most: u8| parts.iter().filter(|part| part.0 <= most).map(width).sum::<usize>();
+    let left = room.saturating_sub(15 + columns);
+    let most = (0..=7).rev().find(|&most| fits(most) <= left).unwrap_or(0);
+    for (_, label, value, unit) in parts.into_iter().filter(|part| part.0 <= most) {
         spans.push(span(theme, Role::Dim, label));
         spans.push(span(theme, Role::Text, value));
         spans.push(span(theme, Role::Dim, unit));
@@ -171,15 +173,42 @@ fn mission(state: &AppState, room: usize) -> Vec<Span<'static>> {
     spans
 }
 
+/// The numbers of the leg: how important, label, value, unit.
+fn leg(state: &AppState) -> Vec<(u8, &'static str, String, &'static str)> {
+    let nav = &state.view.vehicle.nav;
+    let bearing = nav.bearing_rad.map(|rad| rad.to_degrees().rem_euclid(360.0));
+    let last = if nav.hold_remaining_ds > 0 {
+        let left = (nav.hold_remaining_ds != u16::MAX).then(|| f64::from(nav.hold_remaining_ds) / 10.0);
+        let text = left.map_or_else(|| "∞".to_owned(), |left| fixed(Some(left), 4, 0));
+        (4, " hold", format!("{text:>4}"), " s")
+    } else {
+        (4, " xte", signed(nav.xte_m, 5, 1), " m")
+    };
+    vec![(0, "", fixed(nav.distance_m, 5, 1), " m"), (3, "", fixed(bearing, 4, 0), "°"), last]
+}
+
 /// Simulated time and speed.
 fn time(state: &AppState) -> Vec<Span<'static>> {
     let theme = &state.theme;
     let view = &state.view;
+    let halted = match view.simulator {
+        Some(LinkState::Waiting) => Some((" no simulator ", Role::Warn)),
+        Some(LinkState::Silent) => Some((" ‖ simulator silent ", Role::Fault)),
+        Some(LinkState::Flowing) | None => None,
+    };
+    if let Some((why, role)) = halted {
+        return vec![
+            span(theme, Role::Text, format!(" {}", clock(view.vehicle.time))),
+            span(theme, role, why),
+        ];
+    }
     if view.paused {
         return vec![span(theme, Role::Active, format!(" {} ‖ ", clock_ms(view.vehicle.time)))];
     }
-    let keeps_up = view.speed_achieved >= 0.9 * view.speed_wanted;
-    let speed = if view.speed_wanted.is_infinite() || !keeps_up {
+    // In the first second after a start or a pause there is no figure yet.
+    let measured = view.speed_achieved > 0.0;
+    let keeps_up = !measured || view.speed_achieved >= 0.9 * view.speed_wanted;
+    let speed = if measured && (view.speed_wanted.is_infinite() || !keeps_up) {
         factor((view.speed_achieved * 10.0).round() / 10.0)
     } else {
         factor(view.speed_wanted)
@@ -200,7 +229,6 @@ fn hint_actions(state: &AppState) -> Vec<(&'static [Action], &'static str)> {
         Pane::Rc => hints.extend([
             (&[Action::ChannelUp, Action::ChannelDown] as &[_], "channel"),
             (&[Action::Lower, Action::Raise], "value"),
-            (&[Action::Flip], "flip"),
         ]),
         Pane::Map if state.zoomed => hints.extend([
             (&[Action::ZoomIn, Action::ZoomOut] as &[_], "zoom"),
@@ -216,16 +244,26 @@ fn hint_actions(state: &AppState) -> Vec<(&'static [Action], &'static str)> {
     if state.view.pilot.is_some() {
         hints.push((&[Action::Fly], "stop pilot"));
     }
+    let engaged = state.view.vehicle.nav.engaged;
     if craft.armed {
-        hints.extend([
-            (
-                &[Action::Autopilot] as &[_],
-                if craft.modes.has(Mode::Autopilot) { "autopilot off" } else { "autopilot" },
-            ),
-            (&[Action::Arm], "disarm"),
-            (&[Action::CutRc], if state.view.rc_cut { "restore RC" } else { "cut RC" }),
-            (&[Action::ReturnHome], "home"),
-        ]);
+        let autopilot = if engaged { "autopilot off" } else { "autopilot" };
+        let home = if craft.commanded { "stop return" } else { "home" };
+        let rc = if state.view.rc_cut { "restore RC" } else { "cut RC" };
+        if engaged {
+            hints.extend([
+                (&[Action::Autopilot] as &[_], autopilot),
+                (&[Action::ReturnHome], home),
+                (&[Action::CutRc], rc),
+            ]);
+        } else {
+            hints.extend([
+                (&[Action::Throttle] as &[_], throttle_label(state)),
+                (&[Action::Autopilot], autopilot),
+                (&[Action::Arm], "disarm"),
+                (&[Action::ReturnHome], home),
+                (&[Action::CutRc], rc),
+            ]);
+        }
     } else {
         if state.view.pilot.is_none() {
             hints.push((&[Action::Fly], "fly"));
@@ -242,14 +280,25 @@ fn hint_actions(state: &AppState) -> Vec<(&'static [Action], &'static str)> {
         (&[Action::Pause] as &[_], if state.view.paused { "go on" } else { "pause" }),
         (&[Action::Slower, Action::Faster], "speed"),
     ]);
-    if craft.armed {
-        hints.insert(
-            1,
-            (&[Action::Throttle], if hands::throttle_is_raised(state) { "throttle low" } else { "hover" }),
-        );
+    if craft.armed && engaged {
+        // Last: in the air nobody should press it by mistake.
+        hints.push((&[Action::Arm], "disarm"));
+    }
+    if state.focus == Pane::Rc {
+        hints.push((&[Action::Flip], "flip"));
     }
     hints.retain(|(actions, _)| actions.iter().all(|&action| enabled(state, action).is_ok()));
     hints
+}
+
+/// What the throttle key does here and now.
+fn throttle_label(state: &AppState) -> &'static str {
+    match (hands::throttle_move(state), hands::is_standing(state)) {
+        (ThrottleMove::Low, _) => "throttle low",
+        (ThrottleMove::Sink(_), _) => "come down",
+        (ThrottleMove::Hover, true) => "throttle up",
+        (ThrottleMove::Hover, false) => "hold",
+    }
 }
 
 /// The keys that are never left out: the way to all others, and the way out.
@@ -272,17 +321,31 @@ fn hint(theme: &Theme, keys: &str, label: &str) -> [Span<'static>; 2] {
     [span(theme, Role::Key, format!(" {keys}")), span(theme, Role::Text, format!(" {label} "))]
 }
 
-/// Draws the hint line: the newest notice for a moment, else keys; at the right the way out and the doors.
+/// Draws the newest notice for a moment: in the frame of the lowest panels, and in the row above it when it is long.
+pub fn notice(state: &AppState, hints: Rect, buffer: &mut Buffer) {
+    let Some(notice) = state.notice.as_ref().filter(|notice| within(state.now, notice.at, NOTICE_FOR)) else {
+        return;
+    };
+    let style = state.theme.style(notice.level.role());
+    let width = usize::from(hints.width.saturating_sub(6));
+    let mut lines = wrapped(&format!("{} {}", notice.level.glyph(), notice.text), width);
+    if lines.len() > NOTICE_ROWS {
+        let rest = lines.split_off(NOTICE_ROWS - 1).join(" ");
+        lines.push(cut(&rest, width));
+    }
+    let widest = lines.iter().map(|line| line.width()).max().unwrap_or(0);
+    for (above, line) in (1..).zip(lines.iter().rev()) {
+        let fill = " ".repeat(widest - line.width());
+        buffer.set_string(hints.x + 2, hints.y.saturating_sub(above), format!(" {line}{fill} "), style);
+    }
+}
+
+/// Draws the hint line: keys at the left; at the right the way out and the doors.
 pub fn hints(state: &AppState, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
-    if let Some(notice) = state.notice.as_ref().filter(|notice| within(state.now, notice.at, NOTICE_FOR)) {
-        let text = cut(&format!(" {} {}", notice.level.glyph(), notice.text), usize::from(area.width));
-        buffer.set_string(area.x, area.y, text, theme.style(notice.level.role()));
-        return;
-    }
     let mut right: Vec<Span<'static>> =
         way_out(state).iter().flat_map(|(keys, label)| hint(theme, keys, label)).collect();
-    right.extend(doors(state));
+    right.extend(doors(state, area.width));
     let room = usize::from(area.width).saturating_sub(Line::from(right.clone()).width());
     let mut spans: Vec<Span<'static>> = Vec::new();
     let mut used = 0;
@@ -308,20 +371,78 @@ pub fn hints(state: &AppState, area: Rect, buffer: &mut Buffer) {
     sides(buffer, area, &spans, &right);
 }
 
-/// The doors: name, and how many are connected or what is wrong.
-fn doors(state: &AppState) -> Vec<Span<'static>> {
+/// The doors: name, whether somebody is connected, and what is wrong.
+fn doors(state: &AppState, width: u16) -> Vec<Span<'static>> {
     let theme = &state.theme;
     let mut spans = Vec::new();
     for door in &state.view.doors {
-        let (text, role) = if door.fault {
-            (format!("✗{} {}", door.name, cut(&door.state, 6)), Role::Fault)
-        } else if door.state == "listening" || door.state == "closed" || door.state.is_empty() {
-            (format!("○{}", door.name), Role::Dim)
+        let name = door.name.strip_prefix("udp ").unwrap_or(door.name);
+        let (text, role) = if door.fault && width >= WIDE {
+            (format!("✗{name} {}", cut(&door.state, 6)), Role::Fault)
+        } else if door.fault {
+            (format!("✗{name}"), Role::Fault)
+        } else if is_idle(&door.state) {
+            (format!("○{name}"), Role::Dim)
         } else {
-            (format!("●{}", door.name), Role::Ok)
+            (format!("●{name}"), Role::Ok)
         };
         spans.push(span(theme, role, text));
         spans.push(span(theme, Role::Text, " "));
     }
     spans
+}
+
+/// Whether nobody uses a door, going by the words about it.
+fn is_idle(words: &str) -> bool {
+    // A rate of zero is told once packets stay away.
+    matches!(words, "listening" | "closed" | "") || words.starts_with("waiting") || words.starts_with("0 Hz")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::session::SessionView;
+    use crate::session::command::DoorView;
+
+    /// The clock's line and the hint line while a simulator outside is in this state.
+    fn lines(simulator: LinkState, doors: &[(&'static str, &str, bool)]) -> String {
+        let door = |&(name, state, fault): &(&'static str, &str, bool)| DoorView {
+            name,
+            state: state.to_owned(),
+            fault,
+            ..DoorView::default()
+        };
+        let view = SessionView {
+            simulator: Some(simulator),
+            speed_wanted: f64::INFINITY,
+            speed_achieved: 0.5,
+            doors: doors.iter().map(door).collect(),
+            ..SessionView::default()
+        };
+        let state = AppState::bare((120, 40), view);
+        let area = Rect::new(0, 0, 120, 3);
+        let mut buffer = Buffer::empty(area);
+        draw(&state, area, &mut buffer);
+        hints(&state, Rect { y: 2, height: 1, ..area }, &mut buffer);
+        buffer.content().iter().map(ratatui::buffer::Cell::symbol).collect()
+    }
+
+    #[test]
+    fn what_the_simulator_does_stands_at_the_clock() {
+        let waiting = [("udp fdm", "listening", false), ("udp motors", "waiting for a simulator", false)];
+        let text = lines(LinkState::Waiting, &waiting);
+        assert!(text.contains(" 00:00.0 no simulator "), "{text}");
+        assert!(text.contains("○fdm ○motors"), "{text}");
+
+        let flying = [("udp fdm", "250 Hz, 9 packets, 1 ms ago", false), ("udp motors", "flying", false)];
+        let text = lines(LinkState::Flowing, &flying);
+        assert!(text.contains(" 00:00.0 0.5×"), "its own speed: {text}");
+        assert!(text.contains("●fdm ●motors"), "{text}");
+        assert!(!text.contains("pause") && !text.contains("reset"), "what it decides is no hint: {text}");
+
+        let silent = [("udp fdm", "0 Hz, 9 packets, 3 s ago", false), ("udp motors", "no FDM", true)];
+        let text = lines(LinkState::Silent, &silent);
+        assert!(text.contains(" 00:00.0 ‖ simulator silent "), "{text}");
+        assert!(text.contains("○fdm ✗motors no FDM"), "{text}");
+    }
 }

@@ -14,6 +14,7 @@ use super::layout;
 use super::log::Level;
 use super::map::{self, MapMode, Viewport};
 use super::message::{Effect, Msg};
+use super::panel;
 use super::quantity::within;
 use super::state::{AppState, Layer, Pane};
 use super::track::TrackPoint;
@@ -147,9 +148,9 @@ fn act(state: &mut AppState, action: Action) -> Vec<Effect> {
     match action {
         Action::Fly => fly(state),
         Action::Arm => hands::toggle_arm(state),
-        Action::Throttle => hands::toggle_throttle(state),
+        Action::Throttle => hands::move_throttle(state),
         Action::Autopilot => hands::toggle_autopilot(state),
-        Action::ReturnHome => vec![Effect::Send(Command::ReturnHome)],
+        Action::ReturnHome => hands::toggle_return(state),
         Action::CutRc => vec![Effect::Send(Command::CutRc(!state.view.rc_cut))],
         Action::Upload => vec![upload(state)],
         Action::ResetCraft => {
@@ -339,22 +340,32 @@ fn scroll(state: &mut AppState, by: isize) -> Vec<Effect> {
     Vec::new()
 }
 
-/// Scrolls a panel by lines; the panel that draws never shows less than its last line.
+/// Scrolls a panel by lines, as far as it has some.
 fn scroll_pane(state: &mut AppState, pane: Pane, by: isize) {
-    let (at, last) = match pane {
-        Pane::State => (&mut state.scrolls.transitions, state.transitions.len()),
-        Pane::Log => (&mut state.scrolls.log, state.log.len()),
-        Pane::Plan => (&mut state.scrolls.plan, state.plan.plan.waypoints.len()),
+    let Some(area) = layout::screen(state).and_then(|screen| screen.pane(pane)).map(layout::inner) else {
+        return;
+    };
+    let (at, by, last) = match pane {
+        Pane::State => {
+            let last = state.transitions.len().saturating_sub(1);
+            (&mut state.scrolls.transitions, by, last)
+        }
+        Pane::Log => {
+            let last = panel::log::last_scroll(state, area);
+            (&mut state.scrolls.log, by, last)
+        }
+        Pane::Plan => {
+            let last = panel::plan::last_scroll(state, area);
+            (&mut state.scrolls.plan, by, last)
+        }
         // The newest line of the CLI is below, so up is forwards in its own count.
         Pane::Cli => {
-            let last = state.cli.lines.len();
-            state.cli.scroll =
-                state.cli.scroll.saturating_add_signed(by.saturating_neg()).min(last.saturating_sub(1));
-            return;
+            let last = panel::cli::last_scroll(state, area);
+            (&mut state.cli.scroll, by.saturating_neg(), last)
         }
         Pane::Map | Pane::Rc => return,
     };
-    *at = at.saturating_add_signed(by).min(last.saturating_sub(1));
+    *at = (*at).min(last).saturating_add_signed(by).min(last);
 }
 
 /// A key while the CLI has the focus.

@@ -202,7 +202,7 @@ pub fn view(flight: &SimpleFlight) -> SessionView {
         nav.aim_ne = Some(Vector2::new(flight.n + dn * 0.3, flight.e + de * 0.3));
         nav.home_distance_m = Some(flight.n.hypot(flight.e));
         nav.fence_margin_m = Some(500.0 - flight.n.hypot(flight.e));
-        nav.eta_s = Some(dn.hypot(de) / flight.speed.max(0.5));
+        nav.eta_s = (flight.state == NavState::Approaching).then(|| dn.hypot(de) / flight.speed.max(0.5));
         nav.hold_remaining_ds = flight.hold_ds;
         nav.guards = flight.guards.iter().copied().collect();
         let from = usize::from(flight.wp).checked_sub(1).map_or(HOME, |wp| plan.waypoints[wp].position);
@@ -218,7 +218,9 @@ pub fn view(flight: &SimpleFlight) -> SessionView {
         fence_m: Some(500.0),
         max_angle_deg: 25.0,
         max_velocity_mps: 5.0,
-        hover_throttle_us: 1500,
+        hover_stick_us: 1500,
+        raised_stick_us: 1300,
+        sink_stick_us: Some(1410),
     };
     let doors = [("ws", "1 client"), ("tcp", "listening"), ("udp", "listening")];
     SessionView {
@@ -319,6 +321,35 @@ pub fn orbit(state: &mut AppState) {
         wp: 2,
         guards: vec![guard],
         hold_ds: 184,
+    };
+    update(state, Msg::View(view(&flight)));
+}
+
+/// Comes down at WP3.
+pub fn land(state: &mut AppState) {
+    orbit(state);
+    transition(state, 190.0, NavState::Arrived, NavState::Landing, 3, "land");
+    let guard = |name, value, limit, op, unit| Guard { name, value, limit, op, unit };
+    let flight = SimpleFlight {
+        time_s: 200.0,
+        n: 55.5,
+        e: -67.8,
+        alt: 35.1,
+        speed: 0.3,
+        armed: true,
+        fix: true,
+        state: NavState::Landing,
+        wp: 3,
+        guards: vec![
+            guard("touchdown altitude", 35.1, 4.0, GuardOp::Below, "m"),
+            guard("touchdown speed", 0.3, 0.5, GuardOp::Below, "m/s"),
+            guard("touchdown throttle", 1501.5, 1400.0, GuardOp::Below, "µs"),
+            guard("touchdown sink", -0.5, -0.1, GuardOp::Above, "m/s"),
+            guard("touchdown descent", 15.1, 0.5, GuardOp::AtLeast, "m"),
+            guard("below hover", 2.7, 50.0, GuardOp::AtLeast, "µs"),
+            guard("touchdown time", 0.0, 1.0, GuardOp::AtLeast, "s"),
+        ],
+        ..SimpleFlight::default()
     };
     update(state, Msg::View(view(&flight)));
 }

@@ -9,7 +9,7 @@ use crate::ui::quantity::cut;
 use crate::ui::state::{AppState, Pane};
 use crate::ui::theme::Role;
 
-use super::{line, row, span, wrapped};
+use super::{fitting, folded, line, row, span, wrapped};
 
 /// Rows of completion candidates shown at most.
 const CANDIDATE_ROWS: usize = 4;
@@ -37,33 +37,31 @@ pub fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<Positio
     let theme = &state.theme;
     let cli = &state.cli;
     let width = usize::from(area.width);
-    let help_row = area.height - 1;
-    let candidates = candidate_rows(&cli.candidates, width);
-    let shown = candidates.len().min(usize::from(area.height - 2));
-    // Like a terminal: the prompt follows the text until the panel is full.
-    let above = shown + cli.lines.len().saturating_sub(cli.scroll);
-    let empty = cli.lines.is_empty() && shown == 0;
-    let words = if empty { wrapped(WELCOME, width) } else { Vec::new() };
-    let prompt_row = (area.height - 2).min((above + words.len()).min(usize::from(u16::MAX)) as u16);
-    let first_candidate = prompt_row - shown as u16;
-    for (at, text) in candidates.iter().take(shown).enumerate() {
-        row(buffer, area, first_candidate + at as u16, theme, Role::Title, text);
+    let help = help_rows(state, area);
+    let bottom = area.height - 1 - help.len() as u16;
+    for (at, text) in help.iter().enumerate() {
+        row(buffer, area, bottom + 1 + at as u16, theme, Role::Dim, text);
     }
 
-    for (at, text) in words.iter().enumerate().take(usize::from(prompt_row)) {
-        row(buffer, area, at as u16, theme, Role::Dim, text);
+    // Upwards from the prompt: candidates, then what was entered and answered, as much as there is room for.
+    let mut rows: Vec<(Role, String)> = Vec::new();
+    let candidates = candidate_rows(&cli.candidates, width);
+    rows.extend(candidates.into_iter().rev().map(|text| (Role::Title, text)));
+    let scroll = cli.scroll.min(last_scroll(state, area));
+    for entry in cli.lines.iter().rev().skip(scroll) {
+        if rows.len() >= usize::from(bottom) {
+            break;
+        }
+        let role = role(entry.0);
+        rows.extend(lines(entry, width).into_iter().rev().map(|text| (role, text)));
     }
-    let mut next = usize::from(first_candidate);
-    for (kind, text) in cli.lines.iter().rev().skip(cli.scroll) {
-        let (prefix, role) = match kind {
-            CliLineKind::Entered => ("# ", Role::Focus),
-            CliLineKind::Output => ("", Role::Text),
-            CliLineKind::Error => ("", Role::Fault),
-            CliLineKind::Note => ("— ", Role::Dim),
-        };
-        let Some(at) = next.checked_sub(1) else { break };
-        next = at;
-        row(buffer, area, at as u16, theme, role, &format!("{prefix}{text}"));
+    if cli.lines.is_empty() && rows.is_empty() {
+        rows.extend(wrapped(WELCOME, width).into_iter().rev().map(|text| (Role::Dim, text)));
+    }
+    // Like a terminal: the prompt follows the text until the panel is full.
+    let prompt_row = bottom.min(rows.len() as u16);
+    for (above, (role, text)) in (1..=prompt_row).zip(&rows) {
+        row(buffer, area, prompt_row - above, theme, *role, text);
     }
 
     let room = width - 3;
@@ -71,11 +69,49 @@ pub fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<Positio
     let visible: String = cli.input.value().chars().skip(scroll).take(room).collect();
     let prompt = Line::from(vec![span(theme, Role::Key, "# "), span(theme, Role::Text, visible)]);
     line(buffer, area, prompt_row, &prompt);
-    if let Some(hint) = (state.cli_help.hint)(cli.input.value()) {
-        row(buffer, area, help_row, theme, Role::Dim, &hint);
-    }
     let column = 2 + cli.input.visual_cursor().saturating_sub(scroll).min(room);
     Some(Position::new(area.x + column as u16, area.y + prompt_row))
+}
+
+/// The furthest that the panel scrolls up: then its oldest line is the first on the screen.
+pub fn last_scroll(state: &AppState, area: Rect) -> usize {
+    let lines_of = &state.cli.lines;
+    let height = usize::from(area.height).saturating_sub(1 + help_rows(state, area).len());
+    let rows = lines_of.iter().map(|entry| lines(entry, usize::from(area.width)).len());
+    lines_of.len().saturating_sub(fitting(rows, height))
+}
+
+/// The help of what is being typed: at least one row, so that the prompt stands still, and not more than a quarter.
+fn help_rows(state: &AppState, area: Rect) -> Vec<String> {
+    let width = usize::from(area.width);
+    let most = usize::from(area.height / 4).clamp(1, 3);
+    let hint = (state.cli_help.hint)(state.cli.input.value()).unwrap_or_default();
+    let mut rows = wrapped(&hint, width);
+    if rows.len() > most {
+        let rest = rows.split_off(most - 1).join(" ");
+        rows.push(cut(&rest, width));
+    }
+    rows.resize(rows.len().max(1), String::new());
+    rows
+}
+
+fn role(kind: CliLineKind) -> Role {
+    match kind {
+        CliLineKind::Entered => Role::Focus,
+        CliLineKind::Output => Role::Text,
+        CliLineKind::Error => Role::Fault,
+        CliLineKind::Note => Role::Dim,
+    }
+}
+
+/// The rows of an entry.
+fn lines((kind, text): &(CliLineKind, String), width: usize) -> Vec<String> {
+    let prefix = match kind {
+        CliLineKind::Entered => "# ",
+        CliLineKind::Output | CliLineKind::Error => "",
+        CliLineKind::Note => "— ",
+    };
+    folded(&format!("{prefix}{text}"), width)
 }
 
 /// The last words of the candidates, in columns.

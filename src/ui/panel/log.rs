@@ -8,7 +8,7 @@ use crate::ui::quantity::clock_ms;
 use crate::ui::state::{AppState, Pane};
 use crate::ui::theme::Role;
 
-use super::{line, row, span, wrapped};
+use super::{fitting, line, row, span, wrapped};
 
 /// Columns of time and mark in front of the text.
 const STAMP: usize = 12;
@@ -22,6 +22,17 @@ pub fn title(state: &AppState) -> String {
     }
 }
 
+/// Columns of the text.
+fn text_width(area: Rect) -> usize {
+    usize::from(area.width).saturating_sub(STAMP)
+}
+
+/// The furthest that the panel scrolls: then its oldest line is the last on the screen.
+pub fn last_scroll(state: &AppState, area: Rect) -> usize {
+    let rows = state.log.oldest_first().map(|entry| wrapped(&entry.text, text_width(area)).len());
+    state.log.len().saturating_sub(fitting(rows, usize::from(area.height)))
+}
+
 /// Draws the inside.
 pub fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
@@ -29,9 +40,8 @@ pub fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
         row(buffer, area, 0, theme, Role::Dim, "Nothing has happened yet.");
         return;
     }
-    let height = usize::from(area.height);
-    let first = state.scrolls.log.min(state.log.len().saturating_sub(height));
-    let text_width = usize::from(area.width).saturating_sub(STAMP);
+    let first = state.scrolls.log.min(last_scroll(state, area));
+    let text_width = text_width(area);
     let mut at = 0;
     for entry in state.log.newest_first().skip(first) {
         let role = entry.level.role();

@@ -132,6 +132,40 @@ pub static COMPACT: Diagram = Diagram {
     ],
 };
 
+/// The states and the main ways, for a low panel.
+pub static LOW: Diagram = Diagram {
+    width: 22,
+    height: 7,
+    nodes: &[
+        Node(Idle, 1, 0),
+        Node(Approaching, 8, 0),
+        Node(Arrived, 8, 2),
+        Node(Holding, 1, 4),
+        Node(Landing, 11, 4),
+        Node(Orbiting, 1, 5),
+        Node(Figure8, 1, 6),
+        Node(Complete, 10, 6),
+    ],
+    edges: &[
+        Edge { from: &[Idle, Complete], to: &[Approaching], strokes: &[(6, 0, "►")] },
+        Edge { from: &[Approaching], to: &[Arrived], strokes: &[(11, 1, "▼")] },
+        Edge { from: &[Arrived], to: &[Holding], strokes: &[(6, 3, "╱")] },
+        Edge { from: &[Arrived], to: &[Landing], strokes: &[(14, 3, "╲")] },
+        Edge {
+            from: &[Arrived, Holding, Orbiting, Figure8],
+            to: &[Complete],
+            strokes: &[(16, 2, "─────┤"), (21, 3, "│"), (21, 4, "│"), (21, 5, "│"), (19, 6, "◄─┘")],
+        },
+        Edge {
+            from: &[Arrived, Holding, Orbiting, Figure8],
+            to: &[Approaching],
+            strokes: &[(16, 2, "─────┤"), (21, 1, "│"), (20, 0, "◄┐")],
+        },
+        Edge { from: &[Holding], to: &[Landing], strokes: &[(9, 4, "►")] },
+        Edge { from: &[Landing], to: &[Complete], strokes: &[(14, 5, "▼")] },
+    ],
+};
+
 impl Diagram {
     /// Draws the machine at the top left of the area: `active` lit, and the strokes of `last` if given.
     pub fn draw(
@@ -191,7 +225,7 @@ mod tests {
 
     #[test]
     fn every_state_stands_in_both_drawings_whoever_is_active() {
-        for diagram in [&FULL, &COMPACT] {
+        for diagram in [&FULL, &COMPACT, &LOW] {
             for active in NavState::iter() {
                 let drawing = text(diagram, active, None).join("\n");
                 for state in NavState::iter() {
@@ -243,6 +277,20 @@ mod tests {
             "  └─────┴─────────┴─► COMPLETE ◄──┘",
         ];
         assert_eq!(text(&FULL, Approaching, None), expected);
+    }
+
+    #[test]
+    fn the_low_drawing() {
+        let expected = [
+            " IDLE ► APPROACHING ◄┐",
+            "           ▼         │",
+            "        ARRIVED ─────┤",
+            "      ╱       ╲      │",
+            " HOLDING ► LANDING   │",
+            "▐ORBITING▌    ▼      │",
+            " FIGURE8  COMPLETE ◄─┘",
+        ];
+        assert_eq!(text(&LOW, Orbiting, None), expected);
     }
 
     #[test]

@@ -259,7 +259,10 @@ fn write(state: &AppState, scene: &Scene, buffer: &mut Buffer) {
     let vehicle = &state.view.vehicle;
     let mut labels = Labels::new(theme, scene.view, buffer);
     frame_notes(state, &mut labels);
-    labels.mark(scene.home, "⌂", Role::Title);
+    let home_known = vehicle.truth.is_some() || vehicle.craft.home.is_some();
+    if home_known {
+        labels.mark(scene.home, "⌂", Role::Title);
+    }
     for spot in &scene.spots {
         let role = if Some(spot.index) == scene.current { Role::Target } else { Role::Title };
         labels.mark(spot.place, glyph(spot.wp.kind), role);
@@ -286,7 +289,9 @@ fn write(state: &AppState, scene: &Scene, buffer: &mut Buffer) {
         let number = spot.index.to_string();
         labels.beside(spot.place, &format!("{number} {}", spot.wp.kind), &number, role);
     }
-    labels.beside(scene.home, "home", "H", Role::Dim);
+    if home_known {
+        labels.beside(scene.home, "home", "H", Role::Dim);
+    }
     if scene.craft.is_none() && scene.spots.is_empty() {
         labels.middle("No position yet: waiting for GPS.", Role::Dim);
     }
@@ -317,8 +322,12 @@ fn frame_notes(state: &AppState, labels: &mut Labels<'_>) {
         Some(truth) => (truth.wind_n.hypot(truth.wind_e), truth.wind_e.atan2(truth.wind_n).to_degrees()),
         None => (vehicle.world.wind_mps, vehicle.world.wind_from_deg + 180.0),
     };
-    let wind =
-        if speed < 0.05 { " calm".to_owned() } else { format!(" wind {} {speed:4.1} m/s", arrow(to_deg)) };
+    let wind = match state.view.simulator {
+        // It does not tell.
+        Some(_) => String::new(),
+        None if speed < 0.05 => " calm".to_owned(),
+        None => format!(" wind {} {speed:4.1} m/s", arrow(to_deg)),
+    };
     let scale = labels.view().scale;
     let length = round_length(scale * f64::from(labels.view().area.width) / 5.0);
     let columns = (length / scale).round().max(2.0) as usize;

@@ -11,6 +11,9 @@ use crate::ui::theme::Role;
 
 use super::{row, wrapped};
 
+/// Rows of problems at most, below the waypoints.
+const PROBLEM_ROWS: usize = 2;
+
 /// The title: name of the plan, and whether the craft has it.
 pub fn title(state: &AppState) -> String {
     let name = Pane::Plan.title();
@@ -19,6 +22,24 @@ pub fn title(state: &AppState) -> String {
     }
     let where_it_is = if state.plan_is_on_craft() { "✓ on the craft" } else { "● not on the craft" };
     format!("{name} — {} {where_it_is}", state.plan.name)
+}
+
+/// What is wrong with each waypoint that has something wrong.
+fn problems(state: &AppState) -> Vec<String> {
+    let plan = &state.plan.plan;
+    let vehicle = &state.view.vehicle;
+    let fence = vehicle.craft.home.zip(vehicle.settings.fence_m);
+    (0..plan.waypoints.len()).filter_map(|index| waypoint_problem(plan, index, fence)).collect()
+}
+
+/// Rows of waypoints: what the head and the problems leave.
+fn waypoint_rows(area: Rect, problems: &[String]) -> usize {
+    usize::from(area.height).saturating_sub(1 + problems.len().min(PROBLEM_ROWS))
+}
+
+/// The furthest that the panel scrolls: then the last waypoint is the last on the screen.
+pub fn last_scroll(state: &AppState, area: Rect) -> usize {
+    state.plan.plan.waypoints.len().saturating_sub(waypoint_rows(area, &problems(state)))
 }
 
 /// Draws the inside.
@@ -39,14 +60,12 @@ pub fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     row(buffer, area, 0, theme, Role::Title, head);
     let vehicle = &state.view.vehicle;
     let fence = vehicle.craft.home.zip(vehicle.settings.fence_m);
-    let problems: Vec<String> =
-        (0..plan.waypoints.len()).filter_map(|index| waypoint_problem(plan, index, fence)).collect();
-    let below = problems.len().min(2) as u16;
-    let rows = area.height.saturating_sub(1 + below);
-    let first = state.scrolls.plan.min(plan.waypoints.len().saturating_sub(usize::from(rows)));
+    let problems = problems(state);
+    let below = problems.len().min(PROBLEM_ROWS) as u16;
+    let rows = waypoint_rows(area, &problems);
+    let first = state.scrolls.plan.min(plan.waypoints.len().saturating_sub(rows));
     let flying = vehicle.nav.engaged && vehicle.active_plan.as_ref() == Some(plan);
-    for (at, (index, wp)) in plan.waypoints.iter().enumerate().skip(first).take(usize::from(rows)).enumerate()
-    {
+    for (at, (index, wp)) in plan.waypoints.iter().enumerate().skip(first).take(rows).enumerate() {
         let current = flying && index == usize::from(vehicle.nav.wp);
         let problem = waypoint_problem(plan, index, fence).is_some();
         let (mark, role) = match (problem, current) {

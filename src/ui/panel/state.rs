@@ -9,10 +9,10 @@ use ratatui::text::Line;
 use crate::autopilot::io::Guard;
 use crate::ui::advice;
 use crate::ui::quantity::{clock, cut, fixed, signed, within};
-use crate::ui::state::AppState;
+use crate::ui::state::{AppState, Pane};
 use crate::ui::theme::{Role, Theme};
 
-use super::machine::{COMPACT, FULL};
+use super::machine::{COMPACT, Diagram, FULL, LOW};
 use super::{line, row, span, wrapped};
 
 /// How long the strokes of the last transition stay lit.
@@ -22,15 +22,35 @@ const NEAR: f64 = 0.75;
 /// What is left of the flyaway limit when it needs attention, m: the limit lies 20 m or more beyond the least distance
 /// so far, so a craft that comes nearer is never this close to it, however long the leg.
 const FLYAWAY_LEFT_M: f64 = 10.0;
-/// Width from which a guard fits one line.
+/// Width from which a guard is shown with its margin.
 const WIDE: u16 = 36;
+/// Rows that guards need below the machine.
+const GUARD_ROWS: u16 = 8;
+
+/// The title: the waypoint of the mission.
+pub fn title(state: &AppState) -> String {
+    let nav = &state.view.vehicle.nav;
+    let name = Pane::State.title();
+    if !nav.engaged || nav.count == 0 {
+        return name.to_owned();
+    }
+    let kind = nav.kind.map_or_else(String::new, |kind| format!(" {kind}"));
+    format!("{name} WP{}/{}{kind}", nav.wp, nav.count.saturating_sub(1))
+}
 
 /// Draws the inside.
 pub fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
-    let mut top = draw_advice(state, area, buffer);
-    top += draw_machine(state, below(area, top), buffer);
+    let diagram = diagram(area);
+    let mut top = draw_advice(state, area, diagram, buffer);
+    top += draw_machine(state, below(area, top), diagram, buffer);
     top += draw_guards(state, below(area, top), buffer);
     draw_transitions(state, below(area, top), buffer);
+}
+
+/// The drawing that leaves room for the guards.
+fn diagram(area: Rect) -> &'static Diagram {
+    let fits = |diagram: &Diagram| area.width >= diagram.width && area.height >= diagram.height + GUARD_ROWS;
+    [&FULL, &COMPACT].into_iter().find(|diagram| fits(diagram)).unwrap_or(&LOW)
 }
 
 /// What is left of the area under its first rows.
@@ -40,7 +60,7 @@ fn below(area: Rect, rows: u16) -> Rect {
 }
 
 /// What the user should know; gives the rows used.
-fn draw_advice(state: &AppState, area: Rect, buffer: &mut Buffer) -> u16 {
+fn draw_advice(state: &AppState, area: Rect, diagram: &Diagram, buffer: &mut Buffer) -> u16 {
     let theme = &state.theme;
     let Some(advice) = advice::now(state) else { return 0 };
     let width = usize::from(area.width.saturating_sub(2));
@@ -55,25 +75,16 @@ fn draw_advice(state: &AppState, area: Rect, buffer: &mut Buffer) -> u16 {
         }
     }
     // A blank line below, where there is room for everything.
-    if area.height > used + COMPACT.height { used + 1 } else { used }
+    if area.height > used + diagram.height { used + 1 } else { used }
 }
 
 /// The machine; gives the rows used.
-fn draw_machine(state: &AppState, area: Rect, buffer: &mut Buffer) -> u16 {
+fn draw_machine(state: &AppState, area: Rect, diagram: &Diagram, buffer: &mut Buffer) -> u16 {
     let nav = &state.view.vehicle.nav;
-    let diagram = if area.width >= FULL.width && area.height >= FULL.height { &FULL } else { &COMPACT };
     let last = state.transitions.back().filter(|last| within(state.now, last.heard, LIT_FOR));
     let left = (area.width.saturating_sub(diagram.width)) / 2;
     let place = Rect { x: area.x + left, width: area.width - left, ..area };
     diagram.draw(&state.theme, nav.state, last.map(|last| (last.from, last.to)), place, buffer);
-    if nav.engaged && nav.count > 0 && area.height > 0 {
-        let kind = nav.kind.map_or_else(String::new, |kind| format!(" {kind}"));
-        let text = format!("WP{}/{}{kind}", nav.wp, nav.count.saturating_sub(1));
-        let room = area.width.saturating_sub(left + diagram.width.min(7));
-        let text = cut(&text, usize::from(room));
-        let x = area.x + area.width - text.chars().count() as u16;
-        buffer.set_string(x, area.y, text, state.theme.style(Role::Target));
-    }
     diagram.height.min(area.height)
 }
 
@@ -84,32 +95,29 @@ fn draw_guards(state: &AppState, area: Rect, buffer: &mut Buffer) -> u16 {
         return 0;
     }
     let theme = &state.theme;
-    let mut used = u16::from(area.height > 4);
+    let wide = area.width >= WIDE;
     // What the mission waits for comes first, what would end it below.
     let (watched, awaited): (Vec<&Guard>, Vec<&Guard>) = nav.guards.iter().partition(|guard| is_watch(guard));
-    for guard in awaited {
-        if area.width >= WIDE {
-            line(buffer, area, used, &wide_guard(theme, guard));
-            used += 1;
-        } else if used + 2 <= area.height {
-            let (mark, role) = verdict(guard);
-            let value = fixed(Some(guard.value), 6, 1);
-            let numbers = format!("{mark} {value} {} {} {}", guard.op, short(guard.limit), guard.unit);
-            row(buffer, area, used, theme, Role::Title, &format!("  {}", short_name(guard)));
-            row(buffer, area, used + 1, theme, role, &numbers);
-            used += 2;
-        }
-    }
+    let mut lines: Vec<Line<'_>> = awaited
+        .iter()
+        .map(|guard| if wide { wide_guard(theme, guard) } else { narrow_guard(theme, guard, area.width) })
+        .collect();
     if let Some(eta) = nav.eta_s.filter(|eta| eta.is_finite()) {
-        let speed = fixed(Some(state.view.vehicle.estimate.ground_speed_mps), 6, 1);
-        row(buffer, area, used, theme, Role::Dim, &format!("  {speed} m/s {} s", fixed(Some(eta), 4, 0)));
-        used += 1;
+        let speed = fixed(Some(state.view.vehicle.estimate.ground_speed_mps), 4, 1);
+        let text = format!("  in{} s at {speed} m/s", fixed(Some(eta), 5, 0));
+        lines.push(Line::from(span(theme, Role::Dim, text)));
     }
-    if area.width >= WIDE {
-        for guard in watched {
-            line(buffer, area, used, &watch(theme, guard));
-            used += 1;
-        }
+    lines.extend(
+        watched.iter().map(
+            |guard| {
+                if wide { watch(theme, guard) } else { narrow_watch(theme, guard, area.width) }
+            },
+        ),
+    );
+    let mut used = u16::from(usize::from(area.height) > lines.len());
+    for text in &lines {
+        line(buffer, area, used, text);
+        used += 1;
     }
     used.min(area.height)
 }
@@ -124,21 +132,50 @@ fn short_name(guard: &Guard) -> &'static str {
     guard.name.strip_prefix("touchdown ").unwrap_or(guard.name)
 }
 
-/// `· fence           56.1 of   500 m`: how much of a limit is used up.
-fn watch(theme: &Theme, guard: &Guard) -> Line<'static> {
+/// How much attention a guard needs that nobody wants to hold.
+fn watch_verdict(guard: &Guard) -> (&'static str, Role) {
     let near = if guard.name == "flyaway" {
         guard.limit - guard.value < FLYAWAY_LEFT_M
     } else {
         guard.value / guard.limit > NEAR
     };
-    let (mark, role) = match near {
+    match near {
         _ if guard.holds() => ("✗", Role::Fault),
         true => ("▲", Role::Warn),
         false => ("·", Role::Dim),
-    };
+    }
+}
+
+/// `· fence           56.1 of   500 m`: how much of a limit is used up.
+fn watch(theme: &Theme, guard: &Guard) -> Line<'static> {
+    let (mark, role) = watch_verdict(guard);
     let value = fixed(Some(guard.value), 7, 1);
     let text = format!("{mark} {:<13}{value} of {:>4} {}", short_name(guard), short(guard.limit), guard.unit);
     Line::from(span(theme, role, text))
+}
+
+/// `· fence       56.1/500 m`.
+fn narrow_watch(theme: &Theme, guard: &Guard, width: u16) -> Line<'static> {
+    let (mark, role) = watch_verdict(guard);
+    Line::from(span(theme, role, narrow(guard, mark, "/", width)))
+}
+
+/// `✗ turn radius 62.4≤5.5 m`.
+fn narrow_guard(theme: &Theme, guard: &Guard, width: u16) -> Line<'static> {
+    let (mark, role) = verdict(guard);
+    Line::from(span(theme, role, narrow(guard, mark, &guard.op.to_string(), width)))
+}
+
+/// A guard in one narrow line: name at the left, numbers at the right, as many blanks between as there is room for.
+fn narrow(guard: &Guard, mark: &str, op: &str, width: u16) -> String {
+    let value = fixed(Some(guard.value), 5, 1);
+    let numbers = format!("{}{op}{}", value.trim_start(), short(guard.limit));
+    let name = format!("{mark} {}", short_name(guard));
+    let room = usize::from(width).saturating_sub(name.chars().count() + numbers.chars().count());
+    let unit =
+        if room > guard.unit.chars().count() + 1 { format!(" {}", guard.unit) } else { guard.unit.into() };
+    let room = usize::from(width).saturating_sub(numbers.chars().count() + unit.chars().count());
+    format!("{:<room$}{numbers}{unit}", cut(&name, room))
 }
 
 /// A number as short as it is exact to a tenth.
@@ -175,10 +212,12 @@ fn draw_transitions(state: &AppState, area: Rect, buffer: &mut Buffer) {
     let first = state.scrolls.transitions.min(state.transitions.len().saturating_sub(rows));
     for (at, step) in state.transitions.iter().rev().skip(first).take(rows).enumerate() {
         let spans = if wide {
+            let states = format!("{} → {} ", step.from, step.to);
+            let room = usize::from(area.width).saturating_sub(8 + states.chars().count());
             vec![
                 span(theme, Role::Dim, format!("{} ", clock(step.time))),
-                span(theme, Role::Text, format!("{} → {} ", step.from, step.to)),
-                span(theme, Role::Dim, format!("WP{} {}", step.wp, step.reason)),
+                span(theme, Role::Text, states),
+                span(theme, Role::Dim, cut(&format!("WP{} {}", step.wp, step.reason), room)),
             ]
         } else {
             vec![
