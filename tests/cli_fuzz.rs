@@ -1,31 +1,24 @@
-//! Random and hostile input to the command line, the line editor, settings files and the stored image: no panic, no
-//! endless loop, no reply out of proportion.
+//! Random input to the command line, the line editor and the stored image: no panic, no endless loop, no reply and no
+//! memory out of proportion.
 
-use std::path::PathBuf;
+#![allow(unsafe_code, reason = "an allocator that measures cannot be written without it")]
+
+#[path = "memory_support/meter.rs"]
+mod meter;
+
 use std::time::Duration;
 
 use betadeck::firmware::cli::{
-    COMMANDS, CliContext, CliFacts, Interpreter, LineEditor, Mode, apply_lines, complete, hint, provision,
+    COMMANDS, CliContext, CliFacts, Interpreter, LineEditor, Mode, complete, hint,
 };
 use betadeck::firmware::config::{Configuration, correct};
 use betadeck::firmware::settings::SETTINGS;
 use betadeck::firmware::storage::{decode, encode};
+use meter::measured;
 use proptest::prelude::*;
 
-/// No reply may be longer.
-const LONGEST_REPLY: usize = 1 << 20;
-
-fn corpus(kind: &str) -> Vec<(PathBuf, Vec<u8>)> {
-    let directory = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/corpus").join(kind);
-    let mut files: Vec<_> = std::fs::read_dir(directory)
-        .expect("a directory")
-        .map(|entry| entry.expect("an entry").path())
-        .map(|path| (path.clone(), std::fs::read(path).expect("a file")))
-        .collect();
-    files.sort();
-    assert!(!files.is_empty());
-    files
-}
+/// No reply may be longer, and no line may take more memory.
+const MIB: usize = 1 << 20;
 
 /// Runs lines in every mode, with completion and hints for each.
 fn run_lines(lines: &[&str]) {
@@ -35,45 +28,17 @@ fn run_lines(lines: &[&str]) {
         let facts = CliFacts::default();
         for line in lines {
             let mut context = CliContext { configuration: &mut configuration, facts: &facts };
-            let reply = interpreter.run(line, &mut context);
-            assert!(reply.text.len() <= LONGEST_REPLY, "{line}: {} bytes", reply.text.len());
-            let completion = complete(line);
+            let (reply, taken) = measured(|| interpreter.run(line, &mut context));
+            assert!(reply.text.len() <= MIB, "{line}: {} bytes", reply.text.len());
+            assert!(taken.total <= MIB, "{line}: {taken:?}");
+            let (completion, taken) = measured(|| complete(line));
             assert!(completion.start <= line.len());
+            assert!(taken.total <= MIB, "{line}: {taken:?}");
             let _shown = hint(line, Some(&configuration.settings));
         }
         correct(&mut configuration);
         let (stored, findings) = decode(&encode(&configuration)).expect("a good image");
         assert_eq!((stored, findings), (configuration, Vec::new()));
-    }
-}
-
-#[test]
-fn corpus_of_settings_files() {
-    for (path, bytes) in corpus("cli") {
-        let text = String::from_utf8_lossy(&bytes);
-        run_lines(&text.lines().collect::<Vec<_>>());
-        let facts = CliFacts::default();
-        for mode in [Mode::Interactive, Mode::File] {
-            let mut configuration = Configuration::default();
-            let mut context = CliContext { configuration: &mut configuration, facts: &facts };
-            let report = apply_lines(text.lines(), &mut Interpreter::new(mode), &mut context, |_, _| ());
-            assert!(report.failed.len() <= report.commands, "{}", path.display());
-            provision(&text, &mut Interpreter::new(mode), &mut context, |_| ());
-        }
-        feed_editor(&bytes);
-    }
-}
-
-#[test]
-fn corpus_of_images() {
-    for (path, bytes) in corpus("eeprom") {
-        for end in 0..=bytes.len().min(64) {
-            let _short = decode(&bytes[..end]);
-        }
-        if let Ok((configuration, _)) = decode(&bytes) {
-            let again = decode(&encode(&configuration)).expect("a good image");
-            assert_eq!(again.0, configuration, "{}", path.display());
-        }
     }
 }
 
@@ -86,7 +51,7 @@ fn feed_editor(bytes: &[u8]) {
     for (at, byte) in bytes.iter().enumerate() {
         let now = Duration::from_millis(at as u64 * 60);
         let output = editor.feed(*byte, at % 7 == 3, now);
-        assert!(output.bytes.len() <= LONGEST_REPLY);
+        assert!(output.bytes.len() <= MIB);
         if let Some(line) = output.line {
             assert!(line.len() <= 255);
             let mut context = CliContext { configuration: &mut configuration, facts: &facts };

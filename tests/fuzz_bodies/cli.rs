@@ -1,0 +1,65 @@
+//! The command line: the bytes are the lines of a session.
+
+use std::time::Duration;
+
+use betadeck::firmware::cli::{
+    CliContext, CliFacts, Interpreter, LineEditor, MAX_LINE, Mode, complete, hint, refused_over_msp,
+};
+use betadeck::firmware::config::Configuration;
+
+use super::craft;
+
+/// What a session may be.
+const MODES: [Mode; 4] = [Mode::Interactive, Mode::Framed, Mode::Message, Mode::File];
+
+/// Types the lines in every kind of session, on the ground and in the air, and the bytes at a serial link.
+pub fn run(data: &[u8]) {
+    let text = String::from_utf8_lossy(data);
+    let mut checked = craft::Checked::default();
+    for mode in MODES {
+        for armed in [false, true] {
+            let facts = CliFacts { armed, ..CliFacts::default() };
+            checked.assert_sound(session(&text, mode, &facts));
+        }
+    }
+    link(data);
+}
+
+/// One session: what became of the craft.
+fn session(text: &str, mode: Mode, facts: &CliFacts) -> Configuration {
+    let mut configuration = Configuration::default();
+    let mut interpreter = Interpreter::new(mode);
+    for line in text.lines() {
+        let before = configuration.clone();
+        let reply = interpreter.run(line, &mut CliContext { configuration: &mut configuration, facts });
+        assert!(reply.text.len() <= craft::LONGEST_REPLY, "{line}: {} bytes", reply.text.len());
+        assert!(!reply.failed || configuration == before, "{line} is refused and changes the craft");
+        assert!(!reply.failed || reply.actions.is_empty(), "{line} is refused and asks for something");
+        let completion = complete(line);
+        assert!(line.is_char_boundary(completion.start), "{line}");
+        assert!(completion.candidates.iter().all(|word| word.starts_with(&completion.common)), "{line}");
+        let _shown = hint(line, Some(&configuration.settings));
+        let _refused = refused_over_msp(line, facts.armed);
+    }
+    configuration
+}
+
+/// The bytes as they come over a serial link, 60 ms apart.
+fn link(data: &[u8]) {
+    let mut configuration = Configuration::default();
+    let mut interpreter = Interpreter::default();
+    let mut editor = LineEditor::default();
+    let facts = CliFacts::default();
+    for (at, byte) in b"#".iter().chain(data).enumerate() {
+        let now = Duration::from_millis(at as u64 * 60);
+        let output = editor.feed(*byte, false, now);
+        assert!(output.bytes.len() <= craft::LONGEST_REPLY);
+        if let Some(line) = output.line {
+            assert!(line.len() <= MAX_LINE && line.bytes().all(|byte| (b' '..=b'~').contains(&byte)));
+            let mut context = CliContext { configuration: &mut configuration, facts: &facts };
+            editor.answer(&interpreter.run(&line, &mut context));
+        }
+        // Quiet every now and then, so that a `#` opens the command line.
+        editor.poll(false, now + Duration::from_millis(if at % 4 == 0 { 100 } else { 50 }));
+    }
+}

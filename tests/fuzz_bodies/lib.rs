@@ -1,0 +1,13 @@
+//! The bodies of the fuzz targets: what must hold for any bytes. `fuzz/` runs them under libFuzzer, `tests/fuzz_corpus.rs`
+//! on the stored corpora and on mutations of them.
+
+pub mod airframe;
+pub mod cli;
+mod craft;
+pub mod eeprom;
+pub mod fdm;
+pub mod msp_stream;
+pub mod plan_file;
+pub mod rc;
+pub mod servo;
+pub mod settings_file;

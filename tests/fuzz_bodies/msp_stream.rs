@@ -1,0 +1,179 @@
+//! A client's stream: MSP of every version, the command line opened by `#` and between STX and ETX, and garbage, with a
+//! firmware behind. [`PAUSE`] among the bytes stands for a quiet moment.
+
+use std::time::Duration;
+
+use betadeck::firmware::cli::{Interpreter, Mode};
+use betadeck::firmware::config::Configuration;
+use betadeck::firmware::{Firmware, FirmwareOptions};
+use betadeck::link::proto::conversation::{Ask, Conversation};
+use betadeck::link::proto::msp::{Decoder, Dropped, Form, Frame, Kind, MAX_REPLY, MAX_REQUEST};
+
+use super::craft;
+
+/// A quiet moment, long enough for a `#` before it to mean the command line.
+const PAUSE: &[u8] = &[0x1e, 0x1e];
+/// How long it is.
+const QUIET: Duration = Duration::from_millis(150);
+/// More bytes than any frame that garbage can announce still takes.
+const LONGEST_REQUEST: usize = MAX_REQUEST + 16;
+
+/// Sends the bytes whole, byte by byte and in pieces: the answers are the same; then asks something sensible.
+pub fn run(data: &[u8]) {
+    decoders(data);
+    let whole = talk(data, usize::MAX);
+    assert_eq!(talk(data, 1), whole, "byte by byte");
+    let piece = data.first().map_or(7, |byte| usize::from(*byte) % 61 + 2);
+    assert_eq!(talk(data, piece), whole, "in pieces of {piece}");
+    craft::Checked::default().assert_sound(whole.configuration);
+}
+
+/// Everything that was asked and answered.
+#[derive(Debug, PartialEq, Default)]
+struct Talk {
+    asks: Vec<Ask>,
+    output: Vec<u8>,
+    dropped: Dropped,
+    configuration: Configuration,
+}
+
+/// One client and the craft that it talks to.
+struct Client {
+    conversation: Conversation,
+    firmware: Firmware,
+    interpreter: Interpreter,
+    talk: Talk,
+    now: Duration,
+    closed: bool,
+}
+
+fn talk(data: &[u8], piece: usize) -> Talk {
+    let mut client = Client {
+        conversation: Conversation::default(),
+        firmware: Firmware::new(Configuration::default(), FirmwareOptions::default()),
+        interpreter: Interpreter::default(),
+        talk: Talk::default(),
+        now: Duration::ZERO,
+        closed: false,
+    };
+    for burst in bursts(data) {
+        for bytes in burst.chunks(piece.min(burst.len().max(1))) {
+            client.send(bytes);
+        }
+        client.now += QUIET;
+        client.send(&[]);
+    }
+    if !client.closed {
+        client.assert_still_answers();
+    }
+    client.talk.dropped = client.conversation.dropped();
+    craft::assert_flies(&mut client.firmware);
+    client.talk.configuration = client.firmware.configuration().clone();
+    client.talk
+}
+
+/// The bytes between pauses.
+fn bursts(data: &[u8]) -> Vec<&[u8]> {
+    let mut bursts = Vec::new();
+    let mut rest = data;
+    while let Some(at) = rest.windows(PAUSE.len()).position(|window| window == PAUSE) {
+        bursts.push(&rest[..at]);
+        rest = &rest[at + PAUSE.len()..];
+    }
+    bursts.push(rest);
+    bursts
+}
+
+impl Client {
+    fn send(&mut self, bytes: &[u8]) {
+        if self.closed {
+            return;
+        }
+        self.conversation.push(bytes);
+        while let Some(ask) = self.conversation.next(self.now) {
+            self.answer(&ask);
+            // When to send is the only thing that depends on the pieces.
+            if ask != Ask::Flush {
+                self.talk.asks.push(ask);
+            }
+            let output = self.conversation.take_output();
+            assert!(output.len() <= craft::LONGEST_REPLY, "{} bytes at once", output.len());
+            self.talk.output.extend(output);
+            if self.closed {
+                return;
+            }
+        }
+        let output = self.conversation.take_output();
+        self.talk.output.extend(output);
+    }
+
+    fn answer(&mut self, ask: &Ask) {
+        match ask {
+            Ask::Request(frame) => {
+                assert!(frame.payload.len() <= MAX_REQUEST && frame.kind == Kind::Request);
+                let reply = self.firmware.run_msp(frame.code, &frame.payload, None).reply;
+                self.conversation.reply(frame, reply);
+            }
+            Ask::EnterCli { interactive } => {
+                let admitted = !self.firmware.is_armed();
+                if *interactive {
+                    self.firmware.cli_opened();
+                }
+                self.conversation.admit(admitted, self.now);
+                assert_eq!(self.conversation.is_in_cli(), admitted);
+                self.interpreter =
+                    Interpreter::new(if *interactive { Mode::Interactive } else { Mode::Framed });
+            }
+            Ask::Line { line, mode } => {
+                let mut own = Interpreter::new(*mode);
+                let session = if *mode == Mode::Message { &mut own } else { &mut self.interpreter };
+                let reply = self.firmware.run_cli(session, line);
+                self.closed = self.conversation.answer(&reply);
+            }
+            Ask::Restart => {
+                self.firmware.restart_in_place();
+                self.closed = true;
+            }
+            Ask::LeftCli => self.firmware.cli_closed(),
+            Ask::Flush => {}
+        }
+    }
+
+    /// After enough silence and filling, whatever came before, a request is answered.
+    fn assert_still_answers(&mut self) {
+        self.now += Duration::from_secs(3);
+        // Ends a frame that garbage began, a batch of framed lines, and an interactive session that it opened.
+        self.send(&[0; LONGEST_REQUEST]);
+        self.send(b"\x03");
+        if self.conversation.is_in_cli() {
+            self.send(b"\rexit noreboot\r");
+        }
+        if self.closed {
+            // What was left in the buffer was an `exit`.
+            return;
+        }
+        assert!(!self.conversation.is_in_cli());
+        let asked = self.talk.asks.len();
+        self.talk.output.clear();
+        self.send(&Frame::request(Form::V2, 1, &[]).to_bytes());
+        assert_eq!(self.talk.asks.len(), asked + 1, "{:?}", &self.talk.asks[asked..]);
+        let mut decoder = Decoder::client();
+        let replies: Vec<Frame> = self.talk.output.iter().filter_map(|byte| decoder.push(*byte)).collect();
+        assert!(matches!(&replies[..], [Frame { kind: Kind::Reply, code: 1, .. }]), "{replies:?}");
+    }
+}
+
+/// Both sides' decoders on the bare bytes: bounded payloads, and what is found is found again in its own bytes.
+fn decoders(data: &[u8]) {
+    for (make, limit) in [(Decoder::server as fn() -> Decoder, MAX_REQUEST), (Decoder::client, MAX_REPLY)] {
+        let mut decoder = make();
+        for frame in data.iter().filter_map(|byte| decoder.push(*byte)) {
+            assert!(frame.payload.len() <= limit);
+            let mut again = make();
+            let bytes = frame.to_bytes();
+            let found: Vec<Frame> = bytes.iter().filter_map(|byte| again.push(*byte)).collect();
+            assert_eq!(found, [frame]);
+            assert!(again.is_between_frames() && again.dropped() == Dropped::default());
+        }
+    }
+}

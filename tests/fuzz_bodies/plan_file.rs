@@ -1,0 +1,52 @@
+//! Plan files, in every format.
+
+use betadeck::plan::estimate::{Assumptions, estimate};
+use betadeck::plan::format::{Format, PlanError, PlanFile, parse, report, table, write};
+use betadeck::plan::review::review;
+use strum::IntoEnumIterator as _;
+
+/// Reads the text in every format, and writes what was read in every format.
+pub fn run(data: &[u8]) {
+    let Ok(text) = std::str::from_utf8(data) else { return };
+    for format in Format::iter() {
+        match parse("fuzz", text, format) {
+            Ok(file) => assert_good(&file),
+            Err(errors) => assert_places(&errors, text),
+        }
+    }
+}
+
+fn assert_good(file: &PlanFile) {
+    for format in Format::iter() {
+        let written = write(file, format);
+        let back = parse("fuzz", &written.text, format)
+            .unwrap_or_else(|errors| panic!("{}\n{}", report(&errors), written.text));
+        assert_eq!(back.plan, file.plan, "{}", written.text);
+        assert_eq!(write(&back, format).text, written.text);
+        if written.lost.is_empty() {
+            assert_eq!(
+                (&back.home, &back.settings, &back.description),
+                (&file.home, &file.settings, &file.description)
+            );
+        }
+    }
+    let home = file.home.map_or_else(Default::default, |home| home.position);
+    let assumptions = Assumptions::from_settings(&file.settings);
+    let figures = estimate(&file.plan, home, &assumptions);
+    assert!(figures.distance_m.is_finite() && figures.time_s.is_none_or(f64::is_finite), "{figures:?}");
+    assert_eq!(figures.legs.len(), file.plan.waypoints.len());
+    for finding in review(&file.plan, home, &assumptions) {
+        assert!(!finding.to_string().is_empty());
+    }
+    assert!(table(file, home).lines().count() > file.plan.waypoints.len());
+}
+
+fn assert_places(errors: &[PlanError], text: &str) {
+    assert!(!errors.is_empty());
+    let lines = text.split('\n').count();
+    for error in errors {
+        assert!((1..=lines).contains(&error.line) && error.column >= 1 && error.width >= 1, "{error}");
+        assert!(!error.message.contains(['\n', '\r']), "{error}");
+    }
+    assert!(!report(errors).is_empty());
+}

@@ -1,0 +1,73 @@
+//! An allocator that measures what a piece of work on this thread takes.
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+
+/// Bytes that a piece of work took.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Taken {
+    /// The most that it held at once, beyond what was held before.
+    pub peak: usize,
+    /// All that it asked for, given back or not; what grows counts again at every size.
+    pub total: usize,
+}
+
+thread_local! {
+    static HELD: Cell<isize> = const { Cell::new(0) };
+    static MOST_HELD: Cell<isize> = const { Cell::new(0) };
+    static TOTAL: Cell<usize> = const { Cell::new(0) };
+}
+
+struct Meter;
+
+fn take(bytes: usize) {
+    TOTAL.set(TOTAL.get().wrapping_add(bytes));
+    HELD.set(HELD.get() + bytes as isize);
+    MOST_HELD.set(MOST_HELD.get().max(HELD.get()));
+}
+
+fn give_back(bytes: usize) {
+    HELD.set(HELD.get() - bytes as isize);
+}
+
+// SAFETY: every call goes to the system allocator unchanged; measuring touches only thread-local cells that need no
+// allocation and no destructor.
+unsafe impl GlobalAlloc for Meter {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        take(layout.size());
+        // SAFETY: the caller's promises are passed on.
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn alloc_zeroed(&self, layout: Layout) -> *mut u8 {
+        take(layout.size());
+        // SAFETY: the caller's promises are passed on.
+        unsafe { System.alloc_zeroed(layout) }
+    }
+
+    unsafe fn realloc(&self, memory: *mut u8, layout: Layout, new_size: usize) -> *mut u8 {
+        // Both are held while the contents move.
+        take(new_size);
+        give_back(layout.size());
+        // SAFETY: the caller's promises are passed on.
+        unsafe { System.realloc(memory, layout, new_size) }
+    }
+
+    unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
+        give_back(layout.size());
+        // SAFETY: the caller's promises are passed on.
+        unsafe { System.dealloc(memory, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Meter = Meter;
+
+/// Does a piece of work; its result and what it took.
+pub fn measured<R>(work: impl FnOnce() -> R) -> (R, Taken) {
+    let (held, total) = (HELD.get(), TOTAL.get());
+    MOST_HELD.set(held);
+    let result = work();
+    let peak = usize::try_from(MOST_HELD.get() - held).unwrap_or_default();
+    (result, Taken { peak, total: TOTAL.get().wrapping_sub(total) })
+}
