@@ -1,15 +1,10 @@
-//! The configuration on disk: created, saved, damaged, foreign, locked, and killed in the middle.
+//! The configuration on disk: created, saved, damaged, foreign and locked.
 
-use std::io::{BufRead as _, BufReader};
 use std::path::Path;
-use std::process::{Command, Stdio};
 
 use betadeck::firmware::config::Configuration;
 use betadeck::firmware::storage::{ImageError, decode, encode};
 use betadeck::storage::{FILE_NAME, Store};
-
-/// Name of the variable that tells a child process which directory to save in.
-const CHILD_DIRECTORY: &str = "BETADECK_TEST_SAVE_DIRECTORY";
 
 fn named(name: &str) -> Configuration {
     let mut configuration = Configuration::default();
@@ -149,45 +144,4 @@ fn records_of_other_versions_are_stored_again() {
     configuration.unknown_records.push("hologram\t1\t2".to_owned());
     let (read, findings) = decode(&encode(&configuration)).expect("a good image");
     assert_eq!((read, findings), (configuration, Vec::new()));
-}
-
-/// Not a test of its own: the process that the next test kills.
-#[test]
-#[ignore = "runs only as a child of `killed_savers_leave_old_or_new`"]
-fn child_saves_for_ever() {
-    let Some(directory) = std::env::var_os(CHILD_DIRECTORY) else { return };
-    let mut store = open(Path::new(&directory));
-    for round in 0_u64.. {
-        store.save(&named(if round % 2 == 0 { "even" } else { "odd" })).expect("saved");
-        println!("saved {round}");
-    }
-}
-
-#[test]
-fn killed_savers_leave_old_or_new() {
-    let directory = tempfile::tempdir().expect("a directory");
-    open(directory.path()).save(&named("even")).expect("saved");
-    let program = std::env::current_exe().expect("this program");
-    for round in 0..200_usize {
-        let mut child = Command::new(&program)
-            .args(["--exact", "child_saves_for_ever", "--ignored", "--nocapture"])
-            .env(CHILD_DIRECTORY, directory.path())
-            .stdout(Stdio::piped())
-            .spawn()
-            .expect("a child");
-        let mut lines = BufReader::new(child.stdout.take().expect("its output")).lines();
-        // Kill at different places: after a different number of saves, and a different while later.
-        let saves = round % 5 + 1;
-        let seen =
-            lines.by_ref().filter(|line| line.as_ref().is_ok_and(|line| line.contains("saved"))).take(saves);
-        assert_eq!(seen.count(), saves, "round {round}: the child cannot save");
-        for turn in 0..round * 300 {
-            std::hint::black_box(turn);
-        }
-        child.kill().expect("killed");
-        child.wait().expect("ended");
-        let loaded = open(directory.path()).load();
-        assert!(loaded.findings.is_empty(), "round {round}: {:?}", loaded.findings);
-        assert!(["even", "odd"].contains(&name_of(&loaded.configuration)), "round {round}");
-    }
 }

@@ -213,7 +213,10 @@ impl Ended {
     /// Starts it anew: the craft stands at home, time begins at zero. It reads motors as soon as they come.
     pub fn start(self, dialect: Dialect) -> Simulator {
         let again = |port| {
-            let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, port)).expect("the port of before");
+            // A child that another test starts in this moment holds the closed socket until it runs.
+            let bind =
+                || UdpSocket::bind((Ipv4Addr::LOCALHOST, port)).map_err(|_| std::thread::yield_now()).ok();
+            let socket = (0..100_000).find_map(|_| bind()).expect("the port of before");
             socket.set_read_timeout(Some(NEVER)).expect("a timeout");
             socket
         };
