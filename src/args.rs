@@ -19,7 +19,7 @@ use std::ffi::OsString;
 use clap::error::ErrorKind;
 use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 
-use crate::nearest::nearest;
+use crate::did_you_mean;
 
 pub use convert::ConvertArgs;
 pub use doors::{DoorArgs, ServeArgs, SitlArgs, UdpPorts, sitl_complaint};
@@ -213,7 +213,7 @@ fn hint_at_command(error: clap::Error, arguments: &[OsString], command: &clap::C
     let first = arguments.get(1).and_then(|argument| argument.to_str()).unwrap_or_default();
     let names = command.get_subcommands().map(clap::Command::get_name);
     let is_plan = first.starts_with('-') || first.parse::<PlanArg>().is_ok();
-    match nearest(first, names) {
+    match did_you_mean::closest(first, names) {
         Some(name) if name != first && !is_plan && error.use_stderr() => command.clone().error(
             ErrorKind::InvalidSubcommand,
             format!("{first} is neither a command nor a plan; did you mean betadeck {name}?"),

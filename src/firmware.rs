@@ -27,11 +27,9 @@ pub mod cli;
 pub mod config;
 pub mod control;
 pub mod estimate;
-pub mod event;
 pub mod failsafe;
 pub mod filter;
 pub mod mission;
-pub mod mode;
 pub mod modes;
 pub mod msp;
 pub mod outbox;
@@ -49,15 +47,15 @@ mod sensor_pass;
 mod status;
 
 pub use estimate::AttitudeSource;
-pub use event::{DisarmReason, FirmwareEvent};
 
 use nalgebra::Vector3;
 use strum::{EnumCount as _, IntoEnumIterator as _};
 
 use crate::autopilot::Navigator;
-use crate::autopilot::io::{NavInputs, NavOutput};
+use crate::autopilot::io::NavInputs;
 use crate::geo::LatLon;
 use crate::signals::{MotorCommand, RcFrame, RcSource, SensorFrame, SimTime};
+use crate::telemetry::{DisarmReason, FirmwareEvent, ModeFlags, NavOutput};
 
 use arming::Arming;
 use arming::crash::CrashDetector;
@@ -71,7 +69,6 @@ use estimate::{Estimator, EstimatorOptions};
 use failsafe::{Failsafe, LinkMonitor};
 use flight::{Flight, FlightStep};
 use mission::Orders;
-use mode::ModeFlags;
 use modes::BoxSet;
 use outbox::Outbox;
 use parameters::{BootChoices, Parameters};

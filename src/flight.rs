@@ -7,11 +7,10 @@ mod judge;
 
 pub use judge::{FlightResult, Judge, JudgeFacts, Verdict};
 
-use crate::autopilot::io::PlanSource;
-use crate::firmware::mode::Mode;
 use crate::plan::{FlightPlan, WaypointType};
 use crate::signals::SimTime;
-use crate::vehicle::{Event, EventKind, Vehicle};
+use crate::telemetry::{Event, EventKind, Mode, PlanSource};
+use crate::vehicle::Vehicle;
 
 /// How a flight is flown.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -92,7 +91,7 @@ impl Flight {
         self.vehicle.drain_events(|event| {
             match event.kind {
                 EventKind::Touchdown { .. } => *touched_down = true,
-                EventKind::Firmware(crate::firmware::FirmwareEvent::Armed) => *touched_down = false,
+                EventKind::Firmware(crate::telemetry::FirmwareEvent::Armed) => *touched_down = false,
                 EventKind::Boot { .. }
                 | EventKind::Firmware(_)
                 | EventKind::Fault { .. }

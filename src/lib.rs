@@ -7,18 +7,20 @@
 pub mod app;
 pub mod args;
 pub mod autopilot;
-pub mod excerpt;
+pub mod did_you_mean;
 pub mod firmware;
 pub mod flight;
 pub mod geo;
 pub mod link;
-pub mod nearest;
 pub mod pilot;
 pub mod plan;
 pub mod record;
 pub mod session;
 pub mod signals;
 pub mod sim;
+pub mod source_snippet;
 pub mod storage;
+pub mod telemetry;
+
 pub mod ui;
 pub mod vehicle;

@@ -6,10 +6,10 @@
 //!
 //! It sees what a pilot sees (the OSD), and touches nothing but the sixteen channels.
 
-use crate::firmware::mode::Mode;
 use crate::signals::{RcFrame, SimTime};
-use crate::vehicle::snapshot::ModeRange;
-use crate::vehicle::switch::Switch;
+use crate::telemetry::Mode;
+use crate::telemetry::snapshot::ModeRange;
+use crate::telemetry::switch::Switch;
 
 /// Seconds of hover between the climb and the engagement.
 const HOVER_S: f64 = 5.0;

@@ -34,7 +34,6 @@ mod motors;
 mod parse;
 mod random;
 mod sensors;
-mod suggest;
 mod switches;
 mod touchdown;
 mod truth;

@@ -11,28 +11,22 @@
 //! A vehicle that is moved from outside has a firmware and hands, but no world that moves: each [`Vehicle::tick_on`]
 //! steps the firmware on what a simulator outside measured, and [`Vehicle::see`] tells where that has put the craft.
 
-pub mod event;
 mod hands;
 mod outside;
-pub mod snapshot;
-pub mod switch;
 mod view;
 
 use rand::RngExt as _;
 use rand_chacha::ChaCha8Rng;
 
-pub use event::{DoorPlaces, Event, EventKind};
 pub use hands::{Hands, StickInput};
-pub use snapshot::Snapshot;
 
-use crate::autopilot::io::{NavEvent, NavState};
 use crate::firmware::config::Configuration;
-use crate::firmware::mode::Mode;
-use crate::firmware::{Firmware, FirmwareEvent, FirmwareOptions};
+use crate::firmware::{Firmware, FirmwareOptions};
 use crate::pilot::{Pilot, PilotFacts};
 use crate::plan::FlightPlan;
 use crate::signals::{RcSource, SensorFrame, SimTime};
 use crate::sim::{FaultLink, Stream, World, WorldCommand, WorldConfig, WorldError, WorldEventKind};
+use crate::telemetry::{DoorPlaces, Event, EventKind, FirmwareEvent, Mode, NavEvent, NavState};
 use outside::Outside;
 
 /// What stands for the airframe when a simulator outside has it.
@@ -390,6 +384,6 @@ mod tests {
         let estimate = vehicle.firmware().altitude_m();
         assert!(estimate.abs() < 1.0, "{estimate}");
         let flags = vehicle.firmware().arming_flags();
-        assert!(!flags.has(crate::firmware::arming::ArmingFlag::Angle), "{flags:?}");
+        assert!(!flags.has(crate::telemetry::ArmingFlag::Angle), "{flags:?}");
     }
 }

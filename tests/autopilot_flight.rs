@@ -10,8 +10,8 @@
 mod flight;
 
 use betadeck::autopilot::Params;
-use betadeck::autopilot::io::NavState;
 use betadeck::plan::{HoldPattern, Waypoint, WaypointType};
+use betadeck::telemetry::NavState;
 use flight::{Flight, guide, rms, waypoint, worst};
 use nalgebra::Vector2;
 

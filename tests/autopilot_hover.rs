@@ -9,9 +9,9 @@
 #[path = "autopilot_support/flight.rs"]
 mod flight;
 
-use betadeck::autopilot::io::NavState;
 use betadeck::autopilot::{Navigator, Params};
 use betadeck::plan::WaypointType::{Hold, Land};
+use betadeck::telemetry::NavState;
 use flight::{Flight, guide, waypoint, worst};
 
 /// How the craft flies when the autopilot takes over.

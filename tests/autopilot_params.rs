@@ -13,11 +13,11 @@ use betadeck::autopilot::control::{
     AltitudeController, AltitudeTarget, LEAN_SLEW_RPS, THROTTLE_SLEW_US_PER_S, YAW_SLEW_DPS2, throttle_share,
 };
 use betadeck::autopilot::guidance::{L1Limits, TouchdownFacts, l1};
-use betadeck::autopilot::io::{L1Mode, NavState, PlanSource};
 use betadeck::autopilot::rx_loss::{RxLossFacts, decide};
 use betadeck::autopilot::{Navigator, Params};
 use betadeck::plan::WaypointType::{Flyover, Hold, Land};
 use betadeck::plan::{HoldPattern, Waypoint};
+use betadeck::telemetry::{L1Mode, NavState, PlanSource};
 use flight::{DT, Flight, guide, inputs, vertical, waypoint, worst};
 use nalgebra::Vector2;
 

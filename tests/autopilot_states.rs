@@ -12,9 +12,9 @@ mod flight;
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 
-use betadeck::autopilot::io::{NavEvent, NavState};
 use betadeck::autopilot::{Params, Rescue};
 use betadeck::plan::{FlightPlan, HoldPattern, Waypoint, WaypointType};
+use betadeck::telemetry::{NavEvent, NavState};
 use flight::{Flight, plan, waypoint};
 use nalgebra::Vector2;
 use proptest::prelude::*;

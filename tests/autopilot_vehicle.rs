@@ -6,12 +6,12 @@
     reason = "a test may stop at a surprise and say what it measured"
 )]
 
-use betadeck::autopilot::io::NavState;
 use betadeck::firmware::FirmwareOptions;
 use betadeck::firmware::cli::Interpreter;
 use betadeck::firmware::config::Configuration;
 use betadeck::geo::{LatLon, LocalFrame};
 use betadeck::sim::{Noise, Wind, WorldConfig};
+use betadeck::telemetry::NavState;
 use betadeck::vehicle::{Vehicle, VehicleConfig};
 use nalgebra::{Vector2, Vector3};
 

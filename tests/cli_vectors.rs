@@ -8,13 +8,13 @@ use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 use std::time::Duration;
 
-use betadeck::autopilot::io::{NavState, NavTelemetry};
 use betadeck::firmware::cli::{
     CliAction, CliContext, CliFacts, GpsFacts, GpsSolutionFacts, Interpreter, LineEditor, LoopFacts, Mode,
     TaskFacts,
 };
 use betadeck::firmware::config::Configuration;
 use betadeck::geo::LatLon;
+use betadeck::telemetry::{NavState, NavTelemetry};
 use vectors::parse::{Exchange, assert_matches, exchanges};
 
 /// A craft with a command line session.

@@ -2,9 +2,10 @@
 
 use betadeck::firmware::cli::Interpreter;
 use betadeck::firmware::config::{Configuration, MixerKind};
-use betadeck::firmware::{DisarmReason, Firmware, FirmwareEvent, FirmwareOptions};
+use betadeck::firmware::{Firmware, FirmwareOptions};
 use betadeck::geo::LatLon;
 use betadeck::signals::{GpsSample, RcFrame, RcSource, SensorFrame, SimTime};
+use betadeck::telemetry::{DisarmReason, FirmwareEvent};
 
 /// A firmware on a bench.
 struct Bench {

@@ -3,9 +3,8 @@
 
 use std::path::Path;
 
-use betadeck::firmware::DisarmReason;
-use betadeck::firmware::arming::ArmingFlag;
 use betadeck::firmware::modes::boxes::{BOXES, BoxLevel};
+use betadeck::telemetry::{ArmingFlag, DisarmReason};
 use strum::IntoEnumIterator as _;
 
 fn page() -> String {

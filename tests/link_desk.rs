@@ -10,13 +10,13 @@
 use std::net::SocketAddr;
 use std::time::{Duration, Instant};
 
-use betadeck::firmware::arming::ArmingFlag;
 use betadeck::firmware::cli::{CliReply, Interpreter, Mode};
 use betadeck::firmware::config::Configuration;
-use betadeck::firmware::{Firmware, FirmwareEvent, FirmwareOptions};
+use betadeck::firmware::{Firmware, FirmwareOptions};
 use betadeck::link::{Attended, CliAnswer, ClientId, Desk, Doors, DoorsConfig, Request};
 use betadeck::signals::{MotorCommand, RcFrame, RcSource, SensorFrame, SimTime};
 use betadeck::storage::Store;
+use betadeck::telemetry::{ArmingFlag, FirmwareEvent};
 use tokio::sync::{mpsc, oneshot};
 
 const TICK: Duration = Duration::from_millis(1);

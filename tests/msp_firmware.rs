@@ -5,9 +5,10 @@
 use betadeck::firmware::cli::Interpreter;
 use betadeck::firmware::config::Configuration;
 use betadeck::firmware::msp::{MspAction, UtcTime};
-use betadeck::firmware::{DisarmReason, Firmware, FirmwareOptions};
+use betadeck::firmware::{Firmware, FirmwareOptions};
 use betadeck::geo::LatLon;
 use betadeck::signals::{BatterySample, GpsSample, MotorCommand, SensorFrame, SimTime};
+use betadeck::telemetry::DisarmReason;
 use nalgebra::{UnitQuaternion, Vector3};
 
 /// A firmware on a bench under an open sky.

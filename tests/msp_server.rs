@@ -4,7 +4,6 @@
 
 use betadeck::firmware::cli::BuildInfo;
 use betadeck::firmware::config::{Configuration, Feature, ModeCondition, RxFailMode};
-use betadeck::firmware::mode::{Mode, ModeFlags};
 use betadeck::firmware::modes::BoxSet;
 use betadeck::firmware::msp::{
     Access, BatteryReading, BatteryState, GpsReading, HomeReading, MESSAGES, MspAction, MspFacts, UtcTime,
@@ -13,6 +12,7 @@ use betadeck::firmware::msp::{
 use betadeck::firmware::settings::Scope;
 use betadeck::geo::LatLon;
 use betadeck::link::proto::msp::{Decoder, Frame};
+use betadeck::telemetry::{Mode, ModeFlags};
 use nalgebra::{UnitQuaternion, Vector3};
 use proptest::prelude::*;
 

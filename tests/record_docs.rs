@@ -3,14 +3,14 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use betadeck::autopilot::io::{AbortReason, Guard, GuardOp, NavEvent, NavState, PlanSource, Refusal};
-use betadeck::firmware::mode::ModeFlags;
-use betadeck::firmware::{DisarmReason, FirmwareEvent};
 use betadeck::geo::LatLon;
 use betadeck::plan::{FlightPlan, Waypoint, WaypointType};
 use betadeck::record::{End, json};
 use betadeck::signals::SimTime;
-use betadeck::vehicle::{DoorPlaces, Event, EventKind, Snapshot};
+use betadeck::telemetry::{
+    AbortReason, DisarmReason, DoorPlaces, Event, EventKind, FirmwareEvent, Guard, GuardOp, ModeFlags,
+    NavEvent, NavState, PlanSource, Refusal, Snapshot,
+};
 
 /// One event of each kind.
 fn one_of_each() -> Vec<EventKind> {

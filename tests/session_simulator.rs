@@ -6,7 +6,7 @@ use std::net::{SocketAddr, UdpSocket};
 use std::time::{Duration, Instant};
 
 use betadeck::firmware::config::Configuration;
-use betadeck::firmware::{AttitudeSource, FirmwareEvent, FirmwareOptions};
+use betadeck::firmware::{AttitudeSource, FirmwareOptions};
 use betadeck::link::proto::fdm::{Dialect, State, mirrored, pressure_pa};
 use betadeck::link::proto::fdm_link::{FdmLinkConfig, LinkState};
 use betadeck::link::proto::servo::MotorOrder;
@@ -15,7 +15,8 @@ use betadeck::session::command::{PLACE_IS_OUTSIDE, TIME_IS_OUTSIDE};
 use betadeck::session::{Command, Doorway, Handle, SessionConfig, SessionView, start};
 use betadeck::sim::{WorldConfig, attitude};
 use betadeck::storage::Store;
-use betadeck::vehicle::{Event, EventKind, Vehicle, VehicleConfig};
+use betadeck::telemetry::{Event, EventKind, FirmwareEvent};
+use betadeck::vehicle::{Vehicle, VehicleConfig};
 use nalgebra::Vector3;
 use tokio::sync::{mpsc, oneshot, watch};
 

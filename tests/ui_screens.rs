@@ -1,7 +1,7 @@
 //! What the user interface shows: whole screens, and that no size and no picture breaks it.
 
-use betadeck::autopilot::io::NavState;
 use betadeck::session::command::CliOutput;
+use betadeck::telemetry::NavState;
 use betadeck::ui::picture::svg;
 use betadeck::ui::{AppState, Level, Msg, Pane, Theme, draw, update};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};

@@ -12,7 +12,7 @@ use crate::args::{DoorArgs, FlightArgs, PhysicsArgs};
 use crate::link::proto::fdm_link::FdmLinkConfig;
 use crate::link::{Desk, DoorKind, Doors, DoorsConfig, ExternalSimulator, MotorPort};
 use crate::session::Doorway;
-use crate::vehicle::DoorPlaces;
+use crate::telemetry::DoorPlaces;
 
 /// Requests that may wait for the session.
 const WAITING: usize = 256;

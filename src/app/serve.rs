@@ -10,7 +10,7 @@ use crate::args::{OutputFile, ServeArgs, Speed};
 use crate::plan::format::PlanFile;
 use crate::record::{json, sentence};
 use crate::session::{self, Command, Handle, SessionConfig};
-use crate::vehicle::Event;
+use crate::telemetry::Event;
 
 /// Altitude of the scripted pilot, which nobody starts here, m.
 const TAKEOFF_M: f64 = 10.0;

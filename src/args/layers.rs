@@ -12,7 +12,7 @@ use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, FromArgMatches as _};
 
 use super::Cli;
-use crate::nearest::nearest;
+use crate::did_you_mean;
 
 /// Start of the names of environment variables.
 pub const ENVIRONMENT_PREFIX: &str = "BETADECK_";
@@ -153,13 +153,15 @@ impl Layers {
             let Some(name) = variable.strip_prefix(ENVIRONMENT_PREFIX) else { continue };
             let name = option_name(&name.to_ascii_lowercase());
             if !names.contains(&name) {
-                let guess =
-                    nearest(&name, names.iter().map(String::as_str)).map_or_else(String::new, |name| {
+                let guess = did_you_mean::closest(&name, names.iter().map(String::as_str)).map_or_else(
+                    String::new,
+                    |name| {
                         format!(
                             "; did you mean {ENVIRONMENT_PREFIX}{}?",
                             name.to_ascii_uppercase().replace('-', "_")
                         )
-                    });
+                    },
+                );
                 problems.push(format!("environment variable {variable} is not an option{guess}"));
             }
         }
@@ -186,7 +188,7 @@ impl Layers {
         let unknown = self.file.keys().filter(|key| !names.contains(&option_name(key)));
         unknown
             .map(|key| {
-                let guess = nearest(&option_name(key), names.iter().map(String::as_str));
+                let guess = did_you_mean::closest(&option_name(key), names.iter().map(String::as_str));
                 let guess = guess.map_or_else(String::new, |name| format!("; did you mean {name}?"));
                 format!("{}: {key} is not an option{guess}", self.file_name)
             })

@@ -4,8 +4,8 @@ use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use crate::did_you_mean;
 use crate::firmware::settings;
-use crate::nearest::nearest;
 use crate::plan::format::{Format, setting_line};
 use crate::signals::RC_CHANNELS;
 use crate::sim::{Noise, ParseError, ScheduledFault, Switches, Turbulence, Wind, step_us};
@@ -136,7 +136,7 @@ fn channel_index(text: &str) -> Result<u8, String> {
         None => number(&name, 0),
     });
     index.and_then(|index| u8::try_from(index).ok()).ok_or_else(|| {
-        let guess = nearest(&name, STICKS).map_or_else(String::new, |word| format!("; did you mean {word}?"));
+        let guess = did_you_mean::suffix(&name, STICKS);
         format!("{text} is not a channel{guess} (roll, pitch, throttle, yaw, aux1 to aux12, or 1 to 16)")
     })
 }

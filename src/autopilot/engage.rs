@@ -1,13 +1,11 @@
 //! Why the autopilot engages, or not: the preconditions in their order, with words for people.
 
-use std::borrow::Cow;
-
 use super::fence;
-use super::io::{AbortReason, Refusal};
 use super::params::Params;
 use crate::geo::LatLon;
 use crate::plan::FlightPlan;
 use crate::plan::validate::{PlanFault, check_plan};
+use crate::telemetry::{AbortReason, Refusal};
 
 /// Facts for the decision, each line of the list one field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -77,44 +75,6 @@ pub fn check_craft(facts: &EngageFacts) -> Result<(), Refusal> {
         return Err(Refusal::NoAltitude);
     }
     Ok(())
-}
-
-impl Refusal {
-    /// One sentence: what is missing and what to do.
-    #[must_use]
-    pub fn sentence(&self) -> Cow<'static, str> {
-        match self {
-            Self::NotArmed => "Autopilot needs an armed craft: arm first, then switch on.".into(),
-            Self::Throttle => "Raise the throttle once after arming.".into(),
-            Self::NoFix => "No GPS fix: wait for satellites.".into(),
-            Self::NoAltitude => "No altitude estimate.".into(),
-            Self::NoPlan => "No waypoints: upload a plan.".into(),
-            Self::PlanCorrupt => "The stored plan is damaged: upload it again.".into(),
-            Self::BadWaypoint(wp) => format!(
-                "Waypoint {wp} is invalid: its position must lie within \u{b1}90\u{b0} and \u{b1}180\u{b0} and its type and pattern \
-                 must be known; correct it."
-            )
-            .into(),
-            Self::NoHome => "Fence is set but home is unknown: arm with a fix.".into(),
-            Self::Geofence { wp, distance_cm, limit_m } => format!(
-                "Waypoint {wp} is {:.0} m from home, the fence is {limit_m} m.",
-                f64::from(*distance_cm) / 100.0
-            )
-            .into(),
-            Self::Failsafe => "RX failsafe is active.".into(),
-            Self::Aborted(why) => match why {
-                AbortReason::Stalled => {
-                    "The mission was given up because the craft made no progress: cycle the switch.".into()
-                }
-                AbortReason::Flyaway => {
-                    "The mission was given up because the craft moved away from its waypoint: cycle the switch."
-                        .into()
-                }
-                AbortReason::GpsLost => "The GPS fix was lost: the mission resumes 2 s after it is back.".into(),
-                AbortReason::NoPlan => "The plan was cleared in flight: upload a plan.".into(),
-            },
-        }
-    }
 }
 
 #[cfg(test)]

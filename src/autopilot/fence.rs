@@ -1,9 +1,9 @@
 //! The fence: a greatest horizontal distance from home. Exactly on it is inside.
 
-use super::io::{Guard, GuardOp, NavState, PlanSource, Refusal};
 use super::params::FenceAction;
 use crate::geo::{LatLon, distance_bearing};
 use crate::plan::{FlightPlan, WaypointType};
+use crate::telemetry::{Guard, GuardOp, NavState, PlanSource, Refusal};
 
 /// Facts for the check in flight.
 #[derive(Debug, Clone, Copy, PartialEq)]

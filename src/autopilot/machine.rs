@@ -15,9 +15,9 @@ use arrayvec::ArrayVec;
 
 use super::fence::FenceFacts;
 use super::guidance::{PlaneCrossing, TouchdownFacts};
-use super::io::{AbortReason, Guard, NavState, PlanSource};
 use super::params::FenceAction;
 use crate::plan::{HoldPattern, WaypointType};
+use crate::telemetry::{AbortReason, Guard, NavState, PlanSource};
 
 pub use rules::rules;
 pub use table::transition_table;

@@ -16,11 +16,12 @@ use nalgebra::Vector2;
 
 use super::control::{AltitudeController, PositionController, YawController};
 use super::guidance::{CornerArc, TouchdownTimer};
-use super::io::{AbortReason, NavEvent, NavInputs, NavOutput, NavState, NavTelemetry, PlanSource, Refusal};
+use super::io::NavInputs;
 use super::params::Params;
 use crate::geo::LatLon;
 use crate::plan::FlightPlan;
 use crate::signals::SimTime;
+use crate::telemetry::{AbortReason, NavEvent, NavOutput, NavState, NavTelemetry, PlanSource, Refusal};
 
 pub use entry::Rescue;
 

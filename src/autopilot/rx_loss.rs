@@ -1,7 +1,7 @@
 //! What a lost receiver means for a mission, decided when stage 2 of the failsafe begins.
 
-use super::io::NavState;
 use super::params::RxLossPolicy;
+use crate::telemetry::NavState;
 
 /// Facts for the decision.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

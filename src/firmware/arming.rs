@@ -4,17 +4,14 @@
 //! ARM_SWITCH, which stays until the switch goes off.
 
 pub mod crash;
-pub mod flags;
 pub mod impact;
 pub mod runaway;
 
-pub use flags::{ArmingFlag, ArmingFlags};
-
 use crate::signals::SimTime;
 
-use super::event::DisarmReason;
 use super::modes::boxes::{self, BoxSet};
 use super::rx::Sticks;
+use crate::telemetry::{ArmingFlag, ArmingFlags, DisarmReason};
 
 /// RC updates with the ARM switch off that disarm.
 const SWITCH_OFF_UPDATES: u8 = 4;

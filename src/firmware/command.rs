@@ -1,13 +1,12 @@
 //! What the owner of the firmware can ask of it: command line, plans, return home, restart.
 
-use crate::autopilot::io::{NavEvent, Refusal};
 use crate::signals::{RcFrame, RcSource};
+use crate::telemetry::{DisarmReason, FirmwareEvent, NavEvent, Refusal};
 
 use super::Firmware;
 use super::cli::{BuildInfo, CliAction, CliContext, CliReply, Interpreter, StorageFacts};
 use super::config::{Configuration, Feature, correct};
 use super::estimate::NotTurned;
-use super::event::{DisarmReason, FirmwareEvent};
 use super::parameters::Parameters;
 use super::settings::Value;
 

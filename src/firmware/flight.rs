@@ -1,11 +1,10 @@
 //! From who flies to what the controller is told: sticks, navigator, holds, and the descent of the failsafe.
 
-use crate::autopilot::io::NavOutput;
 use crate::signals::MotorCommand;
+use crate::telemetry::{Mode, ModeFlags, NavOutput};
 
 use super::control::{ControlInput, ControlState, Controller, LeanDemand, StickMode, Tuning};
 use super::estimate::{DueTasks, Estimate};
-use super::mode::{Mode, ModeFlags};
 use super::rx::Sticks;
 
 /// A motor that stands still, µs.

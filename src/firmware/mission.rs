@@ -3,10 +3,11 @@
 //! Priority: failsafe procedure, then commands and rescue, then the switch. Orders by command and rescue stay until
 //! touchdown, disarming, the AUTOPILOT switch going off, or a cancel.
 
-use crate::autopilot::io::{AbortReason, NavInputs, NavState, Refusal};
+use crate::autopilot::io::NavInputs;
 use crate::autopilot::rx_loss::{RxLossAction, RxLossFacts, decide};
 use crate::autopilot::{Navigator, Params, Rescue};
 use crate::plan::FlightPlan;
+use crate::telemetry::{AbortReason, NavState, Refusal};
 
 use super::failsafe::{MissionStatus, Procedure, Response};
 use super::modes::AfterAbort;

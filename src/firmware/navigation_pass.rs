@@ -1,14 +1,13 @@
 //! The hundred-a-second pass: failsafe, orders, navigator, holds, and which modes are on.
 
-use crate::autopilot::io::{AbortReason, NavEvent, NavInputs, NavState};
+use crate::autopilot::io::NavInputs;
+use crate::telemetry::{AbortReason, DisarmReason, FirmwareEvent, Mode, ModeFlags, NavEvent, NavState};
 
 use super::Firmware;
 use super::control::hold::HoldModes;
-use super::event::{DisarmReason, FirmwareEvent};
 use super::failsafe::{FailsafeAction, FailsafeFacts, Procedure, Response};
 use super::flight::Demand;
 use super::mission::{OrderFacts, failsafe_response};
-use super::mode::{Mode, ModeFlags};
 use super::modes::{ModeFacts, boxes, flight_modes};
 use super::parameters::RescueCause;
 

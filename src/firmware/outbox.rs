@@ -1,6 +1,6 @@
 //! Events on their way out of the firmware: a fixed room, and a count of what did not fit.
 
-use super::event::FirmwareEvent;
+use crate::telemetry::FirmwareEvent;
 
 /// Most events between two drains.
 pub const CAPACITY: usize = 64;

@@ -7,12 +7,11 @@ use super::arming::crash::{CrashAction, CrashFacts};
 use super::arming::impact::ImpactFacts;
 use super::arming::runaway::RunawayFacts;
 use super::arming::{ArmingChange, ArmingFacts};
-use super::event::{DisarmReason, FirmwareEvent};
 use super::failsafe::SwitchMode;
 use super::failsafe::link::LinkChange;
 use super::flight::Demand;
-use super::mode::Mode;
 use super::modes::{self, BoxSet, boxes};
+use crate::telemetry::{DisarmReason, FirmwareEvent, Mode};
 
 impl Firmware {
     /// Time since this firmware booted.

@@ -4,7 +4,7 @@ use crate::signals::BatterySample;
 
 use super::Firmware;
 use super::battery::BatteryState;
-use super::event::FirmwareEvent;
+use crate::telemetry::FirmwareEvent;
 
 impl Firmware {
     /// Tells what the sensors have to say for themselves, and keeps the results of calibrations.

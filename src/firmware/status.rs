@@ -2,17 +2,14 @@
 
 use arrayvec::ArrayVec;
 
-use crate::autopilot::io::NavTelemetry;
 use crate::geo::LatLon;
 use crate::plan::FlightPlan;
 use crate::signals::{RC_CHANNELS, RcSource, SimTime};
-use crate::vehicle::snapshot::{CraftView, EstimateView, ModeRange, SettingsView};
+use crate::telemetry::snapshot::{CraftView, EstimateView, ModeRange, SettingsView};
+use crate::telemetry::{ArmingFlags, DisarmReason, FirmwareEvent, ModeFlags, NavTelemetry};
 
-use super::arming::ArmingFlags;
 use super::config::{Configuration, ModeCondition};
 use super::estimate::Estimate;
-use super::event::{DisarmReason, FirmwareEvent};
-use super::mode::ModeFlags;
 use super::modes::{BoxSet, boxes};
 use super::parameters::Parameters;
 use super::rx::{Receiver, channels};

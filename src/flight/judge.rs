@@ -1,8 +1,7 @@
 //! Decides when a headless flight is over and what became of it.
 
-use crate::autopilot::io::{NavState, PlanSource, Refusal};
-use crate::firmware::DisarmReason;
 use crate::signals::SimTime;
+use crate::telemetry::{DisarmReason, NavState, PlanSource, Refusal};
 
 /// Seconds a completed mission without a LAND is watched, still parked.
 const PARKED_S: f64 = 5.0;

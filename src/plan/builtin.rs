@@ -1,7 +1,7 @@
 //! The plans that travel with the executable, by name: the same files as in `plans/`.
 
 use super::format::{Format, PlanError, PlanFile, parse};
-use crate::nearest::nearest;
+use crate::did_you_mean;
 
 /// The plan that is loaded when none is named: the square of the Betaflight SITL autopilot guide.
 pub const DEMO: &str = "square";
@@ -40,7 +40,7 @@ impl BuiltinPlan {
     /// The name of a built-in plan that `name` may stand for.
     #[must_use]
     pub fn suggest(name: &str) -> Option<&'static str> {
-        nearest(name, PLANS.iter().map(|plan| plan.name))
+        did_you_mean::closest(name, PLANS.iter().map(|plan| plan.name))
     }
 
     /// Reads the plan.

@@ -10,7 +10,7 @@ mod sample;
 use serde::Serialize;
 
 use crate::signals::SimTime;
-use crate::vehicle::{Event, Snapshot};
+use crate::telemetry::{Event, Snapshot};
 
 use super::End;
 use super::number::{Decimals, Milli};

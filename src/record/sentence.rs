@@ -1,9 +1,9 @@
 //! The same events as plain sentences, for people: `fly` without `--json`, `serve`, the log.
 
-use crate::autopilot::io::{Guard, NavEvent, NavState, PlanSource};
-use crate::firmware::{DisarmReason, FirmwareEvent};
 use crate::plan::{FlightPlan, WaypointType};
-use crate::vehicle::{DoorPlaces, Event, EventKind};
+use crate::telemetry::{
+    DisarmReason, DoorPlaces, Event, EventKind, FirmwareEvent, Guard, NavEvent, NavState, PlanSource,
+};
 
 /// `  12.4 s  Armed.`; `None` for the few events that only matter inside the craft.
 #[must_use]
@@ -159,9 +159,9 @@ fn sentence_end(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::autopilot::io::{GuardOp, Refusal};
     use crate::geo::LatLon;
     use crate::signals::SimTime;
+    use crate::telemetry::{GuardOp, Refusal};
 
     fn say(event: FirmwareEvent) -> String {
         text(&EventKind::Firmware(event)).expect("a sentence")
@@ -227,7 +227,7 @@ mod tests {
             FirmwareEvent::Disarmed(DisarmReason::Landing),
             FirmwareEvent::Notice("No full stop"),
             FirmwareEvent::Notice("A question?"),
-            FirmwareEvent::Mode(crate::firmware::mode::ModeFlags::NONE),
+            FirmwareEvent::Mode(crate::telemetry::ModeFlags::NONE),
             FirmwareEvent::Nav(NavEvent::Geofence { distance_m: 100.4, limit_m: 100.0, action: "RTH" }),
         ] {
             let sentence = say(event);

@@ -2,11 +2,8 @@
 
 use strum::IntoEnumIterator as _;
 
-use crate::firmware::arming::ArmingFlag;
-use crate::firmware::mode::Mode;
 use crate::signals::{RcSource, SimTime};
-use crate::vehicle::Snapshot;
-use crate::vehicle::switch;
+use crate::telemetry::{ArmingFlag, Mode, Snapshot, switch};
 
 /// How long the switch is on before the user is told, s.
 const PATIENCE_S: f64 = 1.0;
@@ -58,7 +55,7 @@ fn cause(name: &str) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::vehicle::snapshot::ModeRange;
+    use crate::telemetry::snapshot::ModeRange;
 
     /// A craft whose script holds the ARM switch on.
     fn vehicle(seconds: f64, flags: &[&'static str]) -> Snapshot {

@@ -19,7 +19,8 @@ use crate::plan::FlightPlan;
 use crate::signals::RcSource;
 use crate::sim::WorldCommand;
 use crate::storage::Store;
-use crate::vehicle::{Event, Vehicle};
+use crate::telemetry::Event;
+use crate::vehicle::Vehicle;
 
 /// Interval of published pictures.
 const PICTURE: Duration = Duration::from_millis(16);

@@ -20,7 +20,7 @@ use nalgebra::Vector3;
 use crate::geo::GRAVITY;
 
 use super::battery::BatterySpec;
-use super::suggest::did_you_mean;
+use crate::did_you_mean;
 
 mod check;
 mod file;
@@ -221,7 +221,10 @@ impl FromStr for Airframe {
         match name {
             "iris" => Ok(Self::iris()),
             "five-inch" => Ok(Self::five_inch()),
-            _ => Err(UnknownAirframe { name: name.to_owned(), hint: did_you_mean(name, BUILTIN_NAMES) }),
+            _ => Err(UnknownAirframe {
+                name: name.to_owned(),
+                hint: did_you_mean::suffix(name, BUILTIN_NAMES),
+            }),
         }
     }
 }

@@ -8,8 +8,8 @@ use strum::VariantNames;
 use super::airframe::Airframe;
 use super::fault::{FaultLink, ScheduledFault};
 use super::parse::{ParseError, number, number_in};
-use super::suggest::did_you_mean;
 use super::switches::Switches;
+use crate::did_you_mean;
 
 /// Step rates that a world accepts, Hz. Each divides a hundredth of a second into whole steps.
 pub const STEP_RATES_HZ: [u32; 6] = [400, 500, 1000, 2000, 4000, 8000];
@@ -271,7 +271,7 @@ impl Turbulence {
 }
 
 pub(super) fn one_of(what: &'static str, text: &str, names: &[&'static str]) -> ParseError {
-    let hint = did_you_mean(text, names.iter().copied());
+    let hint = did_you_mean::suffix(text, names.iter().copied());
     ParseError::new(what, text, format!("allowed are {}{hint}", names.join(", ")))
 }
 

@@ -3,7 +3,7 @@
 use super::command::in_range;
 use super::config::WorldError;
 use super::parse::{ParseError, number, on_off};
-use super::suggest::did_you_mean;
+use crate::did_you_mean;
 
 /// How the mean wind changes with height.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::Display)]
@@ -129,7 +129,7 @@ impl Switches {
         };
         let (name, value) = (name.trim(), value.trim());
         let Some(info) = SWITCHES.iter().find(|info| info.name == name) else {
-            let hint = did_you_mean(name, SWITCHES.iter().map(|s| s.name));
+            let hint = did_you_mean::suffix(name, SWITCHES.iter().map(|s| s.name));
             return Err(error(format!(
                 "there is no switch {name}{hint}; there are {}",
                 SWITCHES.map(|s| s.name).join(", ")

@@ -1,6 +1,6 @@
 //! Everything a key can do, by name: the one table behind keymap, hint bar and help.
 
-use crate::firmware::mode::Mode;
+use crate::telemetry::Mode;
 
 use super::hands;
 use super::state::{AppState, Pane};

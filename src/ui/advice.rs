@@ -1,9 +1,8 @@
 //! What stands in the way of flying, and what to do about it: one sentence and one way out.
 
-use crate::autopilot::io::{AbortReason, NavState, Refusal};
-use crate::firmware::mode::Mode;
 use crate::link::proto::fdm_link::LinkState;
 use crate::plan::FlightPlan;
+use crate::telemetry::{AbortReason, Mode, NavState, Refusal};
 
 use super::hands::{self, ThrottleMove};
 use super::log::Level;

@@ -2,11 +2,11 @@
 
 use std::time::Duration;
 
-use crate::firmware::mode::Mode;
 use crate::session::Command;
 use crate::signals::{RcFrame, RcSource};
-use crate::vehicle::snapshot::ModeRange;
-use crate::vehicle::switch::{self, Switch};
+use crate::telemetry::snapshot::ModeRange;
+use crate::telemetry::switch::Switch;
+use crate::telemetry::{Mode, switch};
 
 use super::advice;
 use super::log::Level;

@@ -2,10 +2,8 @@
 
 use std::collections::VecDeque;
 
-use crate::autopilot::io::{NavEvent, NavState};
-use crate::firmware::{DisarmReason, FirmwareEvent};
 use crate::signals::SimTime;
-use crate::vehicle::EventKind;
+use crate::telemetry::{DisarmReason, EventKind, FirmwareEvent, NavEvent, NavState};
 
 use super::theme::Role;
 

@@ -246,7 +246,7 @@ pub fn round_length(metres: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::plan::Waypoint;
-    use crate::vehicle::snapshot::TruthView;
+    use crate::telemetry::snapshot::TruthView;
 
     fn viewport() -> Viewport {
         Viewport { area: Rect::new(3, 5, 40, 20), centre: Ground::new(10.0, -20.0), scale: 2.0 }

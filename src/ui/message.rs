@@ -6,7 +6,7 @@ use crossterm::event::{KeyEvent, MouseEvent};
 
 use crate::plan::FlightPlan;
 use crate::session::command::{CliOutput, Command, SessionView};
-use crate::vehicle::Event;
+use crate::telemetry::Event;
 
 /// Something that happened outside.
 #[derive(Debug)]

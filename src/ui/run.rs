@@ -11,7 +11,7 @@ use tokio::sync::{mpsc, oneshot, watch};
 use tokio::time::sleep;
 
 use crate::session::{Command, SessionView};
-use crate::vehicle::Event;
+use crate::telemetry::Event;
 
 use super::message::{Effect, Msg};
 use super::state::{AppState, UiConfig};

@@ -3,12 +3,10 @@
 use std::collections::VecDeque;
 use std::time::Duration;
 
-use crate::autopilot::io::{NavEvent, NavState};
-use crate::firmware::FirmwareEvent;
 use crate::plan::FlightPlan;
 use crate::session::SessionView;
 use crate::signals::{RcFrame, SimTime};
-use crate::vehicle::{Event, EventKind};
+use crate::telemetry::{Event, EventKind, FirmwareEvent, NavEvent, NavState};
 
 use super::cli::{CliHelp, CliState};
 use super::keymap::Keymap;

@@ -5,10 +5,9 @@ use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 use unicode_width::UnicodeWidthStr as _;
 
-use crate::autopilot::io::NavState;
-use crate::firmware::mode::Mode;
 use crate::link::proto::fdm_link::LinkState;
 use crate::signals::RcSource;
+use crate::telemetry::{Mode, NavState};
 
 use super::action::{Action, enabled, is_wrecked, spec_of};
 use super::hands::{self, ThrottleMove};

@@ -3,9 +3,9 @@
 use nalgebra::Vector3;
 
 use super::Vehicle;
-use super::snapshot::TruthView;
 use crate::geo::LocalFrame;
 use crate::signals::{MotorCommand, Pose, SensorFrame};
+use crate::telemetry::snapshot::TruthView;
 
 /// Lower than this above its start (m) and slower than [`STANDING_MPS`], the craft counts as standing: a simulator does
 /// not tell of contact.

@@ -3,10 +3,10 @@
 use nalgebra::Vector2;
 
 use super::outside::Outside;
-use super::snapshot::{EstimateView, Snapshot, TruthView, WorldView};
 use super::{EXTERNAL, Vehicle};
 use crate::geo::{LocalFrame, offset_to_degrees};
 use crate::sim::Noise;
+use crate::telemetry::snapshot::{EstimateView, Snapshot, TruthView, WorldView};
 
 impl Vehicle {
     /// A picture of the whole vehicle at this instant.

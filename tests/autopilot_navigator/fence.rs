@@ -1,9 +1,9 @@
 //! The fence, before the flight and in it.
 
-use betadeck::autopilot::io::{NavEvent, NavState, PlanSource, Refusal};
 use betadeck::autopilot::params::FenceAction;
 use betadeck::autopilot::{Navigator, Params};
 use betadeck::plan::WaypointType::{Flyover, Hold};
+use betadeck::telemetry::{NavEvent, NavState, PlanSource, Refusal};
 
 use crate::flight::{Flight, guide, inputs, plan, waypoint, worst};
 

@@ -1,7 +1,7 @@
 //! The last metres of a landing.
 
-use betadeck::autopilot::io::NavState;
 use betadeck::plan::WaypointType::Land;
+use betadeck::telemetry::NavState;
 
 use crate::flight::{Flight, guide, waypoint, worst};
 

@@ -1,11 +1,12 @@
 //! Legs: the climb before them, corners that were missed, modifiers, lines, the nose.
 
-use betadeck::autopilot::io::{L1Mode, NavEvent, NavInputs, NavState};
+use betadeck::autopilot::io::NavInputs;
 use betadeck::autopilot::params::YawMode;
 use betadeck::autopilot::{Navigator, Params};
 use betadeck::geo::{LatLon, distance_bearing, offset_to_latlon};
 use betadeck::plan::Waypoint;
 use betadeck::plan::WaypointType::{AltChange, Delay, Flyover, Hold, Takeoff, YawRate};
+use betadeck::telemetry::{L1Mode, NavEvent, NavState};
 use nalgebra::Vector2;
 
 use crate::flight::{Flight, HOME, guide, inputs, plan, waypoint, worst};

@@ -1,8 +1,8 @@
 //! What goes wrong: fix, progress, broken inputs.
 
-use betadeck::autopilot::io::{AbortReason, NavState, Refusal};
 use betadeck::autopilot::{Navigator, Params};
 use betadeck::signals::SimTime;
+use betadeck::telemetry::{AbortReason, NavState, Refusal};
 use nalgebra::Vector2;
 
 use crate::{flying, three};

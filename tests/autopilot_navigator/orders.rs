@@ -1,8 +1,9 @@
 //! Return home and emergency landing by command.
 
-use betadeck::autopilot::io::{NavEvent, NavInputs, NavState, PlanSource, Refusal};
+use betadeck::autopilot::io::NavInputs;
 use betadeck::autopilot::{Navigator, Params, Rescue};
 use betadeck::plan::WaypointType::{Flyover, Hold};
+use betadeck::telemetry::{NavEvent, NavState, PlanSource, Refusal};
 use nalgebra::Vector2;
 
 use crate::flight::{Flight, guide, inputs, waypoint, worst};

@@ -1,9 +1,10 @@
 //! What a state announces, how long it lasts, and what survives it.
 
-use betadeck::autopilot::io::{NavEvent, NavInputs, NavState};
+use betadeck::autopilot::io::NavInputs;
 use betadeck::autopilot::{Navigator, Params};
 use betadeck::plan::WaypointType::{AltChange, Flyby, Flyover, Hold, Land};
 use betadeck::plan::{FlightPlan, HoldPattern};
+use betadeck::telemetry::{NavEvent, NavState};
 use nalgebra::Vector2;
 
 use crate::flight::{Flight, guide, inputs, plan, waypoint, worst};

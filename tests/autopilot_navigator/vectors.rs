@@ -2,12 +2,13 @@
 
 use std::path::Path;
 
-use betadeck::autopilot::io::{NavInputs, NavState, Refusal};
+use betadeck::autopilot::io::NavInputs;
 use betadeck::autopilot::{Navigator, Params};
 use betadeck::geo::offset_to_latlon;
 use betadeck::plan::WaypointType::{Flyover, Hold, Land};
 use betadeck::plan::{FlightPlan, Waypoint, WaypointType};
 use betadeck::signals::SimTime;
+use betadeck::telemetry::{NavState, Refusal};
 use nalgebra::Vector2;
 use serde_json::Value;
 

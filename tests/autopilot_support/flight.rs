@@ -7,11 +7,12 @@ use betadeck::autopilot::control::{
     AltitudeController, AltitudeMeasurement, AltitudeTarget, PositionController, PositionMeasurement,
     PositionTarget, earth_to_body, throttle_share,
 };
-use betadeck::autopilot::io::{NavEvent, NavInputs, NavOutput, NavState};
+use betadeck::autopilot::io::NavInputs;
 use betadeck::autopilot::{Navigator, Params};
 use betadeck::geo::{GRAVITY, LatLon, local_offset, offset_to_latlon};
 use betadeck::plan::{FlightPlan, HoldPattern, Waypoint, WaypointType};
 use betadeck::signals::SimTime;
+use betadeck::telemetry::{NavEvent, NavOutput, NavState};
 use nalgebra::Vector2;
 
 pub const HOME: LatLon = LatLon::new(404_635_000, -795_182_000);

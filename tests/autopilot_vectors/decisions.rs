@@ -4,12 +4,12 @@ use std::str::FromStr;
 
 use betadeck::autopilot::engage::{EngageFacts, check};
 use betadeck::autopilot::fence::{FenceFacts, in_flight, pre_flight};
-use betadeck::autopilot::io::{AbortReason, PlanSource, Refusal};
 use betadeck::autopilot::params::{FenceAction, RxLossPolicy};
 use betadeck::autopilot::rx_loss::{RxLossFacts, decide};
 use betadeck::geo::LatLon;
 use betadeck::plan::validate::{PlanFault, WaypointFault, check_records, is_valid_index};
 use betadeck::plan::{HoldPattern, Waypoint, WaypointType};
+use betadeck::telemetry::{AbortReason, PlanSource, Refusal};
 use serde_json::Value;
 use strum::IntoEnumIterator;
 

@@ -4,10 +4,10 @@ use betadeck::autopilot::guidance::{
     CornerArc, L1Limits, PlaneCrossing, figure8, l1, leg_speed_mps, orbit, pattern_rate_rps, plane_crossing,
     stop_speed_mps, turn_radius_m,
 };
-use betadeck::autopilot::io::{L1Mode, NavState};
 use betadeck::autopilot::machine::{Facts, Outcome, transition};
 use betadeck::autopilot::params::Params;
 use betadeck::geo::offset_to_latlon;
+use betadeck::telemetry::{L1Mode, NavState};
 
 use crate::{cases, close, close_angle, close_place, flag, metres, num, point, set, text};
 

@@ -3,10 +3,10 @@
 use betadeck::autopilot::guidance::{
     Spiral, TouchdownFacts, TouchdownTimer, landing_setpoint_m, spiral_offset,
 };
-use betadeck::autopilot::io::NavState;
 use betadeck::autopilot::machine::{Facts, Outcome, transition};
 use betadeck::autopilot::params::Params;
 use betadeck::signals::SimTime;
+use betadeck::telemetry::NavState;
 use nalgebra::Vector2;
 
 use crate::{cases, close, flag, num, set};

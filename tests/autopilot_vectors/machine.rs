@@ -5,11 +5,11 @@ use std::str::FromStr;
 use betadeck::autopilot::guidance::{
     PlaneCrossing, TouchdownFacts, hold_expired, hold_remaining_ds, turn_radius_m,
 };
-use betadeck::autopilot::io::NavState;
 use betadeck::autopilot::machine::{Facts, Outcome, ProgressFacts, transition};
 use betadeck::autopilot::params::FenceAction;
 use betadeck::plan::{HoldPattern, WaypointType};
 use betadeck::signals::SimTime;
+use betadeck::telemetry::NavState;
 use serde_json::Value;
 
 use crate::{cases, fence_action, flag, num, state, text};

@@ -3,11 +3,10 @@
 use std::collections::BTreeSet;
 
 use betadeck::autopilot::Params;
-use betadeck::autopilot::io::{NavEvent, NavState};
+use betadeck::firmware::Firmware;
 use betadeck::firmware::failsafe::Procedure;
-use betadeck::firmware::mode::Mode;
 use betadeck::firmware::modes::boxes;
-use betadeck::firmware::{Firmware, FirmwareEvent};
+use betadeck::telemetry::{FirmwareEvent, Mode, NavEvent, NavState};
 
 /// Updates that a changed limit may take to be in force.
 const SETTLE: u32 = 300;

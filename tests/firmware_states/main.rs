@@ -20,7 +20,8 @@ use betadeck::firmware::config::Configuration;
 use betadeck::plan::FlightPlan;
 use betadeck::signals::{RcFrame, RcSource};
 use betadeck::sim::{Noise, WorldConfig};
-use betadeck::vehicle::{EventKind, Vehicle, VehicleConfig};
+use betadeck::telemetry::EventKind;
+use betadeck::vehicle::{Vehicle, VehicleConfig};
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 

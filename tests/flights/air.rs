@@ -2,10 +2,8 @@
 
 use crate::checks::{Checks, assert_met, greatest, mean};
 use crate::rig::{Rig, Sample, world};
-use betadeck::autopilot::io::{NavEvent, NavState};
-use betadeck::firmware::{DisarmReason, FirmwareEvent};
 use betadeck::sim::{Fault, Wind, WorldCommand};
-use betadeck::vehicle::EventKind;
+use betadeck::telemetry::{DisarmReason, EventKind, FirmwareEvent, NavEvent, NavState};
 
 const HOLD: &str = "waypoint insert 0 40.4635901 -79.5182000 2000 500 HOLD 0 NONE";
 

@@ -2,10 +2,8 @@
 
 use crate::checks::greatest;
 use crate::rig::{Rig, world};
-use betadeck::autopilot::io::NavState;
-use betadeck::firmware::mode::Mode;
 use betadeck::signals::RcFrame;
-use betadeck::vehicle::EventKind;
+use betadeck::telemetry::{EventKind, Mode, NavState};
 
 /// A craft that hovers ten metres up, held by the switches of the scripted pilot, who has let go.
 fn hovering() -> (Rig, RcFrame) {

@@ -2,7 +2,7 @@
 
 use crate::checks::{Checks, assert_met, greatest};
 use crate::rig::{Rig, SEEDS, Sample, world};
-use betadeck::autopilot::io::NavState;
+use betadeck::telemetry::NavState;
 
 const PLACES: [&str; 6] = [
     "40.4640403 -79.5182000",

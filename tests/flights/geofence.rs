@@ -2,11 +2,9 @@
 
 use crate::checks::{Checks, assert_met, greatest};
 use crate::rig::{Rig, SEEDS, world};
-use betadeck::autopilot::io::{NavEvent, NavState, PlanSource, Refusal};
-use betadeck::firmware::FirmwareEvent;
-use betadeck::firmware::mode::Mode;
 use betadeck::plan::WaypointType;
-use betadeck::vehicle::{EventKind, StickInput};
+use betadeck::telemetry::{EventKind, FirmwareEvent, Mode, NavEvent, NavState, PlanSource, Refusal};
+use betadeck::vehicle::StickInput;
 
 const FENCE: &str = "set ap_max_distance_from_home = 100\n";
 

@@ -2,11 +2,8 @@
 
 use crate::checks::{Checks, assert_met, greatest};
 use crate::rig::{Rig, SEEDS, Sample, world};
-use betadeck::autopilot::io::NavState;
-use betadeck::firmware::FirmwareEvent;
-use betadeck::firmware::mode::Mode;
 use betadeck::sim::{Fault, WorldCommand};
-use betadeck::vehicle::EventKind;
+use betadeck::telemetry::{EventKind, FirmwareEvent, Mode, NavState};
 
 const MISSION: &str = "
 waypoint insert 0 40.4640403 -79.5182000 2000 500 FLYOVER 0 ORBIT

@@ -2,9 +2,7 @@
 
 use crate::checks::{Checks, assert_met, greatest};
 use crate::rig::{Rig, Sample, world};
-use betadeck::autopilot::io::NavState;
-use betadeck::firmware::DisarmReason;
-use betadeck::vehicle::EventKind;
+use betadeck::telemetry::{DisarmReason, EventKind, NavState};
 
 /// The firmware's own altitude gains instead of the guide's.
 const DEFAULT_GAINS: &str = "

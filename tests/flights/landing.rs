@@ -2,10 +2,8 @@
 
 use crate::checks::{Checks, assert_met, greatest};
 use crate::rig::{Rig, SEEDS, Sample, world};
-use betadeck::autopilot::io::NavState;
-use betadeck::firmware::DisarmReason;
 use betadeck::sim::{Turbulence, Wind};
-use betadeck::vehicle::EventKind;
+use betadeck::telemetry::{DisarmReason, EventKind, NavState};
 
 fn landing(seed: u64, wind: Wind) -> Option<String> {
     let (mut world, extra) = world(seed);

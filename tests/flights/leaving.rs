@@ -1,11 +1,8 @@
 //! Ways out of a mission: what stays on, and what brings it back.
 
 use crate::rig::{Rig, world};
-use betadeck::autopilot::io::{AbortReason, NavEvent, NavState, Refusal};
-use betadeck::firmware::FirmwareEvent;
-use betadeck::firmware::mode::Mode;
 use betadeck::sim::{Fault, WorldCommand};
-use betadeck::vehicle::{Event, EventKind};
+use betadeck::telemetry::{AbortReason, Event, EventKind, FirmwareEvent, Mode, NavEvent, NavState, Refusal};
 
 const MISSION: &str = "
 waypoint insert 0 40.4640403 -79.5182000 2000 500 FLYOVER 0 ORBIT

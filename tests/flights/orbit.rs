@@ -2,8 +2,8 @@
 
 use crate::checks::{Checks, assert_met, greatest};
 use crate::rig::{Rig, SEEDS, Sample, world};
-use betadeck::autopilot::io::NavState;
 use betadeck::sim::Wind;
+use betadeck::telemetry::NavState;
 
 const ORBIT: &str = "
 set ap_hold_orbit_radius = 1000

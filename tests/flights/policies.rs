@@ -1,9 +1,7 @@
 //! Every RX-loss policy with every failsafe procedure, flying a mission and hovering by hand.
 
 use crate::rig::{Rig, world};
-use betadeck::firmware::mode::Mode;
-use betadeck::firmware::{DisarmReason, FirmwareEvent};
-use betadeck::vehicle::EventKind;
+use betadeck::telemetry::{DisarmReason, EventKind, FirmwareEvent, Mode};
 
 const MISSION: &str = "\nwaypoint insert 0 40.4648508 -79.5182000 2000 500 FLYOVER 0 ORBIT
 waypoint insert 1 40.4648508 -79.5174926 2000 500 LAND 0 ORBIT";

@@ -2,8 +2,7 @@
 
 use crate::checks::{Checks, assert_met, greatest};
 use crate::rig::{Rig, world};
-use betadeck::autopilot::io::NavState;
-use betadeck::firmware::DisarmReason;
+use betadeck::telemetry::{DisarmReason, NavState};
 
 const PLAN: &str = "
 waypoint insert 0 40.4636801 -79.5182000 1500 500 HOLD 100 NONE

@@ -2,10 +2,9 @@
 
 use crate::checks::{Checks, assert_met, greatest};
 use crate::rig::{Rig, SEEDS, world};
-use betadeck::autopilot::io::{NavState, PlanSource};
 use betadeck::plan::WaypointType;
 use betadeck::sim::Wind;
-use betadeck::vehicle::EventKind;
+use betadeck::telemetry::{EventKind, NavState, PlanSource};
 
 fn return_home(seed: u64, wind: Wind) -> Option<String> {
     let (mut world, extra) = world(seed);

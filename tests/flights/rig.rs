@@ -1,14 +1,15 @@
 //! A vehicle, its pilot, and a record of what happened.
 
-use betadeck::autopilot::io::{NavEvent, NavState, PlanSource};
+use betadeck::firmware::FirmwareOptions;
 use betadeck::firmware::cli::Interpreter;
 use betadeck::firmware::config::Configuration;
-use betadeck::firmware::mode::ModeFlags;
-use betadeck::firmware::{DisarmReason, FirmwareEvent, FirmwareOptions};
 use betadeck::plan::FlightPlan;
 use betadeck::signals::SimTime;
 use betadeck::sim::{Noise, Switches, WindProfile, WorldConfig};
-use betadeck::vehicle::{Event, EventKind, Vehicle, VehicleConfig};
+use betadeck::telemetry::{
+    DisarmReason, Event, EventKind, FirmwareEvent, ModeFlags, NavEvent, NavState, PlanSource,
+};
+use betadeck::vehicle::{Vehicle, VehicleConfig};
 
 /// The guide's configuration, Step 5, without its `save`: nothing restarts here.
 pub fn guide_settings() -> impl Iterator<Item = &'static str> {

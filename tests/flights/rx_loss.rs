@@ -2,11 +2,8 @@
 
 use crate::checks::{Checks, assert_met, greatest};
 use crate::rig::{Rig, SEEDS, world};
-use betadeck::autopilot::io::{NavState, PlanSource};
-use betadeck::firmware::mode::Mode;
-use betadeck::firmware::{DisarmReason, FirmwareEvent};
 use betadeck::plan::WaypointType;
-use betadeck::vehicle::EventKind;
+use betadeck::telemetry::{DisarmReason, EventKind, FirmwareEvent, Mode, NavState, PlanSource};
 
 const MISSION: &str = "
 waypoint insert 0 40.4648508 -79.5182000 2000 500 FLYOVER 0 ORBIT

@@ -1,12 +1,12 @@
 //! The guide's RC script, which holds the ARM switch on and the throttle at 1100 from its first packet.
 
 use crate::rig::{guide_settings, world};
-use betadeck::autopilot::io::NavState;
 use betadeck::firmware::cli::Interpreter;
 use betadeck::firmware::config::Configuration;
 use betadeck::firmware::{Firmware, FirmwareOptions};
 use betadeck::signals::{RcFrame, RcSource, SimTime};
 use betadeck::sim::World;
+use betadeck::telemetry::NavState;
 
 const MODES_AND_PLAN: &str = "
 aux 0 0 0 1700 2100 0 0

@@ -2,9 +2,7 @@
 
 use crate::checks::{Checks, assert_met, greatest, mean};
 use crate::rig::{Rig, SEEDS, Sample, world};
-use betadeck::autopilot::io::NavState;
-use betadeck::firmware::DisarmReason;
-use betadeck::firmware::mode::Mode;
+use betadeck::telemetry::{DisarmReason, Mode, NavState};
 
 const TRIANGLE: &str = "
 waypoint insert 0 40.4640403 -79.5182000 2000 500 FLYOVER 0 ORBIT

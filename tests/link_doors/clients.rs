@@ -2,9 +2,9 @@
 
 use std::time::{Duration, Instant};
 
-use betadeck::firmware::mode::Mode;
 use betadeck::firmware::msp::HomeReading;
 use betadeck::link::{DoorKind, Doors, DoorsConfig, Request};
+use betadeck::telemetry::Mode;
 use futures_util::SinkExt;
 use tokio::io::AsyncWriteExt;
 use tokio::net::TcpStream;

@@ -4,18 +4,18 @@
 
 use std::time::Duration;
 
-use betadeck::autopilot::io::{Guard, GuardOp, L1Mode, NavEvent, NavState};
-use betadeck::firmware::mode::{Mode, ModeFlags};
-use betadeck::firmware::{DisarmReason, FirmwareEvent};
 use betadeck::geo::{LatLon, LocalFrame};
 use betadeck::plan::{FlightPlan, HoldPattern, Waypoint, WaypointType};
 use betadeck::session::SessionView;
 use betadeck::session::command::DoorView;
 use betadeck::signals::{RcFrame, RcSource, SimTime};
+use betadeck::telemetry::snapshot::{ModeRange, SettingsView, TruthView};
+use betadeck::telemetry::{
+    DisarmReason, Event, EventKind, FirmwareEvent, Guard, GuardOp, L1Mode, Mode, ModeFlags, NavEvent,
+    NavState, Snapshot,
+};
 use betadeck::ui::theme::{Charset, Palette};
 use betadeck::ui::{AppState, CliHelp, Msg, OpenPlan, Theme, UiConfig, update};
-use betadeck::vehicle::snapshot::{ModeRange, SettingsView, TruthView};
-use betadeck::vehicle::{Event, EventKind, Snapshot};
 use nalgebra::{Vector2, Vector3};
 
 /// Where the craft stands at boot.

@@ -6,9 +6,9 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_6, TAU};
 use nalgebra::Vector2;
 
 use super::corner::SHORTEST_LEG_M;
-use crate::autopilot::io::L1Mode;
 use crate::autopilot::params::Params;
 use crate::geo::wrap_pi;
+use crate::telemetry::L1Mode;
 
 /// Settings of the law.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -5,8 +5,8 @@ use arrayvec::ArrayVec;
 use super::{DESCENT_M, Facts, Outcome, Rule, Rules, STALL_S};
 use crate::autopilot::fence;
 use crate::autopilot::guidance::PlaneCrossing;
-use crate::autopilot::io::{AbortReason, Guard, GuardOp, NavState, PlanSource};
 use crate::plan::{HoldPattern, WaypointType};
+use crate::telemetry::{AbortReason, Guard, GuardOp, NavState, PlanSource};
 
 /// Name of the guard on the GPS fix.
 pub(super) const FIX: &str = "fix";

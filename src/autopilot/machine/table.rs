@@ -7,9 +7,9 @@ use strum::IntoEnumIterator as _;
 use super::rules::{common, monitors, own};
 use super::{Facts, Outcome, ProgressFacts, Rules};
 use crate::autopilot::guidance::{PlaneCrossing, TouchdownFacts};
-use crate::autopilot::io::{Guard, NavState, PlanSource};
 use crate::autopilot::params::{FenceAction, Params};
 use crate::plan::{HoldPattern, WaypointType};
+use crate::telemetry::{Guard, NavState, PlanSource};
 
 /// A place in the machine, in words, and the rules that hold there.
 struct Situation {

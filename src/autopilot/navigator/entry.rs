@@ -2,10 +2,11 @@
 
 use super::{Climb, Mission, Navigator};
 use crate::autopilot::engage::{self, EngageFacts};
-use crate::autopilot::io::{AbortReason, NavEvent, NavInputs, NavState, PlanSource, Refusal};
+use crate::autopilot::io::NavInputs;
 use crate::autopilot::params::Params;
 use crate::geo::{LatLon, offset_to_latlon};
 use crate::plan::{FlightPlan, HoldPattern, MAX_WAYPOINTS, Waypoint, WaypointType};
+use crate::telemetry::{AbortReason, NavEvent, NavState, PlanSource, Refusal};
 
 /// How long a lost fix must be back before a mission resumes, s.
 const FIX_BACK_S: f64 = 2.0;
@@ -269,7 +270,7 @@ impl Navigator {
     pub(super) fn land_here(
         &mut self,
         reason: &'static str,
-        guard: Option<crate::autopilot::io::Guard>,
+        guard: Option<crate::telemetry::Guard>,
         inputs: &NavInputs,
         params: &Params,
     ) {
@@ -290,7 +291,7 @@ impl Navigator {
     pub(super) fn fly_home(
         &mut self,
         reason: &'static str,
-        guard: Option<crate::autopilot::io::Guard>,
+        guard: Option<crate::telemetry::Guard>,
         rescue: Option<Rescue>,
         inputs: &NavInputs,
         params: &Params,

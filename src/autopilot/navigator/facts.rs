@@ -3,11 +3,12 @@
 use super::{Navigator, Progress};
 use crate::autopilot::fence::FenceFacts;
 use crate::autopilot::guidance::{PlaneCrossing, TouchdownFacts, plane_crossing, turn_radius_m};
-use crate::autopilot::io::{NavInputs, NavState};
+use crate::autopilot::io::NavInputs;
 use crate::autopilot::machine::{ApproachFacts, Facts, GroundFacts, ProgressFacts, WaypointFacts};
 use crate::autopilot::params::Params;
 use crate::geo::local_offset;
 use crate::plan::WaypointType;
+use crate::telemetry::NavState;
 
 /// How much nearer counts as progress, m.
 const PROGRESS_M: f64 = 2.0;
@@ -112,7 +113,7 @@ impl Navigator {
         };
         if !stops_here {
             self.climb.at = Some(now.pos_ne);
-            self.push(crate::autopilot::io::NavEvent::Climbing(true));
+            self.push(crate::telemetry::NavEvent::Climbing(true));
         }
     }
 

@@ -11,10 +11,11 @@ use crate::autopilot::guidance::{
     L1Limits, L1Result, PatternPoint, Spiral, figure8, l1, landing_setpoint_m, leg_speed_mps, orbit,
     pattern_rate_rps, spiral_offset,
 };
-use crate::autopilot::io::{L1Mode, NavInputs, NavOutput, NavState};
+use crate::autopilot::io::NavInputs;
 use crate::autopilot::params::Params;
 use crate::geo::local_offset;
 use crate::plan::WaypointType;
+use crate::telemetry::{L1Mode, NavOutput, NavState};
 
 /// Below this altitude a landing waits while the craft is faster over ground than the speed, m and m/s; not longer than
 /// the time, s.

@@ -5,11 +5,12 @@ use nalgebra::Vector2;
 use super::entry::here;
 use super::{Leg, Navigator};
 use crate::autopilot::guidance::{CornerArc, PlaneCrossing, plane_crossing};
-use crate::autopilot::io::{Guard, NavInputs, NavState, PlanSource};
+use crate::autopilot::io::NavInputs;
 use crate::autopilot::params::Params;
 use crate::geo::{LatLon, local_offset};
 use crate::plan::{Waypoint, WaypointType};
 use crate::signals::SimTime;
+use crate::telemetry::{Guard, NavState, PlanSource};
 
 /// Distance below which two waypoints count as one, m.
 const CO_LOCATED_M: f64 = 0.1;

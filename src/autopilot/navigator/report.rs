@@ -2,10 +2,11 @@
 
 use super::Navigator;
 use crate::autopilot::guidance::hold_remaining_ds;
-use crate::autopilot::io::{L1Mode, NavInputs, NavOutput, NavState, NavTelemetry};
+use crate::autopilot::io::NavInputs;
 use crate::autopilot::machine::waiting_for;
 use crate::autopilot::params::Params;
 use crate::geo::local_offset;
+use crate::telemetry::{L1Mode, NavOutput, NavState, NavTelemetry};
 
 /// Ground speed below which a time to the waypoint says nothing, m/s.
 const ETA_MIN_MPS: f64 = 0.5;

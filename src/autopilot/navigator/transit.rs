@@ -3,11 +3,12 @@
 use super::Navigator;
 use super::entry::here;
 use crate::autopilot::fence::{self, FenceFacts};
-use crate::autopilot::io::{AbortReason, Guard, NavEvent, NavInputs, NavState};
+use crate::autopilot::io::NavInputs;
 use crate::autopilot::machine::{Facts, Outcome, transition};
 use crate::autopilot::params::{FenceAction, Params};
 use crate::geo::{LatLon, local_offset};
 use crate::plan::WaypointType;
+use crate::telemetry::{AbortReason, Guard, NavEvent, NavState};
 
 impl Navigator {
     /// At most one transition.

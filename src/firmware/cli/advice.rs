@@ -4,7 +4,7 @@
 use super::super::settings::{SETTINGS, find, needs_restart};
 use super::CliReply;
 use super::command::{COMMANDS, by_name};
-use crate::nearest::nearest;
+use crate::did_you_mean;
 
 /// What to tell the user after `line` was answered with `reply`, if anything.
 #[must_use]
@@ -18,7 +18,7 @@ pub fn advice(line: &str, reply: &CliReply) -> Option<String> {
         return Some(format!("{} works after save, which restarts the firmware.", setting.name));
     }
     if by_name(word).is_none() {
-        let command = nearest(word, COMMANDS.iter().map(|command| command.name))?;
+        let command = did_you_mean::closest(word, COMMANDS.iter().map(|command| command.name))?;
         return Some(format!("Did you mean {command}?"));
     }
     if reply.text.contains("NOT WHILE ARMED") {
@@ -33,7 +33,7 @@ pub fn advice(line: &str, reply: &CliReply) -> Option<String> {
         {
             return Some(format!("To change it: set {} = VALUE", setting.name));
         }
-        let setting = nearest(name, SETTINGS.iter().map(|setting| setting.name))?;
+        let setting = did_you_mean::closest(name, SETTINGS.iter().map(|setting| setting.name))?;
         return Some(format!("Did you mean {setting}?"));
     }
     None

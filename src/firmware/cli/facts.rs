@@ -1,8 +1,8 @@
 //! Figures of the running firmware that commands print: plain data, filled in by the owner of the firmware.
 
-use crate::autopilot::io::NavTelemetry;
 use crate::geo::LatLon;
 use crate::plan::FlightPlan;
+use crate::telemetry::NavTelemetry;
 
 /// Everything `status`, `env`, `tasks`, `version` and `waypoint status` tell about the running firmware.
 #[derive(Debug, Clone, PartialEq, Default)]

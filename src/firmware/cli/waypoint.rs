@@ -4,9 +4,9 @@ use std::str::FromStr as _;
 
 use super::CliAction;
 use super::session::{Session, integer};
-use crate::autopilot::io::{NavState, Refusal};
 use crate::geo::{Degrees7, LatLon};
 use crate::plan::{FlightPlan, HoldPattern, MAX_WAYPOINTS, Waypoint, WaypointType};
+use crate::telemetry::{NavState, Refusal};
 
 /// `waypoint [list|status|insert|update|remove|clear]`.
 pub(super) fn waypoint(session: &mut Session<'_>, rest: &str) {

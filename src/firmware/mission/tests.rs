@@ -2,11 +2,11 @@ use nalgebra::Vector2;
 use strum::IntoEnumIterator as _;
 
 use super::*;
-use crate::autopilot::io::PlanSource;
 use crate::autopilot::params::RxLossPolicy;
 use crate::geo::LatLon;
 use crate::plan::{Waypoint, WaypointType};
 use crate::signals::SimTime;
+use crate::telemetry::PlanSource;
 
 const HOME: LatLon = LatLon::new(404_635_000, -795_182_000);
 

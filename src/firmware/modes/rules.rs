@@ -1,7 +1,7 @@
 //! Which flight modes are on: the switches, the autopilot and the failsafe, weighed by fixed rules.
 
-use super::super::mode::{Mode, ModeFlags};
 use super::boxes::{self, BoxSet};
+use crate::telemetry::{Mode, ModeFlags};
 
 /// What the rules look at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

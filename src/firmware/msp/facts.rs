@@ -3,10 +3,10 @@
 use nalgebra::{UnitQuaternion, Vector3};
 
 use crate::firmware::cli::BuildInfo;
-use crate::firmware::mode::ModeFlags;
 use crate::firmware::modes::BoxSet;
 use crate::geo::LatLon;
 use crate::signals::RC_CHANNELS;
+use crate::telemetry::ModeFlags;
 
 /// Figures of the running firmware.
 #[derive(Debug, Clone, PartialEq)]

@@ -4,8 +4,8 @@ use super::{Call, MspFacts, Refused};
 use crate::firmware::config::{
     ADJUSTMENT_RANGES, AdjustmentRange, Configuration, Feature, MODE_CONDITIONS, ModeCondition, ModeLogic,
 };
-use crate::firmware::mode::Mode;
 use crate::firmware::modes::boxes::{self, BoxInfo, Equipment};
+use crate::telemetry::Mode;
 
 /// Boxes of one page of the lists.
 const PAGE: usize = 32;

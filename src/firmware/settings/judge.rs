@@ -2,7 +2,7 @@
 
 use super::parse::parse;
 use super::{AssignError, Kind, PORT_NAMES, SETTINGS, Setting, find, foreign_name};
-use crate::nearest::nearest;
+use crate::did_you_mean;
 use crate::plan::format::{SettingFault, SettingPart};
 
 /// Whether the craft takes `value` for the setting `name`. Settings of other builds are kept, whatever their value.
@@ -17,7 +17,7 @@ pub fn judge(name: &str, value: &str) -> Result<(), SettingFault> {
 }
 
 fn unknown(name: &str) -> SettingFault {
-    let guess = nearest(name, SETTINGS.iter().map(|setting| setting.name));
+    let guess = did_you_mean::closest(name, SETTINGS.iter().map(|setting| setting.name));
     let hint = guess.map_or_else(
         || "the CLI command get lists all settings".to_owned(),
         |guess| format!("did you mean {guess}?"),
@@ -56,7 +56,7 @@ fn wrong_value(setting: &Setting, value: &str, error: AssignError) -> SettingFau
 
 /// `did you mean ON? allowed: OFF, ON`.
 fn one_of(value: &str, words: &[&str]) -> String {
-    let guess = nearest(value, words.iter().copied());
+    let guess = did_you_mean::closest(value, words.iter().copied());
     let guess = guess.map_or_else(String::new, |word| format!("did you mean {word}? "));
     format!("{guess}allowed: {}", words.join(", "))
 }

@@ -6,8 +6,8 @@ use std::ops::Range;
 
 use super::field::{self, FieldError};
 use super::{Note, NoteKind, PlanFile, Problems, Written};
+use crate::did_you_mean;
 use crate::geo::{Degrees7, LatLon};
-use crate::nearest::nearest;
 use crate::plan::{FlightPlan, MAX_WAYPOINTS, Waypoint};
 
 /// The values of `waypoint insert` and `waypoint update`, by name.
@@ -84,7 +84,7 @@ impl Reader<'_, '_> {
             "waypoint" if self.gave_up => {}
             "waypoint" => self.waypoint(&words, start + code.trim_end().len()),
             "set" => self.note(NoteKind::Setting, number),
-            other if nearest(other, ["waypoint"]).is_some() => self.problems.add(
+            other if did_you_mean::closest(other, ["waypoint"]).is_some() => self.problems.add(
                 span.clone(),
                 format!("{command} is not a command"),
                 "did you mean waypoint?",

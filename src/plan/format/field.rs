@@ -2,7 +2,7 @@
 
 use strum::IntoEnumIterator as _;
 
-use crate::nearest::nearest;
+use crate::did_you_mean;
 use crate::plan::{HoldPattern, WaypointType};
 
 /// What is wrong with a value and what is allowed.
@@ -132,7 +132,7 @@ pub(super) fn pattern(text: &str) -> Result<HoldPattern, FieldError> {
 /// `did you mean FLYOVER? allowed: FLYOVER, FLYBY, …`.
 pub(super) fn words_hint(typed: &str, words: impl Iterator<Item = &'static str>) -> String {
     let words: Vec<&str> = words.collect();
-    let guess = nearest(typed, words.iter().copied());
+    let guess = did_you_mean::closest(typed, words.iter().copied());
     let guess = guess.map_or_else(String::new, |word| format!("did you mean {word}? "));
     format!("{guess}allowed: {}", words.join(", "))
 }

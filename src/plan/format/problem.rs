@@ -3,7 +3,7 @@
 use std::fmt;
 use std::ops::Range;
 
-use crate::excerpt::{Excerpt, excerpt, shortened};
+use crate::source_snippet::{SourceSnippet, shortened, source_snippet};
 
 /// Most problems of a file that are listed; the others are counted.
 const MOST_LISTED: usize = 100;
@@ -25,7 +25,7 @@ pub struct PlanError {
     /// What is allowed or what to do; may be empty.
     pub hint: String,
     /// The line, or the part of it around the place.
-    pub source: Excerpt,
+    pub source: SourceSnippet,
     /// Problems behind this one that are not listed.
     pub unlisted: usize,
 }
@@ -99,7 +99,7 @@ impl<'a> Problems<'a> {
         let line_end = self.lines.get(line).map_or(self.text.len(), |&next| next - 1);
         let end = floor_boundary(self.text, span.end.min(line_end)).max(start);
         let column = self.text[line_start..start].chars().count() + 1;
-        let source = excerpt(self.text[line_start..line_end].trim_end_matches('\r'), column);
+        let source = source_snippet(self.text[line_start..line_end].trim_end_matches('\r'), column);
         let shown = (source.text.chars().count() + 1).saturating_sub(source.column);
         let error = PlanError {
             file: self.file.to_owned(),

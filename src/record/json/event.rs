@@ -6,10 +6,8 @@ use std::net::SocketAddr;
 use serde::Serialize;
 
 use super::super::number::{Decimals, Milli};
-use crate::autopilot::io::{Guard, NavEvent, PlanSource, Refusal};
-use crate::firmware::FirmwareEvent;
 use crate::plan::{FlightPlan, WaypointType};
-use crate::vehicle::{DoorPlaces, EventKind};
+use crate::telemetry::{DoorPlaces, EventKind, FirmwareEvent, Guard, NavEvent, PlanSource, Refusal};
 
 /// A number of degrees with the resolution of plans: 1e-7.
 type Degrees = Decimals<7>;
@@ -194,13 +192,10 @@ impl GuardFields {
 mod tests {
     use super::super::event_line;
     use super::*;
-    use crate::autopilot::io::{AbortReason, GuardOp, NavState};
-    use crate::firmware::DisarmReason;
-    use crate::firmware::mode::{Mode, ModeFlags};
     use crate::geo::LatLon;
     use crate::plan::Waypoint;
     use crate::signals::SimTime;
-    use crate::vehicle::Event;
+    use crate::telemetry::{AbortReason, DisarmReason, Event, GuardOp, Mode, ModeFlags, NavState};
 
     fn line(kind: EventKind) -> String {
         event_line(&Event { time: SimTime(12_340_000), kind }).expect("a line")

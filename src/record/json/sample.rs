@@ -5,8 +5,8 @@
 use serde::Serialize;
 
 use super::super::number::{Centi, Decimals, Milli, Place, compass};
-use crate::vehicle::Snapshot;
-use crate::vehicle::snapshot::TruthView;
+use crate::telemetry::Snapshot;
+use crate::telemetry::snapshot::TruthView;
 
 /// The fields after `t` and `event`, in the order in which they are printed; what does not exist is `null`.
 #[derive(Debug, Serialize)]
@@ -93,8 +93,8 @@ impl Fields {
 mod tests {
     use super::super::sample_line;
     use crate::signals::SimTime;
-    use crate::vehicle::Snapshot;
-    use crate::vehicle::snapshot::TruthView;
+    use crate::telemetry::Snapshot;
+    use crate::telemetry::snapshot::TruthView;
 
     /// The keys of a sample, in their order.
     const KEYS: [&str; 34] = [

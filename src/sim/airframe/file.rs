@@ -12,8 +12,8 @@ use nalgebra::Vector3;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::excerpt::{Excerpt, excerpt, shortened};
-use crate::sim::suggest::did_you_mean;
+use crate::did_you_mean;
+use crate::source_snippet::{SourceSnippet, shortened, source_snippet};
 
 use super::{Airframe, MAX_LEGS, ROTORS, check};
 
@@ -163,7 +163,7 @@ impl Reading<'_> {
         if known().any(|key| key == name) {
             values.insert(name, value);
         } else {
-            let hint = did_you_mean(&name, known());
+            let hint = did_you_mean::suffix(&name, known());
             self.problem(place, format!("{name} is not a key of an airframe file{hint}"));
         }
     }
@@ -176,7 +176,7 @@ impl Reading<'_> {
         let before = self.text.get(..place.start).unwrap_or_default();
         let line = before.matches('\n').count() + 1;
         let column = before.chars().rev().take_while(|&c| c != '\n').count() + 1;
-        let source = excerpt(self.text.lines().nth(line - 1).unwrap_or_default(), column);
+        let source = source_snippet(self.text.lines().nth(line - 1).unwrap_or_default(), column);
         self.problems.push(AirframeProblem { line, column, source, text: shortened(text) });
     }
 }
@@ -189,7 +189,7 @@ pub struct AirframeProblem {
     /// Column in characters, from 1.
     pub column: usize,
     /// The line, or the part of it around the place.
-    pub source: Excerpt,
+    pub source: SourceSnippet,
     /// What is wrong.
     pub text: String,
 }

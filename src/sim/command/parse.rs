@@ -2,10 +2,10 @@
 
 use std::str::FromStr;
 
+use crate::did_you_mean;
 use crate::sim::config::{Noise, Turbulence, Wind};
 use crate::sim::fault::{Fault, MAX_TIME_S, ScheduledFault};
 use crate::sim::parse::{ParseError, number_in};
-use crate::sim::suggest::did_you_mean;
 use crate::sim::switches::{SWITCHES, Switches};
 
 use super::WorldCommand;
@@ -74,7 +74,7 @@ impl WorldCommand {
             }
             _ => {
                 let words = || COMMAND_WORDS.iter().map(|w| w.name).chain(SWITCHES.iter().map(|s| s.name));
-                let hint = did_you_mean(word, words());
+                let hint = did_you_mean::suffix(word, words());
                 let all: Vec<&str> = words().collect();
                 return Err(error(format!("there is no {word:?}{hint}; there are {}", all.join(", "))));
             }

@@ -4,9 +4,9 @@ use std::str::FromStr;
 
 use strum::VariantNames;
 
+use crate::did_you_mean;
 use crate::sim::config::Wind;
 use crate::sim::parse::{ParseError, number, number_in};
-use crate::sim::suggest::did_you_mean;
 
 use super::{BatteryFault, Direction, Fault, FaultKey, FaultStart, MotorNumber, ScheduledFault};
 
@@ -161,7 +161,7 @@ impl FromStr for FaultKey {
 
 fn find(name: &str) -> Result<&'static FaultInfo, String> {
     FAULTS.iter().find(|info| info.name == name).ok_or_else(|| {
-        let hint = did_you_mean(name, FAULTS.map(|info| info.name));
+        let hint = did_you_mean::suffix(name, FAULTS.map(|info| info.name));
         // Those of the external link are of no use to most flights.
         let names = FAULTS.iter().filter(|info| !info.needs_link()).map(|info| info.name);
         format!("there is no fault {name:?}{hint}; there are {}", names.collect::<Vec<_>>().join(", "))
@@ -221,7 +221,7 @@ fn build(name: &str, text: &str) -> Result<Fault, String> {
         "push" => {
             let (impulse, direction) = text.split_once([',', ' ', '@']).ok_or("the direction is missing")?;
             let direction: Direction = direction.trim().parse().map_err(|_| {
-                let hint = did_you_mean(direction, Direction::VARIANTS.iter().copied());
+                let hint = did_you_mean::suffix(direction, Direction::VARIANTS.iter().copied());
                 format!("{direction} is not a direction{hint}")
             })?;
             Fault::Push(number_in("impulse", impulse, 0.0, 1000.0)?, direction)

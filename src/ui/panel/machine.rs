@@ -4,9 +4,8 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 
-use crate::autopilot::io::NavState::{
-    self, Approaching, Arrived, Complete, Figure8, Holding, Idle, Landing, Orbiting,
-};
+use crate::telemetry::NavState;
+use crate::telemetry::NavState::{Approaching, Arrived, Complete, Figure8, Holding, Idle, Landing, Orbiting};
 use crate::ui::theme::{Role, Theme};
 
 /// A word at a column and row.

@@ -6,9 +6,9 @@ use ratatui::style::Color;
 use ratatui::widgets::Widget as _;
 use ratatui::widgets::canvas::{Canvas, Context, Line as CanvasLine};
 
-use crate::autopilot::io::NavTelemetry;
 use crate::geo::GRAVITY;
 use crate::plan::{FlightPlan, HoldPattern, Waypoint, WaypointType};
+use crate::telemetry::NavTelemetry;
 use crate::ui::map::{self, Ground, MapMode, Viewport, ground, round_length};
 use crate::ui::state::{AppState, Pane};
 use crate::ui::theme::Role;
@@ -45,7 +45,7 @@ struct Scene {
 pub fn title(state: &AppState) -> String {
     let name = Pane::Map.title();
     let source = match &state.view.vehicle.active_plan {
-        Some(_) if state.view.vehicle.nav.source != crate::autopilot::io::PlanSource::Stored => {
+        Some(_) if state.view.vehicle.nav.source != crate::telemetry::PlanSource::Stored => {
             format!(" — {} plan", state.view.vehicle.nav.source)
         }
         _ => String::new(),

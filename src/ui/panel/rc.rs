@@ -4,10 +4,10 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
 use crate::signals::{RC_CHANNELS, RcSource};
+use crate::telemetry::snapshot::{CraftView, ModeRange};
 use crate::ui::quantity::cut;
 use crate::ui::state::{AppState, Pane};
 use crate::ui::theme::Role;
-use crate::vehicle::snapshot::{CraftView, ModeRange};
 
 use super::row;
 

@@ -6,7 +6,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
-use crate::autopilot::io::Guard;
+use crate::telemetry::Guard;
 use crate::ui::advice;
 use crate::ui::quantity::{clock, cut, fixed, signed, within};
 use crate::ui::state::{AppState, Pane};
@@ -232,7 +232,7 @@ fn draw_transitions(state: &AppState, area: Rect, buffer: &mut Buffer) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::autopilot::io::GuardOp;
+    use crate::telemetry::GuardOp;
 
     #[test]
     fn flyaway_warns_only_when_the_craft_moves_away() {

@@ -1,9 +1,9 @@
-//! "Did you mean": the nearest of a list of words.
+//! "Did you mean": the closest of a list of words.
 
 /// The word of `candidates` that `typed` most likely stands for, if one is close: at most one slip (a wrong, missing,
 /// extra or swapped character) for every three characters, ignoring case.
 #[must_use]
-pub fn nearest<'a>(typed: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+pub fn closest<'a>(typed: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let typed: Vec<char> = typed.chars().take(64).flat_map(char::to_lowercase).collect();
     let allowed = (typed.len() / 3).max(1);
     // As many slips as the lengths differ by are needed at least.
@@ -15,6 +15,12 @@ pub fn nearest<'a>(typed: &str, candidates: impl IntoIterator<Item = &'a str>) -
         .filter(|&(distance, word)| distance <= allowed && distance < word.chars().count())
         .min_by_key(|&(distance, _)| distance)
         .map(|(_, word)| word)
+}
+
+/// `; did you mean WORD?` with the closest of `candidates`, or nothing when none is close.
+#[must_use]
+pub fn suffix<'a>(typed: &str, candidates: impl IntoIterator<Item = &'a str>) -> String {
+    closest(typed, candidates).map_or_else(String::new, |word| format!("; did you mean {word}?"))
 }
 
 /// Optimal string alignment distance: insertions, deletions, substitutions and swaps of neighbours.
@@ -43,11 +49,11 @@ mod tests {
     #[test]
     fn one_slip_in_three_characters_is_close() {
         let types = ["FLYOVER", "FLYBY", "HOLD", "LAND"];
-        assert_eq!(nearest("FLYOVR", types), Some("FLYOVER"));
-        assert_eq!(nearest("flyvoer", types), Some("FLYOVER"));
-        assert_eq!(nearest("HODL", types), Some("HOLD"));
-        assert_eq!(nearest("LOITER", types), None);
-        assert_eq!(nearest("", types), None);
+        assert_eq!(closest("FLYOVR", types), Some("FLYOVER"));
+        assert_eq!(closest("flyvoer", types), Some("FLYOVER"));
+        assert_eq!(closest("HODL", types), Some("HOLD"));
+        assert_eq!(closest("LOITER", types), None);
+        assert_eq!(closest("", types), None);
     }
 
     #[test]

@@ -1,8 +1,8 @@
 //! The switch of the transmitter that turns a mode on, found from the craft's mode conditions.
 
-use super::snapshot::ModeRange;
-use crate::firmware::mode::Mode;
 use crate::signals::RC_CHANNELS;
+use crate::telemetry::Mode;
+use crate::telemetry::snapshot::ModeRange;
 
 /// A switch: its channel and the values that turn a mode on and off.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,7 +42,7 @@ fn own(mode: Mode, ranges: &[ModeRange]) -> impl Iterator<Item = &ModeRange> {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::telemetry::switch::*;
 
     fn range(name: &'static str, channel: u8, start_us: u16, end_us: u16) -> ModeRange {
         ModeRange { name, channel, start_us, end_us }

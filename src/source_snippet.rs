@@ -9,7 +9,7 @@ const SENTENCE: usize = 300;
 
 /// A line, or the part of it around a place.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Excerpt {
+pub struct SourceSnippet {
     /// The text; control characters are replaced by spaces, and `…` stands where it was cut.
     pub text: String,
     /// Column of the place in the text, in characters, from 1.
@@ -18,7 +18,7 @@ pub struct Excerpt {
 
 /// What is shown of a line to point at a column, in characters, from 1.
 #[must_use]
-pub fn excerpt(line: &str, column: usize) -> Excerpt {
+pub fn source_snippet(line: &str, column: usize) -> SourceSnippet {
     let shown = |c: char| if c.is_control() { ' ' } else { c };
     let is_short = line.chars().nth(MOST).is_none();
     let first = if is_short { 0 } else { column.saturating_sub(BEFORE + 1) };
@@ -28,7 +28,7 @@ pub fn excerpt(line: &str, column: usize) -> Excerpt {
     if rest.next().is_some() {
         text.push('…');
     }
-    Excerpt { text, column: column - first + usize::from(first > 0) }
+    SourceSnippet { text, column: column - first + usize::from(first > 0) }
 }
 
 /// A sentence about a file without the middle of what makes it too long.
@@ -43,24 +43,24 @@ pub fn shortened(sentence: String) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::source_snippet::*;
 
     #[test]
     fn a_short_line_is_shown_whole() {
-        assert_eq!(excerpt("a\tb", 3), Excerpt { text: "a b".to_owned(), column: 3 });
-        assert_eq!(excerpt("", 1), Excerpt { text: String::new(), column: 1 });
-        assert_eq!(excerpt(&"x".repeat(MOST), 150).text, "x".repeat(MOST));
+        assert_eq!(source_snippet("a\tb", 3), SourceSnippet { text: "a b".to_owned(), column: 3 });
+        assert_eq!(source_snippet("", 1), SourceSnippet { text: String::new(), column: 1 });
+        assert_eq!(source_snippet(&"x".repeat(MOST), 150).text, "x".repeat(MOST));
     }
 
     #[test]
     fn a_long_line_is_cut_around_the_place() {
         let line: String = ('a'..='z').cycle().take(1_000_000).collect();
         for column in [1, 100, 101, 102, 5000, 999_999, 1_000_000, 1_000_001] {
-            let Excerpt { text, column: place } = excerpt(&line, column);
+            let SourceSnippet { text, column: place } = source_snippet(&line, column);
             assert!(text.chars().count() <= MOST + 2, "{column}");
             assert_eq!(text.chars().nth(place - 1).filter(|c| *c != '…'), line.chars().nth(column - 1));
         }
-        assert_eq!(excerpt(&line, 5000).column, BEFORE + 2);
+        assert_eq!(source_snippet(&line, 5000).column, BEFORE + 2);
     }
 
     #[test]

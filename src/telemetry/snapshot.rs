@@ -2,11 +2,10 @@
 //!
 //! All `n`, `e`, `alt` count in metres from the place where the craft stood at boot, estimates and targets too.
 
-use crate::autopilot::io::NavTelemetry;
-use crate::firmware::mode::ModeFlags;
 use crate::geo::LatLon;
 use crate::plan::FlightPlan;
 use crate::signals::{RC_CHANNELS, RcSource, SimTime};
+use crate::telemetry::{ModeFlags, NavTelemetry};
 
 /// The whole picture.
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -1,8 +1,7 @@
 //! What the flight controller reports as having happened.
 
-use crate::autopilot::io::NavEvent;
-
 use super::mode::ModeFlags;
+use super::nav::NavEvent;
 
 /// Why the craft was disarmed. The discriminant is the code of logs and protocols.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::EnumIter)]

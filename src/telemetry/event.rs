@@ -2,8 +2,8 @@
 
 use std::net::SocketAddr;
 
-use crate::firmware::FirmwareEvent;
 use crate::signals::SimTime;
+use crate::telemetry::FirmwareEvent;
 
 /// An event and when it happened.
 #[derive(Debug, Clone, PartialEq)]

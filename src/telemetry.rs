@@ -1,0 +1,22 @@
+//! What is observed: modes, arming flags, guards and refusals, events and the snapshot of a vehicle.
+//!
+//! Plain data without behaviour of its own, made by the core and read by session, record, link and ui alike.
+
+mod arming_flag;
+pub mod event;
+mod firmware_event;
+mod guard;
+mod mode;
+mod nav;
+mod refusal;
+pub mod snapshot;
+pub mod switch;
+
+pub use arming_flag::{ArmingFlag, ArmingFlags};
+pub use event::{DoorPlaces, Event, EventKind};
+pub use firmware_event::{DisarmReason, FirmwareEvent};
+pub use guard::{Guard, GuardOp};
+pub use mode::{Mode, ModeFlags};
+pub use nav::{L1Mode, NavEvent, NavOutput, NavState, NavTelemetry, PlanSource};
+pub use refusal::{AbortReason, Refusal};
+pub use snapshot::Snapshot;

@@ -1,0 +1,210 @@
+//! The navigator as seen from outside: state, demands, events and the values that displays, logs and samples show.
+//!
+//! Sign conventions of demands: roll right +, pitch **nose down** + (accelerates forward), yaw rate clockwise +.
+
+use nalgebra::Vector2;
+
+use super::guard::Guard;
+use super::refusal::Refusal;
+use crate::geo::LatLon;
+use crate::plan::{FlightPlan, WaypointType};
+
+/// The eight states of the waypoint state machine; the discriminant is the code on the wire.
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    PartialOrd,
+    Ord,
+    Default,
+    Hash,
+    strum::Display,
+    strum::EnumIter,
+    strum::IntoStaticStr,
+)]
+#[strum(serialize_all = "UPPERCASE")]
+#[repr(u8)]
+pub enum NavState {
+    /// Not flying.
+    #[default]
+    Idle = 0,
+    /// On the way to the current waypoint.
+    Approaching = 1,
+    /// Reached it; lasts one update.
+    Arrived = 2,
+    /// Keeping station.
+    Holding = 3,
+    /// Circling.
+    Orbiting = 4,
+    /// Flying the figure of eight.
+    Figure8 = 5,
+    /// Descending.
+    Landing = 6,
+    /// Mission over.
+    Complete = 7,
+}
+
+/// Demands for the attitude and throttle loops.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct NavOutput {
+    /// Roll demand, rad, right positive.
+    pub roll_rad: f64,
+    /// Pitch demand, rad, nose **down** positive.
+    pub pitch_rad: f64,
+    /// Yaw rate demand, rad/s, clockwise positive; `None` = the pilot's stick.
+    pub yaw_rate_rps: Option<f64>,
+    /// Throttle into the mixer, 0…1.
+    pub throttle: f64,
+    /// The same throttle as RC µs.
+    pub throttle_us: f64,
+    /// A landing craft does not sink although the throttle was taken off: it stands on its legs, and controllers should
+    /// forget what they gathered against the ground.
+    pub stands: bool,
+}
+
+/// Where the active plan came from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, strum::Display)]
+#[strum(serialize_all = "lowercase")]
+pub enum PlanSource {
+    /// The user's stored plan.
+    #[default]
+    Stored,
+    /// Return to home: FLYOVER and LAND at home.
+    Rth,
+    /// Emergency landing: LAND here.
+    Emergency,
+}
+
+/// How the aim point of the current leg was chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, strum::Display)]
+#[strum(serialize_all = "UPPERCASE")]
+pub enum L1Mode {
+    /// No path following.
+    #[default]
+    Off,
+    /// The carrot runs on the leg.
+    Track,
+    /// The aim is the end of the leg.
+    Direct,
+}
+
+/// Something that happened in the navigator.
+#[derive(Debug, Clone, PartialEq)]
+pub enum NavEvent {
+    /// A new active plan.
+    Plan {
+        /// Where it came from.
+        source: PlanSource,
+        /// The plan.
+        plan: Box<FlightPlan>,
+    },
+    /// A state transition.
+    State {
+        /// State left.
+        from: NavState,
+        /// State entered.
+        to: NavState,
+        /// Index of the current waypoint in the active plan.
+        wp: u8,
+        /// Its type, when there is one.
+        kind: Option<WaypointType>,
+        /// The cause in a word: a guard's name, `reset`, `resume`, `advance`, `GPS_LOST`…
+        reason: &'static str,
+        /// The guard that fired, if one did.
+        guard: Option<Guard>,
+        /// Target position.
+        target: LatLon,
+        /// Target altitude above home, m.
+        target_alt_m: f64,
+    },
+    /// The climb before the first leg began (`true`) or ended.
+    Climbing(bool),
+    /// The craft left the fence.
+    Geofence {
+        /// Distance from home, m.
+        distance_m: f64,
+        /// The fence, m.
+        limit_m: f64,
+        /// What is done about it: `LAND` or `RTH`.
+        action: &'static str,
+    },
+    /// The switch is on and the autopilot does not engage; sent once per cause.
+    Refused(Refusal),
+    /// The navigator saw the touchdown: disarm now, reason LANDING.
+    Disarm,
+}
+
+/// The navigator's state for displays, logs and samples; refreshed by each update.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct NavTelemetry {
+    /// State of the machine.
+    pub state: NavState,
+    /// Whether a mission is being flown.
+    pub engaged: bool,
+    /// The climb before the first leg is on.
+    pub climbing: bool,
+    /// Why the switch has no effect, if it has none.
+    pub refusal: Option<Refusal>,
+    /// The cause of the last transition in a word.
+    pub reason: &'static str,
+    /// Index of the current waypoint in the active plan.
+    pub wp: u8,
+    /// Index of the positional waypoint after it; the same when it is the last.
+    pub next_wp: u8,
+    /// Waypoints in the active plan.
+    pub count: u8,
+    /// Origin of the active plan.
+    pub source: PlanSource,
+    /// Type of the current waypoint.
+    pub kind: Option<WaypointType>,
+    /// Distance to the current waypoint, m.
+    pub distance_m: Option<f64>,
+    /// Bearing to the current waypoint, rad clockwise from north.
+    pub bearing_rad: Option<f64>,
+    /// Cross-track error, m, positive right of the leg.
+    pub xte_m: Option<f64>,
+    /// Distance along the leg, m.
+    pub along_m: Option<f64>,
+    /// Effective lookahead, m.
+    pub lookahead_m: Option<f64>,
+    /// How the aim was chosen.
+    pub l1_mode: L1Mode,
+    /// Aim point, north and east of the origin of the local frame, m.
+    pub aim_ne: Option<Vector2<f64>>,
+    /// Lateral acceleration of the L1 law, m/s², right positive.
+    pub a_lat_mps2: Option<f64>,
+    /// Horizontal target, north and east of the origin, m.
+    pub target_ne: Option<Vector2<f64>>,
+    /// Altitude setpoint above home, m.
+    pub target_alt_m: Option<f64>,
+    /// Start of the current leg.
+    pub leg_start: Option<LatLon>,
+    /// Ground speed, m/s.
+    pub speed_mps: f64,
+    /// Speed setpoint, m/s.
+    pub speed_setpoint_mps: Option<f64>,
+    /// Phase of the hold pattern, rad.
+    pub pattern_angle_rad: Option<f64>,
+    /// Hold time left, ds; 65535 = endless, 0 outside a hold.
+    pub hold_remaining_ds: u16,
+    /// Distance from home, m.
+    pub home_distance_m: Option<f64>,
+    /// Distance left to the fence, m.
+    pub fence_margin_m: Option<f64>,
+    /// Time to the waypoint, s.
+    pub eta_s: Option<f64>,
+    /// Roll and pitch are flown by the pilot's sticks.
+    pub stick_override: bool,
+    /// Yaw is flown by the pilot's stick.
+    pub yaw_override: bool,
+    /// Time the touchdown conditions have held, s.
+    pub touchdown_held_s: Option<f64>,
+    /// Hover throttle in use, µs.
+    pub hover_us: f64,
+    /// The guards of the active state, in the order they are evaluated.
+    pub guards: arrayvec::ArrayVec<Guard, 8>,
+    /// The demands of this update.
+    pub output: NavOutput,
+}
