@@ -1,7 +1,7 @@
 //! The recorded exchanges of `tests/vectors/cli.md`, byte for byte.
 
 mod vectors {
-    pub mod parse;
+    pub(crate) mod parse;
 }
 
 use std::collections::BTreeMap;

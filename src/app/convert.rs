@@ -10,7 +10,7 @@ use crate::args::{ConvertArgs, OutputFile};
 use crate::plan::format;
 
 /// Converts, and says what the target format cannot carry.
-pub fn run(args: &ConvertArgs) -> Result<u8, AppError> {
+pub(super) fn run(args: &ConvertArgs) -> Result<u8, AppError> {
     let source = args.source().map_err(|error| AppError::input(error.to_string()))?;
     let target = args.target().map_err(AppError::input)?;
     let file = setup::read_plan(&source)?;

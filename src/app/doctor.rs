@@ -14,7 +14,7 @@ use crate::ui::layout::SMALLEST;
 use crate::ui::theme::{Charset, Palette};
 
 /// Prints what was found; exit code 0 when all is well.
-pub fn run() -> Result<u8, AppError> {
+pub(super) fn run() -> Result<u8, AppError> {
     let mut report = Report::default();
     let revision = env!("BETADECK_REVISION");
     let _ = writeln!(report.text, "betadeck {} ({revision})", env!("CARGO_PKG_VERSION"));

@@ -21,14 +21,14 @@ const VIEW: Duration = Duration::from_millis(250);
 
 /// Open doors, on the side of the sockets.
 #[derive(Debug)]
-pub struct OpenDoors {
+pub(super) struct OpenDoors {
     stop: CancellationToken,
     keeper: tokio::task::JoinHandle<()>,
 }
 
 /// What opening the doors gave.
 #[derive(Debug)]
-pub struct Opened {
+pub(super) struct Opened {
     /// To close them.
     pub doors: OpenDoors,
     /// The session's side.
@@ -44,7 +44,7 @@ pub struct Opened {
 ///
 /// # Errors
 /// When there is no socket for the motors of an external simulator.
-pub async fn open(
+pub(super) async fn open(
     args: &DoorArgs,
     physics: &PhysicsArgs,
     flight: &FlightArgs,
@@ -137,7 +137,7 @@ async fn keep(
 
 impl OpenDoors {
     /// Closes the doors and waits until their clients are told.
-    pub async fn close(self) {
+    pub(super) async fn close(self) {
         self.stop.cancel();
         // The keeper does not panic.
         drop(self.keeper.await);

@@ -3,15 +3,15 @@
 use std::io::Write as _;
 
 /// Exit code: an expectation was not met.
-pub const FAILED: u8 = 1;
+pub(super) const FAILED: u8 = 1;
 /// Exit code: wrong usage or invalid input.
-pub const USAGE: u8 = 2;
+pub(super) const USAGE: u8 = 2;
 /// Exit code: a file, a port or the terminal.
-pub const ENVIRONMENT: u8 = 3;
+pub(super) const ENVIRONMENT: u8 = 3;
 /// Exit code: a defect of this program.
-pub const INTERNAL: u8 = 4;
+pub(super) const INTERNAL: u8 = 4;
 /// Exit code: stopped by the user.
-pub const INTERRUPTED: u8 = 130;
+pub(super) const INTERRUPTED: u8 = 130;
 
 /// Why the program ends early.
 #[derive(Debug, thiserror::Error)]
@@ -41,12 +41,12 @@ impl AppError {
 }
 
 /// Prints a line on standard error. Nobody may be listening any more (`2>&1 | head`), which is no error.
-pub fn tell(line: &str) {
+pub(super) fn tell(line: &str) {
     writeln!(std::io::stderr(), "{line}").ok();
 }
 
 /// Writes a result to standard output. A reader that went away (`| head`) is no error.
-pub fn write_stdout(text: &[u8]) -> Result<u8, AppError> {
+pub(super) fn write_stdout(text: &[u8]) -> Result<u8, AppError> {
     match std::io::stdout().write_all(text).and_then(|()| std::io::stdout().flush()) {
         Ok(()) => Ok(0),
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(0),

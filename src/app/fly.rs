@@ -26,7 +26,7 @@ use output::Output;
 const SLICE: u64 = 4096;
 
 /// Flies and reports; the exit code says whether the mission completed.
-pub fn run(args: &FlyArgs) -> Result<u8, AppError> {
+pub(super) fn run(args: &FlyArgs) -> Result<u8, AppError> {
     let plan = setup::read_plan(&args.plan)?;
     refuse_unflyable(&plan)?;
     let mut notices: Vec<String> = plan.notes.iter().map(ToString::to_string).collect();

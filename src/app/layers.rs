@@ -13,7 +13,7 @@ const FOLDER: &str = "betadeck";
 
 /// The user's directories for this program.
 #[derive(Debug, Clone)]
-pub struct Directories {
+pub(super) struct Directories {
     /// Holds `config.toml`.
     pub config: std::path::PathBuf,
     /// Holds the stored configuration of the craft.
@@ -21,7 +21,7 @@ pub struct Directories {
 }
 
 /// Finds the user's directories.
-pub fn directories() -> Result<Directories, AppError> {
+pub(super) fn directories() -> Result<Directories, AppError> {
     let strategy = etcetera::choose_base_strategy()
         .map_err(|error| AppError::environment(format!("cannot find your home directory: {error}")))?;
     Ok(Directories {
@@ -31,7 +31,7 @@ pub fn directories() -> Result<Directories, AppError> {
 }
 
 /// Reads the environment and the configuration file, which may be missing.
-pub fn read() -> Result<Layers, AppError> {
+pub(super) fn read() -> Result<Layers, AppError> {
     let environment: BTreeMap<String, String> = std::env::vars_os()
         .filter_map(|(name, value)| Some((name.into_string().ok()?, value.into_string().ok()?)))
         .filter(|(name, _)| name.starts_with(ENVIRONMENT_PREFIX))

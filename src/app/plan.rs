@@ -9,7 +9,7 @@ use crate::plan::format;
 use crate::plan::review::{Finding, review};
 
 /// Prints the plan; a plan that the craft would refuse is invalid input.
-pub fn show(plan: &PlanArg) -> Result<u8, AppError> {
+pub(super) fn show(plan: &PlanArg) -> Result<u8, AppError> {
     let file = setup::read_plan(plan)?;
     let (home, guess) = FlightArgs::default().start(file.home, &file.plan);
     let home = LatLon::from_degrees(home.lat_deg, home.lon_deg);

@@ -16,7 +16,7 @@ use crate::telemetry::Event;
 const TAKEOFF_M: f64 = 10.0;
 
 /// Serves until a signal ends it; every event is a line of output.
-pub fn run(args: &ServeArgs) -> Result<u8, AppError> {
+pub(super) fn run(args: &ServeArgs) -> Result<u8, AppError> {
     let mut output = open_output(args)?;
     let mut notices = Vec::new();
     let mut store = setup::open_store(&args.flight)?;

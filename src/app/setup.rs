@@ -23,7 +23,7 @@ use crate::vehicle::{Vehicle, VehicleConfig};
 const MAX_FILE: u64 = 4 << 20;
 
 /// Reads a plan from wherever it is.
-pub fn read_plan(plan: &PlanArg) -> Result<PlanFile, AppError> {
+pub(super) fn read_plan(plan: &PlanArg) -> Result<PlanFile, AppError> {
     let name = plan.display_name();
     let text = match plan {
         PlanArg::Builtin(BuiltinPlan { text, .. }) => (*text).to_owned(),
@@ -35,7 +35,7 @@ pub fn read_plan(plan: &PlanArg) -> Result<PlanFile, AppError> {
 }
 
 /// Reads a text file of sensible size.
-pub fn read_file(path: &Path) -> Result<String, AppError> {
+pub(super) fn read_file(path: &Path) -> Result<String, AppError> {
     let name = path.display().to_string();
     let file = std::fs::File::open(path)
         .map_err(|error| AppError::environment(format!("cannot open {name}: {error}")))?;
@@ -56,7 +56,7 @@ fn read_text(source: impl std::io::Read, name: &str) -> Result<String, AppError>
 
 /// What a command adds to the shared options.
 #[derive(Debug, Default)]
-pub struct Extras {
+pub(super) struct Extras {
     /// Faults of the flight.
     pub faults: Vec<ScheduledFault>,
     /// Settings after all other sources, as `name=value`.
@@ -72,7 +72,7 @@ pub struct Extras {
 }
 
 /// Builds a vehicle at boot. Notices for the user are added to `notices`.
-pub fn vehicle(
+pub(super) fn vehicle(
     args: &FlightArgs,
     plan: &PlanFile,
     store: &mut Store,
@@ -138,14 +138,14 @@ fn world(
 }
 
 /// What the CLI's `version` and MSP tell about this executable.
-pub fn build_info() -> BuildInfo {
+pub(super) fn build_info() -> BuildInfo {
     let epoch = env!("BETADECK_BUILD_EPOCH").parse().unwrap_or_default();
     let (date, time) = UtcSeconds(epoch).build_stamp();
     BuildInfo { date, time, revision: env!("BETADECK_REVISION").to_owned(), ..BuildInfo::default() }
 }
 
 /// The stored configuration, with the starter modes when it has no modes at all.
-pub fn load(store: &mut Store, notices: &mut Vec<String>) -> Configuration {
+pub(super) fn load(store: &mut Store, notices: &mut Vec<String>) -> Configuration {
     let loaded = store.load();
     notices.extend(loaded.findings);
     let mut configuration = loaded.configuration;
@@ -212,7 +212,7 @@ fn airframe(name: Option<&str>) -> Result<Airframe, AppError> {
 }
 
 /// The directory of `--state-dir`, the user's, or none with `--fresh`.
-pub fn open_store(args: &FlightArgs) -> Result<Store, AppError> {
+pub(super) fn open_store(args: &FlightArgs) -> Result<Store, AppError> {
     if args.fresh {
         return Ok(Store::in_memory());
     }
@@ -224,6 +224,6 @@ pub fn open_store(args: &FlightArgs) -> Result<Store, AppError> {
 }
 
 /// Why `save` cannot work, as a sentence: better known at the start than when it is typed.
-pub fn storage_notice(store: &Store) -> Option<String> {
+pub(super) fn storage_notice(store: &Store) -> Option<String> {
     store.refusal().map(|refusal| format!("`save` cannot work: {refusal}."))
 }

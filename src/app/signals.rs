@@ -9,7 +9,7 @@ use std::io;
 /// # Errors
 /// When the system lets the program hear none.
 #[cfg(unix)]
-pub fn stop() -> io::Result<impl Future<Output = ()>> {
+pub(super) fn stop() -> io::Result<impl Future<Output = ()>> {
     use tokio::signal::unix::{SignalKind, signal};
     let mut interrupt = signal(SignalKind::interrupt())?;
     let mut terminate = signal(SignalKind::terminate())?;

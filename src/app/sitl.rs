@@ -29,7 +29,7 @@ pub(super) const GPS_TIMEOUT_S: f64 = 2.5;
 pub(super) const DECLINATION_DEG: f64 = 2.0;
 
 /// Runs until a signal, or through a configuration file; gives the exit code.
-pub fn run(args: &SitlArgs) -> Result<u8, AppError> {
+pub(super) fn run(args: &SitlArgs) -> Result<u8, AppError> {
     let runtime = tokio::runtime::Builder::new_multi_thread()
         .worker_threads(2)
         .enable_all()

@@ -18,7 +18,7 @@ use crate::ui::{self, CliHelp, Ending, OpenPlan, SessionLink, Theme, Tui, UiConf
 const TAKEOFF_M: f64 = 10.0;
 
 /// Opens the user interface; returns its exit code when the user has left it.
-pub fn run(args: &TuiArgs) -> Result<u8, AppError> {
+pub(super) fn run(args: &TuiArgs) -> Result<u8, AppError> {
     if !std::io::stdout().is_terminal() || !std::io::stdin().is_terminal() {
         return Err(AppError::environment(
             "the user interface needs a terminal: run betadeck in one, or fly without a screen with \

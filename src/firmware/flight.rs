@@ -12,7 +12,7 @@ const MOTOR_STOP_US: f64 = 1000.0;
 
 /// Demands that take the place of the pilot's, renewed a hundred times a second.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Demand {
+pub(super) struct Demand {
     /// Roll and pitch.
     pub lean: Option<LeanDemand>,
     /// Yaw rate, rad/s, clockwise positive.
@@ -36,7 +36,7 @@ impl From<NavOutput> for Demand {
 
 /// What one step of the controller needs besides the estimate.
 #[derive(Debug, Clone, Copy)]
-pub struct FlightStep<'a> {
+pub(super) struct FlightStep<'a> {
     /// Loops that are due.
     pub due: DueTasks,
     /// Motors may run.
@@ -66,7 +66,7 @@ const LEVEL: LeanDemand = LeanDemand { roll_rad: 0.0, pitch_rad: 0.0 };
 
 /// The controller and the demands in force.
 #[derive(Debug, Clone)]
-pub struct Flight {
+pub(super) struct Flight {
     controller: Controller,
     demand: Demand,
     motor_test_us: [f64; 4],
@@ -76,7 +76,7 @@ pub struct Flight {
 impl Flight {
     /// A controller at boot for so many steps a second.
     #[must_use]
-    pub fn new(tuning: &Tuning, rate_hz: u32) -> Self {
+    pub(super) fn new(tuning: &Tuning, rate_hz: u32) -> Self {
         let step_s = 1.0 / f64::from(rate_hz.max(1));
         Self {
             controller: Controller::new(*tuning, step_s),
@@ -87,17 +87,17 @@ impl Flight {
     }
 
     /// Follows the settings.
-    pub fn set_tuning(&mut self, tuning: &Tuning) {
+    pub(super) fn set_tuning(&mut self, tuning: &Tuning) {
         self.controller.set_tuning(*tuning);
     }
 
     /// Sets the demands that take the place of the pilot's.
-    pub fn set_demand(&mut self, demand: Demand) {
+    pub(super) fn set_demand(&mut self, demand: Demand) {
         self.demand = demand;
     }
 
     /// Turns motors on the bench; `motor` = all when absent. Only the disarmed craft listens.
-    pub fn test_motor(&mut self, motor: Option<u8>, output_us: u16) {
+    pub(super) fn test_motor(&mut self, motor: Option<u8>, output_us: u16) {
         let pulse = f64::from(output_us);
         match motor {
             None => self.motor_test_us = [pulse; 4],
@@ -110,17 +110,17 @@ impl Flight {
     }
 
     /// Stops the motors that were turned on the bench.
-    pub fn end_motor_test(&mut self) {
+    pub(super) fn end_motor_test(&mut self) {
         self.motor_test_us = [MOTOR_STOP_US; 4];
     }
 
     /// Turns the heading that MAG holds to this one, rad clockwise from north; nothing while it holds none.
-    pub fn hold_heading(&mut self, heading_rad: f64) {
+    pub(super) fn hold_heading(&mut self, heading_rad: f64) {
         self.controller.hold_heading(heading_rad);
     }
 
     /// One step.
-    pub fn step(&mut self, step: &FlightStep<'_>, estimate: &Estimate) -> MotorCommand {
+    pub(super) fn step(&mut self, step: &FlightStep<'_>, estimate: &Estimate) -> MotorCommand {
         let centred = Sticks { throttle_us: step.sticks.throttle_us, ..Sticks::default() };
         let sticks = if step.levels_after_crash { &centred } else { step.sticks };
         let input = ControlInput {
@@ -149,13 +149,13 @@ impl Flight {
 
     /// Cutoffs of the smoothing of sticks and throttle in use, Hz; 0 while nothing is smoothed.
     #[must_use]
-    pub fn smoothing_hz(&self) -> [f64; 2] {
+    pub(super) fn smoothing_hz(&self) -> [f64; 2] {
         self.controller.smoothing_hz()
     }
 
     /// What the controller did in the last step.
     #[must_use]
-    pub fn state(&self) -> &ControlState {
+    pub(super) fn state(&self) -> &ControlState {
         self.controller.state()
     }
 }

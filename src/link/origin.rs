@@ -8,7 +8,7 @@ const APP: &str = "https://app.betaflight.com";
 
 /// Whether a page of this origin is served. Clients that are no browsers name none.
 #[must_use]
-pub fn is_served(origin: Option<&str>, allowed: &[String]) -> bool {
+pub(super) fn is_served(origin: Option<&str>, allowed: &[String]) -> bool {
     let Some(origin) = origin else { return true };
     let origin = origin.trim().trim_end_matches('/');
     origin.eq_ignore_ascii_case(APP)

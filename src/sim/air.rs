@@ -65,7 +65,7 @@ impl Ramp {
 
 impl Air {
     /// The air at boot around a craft at the given height above ground, m.
-    pub fn new(config: &WorldConfig, height_m: f64) -> Self {
+    pub(super) fn new(config: &WorldConfig, height_m: f64) -> Self {
         let velocity = config.wind.velocity_enu();
         let mut air = Self {
             wind: config.wind,
@@ -86,13 +86,13 @@ impl Air {
     }
 
     /// The air at a time from the last tick on.
-    pub fn sample(&self, time: SimTime) -> AirSample {
+    pub(super) fn sample(&self, time: SimTime) -> AirSample {
         let part = (time.0 % AIR_TICK_US) as f64 * (1.0 / AIR_TICK_US as f64);
         AirSample { wind_enu: self.from + (self.to - self.from) * part, density_ratio: self.density_ratio }
     }
 
     /// Advances to the air tick at `now`, for a craft at a height above ground (m) with a velocity (ENU, m/s).
-    pub fn tick(&mut self, now: SimTime, height_m: f64, vel_enu: Vector3<f64>, switches: &Switches) {
+    pub(super) fn tick(&mut self, now: SimTime, height_m: f64, vel_enu: Vector3<f64>, switches: &Switches) {
         let airspeed = (vel_enu - self.from).norm();
         self.from = self.to;
         self.gusts.advance(now, self.settled_wind(), switches.gust_rise_s);
@@ -115,18 +115,18 @@ impl Air {
     }
 
     /// The wind that blows once all ramps are over: a fault's, or the one that was set.
-    pub fn settled_wind(&self) -> Wind {
+    pub(super) fn settled_wind(&self) -> Wind {
         self.wind_fault.unwrap_or(self.wind)
     }
 
     /// Sets the mean wind; it changes over two seconds.
-    pub fn change_wind(&mut self, wind: Wind, now: SimTime) {
+    pub(super) fn change_wind(&mut self, wind: Wind, now: SimTime) {
         self.wind = wind;
         self.start_ramp(now);
     }
 
     /// Puts a fault's wind in place of the set one, or takes it away.
-    pub fn change_wind_fault(&mut self, wind: Option<Wind>, now: SimTime) {
+    pub(super) fn change_wind_fault(&mut self, wind: Option<Wind>, now: SimTime) {
         if wind != self.wind_fault {
             self.wind_fault = wind;
             self.start_ramp(now);
@@ -138,7 +138,7 @@ impl Air {
     }
 
     /// Sets the level of turbulence.
-    pub fn set_turbulence(&mut self, level: Turbulence) {
+    pub(super) fn set_turbulence(&mut self, level: Turbulence) {
         self.turbulence.level = level;
     }
 }

@@ -68,7 +68,7 @@ pub(super) struct BatteryFaults {
 
 /// State of the battery in the air.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Battery {
+pub(super) struct Battery {
     spec: BatterySpec,
     /// Terminal voltage, V.
     pub voltage_v: f64,
@@ -83,20 +83,20 @@ pub struct Battery {
 impl Battery {
     /// A full battery under the base load.
     #[must_use]
-    pub fn full(spec: BatterySpec) -> Self {
+    pub(super) fn full(spec: BatterySpec) -> Self {
         let (voltage_v, current_a) = spec.under_load(spec.open_circuit_v(1.0), BASE_LOAD_W);
         Self { spec, voltage_v, current_a, drawn_mah: 0.0, drawn_wh: 0.0 }
     }
 
     /// Charge left, 0…1.
     #[must_use]
-    pub fn left(&self) -> f64 {
+    pub(super) fn left(&self) -> f64 {
         (1.0 - self.drawn_mah / (self.spec.capacity_ah * 1000.0)).max(0.0)
     }
 
     /// Terminal over nominal voltage: the scale of the rotor speeds where sag acts on them.
     #[must_use]
-    pub fn speed_scale(&self) -> f64 {
+    pub(super) fn speed_scale(&self) -> f64 {
         self.voltage_v / self.spec.nominal_v
     }
 

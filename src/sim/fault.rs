@@ -17,7 +17,8 @@ mod parse;
 pub use board::{ActiveFault, MAX_FAULTS};
 pub(super) use board::{FaultBoard, Switch};
 pub(super) use effects::Effects;
-pub use effects::{GpsFaults, LinkFaults};
+pub(super) use effects::GpsFaults;
+pub use effects::LinkFaults;
 pub(super) use parse::MAX_TIME_S;
 pub use parse::{FAULTS, FaultInfo};
 

@@ -46,12 +46,12 @@ pub(super) struct RotorSweep {
 
 impl Motors {
     /// Motors stepped by `h` seconds.
-    pub fn new(airframe: &Airframe, h: f64) -> Self {
+    pub(super) fn new(airframe: &Airframe, h: f64) -> Self {
         Self { up: Lag::new(airframe.motor_tau_up_s, h), down: Lag::new(airframe.motor_tau_down_s, h) }
     }
 
     /// One step from the given rotor speeds towards the target speeds, rad/s.
-    pub fn sweep(&self, speed: &[f64; ROTORS], target: &[f64; ROTORS]) -> RotorSweep {
+    pub(super) fn sweep(&self, speed: &[f64; ROTORS], target: &[f64; ROTORS]) -> RotorSweep {
         let mut sweep =
             RotorSweep { speed: [*speed; STAGES], acceleration: [[0.0; ROTORS]; STAGES], end: *speed };
         for i in 0..ROTORS {

@@ -53,17 +53,17 @@ impl Stream {
 pub(super) struct Normals(ChaCha8Rng);
 
 impl Normals {
-    pub fn new(seed: u64, stream: Stream) -> Self {
+    pub(super) fn new(seed: u64, stream: Stream) -> Self {
         Self(stream.rng(seed))
     }
 
     /// One deviate of mean 0 and standard deviation 1.
-    pub fn next(&mut self) -> f64 {
+    pub(super) fn next(&mut self) -> f64 {
         StandardNormal.sample(&mut self.0)
     }
 
     /// Three independent deviates.
-    pub fn next3(&mut self) -> nalgebra::Vector3<f64> {
+    pub(super) fn next3(&mut self) -> nalgebra::Vector3<f64> {
         let x = self.next();
         let y = self.next();
         nalgebra::Vector3::new(x, y, self.next())
@@ -79,18 +79,18 @@ pub(super) struct GaussMarkov {
 
 impl GaussMarkov {
     /// The process of stationary standard deviation `sigma` and time constant `tau_s`, updated every `dt` seconds.
-    pub fn stationary(sigma: f64, tau_s: f64, dt: f64) -> Self {
+    pub(super) fn stationary(sigma: f64, tau_s: f64, dt: f64) -> Self {
         let keep = (-dt / tau_s).exp();
         Self { keep, drive: sigma * (1.0 - keep * keep).sqrt() }
     }
 
     /// The process driven by white noise of density `walk` (unit per √s), time constant `tau_s`.
-    pub fn random_walk(walk: f64, tau_s: f64, dt: f64) -> Self {
+    pub(super) fn random_walk(walk: f64, tau_s: f64, dt: f64) -> Self {
         Self::stationary(walk * (0.5 * tau_s).sqrt(), tau_s, dt)
     }
 
     /// The next value after `value`, with a unit normal deviate.
-    pub fn next(&self, value: f64, normal: f64) -> f64 {
+    pub(super) fn next(&self, value: f64, normal: f64) -> f64 {
         self.keep * value + self.drive * normal
     }
 }

@@ -58,7 +58,7 @@ pub(super) struct Scene<'a> {
 
 impl Sensors {
     /// Sensors at boot.
-    pub fn new(config: &WorldConfig, step_s: f64) -> Self {
+    pub(super) fn new(config: &WorldConfig, step_s: f64) -> Self {
         let home = &config.home;
         Self {
             noise: config.noise,
@@ -72,18 +72,18 @@ impl Sensors {
     }
 
     /// The local frame the positions are measured in.
-    pub fn local(&self) -> &LocalFrame {
+    pub(super) fn local(&self) -> &LocalFrame {
         &self.local
     }
 
     /// Forgets the past of what comes late: the craft has always been here.
-    pub fn settle(&mut self, pos_enu: Vector3<f64>, vel_enu: Vector3<f64>) {
+    pub(super) fn settle(&mut self, pos_enu: Vector3<f64>, vel_enu: Vector3<f64>) {
         self.gps.settle(pos_enu, vel_enu);
         self.barometer.settle();
     }
 
     /// Reads everything that is due at the present instant.
-    pub fn read(&mut self, scene: &Scene<'_>, frame: &mut SensorFrame) {
+    pub(super) fn read(&mut self, scene: &Scene<'_>, frame: &mut SensorFrame) {
         let truth = scene.truth;
         frame.time = truth.time;
         frame.truth_attitude = Some(truth.attitude);

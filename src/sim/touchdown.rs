@@ -34,11 +34,11 @@ pub(super) struct GroundWatch {
 
 impl GroundWatch {
     /// A craft that stands.
-    pub const STANDING: Self = Self { phase: Phase::Standing };
+    pub(super) const STANDING: Self = Self { phase: Phase::Standing };
 
     /// One step: what touches now, the state before the step (whose velocity the ground has not yet changed) and after
     /// it, and the size of the specific force now, m/s².
-    pub fn update(
+    pub(super) fn update(
         &mut self,
         now: SimTime,
         touch: Touch,
@@ -87,7 +87,7 @@ impl GroundWatch {
     }
 
     /// Forgets the flight: the craft was put somewhere else.
-    pub fn lift(&mut self, now: SimTime) {
+    pub(super) fn lift(&mut self, now: SimTime) {
         self.phase = Phase::Airborne { since: now, cleared: true };
     }
 }

@@ -3,7 +3,7 @@
 use ratatui::buffer::Buffer;
 
 /// Replaces every character outside ASCII in `buffer`.
-pub fn replace(buffer: &mut Buffer) {
+pub(super) fn replace(buffer: &mut Buffer) {
     for cell in &mut buffer.content {
         if cell.symbol().is_ascii() {
             continue;

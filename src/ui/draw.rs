@@ -103,7 +103,13 @@ fn quit_question(state: &AppState, area: Rect, buffer: &mut Buffer) {
 }
 
 /// Clears a framed place in the middle for a popup of this inner size; gives the inside.
-pub fn popup(state: &AppState, area: Rect, size: (u16, u16), title: &str, buffer: &mut Buffer) -> Rect {
+pub(super) fn popup(
+    state: &AppState,
+    area: Rect,
+    size: (u16, u16),
+    title: &str,
+    buffer: &mut Buffer,
+) -> Rect {
     let width = (size.0 + 2).min(area.width);
     let height = (size.1 + 2).min(area.height);
     let place =

@@ -29,7 +29,7 @@ const CONFIRM_WITHIN: Duration = Duration::from_millis(500);
 
 /// Where the throttle key puts the stick next.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ThrottleMove {
+pub(super) enum ThrottleMove {
     /// Hover, with the hold modes on.
     Hover,
     /// Where ALTHOLD brings the craft down.
@@ -40,7 +40,7 @@ pub enum ThrottleMove {
 
 /// The frame that the next change starts from: what was sent last, until the session shows it or moves on.
 #[must_use]
-pub fn frame(state: &AppState) -> RcFrame {
+pub(super) fn frame(state: &AppState) -> RcFrame {
     match state.sticks_sent {
         Some((frame, at)) if within(state.now, at, CONFIRM_WITHIN) && state.view.pilot.is_none() => frame,
         _ => state.view.sticks,
@@ -51,7 +51,7 @@ pub fn frame(state: &AppState) -> RcFrame {
 ///
 /// # Errors
 /// A sentence when no channel is assigned to it.
-pub fn switch(state: &AppState, mode: Mode) -> Result<Switch, String> {
+pub(super) fn switch(state: &AppState, mode: Mode) -> Result<Switch, String> {
     Switch::of(mode, &state.view.vehicle.craft.mode_ranges).ok_or_else(|| {
         let line = if mode == Mode::Arm { "aux 0 0 0 1700 2100" } else { "aux 1 56 1 1700 2100" };
         format!("No switch is assigned to {mode}: `{line}` in the CLI (5) does it.")
@@ -60,7 +60,7 @@ pub fn switch(state: &AppState, mode: Mode) -> Result<Switch, String> {
 
 /// Whether the switch of a mode is on, as the craft sees it.
 #[must_use]
-pub fn switch_is_on(state: &AppState, mode: Mode) -> bool {
+pub(super) fn switch_is_on(state: &AppState, mode: Mode) -> bool {
     let craft = &state.view.vehicle.craft;
     switch::is_on(mode, &craft.mode_ranges, &craft.channels)
 }
@@ -102,7 +102,7 @@ fn hold(state: &AppState, next: &mut RcFrame) {
 
 /// Whether the craft stands on the ground.
 #[must_use]
-pub fn is_standing(state: &AppState) -> bool {
+pub(super) fn is_standing(state: &AppState) -> bool {
     let vehicle = &state.view.vehicle;
     match &vehicle.truth {
         Some(truth) => truth.on_ground,
@@ -122,7 +122,7 @@ fn is_raised(state: &AppState, frame: &RcFrame) -> bool {
 
 /// Whether the hand on the sticks lets the craft sink in ALTHOLD.
 #[must_use]
-pub fn is_sinking(state: &AppState) -> bool {
+pub(super) fn is_sinking(state: &AppState) -> bool {
     let frame = frame(state);
     is_airborne(state)
         && is_on(state, &frame, Mode::AltHold)
@@ -132,7 +132,7 @@ pub fn is_sinking(state: &AppState) -> bool {
 /// What the throttle key does now: on the ground hover and low take turns; in the air the first press holds the craft,
 /// the next lets it sink, where a low stick in ALTHOLD would leave it hanging.
 #[must_use]
-pub fn throttle_move(state: &AppState) -> ThrottleMove {
+pub(super) fn throttle_move(state: &AppState) -> ThrottleMove {
     let now = frame(state);
     if !is_airborne(state) {
         return if now.channels[THROTTLE] > LOW_US { ThrottleMove::Low } else { ThrottleMove::Hover };
@@ -152,7 +152,7 @@ pub fn throttle_move(state: &AppState) -> ThrottleMove {
 ///
 /// # Errors
 /// The sentence that says what blocks arming and what to do.
-pub fn can_arm(state: &AppState) -> Result<(), String> {
+pub(super) fn can_arm(state: &AppState) -> Result<(), String> {
     let switch = switch(state, Mode::Arm)?;
     let craft = &state.view.vehicle.craft;
     if craft.armed || frame(state).channels[switch.channel] == switch.on_us {
@@ -171,7 +171,7 @@ pub fn can_arm(state: &AppState) -> Result<(), String> {
 
 /// Moves the ARM switch; disarming also lowers the throttle and releases the hold modes, which would block the next
 /// arming.
-pub fn toggle_arm(state: &mut AppState) -> Vec<Effect> {
+pub(super) fn toggle_arm(state: &mut AppState) -> Vec<Effect> {
     let Ok(switch) = switch(state, Mode::Arm) else { return Vec::new() };
     let mut next = frame(state);
     let on = state.view.vehicle.craft.armed || next.channels[switch.channel] == switch.on_us;
@@ -185,7 +185,7 @@ pub fn toggle_arm(state: &mut AppState) -> Vec<Effect> {
 
 /// Moves the AUTOPILOT switch; engaging also puts the hold modes on, which take over when it is switched off. Where a
 /// command flies the craft, the switch could only wait for its end: then it is the command that is taken back.
-pub fn toggle_autopilot(state: &mut AppState) -> Vec<Effect> {
+pub(super) fn toggle_autopilot(state: &mut AppState) -> Vec<Effect> {
     let Ok(switch) = switch(state, Mode::Autopilot) else { return Vec::new() };
     let mut next = frame(state);
     let on = next.channels[switch.channel] == switch.on_us;
@@ -203,7 +203,7 @@ pub fn toggle_autopilot(state: &mut AppState) -> Vec<Effect> {
 
 /// Sends the craft home, or takes that back. The hold modes go on, which take over when it is taken back; the scripted
 /// pilot has them on.
-pub fn toggle_return(state: &mut AppState) -> Vec<Effect> {
+pub(super) fn toggle_return(state: &mut AppState) -> Vec<Effect> {
     if state.view.vehicle.craft.commanded {
         return vec![Effect::Send(Command::CancelReturn)];
     }
@@ -219,7 +219,7 @@ pub fn toggle_return(state: &mut AppState) -> Vec<Effect> {
 }
 
 /// Moves the throttle stick as [`throttle_move`] says.
-pub fn move_throttle(state: &mut AppState) -> Vec<Effect> {
+pub(super) fn move_throttle(state: &mut AppState) -> Vec<Effect> {
     let mut next = frame(state);
     let to = throttle_move(state);
     next.channels[THROTTLE] = match to {
@@ -242,7 +242,7 @@ fn hover_us(state: &AppState) -> u16 {
 }
 
 /// Changes a channel by some µs.
-pub fn nudge(state: &mut AppState, channel: usize, by_us: i32) -> Vec<Effect> {
+pub(super) fn nudge(state: &mut AppState, channel: usize, by_us: i32) -> Vec<Effect> {
     let mut next = frame(state);
     let Some(value) = next.channels.get_mut(channel) else { return Vec::new() };
     *value = (i32::from(*value) + by_us).clamp(1000, 2000) as u16;
@@ -250,7 +250,7 @@ pub fn nudge(state: &mut AppState, channel: usize, by_us: i32) -> Vec<Effect> {
 }
 
 /// Sets a channel.
-pub fn set(state: &mut AppState, channel: usize, us: u16) -> Vec<Effect> {
+pub(super) fn set(state: &mut AppState, channel: usize, us: u16) -> Vec<Effect> {
     let mut next = frame(state);
     let Some(value) = next.channels.get_mut(channel) else { return Vec::new() };
     *value = us.clamp(1000, 2000);
@@ -258,7 +258,7 @@ pub fn set(state: &mut AppState, channel: usize, us: u16) -> Vec<Effect> {
 }
 
 /// Centres a stick, lowers the throttle, or moves a switch from low to high and back.
-pub fn flip(state: &mut AppState, channel: usize) -> Vec<Effect> {
+pub(super) fn flip(state: &mut AppState, channel: usize) -> Vec<Effect> {
     let now = frame(state).channels.get(channel).copied().unwrap_or(MIDDLE_US);
     let us = match channel {
         THROTTLE => LOW_US,

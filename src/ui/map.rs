@@ -45,7 +45,7 @@ pub struct MapState {
 
 /// A place on the ground, metres north and east of the boot place.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Ground {
+pub(super) struct Ground {
     /// North, m.
     pub n: f64,
     /// East, m.
@@ -55,26 +55,26 @@ pub struct Ground {
 impl Ground {
     /// A place.
     #[must_use]
-    pub const fn new(n: f64, e: f64) -> Self {
+    pub(super) const fn new(n: f64, e: f64) -> Self {
         Self { n, e }
     }
 
     /// Distance to another place, m.
     #[must_use]
-    pub fn distance(self, other: Self) -> f64 {
+    pub(super) fn distance(self, other: Self) -> f64 {
         (self.n - other.n).hypot(self.e - other.e)
     }
 
     /// The place `t` of the way to `other`.
     #[must_use]
-    pub fn towards(self, other: Self, t: f64) -> Self {
+    pub(super) fn towards(self, other: Self, t: f64) -> Self {
         Self::new(self.n + (other.n - self.n) * t, self.e + (other.e - self.e) * t)
     }
 }
 
 /// The boot place as the origin of the map; home or the first waypoint when the world does not tell.
 #[must_use]
-pub fn origin(state: &AppState) -> Option<LocalFrame> {
+pub(super) fn origin(state: &AppState) -> Option<LocalFrame> {
     let vehicle = &state.view.vehicle;
     if let Some(truth) = &vehicle.truth {
         let here = LocalFrame::new(truth.lat_deg, truth.lon_deg, 0.0);
@@ -89,14 +89,14 @@ pub fn origin(state: &AppState) -> Option<LocalFrame> {
 
 /// A position in metres from the origin of the map.
 #[must_use]
-pub fn ground(origin: &LocalFrame, position: LatLon) -> Ground {
+pub(super) fn ground(origin: &LocalFrame, position: LatLon) -> Ground {
     let enu = origin.to_enu(position.lat_deg(), position.lon_deg(), 0.0);
     Ground::new(enu.y, enu.x)
 }
 
 /// Where the craft is: in truth if the world tells, else as it believes.
 #[must_use]
-pub fn craft(view: &SessionView) -> Option<Ground> {
+pub(super) fn craft(view: &SessionView) -> Option<Ground> {
     let vehicle = &view.vehicle;
     match (&vehicle.truth, vehicle.estimate.n, vehicle.estimate.e) {
         (Some(truth), ..) => Some(Ground::new(truth.n, truth.e)),
@@ -108,7 +108,7 @@ pub fn craft(view: &SessionView) -> Option<Ground> {
 
 /// The window of the map.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Viewport {
+pub(super) struct Viewport {
     /// The cells it fills.
     pub area: Rect,
     /// Its middle.
@@ -120,7 +120,7 @@ pub struct Viewport {
 impl Viewport {
     /// The window of the map in these cells.
     #[must_use]
-    pub fn of(state: &AppState, area: Rect) -> Self {
+    pub(super) fn of(state: &AppState, area: Rect) -> Self {
         match state.map.mode {
             MapMode::Fit => Self::fit(state, area),
             MapMode::Follow(scale) => {
@@ -172,7 +172,7 @@ impl Viewport {
 
     /// Column and row of a place, in cells from the top left of the area; may lie outside.
     #[must_use]
-    pub fn cell(&self, place: Ground) -> (f64, f64) {
+    pub(super) fn cell(&self, place: Ground) -> (f64, f64) {
         let column = f64::from(self.area.width) / 2.0 + (place.e - self.centre.e) / self.scale;
         let row = f64::from(self.area.height) / 2.0 - (place.n - self.centre.n) / (2.0 * self.scale);
         (column, row)
@@ -180,7 +180,7 @@ impl Viewport {
 
     /// The screen cell of a place, if it is inside.
     #[must_use]
-    pub fn screen_cell(&self, place: Ground) -> Option<(u16, u16)> {
+    pub(super) fn screen_cell(&self, place: Ground) -> Option<(u16, u16)> {
         let (column, row) = self.cell(place);
         let inside = column >= 0.0
             && row >= 0.0
@@ -191,7 +191,7 @@ impl Viewport {
 
     /// The place under the middle of a screen cell.
     #[must_use]
-    pub fn place(&self, column: u16, row: u16) -> Ground {
+    pub(super) fn place(&self, column: u16, row: u16) -> Ground {
         let dc = f64::from(column) + 0.5 - f64::from(self.area.x) - f64::from(self.area.width) / 2.0;
         let dr = f64::from(row) + 0.5 - f64::from(self.area.y) - f64::from(self.area.height) / 2.0;
         Ground::new(self.centre.n - dr * 2.0 * self.scale, self.centre.e + dc * self.scale)
@@ -199,21 +199,21 @@ impl Viewport {
 
     /// East limits of the window, m.
     #[must_use]
-    pub fn east_bounds(&self) -> [f64; 2] {
+    pub(super) fn east_bounds(&self) -> [f64; 2] {
         let half = f64::from(self.area.width) / 2.0 * self.scale;
         [self.centre.e - half, self.centre.e + half]
     }
 
     /// North limits of the window, m.
     #[must_use]
-    pub fn north_bounds(&self) -> [f64; 2] {
+    pub(super) fn north_bounds(&self) -> [f64; 2] {
         let half = f64::from(self.area.height) * self.scale;
         [self.centre.n - half, self.centre.n + half]
     }
 
     /// The window moved by a number of columns and rows.
     #[must_use]
-    pub fn panned(&self, columns: f64, rows: f64) -> MapMode {
+    pub(super) fn panned(&self, columns: f64, rows: f64) -> MapMode {
         MapMode::Free {
             n: self.centre.n - rows * 2.0 * self.scale,
             e: self.centre.e + columns * self.scale,
@@ -223,7 +223,7 @@ impl Viewport {
 
     /// The window with its scale times `factor`; `fixed` keeps its place on the screen.
     #[must_use]
-    pub fn zoomed(&self, factor: f64, fixed: Ground) -> MapMode {
+    pub(super) fn zoomed(&self, factor: f64, fixed: Ground) -> MapMode {
         let scale = limited(self.scale * factor);
         let ratio = scale / self.scale;
         let centre = fixed.towards(self.centre, ratio);
@@ -237,7 +237,7 @@ fn limited(scale: f64) -> f64 {
 
 /// The longest round length (1, 2, 5 times a power of ten) not above `metres`.
 #[must_use]
-pub fn round_length(metres: f64) -> f64 {
+pub(super) fn round_length(metres: f64) -> f64 {
     let decade = 10_f64.powf(metres.max(1e-3).log10().floor());
     [5.0, 2.0].into_iter().map(|step| step * decade).find(|&length| length <= metres).unwrap_or(decade)
 }

@@ -1,13 +1,13 @@
 //! The panels, one file each: `draw(state, area, buffer)` fills the inside, `title(state)` stands on the frame.
 
-pub mod cli;
-pub mod help;
-pub mod log;
-pub mod machine;
-pub mod map;
-pub mod plan;
-pub mod rc;
-pub mod state;
+pub(super) mod cli;
+pub(super) mod help;
+pub(super) mod log;
+pub(super) mod machine;
+pub(super) mod map;
+pub(super) mod plan;
+pub(super) mod rc;
+pub(super) mod state;
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -17,12 +17,12 @@ use super::quantity::cut;
 use super::theme::{Role, Theme};
 
 /// A span in a role.
-pub fn span(theme: &Theme, role: Role, text: impl Into<String>) -> Span<'static> {
+pub(super) fn span(theme: &Theme, role: Role, text: impl Into<String>) -> Span<'static> {
     Span::styled(text.into(), theme.style(role))
 }
 
 /// Writes `text` at a row of the area, cut to its width.
-pub fn row(buffer: &mut Buffer, area: Rect, row: u16, theme: &Theme, role: Role, text: &str) {
+pub(super) fn row(buffer: &mut Buffer, area: Rect, row: u16, theme: &Theme, role: Role, text: &str) {
     if row < area.height {
         let text = cut(text, usize::from(area.width));
         buffer.set_string(area.x, area.y + row, text, theme.style(role));
@@ -30,14 +30,14 @@ pub fn row(buffer: &mut Buffer, area: Rect, row: u16, theme: &Theme, role: Role,
 }
 
 /// Writes a styled line at a row of the area.
-pub fn line(buffer: &mut Buffer, area: Rect, row: u16, line: &Line<'_>) {
+pub(super) fn line(buffer: &mut Buffer, area: Rect, row: u16, line: &Line<'_>) {
     if row < area.height {
         buffer.set_line(area.x, area.y + row, line, area.width);
     }
 }
 
 /// `text` in lines of at most `width` columns, broken at blanks; a word that is longer is broken anywhere.
-pub fn wrapped(text: &str, width: usize) -> Vec<String> {
+pub(super) fn wrapped(text: &str, width: usize) -> Vec<String> {
     use unicode_width::UnicodeWidthStr as _;
     let mut lines: Vec<String> = Vec::new();
     let mut current = String::new();
@@ -62,7 +62,7 @@ pub fn wrapped(text: &str, width: usize) -> Vec<String> {
 }
 
 /// `text` as it is in lines of at most `width` columns, blanks kept; the lines after the first are indented.
-pub fn folded(text: &str, width: usize) -> Vec<String> {
+pub(super) fn folded(text: &str, width: usize) -> Vec<String> {
     use unicode_width::UnicodeWidthChar as _;
     const INDENT: &str = "  ";
     let mut lines: Vec<String> = Vec::new();
@@ -90,7 +90,7 @@ pub fn folded(text: &str, width: usize) -> Vec<String> {
 }
 
 /// How many of these entries, each so many rows high, fit into a height; at least one.
-pub fn fitting(rows: impl Iterator<Item = usize>, height: usize) -> usize {
+pub(super) fn fitting(rows: impl Iterator<Item = usize>, height: usize) -> usize {
     let mut left = height;
     let fits = |rows: &usize| match left.checked_sub(*rows) {
         Some(rest) => {

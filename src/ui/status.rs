@@ -29,7 +29,7 @@ const CELL_V: (f64, f64) = (3.3, 4.2);
 const BAR: usize = 5;
 
 /// Draws the two status lines.
-pub fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
+pub(super) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     let first = Rect { height: 1, ..area };
     sides(buffer, first, &craft(state), &sensors(state));
     let second = Rect { y: area.y + 1, height: 1, ..area };
@@ -110,7 +110,7 @@ fn battery_bar(volts: Option<f64>, cells: u8) -> (String, Role) {
 }
 
 /// Who drives the channels, in at most nine columns.
-pub fn rc(state: &AppState) -> (String, Role) {
+pub(super) fn rc(state: &AppState) -> (String, Role) {
     let craft = &state.view.vehicle.craft;
     let ours = matches!(craft.rc_source, Some(RcSource::Sticks) | None);
     if state.view.rc_cut && ours {
@@ -321,7 +321,7 @@ fn hint(theme: &Theme, keys: &str, label: &str) -> [Span<'static>; 2] {
 }
 
 /// Draws the newest notice for a moment: in the frame of the lowest panels, and in the row above it when it is long.
-pub fn notice(state: &AppState, hints: Rect, buffer: &mut Buffer) {
+pub(super) fn notice(state: &AppState, hints: Rect, buffer: &mut Buffer) {
     let Some(notice) = state.notice.as_ref().filter(|notice| within(state.now, notice.at, NOTICE_FOR)) else {
         return;
     };
@@ -340,7 +340,7 @@ pub fn notice(state: &AppState, hints: Rect, buffer: &mut Buffer) {
 }
 
 /// Draws the hint line: keys at the left; at the right the way out and the doors.
-pub fn hints(state: &AppState, area: Rect, buffer: &mut Buffer) {
+pub(super) fn hints(state: &AppState, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     let mut right: Vec<Span<'static>> =
         way_out(state).iter().flat_map(|(keys, label)| hint(theme, keys, label)).collect();

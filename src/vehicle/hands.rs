@@ -4,7 +4,7 @@ use crate::pilot::{Pilot, PilotFacts};
 use crate::signals::{RC_CHANNELS, RcFrame, SimTime};
 
 /// Interval of RC frames, µs.
-pub const FRAME_US: u64 = 20_000;
+pub(super) const FRAME_US: u64 = 20_000;
 
 /// A channel forced to a value for a while.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -15,38 +15,38 @@ use betadeck::signals::SimTime;
 use betadeck::telemetry::{NavEvent, NavOutput, NavState};
 use nalgebra::Vector2;
 
-pub const HOME: LatLon = LatLon::new(404_635_000, -795_182_000);
-pub const DT: f64 = 0.01;
+pub(crate) const HOME: LatLon = LatLon::new(404_635_000, -795_182_000);
+pub(crate) const DT: f64 = 0.01;
 
 /// The craft and the air it flies in; north, east, up.
 #[derive(Debug, Clone)]
-pub struct Plant {
-    pub pos: Vector2<f64>,
-    pub vel: Vector2<f64>,
-    pub alt: f64,
-    pub climb: f64,
-    pub heading: f64,
-    pub yaw_rate: f64,
+pub(crate) struct Plant {
+    pub(crate) pos: Vector2<f64>,
+    pub(crate) vel: Vector2<f64>,
+    pub(crate) alt: f64,
+    pub(crate) climb: f64,
+    pub(crate) heading: f64,
+    pub(crate) yaw_rate: f64,
     /// Lean (forward, right), rad.
-    pub lean: Vector2<f64>,
-    pub accel: Vector2<f64>,
+    pub(crate) lean: Vector2<f64>,
+    pub(crate) accel: Vector2<f64>,
     /// Thrust over weight.
-    pub thrust: f64,
+    pub(crate) thrust: f64,
     /// Throttle that really hovers, µs.
-    pub hover_us: f64,
+    pub(crate) hover_us: f64,
     /// Bandwidth of the lean, rad/s.
-    pub lean_bandwidth: f64,
+    pub(crate) lean_bandwidth: f64,
     /// Mean wind, towards (north, east), m/s.
-    pub wind: Vector2<f64>,
+    pub(crate) wind: Vector2<f64>,
     /// Standard deviation of the gusts, m/s.
-    pub gust_sd: f64,
+    pub(crate) gust_sd: f64,
     gust: Vector2<f64>,
     seed: u64,
-    pub impact_mps: Option<f64>,
+    pub(crate) impact_mps: Option<f64>,
 }
 
 impl Plant {
-    pub fn new(alt: f64) -> Self {
+    pub(crate) fn new(alt: f64) -> Self {
         Self {
             pos: Vector2::zeros(),
             vel: Vector2::zeros(),
@@ -78,7 +78,7 @@ impl Plant {
     }
 
     /// `throttle` is the mixer's share, 0…1.
-    pub fn step(&mut self, roll: f64, pitch: f64, yaw_rate: f64, throttle: f64) {
+    pub(crate) fn step(&mut self, roll: f64, pitch: f64, yaw_rate: f64, throttle: f64) {
         let share = throttle / ((self.hover_us - 1050.0) / 950.0);
         self.thrust += (share * share - self.thrust) * DT / 0.05;
         self.lean += (Vector2::new(pitch, roll) - self.lean) * (self.lean_bandwidth * DT);
@@ -118,39 +118,39 @@ impl Plant {
 
 /// One update of the log.
 #[derive(Debug, Clone)]
-pub struct Sample {
-    pub t: f64,
-    pub state: NavState,
-    pub wp: u8,
-    pub pos: Vector2<f64>,
-    pub vel: Vector2<f64>,
-    pub alt: f64,
-    pub climb: f64,
-    pub lean_deg: f64,
-    pub demand_deg: f64,
-    pub throttle_us: f64,
-    pub heading: f64,
-    pub xte: Option<f64>,
-    pub target: Vector2<f64>,
-    pub out: NavOutput,
+pub(crate) struct Sample {
+    pub(crate) t: f64,
+    pub(crate) state: NavState,
+    pub(crate) wp: u8,
+    pub(crate) pos: Vector2<f64>,
+    pub(crate) vel: Vector2<f64>,
+    pub(crate) alt: f64,
+    pub(crate) climb: f64,
+    pub(crate) lean_deg: f64,
+    pub(crate) demand_deg: f64,
+    pub(crate) throttle_us: f64,
+    pub(crate) heading: f64,
+    pub(crate) xte: Option<f64>,
+    pub(crate) target: Vector2<f64>,
+    pub(crate) out: NavOutput,
 }
 
 /// A flight: craft, navigator, plan and log. Time counts from engaging.
 #[derive(Debug, Clone)]
-pub struct Flight {
-    pub plant: Plant,
-    pub nav: Navigator,
-    pub params: Params,
-    pub plan: FlightPlan,
-    pub inputs: NavInputs,
-    pub log: Vec<Sample>,
-    pub events: Vec<(f64, NavEvent)>,
-    pub disarmed: bool,
+pub(crate) struct Flight {
+    pub(crate) plant: Plant,
+    pub(crate) nav: Navigator,
+    pub(crate) params: Params,
+    pub(crate) plan: FlightPlan,
+    pub(crate) inputs: NavInputs,
+    pub(crate) log: Vec<Sample>,
+    pub(crate) events: Vec<(f64, NavEvent)>,
+    pub(crate) disarmed: bool,
     ticks: u64,
     engaged_at: u64,
 }
 
-pub fn inputs() -> NavInputs {
+pub(crate) fn inputs() -> NavInputs {
     NavInputs {
         time: SimTime(10_000_000),
         dt: DT,
@@ -179,7 +179,7 @@ pub fn inputs() -> NavInputs {
 }
 
 /// The parameters of the guide's configuration block.
-pub fn guide() -> Params {
+pub(crate) fn guide() -> Params {
     let mut params = Params::default();
     for (name, value) in [
         ("ap_position_p", 40),
@@ -210,7 +210,7 @@ pub fn guide() -> Params {
 }
 
 /// A waypoint at metres north and east of home.
-pub fn waypoint(kind: WaypointType, north: f64, east: f64, alt_m: f64, speed_mps: f64) -> Waypoint {
+pub(crate) fn waypoint(kind: WaypointType, north: f64, east: f64, alt_m: f64, speed_mps: f64) -> Waypoint {
     Waypoint {
         position: offset_to_latlon(HOME, Vector2::new(north, east)),
         alt_cm: (alt_m * 100.0) as i32,
@@ -221,12 +221,12 @@ pub fn waypoint(kind: WaypointType, north: f64, east: f64, alt_m: f64, speed_mps
     }
 }
 
-pub fn plan(waypoints: &[Waypoint]) -> FlightPlan {
+pub(crate) fn plan(waypoints: &[Waypoint]) -> FlightPlan {
     FlightPlan { waypoints: waypoints.iter().copied().collect() }
 }
 
 impl Flight {
-    pub fn new(params: Params, waypoints: &[Waypoint], alt: f64) -> Self {
+    pub(crate) fn new(params: Params, waypoints: &[Waypoint], alt: f64) -> Self {
         Self {
             plant: Plant::new(alt),
             nav: Navigator::new(),
@@ -241,14 +241,14 @@ impl Flight {
         }
     }
 
-    pub fn wind(mut self, towards_north: f64, towards_east: f64, gust_sd: f64) -> Self {
+    pub(crate) fn wind(mut self, towards_north: f64, towards_east: f64, gust_sd: f64) -> Self {
         self.plant.wind = Vector2::new(towards_north, towards_east);
         self.plant.gust_sd = gust_sd;
         self
     }
 
     /// Seconds since engaging.
-    pub fn t(&self) -> f64 {
+    pub(crate) fn t(&self) -> f64 {
         (self.ticks - self.engaged_at) as f64 * DT
     }
 
@@ -269,7 +269,7 @@ impl Flight {
     }
 
     /// The pilot's altitude and position hold for some seconds, with the shared controllers.
-    pub fn hover(&mut self, seconds: f64) {
+    pub(crate) fn hover(&mut self, seconds: f64) {
         let (mut altitude, mut position) = (AltitudeController::default(), PositionController::default());
         // Held well: the pilot's own tune, whatever the flight under test uses.
         let params = Params { hover_throttle: self.plant.hover_us as u16, ..guide() };
@@ -292,20 +292,20 @@ impl Flight {
         }
     }
 
-    pub fn engage(&mut self) {
+    pub(crate) fn engage(&mut self) {
         self.sense();
         self.engaged_at = self.ticks;
         self.nav.engage(&self.inputs, &self.params, &self.plan).unwrap();
     }
 
     /// Hovers 5 s and engages.
-    pub fn launch(mut self) -> Self {
+    pub(crate) fn launch(mut self) -> Self {
         self.hover(5.0);
         self.engage();
         self
     }
 
-    pub fn tick(&mut self) {
+    pub(crate) fn tick(&mut self) {
         self.sense();
         let out = self.nav.update(&self.inputs, &self.params, &self.plan);
         let t = self.t();
@@ -338,14 +338,14 @@ impl Flight {
         self.inputs.throttle_us = throttle;
     }
 
-    pub fn run(&mut self, seconds: f64) {
+    pub(crate) fn run(&mut self, seconds: f64) {
         for _ in 0..(seconds / DT).round() as u32 {
             self.tick();
         }
     }
 
     /// Runs until `done` or `limit` seconds; returns whether it was done.
-    pub fn until(&mut self, limit: f64, done: impl Fn(&Self) -> bool) -> bool {
+    pub(crate) fn until(&mut self, limit: f64, done: impl Fn(&Self) -> bool) -> bool {
         let end = self.t() + limit;
         while self.t() < end {
             self.tick();
@@ -356,12 +356,12 @@ impl Flight {
         false
     }
 
-    pub fn since(&self, t: f64) -> impl Iterator<Item = &Sample> {
+    pub(crate) fn since(&self, t: f64) -> impl Iterator<Item = &Sample> {
         self.log.iter().filter(move |sample| sample.t >= t)
     }
 
     /// Distinct (state, waypoint) in order.
-    pub fn sequence(&self) -> Vec<(NavState, u8)> {
+    pub(crate) fn sequence(&self) -> Vec<(NavState, u8)> {
         let mut list: Vec<(NavState, u8)> = Vec::new();
         for (_, event) in &self.events {
             if let NavEvent::State { to, wp, .. } = event {
@@ -372,19 +372,19 @@ impl Flight {
     }
 
     /// When `state` was entered at waypoint `wp`.
-    pub fn entered(&self, state: NavState, wp: u8) -> Option<f64> {
+    pub(crate) fn entered(&self, state: NavState, wp: u8) -> Option<f64> {
         self.events.iter().find_map(|(t, event)| match event {
             NavEvent::State { to, wp: at, .. } if *to == state && *at == wp => Some(*t),
             _ => None,
         })
     }
 
-    pub fn place(&self, index: usize) -> Vector2<f64> {
+    pub(crate) fn place(&self, index: usize) -> Vector2<f64> {
         local_offset(HOME, self.plan.waypoints[index].position)
     }
 }
 
-pub fn vertical(inputs: &NavInputs) -> AltitudeMeasurement {
+pub(crate) fn vertical(inputs: &NavInputs) -> AltitudeMeasurement {
     AltitudeMeasurement {
         altitude_m: inputs.alt_m,
         climb_mps: inputs.climb_mps,
@@ -393,7 +393,7 @@ pub fn vertical(inputs: &NavInputs) -> AltitudeMeasurement {
     }
 }
 
-pub fn horizontal(inputs: &NavInputs) -> PositionMeasurement {
+pub(crate) fn horizontal(inputs: &NavInputs) -> PositionMeasurement {
     PositionMeasurement {
         position: inputs.pos_ne,
         velocity: inputs.vel_ne,
@@ -404,12 +404,12 @@ pub fn horizontal(inputs: &NavInputs) -> PositionMeasurement {
 }
 
 /// Root mean square.
-pub fn rms(values: impl Iterator<Item = f64>) -> f64 {
+pub(crate) fn rms(values: impl Iterator<Item = f64>) -> f64 {
     let (sum, count) = values.fold((0.0, 0), |(sum, count), value| (sum + value * value, count + 1));
     (sum / f64::from(count.max(1))).sqrt()
 }
 
 /// Greatest of finite values.
-pub fn worst(values: impl Iterator<Item = f64>) -> f64 {
+pub(crate) fn worst(values: impl Iterator<Item = f64>) -> f64 {
     values.fold(f64::NEG_INFINITY, f64::max)
 }

@@ -5,7 +5,7 @@ use serde_json::Value;
 
 /// One line; its keys in the order in which they were printed.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Line(Vec<(String, Value)>);
+pub(crate) struct Line(Vec<(String, Value)>);
 
 impl<'de> Deserialize<'de> for Line {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
@@ -32,7 +32,7 @@ impl<'de> Deserialize<'de> for Line {
 impl Line {
     /// Reads and checks all lines of a flight.
     #[track_caller]
-    pub fn read_all(text: &str) -> Vec<Self> {
+    pub(crate) fn read_all(text: &str) -> Vec<Self> {
         assert!(text.ends_with('\n'), "the last line is not ended: {text:?}");
         let lines: Vec<Self> = text.lines().map(Self::read).collect();
         assert_eq!(lines.first().map(Self::event), Some("boot"));
@@ -50,30 +50,30 @@ impl Line {
 
     /// The value of a key that must be there.
     #[track_caller]
-    pub fn value(&self, key: &str) -> &Value {
+    pub(crate) fn value(&self, key: &str) -> &Value {
         let found = self.0.iter().find(|(name, _)| name == key);
         found.map_or_else(|| panic!("no {key} in {self:?}"), |(_, value)| value)
     }
 
     /// Simulated seconds since boot.
-    pub fn time(&self) -> f64 {
+    pub(crate) fn time(&self) -> f64 {
         self.number("t")
     }
 
     /// The event's name.
-    pub fn event(&self) -> &str {
+    pub(crate) fn event(&self) -> &str {
         self.text("event")
     }
 
     /// A number.
     #[track_caller]
-    pub fn number(&self, key: &str) -> f64 {
+    pub(crate) fn number(&self, key: &str) -> f64 {
         self.value(key).as_f64().unwrap_or_else(|| panic!("{key} is no number in {self:?}"))
     }
 
     /// A text; `null` is the empty one.
     #[track_caller]
-    pub fn text(&self, key: &str) -> &str {
+    pub(crate) fn text(&self, key: &str) -> &str {
         match self.value(key) {
             Value::Null => "",
             value => value.as_str().unwrap_or_else(|| panic!("{key} is no text in {self:?}")),

@@ -15,7 +15,7 @@ use crate::support::Sandbox;
 const NEVER: Duration = Duration::from_secs(60);
 
 /// A running program and its screen; killed when dropped.
-pub struct Terminal {
+pub(crate) struct Terminal {
     child: Box<dyn Child + Send + Sync>,
     master: Box<dyn MasterPty + Send>,
     keys: Box<dyn std::io::Write + Send>,
@@ -27,12 +27,12 @@ pub struct Terminal {
 
 impl Terminal {
     /// Starts the executable.
-    pub fn betadeck(columns: u16, rows: u16, arguments: &[&str]) -> Self {
+    pub(crate) fn betadeck(columns: u16, rows: u16, arguments: &[&str]) -> Self {
         Self::start(columns, rows, crate::support::PROGRAM, arguments)
     }
 
     /// Starts any program, with a home directory of its own.
-    pub fn start(columns: u16, rows: u16, program: &str, arguments: &[&str]) -> Self {
+    pub(crate) fn start(columns: u16, rows: u16, program: &str, arguments: &[&str]) -> Self {
         let home = Sandbox::new();
         let pty = native_pty_system().openpty(size(columns, rows)).expect("a pseudo-terminal");
         let mut command = CommandBuilder::new(program);
@@ -70,54 +70,54 @@ impl Terminal {
     }
 
     /// Types.
-    pub fn send(&mut self, keys: &str) {
+    pub(crate) fn send(&mut self, keys: &str) {
         self.keys.write_all(keys.as_bytes()).expect("the program listens");
         self.keys.flush().expect("the program listens");
     }
 
     /// Changes the size of the window.
-    pub fn resize(&mut self, columns: u16, rows: u16) {
+    pub(crate) fn resize(&mut self, columns: u16, rows: u16) {
         self.master.resize(size(columns, rows)).expect("a new size");
         self.parser.screen_mut().set_size(cells(rows), cells(columns));
     }
 
     /// Sends a signal to the program.
-    pub fn signal(&self, name: &str) {
+    pub(crate) fn signal(&self, name: &str) {
         let id = self.child.process_id().expect("a process").to_string();
         let sent = std::process::Command::new("kill").args(["-s", name, &id]).status().expect("kill");
         assert!(sent.success());
     }
 
     /// The screen as text.
-    pub fn screen(&self) -> String {
+    pub(crate) fn screen(&self) -> String {
         self.parser.screen().contents()
     }
 
     /// A row of the screen, from 0.
-    pub fn row(&self, row: usize) -> String {
+    pub(crate) fn row(&self, row: usize) -> String {
         self.screen().lines().nth(row).unwrap_or("").to_owned()
     }
 
     /// All bytes so far.
-    pub fn raw(&self) -> String {
+    pub(crate) fn raw(&self) -> String {
         String::from_utf8_lossy(&self.raw).into_owned()
     }
 
     /// Waits until the screen is as wanted.
     #[track_caller]
-    pub fn until(&mut self, wanted: &str, is: impl Fn(&Self) -> bool) {
+    pub(crate) fn until(&mut self, wanted: &str, is: impl Fn(&Self) -> bool) {
         self.watch(wanted, |terminal| is(terminal));
     }
 
     /// Waits until the screen shows a text.
     #[track_caller]
-    pub fn until_shown(&mut self, text: &str) {
+    pub(crate) fn until_shown(&mut self, text: &str) {
         self.watch(text, |terminal| terminal.screen().contains(text));
     }
 
     /// Looks at every change of the screen until `done`.
     #[track_caller]
-    pub fn watch(&mut self, wanted: &str, mut done: impl FnMut(&Self) -> bool) {
+    pub(crate) fn watch(&mut self, wanted: &str, mut done: impl FnMut(&Self) -> bool) {
         let deadline = Instant::now() + NEVER;
         while !done(self) {
             let left = deadline.saturating_duration_since(Instant::now());
@@ -134,7 +134,7 @@ impl Terminal {
 
     /// Waits for the end of the program; gives its exit code. All output has been read then.
     #[track_caller]
-    pub fn end(&mut self) -> u32 {
+    pub(crate) fn end(&mut self) -> u32 {
         let deadline = Instant::now() + NEVER;
         loop {
             let left = deadline.saturating_duration_since(Instant::now());
@@ -153,7 +153,7 @@ impl Terminal {
     /// Asserts that the terminal is as a shell wants it: the ordinary screen, a cursor, no mouse, no bracketed paste,
     /// default colours, and the line discipline `before`.
     #[track_caller]
-    pub fn assert_given_back(&self) {
+    pub(crate) fn assert_given_back(&self) {
         let screen = self.parser.screen();
         assert!(!screen.alternate_screen(), "still in the alternate screen: {}", self.raw_tail());
         assert!(!screen.hide_cursor(), "the cursor is hidden: {}", self.raw_tail());
@@ -164,7 +164,7 @@ impl Terminal {
     }
 
     /// The line discipline as text.
-    pub fn discipline(&self) -> String {
+    pub(crate) fn discipline(&self) -> String {
         format!("{:?}", self.master.get_termios().expect("a terminal"))
     }
 

@@ -8,56 +8,56 @@ use tempfile::TempDir;
 use crate::lines::Line;
 
 /// The executable.
-pub const PROGRAM: &str = env!("CARGO_BIN_EXE_betadeck");
+pub(crate) const PROGRAM: &str = env!("CARGO_BIN_EXE_betadeck");
 
 /// When a run that does not end by itself counts as hung; far above what any of them needs.
 const HUNG: Duration = Duration::from_secs(60);
 
 /// An empty home directory, and the working directory of what is run in it.
-pub struct Sandbox {
+pub(crate) struct Sandbox {
     directory: TempDir,
 }
 
 /// What a run left behind.
 #[derive(Debug)]
-pub struct Ran {
+pub(crate) struct Ran {
     /// Exit code; `None` after a signal.
-    pub code: Option<i32>,
+    pub(crate) code: Option<i32>,
     /// Standard output.
-    pub out: String,
+    pub(crate) out: String,
     /// Standard error.
-    pub err: String,
+    pub(crate) err: String,
 }
 
 impl Sandbox {
     /// A new one.
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self { directory: tempfile::tempdir().expect("a directory") }
     }
 
     /// The path of a file in it.
-    pub fn path(&self, name: &str) -> PathBuf {
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
         self.directory.path().join(name)
     }
 
     /// Writes a file into it.
-    pub fn write(&self, name: &str, text: &str) {
+    pub(crate) fn write(&self, name: &str, text: &str) {
         std::fs::write(self.path(name), text).expect("a writable directory");
     }
 
     /// Reads a file of it.
-    pub fn read(&self, name: &str) -> String {
+    pub(crate) fn read(&self, name: &str) -> String {
         std::fs::read_to_string(self.path(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
     }
 
     /// The names of the files in it.
-    pub fn names(&self) -> Vec<String> {
+    pub(crate) fn names(&self) -> Vec<String> {
         let entries = std::fs::read_dir(self.directory.path()).expect("a readable directory");
         entries.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned()).collect()
     }
 
     /// The environment of a run: this home, and nothing of the real one.
-    pub fn environment(&self) -> Vec<(&'static str, PathBuf)> {
+    pub(crate) fn environment(&self) -> Vec<(&'static str, PathBuf)> {
         let home = self.directory.path();
         vec![
             ("HOME", home.to_path_buf()),
@@ -68,19 +68,19 @@ impl Sandbox {
     }
 
     /// A command of the executable.
-    pub fn command(&self, arguments: &[&str]) -> std::process::Command {
+    pub(crate) fn command(&self, arguments: &[&str]) -> std::process::Command {
         let mut command = std::process::Command::new(PROGRAM);
         command.env_clear().envs(self.environment()).current_dir(self.directory.path()).args(arguments);
         command
     }
 
     /// Runs it to its end.
-    pub fn run(&self, arguments: &[&str]) -> Ran {
+    pub(crate) fn run(&self, arguments: &[&str]) -> Ran {
         self.run_with(arguments, "")
     }
 
     /// Runs it with this on standard input.
-    pub fn run_with(&self, arguments: &[&str], input: &str) -> Ran {
+    pub(crate) fn run_with(&self, arguments: &[&str], input: &str) -> Ran {
         let output = assert_cmd::Command::from_std(self.command(arguments))
             .timeout(HUNG)
             .write_stdin(input)
@@ -94,7 +94,7 @@ impl Sandbox {
     }
 
     /// Flies with JSON lines on standard output, every one of them checked.
-    pub fn fly(&self, arguments: &[&str]) -> Flown {
+    pub(crate) fn fly(&self, arguments: &[&str]) -> Flown {
         let ran = self.run(&[&["fly", "--json", "-"], arguments].concat());
         let lines = Line::read_all(&ran.out);
         Flown { code: ran.code, err: ran.err, lines }
@@ -104,7 +104,7 @@ impl Sandbox {
 impl Ran {
     /// Asserts the exit code, showing what was said when it is another.
     #[track_caller]
-    pub fn exits(self, code: i32) -> Self {
+    pub(crate) fn exits(self, code: i32) -> Self {
         assert_eq!(self.code, Some(code), "\n{}\n{}", self.out, self.err);
         self
     }
@@ -112,19 +112,19 @@ impl Ran {
 
 /// A flight.
 #[derive(Debug)]
-pub struct Flown {
+pub(crate) struct Flown {
     /// Exit code.
-    pub code: Option<i32>,
+    pub(crate) code: Option<i32>,
     /// Standard error.
-    pub err: String,
+    pub(crate) err: String,
     /// The JSON lines.
-    pub lines: Vec<Line>,
+    pub(crate) lines: Vec<Line>,
 }
 
 impl Flown {
     /// Asserts the exit code and the result of the `end` event.
     #[track_caller]
-    pub fn ends(self, code: i32, result: &str) -> Self {
+    pub(crate) fn ends(self, code: i32, result: &str) -> Self {
         let end = self.lines.last().expect("lines");
         assert_eq!(
             (self.code, end.event(), end.text("result")),
@@ -139,34 +139,34 @@ impl Flown {
     }
 
     /// The lines of this event.
-    pub fn all<'a>(&'a self, event: &'a str) -> impl DoubleEndedIterator<Item = &'a Line> + 'a {
+    pub(crate) fn all<'a>(&'a self, event: &'a str) -> impl DoubleEndedIterator<Item = &'a Line> + 'a {
         self.lines.iter().filter(move |line| line.event() == event)
     }
 
     /// The first line of this event.
     #[track_caller]
-    pub fn first(&self, event: &str) -> &Line {
+    pub(crate) fn first(&self, event: &str) -> &Line {
         let found = self.lines.iter().find(|line| line.event() == event);
         found.unwrap_or_else(|| panic!("no {event} in {:#?}", self.lines))
     }
 
     /// Simulated time of the first engagement.
-    pub fn engaged_at(&self) -> f64 {
+    pub(crate) fn engaged_at(&self) -> f64 {
         self.all("state").find(|line| line.text("from") == "IDLE").expect("an engagement").time()
     }
 
     /// The states entered, with the waypoint: `APPROACHING 0`.
-    pub fn states(&self) -> Vec<String> {
+    pub(crate) fn states(&self) -> Vec<String> {
         self.all("state").map(|line| format!("{} {}", line.text("to"), line.number("wp"))).collect()
     }
 }
 
 /// The folder of the shipped plans.
-pub fn plans() -> PathBuf {
+pub(crate) fn plans() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("plans")
 }
 
 /// A shipped plan's path as an argument.
-pub fn plan(name: &str) -> String {
+pub(crate) fn plan(name: &str) -> String {
     plans().join(name).to_str().expect("a plain path").to_owned()
 }

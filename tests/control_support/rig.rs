@@ -18,31 +18,31 @@ use nalgebra::Vector2;
 const FRAME_US: u64 = 20_000;
 
 /// The craft.
-pub struct Rig {
-    pub world: World,
-    pub estimator: Estimator,
-    pub controller: Controller,
-    pub holds: Holds,
-    pub hold_tuning: HoldTuning,
-    pub params: Params,
-    pub modes: HoldModes,
-    pub hold: HoldOutput,
+pub(crate) struct Rig {
+    pub(crate) world: World,
+    pub(crate) estimator: Estimator,
+    pub(crate) controller: Controller,
+    pub(crate) holds: Holds,
+    pub(crate) hold_tuning: HoldTuning,
+    pub(crate) params: Params,
+    pub(crate) modes: HoldModes,
+    pub(crate) hold: HoldOutput,
     /// Sticks and mode as the pilot has them; they reach the controller with the next frame.
-    pub sticks: ControlInput,
+    pub(crate) sticks: ControlInput,
     received: ControlInput,
     dt: f64,
     slow_time: SimTime,
 }
 
 /// A world with these sensors and this airframe in flat wind.
-pub fn world(noise: Noise, airframe: Airframe) -> WorldConfig {
+pub(crate) fn world(noise: Noise, airframe: Airframe) -> WorldConfig {
     let mut config = WorldConfig { noise, airframe, ..WorldConfig::default() };
     config.switches.wind_profile = betadeck::sim::WindProfile::Flat;
     config
 }
 
 impl Rig {
-    pub fn new(config: WorldConfig, settings: &Settings) -> Self {
+    pub(crate) fn new(config: WorldConfig, settings: &Settings) -> Self {
         let dt = 1.0 / f64::from(config.rate_hz);
         let mut params = Params::default();
         for field in Params::FIELDS {
@@ -67,7 +67,7 @@ impl Rig {
     }
 
     /// An armed craft 20 m above home, hovering in ALTHOLD and POS HOLD for 10 s.
-    pub fn airborne(config: WorldConfig, settings: &Settings) -> Self {
+    pub(crate) fn airborne(config: WorldConfig, settings: &Settings) -> Self {
         let mut rig = Self::new(config, settings);
         rig.run(6.0);
         rig.arm();
@@ -83,7 +83,7 @@ impl Rig {
         rig
     }
 
-    pub fn arm(&mut self) {
+    pub(crate) fn arm(&mut self) {
         let home = self.estimate().gps.solution.map(|solution| solution.position);
         self.estimator.on_arm(home);
         self.sticks.armed = true;
@@ -91,56 +91,56 @@ impl Rig {
     }
 
     /// Gives the craft into the hands of the pilot, levelled, at the throttle that hovers.
-    pub fn manual(&mut self, mode: StickMode) {
+    pub(crate) fn manual(&mut self, mode: StickMode) {
         self.sticks.throttle_us = self.controller.state().throttle_us;
         self.sticks.mode = mode;
         self.modes = HoldModes::NONE;
     }
 
-    pub fn estimate(&self) -> &Estimate {
+    pub(crate) fn estimate(&self) -> &Estimate {
         self.estimator.estimate()
     }
 
-    pub fn truth(&self) -> &Truth {
+    pub(crate) fn truth(&self) -> &Truth {
         self.world.truth()
     }
 
     /// True roll (right positive) and pitch (nose down positive), degrees.
-    pub fn lean_deg(&self) -> [f64; 2] {
+    pub(crate) fn lean_deg(&self) -> [f64; 2] {
         let m = self.truth().attitude.to_rotation_matrix();
         let m = m.matrix();
         [m[(2, 1)].atan2(m[(2, 2)]).to_degrees(), (-m[(2, 0)]).asin().to_degrees()]
     }
 
     /// True body rates, roll right, pitch nose down, yaw clockwise, °/s.
-    pub fn rates_dps(&self) -> [f64; 3] {
+    pub(crate) fn rates_dps(&self) -> [f64; 3] {
         let rate = self.truth().rate_flu;
         [rate.x.to_degrees(), rate.y.to_degrees(), -rate.z.to_degrees()]
     }
 
     /// True position north and east of home, m.
-    pub fn position_ne(&self) -> Vector2<f64> {
+    pub(crate) fn position_ne(&self) -> Vector2<f64> {
         Vector2::new(self.truth().pos_enu.y, self.truth().pos_enu.x)
     }
 
     /// True altitude above where it stood, m.
-    pub fn altitude_m(&self) -> f64 {
+    pub(crate) fn altitude_m(&self) -> f64 {
         self.truth().pos_enu.z - self.world.airframe().standing_height_m()
     }
 
-    pub fn run(&mut self, seconds: f64) {
+    pub(crate) fn run(&mut self, seconds: f64) {
         self.watch(seconds, |_| ());
     }
 
     /// Runs and looks at the craft after each step.
-    pub fn watch(&mut self, seconds: f64, mut look: impl FnMut(&Self)) {
+    pub(crate) fn watch(&mut self, seconds: f64, mut look: impl FnMut(&Self)) {
         for _ in 0..(seconds / self.dt).round() as usize {
             self.step();
             look(self);
         }
     }
 
-    pub fn step(&mut self) {
+    pub(crate) fn step(&mut self) {
         let frame = *self.world.sensors();
         let is_frame = frame.time.0.is_multiple_of(FRAME_US);
         if is_frame {
@@ -195,7 +195,7 @@ impl Rig {
     }
 
     /// Demands this lean from the next frame on.
-    pub fn lean(&mut self, roll_deg: f64, pitch_deg: f64) {
+    pub(crate) fn lean(&mut self, roll_deg: f64, pitch_deg: f64) {
         self.sticks.lean =
             Some(LeanDemand { roll_rad: roll_deg.to_radians(), pitch_rad: pitch_deg.to_radians() });
     }
@@ -203,17 +203,17 @@ impl Rig {
 
 /// How a signal answered a step from 0 to `target`, sampled every `dt` seconds.
 #[derive(Debug)]
-pub struct StepResponse {
+pub(crate) struct StepResponse {
     /// Share of the step that it went beyond.
-    pub overshoot: f64,
+    pub(crate) overshoot: f64,
     /// Seconds until it stayed within 5 % of the step.
-    pub settled_s: f64,
+    pub(crate) settled_s: f64,
     /// Seconds until it reached 90 %.
-    pub rise_s: f64,
+    pub(crate) rise_s: f64,
 }
 
 impl StepResponse {
-    pub fn of(values: &[f64], target: f64, dt: f64) -> Self {
+    pub(crate) fn of(values: &[f64], target: f64, dt: f64) -> Self {
         let shares: Vec<f64> = values.iter().map(|value| value / target).collect();
         let last_outside = shares.iter().rposition(|share| (share - 1.0).abs() > 0.05);
         let rise = shares.iter().position(|share| *share >= 0.9).unwrap_or(shares.len());

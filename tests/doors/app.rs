@@ -12,13 +12,13 @@ use super::program::PATIENCE;
 /// GET_TEXT.
 const TEXT: u16 = 0x3006;
 
-pub struct App {
+pub(crate) struct App {
     socket: WebSocket<TcpStream>,
     bytes: Vec<u8>,
 }
 
 impl App {
-    pub fn open(address: SocketAddr) -> Self {
+    pub(crate) fn open(address: SocketAddr) -> Self {
         let mut request = format!("ws://{address}/").into_client_request().unwrap();
         let headers = request.headers_mut();
         headers.insert("Origin", HeaderValue::from_static("https://app.betaflight.com"));
@@ -31,16 +31,16 @@ impl App {
         Self { socket, bytes: Vec::new() }
     }
 
-    pub fn send(&mut self, bytes: Vec<u8>) {
+    pub(crate) fn send(&mut self, bytes: Vec<u8>) {
         self.socket.send(Message::Binary(bytes.into())).unwrap();
     }
 
     /// Sends what may be refused.
-    pub fn try_send(&mut self, bytes: Vec<u8>) -> Result<(), Error> {
+    pub(crate) fn try_send(&mut self, bytes: Vec<u8>) -> Result<(), Error> {
         self.socket.send(Message::Binary(bytes.into()))
     }
 
-    pub fn receive(&mut self) {
+    pub(crate) fn receive(&mut self) {
         match self.socket.read().unwrap() {
             Message::Binary(bytes) => self.bytes.extend_from_slice(&bytes),
             other => panic!("{other:?} instead of bytes"),
@@ -48,7 +48,7 @@ impl App {
     }
 
     /// The next answer: the code and, unless it is an error, the payload.
-    pub fn answer(&mut self) -> (u16, Option<Vec<u8>>) {
+    pub(crate) fn answer(&mut self) -> (u16, Option<Vec<u8>>) {
         loop {
             if let Some(answer) = msp::take_answer(&mut self.bytes) {
                 return answer;
@@ -57,7 +57,7 @@ impl App {
         }
     }
 
-    pub fn ask(&mut self, code: u16, payload: &[u8]) -> Option<Vec<u8>> {
+    pub(crate) fn ask(&mut self, code: u16, payload: &[u8]) -> Option<Vec<u8>> {
         self.send(match u8::try_from(code) {
             Ok(code) => msp::request(code, payload),
             Err(_) => msp::request_v2(code, payload),
@@ -67,12 +67,12 @@ impl App {
         payload
     }
 
-    pub fn expect(&mut self, code: u16) -> Vec<u8> {
+    pub(crate) fn expect(&mut self, code: u16) -> Vec<u8> {
         self.ask(code, &[]).unwrap_or_else(|| panic!("{code} is refused"))
     }
 
     /// What the App does before its first tab opens.
-    pub fn connect(address: SocketAddr) -> Self {
+    pub(crate) fn connect(address: SocketAddr) -> Self {
         let mut app = Self::open(address);
         assert_eq!(app.expect(1), [0, 1, 49]);
         assert_eq!(app.expect(2), b"BTFL");
@@ -97,7 +97,7 @@ impl App {
     }
 
     /// One round of the poll behind every tab; says whether there is a GPS.
-    pub fn poll(&mut self) -> bool {
+    pub(crate) fn poll(&mut self) -> bool {
         for code in [110, 130, 116] {
             assert!(!self.expect(code).is_empty(), "{code}");
         }
@@ -109,7 +109,7 @@ impl App {
     }
 
     /// A line as the Flight Plan tab sends it: the lines of the answer.
-    pub fn line(&mut self, line: &str) -> Vec<String> {
+    pub(crate) fn line(&mut self, line: &str) -> Vec<String> {
         self.send([&[2], line.as_bytes(), b"\n\x03"].concat());
         while self.bytes.last() != Some(&3) {
             self.receive();
@@ -120,14 +120,14 @@ impl App {
         lines.filter(|line| !line.is_empty()).collect()
     }
 
-    pub fn plan(&mut self) -> Vec<String> {
+    pub(crate) fn plan(&mut self) -> Vec<String> {
         let mut lines = self.line("waypoint list");
         lines.retain(|line| line.starts_with("waypoint insert ") && line.split(' ').count() == 10);
         lines
     }
 
     /// Reads until the other side has closed in the ordinary way.
-    pub fn wait_for_close(mut self) {
+    pub(crate) fn wait_for_close(mut self) {
         loop {
             match self.socket.read() {
                 Ok(_) => {}
@@ -138,7 +138,7 @@ impl App {
     }
 
     /// Says goodbye and hears the answer.
-    pub fn close(mut self) {
+    pub(crate) fn close(mut self) {
         self.socket.close(None).unwrap();
         self.wait_for_close();
     }

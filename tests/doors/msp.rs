@@ -12,19 +12,19 @@ use super::program::PATIENCE;
 const RX_LOSS: u32 = 1 << 2;
 
 /// The bytes of a request.
-pub fn request(code: u8, payload: &[u8]) -> Vec<u8> {
+pub(crate) fn request(code: u8, payload: &[u8]) -> Vec<u8> {
     let size = u8::try_from(payload.len()).unwrap();
     let sum = payload.iter().fold(size ^ code, |sum, byte| sum ^ byte);
     [b"$M<", &[size, code][..], payload, &[sum]].concat()
 }
 
 /// The bytes of a version 2 request, for the codes that a byte cannot hold.
-pub fn request_v2(code: u16, payload: &[u8]) -> Vec<u8> {
+pub(crate) fn request_v2(code: u16, payload: &[u8]) -> Vec<u8> {
     Frame::request(Form::V2, code, payload).to_bytes()
 }
 
 /// Takes a whole answer from the front of `bytes`: its code, and its payload unless it is an error.
-pub fn take_answer(bytes: &mut Vec<u8>) -> Option<(u16, Option<Vec<u8>>)> {
+pub(crate) fn take_answer(bytes: &mut Vec<u8>) -> Option<(u16, Option<Vec<u8>>)> {
     if bytes.starts_with(b"$X") {
         let &[_, _, kind, _, code_low, code_high, size_low, size_high, ..] = &bytes[..] else { return None };
         let end = 8 + usize::from(u16::from_le_bytes([size_low, size_high]));
@@ -47,7 +47,7 @@ pub fn take_answer(bytes: &mut Vec<u8>) -> Option<(u16, Option<Vec<u8>>)> {
 }
 
 /// Asks over a byte stream and reads the answer.
-pub fn ask(stream: &mut (impl Read + Write), code: u8, payload: &[u8]) -> Option<Vec<u8>> {
+pub(crate) fn ask(stream: &mut (impl Read + Write), code: u8, payload: &[u8]) -> Option<Vec<u8>> {
     stream.write_all(&request(code, payload)).unwrap();
     let (answered, payload) = read_answer(stream);
     assert_eq!(answered, u16::from(code));
@@ -55,7 +55,7 @@ pub fn ask(stream: &mut (impl Read + Write), code: u8, payload: &[u8]) -> Option
 }
 
 /// Asks in version 2 over a byte stream and reads the answer.
-pub fn ask_v2(stream: &mut (impl Read + Write), code: u16, payload: &[u8]) -> Option<Vec<u8>> {
+pub(crate) fn ask_v2(stream: &mut (impl Read + Write), code: u16, payload: &[u8]) -> Option<Vec<u8>> {
     stream.write_all(&request_v2(code, payload)).unwrap();
     let (answered, payload) = read_answer(stream);
     assert_eq!(answered, code);
@@ -75,7 +75,7 @@ fn read_answer(stream: &mut impl Read) -> (u16, Option<Vec<u8>>) {
 }
 
 /// Waits until nothing but the missing RC keeps the craft from arming: the start is over, there is a fix.
-pub fn wait_until_ready(door: SocketAddr) {
+pub(crate) fn wait_until_ready(door: SocketAddr) {
     let mut stream = TcpStream::connect(door).unwrap();
     stream.set_read_timeout(Some(PATIENCE)).unwrap();
     let start = Instant::now();

@@ -9,10 +9,10 @@ use std::time::{Duration, Instant};
 use serde_json::Value;
 
 /// Nothing in these tests takes this long unless it hangs.
-pub const PATIENCE: Duration = Duration::from_secs(120);
+pub(crate) const PATIENCE: Duration = Duration::from_secs(120);
 
 /// A process whose output is read line by line.
-pub struct Program {
+pub(crate) struct Program {
     child: Child,
     lines: mpsc::Receiver<String>,
     seen: Vec<String>,
@@ -21,7 +21,7 @@ pub struct Program {
 }
 
 impl Program {
-    pub fn start(arguments: &[&str]) -> Self {
+    pub(crate) fn start(arguments: &[&str]) -> Self {
         let home = tempfile::tempdir().unwrap();
         let mut child = Command::new(env!("CARGO_BIN_EXE_betadeck"))
             .args(arguments)
@@ -40,7 +40,7 @@ impl Program {
     }
 
     /// The next line for which `wanted` gives something; panics with everything said when none comes.
-    pub fn wait<T>(&mut self, what: &str, wanted: impl Fn(&str) -> Option<T>) -> T {
+    pub(crate) fn wait<T>(&mut self, what: &str, wanted: impl Fn(&str) -> Option<T>) -> T {
         let end = Instant::now() + PATIENCE;
         loop {
             let left = end.saturating_duration_since(Instant::now());
@@ -56,7 +56,7 @@ impl Program {
     }
 
     /// All lines so far.
-    pub fn seen(&mut self) -> &[String] {
+    pub(crate) fn seen(&mut self) -> &[String] {
         self.seen.extend(self.lines.try_iter());
         &self.seen
     }
@@ -81,16 +81,16 @@ fn pass_on(output: impl Read + Send + 'static, lines: mpsc::Sender<String>) {
 }
 
 /// `betadeck serve` with all its doors on ports of the system's choice.
-pub struct Serve {
+pub(crate) struct Serve {
     program: Program,
-    pub websocket: SocketAddr,
-    pub tcp: SocketAddr,
-    pub rc: SocketAddr,
+    pub(crate) websocket: SocketAddr,
+    pub(crate) tcp: SocketAddr,
+    pub(crate) rc: SocketAddr,
 }
 
 impl Serve {
     /// Serves a craft without stored settings at this many times real time.
-    pub fn start(speed: &str) -> Self {
+    pub(crate) fn start(speed: &str) -> Self {
         let options = "serve --fresh --json - --ws-port 0 --tcp-port 0 --udp-ports 0,0,0,0 --speed";
         let mut arguments: Vec<&str> = options.split(' ').collect();
         arguments.push(speed);
@@ -104,7 +104,7 @@ impl Serve {
     }
 
     /// The next event for which `wanted` is true.
-    pub fn wait(&mut self, what: &str, wanted: impl Fn(&Value) -> bool) -> Value {
+    pub(crate) fn wait(&mut self, what: &str, wanted: impl Fn(&Value) -> bool) -> Value {
         self.program.wait(what, |line| {
             let event: Value = serde_json::from_str(line).ok()?;
             wanted(&event).then_some(event)
@@ -112,35 +112,35 @@ impl Serve {
     }
 
     /// The next event of that name.
-    pub fn event(&mut self, name: &str) -> Value {
+    pub(crate) fn event(&mut self, name: &str) -> Value {
         self.wait(name, |event| event["event"] == name)
     }
 
     /// Whether an event of that name has come so far.
-    pub fn has_seen(&mut self, name: &str) -> bool {
+    pub(crate) fn has_seen(&mut self, name: &str) -> bool {
         let key = format!("\"event\":\"{name}\"");
         self.program.seen().iter().any(|line| line.contains(&key))
     }
 
     /// How many notices so far hold this text.
-    pub fn notices(&mut self, text: &str) -> usize {
+    pub(crate) fn notices(&mut self, text: &str) -> usize {
         let holds = |line: &&String| line.contains("\"event\":\"notice\"") && line.contains(text);
         self.program.seen().iter().filter(holds).count()
     }
 }
 
 /// `betadeck sitl` with its doors on ports of the system's choice.
-pub struct Sitl {
+pub(crate) struct Sitl {
     /// Ended with this.
     _program: Program,
-    pub fdm: SocketAddr,
-    pub rc: SocketAddr,
-    pub tcp: SocketAddr,
+    pub(crate) fdm: SocketAddr,
+    pub(crate) rc: SocketAddr,
+    pub(crate) tcp: SocketAddr,
 }
 
 impl Sitl {
     /// Sends motors to these ports.
-    pub fn start(raw: u16, motors: u16) -> Self {
+    pub(crate) fn start(raw: u16, motors: u16) -> Self {
         let ports = format!("{raw},{motors},0,0");
         // `eeprom.bin` lies in its directory.
         let mut program =

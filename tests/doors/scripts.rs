@@ -14,22 +14,22 @@ const GUIDE_SETTINGS: &str = include_str!("../vectors/guide-step5.txt");
 const GUIDE_PLAN: &str = include_str!("../../plans/guide-square.txt");
 
 /// The switches of the usual script: ARM on the fifth channel, AUTOPILOT on the sixth.
-pub const SWITCHES: &str = "
+pub(crate) const SWITCHES: &str = "
     aux 0 0 0 1700 2100 0 0
     aux 1 56 1 1700 2100 0 0";
 
 /// Lets a machine that is busy with other things hold a script up without a failsafe.
-pub const PATIENT_FAILSAFE: &str = "set failsafe_delay = 200";
+pub(crate) const PATIENT_FAILSAFE: &str = "set failsafe_delay = 200";
 
 /// Over one point and down beside home.
-pub const THERE_AND_DOWN: &str = "
+pub(crate) const THERE_AND_DOWN: &str = "
     set ap_landing_descent_rate = 200
     waypoint clear
     waypoint insert 0 40.4637000 -79.5182000 2000 500 FLYOVER 0 ORBIT
     waypoint insert 1 40.4636000 -79.5182000 1500 500 LAND 0 ORBIT";
 
 /// Round and round until somebody ends it.
-pub const FOR_EVER: &str = "
+pub(crate) const FOR_EVER: &str = "
     waypoint clear
     waypoint insert 0 40.4637000 -79.5182000 2000 500 HOLD 0 ORBIT";
 
@@ -53,14 +53,14 @@ fn prepare(tcp: SocketAddr, texts: &[&str]) {
 }
 
 /// A served craft that has been prepared and could arm.
-pub fn prepared(speed: &str, texts: &[&str]) -> Serve {
+pub(crate) fn prepared(speed: &str, texts: &[&str]) -> Serve {
     let serve = Serve::start(speed);
     prepare(serve.tcp, texts);
     serve
 }
 
 /// Sees the craft arm, fly the plan to its end and come down.
-pub fn sees_the_flight(serve: &mut Serve) {
+pub(crate) fn sees_the_flight(serve: &mut Serve) {
     serve.event("armed");
     serve.wait("end of the plan", |event| event["event"] == "state" && event["to"] == "COMPLETE");
     let disarmed = serve.event("disarmed");

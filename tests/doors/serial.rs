@@ -7,10 +7,10 @@ use super::program::PATIENCE;
 
 const PROMPT: &[u8] = b"\r\n# ";
 
-pub struct Terminal(TcpStream);
+pub(crate) struct Terminal(TcpStream);
 
 impl Terminal {
-    pub fn open(address: SocketAddr) -> Self {
+    pub(crate) fn open(address: SocketAddr) -> Self {
         let stream = TcpStream::connect(address).unwrap();
         stream.set_read_timeout(Some(PATIENCE)).unwrap();
         stream.set_nodelay(true).unwrap();
@@ -32,7 +32,7 @@ impl Terminal {
 
     /// Types lines, each after the prompt of the one before; none may be refused. The answer to the last. A bare `save` is
     /// left to [`Terminal::save`].
-    pub fn type_lines(&mut self, text: &str) -> String {
+    pub(crate) fn type_lines(&mut self, text: &str) -> String {
         let mut answer = String::new();
         for line in text.lines().map(str::trim).filter(|line| !line.is_empty() && *line != "save") {
             self.0.write_all(format!("{line}\n").as_bytes()).unwrap();
@@ -43,7 +43,7 @@ impl Terminal {
     }
 
     /// Types `save`; the craft reboots and closes the link.
-    pub fn save(mut self) {
+    pub(crate) fn save(mut self) {
         self.0.write_all(b"save\n").unwrap();
         let mut rest = Vec::new();
         self.0.read_to_end(&mut rest).unwrap();

@@ -18,38 +18,38 @@ const MOTORS_LATE: Duration = Duration::from_secs(1);
 
 /// Where the craft is and was.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Seen {
-    pub east_m: f64,
-    pub north_m: f64,
-    pub alt_m: f64,
-    pub highest_m: f64,
-    pub furthest_north_m: f64,
-    pub on_ground: bool,
-    pub crashed: bool,
+pub(crate) struct Seen {
+    pub(crate) east_m: f64,
+    pub(crate) north_m: f64,
+    pub(crate) alt_m: f64,
+    pub(crate) highest_m: f64,
+    pub(crate) furthest_north_m: f64,
+    pub(crate) on_ground: bool,
+    pub(crate) crashed: bool,
 }
 
 /// A simulator before it knows where to send to.
-pub struct Sockets {
+pub(crate) struct Sockets {
     motors: UdpSocket,
     raw: UdpSocket,
 }
 
 impl Sockets {
-    pub fn open() -> Self {
+    pub(crate) fn open() -> Self {
         let socket = || UdpSocket::bind("127.0.0.1:0").unwrap();
         Self { motors: socket(), raw: socket() }
     }
 
-    pub fn motors_port(&self) -> u16 {
+    pub(crate) fn motors_port(&self) -> u16 {
         self.motors.local_addr().unwrap().port()
     }
 
-    pub fn raw_port(&self) -> u16 {
+    pub(crate) fn raw_port(&self) -> u16 {
         self.raw.local_addr().unwrap().port()
     }
 
     /// Runs the world at most `speed` times as fast as time passes, until dropped.
-    pub fn fly(self, fdm: SocketAddr, speed: f64) -> Simulator {
+    pub(crate) fn fly(self, fdm: SocketAddr, speed: f64) -> Simulator {
         let (seen, stop) = (Arc::new(Mutex::new(Seen::default())), Arc::new(AtomicBool::new(false)));
         let (shown, stopped) = (Arc::clone(&seen), Arc::clone(&stop));
         let thread = std::thread::spawn(move || {
@@ -104,19 +104,19 @@ impl Sockets {
 }
 
 /// A running simulator.
-pub struct Simulator {
+pub(crate) struct Simulator {
     seen: Arc<Mutex<Seen>>,
     stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl Simulator {
-    pub fn seen(&self) -> Seen {
+    pub(crate) fn seen(&self) -> Seen {
         *self.seen.lock().unwrap()
     }
 
     /// Looks until `wanted`.
-    pub fn wait(&self, what: &str, wanted: impl Fn(&Seen) -> bool) {
+    pub(crate) fn wait(&self, what: &str, wanted: impl Fn(&Seen) -> bool) {
         let start = Instant::now();
         while !wanted(&self.seen()) {
             assert!(start.elapsed() < PATIENCE, "no {what}: {:?}", self.seen());

@@ -10,7 +10,7 @@ use super::msp;
 use super::program::PATIENCE;
 
 /// A script in a thread, until it is ended or dropped.
-pub struct Script {
+pub(crate) struct Script {
     stop: Arc<AtomicBool>,
     thread: Option<JoinHandle<()>>,
 }
@@ -49,7 +49,7 @@ impl Script {
     }
 
     /// The usual script: packets of a time stamp and sixteen channels.
-    pub fn udp(door: SocketAddr) -> Self {
+    pub(crate) fn udp(door: SocketAddr) -> Self {
         let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
         Self::run(false, 1100, move |channels| {
             let stamp_s = SystemTime::now().duration_since(UNIX_EPOCH).unwrap().as_secs_f64();
@@ -61,7 +61,7 @@ impl Script {
     }
 
     /// SET_RAW_RC over TCP. Arming by MSP has the strict rules: switch off and throttle low before.
-    pub fn msp(door: SocketAddr) -> Self {
+    pub(crate) fn msp(door: SocketAddr) -> Self {
         let mut stream = TcpStream::connect(door).unwrap();
         stream.set_nodelay(true).unwrap();
         stream.set_read_timeout(Some(PATIENCE)).unwrap();
@@ -72,7 +72,7 @@ impl Script {
     }
 
     /// Sends nothing any more.
-    pub fn end(mut self) {
+    pub(crate) fn end(mut self) {
         self.stop.store(true, Ordering::Relaxed);
         self.thread.take().unwrap().join().unwrap();
     }

@@ -28,7 +28,7 @@ enum Work {
 
 /// Where the work stands.
 #[derive(Debug, Clone, Default)]
-pub struct Crew {
+pub(crate) struct Crew {
     work: Work,
     since: u32,
     lying: u32,
@@ -36,16 +36,16 @@ pub struct Crew {
 
 impl Crew {
     /// Nothing to do.
-    pub fn done() -> Self {
+    pub(crate) fn done() -> Self {
         Self { work: Work::Done, ..Self::default() }
     }
 
-    pub fn is_done(&self) -> bool {
+    pub(crate) fn is_done(&self) -> bool {
         self.work == Work::Done
     }
 
     /// Comes when the craft has been lying for a while; now and then it is left to itself longer.
-    pub fn watch(&mut self, run: &Run, rng: &mut ChaCha8Rng) {
+    pub(crate) fn watch(&mut self, run: &Run, rng: &mut ChaCha8Rng) {
         self.lying = if run.vehicle.firmware().is_armed() { 0 } else { self.lying + 1 };
         if self.is_done() && self.lying > LEFT_ALONE && rng.random_bool(0.02) {
             *self = Self::default();
@@ -58,7 +58,7 @@ impl Crew {
     }
 
     /// One update of work.
-    pub fn work(&mut self, run: &mut Run) {
+    pub(crate) fn work(&mut self, run: &mut Run) {
         self.since += 1;
         match self.work {
             Work::Come => {

@@ -25,7 +25,7 @@ fn pick<T: Copy>(rng: &mut ChaCha8Rng, list: &[T]) -> T {
 }
 
 /// The plan, air and settings a flight begins with.
-pub fn prepare(run: &mut Run, rng: &mut ChaCha8Rng) {
+pub(crate) fn prepare(run: &mut Run, rng: &mut ChaCha8Rng) {
     replace_plan(run, rng);
     for _ in 0..rng.random_range(0..8) {
         set_parameter(run, rng);
@@ -38,7 +38,7 @@ pub fn prepare(run: &mut Run, rng: &mut ChaCha8Rng) {
 }
 
 /// Lets something happen, and says what.
-pub fn happen(run: &mut Run, rng: &mut ChaCha8Rng) -> String {
+pub(crate) fn happen(run: &mut Run, rng: &mut ChaCha8Rng) -> String {
     match rng.random_range(0..100) {
         0..8 => {
             run.link = !run.link || rng.random_bool(0.3);

@@ -16,7 +16,7 @@ const REACTION: u32 = 30;
 const LANDING_SLACK: u32 = 10;
 
 /// What a search worth its name has seen.
-pub const NEEDED: &[&str] = &[
+pub(crate) const NEEDED: &[&str] = &[
     "IDLE -> APPROACHING",
     "APPROACHING -> ARRIVED",
     "ARRIVED -> APPROACHING",
@@ -69,7 +69,7 @@ impl Limits {
 
 /// The judge, and what it remembers of the updates before.
 #[derive(Debug, Clone, Default)]
-pub struct Law {
+pub(crate) struct Law {
     state: NavState,
     arrived_for: u32,
     limits: Option<Limits>,
@@ -81,13 +81,13 @@ pub struct Law {
     armed_before: bool,
     ignored_for: u32,
     unarmed_for: u32,
-    pub armings: u32,
-    pub seen: BTreeSet<String>,
+    pub(crate) armings: u32,
+    pub(crate) seen: BTreeSet<String>,
 }
 
 impl Law {
     /// A new flight begins from the same craft.
-    pub fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         self.seen.clear();
         self.armings = 0;
     }
@@ -97,7 +97,7 @@ impl Law {
     }
 
     /// The firmware was restarted: it remembers nothing, and says so once.
-    pub fn restarted(&mut self) {
+    pub(crate) fn restarted(&mut self) {
         *self = Self {
             armings: self.armings,
             limits: self.limits,
@@ -110,14 +110,14 @@ impl Law {
     }
 
     /// To be called before and after a change of settings.
-    pub fn settings_changed(&mut self, firmware: &Firmware, update: u32) {
+    pub(crate) fn settings_changed(&mut self, firmware: &Firmware, update: u32) {
         let now = Limits::of(&firmware.parameters().nav);
         self.limits = Some(self.limits.map_or(now, |limits| limits.widest(now)));
         self.limits_changed_at = update;
     }
 
     /// After every step.
-    pub fn judge_motors(&mut self, firmware: &Firmware) {
+    pub(crate) fn judge_motors(&mut self, firmware: &Firmware) {
         let control = firmware.control();
         let motors = control.motors.0;
         assert!(motors.iter().all(|motor| (0.0..=1.0).contains(motor)), "{motors:?}");
@@ -129,7 +129,7 @@ impl Law {
     }
 
     /// Each event, after the step that made it.
-    pub fn judge_event(&mut self, event: &FirmwareEvent, firmware: &Firmware) {
+    pub(crate) fn judge_event(&mut self, event: &FirmwareEvent, firmware: &Firmware) {
         match event {
             FirmwareEvent::Nav(NavEvent::State { from, to, guard, target_alt_m, reason, .. }) => {
                 assert_eq!(*from, self.state, "a state changed without an event");
@@ -199,7 +199,7 @@ impl Law {
     }
 
     /// After every update of the navigator.
-    pub fn judge_update(&mut self, firmware: &Firmware, update: u32, link: bool) {
+    pub(crate) fn judge_update(&mut self, firmware: &Firmware, update: u32, link: bool) {
         self.judge_failsafe(firmware);
         self.judge_navigator(firmware, update);
         self.judge_refusals(firmware, link);

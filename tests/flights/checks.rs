@@ -4,13 +4,13 @@ use std::fmt::Write as _;
 
 /// Collects bounds that were not met.
 #[derive(Debug, Default)]
-pub struct Checks {
+pub(crate) struct Checks {
     broken: String,
     measured: String,
 }
 
 impl Checks {
-    pub fn within(&mut self, what: &str, value: f64, low: f64, high: f64) {
+    pub(crate) fn within(&mut self, what: &str, value: f64, low: f64, high: f64) {
         let _ = writeln!(self.measured, "  {what}: {value:.3} ({low:.3} … {high:.3})");
         if !(low..=high).contains(&value) {
             let _ = writeln!(self.broken, "  {what}: {value:.3}, allowed {low:.3} … {high:.3}");
@@ -18,24 +18,24 @@ impl Checks {
     }
 
     /// The greatest of no values is minus infinity, which breaks the bound, too.
-    pub fn at_most(&mut self, what: &str, value: f64, high: f64) {
+    pub(crate) fn at_most(&mut self, what: &str, value: f64, high: f64) {
         self.within(what, value, f64::MIN, high);
     }
 
-    pub fn holds(&mut self, what: &str, ok: bool) {
+    pub(crate) fn holds(&mut self, what: &str, ok: bool) {
         if !ok {
             let _ = writeln!(self.broken, "  {what}");
         }
     }
 
-    pub fn same<T: PartialEq + std::fmt::Debug>(&mut self, what: &str, got: T, expected: T) {
+    pub(crate) fn same<T: PartialEq + std::fmt::Debug>(&mut self, what: &str, got: T, expected: T) {
         if got != expected {
             let _ = writeln!(self.broken, "  {what}: {got:?}, expected {expected:?}");
         }
     }
 
     /// What was broken; fails the test at the end of all flights.
-    pub fn verdict(self, flight: &str, story: &str) -> Option<String> {
+    pub(crate) fn verdict(self, flight: &str, story: &str) -> Option<String> {
         if std::env::var_os("SHOW_FLIGHTS").is_some() {
             println!("{flight}\n{}", self.measured);
         }
@@ -45,18 +45,18 @@ impl Checks {
 
 /// Fails with all that was broken.
 #[track_caller]
-pub fn assert_met(verdicts: impl IntoIterator<Item = Option<String>>) {
+pub(crate) fn assert_met(verdicts: impl IntoIterator<Item = Option<String>>) {
     let broken: Vec<String> = verdicts.into_iter().flatten().collect();
     assert!(broken.is_empty(), "\n{}", broken.join("\n"));
 }
 
 /// Greatest of some numbers; NaN counts as greatest, so that it breaks a bound.
-pub fn greatest(values: impl Iterator<Item = f64>) -> f64 {
+pub(crate) fn greatest(values: impl Iterator<Item = f64>) -> f64 {
     values.fold(f64::NEG_INFINITY, |a, b| if b.is_nan() || b > a { b } else { a })
 }
 
 /// Mean of some numbers.
-pub fn mean(values: impl Iterator<Item = f64>) -> f64 {
+pub(crate) fn mean(values: impl Iterator<Item = f64>) -> f64 {
     let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
     sum / count
 }

@@ -12,75 +12,75 @@ use betadeck::telemetry::{
 use betadeck::vehicle::{Vehicle, VehicleConfig};
 
 /// The guide's configuration, Step 5, without its `save`: nothing restarts here.
-pub fn guide_settings() -> impl Iterator<Item = &'static str> {
+pub(crate) fn guide_settings() -> impl Iterator<Item = &'static str> {
     include_str!("../vectors/guide-step5.txt").lines().filter(|line| line.starts_with("set "))
 }
 
 /// What a flight looks like from outside, a hundred times a second.
 #[derive(Debug, Clone, Copy)]
-pub struct Sample {
+pub(crate) struct Sample {
     /// Seconds since engagement (before it: negative).
-    pub t: f64,
+    pub(crate) t: f64,
     /// True place from the boot place, m: north, east, up.
-    pub n: f64,
-    pub e: f64,
-    pub alt: f64,
+    pub(crate) n: f64,
+    pub(crate) e: f64,
+    pub(crate) alt: f64,
     /// True velocity, m/s: north, east, up.
-    pub vn: f64,
-    pub ve: f64,
-    pub vu: f64,
+    pub(crate) vn: f64,
+    pub(crate) ve: f64,
+    pub(crate) vu: f64,
     /// True attitude, degrees: roll right, pitch nose up, heading.
-    pub roll: f64,
-    pub pitch: f64,
-    pub heading: f64,
-    pub throttle_us: f64,
-    pub motors: [f64; 4],
-    pub armed: bool,
-    pub modes: ModeFlags,
-    pub state: NavState,
-    pub wp: u8,
+    pub(crate) roll: f64,
+    pub(crate) pitch: f64,
+    pub(crate) heading: f64,
+    pub(crate) throttle_us: f64,
+    pub(crate) motors: [f64; 4],
+    pub(crate) armed: bool,
+    pub(crate) modes: ModeFlags,
+    pub(crate) state: NavState,
+    pub(crate) wp: u8,
     /// Distance to the waypoint as the navigator says, m.
-    pub distance: f64,
-    pub hold_remaining_ds: u16,
+    pub(crate) distance: f64,
+    pub(crate) hold_remaining_ds: u16,
 }
 
 impl Sample {
-    pub fn speed(&self) -> f64 {
+    pub(crate) fn speed(&self) -> f64 {
         self.vn.hypot(self.ve)
     }
 
     /// Tilt from level, degrees.
-    pub fn lean(&self) -> f64 {
+    pub(crate) fn lean(&self) -> f64 {
         (self.roll.to_radians().cos() * self.pitch.to_radians().cos()).acos().to_degrees()
     }
 
     /// Horizontal distance from a point (north, east), m.
-    pub fn from(&self, point: [f64; 2]) -> f64 {
+    pub(crate) fn from(&self, point: [f64; 2]) -> f64 {
         (self.n - point[0]).hypot(self.e - point[1])
     }
 }
 
 /// A state transition.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Transition {
+pub(crate) struct Transition {
     /// Seconds since engagement.
-    pub t: f64,
-    pub to: NavState,
-    pub wp: u8,
+    pub(crate) t: f64,
+    pub(crate) to: NavState,
+    pub(crate) wp: u8,
 }
 
 /// A flight under observation.
-pub struct Rig {
-    pub vehicle: Vehicle,
-    pub events: Vec<Event>,
-    pub samples: Vec<Sample>,
+pub(crate) struct Rig {
+    pub(crate) vehicle: Vehicle,
+    pub(crate) events: Vec<Event>,
+    pub(crate) samples: Vec<Sample>,
     standing_m: f64,
 }
 
 impl Rig {
     /// A vehicle with the guide's settings and the starter modes in this world, with these further CLI lines, and the
     /// scripted pilot who climbs to `takeoff_m` and engages.
-    pub fn new(world: WorldConfig, lines: &str, takeoff_m: f64) -> Self {
+    pub(crate) fn new(world: WorldConfig, lines: &str, takeoff_m: f64) -> Self {
         let mut configuration = Configuration::default();
         configuration.starter_modes();
         let firmware = FirmwareOptions { rate_hz: world.rate_hz, ..FirmwareOptions::default() };
@@ -95,7 +95,7 @@ impl Rig {
     }
 
     /// Types CLI lines; none may fail.
-    pub fn cli(&mut self, lines: &str) {
+    pub(crate) fn cli(&mut self, lines: &str) {
         let mut session = Interpreter::default();
         for line in lines.lines() {
             let reply = self.vehicle.firmware_mut().run_cli(&mut session, line);
@@ -104,7 +104,7 @@ impl Rig {
     }
 
     /// One step.
-    pub fn tick(&mut self) {
+    pub(crate) fn tick(&mut self) {
         self.vehicle.tick();
         self.vehicle.drain_events(|event| self.events.push(event));
         if self.vehicle.time().0.is_multiple_of(10_000) {
@@ -113,7 +113,7 @@ impl Rig {
     }
 
     /// Flies on for so many simulated seconds.
-    pub fn fly(&mut self, seconds: f64) -> &mut Self {
+    pub(crate) fn fly(&mut self, seconds: f64) -> &mut Self {
         let end = self.boot_s() + seconds;
         while self.boot_s() < end {
             self.tick();
@@ -123,7 +123,12 @@ impl Rig {
 
     /// Flies until the condition holds; fails the test when it does not within so many simulated seconds.
     #[track_caller]
-    pub fn until(&mut self, limit_s: f64, what: &str, mut done: impl FnMut(&Self) -> bool) -> &mut Self {
+    pub(crate) fn until(
+        &mut self,
+        limit_s: f64,
+        what: &str,
+        mut done: impl FnMut(&Self) -> bool,
+    ) -> &mut Self {
         let end = self.boot_s() + limit_s;
         while !done(self) {
             assert!(self.boot_s() < end, "never came: {what}\n{}", self.story());
@@ -134,13 +139,13 @@ impl Rig {
 
     /// Flies until the autopilot engages.
     #[track_caller]
-    pub fn engaged(&mut self) -> &mut Self {
+    pub(crate) fn engaged(&mut self) -> &mut Self {
         self.until(60.0, "engagement", |rig| rig.vehicle.engaged_at().is_some())
     }
 
     /// Flies until this state is entered (again).
     #[track_caller]
-    pub fn until_state(&mut self, limit_s: f64, state: NavState) -> &mut Self {
+    pub(crate) fn until_state(&mut self, limit_s: f64, state: NavState) -> &mut Self {
         let seen = self.transitions().len();
         self.until(limit_s, &state.to_string(), |rig| {
             rig.transitions().get(seen..).is_some_and(|new| new.iter().any(|entry| entry.to == state))
@@ -148,7 +153,7 @@ impl Rig {
     }
 
     /// Seconds since boot.
-    pub fn boot_s(&self) -> f64 {
+    pub(crate) fn boot_s(&self) -> f64 {
         self.vehicle.time().as_secs_f64()
     }
 
@@ -157,7 +162,7 @@ impl Rig {
     }
 
     /// Seconds since engagement.
-    pub fn t(&self) -> f64 {
+    pub(crate) fn t(&self) -> f64 {
         self.since_engagement(self.boot_s())
     }
 
@@ -189,7 +194,7 @@ impl Rig {
     }
 
     /// All state transitions so far.
-    pub fn transitions(&self) -> Vec<Transition> {
+    pub(crate) fn transitions(&self) -> Vec<Transition> {
         self.events
             .iter()
             .filter_map(|event| match &event.kind {
@@ -202,7 +207,7 @@ impl Rig {
     }
 
     /// The transitions as words: `APPROACHING 0, ARRIVED 0, …`.
-    pub fn path(&self) -> String {
+    pub(crate) fn path(&self) -> String {
         let words: Vec<_> =
             self.transitions().iter().map(|entry| format!("{} {}", entry.to, entry.wp)).collect();
         words.join(", ")
@@ -210,30 +215,30 @@ impl Rig {
 
     /// When a state was entered with this waypoint, the first time, s since engagement.
     #[track_caller]
-    pub fn entered(&self, state: NavState, wp: u8) -> f64 {
+    pub(crate) fn entered(&self, state: NavState, wp: u8) -> f64 {
         let found = self.transitions().into_iter().find(|entry| entry.to == state && entry.wp == wp);
         found.unwrap_or_else(|| panic!("{state} {wp} never came\n{}", self.story())).t
     }
 
     /// The samples of a span of time since engagement.
-    pub fn span(&self, from: f64, to: f64) -> impl Iterator<Item = &Sample> {
+    pub(crate) fn span(&self, from: f64, to: f64) -> impl Iterator<Item = &Sample> {
         self.samples.iter().filter(move |sample| from <= sample.t && sample.t < to)
     }
 
     /// The first sample at or after a time since engagement.
     #[track_caller]
-    pub fn at(&self, t: f64) -> &Sample {
+    pub(crate) fn at(&self, t: f64) -> &Sample {
         self.samples.iter().find(|sample| sample.t >= t - 1e-9).unwrap()
     }
 
     /// Time of the first event that the pick accepts, s since engagement.
-    pub fn event_at(&self, pick: impl Fn(&EventKind) -> bool) -> Option<f64> {
+    pub(crate) fn event_at(&self, pick: impl Fn(&EventKind) -> bool) -> Option<f64> {
         let event = self.events.iter().find(|event| pick(&event.kind))?;
         Some(self.since_engagement(event.time.as_secs_f64()))
     }
 
     /// When and why the craft was disarmed.
-    pub fn disarmed(&self) -> Option<(f64, DisarmReason)> {
+    pub(crate) fn disarmed(&self) -> Option<(f64, DisarmReason)> {
         self.events.iter().find_map(|event| match event.kind {
             EventKind::Firmware(FirmwareEvent::Disarmed(reason)) => {
                 Some((self.since_engagement(event.time.as_secs_f64()), reason))
@@ -243,7 +248,7 @@ impl Rig {
     }
 
     /// The plans that became active, with their sources.
-    pub fn plans(&self) -> Vec<(PlanSource, FlightPlan)> {
+    pub(crate) fn plans(&self) -> Vec<(PlanSource, FlightPlan)> {
         self.events
             .iter()
             .filter_map(|event| match &event.kind {
@@ -256,18 +261,18 @@ impl Rig {
     }
 
     /// A place of a plan from the boot place in the world's projection (north, east), m.
-    pub fn place(&self, position: betadeck::geo::LatLon) -> [f64; 2] {
+    pub(crate) fn place(&self, position: betadeck::geo::LatLon) -> [f64; 2] {
         let enu = self.vehicle.world().local_frame().to_enu(position.lat_deg(), position.lon_deg(), 0.0);
         [enu.y, enu.x]
     }
 
     /// Place of a waypoint of the stored plan.
-    pub fn waypoint(&self, index: usize) -> [f64; 2] {
+    pub(crate) fn waypoint(&self, index: usize) -> [f64; 2] {
         self.place(self.vehicle.firmware().stored_plan().waypoints[index].position)
     }
 
     /// One line an event, for failure messages.
-    pub fn story(&self) -> String {
+    pub(crate) fn story(&self) -> String {
         self.events
             .iter()
             .map(|event| {
@@ -279,19 +284,19 @@ impl Rig {
 
 /// What is allowed on top of the plain bounds, because sensors err.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Allowance {
+pub(crate) struct Allowance {
     /// Horizontally, m.
-    pub h: f64,
+    pub(crate) h: f64,
     /// Vertically, m.
-    pub v: f64,
+    pub(crate) v: f64,
     /// On speeds, m/s.
-    pub speed: f64,
+    pub(crate) speed: f64,
     /// On angles, degrees.
-    pub angle: f64,
+    pub(crate) angle: f64,
 }
 
 /// A world: calm or windy, with exact sensors (seed 0) or real ones of this seed.
-pub fn world(seed: u64) -> (WorldConfig, Allowance) {
+pub(crate) fn world(seed: u64) -> (WorldConfig, Allowance) {
     let switches = Switches { wind_profile: WindProfile::Flat, ..Switches::default() };
     let plain = WorldConfig { switches, noise: Noise::None, ..WorldConfig::default() };
     match seed {
@@ -304,4 +309,4 @@ pub fn world(seed: u64) -> (WorldConfig, Allowance) {
 }
 
 /// Seeds of a check: 0 = exact sensors.
-pub const SEEDS: [u64; 6] = [0, 1, 2, 3, 4, 5];
+pub(crate) const SEEDS: [u64; 6] = [0, 1, 2, 3, 4, 5];

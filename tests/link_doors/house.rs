@@ -20,35 +20,35 @@ use tokio_tungstenite::tungstenite::http::HeaderValue;
 use tokio_tungstenite::tungstenite::{Error, Message};
 
 /// Nothing in these tests takes this long unless it hangs.
-pub const PATIENCE: Duration = Duration::from_secs(120);
+pub(crate) const PATIENCE: Duration = Duration::from_secs(120);
 
-pub const API_VERSION: &str = "244d3c000101";
-pub const API_REPLY: &str = "244d3e030100013132";
-pub const GREETING: &str = "\r\nEntering CLI Mode, type 'exit' to reboot, or 'help'\r\n\r\n# ";
+pub(crate) const API_VERSION: &str = "244d3c000101";
+pub(crate) const API_REPLY: &str = "244d3e030100013132";
+pub(crate) const GREETING: &str = "\r\nEntering CLI Mode, type 'exit' to reboot, or 'help'\r\n\r\n# ";
 
-pub fn unhex(text: &str) -> Vec<u8> {
+pub(crate) fn unhex(text: &str) -> Vec<u8> {
     (0..text.len() / 2).map(|i| u8::from_str_radix(&text[2 * i..2 * i + 2], 16).unwrap()).collect()
 }
 
-pub fn hex(bytes: &[u8]) -> String {
+pub(crate) fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// The craft behind the doors.
 #[derive(Debug, Default)]
-pub struct Craft {
-    pub configuration: Configuration,
-    pub msp: MspFacts,
-    pub cli: CliFacts,
-    pub saves: u32,
-    pub left_cli: u32,
-    pub entered: Vec<bool>,
+pub(crate) struct Craft {
+    pub(crate) configuration: Configuration,
+    pub(crate) msp: MspFacts,
+    pub(crate) cli: CliFacts,
+    pub(crate) saves: u32,
+    pub(crate) left_cli: u32,
+    pub(crate) entered: Vec<bool>,
 }
 
-pub type Shared = Arc<Mutex<Craft>>;
+pub(crate) type Shared = Arc<Mutex<Craft>>;
 
 /// The craft of the captured exchanges.
-pub fn captured_craft() -> Craft {
+pub(crate) fn captured_craft() -> Craft {
     let mut craft = Craft::default();
     let settings = &mut craft.configuration.settings;
     settings.set_text("craft_name", "SITLQUAD").unwrap();
@@ -94,7 +94,7 @@ pub fn captured_craft() -> Craft {
 }
 
 /// Answers requests until the doors are gone.
-pub async fn desk(
+pub(crate) async fn desk(
     craft: Shared,
     mut requests: mpsc::Receiver<Request>,
     bell: RestartBell,
@@ -136,14 +136,14 @@ pub async fn desk(
 }
 
 /// Open doors with a desk.
-pub struct House {
-    pub doors: Doors,
-    pub craft: Shared,
-    pub others: mpsc::Receiver<Request>,
+pub(crate) struct House {
+    pub(crate) doors: Doors,
+    pub(crate) craft: Shared,
+    pub(crate) others: mpsc::Receiver<Request>,
 }
 
 impl House {
-    pub async fn open(config: DoorsConfig) -> Self {
+    pub(crate) async fn open(config: DoorsConfig) -> Self {
         let (requests, inbox) = mpsc::channel(64);
         let (doors, views) = Doors::open(&config, requests).await;
         assert!(views.iter().all(|view| !view.fault), "{views:?}");
@@ -153,7 +153,7 @@ impl House {
         Self { doors, craft, others }
     }
 
-    pub async fn usual() -> Self {
+    pub(crate) async fn usual() -> Self {
         Self::open(DoorsConfig {
             tcp_port: Some(0),
             ws_port: Some(0),
@@ -164,22 +164,22 @@ impl House {
         .await
     }
 
-    pub fn address(&self, kind: DoorKind) -> SocketAddr {
+    pub(crate) fn address(&self, kind: DoorKind) -> SocketAddr {
         self.doors.address(kind).unwrap()
     }
 
-    pub async fn tcp(&self) -> Client {
+    pub(crate) async fn tcp(&self) -> Client {
         Client::Tcp(TcpStream::connect(self.address(DoorKind::Tcp)).await.unwrap())
     }
 
-    pub async fn websocket(&self) -> Client {
+    pub(crate) async fn websocket(&self) -> Client {
         let (socket, protocol) = self.handshake(None, Some("binary")).await.unwrap();
         assert_eq!(protocol.as_deref(), Some("binary"));
         Client::WebSocket(Box::new(socket))
     }
 
     /// A websocket and the sub-protocol that was chosen.
-    pub async fn handshake(
+    pub(crate) async fn handshake(
         &self,
         origin: Option<&str>,
         protocol: Option<&str>,
@@ -200,13 +200,13 @@ impl House {
 }
 
 /// A program that speaks with the craft.
-pub enum Client {
+pub(crate) enum Client {
     Tcp(TcpStream),
     WebSocket(Box<WebSocketStream<TcpStream>>),
 }
 
 impl Client {
-    pub async fn send(&mut self, bytes: &[u8]) {
+    pub(crate) async fn send(&mut self, bytes: &[u8]) {
         match self {
             Self::Tcp(stream) => stream.write_all(bytes).await.unwrap(),
             Self::WebSocket(socket) => socket.send(Message::Binary(bytes.to_vec().into())).await.unwrap(),
@@ -214,7 +214,7 @@ impl Client {
     }
 
     /// The next bytes; none when the link was closed.
-    pub async fn receive(&mut self) -> Vec<u8> {
+    pub(crate) async fn receive(&mut self) -> Vec<u8> {
         let receive = async {
             match self {
                 Self::Tcp(stream) => {
@@ -233,7 +233,7 @@ impl Client {
     }
 
     /// Exactly this many bytes.
-    pub async fn receive_exactly(&mut self, count: usize) -> Vec<u8> {
+    pub(crate) async fn receive_exactly(&mut self, count: usize) -> Vec<u8> {
         let mut all = Vec::new();
         while all.len() < count {
             let more = self.receive().await;
@@ -245,7 +245,7 @@ impl Client {
     }
 
     /// Text up to and including `end`.
-    pub async fn receive_until(&mut self, end: &str) -> String {
+    pub(crate) async fn receive_until(&mut self, end: &str) -> String {
         let mut all = Vec::new();
         while !all.ends_with(end.as_bytes()) {
             let more = self.receive().await;
@@ -256,16 +256,16 @@ impl Client {
     }
 
     /// Whether the server closes the link and sends nothing more.
-    pub async fn is_closed(&mut self) -> bool {
+    pub(crate) async fn is_closed(&mut self) -> bool {
         self.receive().await.is_empty()
     }
 
-    pub async fn assert_speaks_msp(&mut self) {
+    pub(crate) async fn assert_speaks_msp(&mut self) {
         self.send(&unhex(API_VERSION)).await;
         assert_eq!(hex(&self.receive_exactly(9).await), API_REPLY);
     }
 
-    pub async fn enter_cli(&mut self) {
+    pub(crate) async fn enter_cli(&mut self) {
         self.send(b"#").await;
         assert_eq!(self.receive_until("# ").await, GREETING);
     }

@@ -5,11 +5,11 @@ use std::cell::Cell;
 
 /// Bytes that a piece of work took.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Taken {
+pub(crate) struct Taken {
     /// The most that it held at once, beyond what was held before.
-    pub peak: usize,
+    pub(crate) peak: usize,
     /// All that it asked for, given back or not; what grows counts again at every size.
-    pub total: usize,
+    pub(crate) total: usize,
 }
 
 thread_local! {
@@ -64,7 +64,7 @@ unsafe impl GlobalAlloc for Meter {
 static ALLOCATOR: Meter = Meter;
 
 /// Does a piece of work; its result and what it took.
-pub fn measured<R>(work: impl FnOnce() -> R) -> (R, Taken) {
+pub(crate) fn measured<R>(work: impl FnOnce() -> R) -> (R, Taken) {
     let (held, total) = (HELD.get(), TOTAL.get());
     MOST_HELD.set(held);
     let result = work();

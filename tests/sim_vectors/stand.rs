@@ -5,20 +5,20 @@ use betadeck::sim::{
 };
 use nalgebra::Vector3;
 
-pub struct Stand {
-    pub airframe: Airframe,
-    pub plant: Plant,
-    pub body: BodyState,
-    pub rotors: [f64; ROTORS],
-    pub target: [f64; ROTORS],
-    pub air: AirSample,
+pub(crate) struct Stand {
+    pub(crate) airframe: Airframe,
+    pub(crate) plant: Plant,
+    pub(crate) body: BodyState,
+    pub(crate) rotors: [f64; ROTORS],
+    pub(crate) target: [f64; ROTORS],
+    pub(crate) air: AirSample,
     feet: Feet,
     h: f64,
 }
 
 impl Stand {
     /// A level craft facing north at a height, at rest, rotors stopped, in still air of reference density.
-    pub fn new(airframe: Airframe, height_m: f64, h: f64) -> Self {
+    pub(crate) fn new(airframe: Airframe, height_m: f64, h: f64) -> Self {
         Self {
             plant: Plant::new(&airframe, h),
             airframe,
@@ -37,30 +37,30 @@ impl Stand {
     }
 
     /// Rotors turn at these speeds and stay there.
-    pub fn hold_rotors(&mut self, speeds: [f64; ROTORS]) {
+    pub(crate) fn hold_rotors(&mut self, speeds: [f64; ROTORS]) {
         self.rotors = speeds;
         self.target = speeds;
     }
 
     /// Motor commands 0…1.
-    pub fn command(&mut self, u: [f64; ROTORS]) {
+    pub(crate) fn command(&mut self, u: [f64; ROTORS]) {
         self.target = u.map(|u| u * self.airframe.rotor_speed_max);
     }
 
-    pub fn loads(&self) -> Loads {
+    pub(crate) fn loads(&self) -> Loads {
         self.plant.loads(&self.body, &self.rotors, &self.air, &self.feet)
     }
 
-    pub fn specific_force(&self) -> Vector3<f64> {
+    pub(crate) fn specific_force(&self) -> Vector3<f64> {
         self.loads().force_flu / self.plant.mass_kg()
     }
 
-    pub fn step(&mut self) {
+    pub(crate) fn step(&mut self) {
         let loads = self.loads();
         self.plant.step(&mut self.body, &mut self.rotors, &mut self.feet, &self.target, &self.air, &loads);
     }
 
-    pub fn run(&mut self, seconds: f64) {
+    pub(crate) fn run(&mut self, seconds: f64) {
         for _ in 0..(seconds / self.h).round() as u64 {
             self.step();
         }
@@ -68,7 +68,7 @@ impl Stand {
 }
 
 /// An airframe without any aerodynamic force but thrust.
-pub fn without_drag(mut airframe: Airframe) -> Airframe {
+pub(crate) fn without_drag(mut airframe: Airframe) -> Airframe {
     airframe.inflow_coeff = 0.0;
     airframe.rotor_drag_coeff = 0.0;
     airframe.body_drag = Vector3::zeros();
@@ -77,7 +77,7 @@ pub fn without_drag(mut airframe: Airframe) -> Airframe {
 }
 
 /// The airframe with its rotors at the same distance from the long axis, in the plane of the centre of mass if `flat`.
-pub fn symmetric(mut airframe: Airframe, flat: bool) -> Airframe {
+pub(crate) fn symmetric(mut airframe: Airframe, flat: bool) -> Airframe {
     for rotor in &mut airframe.rotor_positions_m {
         rotor.y = 0.21 * rotor.y.signum();
         if flat {

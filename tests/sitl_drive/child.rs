@@ -10,10 +10,10 @@ use tempfile::TempDir;
 use crate::square;
 
 /// When something that is waited for counts as never coming.
-pub const NEVER: Duration = Duration::from_secs(120);
+pub(crate) const NEVER: Duration = Duration::from_secs(120);
 
 /// A running executable in a directory of its own; killed when dropped.
-pub struct Child {
+pub(crate) struct Child {
     process: std::process::Child,
     lines: Receiver<String>,
     seen: Vec<String>,
@@ -29,7 +29,7 @@ fn command(directory: &TempDir, arguments: &[&str]) -> Command {
 
 impl Child {
     /// The drop-in, with the square in its memory, sending motors to this port.
-    pub fn sitl(motors: u16, raw: u16, more: &[&str]) -> Self {
+    pub(crate) fn sitl(motors: u16, raw: u16, more: &[&str]) -> Self {
         let directory = tempfile::tempdir().expect("a directory");
         std::fs::write(directory.path().join("square.txt"), square::lines()).expect("a file");
         let configured = command(&directory, &["sitl", "--strict", "--config", "square.txt"])
@@ -43,7 +43,7 @@ impl Child {
     }
 
     /// Everything but the screen, with the square in its memory, sending motors to this port.
-    pub fn serve(motors: u16, raw: u16, more: &[&str]) -> Self {
+    pub(crate) fn serve(motors: u16, raw: u16, more: &[&str]) -> Self {
         let directory = tempfile::tempdir().expect("a directory");
         std::fs::write(directory.path().join("square.txt"), square::lines()).expect("a file");
         let ports = format!("{raw},{motors},0,0");
@@ -67,7 +67,7 @@ impl Child {
 
     /// The first line with these words, from those that were said already or from those to come.
     #[track_caller]
-    pub fn line(&mut self, words: &str) -> String {
+    pub(crate) fn line(&mut self, words: &str) -> String {
         let mut looked_at = 0;
         loop {
             if let Some(line) = self.seen[looked_at..].iter().find(|line| line.contains(words)) {
@@ -82,19 +82,19 @@ impl Child {
     }
 
     /// Everything that was said until now.
-    pub fn lines(&mut self) -> &[String] {
+    pub(crate) fn lines(&mut self) -> &[String] {
         self.seen.extend(self.lines.try_iter());
         &self.seen
     }
 
     /// Whether it still runs.
-    pub fn is_alive(&mut self) -> bool {
+    pub(crate) fn is_alive(&mut self) -> bool {
         self.process.try_wait().expect("its state").is_none()
     }
 
     /// The ports of states and RC, told in the lines about the links, in this order.
     #[track_caller]
-    pub fn sitl_ports(&mut self) -> (u16, u16) {
+    pub(crate) fn sitl_ports(&mut self) -> (u16, u16) {
         const SERVER: &str = "[SITL] start UDP server @";
         loop {
             let servers = self.seen.iter().filter_map(|line| line.strip_prefix(SERVER)?.strip_suffix("...0"));
@@ -108,7 +108,7 @@ impl Child {
 
     /// The ports of states and RC in the line about the open doors.
     #[track_caller]
-    pub fn serve_ports(&mut self) -> (u16, u16) {
+    pub(crate) fn serve_ports(&mut self) -> (u16, u16) {
         let line = self.line("Doors open: ");
         let port = |door: &str| {
             let (_, rest) = line.split_once(door).unwrap_or_else(|| panic!("no {door} in {line}"));

@@ -5,9 +5,9 @@ use betadeck::signals::MotorCommand;
 use betadeck::sim::{Noise, World, WorldConfig, WorldEventKind};
 
 /// A craft at home, or in flight.
-pub struct Plant {
+pub(crate) struct Plant {
     /// The world.
-    pub world: World,
+    pub(crate) world: World,
     dialect: Dialect,
     crash: Option<String>,
     impact_mps: f64,
@@ -15,19 +15,19 @@ pub struct Plant {
 
 impl Plant {
     /// A craft at home.
-    pub fn new(dialect: Dialect) -> Self {
+    pub(crate) fn new(dialect: Dialect) -> Self {
         let world =
             World::new(WorldConfig { noise: Noise::None, ..WorldConfig::default() }).expect("a world");
         Self { world, dialect, crash: None, impact_mps: 0.0 }
     }
 
     /// Simulated time, ms.
-    pub fn time_ms(&self) -> u64 {
+    pub(crate) fn time_ms(&self) -> u64 {
         self.world.time().0 / 1000
     }
 
     /// Lets this much time pass with these motors.
-    pub fn advance(&mut self, ms: u64, motors: [f32; 4]) {
+    pub(crate) fn advance(&mut self, ms: u64, motors: [f32; 4]) {
         let command = MotorCommand(motors.map(f64::from));
         for _ in 0..ms {
             self.world.step(&command);
@@ -43,22 +43,22 @@ impl Plant {
     }
 
     /// What went wrong, if something did.
-    pub fn crash(&self) -> Option<&str> {
+    pub(crate) fn crash(&self) -> Option<&str> {
         self.crash.as_deref()
     }
 
     /// Speed of the last touch of the ground, m/s.
-    pub fn impact_mps(&self) -> f64 {
+    pub(crate) fn impact_mps(&self) -> f64 {
         self.impact_mps
     }
 
     /// Height above home, m.
-    pub fn height_m(&self) -> f64 {
+    pub(crate) fn height_m(&self) -> f64 {
         self.world.truth().pos_enu.z - self.world.airframe().standing_height_m()
     }
 
     /// The state of the craft as the dialect says it, positions mirrored about home where it does so.
-    pub fn packet(&self) -> Vec<u8> {
+    pub(crate) fn packet(&self) -> Vec<u8> {
         let (truth, frame) = (self.world.truth(), self.world.local_frame());
         let (lat_deg, lon_deg, alt_m) = frame.to_geodetic(truth.pos_enu);
         let wire = |home: f64, value: f64| if self.dialect.mirrors() { mirrored(home, value) } else { value };

@@ -14,7 +14,7 @@ const PAUSE_MS: u64 = 300;
 const BETWEEN_MS: u64 = 8000;
 
 /// The drop-in and a simulator that it has greeted.
-pub fn sitl(dialect: Dialect) -> (Child, Simulator) {
+pub(crate) fn sitl(dialect: Dialect) -> (Child, Simulator) {
     let mut simulator = Simulator::new(dialect);
     let (motors, raw) = simulator.ports();
     let told = format!("--fdm-dialect={dialect}");

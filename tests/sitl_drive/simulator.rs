@@ -22,7 +22,7 @@ const LONGEST_MS: u64 = 400_000;
 
 /// What the hand on the transmitter does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Hand {
+pub(crate) enum Hand {
     /// Waits until the craft is ready.
     Waits,
     /// Holds ARM on until the motors turn.
@@ -34,15 +34,15 @@ pub enum Hand {
 }
 
 /// The simulator, its sockets and the transmitter.
-pub struct Simulator {
+pub(crate) struct Simulator {
     /// What it simulates.
-    pub plant: Plant,
+    pub(crate) plant: Plant,
     /// What was flown.
-    pub flown: Flown,
+    pub(crate) flown: Flown,
     /// The transmitter.
-    pub hand: Hand,
+    pub(crate) hand: Hand,
     /// Part of the packets of both sides that is lost, 0…1.
-    pub loss: f64,
+    pub(crate) loss: f64,
     dice: u64,
     motors_in: UdpSocket,
     raw_in: UdpSocket,
@@ -55,7 +55,7 @@ pub struct Simulator {
 
 impl Simulator {
     /// A simulator with open sockets whose firmware is not known yet.
-    pub fn new(dialect: Dialect) -> Self {
+    pub(crate) fn new(dialect: Dialect) -> Self {
         let socket = || {
             let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).expect("a socket");
             socket.set_read_timeout(Some(NEVER)).expect("a timeout");
@@ -79,20 +79,20 @@ impl Simulator {
     }
 
     /// Where it reads motors: normalised and raw.
-    pub fn ports(&self) -> (u16, u16) {
+    pub(crate) fn ports(&self) -> (u16, u16) {
         let port = |socket: &UdpSocket| socket.local_addr().expect("an address").port();
         (port(&self.motors_in), port(&self.raw_in))
     }
 
     /// Speaks to the firmware behind these doors from now on; its first packet of motors is read.
-    pub fn connect(&mut self, (fdm_port, rc_port): (u16, u16)) {
+    pub(crate) fn connect(&mut self, (fdm_port, rc_port): (u16, u16)) {
         (self.fdm_port, self.rc_port) = (fdm_port, rc_port);
         self.read_motors();
     }
 
     /// Moves on by `ms` with the newest motors, tells the state, and waits for the answer. A packet that is lost on its
     /// way is not waited for: the craft flies on with the motors it has.
-    pub fn step(&mut self, ms: u64) {
+    pub(crate) fn step(&mut self, ms: u64) {
         self.advance(ms);
         if self.is_lost() {
             return;
@@ -106,7 +106,7 @@ impl Simulator {
     }
 
     /// The world goes on, and nobody hears of it.
-    pub fn advance(&mut self, ms: u64) {
+    pub(crate) fn advance(&mut self, ms: u64) {
         self.plant.advance(ms, self.motors);
         assert_eq!(self.plant.crash(), None, "at {} ms: {:?}", self.plant.time_ms(), self.flown);
         assert!(self.plant.time_ms() < LONGEST_MS, "{:?}: {:?}", self.hand, self.flown);
@@ -115,7 +115,7 @@ impl Simulator {
     }
 
     /// Flies on in steps of `ms` until the craft has landed and disarmed.
-    pub fn fly(&mut self, ms: u64) {
+    pub(crate) fn fly(&mut self, ms: u64) {
         while self.hand != Hand::Done {
             self.step(ms);
         }
@@ -123,24 +123,24 @@ impl Simulator {
     }
 
     /// Flies on in steps of `ms` until the craft is on its way and this high.
-    pub fn fly_up_to(&mut self, ms: u64, height_m: f64) {
+    pub(crate) fn fly_up_to(&mut self, ms: u64, height_m: f64) {
         while self.plant.height_m() < height_m {
             self.step(ms);
         }
     }
 
     /// Sends a datagram to the door of states.
-    pub fn send(&self, datagram: &[u8]) {
+    pub(crate) fn send(&self, datagram: &[u8]) {
         self.out.send_to(datagram, (Ipv4Addr::LOCALHOST, self.fdm_port)).expect("it is sent");
     }
 
     /// Tells the state of the craft.
-    pub fn send_state(&self) {
+    pub(crate) fn send_state(&self) {
         self.send(&self.plant.packet());
     }
 
     /// Reads one packet of motors, waiting for it.
-    pub fn read_motors(&mut self) {
+    pub(crate) fn read_motors(&mut self) {
         let mut bytes = [0; 64];
         let size = self.motors_in.recv(&mut bytes).expect("motors, long before");
         assert_eq!(size, servo::SIZE);
@@ -148,17 +148,17 @@ impl Simulator {
     }
 
     /// The newest motors.
-    pub fn motors(&self) -> [f32; 4] {
+    pub(crate) fn motors(&self) -> [f32; 4] {
         self.motors
     }
 
     /// The transmitter works by the time of a new world.
-    pub fn begin_rc_anew(&mut self) {
+    pub(crate) fn begin_rc_anew(&mut self) {
         self.next_rc_ms = 0;
     }
 
     /// The simulator ends: its sockets are closed and its world is gone. What is left is the way to start it again.
-    pub fn end(self) -> Ended {
+    pub(crate) fn end(self) -> Ended {
         let (motors, raw) = self.ports();
         Ended { motors, raw, doors: (self.fdm_port, self.rc_port) }
     }
@@ -203,7 +203,7 @@ impl Simulator {
 }
 
 /// What is left of a simulator that ended.
-pub struct Ended {
+pub(crate) struct Ended {
     motors: u16,
     raw: u16,
     doors: (u16, u16),
@@ -211,7 +211,7 @@ pub struct Ended {
 
 impl Ended {
     /// Starts it anew: the craft stands at home, time begins at zero. It reads motors as soon as they come.
-    pub fn start(self, dialect: Dialect) -> Simulator {
+    pub(crate) fn start(self, dialect: Dialect) -> Simulator {
         let again = |port| {
             // A child that another test starts in this moment holds the closed socket until it runs.
             let bind =

@@ -5,14 +5,14 @@ use betadeck::geo::LocalFrame;
 use nalgebra::Vector2;
 
 /// Height of the flight, m.
-pub const HEIGHT_M: f64 = 20.0;
+pub(crate) const HEIGHT_M: f64 = 20.0;
 
 /// Corners: latitude, longitude, degrees.
 const CORNERS: [(f64, f64); 4] =
     [(40.4640, -79.5175), (40.4630, -79.5175), (40.4630, -79.5190), (40.4640, -79.5190)];
 
 /// What is typed into the craft.
-pub fn lines() -> String {
+pub(crate) fn lines() -> String {
     let mut text = String::from(
         "aux 0 0 0 1700 2100 0 0\n\
          aux 1 56 1 1700 2100 0 0\n\
@@ -45,20 +45,20 @@ pub fn lines() -> String {
 
 /// How near the craft really came to the corners, and how far it left its height on the way between them.
 #[derive(Debug, Clone)]
-pub struct Flown {
+pub(crate) struct Flown {
     corners: [Vector2<f64>; 4],
     /// Least distance to each corner, m.
-    pub nearest_m: [f64; 4],
+    pub(crate) nearest_m: [f64; 4],
     /// Corners in the order in which the craft came near them.
-    pub order: Vec<usize>,
+    pub(crate) order: Vec<usize>,
     /// Greatest distance from the height of the plan between the second and the last corner, m.
-    pub height_error_m: f64,
+    pub(crate) height_error_m: f64,
     /// Greatest distance from home, m.
-    pub farthest_m: f64,
+    pub(crate) farthest_m: f64,
     /// Where it stands at last: distance to the last corner, m.
-    pub landed_m: f64,
+    pub(crate) landed_m: f64,
     /// Speed at the touchdown, m/s.
-    pub impact_mps: f64,
+    pub(crate) impact_mps: f64,
 }
 
 /// Closer than this counts as a visit, m: the turn of the FLYBY is cut.
@@ -66,7 +66,7 @@ const VISIT_M: f64 = 25.0;
 
 impl Flown {
     /// Nothing flown yet, in a world with this frame.
-    pub fn new(frame: &LocalFrame) -> Self {
+    pub(crate) fn new(frame: &LocalFrame) -> Self {
         let corners = CORNERS.map(|(lat, lon)| frame.to_enu(lat, lon, frame.alt_amsl_m).xy());
         Self {
             corners,
@@ -80,7 +80,7 @@ impl Flown {
     }
 
     /// Looks at the craft: east and north of home, height above it, m.
-    pub fn look(&mut self, place: Vector2<f64>, height_m: f64) {
+    pub(crate) fn look(&mut self, place: Vector2<f64>, height_m: f64) {
         for (index, corner) in self.corners.iter().enumerate() {
             let distance = (place - corner).norm();
             self.nearest_m[index] = self.nearest_m[index].min(distance);
@@ -98,7 +98,7 @@ impl Flown {
 
     /// Asserts that this was the square, within these errors.
     #[track_caller]
-    pub fn is_the_square(&self, bounds: &Bounds) {
+    pub(crate) fn is_the_square(&self, bounds: &Bounds) {
         let [flyover, flyby, hold, _] = self.nearest_m;
         assert_eq!(self.order, [0, 1, 2, 3], "{self:?}");
         assert!(flyover <= bounds.flyover_m, "{self:?}");
@@ -113,15 +113,15 @@ impl Flown {
 
 /// Errors that a flight may have.
 #[derive(Debug, Clone, Copy)]
-pub struct Bounds {
+pub(crate) struct Bounds {
     /// Distance at the FLYOVER, m.
-    pub flyover_m: f64,
+    pub(crate) flyover_m: f64,
     /// Least distance to the HOLD, which is entered, m.
-    pub hold_m: f64,
+    pub(crate) hold_m: f64,
     /// Distance of the touchdown from the LAND, m.
-    pub land_m: f64,
+    pub(crate) land_m: f64,
     /// Height on the legs, m.
-    pub height_m: f64,
+    pub(crate) height_m: f64,
     /// Speed of the touchdown, m/s.
-    pub impact_mps: f64,
+    pub(crate) impact_mps: f64,
 }

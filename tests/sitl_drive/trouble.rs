@@ -8,14 +8,14 @@ use crate::simulator::{Hand, Simulator};
 use crate::square::{Bounds, Flown};
 
 /// Errors of a flight that went on after trouble.
-pub const BOUNDS: Bounds =
+pub(crate) const BOUNDS: Bounds =
     Bounds { flyover_m: 2.0, hold_m: 2.0, land_m: 1.0, height_m: 3.0, impact_mps: 1.5 };
 
 /// Packets that the firmware sends unasked until a simulator counts as silent: the last of them after a second.
 const SENT_IN_A_SECOND: u32 = 4;
 
 /// The simulator says nothing for more than a second; its world stands still.
-pub fn hang(simulator: &mut Simulator) {
+pub(crate) fn hang(simulator: &mut Simulator) {
     for _ in 0..SENT_IN_A_SECOND {
         simulator.read_motors();
     }

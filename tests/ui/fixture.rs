@@ -19,10 +19,10 @@ use betadeck::ui::{AppState, CliHelp, Msg, OpenPlan, Theme, UiConfig, update};
 use nalgebra::{Vector2, Vector3};
 
 /// Where the craft stands at boot.
-pub const HOME: LatLon = LatLon::new(404_635_000, -795_182_000);
+pub(crate) const HOME: LatLon = LatLon::new(404_635_000, -795_182_000);
 
 /// The guide's square.
-pub fn square() -> FlightPlan {
+pub(crate) fn square() -> FlightPlan {
     let corner = |lat_e7, lon_e7, kind, duration_ds| Waypoint {
         position: LatLon::new(lat_e7, lon_e7),
         alt_cm: 5000,
@@ -54,7 +54,7 @@ fn sentence(event: &Event) -> String {
 }
 
 /// A user interface at this size, before the first picture.
-pub fn state(size: (u16, u16), theme: Theme) -> AppState {
+pub(crate) fn state(size: (u16, u16), theme: Theme) -> AppState {
     let config = UiConfig {
         theme,
         cli: CliHelp {
@@ -75,30 +75,30 @@ pub fn state(size: (u16, u16), theme: Theme) -> AppState {
 }
 
 /// The full theme.
-pub fn colour() -> Theme {
+pub(crate) fn colour() -> Theme {
     Theme { palette: Palette::TrueColour, charset: Charset::Unicode }
 }
 
 /// The seven-bit theme.
-pub fn plain() -> Theme {
+pub(crate) fn plain() -> Theme {
     Theme { palette: Palette::Mono, charset: Charset::Ascii }
 }
 
 /// What differs between the pictures of the flight.
 #[derive(Debug, Clone)]
-pub struct SimpleFlight {
-    pub time_s: f64,
-    pub n: f64,
-    pub e: f64,
-    pub alt: f64,
-    pub heading_deg: f64,
-    pub speed: f64,
-    pub armed: bool,
-    pub fix: bool,
-    pub state: NavState,
-    pub wp: u8,
-    pub guards: Vec<Guard>,
-    pub hold_ds: u16,
+pub(crate) struct SimpleFlight {
+    pub(crate) time_s: f64,
+    pub(crate) n: f64,
+    pub(crate) e: f64,
+    pub(crate) alt: f64,
+    pub(crate) heading_deg: f64,
+    pub(crate) speed: f64,
+    pub(crate) armed: bool,
+    pub(crate) fix: bool,
+    pub(crate) state: NavState,
+    pub(crate) wp: u8,
+    pub(crate) guards: Vec<Guard>,
+    pub(crate) hold_ds: u16,
 }
 
 impl Default for SimpleFlight {
@@ -121,7 +121,7 @@ impl Default for SimpleFlight {
 }
 
 /// The picture of a moment.
-pub fn view(flight: &SimpleFlight) -> SessionView {
+pub(crate) fn view(flight: &SimpleFlight) -> SessionView {
     let engaged = !matches!(flight.state, NavState::Idle);
     let plan = square();
     let frame = LocalFrame::new(HOME.lat_deg(), HOME.lon_deg(), 0.0);
@@ -236,7 +236,7 @@ pub fn view(flight: &SimpleFlight) -> SessionView {
 }
 
 /// Sends an event of this time.
-pub fn hear(state: &mut AppState, time_s: f64, kind: EventKind) {
+pub(crate) fn hear(state: &mut AppState, time_s: f64, kind: EventKind) {
     let event = Event { time: SimTime::from_secs_f64(time_s), kind };
     update(state, Msg::Event(event));
 }
@@ -256,7 +256,7 @@ fn transition(state: &mut AppState, time_s: f64, from: NavState, to: NavState, w
 }
 
 /// Flies to the middle of the leg to WP1.
-pub fn approach(state: &mut AppState) {
+pub(crate) fn approach(state: &mut AppState) {
     update(state, Msg::Clock(Duration::from_secs(60)));
     let boot = EventKind::Boot { seed: 1, rate_hz: 1000, airframe: "iris".to_owned(), live: false };
     hear(state, 0.0, boot);
@@ -304,7 +304,7 @@ fn fly(state: &mut AppState, time_s: f64, (n, e): (f64, f64), heading_deg: f64, 
 }
 
 /// Circles at WP2.
-pub fn orbit(state: &mut AppState) {
+pub(crate) fn orbit(state: &mut AppState) {
     approach(state);
     transition(state, 90.0, NavState::Holding, NavState::Orbiting, 2, "pattern");
     let guard = Guard { name: "hold time", value: 11.6, limit: 30.0, op: GuardOp::AtLeast, unit: "s" };
@@ -326,7 +326,7 @@ pub fn orbit(state: &mut AppState) {
 }
 
 /// Comes down at WP3.
-pub fn land(state: &mut AppState) {
+pub(crate) fn land(state: &mut AppState) {
     orbit(state);
     transition(state, 190.0, NavState::Arrived, NavState::Landing, 3, "land");
     let guard = |name, value, limit, op, unit| Guard { name, value, limit, op, unit };
@@ -355,7 +355,7 @@ pub fn land(state: &mut AppState) {
 }
 
 /// Has landed at WP3.
-pub fn complete(state: &mut AppState) {
+pub(crate) fn complete(state: &mut AppState) {
     orbit(state);
     transition(state, 260.0, NavState::Landing, NavState::Complete, 3, "touchdown");
     hear(state, 260.0, EventKind::Firmware(FirmwareEvent::Disarmed(DisarmReason::Landing)));

@@ -2,29 +2,29 @@
 
 /// One line of an expected reply.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Line {
+pub(crate) struct Line {
     /// Its text, in which `{word}` stands for anything.
-    pub text: String,
+    pub(crate) text: String,
     /// What ends it.
-    pub end: &'static str,
+    pub(crate) end: &'static str,
 }
 
 /// One exchange.
 #[derive(Debug, Clone)]
-pub struct Exchange {
+pub(crate) struct Exchange {
     /// Its number.
-    pub number: usize,
+    pub(crate) number: usize,
     /// The line that is typed.
-    pub input: String,
+    pub(crate) input: String,
     /// The reply.
-    pub lines: Vec<Line>,
+    pub(crate) lines: Vec<Line>,
 }
 
 /// Text that stands for lines left out.
 const GAP: &str = "<…>";
 
 /// All exchanges in order.
-pub fn exchanges(document: &str) -> Vec<Exchange> {
+pub(crate) fn exchanges(document: &str) -> Vec<Exchange> {
     let mut found = Vec::new();
     let mut lines = document.lines();
     while let Some(line) = lines.next() {
@@ -53,7 +53,7 @@ fn parse_line(line: &str) -> Line {
 
 /// Panics unless a reply is the expected one.
 #[track_caller]
-pub fn assert_matches(expected: &Exchange, reply: &str) {
+pub(crate) fn assert_matches(expected: &Exchange, reply: &str) {
     let actual = split(reply);
     let mut wanted = expected.lines.iter().peekable();
     let mut found = actual.iter().peekable();

@@ -7,7 +7,7 @@ use super::complete::complete;
 use super::{CliAction, CliReply, MAX_LINE};
 
 /// How long the link must be quiet after a `#` for it to mean the command line.
-pub const ENTRY_QUIET: Duration = Duration::from_millis(100);
+pub(super) const ENTRY_QUIET: Duration = Duration::from_millis(100);
 /// How long a framed session may last.
 const FRAMED_LIMIT: Duration = Duration::from_secs(2);
 

@@ -7,7 +7,7 @@ use super::{CliAction, CliFacts, CliReply, Interpreter};
 
 /// One command being run.
 #[derive(Debug)]
-pub struct Session<'a> {
+pub(super) struct Session<'a> {
     pub(super) interpreter: &'a mut Interpreter,
     pub(super) configuration: &'a mut Configuration,
     pub(super) facts: &'a CliFacts,

@@ -19,7 +19,7 @@ pub(super) struct GainBoost {
 }
 
 impl GainBoost {
-    pub const NONE: Self = Self { p: 1.0, i: 1.0 };
+    pub(super) const NONE: Self = Self { p: 1.0, i: 1.0 };
 }
 
 /// Memory of the throttle.
@@ -32,7 +32,12 @@ pub(super) struct ThrottleBoost {
 impl ThrottleBoost {
     /// One step of the rate loop with the pilot's throttle (0…1): the throttle that leads it, and how much the gains
     /// rise.
-    pub fn step(&mut self, throttle: f64, tuning: &BoostTuning, derived: &Derived) -> (f64, GainBoost) {
+    pub(super) fn step(
+        &mut self,
+        throttle: f64,
+        tuning: &BoostTuning,
+        derived: &Derived,
+    ) -> (f64, GainBoost) {
         let punch = (throttle - self.slow_for_gains.apply(throttle, derived.anti_gravity)).abs();
         let lead = throttle - self.slow_for_motors.apply(throttle, derived.throttle_boost);
         let gains = GainBoost {

@@ -31,7 +31,7 @@ pub(super) struct Derived {
 }
 
 impl Derived {
-    pub fn new(tuning: &Tuning, dt: f64) -> Self {
+    pub(super) fn new(tuning: &Tuning, dt: f64) -> Self {
         let rate = &tuning.rate;
         let pid_dt = dt * f64::from(rate.denominator);
         let mut derived = Self {
@@ -53,7 +53,7 @@ impl Derived {
     }
 
     /// Moves the cutoffs that depend on the throttle (0…1).
-    pub fn follow_throttle(&mut self, tuning: &Tuning, throttle: f64) {
+    pub(super) fn follow_throttle(&mut self, tuning: &Tuning, throttle: f64) {
         let (gyro, d) = (&tuning.rate.gyro_lpf1, &tuning.rate.d_lpf1);
         self.gyro_lpf1 = LowPass::new(gyro.kind, gyro.cutoff_hz(throttle), self.dt);
         self.d_lpf1 = LowPass::new(d.kind, d.cutoff_hz(throttle), self.pid_dt);

@@ -36,17 +36,17 @@ pub(super) struct Legs {
 
 impl Legs {
     /// Whether the legs carry weight.
-    pub fn are_loaded(&self) -> bool {
+    pub(super) fn are_loaded(&self) -> bool {
         self.is_loaded
     }
 
     /// The motors stand: nothing is felt of them.
-    pub fn rest(&mut self) {
+    pub(super) fn rest(&mut self) {
         (self.loaded_s, self.is_loaded) = (0.0, false);
     }
 
     /// One update, `dt` seconds after the last, with the motor commands (0…1) in force.
-    pub fn update(&mut self, motors: &[f64; 4], estimate: &Estimate, dt: f64) {
+    pub(super) fn update(&mut self, motors: &[f64; 4], estimate: &Estimate, dt: f64) {
         let share = dt / (AVERAGE_S + dt);
         let square = motors.iter().map(|motor| motor * motor).sum::<f64>() / 4.0;
         self.square += share * (square - self.square);

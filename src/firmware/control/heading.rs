@@ -18,7 +18,13 @@ pub(super) struct HeadingHold {
 
 impl HeadingHold {
     /// The yaw rate (°/s, clockwise) that holds the heading; `None` while the pilot turns or the mode is off.
-    pub fn rate_dps(&mut self, is_on: bool, stick: f64, heading_rad: f64, yaw_dps: f64) -> Option<f64> {
+    pub(super) fn rate_dps(
+        &mut self,
+        is_on: bool,
+        stick: f64,
+        heading_rad: f64,
+        yaw_dps: f64,
+    ) -> Option<f64> {
         if !is_on || stick.abs() > STICK {
             self.held_rad = None;
             return None;
@@ -31,7 +37,7 @@ impl HeadingHold {
     }
 
     /// Holds this heading instead of the one that is held; while none is, the pilot's stick decides which will be.
-    pub fn turn_to(&mut self, heading_rad: f64) {
+    pub(super) fn turn_to(&mut self, heading_rad: f64) {
         if let Some(held) = &mut self.held_rad {
             *held = heading_rad;
         }

@@ -55,12 +55,12 @@ pub(super) struct Level {
 
 impl Level {
     /// Nobody levels now; the next update starts from the craft's attitude.
-    pub fn release(&mut self) {
+    pub(super) fn release(&mut self) {
         self.is_on = false;
     }
 
     /// One update of the demanded rates, `dt` seconds after the last.
-    pub fn update(&mut self, demand: &LevelDemand, gyro: &[f64; 3], tuning: &LevelTuning, dt: f64) {
+    pub(super) fn update(&mut self, demand: &LevelDemand, gyro: &[f64; 3], tuning: &LevelTuning, dt: f64) {
         if !self.is_on {
             self.is_on = true;
             for (axis, &rate) in gyro.iter().take(2).enumerate() {
@@ -93,13 +93,13 @@ impl Level {
     }
 
     /// Rate setpoints of roll and pitch, °/s, once per step of the rate loop.
-    pub fn rates(&mut self, derived: &Derived) -> [f64; 2] {
+    pub(super) fn rates(&mut self, derived: &Derived) -> [f64; 2] {
         let [roll, pitch] = &mut self.filters;
         [roll.apply(self.wanted[0], derived.level_rate), pitch.apply(self.wanted[1], derived.level_rate)]
     }
 
     /// Factor of the yaw setpoint: the part of a turn about the vertical that is a turn about the craft's own axis.
-    pub fn yaw_share(&self) -> f64 {
+    pub(super) fn yaw_share(&self) -> f64 {
         self.yaw_share
     }
 }
@@ -117,7 +117,7 @@ pub(super) struct Horizon {
 
 impl Horizon {
     /// One update for the farthest stick (0…1) and the tilt (°): weaker at once, stronger with delay.
-    pub fn update(&mut self, stick: f64, tilt_deg: f64, tuning: &LevelTuning, dt: f64) -> f64 {
+    pub(super) fn update(&mut self, stick: f64, tilt_deg: f64, tuning: &LevelTuning, dt: f64) -> f64 {
         let by_tilt = (1.0 - tilt_deg / tuning.horizon_tilt_limit_deg.max(1.0)).max(0.0);
         let by_stick = if tuning.horizon_ignores_sticks {
             1.0

@@ -51,7 +51,7 @@ pub(super) struct RateLoop {
 
 impl RateLoop {
     /// Empties the integrals.
-    pub fn clear_integrals(&mut self) {
+    pub(super) fn clear_integrals(&mut self) {
         for axis in &mut self.axes {
             axis.integral = 0.0;
         }
@@ -75,7 +75,7 @@ impl RateLoop {
     }
 
     /// One step; sums in thousandths of the mixer's range, before their limits.
-    pub fn step(&mut self, demand: &RateDemand, tuning: &RateTuning, derived: &Derived) -> [f64; 3] {
+    pub(super) fn step(&mut self, demand: &RateDemand, tuning: &RateTuning, derived: &Derived) -> [f64; 3] {
         let mut sums = [0.0; 3];
         let rate_hz = 1.0 / derived.pid_dt;
         if tuning.rotates_integrals {

@@ -27,7 +27,7 @@ pub(super) struct Smoothing {
 }
 
 impl Smoothing {
-    pub fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self {
             filters: [Pt3::default(); 4],
             gains: [1.0; 2],
@@ -39,17 +39,17 @@ impl Smoothing {
     }
 
     /// Cutoffs of sticks and throttle in use, Hz; 0 while nothing is smoothed.
-    pub fn cutoffs_hz(&self) -> [f64; 2] {
+    pub(super) fn cutoffs_hz(&self) -> [f64; 2] {
         self.cutoffs_hz
     }
 
     /// The gains are recomputed in the next step.
-    pub fn invalidate(&mut self) {
+    pub(super) fn invalidate(&mut self) {
         self.used_interval_s = 0.0;
     }
 
     /// One step; `values` are the setpoints of roll, pitch, yaw (°/s) and the throttle (0…1).
-    pub fn apply(&mut self, values: &[f64; 4], is_frame: bool, tuning: &Tuning, dt: f64) -> [f64; 4] {
+    pub(super) fn apply(&mut self, values: &[f64; 4], is_frame: bool, tuning: &Tuning, dt: f64) -> [f64; 4] {
         self.since_frame_s += dt;
         if is_frame {
             let hz = 1.0 / self.since_frame_s.max(1e-6);

@@ -36,7 +36,7 @@ pub(super) struct Attitude {
 
 impl Attitude {
     /// Level, facing north.
-    pub fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self::at(UnitQuaternion::from_axis_angle(&Vector3::z_axis(), std::f64::consts::FRAC_PI_2))
     }
 
@@ -50,7 +50,7 @@ impl Attitude {
     }
 
     /// Sets the tilt by what the accelerometer calls up; the heading stays.
-    pub fn align(&mut self, force: &Vector3<f64>) {
+    pub(super) fn align(&mut self, force: &Vector3<f64>) {
         let up = self.q * force;
         if let Some(turn) = UnitQuaternion::rotation_between(&up, &Vector3::z()) {
             self.set(turn * self.q);
@@ -58,13 +58,13 @@ impl Attitude {
     }
 
     /// Takes over an attitude known from elsewhere.
-    pub fn set(&mut self, q: UnitQuaternion<f64>) {
+    pub(super) fn set(&mut self, q: UnitQuaternion<f64>) {
         self.q = q;
         self.refresh();
     }
 
     /// Integrates one gyro sample (body rates, rad/s) by the mean of it and the one before.
-    pub fn integrate(&mut self, rate: &Vector3<f64>, dt: f64) {
+    pub(super) fn integrate(&mut self, rate: &Vector3<f64>, dt: f64) {
         let turn = (0.5 * (rate + self.last_rate) + self.rate_correction) * dt;
         self.last_rate = *rate;
         // The exponential to third order: the turn of one step is far below a radian.
@@ -77,14 +77,14 @@ impl Attitude {
     }
 
     /// Brings the matrix up to date.
-    pub fn refresh(&mut self) {
+    pub(super) fn refresh(&mut self) {
         let q = UnitQuaternion::new_normalize(self.q.into_inner());
         self.q = if q.coords.iter().all(|c| c.is_finite()) { q } else { UnitQuaternion::identity() };
         self.matrix = self.q.to_rotation_matrix();
     }
 
     /// Turns the attitude by a small rotation vector in world axes, rad.
-    pub fn turn_world(&mut self, angle: &Vector3<f64>) {
+    pub(super) fn turn_world(&mut self, angle: &Vector3<f64>) {
         self.q = UnitQuaternion::from_scaled_axis(*angle) * self.q;
         self.refresh();
     }
@@ -92,7 +92,7 @@ impl Attitude {
     /// Corrects the tilt towards the vertical that follows from a specific force `force` (world axes) whose craft
     /// really accelerates by `force + missing − g`: gravity seen by an accelerometer whose motion is known. Returns
     /// how much of `missing` the turn has explained, m/s².
-    pub fn steady(
+    pub(super) fn steady(
         &mut self,
         force: &Vector3<f64>,
         missing: &Vector3<f64>,
@@ -111,24 +111,24 @@ impl Attitude {
     }
 
     /// Rate correction found by the integral, body axes, rad/s.
-    pub fn rate_correction(&self) -> &Vector3<f64> {
+    pub(super) fn rate_correction(&self) -> &Vector3<f64> {
         &self.rate_correction
     }
 
     /// Roll, right positive, and pitch, nose down positive, rad.
-    pub fn roll_pitch(&self) -> (f64, f64) {
+    pub(super) fn roll_pitch(&self) -> (f64, f64) {
         let m = self.matrix.matrix();
         (m[(2, 1)].atan2(m[(2, 2)]), (-m[(2, 0)]).clamp(-1.0, 1.0).asin())
     }
 
     /// Heading, rad clockwise from north, 0…2π.
-    pub fn heading(&self) -> f64 {
+    pub(super) fn heading(&self) -> f64 {
         let m = self.matrix.matrix();
         m[(0, 0)].atan2(m[(1, 0)]).rem_euclid(std::f64::consts::TAU)
     }
 
     /// Cosine of the tilt from level.
-    pub fn cos_tilt(&self) -> f64 {
+    pub(super) fn cos_tilt(&self) -> f64 {
         self.matrix.matrix()[(2, 2)]
     }
 }

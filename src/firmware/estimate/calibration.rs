@@ -33,19 +33,19 @@ pub(super) struct GyroCalibration {
 }
 
 impl GyroCalibration {
-    pub fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self::after(Vector3::zeros())
     }
 
     /// Begins anew; the offset that was known (rad/s) is used until there is another.
-    pub fn after(bias: Vector3<f64>) -> Self {
+    pub(super) fn after(bias: Vector3<f64>) -> Self {
         let zero = Vector3::zeros();
         Self { first: zero, sum: zero, squares: zero, samples: 0, elapsed_s: 0.0, bias, done: false }
     }
 
     /// One sample (rad/s). `duration_s` of samples whose standard deviation stays below `noise_limit` (gyro units; 0:
     /// any) give the offset; otherwise it starts anew.
-    pub fn feed(&mut self, rate: &Vector3<f64>, dt: f64, duration_s: f64, noise_limit: f64) {
+    pub(super) fn feed(&mut self, rate: &Vector3<f64>, dt: f64, duration_s: f64, noise_limit: f64) {
         if self.samples == 0 {
             self.first = *rate;
         }
@@ -78,12 +78,12 @@ pub(super) struct AccCalibration {
 }
 
 impl AccCalibration {
-    pub fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self { sum: Vector3::zeros(), left: ACC_SAMPLES }
     }
 
     /// One sample (m/s², uncorrected); at the end the offset in units of the setting.
-    pub fn feed(&mut self, force: &Vector3<f64>) -> Option<[i64; 3]> {
+    pub(super) fn feed(&mut self, force: &Vector3<f64>) -> Option<[i64; 3]> {
         self.sum += force;
         self.left = self.left.saturating_sub(1);
         if self.left > 0 {
@@ -111,7 +111,7 @@ pub(super) struct MagCalibration {
 }
 
 impl MagCalibration {
-    pub fn new() -> Self {
+    pub(super) fn new() -> Self {
         let limit = Vector3::repeat(f64::INFINITY);
         Self {
             normal: Matrix4::zeros(),
@@ -123,7 +123,7 @@ impl MagCalibration {
     }
 
     /// Takes a sample (sensor units, uncorrected).
-    pub fn feed(&mut self, field: &Vector3<f64>) {
+    pub(super) fn feed(&mut self, field: &Vector3<f64>) {
         self.low = self.low.inf(field);
         self.high = self.high.sup(field);
         let scaled = field / MAG_UNIT;
@@ -133,7 +133,7 @@ impl MagCalibration {
     }
 
     /// Lets `dt` seconds pass; at the end the offset in units of the setting.
-    pub fn wait(&mut self, dt: f64) -> Option<Result<[i64; 3], NotTurned>> {
+    pub(super) fn wait(&mut self, dt: f64) -> Option<Result<[i64; 3], NotTurned>> {
         self.left_s -= dt;
         if self.left_s > 0.0 {
             return None;

@@ -33,7 +33,7 @@ pub(super) struct Chain {
 
 impl Chain {
     /// Independent states with these standard deviations.
-    pub fn new(position: f64, velocity: f64, accel: f64) -> Self {
+    pub(super) fn new(position: f64, velocity: f64, accel: f64) -> Self {
         Self {
             pp: position * position,
             pv: 0.0,
@@ -45,7 +45,7 @@ impl Chain {
     }
 
     /// `dt` seconds later: `F P Fᵀ + Q` with `F = [1 dt dt²/2; 0 1 dt; 0 0 1]`.
-    pub fn predict(&mut self, dt: f64, noise: &ChainNoise) {
+    pub(super) fn predict(&mut self, dt: f64, noise: &ChainNoise) {
         let Self { pv, pb, vv, vb, bb, .. } = *self;
         let half = 0.5 * dt * dt;
         self.pp += dt * (2.0 * pv + dt * (vv + pb + dt * (vb + 0.25 * dt * bb)));
@@ -57,13 +57,13 @@ impl Chain {
     }
 
     /// Takes in a measurement of the position with this variance.
-    pub fn measure_position(&mut self, variance: f64) -> Gain {
+    pub(super) fn measure_position(&mut self, variance: f64) -> Gain {
         let (h, innovation) = ((self.pp, self.pv, self.pb), self.pp + variance);
         self.condense(h, innovation)
     }
 
     /// Takes in a measurement of the velocity with this variance.
-    pub fn measure_velocity(&mut self, variance: f64) -> Gain {
+    pub(super) fn measure_velocity(&mut self, variance: f64) -> Gain {
         let (h, innovation) = ((self.pv, self.vv, self.vb), self.vv + variance);
         self.condense(h, innovation)
     }

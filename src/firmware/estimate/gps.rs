@@ -37,7 +37,7 @@ pub(super) struct GpsMonitor {
 
 impl GpsMonitor {
     /// Takes in a message; returns it when it is a usable solution.
-    pub fn receive(&mut self, sample: GpsSample, now: SimTime) -> Option<GpsSample> {
+    pub(super) fn receive(&mut self, sample: GpsSample, now: SimTime) -> Option<GpsSample> {
         let is_sane = sample.vel_enu.iter().all(|v| v.is_finite()) && sample.position.is_on_globe();
         let usable = sample.fix && is_sane;
         self.arrived = now;
@@ -58,7 +58,7 @@ impl GpsMonitor {
     }
 
     /// Brings age and fix up to date.
-    pub fn update(&mut self, now: SimTime, timeout_s: f64) {
+    pub(super) fn update(&mut self, now: SimTime, timeout_s: f64) {
         let status = &mut self.status;
         status.age_s = now.seconds_since(self.arrived);
         if status.messages == 0 || status.age_s > timeout_s {

@@ -46,7 +46,7 @@ pub(super) enum MagTrust {
 
 impl MagTrust {
     /// The part of a heading error that one sample corrects after `dt` seconds, rad; zero when it is not believed.
-    pub fn correction(self, error: f64, dt: f64) -> f64 {
+    pub(super) fn correction(self, error: f64, dt: f64) -> f64 {
         let time_constant = match self {
             Self::Parked => PARKED_S,
             Self::Trusted => TRUSTED_S,
@@ -69,26 +69,26 @@ pub(super) struct CourseComparison {
 }
 
 impl CourseComparison {
-    pub fn new() -> Self {
+    pub(super) fn new() -> Self {
         let zero = Vector2::zeros();
         Self { inertial: [zero; DEPTH], newest: 0, window: [(zero, zero); WINDOW], filled: 0, next: 0 }
     }
 
     /// One step of inertial acceleration (north, east), m/s².
-    pub fn predict(&mut self, accel: Vector2<f64>, dt: f64) {
+    pub(super) fn predict(&mut self, accel: Vector2<f64>, dt: f64) {
         let velocity = self.inertial[self.newest] + accel * dt;
         self.newest = (self.newest + 1) % DEPTH;
         self.inertial[self.newest] = velocity;
     }
 
     /// A gap in the solutions: start over.
-    pub fn clear(&mut self) {
+    pub(super) fn clear(&mut self) {
         self.filled = 0;
     }
 
     /// A solution's velocity (north, east) of `age` steps ago; returns the correction of the heading,
     /// anticlockwise positive, rad.
-    pub fn compare(&mut self, velocity: Vector2<f64>, age: usize) -> f64 {
+    pub(super) fn compare(&mut self, velocity: Vector2<f64>, age: usize) -> f64 {
         let inertial = self.inertial[(self.newest + DEPTH - age.min(DEPTH - 1)) % DEPTH];
         let (then, inertial_then) = self.window[self.next];
         self.window[self.next] = (velocity, inertial);

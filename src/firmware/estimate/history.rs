@@ -23,12 +23,12 @@ const ACCEL_ERROR_LIMIT: f64 = 3.0;
 
 impl Axis {
     /// At rest at zero.
-    pub fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self { position: 0.0, velocity: 0.0, accel_error: 0.0, past: [(0.0, 0.0); DEPTH], newest: 0 }
     }
 
     /// Starts anew at this position and velocity, as if it had always moved like that.
-    pub fn reset(&mut self, position: f64, velocity: f64, dt: f64) {
+    pub(super) fn reset(&mut self, position: f64, velocity: f64, dt: f64) {
         (self.position, self.velocity) = (position, velocity);
         for age in 0..DEPTH {
             let slot = self.slot(age);
@@ -37,7 +37,7 @@ impl Axis {
     }
 
     /// One step with the measured acceleration (m/s²).
-    pub fn predict(&mut self, accel: f64, dt: f64) {
+    pub(super) fn predict(&mut self, accel: f64, dt: f64) {
         let accel = accel + self.accel_error;
         self.position += dt * (self.velocity + 0.5 * dt * accel);
         self.velocity += dt * accel;
@@ -46,13 +46,13 @@ impl Axis {
     }
 
     /// Position and velocity `age` steps ago; the oldest known for more.
-    pub fn past(&self, age: usize) -> (f64, f64) {
+    pub(super) fn past(&self, age: usize) -> (f64, f64) {
         self.past[self.slot(age)]
     }
 
     /// Takes in an innovation of `age` steps ago: the correction belongs to that instant, what followed from it is
     /// corrected with it.
-    pub fn correct(&mut self, gain: &Gain, innovation: f64, age: usize, dt: f64) {
+    pub(super) fn correct(&mut self, gain: &Gain, innovation: f64, age: usize, dt: f64) {
         let age = age.min(DEPTH - 1);
         let (p, v) = (gain.position * innovation, gain.velocity * innovation);
         let before = self.accel_error;
@@ -69,7 +69,7 @@ impl Axis {
     }
 
     /// Moves the zero of the positions.
-    pub fn shift(&mut self, by: f64) {
+    pub(super) fn shift(&mut self, by: f64) {
         self.position += by;
         for (position, _) in &mut self.past {
             *position += by;

@@ -42,7 +42,7 @@ pub(super) struct Horizontal {
 }
 
 impl Horizontal {
-    pub fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self {
             chain: Chain::new(POSITION_SIGMA, VELOCITY_SIGMA, 0.3),
             noise: ChainNoise { accel: ACCEL_NOISE, drift: DRIFT_NOISE },
@@ -56,45 +56,45 @@ impl Horizontal {
     }
 
     /// Scales the trust in the accelerometer: 30 is neutral, more trusts it more.
-    pub fn set_accel_trust(&mut self, setting: f64) {
+    pub(super) fn set_accel_trust(&mut self, setting: f64) {
         self.noise.accel = ACCEL_NOISE * 30.0 / setting.max(1.0);
     }
 
-    pub fn origin(&self) -> Option<LatLon> {
+    pub(super) fn origin(&self) -> Option<LatLon> {
         self.origin
     }
 
-    pub fn position(&self) -> Vector2<f64> {
+    pub(super) fn position(&self) -> Vector2<f64> {
         Vector2::new(self.north.position, self.east.position)
     }
 
-    pub fn velocity(&self) -> Vector2<f64> {
+    pub(super) fn velocity(&self) -> Vector2<f64> {
         Vector2::new(self.north.velocity, self.east.velocity)
     }
 
     /// Acceleration that the accelerometer does not see because the attitude or itself is wrong, m/s².
-    pub fn accel_error(&self) -> Vector2<f64> {
+    pub(super) fn accel_error(&self) -> Vector2<f64> {
         Vector2::new(self.north.accel_error, self.east.accel_error)
     }
 
     /// Says that a turn of the attitude explains this much of the acceleration error.
-    pub fn explain(&mut self, accel: Vector2<f64>) {
+    pub(super) fn explain(&mut self, accel: Vector2<f64>) {
         self.north.accel_error -= accel.x;
         self.east.accel_error -= accel.y;
     }
 
     /// Whether position and velocity mean something.
-    pub fn is_valid(&self) -> bool {
+    pub(super) fn is_valid(&self) -> bool {
         self.origin.is_some() && self.since_solution_s <= VALID_S
     }
 
     /// Whether the filter has settled and is fed.
-    pub fn is_settled(&self) -> bool {
+    pub(super) fn is_settled(&self) -> bool {
         self.solutions >= SETTLED && self.since_solution_s <= 0.5
     }
 
     /// Moves the origin; the place on earth stays.
-    pub fn set_origin(&mut self, origin: LatLon) {
+    pub(super) fn set_origin(&mut self, origin: LatLon) {
         if let Some(old) = self.origin {
             let offset = local_offset(origin, old);
             self.north.shift(offset.x);
@@ -104,7 +104,7 @@ impl Horizontal {
     }
 
     /// One step with the measured acceleration (north, east), m/s².
-    pub fn predict(&mut self, accel: Vector2<f64>, dt: f64) {
+    pub(super) fn predict(&mut self, accel: Vector2<f64>, dt: f64) {
         self.since_solution_s += dt;
         if !self.is_valid() {
             self.solutions = 0;
@@ -116,7 +116,7 @@ impl Horizontal {
     }
 
     /// Takes in a solution that describes the craft `age_s` ago.
-    pub fn fuse(&mut self, sample: &GpsSample, age_s: f64) {
+    pub(super) fn fuse(&mut self, sample: &GpsSample, age_s: f64) {
         let velocity = Vector2::new(sample.vel_enu.y, sample.vel_enu.x);
         let origin = *self.origin.get_or_insert(sample.position);
         let position = local_offset(origin, sample.position);

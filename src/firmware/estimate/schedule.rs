@@ -23,7 +23,7 @@ pub(super) struct Schedule {
 
 impl Schedule {
     /// The loops due at `now`, the attitude's every `attitude_us`. Both are due in the first step.
-    pub fn due(&mut self, now: SimTime, attitude_us: u64) -> DueTasks {
+    pub(super) fn due(&mut self, now: SimTime, attitude_us: u64) -> DueTasks {
         let navigation = pass(&mut self.navigation, now, NAVIGATION_US);
         let attitude = pass(&mut self.attitude, now, attitude_us);
         DueTasks { attitude: attitude || navigation, navigation }

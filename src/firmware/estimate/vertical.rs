@@ -56,7 +56,7 @@ pub(super) fn pressure_altitude_m(pressure_pa: f64) -> f64 {
 }
 
 impl Vertical {
-    pub fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self {
             chain: Chain::new(0.5, 0.1, 0.1),
             axis: Axis::new(),
@@ -69,22 +69,22 @@ impl Vertical {
     }
 
     /// Altitude above the zero, m.
-    pub fn altitude(&self) -> f64 {
+    pub(super) fn altitude(&self) -> f64 {
         self.axis.position
     }
 
     /// Climb rate, m/s.
-    pub fn climb(&self) -> f64 {
+    pub(super) fn climb(&self) -> f64 {
         self.axis.velocity
     }
 
     /// Whether the altitude means something.
-    pub fn is_valid(&self) -> bool {
+    pub(super) fn is_valid(&self) -> bool {
         self.since_baro_s.min(self.since_gps_s) <= VALID_S
     }
 
     /// Puts the zero here.
-    pub fn zero(&mut self) {
+    pub(super) fn zero(&mut self) {
         let altitude = self.axis.position;
         self.axis.shift(-altitude);
         self.baro_zero = self.baro_zero.map(|zero| zero + altitude);
@@ -92,7 +92,7 @@ impl Vertical {
     }
 
     /// One step with the measured upward acceleration without gravity, m/s².
-    pub fn predict(&mut self, accel: f64, dt: f64) {
+    pub(super) fn predict(&mut self, accel: f64, dt: f64) {
         self.since_baro_s += dt;
         self.since_gps_s += dt;
         if !self.is_valid() {
@@ -105,7 +105,7 @@ impl Vertical {
     }
 
     /// Takes in a barometric altitude (m); `preference` is its weight, 0…1.
-    pub fn fuse_baro(&mut self, altitude: f64, preference: f64) {
+    pub(super) fn fuse_baro(&mut self, altitude: f64, preference: f64) {
         if preference <= 0.0 {
             return;
         }
@@ -126,7 +126,7 @@ impl Vertical {
 
     /// Takes in altitude and climb rate of a solution that is `age_s` old. On the ground (`parked`) the zero of the
     /// GPS altitude follows, in the air it stays.
-    pub fn fuse_gps(&mut self, sample: &GpsSample, age_s: f64, source: AltitudeSource, parked: bool) {
+    pub(super) fn fuse_gps(&mut self, sample: &GpsSample, age_s: f64, source: AltitudeSource, parked: bool) {
         let age = (age_s / STEP_S).round().max(0.0) as usize;
         let altitude = f64::from(sample.alt_amsl_cm) * 0.01;
         let has_baro = self.since_baro_s <= VALID_S;

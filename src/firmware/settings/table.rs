@@ -25,7 +25,7 @@ pub const PORT_NAMES: [&str; 9] =
 
 /// Settings that belong together in the documentation.
 #[derive(Debug, Clone, Copy)]
-pub struct Group {
+pub(super) struct Group {
     /// Heading.
     pub title: &'static str,
     /// Where its settings live.

@@ -10,7 +10,7 @@ use crate::link::proto::fdm;
 /// Result of opening a link, as the executable prints it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(i8)]
-pub enum OpenResult {
+pub(super) enum OpenResult {
     /// Done.
     Done = 0,
     /// The port could not be bound.
@@ -40,7 +40,7 @@ impl Default for SitlPorts {
 
 /// The first line, before any link is open; `ip` is where motors are sent.
 #[must_use]
-pub fn output_line(ip: &str, ports: SitlPorts) -> String {
+pub(super) fn output_line(ip: &str, ports: SitlPorts) -> String {
     format!(
         "[SITL] The SITL will output to IP {ip}:{} (Gazebo) and {ip}:{} (RealFlightBridge)",
         ports.motors, ports.raw
@@ -49,7 +49,7 @@ pub fn output_line(ip: &str, ports: SitlPorts) -> String {
 
 /// The lines about the motor links, then about state and RC, with the results of opening them.
 #[must_use]
-pub fn link_lines(
+pub(super) fn link_lines(
     ip: &str,
     ports: SitlPorts,
     motors: OpenResult,
@@ -67,21 +67,21 @@ pub fn link_lines(
 
 /// The first state datagram.
 #[must_use]
-pub fn first_fdm_line(datagram: &[u8], from: SocketAddr) -> Option<String> {
+pub(super) fn first_fdm_line(datagram: &[u8], from: SocketAddr) -> Option<String> {
     let packet = fdm::Packet::parse(datagram).ok()?;
     Some(format!("[SITL] new fdm {} t:{:.6} from {}:{}", fdm::SIZE, packet.stamp_s(), from.ip(), from.port()))
 }
 
 /// The first RC datagram.
 #[must_use]
-pub fn first_rc_line(stamp_s: f64, frame: &RcFrame) -> String {
+pub(super) fn first_rc_line(stamp_s: f64, frame: &RcFrame) -> String {
     let [c1, c2, c3, c4, c5, c6, c7, c8, ..] = frame.channels;
     format!("[SITL] new rc 40: t:{stamp_s:.6} AETR: {c1} {c2} {c3} {c4} AUX1-4: {c5} {c6} {c7} {c8}")
 }
 
 /// What the once-a-second line tells.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FlightLine {
+pub(super) struct FlightLine {
     /// Firmware time, ms.
     pub t_ms: u64,
     /// Ground speed, m/s.
@@ -105,12 +105,12 @@ impl std::fmt::Display for FlightLine {
 
 /// The once-a-second line while arming is blocked.
 #[must_use]
-pub fn blocked_line(t_ms: u64, reasons: &[&str]) -> String {
+pub(super) fn blocked_line(t_ms: u64, reasons: &[&str]) -> String {
     format!("[SITL] t={t_ms}ms Arming disabled: {}", reasons.join(" "))
 }
 
 /// The restart of the firmware.
-pub const RESET_LINE: &str = "[system]Reset!";
+pub(super) const RESET_LINE: &str = "[system]Reset!";
 
 #[cfg(test)]
 mod tests {

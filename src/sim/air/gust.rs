@@ -72,30 +72,30 @@ pub(in crate::sim) struct Gusts {
 }
 
 impl Gusts {
-    pub fn new(seed: u64, size_mps: f64) -> Self {
+    pub(crate) fn new(seed: u64, size_mps: f64) -> Self {
         let mut gusts = Self { size_mps, rng: Stream::Gusts.rng(seed), next: None, blowing: ArrayVec::new() };
         gusts.plan_next(SimTime::ZERO);
         gusts
     }
 
     /// Strength of random gusts, m/s.
-    pub fn size_mps(&self) -> f64 {
+    pub(crate) fn size_mps(&self) -> f64 {
         self.size_mps
     }
 
     /// Whether a gust blows now.
-    pub fn is_blowing(&self) -> bool {
+    pub(crate) fn is_blowing(&self) -> bool {
         !self.blowing.is_empty()
     }
 
     /// Sets the strength of random gusts; the next one comes after a random time from now.
-    pub fn set_size(&mut self, size_mps: f64, now: SimTime) {
+    pub(crate) fn set_size(&mut self, size_mps: f64, now: SimTime) {
         self.size_mps = size_mps;
         self.plan_next(now);
     }
 
     /// Starts one gust of the given speed and direction that rises and falls in `rise_s` and is over after `total_s`.
-    pub fn blow(&mut self, wind: Wind, rise_s: f64, total_s: f64, now: SimTime) {
+    pub(crate) fn blow(&mut self, wind: Wind, rise_s: f64, total_s: f64, now: SimTime) {
         if self.blowing.is_full() {
             self.blowing.remove(0);
         }
@@ -103,7 +103,7 @@ impl Gusts {
     }
 
     /// Ends gusts that are over and starts a random one when its time has come.
-    pub fn advance(&mut self, now: SimTime, mean: Wind, rise_s: f64) {
+    pub(crate) fn advance(&mut self, now: SimTime, mean: Wind, rise_s: f64) {
         self.blowing.retain(|gust| !gust.is_over(now));
         if self.next.is_some_and(|next| next <= now) {
             let turn = self.rng.random_range(-SPREAD_DEG..SPREAD_DEG);
@@ -114,7 +114,7 @@ impl Gusts {
     }
 
     /// Velocity of all gusts together, ENU, m/s.
-    pub fn velocity_enu(&self, time: SimTime) -> Vector3<f64> {
+    pub(crate) fn velocity_enu(&self, time: SimTime) -> Vector3<f64> {
         self.blowing.iter().fold(Vector3::zeros(), |sum, gust| {
             let strength =
                 one_minus_cosine(gust.peak_mps, gust.rise_s, gust.hold_s, time.seconds_since(gust.start));

@@ -113,7 +113,7 @@ pub(in crate::sim) struct TurbulenceFilter {
 }
 
 impl TurbulenceFilter {
-    pub fn new(seed: u64, level: Turbulence) -> Self {
+    pub(crate) fn new(seed: u64, level: Turbulence) -> Self {
         let strength_kt = level.wind_at_20ft_kt();
         Self {
             level,
@@ -125,7 +125,7 @@ impl TurbulenceFilter {
     }
 
     /// One tick of `dt` seconds at a height above ground (m) and airspeed (m/s).
-    pub fn advance(&mut self, height_m: f64, airspeed_mps: f64, dt: f64) {
+    pub(crate) fn advance(&mut self, height_m: f64, airspeed_mps: f64, dt: f64) {
         let ramp = LEVEL_RAMP_KT_PER_S * dt;
         self.strength_kt += (self.level.wind_at_20ft_kt() - self.strength_kt).clamp(-ramp, ramp);
         if self.strength_kt == 0.0 {
@@ -155,7 +155,7 @@ impl TurbulenceFilter {
     }
 
     /// Velocity, ENU, m/s, for a mean wind from the given direction.
-    pub fn velocity_enu(&self, from_deg: f64) -> Vector3<f64> {
+    pub(crate) fn velocity_enu(&self, from_deg: f64) -> Vector3<f64> {
         let along = Wind { speed_mps: 1.0, from_deg }.velocity_enu();
         let left = Vector3::new(-along.y, along.x, 0.0);
         let uvw = self.velocity_uvw();

@@ -38,7 +38,7 @@ pub(in crate::sim) struct FaultBoard {
 }
 
 impl FaultBoard {
-    pub fn new(waiting: Vec<ScheduledFault>) -> Self {
+    pub(crate) fn new(waiting: Vec<ScheduledFault>) -> Self {
         let mut board =
             Self { waiting, active: ArrayVec::new(), engaged: None, spent: ArrayVec::new(), next_us: 0 };
         board.look_ahead();
@@ -46,12 +46,12 @@ impl FaultBoard {
     }
 
     /// Whether something begins or ends at or before `now`.
-    pub fn is_due(&self, now: SimTime) -> bool {
+    pub(crate) fn is_due(&self, now: SimTime) -> bool {
         now.0 >= self.next_us
     }
 
     /// Takes one fault that ends or begins at or before `now`: ends first, then beginnings in the order of their times.
-    pub fn take_due(&mut self, now: SimTime) -> Option<Switch> {
+    pub(crate) fn take_due(&mut self, now: SimTime) -> Option<Switch> {
         let switch = self.take_ended(now).or_else(|| self.take_begun(now));
         self.look_ahead();
         switch
@@ -78,7 +78,7 @@ impl FaultBoard {
     }
 
     /// Puts a fault on now, in place of an active one of its kind.
-    pub fn insert(&mut self, fault: Fault, until: Option<SimTime>) -> ActiveFault {
+    pub(crate) fn insert(&mut self, fault: Fault, until: Option<SimTime>) -> ActiveFault {
         let begun = ActiveFault { fault, until };
         if !fault.is_instant() {
             self.active.retain(|active| fault.key() != active.fault.key());
@@ -90,12 +90,12 @@ impl FaultBoard {
     }
 
     /// Whether another fault can be put on or scheduled.
-    pub fn has_room(&self) -> bool {
+    pub(crate) fn has_room(&self) -> bool {
         self.active.len() + self.waiting.len() + self.spent.len() < MAX_FAULTS
     }
 
     /// Changes when an active fault ends.
-    pub fn set_end(&mut self, fault: &Fault, until: SimTime) {
+    pub(crate) fn set_end(&mut self, fault: &Fault, until: SimTime) {
         for active in self.active.iter_mut().filter(|active| active.fault == *fault) {
             active.until = Some(until);
         }
@@ -103,7 +103,7 @@ impl FaultBoard {
     }
 
     /// Ends the first active fault that `ends` picks.
-    pub fn end_first(&mut self, ends: impl Fn(&Fault) -> bool) -> Option<Fault> {
+    pub(crate) fn end_first(&mut self, ends: impl Fn(&Fault) -> bool) -> Option<Fault> {
         let index = self.active.iter().position(|active| ends(&active.fault))?;
         let fault = self.active.remove(index).fault;
         self.look_ahead();
@@ -111,7 +111,7 @@ impl FaultBoard {
     }
 
     /// Ends the first active fault of the link that lasts until `time` or less.
-    pub fn end_link_fault(&mut self, time: SimTime) -> Option<Fault> {
+    pub(crate) fn end_link_fault(&mut self, time: SimTime) -> Option<Fault> {
         let over = |active: &ActiveFault| {
             active.fault.needs_link() && active.until.is_some_and(|until| until <= time)
         };
@@ -122,21 +122,21 @@ impl FaultBoard {
     }
 
     /// Forgets the faults that wait.
-    pub fn forget_waiting(&mut self) {
+    pub(crate) fn forget_waiting(&mut self) {
         self.waiting.clear();
         self.spent.clear();
         self.look_ahead();
     }
 
     /// Adds a fault that will begin.
-    pub fn schedule(&mut self, fault: ScheduledFault) {
+    pub(crate) fn schedule(&mut self, fault: ScheduledFault) {
         self.waiting.push(fault);
         self.look_ahead();
     }
 
     /// The flight is over: faults without `boot+` wait for the next engagement, those that it has begun too. To be
     /// called until there is none left; gives one that was active and ends now.
-    pub fn wait_for_next_flight(&mut self) -> Option<Fault> {
+    pub(crate) fn wait_for_next_flight(&mut self) -> Option<Fault> {
         self.engaged = None;
         let mut ended = None;
         while ended.is_none()
@@ -150,23 +150,23 @@ impl FaultBoard {
     }
 
     /// Tells the time from which faults without `boot+` count; of a flight only the first call matters.
-    pub fn set_engaged(&mut self, time: SimTime) {
+    pub(crate) fn set_engaged(&mut self, time: SimTime) {
         if self.engaged.is_none() {
             self.engaged = Some(time);
             self.look_ahead();
         }
     }
 
-    pub fn active(&self) -> &[ActiveFault] {
+    pub(crate) fn active(&self) -> &[ActiveFault] {
         &self.active
     }
 
-    pub fn waiting(&self) -> &[ScheduledFault] {
+    pub(crate) fn waiting(&self) -> &[ScheduledFault] {
         &self.waiting
     }
 
     /// What the active faults together do.
-    pub fn effects(&self) -> Effects {
+    pub(crate) fn effects(&self) -> Effects {
         let mut effects = Effects::NONE;
         for active in &self.active {
             effects.add(&active.fault);

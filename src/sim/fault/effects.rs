@@ -33,7 +33,7 @@ pub(in crate::sim) struct Effects {
 
 /// What is wrong with the GPS.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct GpsFaults {
+pub(crate) struct GpsFaults {
     /// No solution.
     pub loss: bool,
     /// Shift of the position, ENU, m.
@@ -61,7 +61,7 @@ pub struct LinkFaults {
 
 impl Effects {
     /// Nothing wrong.
-    pub const NONE: Self = Self {
+    pub(crate) const NONE: Self = Self {
         rx_loss: false,
         rx_jitter: 0.0,
         gps: GpsFaults {
@@ -88,7 +88,7 @@ impl Effects {
     };
 
     /// Adds one active fault. Instant faults and gusts have acted already.
-    pub fn add(&mut self, fault: &Fault) {
+    pub(crate) fn add(&mut self, fault: &Fault) {
         match *fault {
             Fault::RxLoss => self.rx_loss = true,
             Fault::RxJitter(fraction) => self.rx_jitter = fraction,

@@ -28,7 +28,7 @@ pub(super) struct Barometer {
 }
 
 impl Barometer {
-    pub fn new(seed: u64) -> Self {
+    pub(super) fn new(seed: u64) -> Self {
         let (sigma, tau_s) = DRIFT_PA;
         Self {
             normals: Normals::new(seed, Stream::Barometer),
@@ -41,12 +41,18 @@ impl Barometer {
     }
 
     /// Forgets the past: the craft has always been here.
-    pub fn settle(&mut self) {
+    pub(super) fn settle(&mut self) {
         self.last = None;
     }
 
     /// One sample, Pa, where the true pressure is `pressure`; called once a sampling period.
-    pub fn read(&mut self, pressure: f64, switches: &Switches, effects: &Effects, noise: Noise) -> f64 {
+    pub(super) fn read(
+        &mut self,
+        pressure: f64,
+        switches: &Switches,
+        effects: &Effects,
+        noise: Noise,
+    ) -> f64 {
         let late = self.last.replace(pressure).unwrap_or(pressure);
         self.ramp += effects.baro_drift_pa_per_s * PERIOD_S;
         let faults = self.ramp + self.spike(effects.baro_spike_pa);

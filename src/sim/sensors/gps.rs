@@ -94,7 +94,7 @@ pub(in crate::sim) struct Gps {
 }
 
 impl Gps {
-    pub fn new(seed: u64) -> Self {
+    pub(crate) fn new(seed: u64) -> Self {
         let mut normals = Normals::new(seed, Stream::Gps);
         let (sigma, tau_s) = POSITION_WANDER;
         let spread = 1.0 - ACQUISITION_SPREAD..1.0 + ACQUISITION_SPREAD;
@@ -111,19 +111,19 @@ impl Gps {
     }
 
     /// Sets the number of solutions a second, 1…20.
-    pub fn set_rate(&mut self, rate_hz: u8) {
+    pub(crate) fn set_rate(&mut self, rate_hz: u8) {
         let (sigma, tau_s) = POSITION_WANDER;
         self.rate_hz = rate_hz;
         self.wander_process = GaussMarkov::stationary(sigma, tau_s, 1.0 / f64::from(rate_hz));
     }
 
     /// Forgets the past: the craft has always been here.
-    pub fn settle(&mut self, pos_enu: Vector3<f64>, vel_enu: Vector3<f64>) {
+    pub(crate) fn settle(&mut self, pos_enu: Vector3<f64>, vel_enu: Vector3<f64>) {
         self.past = [(pos_enu, vel_enu); LATENCY_TICKS + 1];
     }
 
     /// One slow tick; the navigation message when one is due.
-    pub fn advance(
+    pub(crate) fn advance(
         &mut self,
         tick: u64,
         truth: &Truth,

@@ -84,7 +84,7 @@ pub(super) struct Imu {
 }
 
 impl Imu {
-    pub fn new(config: &WorldConfig, step_s: f64) -> Self {
+    pub(super) fn new(config: &WorldConfig, step_s: f64) -> Self {
         let seed = config.seed;
         let root_rate = step_s.sqrt().recip();
         Self {
@@ -103,7 +103,7 @@ impl Imu {
     }
 
     /// Lets the biases wander for one slow tick.
-    pub fn drift(&mut self, switches: &Switches, noise: Noise) {
+    pub(super) fn drift(&mut self, switches: &Switches, noise: Noise) {
         self.bias = if noise == Noise::Real && switches.sensor_bias {
             self.gyro_bias.drift();
             self.acc_bias.drift();
@@ -114,7 +114,7 @@ impl Imu {
     }
 
     /// Body rates (rad/s) and specific force (m/s²), FLU, as measured now.
-    pub fn read(&mut self, scene: &Scene<'_>, noise: Noise) -> (Vector3<f64>, Vector3<f64>) {
+    pub(super) fn read(&mut self, scene: &Scene<'_>, noise: Noise) -> (Vector3<f64>, Vector3<f64>) {
         let (truth, effects) = (scene.truth, scene.effects);
         let mut rate = truth.rate_flu + effects.gyro_bias;
         let mut force = truth.specific_force_flu + effects.acc_bias;

@@ -31,12 +31,12 @@ pub fn magnetic_field_enu(declination_deg: f64) -> Vector3<f64> {
 }
 
 impl Magnetometer {
-    pub fn new(seed: u64) -> Self {
+    pub(super) fn new(seed: u64) -> Self {
         Self { normals: Normals::new(seed, Stream::Magnetometer) }
     }
 
     /// The field in body axes FLU, counts, as measured now.
-    pub fn read(
+    pub(super) fn read(
         &mut self,
         attitude: &UnitQuaternion<f64>,
         declination_deg: f64,

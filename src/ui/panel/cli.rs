@@ -19,7 +19,7 @@ const WELCOME: &str =
     "The firmware's own command line. Type `help`, paste a `diff all`; Tab completes, Esc leaves.";
 
 /// The title: what it is doing.
-pub fn title(state: &AppState) -> String {
+pub(crate) fn title(state: &AppState) -> String {
     let name = Pane::Cli.title();
     match (state.cli.queued(), state.cli.waiting, state.cli.scroll) {
         (0, false, 0) => name.to_owned(),
@@ -30,7 +30,7 @@ pub fn title(state: &AppState) -> String {
 }
 
 /// Draws the inside; gives the place of the cursor.
-pub fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     if area.height < 2 || area.width < 4 {
         return None;
     }
@@ -74,7 +74,7 @@ pub fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<Positio
 }
 
 /// The furthest that the panel scrolls up: then its oldest line is the first on the screen.
-pub fn last_scroll(state: &AppState, area: Rect) -> usize {
+pub(crate) fn last_scroll(state: &AppState, area: Rect) -> usize {
     let lines_of = &state.cli.lines;
     let height = usize::from(area.height).saturating_sub(1 + help_rows(state, area).len());
     let rows = lines_of.iter().map(|entry| lines(entry, usize::from(area.width)).len());

@@ -13,7 +13,7 @@ use crate::ui::theme::Role;
 use super::{line, span};
 
 /// Draws the popup, scrolled down by `scroll` lines.
-pub fn draw(state: &AppState, scroll: usize, area: Rect, buffer: &mut Buffer) {
+pub(crate) fn draw(state: &AppState, scroll: usize, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     let mut lines: Vec<Line<'static>> = Vec::new();
     let own =

@@ -14,7 +14,7 @@ use super::{fitting, line, row, span, wrapped};
 const STAMP: usize = 12;
 
 /// The title: how many lines are above the first one shown.
-pub fn title(state: &AppState) -> String {
+pub(crate) fn title(state: &AppState) -> String {
     let name = Pane::Log.title();
     match state.scrolls.log {
         0 => name.to_owned(),
@@ -28,13 +28,13 @@ fn text_width(area: Rect) -> usize {
 }
 
 /// The furthest that the panel scrolls: then its oldest line is the last on the screen.
-pub fn last_scroll(state: &AppState, area: Rect) -> usize {
+pub(crate) fn last_scroll(state: &AppState, area: Rect) -> usize {
     let rows = state.log.oldest_first().map(|entry| wrapped(&entry.text, text_width(area)).len());
     state.log.len().saturating_sub(fitting(rows, usize::from(area.height)))
 }
 
 /// Draws the inside.
-pub fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
+pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     if state.log.len() == 0 {
         row(buffer, area, 0, theme, Role::Dim, "Nothing has happened yet.");

@@ -19,7 +19,7 @@ struct Edge {
 }
 
 /// A drawing of the machine.
-pub struct Diagram {
+pub(crate) struct Diagram {
     /// Columns it needs.
     pub width: u16,
     /// Rows it needs.
@@ -31,7 +31,7 @@ pub struct Diagram {
 const HOLDS: &[NavState] = &[Holding, Orbiting, Figure8];
 
 /// All transitions drawn.
-pub static FULL: Diagram = Diagram {
+pub(crate) static FULL: Diagram = Diagram {
     width: 36,
     height: 11,
     nodes: &[
@@ -97,7 +97,7 @@ pub static FULL: Diagram = Diagram {
 };
 
 /// The states and the main ways, for a narrow panel.
-pub static COMPACT: Diagram = Diagram {
+pub(crate) static COMPACT: Diagram = Diagram {
     width: 21,
     height: 10,
     nodes: &[
@@ -132,7 +132,7 @@ pub static COMPACT: Diagram = Diagram {
 };
 
 /// The states and the main ways, for a low panel.
-pub static LOW: Diagram = Diagram {
+pub(crate) static LOW: Diagram = Diagram {
     width: 22,
     height: 7,
     nodes: &[
@@ -167,7 +167,7 @@ pub static LOW: Diagram = Diagram {
 
 impl Diagram {
     /// Draws the machine at the top left of the area: `active` lit, and the strokes of `last` if given.
-    pub fn draw(
+    pub(crate) fn draw(
         &self,
         theme: &Theme,
         active: NavState,

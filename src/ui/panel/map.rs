@@ -42,7 +42,7 @@ struct Scene {
 }
 
 /// The title: how the map chooses its place.
-pub fn title(state: &AppState) -> String {
+pub(crate) fn title(state: &AppState) -> String {
     let name = Pane::Map.title();
     let source = match &state.view.vehicle.active_plan {
         Some(_) if state.view.vehicle.nav.source != crate::telemetry::PlanSource::Stored => {
@@ -58,7 +58,7 @@ pub fn title(state: &AppState) -> String {
 }
 
 /// Draws the inside.
-pub fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
+pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     if area.width < 8 || area.height < 4 {
         return;
     }

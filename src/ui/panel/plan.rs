@@ -15,7 +15,7 @@ use super::{row, wrapped};
 const PROBLEM_ROWS: usize = 2;
 
 /// The title: name of the plan, and whether the craft has it.
-pub fn title(state: &AppState) -> String {
+pub(crate) fn title(state: &AppState) -> String {
     let name = Pane::Plan.title();
     if state.plan.plan.waypoints.is_empty() {
         return name.to_owned();
@@ -38,12 +38,12 @@ fn waypoint_rows(area: Rect, problems: &[String]) -> usize {
 }
 
 /// The furthest that the panel scrolls: then the last waypoint is the last on the screen.
-pub fn last_scroll(state: &AppState, area: Rect) -> usize {
+pub(crate) fn last_scroll(state: &AppState, area: Rect) -> usize {
     state.plan.plan.waypoints.len().saturating_sub(waypoint_rows(area, &problems(state)))
 }
 
 /// Draws the inside.
-pub fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
+pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     let plan = &state.plan.plan;
     if plan.waypoints.is_empty() {

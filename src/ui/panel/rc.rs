@@ -17,7 +17,7 @@ const LABEL: u16 = 17;
 const SPAN_US: (f64, f64) = (900.0, 2100.0);
 
 /// The title: who drives the channels, and how old the newest frame is.
-pub fn title(state: &AppState) -> String {
+pub(crate) fn title(state: &AppState) -> String {
     let name = Pane::Rc.title();
     let craft = &state.view.vehicle.craft;
     let ours = !matches!(craft.rc_source, Some(RcSource::Udp | RcSource::Msp));
@@ -72,7 +72,11 @@ fn bar(row: Rect) -> Rect {
 }
 
 /// The channel at a screen cell, and the value there if it is on the bar.
-pub fn channel_at(area: Rect, selected: usize, (column, line): (u16, u16)) -> Option<(usize, Option<u16>)> {
+pub(crate) fn channel_at(
+    area: Rect,
+    selected: usize,
+    (column, line): (u16, u16),
+) -> Option<(usize, Option<u16>)> {
     let hit = |(_, place): &(usize, Rect)| place.contains((column, line).into());
     let (channel, place) = grid(area, selected).into_iter().find(hit)?;
     let bar = bar(place);
@@ -117,7 +121,7 @@ fn name(craft: &CraftView, channel: usize) -> String {
 }
 
 /// Draws the inside.
-pub fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
+pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     let craft = &state.view.vehicle.craft;
     let focused = state.focus == Pane::Rc;

@@ -28,7 +28,7 @@ const WIDE: u16 = 36;
 const GUARD_ROWS: u16 = 8;
 
 /// The title: the waypoint of the mission.
-pub fn title(state: &AppState) -> String {
+pub(crate) fn title(state: &AppState) -> String {
     let nav = &state.view.vehicle.nav;
     let name = Pane::State.title();
     if !nav.engaged || nav.count == 0 {
@@ -39,7 +39,7 @@ pub fn title(state: &AppState) -> String {
 }
 
 /// Draws the inside.
-pub fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
+pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     let diagram = diagram(area);
     let mut top = draw_advice(state, area, diagram, buffer);
     top += draw_machine(state, below(area, top), diagram, buffer);

@@ -11,7 +11,7 @@ const STROKE: f64 = 1.1;
 
 /// How a character is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Shape {
+pub(super) enum Shape {
     /// By the font.
     Text,
     /// Strokes from the middle to these sides: up, right, down, left.
@@ -23,7 +23,7 @@ pub enum Shape {
 }
 
 /// The way to draw a character.
-pub fn shape(c: char) -> Shape {
+pub(super) fn shape(c: char) -> Shape {
     match c {
         '─' => Shape::Lines([false, true, false, true]),
         '│' => Shape::Lines([true, false, true, false]),
@@ -46,7 +46,7 @@ pub fn shape(c: char) -> Shape {
 }
 
 /// Draws neighbours of one colour that are all lines, from the top left corner `(x, y)`.
-pub fn lines(out: &mut String, run: &[[bool; 4]], (x, y): (f64, f64), colour: &str) {
+pub(super) fn lines(out: &mut String, run: &[[bool; 4]], (x, y): (f64, f64), colour: &str) {
     let _ = write!(out, r#"<path fill="none" stroke="{colour}" stroke-width="{STROKE}" d=""#);
     let middle = y + CELL.1 / 2.0;
     // Strokes that continue sideways become one.
@@ -79,7 +79,7 @@ pub fn lines(out: &mut String, run: &[[bool; 4]], (x, y): (f64, f64), colour: &s
 }
 
 /// Draws neighbours of one colour that are all Braille.
-pub fn dots(out: &mut String, run: &[u8], (x, y): (f64, f64), colour: &str) {
+pub(super) fn dots(out: &mut String, run: &[u8], (x, y): (f64, f64), colour: &str) {
     /// Column and row of each bit.
     const PLACES: [(f64, f64); 8] =
         [(0.0, 0.0), (0.0, 1.0), (0.0, 2.0), (1.0, 0.0), (1.0, 1.0), (1.0, 2.0), (0.0, 3.0), (1.0, 3.0)];
@@ -98,7 +98,7 @@ pub fn dots(out: &mut String, run: &[u8], (x, y): (f64, f64), colour: &str) {
 }
 
 /// Draws one block.
-pub fn block(out: &mut String, (from, to, percent): (u8, u8, u8), (x, y): (f64, f64), colour: &str) {
+pub(super) fn block(out: &mut String, (from, to, percent): (u8, u8, u8), (x, y): (f64, f64), colour: &str) {
     let eighth = CELL.0 / 8.0;
     let left = x + f64::from(from) * eighth;
     let width = f64::from(to - from) * eighth;

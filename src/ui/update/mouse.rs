@@ -16,7 +16,7 @@ use super::{ZOOM_STEP, focus, scroll_pane};
 const WHEEL_LINES: isize = 3;
 
 /// Takes a mouse event in.
-pub fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
+pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
     if !state.layers.is_empty() {
         return Vec::new();
     }

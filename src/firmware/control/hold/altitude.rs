@@ -55,19 +55,19 @@ pub(super) struct AltitudeHold {
 
 impl AltitudeHold {
     /// Somebody else flies.
-    pub fn watch(&mut self, now: &NavInputs, params: &Params) {
+    pub(super) fn watch(&mut self, now: &NavInputs, params: &Params) {
         self.phase = Phase::Off;
         self.grounded_s = 0.0;
         self.controller.watch(&measurement(now), params, now.dt);
     }
 
     /// Whether the descent has ended on the ground.
-    pub fn has_touched_down(&self) -> bool {
+    pub(super) fn has_touched_down(&self) -> bool {
         matches!(self.phase, Phase::Descending(_)) && self.grounded_s >= self.grounded_limit_s
     }
 
     /// Throttle 0…1; without a stick the craft descends.
-    pub fn update(
+    pub(super) fn update(
         &mut self,
         stick_us: Option<f64>,
         now: &NavInputs,

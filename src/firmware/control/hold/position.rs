@@ -24,7 +24,7 @@ pub(super) struct PositionHold {
 
 impl PositionHold {
     /// Somebody else flies.
-    pub fn watch(&mut self, now: &NavInputs) {
+    pub(super) fn watch(&mut self, now: &NavInputs) {
         (self.point, self.is_on) = (None, false);
         if now.fix {
             self.controller.watch(&measurement(now), now.dt);
@@ -32,7 +32,7 @@ impl PositionHold {
     }
 
     /// The lean that keeps the place, or the one the pilot asks for.
-    pub fn update(&mut self, now: &NavInputs, params: &Params, tuning: &HoldTuning) -> LeanDemand {
+    pub(super) fn update(&mut self, now: &NavInputs, params: &Params, tuning: &HoldTuning) -> LeanDemand {
         let measured = measurement(now);
         if !self.is_on {
             self.controller.engage(&measured);

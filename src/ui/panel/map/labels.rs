@@ -7,7 +7,7 @@ use crate::ui::map::{Ground, Viewport};
 use crate::ui::theme::{Role, Theme};
 
 /// Writes marks and labels, and remembers which cells are taken.
-pub struct Labels<'a> {
+pub(super) struct Labels<'a> {
     theme: &'a Theme,
     view: Viewport,
     buffer: &'a mut Buffer,
@@ -16,13 +16,13 @@ pub struct Labels<'a> {
 
 impl<'a> Labels<'a> {
     /// Nothing written yet.
-    pub fn new(theme: &'a Theme, view: Viewport, buffer: &'a mut Buffer) -> Self {
+    pub(super) fn new(theme: &'a Theme, view: Viewport, buffer: &'a mut Buffer) -> Self {
         let taken = vec![false; usize::from(view.area.width) * usize::from(view.area.height)];
         Self { theme, view, buffer, taken }
     }
 
     /// The window of the map.
-    pub fn view(&self) -> &Viewport {
+    pub(super) fn view(&self) -> &Viewport {
         &self.view
     }
 
@@ -32,7 +32,7 @@ impl<'a> Labels<'a> {
     }
 
     /// A mark of one column at a place, over everything.
-    pub fn mark(&mut self, place: Ground, symbol: &str, role: Role) {
+    pub(super) fn mark(&mut self, place: Ground, symbol: &str, role: Role) {
         if let Some((column, row)) = self.view.screen_cell(place) {
             self.put(column, row, symbol, role);
         }
@@ -60,7 +60,7 @@ impl<'a> Labels<'a> {
     }
 
     /// A label beside a place: right, left, below, above; the short form where the long one does not fit, else none.
-    pub fn beside(&mut self, place: Ground, long: &str, short: &str, role: Role) {
+    pub(super) fn beside(&mut self, place: Ground, long: &str, short: &str, role: Role) {
         let Some((column, row)) = self.view.screen_cell(place) else { return };
         let (column, row) = (i32::from(column), i32::from(row));
         for text in [long, short] {
@@ -83,7 +83,7 @@ impl<'a> Labels<'a> {
     }
 
     /// A line in the middle.
-    pub fn middle(&mut self, text: &str, role: Role) {
+    pub(super) fn middle(&mut self, text: &str, role: Role) {
         let area = self.view.area;
         let width = text.width() as u16;
         if width <= area.width {
@@ -92,7 +92,7 @@ impl<'a> Labels<'a> {
     }
 
     /// The bottom line: text at the left, and at the right if there is room for both.
-    pub fn bottom(&mut self, left: &str, right: &str) {
+    pub(super) fn bottom(&mut self, left: &str, right: &str) {
         let area = self.view.area;
         let row = area.bottom() - 1;
         let (left_width, right_width) = (left.width() as u16, right.width() as u16);
