@@ -7,11 +7,9 @@ use std::collections::VecDeque;
 use betadeck::firmware::config::Configuration;
 use betadeck::firmware::{AttitudeSource, Firmware, FirmwareOptions};
 use betadeck::link::proto::fdm::{Dialect, GZ_PLUGIN_SIZE, Packet, State, pressure_pa};
-use betadeck::link::proto::fdm_link::{
-    Answer, FdmLink, FdmLinkConfig, LinkState, Mirror, Notice, Received, Verdict,
-};
+use betadeck::link::proto::fdm_link::{Answer, FdmLink, FdmLinkConfig, Mirror, Notice, Received, Verdict};
 use betadeck::signals::SimTime;
-use betadeck::telemetry::FirmwareEvent;
+use betadeck::telemetry::{FirmwareEvent, LinkState};
 use nalgebra::{UnitQuaternion, Vector3};
 
 const MS: u64 = 1000;

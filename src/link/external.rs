@@ -2,11 +2,12 @@
 
 use std::time::{Duration, Instant};
 
-use super::proto::fdm_link::{Answer, Counters, FdmLink, FdmLinkConfig, LinkState, Received};
+use super::proto::fdm_link::{Answer, Counters, FdmLink, FdmLinkConfig, Received};
 use super::proto::servo::{self, MotorOrder};
 use super::udp::{MotorPort, Sent};
 use crate::session::command::DoorView;
 use crate::signals::{MotorCommand, SensorFrame};
+use crate::telemetry::LinkState;
 
 /// Drives a firmware by the packets of a simulator.
 #[derive(Debug)]

@@ -2,10 +2,9 @@
 
 use std::sync::Arc;
 
-use crate::link::proto::fdm_link::LinkState;
 use crate::plan::FlightPlan;
 use crate::signals::RcFrame;
-use crate::telemetry::Snapshot;
+use crate::telemetry::{LinkState, Snapshot};
 
 /// Why time cannot be paused, stepped or made faster while a simulator outside moves the craft.
 pub const TIME_IS_OUTSIDE: &str = "The simulator sets the time: pause it or change its speed there.";

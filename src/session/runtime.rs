@@ -13,13 +13,12 @@ use super::command::{CliOutput, Command, DoorView, PLACE_IS_OUTSIDE, SessionView
 use super::pacer::Pacer;
 use super::simulator::{RC_REPEAT_US, Simulator};
 use crate::firmware::cli::{CliAction, CliReply, Interpreter, advice};
-use crate::link::proto::fdm_link::LinkState;
 use crate::link::{Attended, Desk, ExternalSimulator, Request, Trouble, upkeep};
 use crate::plan::FlightPlan;
 use crate::signals::RcSource;
 use crate::sim::WorldCommand;
 use crate::storage::Store;
-use crate::telemetry::Event;
+use crate::telemetry::{Event, LinkState};
 use crate::vehicle::Vehicle;
 
 /// Interval of published pictures.

@@ -5,9 +5,10 @@ use std::time::{Duration, Instant};
 use arrayvec::ArrayVec;
 
 use crate::link::proto::fdm::Refusal;
-use crate::link::proto::fdm_link::{LinkState, Verdict};
+use crate::link::proto::fdm_link::Verdict;
 use crate::link::{Desk, ExternalSimulator, Trouble};
 use crate::session::command::DoorView;
+use crate::telemetry::LinkState;
 use crate::vehicle::Vehicle;
 
 /// How often frames from sockets are repeated while time runs fast, µs of simulated time.

@@ -1,10 +1,9 @@
 //! Everything a key can do, by name: the one table behind keymap, hint bar and help.
 
-use crate::telemetry::Mode;
+use crate::telemetry::{LinkState, Mode};
 
 use super::hands;
 use super::state::{AppState, Pane};
-use crate::link::proto::fdm_link::LinkState;
 use crate::session::command::{PLACE_IS_OUTSIDE, TIME_IS_OUTSIDE};
 
 /// Where a key means what its action says.

@@ -1,8 +1,7 @@
 //! What stands in the way of flying, and what to do about it: one sentence and one way out.
 
-use crate::link::proto::fdm_link::LinkState;
 use crate::plan::FlightPlan;
-use crate::telemetry::{AbortReason, Mode, NavState, Refusal};
+use crate::telemetry::{AbortReason, LinkState, Mode, NavState, Refusal};
 
 use super::hands::{self, ThrottleMove};
 use super::log::Level;

@@ -5,9 +5,8 @@ use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 use unicode_width::UnicodeWidthStr as _;
 
-use crate::link::proto::fdm_link::LinkState;
 use crate::signals::RcSource;
-use crate::telemetry::{Mode, NavState};
+use crate::telemetry::{LinkState, Mode, NavState};
 
 use super::action::{Action, enabled, is_wrecked, spec_of};
 use super::hands::{self, ThrottleMove};

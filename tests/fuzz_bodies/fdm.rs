@@ -3,8 +3,9 @@
 use betadeck::firmware::config::Configuration;
 use betadeck::firmware::{Firmware, FirmwareOptions};
 use betadeck::link::proto::fdm::{self, Dialect, Gravity, Packet, Refusal, State};
-use betadeck::link::proto::fdm_link::{Answer, FdmLink, FdmLinkConfig, LinkState, Verdict};
+use betadeck::link::proto::fdm_link::{Answer, FdmLink, FdmLinkConfig, Verdict};
 use betadeck::signals::SensorFrame;
+use betadeck::telemetry::LinkState;
 
 use super::craft;
 

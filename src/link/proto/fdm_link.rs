@@ -19,6 +19,7 @@ mod surroundings;
 
 use super::fdm::{Dialect, Packet, Refusal};
 use crate::signals::{Pose, SensorFrame};
+use crate::telemetry::LinkState;
 use clock::StampClock;
 use kicks::Kicks;
 use sensors::Sensors;
@@ -144,20 +145,6 @@ impl Received {
             notices: arrayvec::ArrayVec::new(),
         }
     }
-}
-
-/// Whether the simulator is there.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display)]
-pub enum LinkState {
-    /// It never spoke.
-    #[strum(to_string = "waiting for a simulator")]
-    Waiting,
-    /// It speaks.
-    #[strum(to_string = "flying")]
-    Flowing,
-    /// It has not spoken for a second.
-    #[strum(to_string = "no FDM")]
-    Silent,
 }
 
 /// How many datagrams there were.

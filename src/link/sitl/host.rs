@@ -11,11 +11,12 @@ use tokio::sync::mpsc;
 use super::lines::{self, FlightLine, OpenResult, SitlPorts};
 use crate::firmware::cli::BuildInfo;
 use crate::firmware::{Firmware, FirmwareOptions};
-use crate::link::proto::fdm_link::{FdmLinkConfig, LinkState, Verdict};
+use crate::link::proto::fdm_link::{FdmLinkConfig, Verdict};
 use crate::link::proto::servo::MotorOrder;
 use crate::link::{Attended, Desk, DoorKind, Doors, DoorsConfig, ExternalSimulator, MotorPort, Request};
 use crate::signals::{MotorCommand, SensorFrame, SimTime};
 use crate::storage::Store;
+use crate::telemetry::LinkState;
 
 /// Requests that may wait.
 const INBOX: usize = 1024;
