@@ -8,16 +8,16 @@
 //!   every step    every step    per RC frame, at least 20 Hz           100 Hz                     every step
 //! ```
 //!
-//! | part | file | is |
+//! Layers, from the outside in; a module uses only its own layer and the ones below it:
+//!
+//! | layer | modules | is |
 //! | --- | --- | --- |
-//! | settings, configuration, CLI, MSP, storage | [`settings`], [`config`], [`cli`], [`msp`] | what the craft remembers and how it is talked to |
-//! | parameters | [`parameters`] | the same as typed numbers, made outside the step |
-//! | receiver | [`rx`] | sources, channels, sticks, signal |
-//! | modes | [`modes`] | boxes, conditions, which flight mode is on |
-//! | arming | [`arming`] | the switch, what blocks it, what disarms |
-//! | failsafe | [`failsafe`] | link, guard time, procedures, recovery |
-//! | orders | [`mission`] | who tells the navigator what to do |
-//! | estimator, controller | [`estimate`], [`control`] | where the craft is, and what the motors do |
+//! | the craft as a whole | this file, [`Firmware`]'s requests and views | wires the stages: one step, what its owner asks of it, what displays see |
+//! | how it is talked to | [`cli`], [`msp`], [`storage`] | command line, MSP messages, the stored image: text and bytes in and out of the configuration |
+//! | stages | `stages` | who owns which state of the step, and in which order it is updated |
+//! | decisions | [`rx`], [`modes`], [`arming`], [`failsafe`], [`orders`], [`battery`] | state machines of plain facts: which sticks count, which modes are on, may the motors run, who tells the navigator what to do |
+//! | flying | [`estimate`], [`control`], [`filter`] | where the craft is, and what the motors do |
+//! | memory | [`config`], [`settings`], [`parameters`] | what the craft remembers, one table of settings, and the same as typed numbers, made outside the step |
 //!
 //! Nothing here reads a clock, allocates in a step, or panics.
 
@@ -29,50 +29,32 @@ pub mod control;
 pub mod estimate;
 pub mod failsafe;
 pub mod filter;
-pub mod mission;
 pub mod modes;
 pub mod msp;
+pub mod orders;
 pub mod outbox;
 pub mod parameters;
 pub mod rx;
 pub mod settings;
 pub mod storage;
 
-mod command;
-mod facts;
-mod flight;
-mod navigation_pass;
-mod receiver_pass;
-mod sensor_pass;
-mod status;
+mod requests;
+mod stages;
+mod views;
 
 pub use estimate::AttitudeSource;
 
-use nalgebra::Vector3;
-use strum::{EnumCount as _, IntoEnumIterator as _};
+use crate::signals::{MotorCommand, SensorFrame, SimTime};
+use crate::telemetry::{DisarmReason, FirmwareEvent, Mode, ModeFlags};
 
-use crate::autopilot::Navigator;
-use crate::autopilot::io::NavInputs;
-use crate::geo::LatLon;
-use crate::signals::{MotorCommand, RcFrame, RcSource, SensorFrame, SimTime};
-use crate::telemetry::{DisarmReason, FirmwareEvent, ModeFlags, NavOutput};
-
-use arming::Arming;
-use arming::crash::CrashDetector;
-use arming::impact::Impact;
-use arming::runaway::Runaway;
-use battery::Battery;
-use cli::{BuildInfo, StorageFacts};
-use config::{Configuration, Feature, MixerKind};
-use control::hold::Holds;
-use estimate::{Estimator, EstimatorOptions};
-use failsafe::{Failsafe, LinkMonitor};
-use flight::{Flight, FlightStep};
-use mission::Orders;
-use modes::BoxSet;
+use arming::ArmingChange;
+use arming::crash::CrashAction;
+use config::Configuration;
+use modes::{boxes, flight_modes};
 use outbox::Outbox;
-use parameters::{BootChoices, Parameters};
-use rx::Receiver;
+use stages::{
+    ControlStep, Demand, FailsafeRequest, FlightControl, Navigation, RcInput, Safety, Sensing, Setup,
+};
 
 /// How the firmware is built and helped; not part of its configuration.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -105,196 +87,211 @@ impl Default for FirmwareOptions {
 /// The flight controller. A clone is a frozen copy that goes on identically.
 #[derive(Debug, Clone)]
 pub struct Firmware {
-    options: FirmwareOptions,
-    build: BuildInfo,
-    storage: StorageFacts,
-    // What it remembers.
-    configuration: Configuration,
-    boot: BootChoices,
-    parameters: Parameters,
-    // Time.
     booted_at: SimTime,
     now: SimTime,
-    // Receiver and modes.
-    inbox: [Option<RcFrame>; RcSource::COUNT],
-    rx: Receiver,
-    link: LinkMonitor,
-    link_lost: bool,
-    boxes: BoxSet,
+    setup: Setup,
+    rc: RcInput,
+    safety: Safety,
+    sensing: Sensing,
+    navigation: Navigation,
+    control: FlightControl,
     modes: ModeFlags,
-    // Arming.
-    arming: Arming,
-    runaway: Runaway,
-    crash: CrashDetector,
-    impact: Impact,
-    last_disarm: Option<DisarmReason>,
-    home: Option<LatLon>,
-    headfree_rad: f64,
-    // Estimation and battery.
-    estimator: Estimator,
-    battery: Battery,
-    imu_frozen: bool,
-    /// Newest magnetic field, body forward-left-up, as sensed.
-    mag_flu: Vector3<f64>,
-    fix: bool,
-    fix_since: SimTime,
-    // Who flies.
-    failsafe: Failsafe,
-    orders: Orders,
-    navigator: Navigator,
-    nav_inputs: NavInputs,
-    nav_output: Option<NavOutput>,
-    nav_time: SimTime,
-    holds: Holds,
-    no_position: bool,
-    flight: Flight,
-    rc_frame: bool,
     outbox: Outbox,
 }
 
 impl Firmware {
     /// Boots with this configuration, made consistent.
     #[must_use]
-    pub fn new(mut configuration: Configuration, options: FirmwareOptions) -> Self {
-        let had_gps = configuration.features.has(Feature::Gps);
-        config::correct(&mut configuration);
-        let boot = BootChoices::new(&configuration);
-        let parameters = Parameters::new(&configuration, &boot, &options);
-        let estimator = Estimator::new(estimator_options(&options), parameters.estimator.clone());
+    pub fn new(configuration: Configuration, options: FirmwareOptions) -> Self {
         let mut outbox = Outbox::default();
-        if configuration.mixer.rows().is_none() && configuration.mixer != MixerKind::Custom {
-            outbox.push(FirmwareEvent::Notice(
-                "This mixer type does not fly here: QUADX, QUADP, QUADX1234 and CUSTOM do; QUADX is flown instead.",
-            ));
-        }
-        let mut firmware = Self {
-            options,
-            build: BuildInfo::default(),
-            storage: StorageFacts::default(),
-            inbox: [None; RcSource::COUNT],
-            rx: Receiver::new(&parameters.rx),
-            flight: Flight::new(&parameters.control, options.rate_hz),
-            configuration,
-            boot,
-            parameters,
-            booted_at: SimTime::ZERO,
-            now: SimTime::ZERO,
-            link: LinkMonitor::default(),
-            link_lost: false,
-            boxes: BoxSet::NONE,
+        let setup = Setup::new(configuration, options, &mut outbox);
+        Self::boot(setup, SimTime::ZERO, outbox)
+    }
+
+    fn boot(setup: Setup, now: SimTime, outbox: Outbox) -> Self {
+        let (options, parameters) = (setup.options(), setup.parameters());
+        Self {
+            booted_at: now,
+            now,
+            rc: RcInput::new(&parameters.rx),
+            safety: Safety::default(),
+            sensing: Sensing::new(options, parameters),
+            navigation: Navigation::new(now),
+            control: FlightControl::new(&parameters.control, options.rate_hz),
             modes: ModeFlags::NONE,
-            arming: Arming::default(),
-            runaway: Runaway::default(),
-            crash: CrashDetector::default(),
-            impact: Impact::default(),
-            last_disarm: None,
-            home: None,
-            headfree_rad: 0.0,
-            estimator,
-            battery: Battery::default(),
-            imu_frozen: false,
-            mag_flu: Vector3::zeros(),
-            fix: false,
-            fix_since: SimTime::ZERO,
-            failsafe: Failsafe::default(),
-            orders: Orders::default(),
-            navigator: Navigator::new(),
-            nav_inputs: idle_inputs(),
-            nav_output: None,
-            nav_time: SimTime::ZERO,
-            rc_frame: false,
-            holds: Holds::default(),
-            no_position: false,
+            setup,
             outbox,
-        };
-        firmware.tell_lost_gps(had_gps);
-        firmware
+        }
     }
 
     /// One step: one frame of the sensors in, one command for the motors out.
     pub fn step(&mut self, frame: &SensorFrame) -> MotorCommand {
         self.now = frame.time;
-        let due = self.estimator.update(frame);
-        if let Some(sample) = frame.battery {
-            self.hear_battery(sample);
-        }
-        self.take_frames();
-        self.mag_flu = frame.mag_flu.unwrap_or(self.mag_flu);
-        if self.rx.is_due(self.now) {
-            self.receiver_pass();
+        let due = self.sensing.update(frame, self.setup.parameters(), &mut self.outbox);
+        self.rc.receive_queued(self.setup.parameters(), self.now);
+        if self.rc.is_due(self.now) {
+            self.update_arming();
         }
         if due.navigation {
-            let dt = self.now.seconds_since(std::mem::replace(&mut self.nav_time, self.now));
-            self.navigation_pass(dt);
+            self.update_navigation();
         }
-        let estimate = self.estimator.estimate();
-        let step = FlightStep {
+        let rc_frame = self.rc.take_new_frame();
+        let parameters = self.setup.parameters();
+        let switched = self.rc.boxes();
+        let airmode = parameters.airmode || switched.has(boxes::AIR_MODE);
+        let step = ControlStep {
             due,
-            armed: self.arming.armed(),
+            armed: self.safety.armed(),
             modes: self.modes,
-            sticks: self.rx.sticks(),
-            rc_frame: std::mem::take(&mut self.rc_frame),
-            airmode: self.airmode(),
-            anti_gravity: self.parameters.anti_gravity || self.boxes.has(modes::boxes::ANTI_GRAVITY),
-            motor_stop: self.parameters.motor_stop,
-            failsafe: self.failsafe.active(),
-            levels_after_crash: self.crash.is_levelling(),
-            headfree_rad: self.headfree_rad,
+            sticks: self.rc.receiver().sticks(),
+            rc_frame,
+            airmode: airmode && self.safety.raised(),
+            anti_gravity: parameters.anti_gravity || switched.has(boxes::ANTI_GRAVITY),
+            motor_stop: parameters.motor_stop,
+            failsafe: self.navigation.failsafe().active(),
+            levels_after_crash: self.safety.is_levelling(),
+            headfree_rad: self.safety.headfree_rad(),
         };
-        let motors = self.flight.step(&step, estimate);
-        self.runaway_pass();
-        self.crash_pass();
+        let motors = self.control.step(&step, self.sensing.estimate());
+        self.watch_for_crash();
         motors
     }
 
-    /// Hands the frames that came since the last step to the receiver.
-    fn take_frames(&mut self) {
-        for source in RcSource::iter() {
-            if let Some(frame) = self.inbox[source as usize].take() {
-                self.rx.receive(&self.parameters.rx, frame, source, self.now);
+    /// Time since this firmware booted.
+    fn uptime(&self) -> SimTime {
+        SimTime(self.now.0.saturating_sub(self.booted_at.0))
+    }
+
+    /// Receiver, link, switches, arming: at every RC frame, and at least twenty times a second.
+    fn update_arming(&mut self) {
+        let parameters = self.setup.parameters();
+        let failsafe = self.navigation.failsafe();
+        let new_frame = self.rc.update(parameters, self.now, failsafe, &mut self.outbox);
+        let estimate = self.sensing.estimate();
+        if self.rc.boxes().has(boxes::HEADADJ) {
+            self.safety.set_headfree(estimate.heading_rad);
+        }
+        let (uptime, landed) = (self.uptime(), failsafe.landed());
+        match self.safety.update(parameters, uptime, (&self.rc, new_frame), estimate, landed) {
+            Some(ArmingChange::Armed { assisted }) => self.on_arm(assisted),
+            Some(ArmingChange::CalibrateGyro) => {
+                self.sensing.calibrate_gyro();
+                self.outbox.push(FirmwareEvent::Notice("Calibrating the gyro before the first arming."));
             }
+            Some(ArmingChange::Disarmed(reason)) => self.on_disarm(reason),
+            None => {}
         }
     }
 
-    /// Full stabilisation at zero throttle, once the throttle was raised.
-    fn airmode(&self) -> bool {
-        (self.parameters.airmode || self.boxes.has(modes::boxes::AIR_MODE)) && self.arming.raised()
+    fn on_arm(&mut self, assisted: bool) {
+        let position = stages::trusted_position(self.setup.parameters(), self.sensing.estimate());
+        self.sensing.on_arm(position);
+        self.navigation.release_holds();
+        self.outbox.push(FirmwareEvent::Armed);
+        if assisted {
+            self.outbox.push(FirmwareEvent::Notice(
+                "Arm assist: armed although the ARM switch was on early or the throttle was not quite low.",
+            ));
+        }
     }
-}
 
-/// A craft that knows nothing yet.
-fn idle_inputs() -> NavInputs {
-    NavInputs {
-        time: SimTime::ZERO,
-        dt: 0.01,
-        armed: false,
-        fix: false,
-        altitude_valid: false,
-        throttle_raised: false,
-        failsafe: false,
-        home: None,
-        origin: LatLon::default(),
-        pos_ne: nalgebra::Vector2::zeros(),
-        vel_ne: nalgebra::Vector2::zeros(),
-        alt_m: 0.0,
-        climb_mps: 0.0,
-        heading_rad: 0.0,
-        yaw_rate_rps: 0.0,
-        roll_rad: 0.0,
-        pitch_rad: 0.0,
-        cos_tilt: 1.0,
-        accel_ne: nalgebra::Vector2::zeros(),
-        throttle_us: 1000.0,
-        stick_roll: 0.0,
-        stick_pitch: 0.0,
-        stick_yaw: 0.0,
+    /// Stops the motors for a reason, if they were not stopped already.
+    fn disarm(&mut self, reason: DisarmReason) {
+        if self.safety.disarm(reason) {
+            self.on_disarm(reason);
+        }
     }
-}
 
-fn estimator_options(options: &FirmwareOptions) -> EstimatorOptions {
-    EstimatorOptions {
-        attitude: options.attitude,
-        gps_timeout_s: options.gps_timeout_s,
-        declination_deg: options.declination_deg,
+    fn on_disarm(&mut self, reason: DisarmReason) {
+        self.sensing.on_disarm();
+        self.control.set_demand(Demand::default());
+        self.navigation.release_holds();
+        self.outbox.push(FirmwareEvent::Disarmed(reason));
+    }
+
+    /// The hundred-a-second part: failsafe, navigator, touchdown, modes, holds.
+    fn update_navigation(&mut self) {
+        self.keep_calibrations();
+        self.sensing.watch_fix(self.now, self.setup.parameters(), &mut self.outbox);
+        let throttle_us = self.control.state().throttle_us;
+        let dt = self.navigation.observe(self.now, &self.sensing, &self.safety, &self.rc, throttle_us);
+
+        let (parameters, uptime) = (self.setup.parameters(), self.uptime());
+        match self.navigation.update_failsafe(parameters, uptime, &self.rc, self.modes, &mut self.outbox) {
+            Some(FailsafeRequest::Disarm) => self.disarm(DisarmReason::Failsafe),
+            Some(FailsafeRequest::RequireSwitchOff) => self.safety.require_switch_off(),
+            None => {}
+        }
+
+        let (parameters, stored) = (self.setup.parameters(), &self.setup.configuration().plan);
+        let craft = (self.safety.armed(), self.sensing.fix_since());
+        if self.navigation.navigate(parameters, stored, &self.rc, craft, &mut self.outbox) {
+            self.disarm(DisarmReason::Landing);
+        }
+
+        let (parameters, estimate) = (self.setup.parameters(), self.sensing.estimate());
+        let alt_hold = self.modes.has(Mode::AltHold);
+        if self.safety.is_touchdown(parameters, &self.rc, alt_hold, estimate, dt) {
+            self.disarm(DisarmReason::Landing);
+        }
+        self.update_modes();
+
+        let (parameters, armed) = (self.setup.parameters(), self.safety.armed());
+        let throttle_stick_us = self.rc.receiver().sticks().throttle_us;
+        let flown =
+            self.navigation.demand(parameters, self.modes, armed, throttle_stick_us, &mut self.outbox);
+        self.control.set_demand(flown.demand);
+        if flown.touchdown {
+            self.disarm(DisarmReason::Landing);
+            self.update_modes();
+        }
+    }
+
+    /// Takes over the results of calibrations that have just ended.
+    fn keep_calibrations(&mut self) {
+        self.sensing.watch_imu(&mut self.outbox);
+        if let Some(offsets) = self.sensing.take_acc_calibration() {
+            self.setup.keep_acc_calibration(offsets);
+            self.refresh();
+            self.outbox.push(FirmwareEvent::Notice("Accelerometer calibrated; save keeps the result."));
+        }
+        if let Some(result) = self.sensing.take_mag_calibration() {
+            let notice = self.setup.keep_mag_calibration(result);
+            self.refresh();
+            self.outbox.push(notice);
+        }
+    }
+
+    fn update_modes(&mut self) {
+        let modes =
+            flight_modes(&self.navigation.mode_facts(&self.rc, &self.safety, self.sensing.estimate()));
+        if modes != self.modes {
+            self.modes = modes;
+            self.outbox.push(FirmwareEvent::Mode(modes));
+        }
+    }
+
+    /// Runaway take-off and crash, judged by what the controller just did.
+    fn watch_for_crash(&mut self) {
+        let (parameters, state) = (self.setup.parameters(), self.control.state());
+        if self.safety.is_runaway(parameters, self.now, &self.rc, state) {
+            self.disarm(DisarmReason::RunawayTakeoff);
+        }
+        let (parameters, state) = (self.setup.parameters(), self.control.state());
+        match self.safety.crash(parameters, self.now, state, self.sensing.estimate()) {
+            Some(CrashAction::Disarm) => self.disarm(DisarmReason::CrashProtection),
+            Some(CrashAction::Level) => self
+                .outbox
+                .push(FirmwareEvent::Notice("Crash detected: the craft is levelled, the sticks rest.")),
+            Some(CrashAction::Off) | None => {}
+        }
+    }
+
+    /// Makes the typed parameters and what is tuned by them follow the configuration.
+    fn refresh(&mut self) {
+        self.setup.refresh();
+        let parameters = self.setup.parameters();
+        self.sensing.set_tuning(parameters);
+        self.control.set_tuning(&parameters.control);
     }
 }

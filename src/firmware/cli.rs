@@ -12,18 +12,18 @@
 mod advice;
 mod apply;
 mod bench;
-mod command;
+mod command_table;
 mod complete;
 mod craft;
 mod dump;
 mod editor;
-mod facts;
 mod foreign;
 mod get_set;
 mod interpreter;
 mod leave;
 mod modes;
 mod names;
+mod observation;
 mod profiles;
 mod receiver;
 mod serial;
@@ -33,14 +33,14 @@ mod waypoint;
 
 pub use advice::advice;
 pub use apply::{ApplyReport, FailedLine, apply_lines, provision};
-pub use command::{COMMANDS, Command};
+pub use command_table::{COMMANDS, Command};
 pub use complete::{Completion, complete, hint};
 pub use editor::{EditorOutput, LineEditor, LinkMode};
-pub use facts::{
+pub use interpreter::{Interpreter, Mode, refused_over_msp};
+pub use observation::{
     BatteryFacts, BuildInfo, CliFacts, GpsFacts, GpsSolutionFacts, LoopFacts, NavFacts, SmoothingFacts,
     StorageFacts, TaskFacts,
 };
-pub use interpreter::{Interpreter, Mode, refused_over_msp};
 
 use super::config::Configuration;
 

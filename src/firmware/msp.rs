@@ -14,12 +14,12 @@
 
 mod commands;
 mod craft;
-mod facts;
 mod gps;
 mod identity;
 mod layout;
 mod modes;
 mod multiple;
+mod observation;
 mod power;
 mod receiver;
 mod server;
@@ -31,7 +31,7 @@ mod text;
 mod tuning;
 mod wire;
 
-pub use facts::{BatteryReading, BatteryState, GpsReading, HomeReading, MspFacts, UtcTime};
+pub use observation::{BatteryReading, BatteryState, GpsReading, HomeReading, MspFacts, UtcTime};
 pub use table::{Access, MESSAGES, Message};
 
 use super::config::Configuration;

@@ -3,7 +3,7 @@
 
 use super::super::settings::{SETTINGS, find, needs_restart};
 use super::CliReply;
-use super::command::{COMMANDS, by_name};
+use super::command_table::{COMMANDS, by_name};
 use crate::did_you_mean;
 
 /// What to tell the user after `line` was answered with `reply`, if anything.

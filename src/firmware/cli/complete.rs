@@ -4,7 +4,7 @@ use strum::IntoEnumIterator;
 
 use super::super::config::{Feature, MixerKind};
 use super::super::settings::{Kind, PORT_NAMES, Role, SETTINGS, Setting, Settings, find, needs_restart};
-use super::command::{COMMANDS, by_name};
+use super::command_table::{COMMANDS, by_name};
 use crate::plan::{HoldPattern, WaypointType};
 
 /// What the word at the end of a line may become.

@@ -1,7 +1,7 @@
 //! One line in, one reply out.
 
 use super::super::settings::Scope;
-use super::command::by_name;
+use super::command_table::by_name;
 use super::foreign::{is_foreign_command, keep_command};
 use super::session::Session;
 use super::{CliContext, CliReply, MAX_LINE};

@@ -1,7 +1,7 @@
 //! What the vehicle tells about itself: `version`, `status`, `env`, `tasks` and the small identity commands.
 
 use super::super::settings::find;
-use super::facts::{GpsFacts, TaskFacts};
+use super::observation::{GpsFacts, TaskFacts};
 use super::session::Session;
 
 /// The simulated processor.

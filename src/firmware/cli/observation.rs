@@ -1,8 +1,14 @@
-//! Figures of the running firmware that commands print: plain data, filled in by the owner of the firmware.
+//! What commands print of the running firmware, as plain data.
 
+use crate::firmware::Firmware;
 use crate::geo::LatLon;
 use crate::plan::FlightPlan;
 use crate::telemetry::NavTelemetry;
+
+/// Housekeeping rate, Hz.
+const SYSTEM_HZ: u32 = 10;
+/// Rate of receiver passes without frames, Hz.
+const RX_IDLE_HZ: u32 = 20;
 
 /// Everything `status`, `env`, `tasks`, `version` and `waypoint status` tell about the running firmware.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -29,6 +35,88 @@ pub struct CliFacts {
     pub smoothing: SmoothingFacts,
     /// The navigator.
     pub nav: NavFacts,
+}
+
+impl CliFacts {
+    /// The present instant of a firmware.
+    #[must_use]
+    pub(in crate::firmware) fn observe(firmware: &Firmware) -> Self {
+        let signal = firmware.receiver().signal();
+        let rx_hz = if signal { firmware.receiver().sources().rate_hz().round() as u32 } else { 0 };
+        let battery = firmware.battery().sample();
+        let [setpoint_hz, throttle_hz] = firmware.control.smoothing_hz().map(|hz| hz.round() as u32);
+        Self {
+            build: firmware.setup.build().clone(),
+            armed: firmware.is_armed(),
+            arming_blocks: match firmware.is_armed() {
+                true => Vec::new(),
+                false => firmware.arming_flags().iter().map(Into::into).collect(),
+            },
+            uptime_s: firmware.uptime().0 / 1_000_000,
+            storage: firmware.setup.storage().clone(),
+            gps: GpsFacts::observe(firmware),
+            battery: BatteryFacts {
+                voltage_v: battery.map_or(0.0, |sample| sample.voltage_v),
+                cells: firmware.battery().cells(),
+                state: firmware.battery().state().into(),
+            },
+            loops: LoopFacts {
+                cpu_load_percent: 0,
+                cycle_time_us: 1_000_000 / firmware.setup.options().rate_hz.max(1),
+                gyro_hz: firmware.setup.options().rate_hz,
+                rx_hz,
+                system_hz: SYSTEM_HZ,
+            },
+            tasks: tasks(firmware, rx_hz),
+            smoothing: SmoothingFacts { rx_hz: signal.then_some(rx_hz), setpoint_hz, throttle_hz },
+            nav: NavFacts { telemetry: firmware.nav().clone(), active_plan: firmware.active_plan().cloned() },
+        }
+    }
+}
+
+impl GpsFacts {
+    fn observe(firmware: &Firmware) -> Self {
+        if !firmware.parameters().gps {
+            return GpsFacts::NotEnabled;
+        }
+        let gps = firmware.estimate().gps;
+        if gps.messages == 0 {
+            return GpsFacts::NotConnected;
+        }
+        let position = gps.solution.filter(|_| gps.fix).map(|sample| (sample.position, sample.alt_amsl_cm));
+        GpsFacts::Connected(Some(GpsSolutionFacts { sats: gps.sats, hdop: gps.hdop, vdop: 0.0, position }))
+    }
+}
+
+/// The tasks with their nominal rates; a deterministic firmware has no run times to show.
+fn tasks(firmware: &Firmware, rx_hz: u32) -> Vec<TaskFacts> {
+    let rate = firmware.setup.options().rate_hz;
+    let attitude_hz = (1_000_000 / firmware.parameters().estimator.attitude_us.max(1)) as u32;
+    let pid = rate / u32::from(firmware.setup.boot().pid_denominator.max(1));
+    [
+        (0, "SYSTEM", SYSTEM_HZ),
+        (1, "SYSTEM", 1000),
+        (2, "GYRO", rate),
+        (3, "FILTER", pid),
+        (4, "PID", pid),
+        (5, "ACC", rate),
+        (6, "ATTITUDE", attitude_hz.min(rate)),
+        (7, "RX", rx_hz.max(RX_IDLE_HZ)),
+        (8, "SERIAL", 100),
+        (9, "DISPATCH", 1000),
+        (11, "BATTERY_CURRENT", 50),
+        (12, "BATTERY_ALERTS", 5),
+        (13, "GPS", 100),
+        (14, "GPS_RESCUE", 100),
+        (15, "ALTHOLD", 100),
+        (16, "POSHOLD", 100),
+        (17, "COMPASS", 40),
+        (18, "BARO", 50),
+        (19, "ALTITUDE", 100),
+    ]
+    .into_iter()
+    .map(|(id, name, rate_hz)| TaskFacts { id, name, rate_hz, ..TaskFacts::default() })
+    .collect()
 }
 
 /// Version and build, as announced by `version`, `env` and MSP.

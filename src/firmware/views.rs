@@ -1,4 +1,4 @@
-//! What displays and links see of the firmware: plain pictures of the present instant.
+//! What displays and links see of the firmware: plain data of the present instant.
 
 use arrayvec::ArrayVec;
 
@@ -35,19 +35,19 @@ impl Firmware {
     /// Whether the craft is armed.
     #[must_use]
     pub fn is_armed(&self) -> bool {
-        self.arming.armed()
+        self.safety.armed()
     }
 
     /// Why the craft was disarmed last.
     #[must_use]
     pub fn last_disarm(&self) -> Option<DisarmReason> {
-        self.last_disarm
+        self.safety.last_disarm()
     }
 
     /// What blocks arming.
     #[must_use]
     pub fn arming_flags(&self) -> ArmingFlags {
-        self.arming.flags()
+        self.safety.flags()
     }
 
     /// The active modes.
@@ -59,31 +59,31 @@ impl Firmware {
     /// The boxes that are switched on.
     #[must_use]
     pub fn boxes(&self) -> BoxSet {
-        self.boxes
+        self.rc.boxes()
     }
 
     /// The receiver.
     #[must_use]
     pub fn receiver(&self) -> &Receiver {
-        &self.rx
+        self.rc.receiver()
     }
 
     /// What the controller did in the last step.
     #[must_use]
     pub fn control(&self) -> &super::control::ControlState {
-        self.flight.state()
+        self.control.state()
     }
 
     /// The battery.
     #[must_use]
     pub fn battery(&self) -> &battery::Battery {
-        &self.battery
+        self.sensing.battery()
     }
 
     /// What the estimator believes.
     #[must_use]
     pub fn estimate(&self) -> &Estimate {
-        self.estimator.estimate()
+        self.sensing.estimate()
     }
 
     /// Altitude above home, m.
@@ -101,7 +101,7 @@ impl Firmware {
     /// The navigator's telemetry; its points count from [`Firmware::origin`].
     #[must_use]
     pub fn nav(&self) -> &NavTelemetry {
-        self.navigator.telemetry()
+        self.navigation.telemetry()
     }
 
     /// Where the local frame of estimate and navigator has its zero; `None` before the first fix.
@@ -113,8 +113,8 @@ impl Firmware {
     /// Where the throttle stick rests in ALTHOLD, µs: the hover throttle, or the middle when it is to be learned.
     #[must_use]
     pub fn hover_stick_us(&self) -> u16 {
-        match self.parameters.nav.hover_throttle {
-            0 => self.parameters.hold.mid_us as u16,
+        match self.parameters().nav.hover_throttle {
+            0 => self.parameters().hold.mid_us as u16,
             us => us.clamp(1100, 1900),
         }
     }
@@ -122,85 +122,85 @@ impl Firmware {
     /// The throttle stick from which the throttle counts as raised, with a margin for what the radio link rounds, µs.
     #[must_use]
     pub fn raised_stick_us(&self) -> u16 {
-        (self.parameters.arming.raised_throttle_us + RAISED_MARGIN_US).min(2000.0) as u16
+        (self.parameters().arming.raised_throttle_us + RAISED_MARGIN_US).min(2000.0) as u16
     }
 
     /// The throttle stick that brings a craft down gently in ALTHOLD, µs; `None` when no stick does.
     #[must_use]
     pub fn sink_stick_us(&self) -> Option<u16> {
-        let stick = self.parameters.hold.sink_stick_us(GENTLE_SINK_MPS, &self.parameters.nav)?;
+        let stick = self.parameters().hold.sink_stick_us(GENTLE_SINK_MPS, &self.parameters().nav)?;
         Some(stick.round() as u16)
     }
 
     /// Home, when known.
     #[must_use]
     pub fn home(&self) -> Option<LatLon> {
-        self.home
+        self.safety.home()
     }
 
     /// Whether there is a fix.
     #[must_use]
     pub fn gps_fix(&self) -> bool {
-        self.fix
+        self.sensing.fix()
     }
 
     /// The configuration in memory.
     #[must_use]
     pub fn configuration(&self) -> &Configuration {
-        &self.configuration
+        self.setup.configuration()
     }
 
     /// The typed parameters in force.
     #[must_use]
     pub fn parameters(&self) -> &Parameters {
-        &self.parameters
+        self.setup.parameters()
     }
 
     /// The plan in the craft's memory.
     #[must_use]
     pub fn stored_plan(&self) -> &FlightPlan {
-        &self.configuration.plan
+        &self.setup.configuration().plan
     }
 
     /// The plan being flown, when one is.
     #[must_use]
     pub fn active_plan(&self) -> Option<&FlightPlan> {
-        self.navigator.is_flying().then(|| self.navigator.active_plan())
+        self.navigation.active_plan()
     }
 
     /// Modes, arming, receiver, battery.
     #[must_use]
     pub fn craft_view(&self) -> CraftView {
         let gps = &self.estimate().gps;
-        let battery = self.battery.sample();
-        let inner = self.rx.channels();
+        let battery = self.battery().sample();
+        let inner = self.receiver().channels();
         let mut wire_order = *inner;
         wire_order[2] = inner[channels::THROTTLE];
         wire_order[3] = inner[channels::YAW];
-        let source: Option<RcSource> = self.rx.sources().in_charge();
+        let source: Option<RcSource> = self.receiver().sources().in_charge();
         CraftView {
-            armed: self.arming.armed(),
+            armed: self.safety.armed(),
             modes: self.modes,
-            arming_blocked_by: match self.arming.armed() {
+            arming_blocked_by: match self.safety.armed() {
                 true => ArrayVec::new(),
-                false => self.arming.flags().iter().map(Into::into).collect(),
+                false => self.safety.flags().iter().map(Into::into).collect(),
             },
-            gps_fix: self.fix,
+            gps_fix: self.gps_fix(),
             sats: gps.sats,
             hdop: Some(gps.hdop).filter(|&hdop| hdop > 0.0),
-            home: self.home,
+            home: self.home(),
             battery_v: battery.map(|sample| sample.voltage_v),
             battery_a: battery.map(|sample| sample.current_a),
             battery_mah: battery.map(|sample| sample.drawn_mah),
-            battery_cells: self.battery.cells(),
-            throttle_us: self.flight.state().throttle_us,
-            motors: self.flight.state().motors.0,
+            battery_cells: self.battery().cells(),
+            throttle_us: self.control.state().throttle_us,
+            motors: self.control.state().motors.0,
             channels: wire_order,
             rc_source: source,
-            rc_age_s: self.rx.last_frame().map(|last| self.now.seconds_since(last)),
-            rc_link: self.rx.signal(),
-            failsafe_stage: self.failsafe.stage(),
-            commanded: self.orders.is_commanded(),
+            rc_age_s: self.receiver().last_frame().map(|last| self.now.seconds_since(last)),
+            rc_link: self.receiver().signal(),
+            failsafe_stage: self.navigation.failsafe().stage(),
+            commanded: self.navigation.is_commanded(),
             mode_ranges: self.mode_ranges(),
         }
     }
@@ -210,7 +210,7 @@ impl Firmware {
     pub fn estimate_view(&self) -> EstimateView {
         let estimate = self.estimate();
         let known = estimate.origin.is_some();
-        let demand = self.flight.state().angle_demand_rad;
+        let demand = self.control.state().angle_demand_rad;
         EstimateView {
             n: known.then_some(estimate.pos_ne.x),
             e: known.then_some(estimate.pos_ne.y),
@@ -228,7 +228,7 @@ impl Firmware {
     /// The settings that shape what a map draws.
     #[must_use]
     pub fn settings_view(&self) -> SettingsView {
-        let nav = &self.parameters.nav;
+        let nav = &self.parameters().nav;
         SettingsView {
             arrival_radius_m: nav.arrival_radius_m(),
             hold_radius_m: nav.hold_radius_m(),
@@ -252,9 +252,9 @@ impl Firmware {
     /// The mode conditions in force that look at a channel.
     #[must_use]
     pub fn mode_ranges(&self) -> Vec<ModeRange> {
-        let live = (channels::AUX1 + usize::from(self.parameters.rx.channels.max_aux)).min(RC_CHANNELS);
+        let live = (channels::AUX1 + usize::from(self.parameters().rx.channels.max_aux)).min(RC_CHANNELS);
         let by_channel = |condition: &&ModeCondition| condition.linked == 0 && condition.is_usable();
-        self.parameters
+        self.parameters()
             .modes
             .iter()
             .filter(by_channel)

@@ -1,12 +1,17 @@
-//! What messages tell about the running firmware: plain data, filled in by its owner.
+//! What messages tell of the running firmware, as plain data.
 
 use nalgebra::{UnitQuaternion, Vector3};
 
+use crate::firmware::Firmware;
+use crate::firmware::battery::BatteryState as PackState;
 use crate::firmware::cli::BuildInfo;
 use crate::firmware::modes::BoxSet;
-use crate::geo::LatLon;
+use crate::geo::{LatLon, distance_bearing};
 use crate::signals::RC_CHANNELS;
 use crate::telemetry::ModeFlags;
+
+/// Full signal strength.
+const RSSI_MAX: u16 = 1023;
 
 /// Figures of the running firmware.
 #[derive(Debug, Clone, PartialEq)]
@@ -99,6 +104,59 @@ impl Default for MspFacts {
     }
 }
 
+impl MspFacts {
+    /// The present instant of a firmware. `clock` is the time of day, when somebody set it.
+    pub(super) fn observe(firmware: &Firmware, clock: Option<UtcTime>) -> Self {
+        let estimate = firmware.estimate();
+        let rates = estimate.rates;
+        Self {
+            build: firmware.setup.build().clone(),
+            armed: firmware.is_armed(),
+            modes: firmware.modes(),
+            switches: firmware.boxes(),
+            arming_blocks: if firmware.is_armed() { 0 } else { firmware.arming_flags().bits() },
+            reboot_required: firmware.parameters().arming.reboot_required,
+            cycle_time_us: 1_000_000 / firmware.setup.options().rate_hz.max(1),
+            cpu_load_percent: 0,
+            gyro_hz: firmware.setup.options().rate_hz,
+            has_mag: firmware.configuration().settings.text("mag_hardware") != "NONE",
+            specific_force_flu: estimate.force_flu,
+            rate_flu: Vector3::new(rates.roll, rates.pitch, -rates.yaw),
+            mag_flu: firmware.sensing.mag_flu() - firmware.parameters().estimator.mag_offset_flu,
+            attitude: estimate.attitude,
+            roll_deg: estimate.roll_rad.to_degrees(),
+            pitch_deg: -estimate.pitch_rad.to_degrees(),
+            heading_deg: estimate.heading_rad.to_degrees(),
+            altitude_m: estimate.shown_alt_m,
+            climb_mps: estimate.shown_climb_mps,
+            battery: BatteryReading::observe(firmware),
+            rssi: rssi(firmware),
+            channels: *firmware.receiver().channels(),
+            motors_us: firmware
+                .control
+                .state()
+                .motors_us
+                .map(|pulse| pulse.round().clamp(0.0, 2500.0) as u16),
+            gps: GpsReading::observe(firmware),
+            home: HomeReading::observe(firmware),
+            clock,
+        }
+    }
+}
+
+/// A channel's position when one is set aside for it, else whether there is a signal.
+fn rssi(firmware: &Firmware) -> u16 {
+    let channel = usize::try_from(firmware.configuration().settings.number("rssi_channel")).unwrap_or(0);
+    match channel.checked_sub(1).filter(|&channel| channel < RC_CHANNELS) {
+        Some(channel) => {
+            let above = firmware.receiver().channels()[channel].clamp(1000, 2000) - 1000;
+            (u32::from(above) * u32::from(RSSI_MAX) / 1000) as u16
+        }
+        None if firmware.receiver().signal() => RSSI_MAX,
+        None => 0,
+    }
+}
+
 /// State of the battery; the discriminant is the code on the wire.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[repr(u8)]
@@ -131,6 +189,25 @@ pub struct BatteryReading {
     pub state: BatteryState,
 }
 
+impl BatteryReading {
+    fn observe(firmware: &Firmware) -> Option<Self> {
+        let sample = firmware.battery().sample()?;
+        Some(Self {
+            voltage_v: sample.voltage_v,
+            current_a: sample.current_a,
+            drawn_mah: sample.drawn_mah,
+            cells: firmware.battery().cells(),
+            state: match firmware.battery().state() {
+                PackState::Init => BatteryState::Starting,
+                PackState::NotPresent => BatteryState::NotPresent,
+                PackState::Ok => BatteryState::Ok,
+                PackState::Warning => BatteryState::Warning,
+                PackState::Critical => BatteryState::Critical,
+            },
+        })
+    }
+}
+
 /// The GPS.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct GpsReading {
@@ -152,6 +229,24 @@ pub struct GpsReading {
     pub solution: u8,
 }
 
+impl GpsReading {
+    fn observe(firmware: &Firmware) -> Self {
+        let gps = &firmware.estimate().gps;
+        let solution = gps.solution.unwrap_or_default();
+        let (east, north) = (solution.vel_enu.x, solution.vel_enu.y);
+        Self {
+            fix: firmware.gps_fix(),
+            sats: gps.sats,
+            position: solution.position,
+            alt_amsl_m: f64::from(solution.alt_amsl_cm) / 100.0,
+            ground_speed_mps: east.hypot(north),
+            course_deg: east.atan2(north).to_degrees(),
+            dop: gps.hdop,
+            solution: gps.messages as u8,
+        }
+    }
+}
+
 /// Where home is, seen from the craft.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct HomeReading {
@@ -159,6 +254,14 @@ pub struct HomeReading {
     pub distance_m: f64,
     /// Direction, degrees clockwise from north.
     pub bearing_deg: f64,
+}
+
+impl HomeReading {
+    fn observe(firmware: &Firmware) -> Option<Self> {
+        let place = firmware.estimate().gps.solution.filter(|_| firmware.gps_fix())?.position;
+        let (distance_m, bearing_rad) = distance_bearing(place, firmware.home()?);
+        Some(Self { distance_m, bearing_deg: bearing_rad.to_degrees() })
+    }
 }
 
 /// A time of day.

@@ -1,18 +1,17 @@
-//! From who flies to what the controller is told: sticks, navigator, holds, and the descent of the failsafe.
+//! The controller, told by the sticks or by the demands that take their place.
 
+use crate::firmware::control::{ControlInput, ControlState, Controller, LeanDemand, StickMode, Tuning};
+use crate::firmware::estimate::{DueTasks, Estimate};
+use crate::firmware::rx::Sticks;
 use crate::signals::MotorCommand;
 use crate::telemetry::{Mode, ModeFlags, NavOutput};
-
-use super::control::{ControlInput, ControlState, Controller, LeanDemand, StickMode, Tuning};
-use super::estimate::{DueTasks, Estimate};
-use super::rx::Sticks;
 
 /// A motor that stands still, µs.
 const MOTOR_STOP_US: f64 = 1000.0;
 
 /// Demands that take the place of the pilot's, renewed a hundred times a second.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Demand {
+pub(in crate::firmware) struct Demand {
     /// Roll and pitch.
     pub lean: Option<LeanDemand>,
     /// Yaw rate, rad/s, clockwise positive.
@@ -36,7 +35,7 @@ impl From<NavOutput> for Demand {
 
 /// What one step of the controller needs besides the estimate.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct FlightStep<'a> {
+pub(in crate::firmware) struct ControlStep<'a> {
     /// Loops that are due.
     pub due: DueTasks,
     /// Motors may run.
@@ -66,17 +65,17 @@ const LEVEL: LeanDemand = LeanDemand { roll_rad: 0.0, pitch_rad: 0.0 };
 
 /// The controller and the demands in force.
 #[derive(Debug, Clone)]
-pub(super) struct Flight {
+pub(in crate::firmware) struct FlightControl {
     controller: Controller,
     demand: Demand,
     motor_test_us: [f64; 4],
     step_s: f64,
 }
 
-impl Flight {
+impl FlightControl {
     /// A controller at boot for so many steps a second.
     #[must_use]
-    pub(super) fn new(tuning: &Tuning, rate_hz: u32) -> Self {
+    pub(in crate::firmware) fn new(tuning: &Tuning, rate_hz: u32) -> Self {
         let step_s = 1.0 / f64::from(rate_hz.max(1));
         Self {
             controller: Controller::new(*tuning, step_s),
@@ -87,17 +86,17 @@ impl Flight {
     }
 
     /// Follows the settings.
-    pub(super) fn set_tuning(&mut self, tuning: &Tuning) {
+    pub(in crate::firmware) fn set_tuning(&mut self, tuning: &Tuning) {
         self.controller.set_tuning(*tuning);
     }
 
     /// Sets the demands that take the place of the pilot's.
-    pub(super) fn set_demand(&mut self, demand: Demand) {
+    pub(in crate::firmware) fn set_demand(&mut self, demand: Demand) {
         self.demand = demand;
     }
 
-    /// Turns motors on the bench; `motor` = all when absent. Only the disarmed craft listens.
-    pub(super) fn test_motor(&mut self, motor: Option<u8>, output_us: u16) {
+    /// Turns motors on the bench; `motor` = all when absent. No effect while armed.
+    pub(in crate::firmware) fn test_motor(&mut self, motor: Option<u8>, output_us: u16) {
         let pulse = f64::from(output_us);
         match motor {
             None => self.motor_test_us = [pulse; 4],
@@ -110,17 +109,17 @@ impl Flight {
     }
 
     /// Stops the motors that were turned on the bench.
-    pub(super) fn end_motor_test(&mut self) {
+    pub(in crate::firmware) fn end_motor_test(&mut self) {
         self.motor_test_us = [MOTOR_STOP_US; 4];
     }
 
     /// Turns the heading that MAG holds to this one, rad clockwise from north; nothing while it holds none.
-    pub(super) fn hold_heading(&mut self, heading_rad: f64) {
+    pub(in crate::firmware) fn hold_heading(&mut self, heading_rad: f64) {
         self.controller.hold_heading(heading_rad);
     }
 
     /// One step.
-    pub(super) fn step(&mut self, step: &FlightStep<'_>, estimate: &Estimate) -> MotorCommand {
+    pub(in crate::firmware) fn step(&mut self, step: &ControlStep<'_>, estimate: &Estimate) -> MotorCommand {
         let centred = Sticks { throttle_us: step.sticks.throttle_us, ..Sticks::default() };
         let sticks = if step.levels_after_crash { &centred } else { step.sticks };
         let input = ControlInput {
@@ -149,19 +148,19 @@ impl Flight {
 
     /// Cutoffs of the smoothing of sticks and throttle in use, Hz; 0 while nothing is smoothed.
     #[must_use]
-    pub(super) fn smoothing_hz(&self) -> [f64; 2] {
+    pub(in crate::firmware) fn smoothing_hz(&self) -> [f64; 2] {
         self.controller.smoothing_hz()
     }
 
     /// What the controller did in the last step.
     #[must_use]
-    pub(super) fn state(&self) -> &ControlState {
+    pub(in crate::firmware) fn state(&self) -> &ControlState {
         self.controller.state()
     }
 }
 
 /// HEADFREE has no effect while the autopilot flies.
-fn headfree(step: &FlightStep<'_>) -> bool {
+fn headfree(step: &ControlStep<'_>) -> bool {
     step.modes.has(Mode::HeadFree) && !step.modes.has(Mode::Autopilot)
 }
 

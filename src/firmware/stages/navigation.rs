@@ -1,0 +1,362 @@
+//! Who gives the demands that take the place of the pilot's: failsafe, navigator, holds. Runs a hundred times a second.
+
+use nalgebra::Vector2;
+
+use crate::autopilot::Navigator;
+use crate::autopilot::io::NavInputs;
+use crate::firmware::control::hold::{HoldModes, Holds};
+use crate::firmware::estimate::Estimate;
+use crate::firmware::failsafe::{Failsafe, FailsafeAction, FailsafeFacts, Procedure, Response};
+use crate::firmware::modes::{ModeFacts, boxes};
+use crate::firmware::orders::{OrderFacts, Orders, failsafe_response};
+use crate::firmware::outbox::Outbox;
+use crate::firmware::parameters::{Parameters, RescueCause};
+use crate::geo::LatLon;
+use crate::plan::FlightPlan;
+use crate::signals::SimTime;
+use crate::telemetry::{
+    AbortReason, FirmwareEvent, Mode, ModeFlags, NavEvent, NavOutput, NavState, NavTelemetry, Refusal,
+};
+
+use super::flight_control::Demand;
+use super::{RcInput, Safety, Sensing};
+
+/// What the failsafe asks of arming.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::firmware) enum FailsafeRequest {
+    /// Stop the motors.
+    Disarm,
+    /// No arming before the ARM switch was off.
+    RequireSwitchOff,
+}
+
+/// What the holds and the navigator decided in one update.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::firmware) struct Flown {
+    /// What takes the place of the pilot's demands.
+    pub demand: Demand,
+    /// The failsafe's descent has reached the ground: stop the motors.
+    pub touchdown: bool,
+}
+
+/// Failsafe, orders, navigator and holds, and what they see of the craft.
+#[derive(Debug, Clone)]
+pub(in crate::firmware) struct Navigation {
+    failsafe: Failsafe,
+    orders: Orders,
+    navigator: Navigator,
+    holds: Holds,
+    inputs: NavInputs,
+    /// The navigator's demands, while it flies.
+    output: Option<NavOutput>,
+    updated_at: SimTime,
+    /// It was reported that position hold has no position.
+    no_position_reported: bool,
+}
+
+impl Navigation {
+    /// Nobody flies; the first update counts from `now`.
+    pub(in crate::firmware) fn new(now: SimTime) -> Self {
+        Self {
+            failsafe: Failsafe::default(),
+            orders: Orders::default(),
+            navigator: Navigator::new(),
+            holds: Holds::default(),
+            inputs: unknown_craft(),
+            output: None,
+            updated_at: now,
+            no_position_reported: false,
+        }
+    }
+
+    /// Begins an update: notes the state of the craft and gives the seconds since the last update.
+    pub(in crate::firmware) fn observe(
+        &mut self,
+        now: SimTime,
+        sensing: &Sensing,
+        safety: &Safety,
+        rc: &RcInput,
+        throttle_us: f64,
+    ) -> f64 {
+        let dt = now.seconds_since(std::mem::replace(&mut self.updated_at, now));
+        let estimate = sensing.estimate();
+        let receiver = rc.receiver();
+        let stick = |value: f64| if receiver.signal() { value } else { 0.0 };
+        let sticks = receiver.sticks();
+        self.inputs = NavInputs {
+            time: now,
+            dt,
+            armed: safety.armed(),
+            fix: sensing.fix() && estimate.position_valid,
+            altitude_valid: estimate.altitude_valid,
+            throttle_raised: safety.raised(),
+            failsafe: self.failsafe.active(),
+            home: safety.home(),
+            origin: estimate.origin.unwrap_or_default(),
+            pos_ne: estimate.pos_ne,
+            vel_ne: estimate.vel_ne,
+            alt_m: estimate.alt_m,
+            climb_mps: estimate.climb_mps,
+            heading_rad: estimate.heading_rad,
+            yaw_rate_rps: estimate.rates.yaw,
+            roll_rad: estimate.roll_rad,
+            pitch_rad: estimate.pitch_rad,
+            cos_tilt: estimate.cos_tilt,
+            accel_ne: estimate.accel_ne,
+            throttle_us,
+            stick_roll: stick(sticks.roll),
+            stick_pitch: stick(sticks.pitch),
+            stick_yaw: stick(sticks.yaw),
+        };
+        dt
+    }
+
+    /// One update of the failsafe; `uptime` counts from boot.
+    pub(in crate::firmware) fn update_failsafe(
+        &mut self,
+        parameters: &Parameters,
+        uptime: SimTime,
+        rc: &RcInput,
+        modes: ModeFlags,
+        outbox: &mut Outbox,
+    ) -> Option<FailsafeRequest> {
+        let inputs = &self.inputs;
+        let held = [Mode::Autopilot, Mode::AltHold, Mode::PosHold].into_iter().any(|mode| modes.has(mode));
+        let received = rc.receiver().received_sticks(&parameters.rx);
+        let procedure = parameters.failsafe.procedure;
+        let facts = FailsafeFacts {
+            now: uptime,
+            armed: inputs.armed,
+            switch: rc.boxes().has(boxes::FAILSAFE),
+            link_up: rc.link().up(),
+            signal: rc.receiver().signal(),
+            throttle_low: received.throttle_us < parameters.arming.min_check_us,
+            held,
+            stick_percent: received.deflection_percent(),
+            fix: inputs.fix,
+            home: inputs.home.is_some(),
+            mission: self.orders.status(&self.navigator),
+            response: failsafe_response(&self.navigator, &parameters.nav, procedure, inputs.fix),
+        };
+        let policy = parameters.nav.rx_loss_policy.into();
+        let mut report = |stage, response: Response| {
+            outbox.push(FirmwareEvent::Failsafe { policy, stage, procedure: response.word() });
+        };
+        match self.failsafe.update(&parameters.failsafe, &facts)? {
+            FailsafeAction::Stage1 => {
+                report(1, facts.response);
+                None
+            }
+            FailsafeAction::Stage2(response) | FailsafeAction::Switch(response) => {
+                report(2, response);
+                self.respond(response, parameters, outbox)
+            }
+            FailsafeAction::Disarm => Some(FailsafeRequest::Disarm),
+            FailsafeAction::Recovered => {
+                rc.boxes().has(boxes::ARM).then_some(FailsafeRequest::RequireSwitchOff)
+            }
+        }
+    }
+
+    /// Carries out what stage 2 decided.
+    fn respond(
+        &mut self,
+        response: Response,
+        parameters: &Parameters,
+        outbox: &mut Outbox,
+    ) -> Option<FailsafeRequest> {
+        let nav = &parameters.nav;
+        let started = match response {
+            Response::Procedure(Procedure::Drop) => return Some(FailsafeRequest::Disarm),
+            Response::Procedure(Procedure::GpsRescue) => {
+                let rescue =
+                    self.orders.rescue_flight(&parameters.rescue, &self.inputs, RescueCause::Failsafe);
+                self.navigator.return_to_home(&self.inputs, nav, Some(rescue))
+            }
+            Response::EmergencyLand => self.navigator.emergency_land(&self.inputs, nav),
+            Response::Procedure(Procedure::AutoLand) | Response::Continue | Response::KeepLanding => Ok(()),
+        };
+        if let Err(refusal) = started {
+            // The failsafe sees the absent mission and goes on to the descent.
+            outbox.push(FirmwareEvent::Nav(NavEvent::Refused(refusal)));
+        }
+        None
+    }
+
+    /// One update of orders and navigator; tells whether the navigator has landed the craft.
+    pub(in crate::firmware) fn navigate(
+        &mut self,
+        parameters: &Parameters,
+        stored: &FlightPlan,
+        rc: &RcInput,
+        (armed, fix_since): (bool, SimTime),
+        outbox: &mut Outbox,
+    ) -> bool {
+        self.inputs.armed = armed;
+        self.inputs.failsafe = self.failsafe.active();
+        let inputs = &self.inputs;
+        let facts = OrderFacts {
+            autopilot_switch: rc.boxes().has(boxes::AUTOPILOT),
+            rescue_switch: rc.boxes().has(boxes::GPS_RESCUE) && parameters.arming.rescue_configured,
+            signal: rc.receiver().signal(),
+            failsafe_active: self.failsafe.active(),
+            failsafe_mission: self.failsafe.mission(),
+            fix_for_s: if inputs.fix { inputs.time.seconds_since(fix_since) } else { 0.0 },
+        };
+        let (nav, rescue) = (&parameters.nav, &parameters.rescue);
+        self.orders.update(&mut self.navigator, inputs, nav, rescue, stored, &facts);
+        let output = self.navigator.update(inputs, nav, stored);
+        self.output = self.navigator.is_flying().then_some(output);
+        self.report_events(outbox)
+    }
+
+    fn report_events(&mut self, outbox: &mut Outbox) -> bool {
+        let mut touched_down = false;
+        for event in self.navigator.drain_events() {
+            match event {
+                NavEvent::Disarm => touched_down = true,
+                NavEvent::State { to: NavState::Idle, reason, .. } => {
+                    if let Some(why) = abort_reason(reason) {
+                        self.orders.mission_aborted(why);
+                    }
+                }
+                NavEvent::State { .. }
+                | NavEvent::Plan { .. }
+                | NavEvent::Climbing(_)
+                | NavEvent::Geofence { .. }
+                | NavEvent::Refused(_) => {}
+            }
+            outbox.push(FirmwareEvent::Nav(event));
+        }
+        touched_down
+    }
+
+    /// What the flight modes depend on.
+    pub(in crate::firmware) fn mode_facts(
+        &self,
+        rc: &RcInput,
+        safety: &Safety,
+        estimate: &Estimate,
+    ) -> ModeFacts {
+        let under_failsafe =
+            matches!(self.failsafe.mission(), Some(Response::EmergencyLand | Response::KeepLanding));
+        ModeFacts {
+            switches: rc.boxes(),
+            armed: safety.armed(),
+            raised: safety.raised(),
+            altitude_valid: estimate.altitude_valid,
+            failsafe_shown: self.failsafe.shown(),
+            failsafe_active: self.failsafe.active(),
+            autopilot: self.navigator.is_flying() && !under_failsafe,
+            after_abort: self.orders.after_abort(),
+        }
+    }
+
+    /// Ends an update: the demands of the navigator, of the holds, or none, so that the pilot's count.
+    pub(in crate::firmware) fn demand(
+        &mut self,
+        parameters: &Parameters,
+        modes: ModeFlags,
+        armed: bool,
+        throttle_stick_us: f64,
+        outbox: &mut Outbox,
+    ) -> Flown {
+        let free = self.output.is_none() && armed;
+        let hold = HoldModes {
+            altitude: free && modes.has(Mode::AltHold),
+            position: free && modes.has(Mode::PosHold),
+            descend: free && self.failsafe.auto_landing(),
+        };
+        let (nav, tuning) = (&parameters.nav, &parameters.hold);
+        let held = self.holds.update(hold, &self.inputs, throttle_stick_us, nav, tuning);
+        if held.no_position && !self.no_position_reported {
+            outbox.push(FirmwareEvent::Notice("POS HOLD has no position: the craft is only levelled."));
+        }
+        self.no_position_reported = held.no_position;
+        let demand = match self.output {
+            Some(output) => Demand::from(output),
+            None => Demand { lean: held.lean, throttle: held.throttle, ..Demand::default() },
+        };
+        Flown { demand, touchdown: held.touchdown }
+    }
+
+    /// The craft was armed or disarmed: nothing is held.
+    pub(in crate::firmware) fn release_holds(&mut self) {
+        self.holds.reset();
+    }
+
+    /// Flies home and lands, by command.
+    pub(in crate::firmware) fn return_to_home(&mut self, parameters: &Parameters) -> Result<(), Refusal> {
+        self.orders.return_to_home(&mut self.navigator, &self.inputs, &parameters.nav, None)
+    }
+
+    /// Lands here, by command.
+    pub(in crate::firmware) fn emergency_land(&mut self, parameters: &Parameters) -> Result<(), Refusal> {
+        self.orders.emergency_land(&mut self.navigator, &self.inputs, &parameters.nav)
+    }
+
+    /// Takes such a command back.
+    pub(in crate::firmware) fn cancel_command(&mut self) {
+        self.orders.take_back(&mut self.navigator);
+    }
+
+    /// Whether such a command is in force.
+    pub(in crate::firmware) fn is_commanded(&self) -> bool {
+        self.orders.is_commanded()
+    }
+
+    /// The failsafe.
+    pub(in crate::firmware) fn failsafe(&self) -> &Failsafe {
+        &self.failsafe
+    }
+
+    /// The navigator's telemetry.
+    pub(in crate::firmware) fn telemetry(&self) -> &NavTelemetry {
+        self.navigator.telemetry()
+    }
+
+    /// The plan being flown, when one is.
+    pub(in crate::firmware) fn active_plan(&self) -> Option<&FlightPlan> {
+        self.navigator.is_flying().then(|| self.navigator.active_plan())
+    }
+}
+
+/// A craft of which nothing is known yet.
+fn unknown_craft() -> NavInputs {
+    NavInputs {
+        time: SimTime::ZERO,
+        dt: 0.01,
+        armed: false,
+        fix: false,
+        altitude_valid: false,
+        throttle_raised: false,
+        failsafe: false,
+        home: None,
+        origin: LatLon::default(),
+        pos_ne: Vector2::zeros(),
+        vel_ne: Vector2::zeros(),
+        alt_m: 0.0,
+        climb_mps: 0.0,
+        heading_rad: 0.0,
+        yaw_rate_rps: 0.0,
+        roll_rad: 0.0,
+        pitch_rad: 0.0,
+        cos_tilt: 1.0,
+        accel_ne: Vector2::zeros(),
+        throttle_us: 1000.0,
+        stick_roll: 0.0,
+        stick_pitch: 0.0,
+        stick_yaw: 0.0,
+    }
+}
+
+/// The cause of a mission's end, when it was given up.
+fn abort_reason(word: &str) -> Option<AbortReason> {
+    match word {
+        "GPS_LOST" => Some(AbortReason::GpsLost),
+        "STALLED" => Some(AbortReason::Stalled),
+        "FLYAWAY" => Some(AbortReason::Flyaway),
+        "NO_PLAN" => Some(AbortReason::NoPlan),
+        _ => None,
+    }
+}

@@ -1,0 +1,210 @@
+//! Arming, and everything that stops the motors by itself.
+
+use crate::firmware::arming::crash::{CrashAction, CrashDetector, CrashFacts};
+use crate::firmware::arming::impact::{Impact, ImpactFacts};
+use crate::firmware::arming::runaway::{Runaway, RunawayFacts};
+use crate::firmware::arming::{Arming, ArmingChange, ArmingFacts};
+use crate::firmware::control::ControlState;
+use crate::firmware::estimate::Estimate;
+use crate::firmware::parameters::Parameters;
+use crate::geo::LatLon;
+use crate::signals::{RcSource, SimTime};
+use crate::telemetry::{ArmingFlags, DisarmReason};
+
+use super::RcInput;
+
+/// Arming with its watchdogs, and what was noted when the craft was armed.
+#[derive(Debug, Clone, Default)]
+pub(in crate::firmware) struct Safety {
+    arming: Arming,
+    runaway: Runaway,
+    crash: CrashDetector,
+    impact: Impact,
+    last_disarm: Option<DisarmReason>,
+    home: Option<LatLon>,
+    headfree_rad: f64,
+}
+
+impl Safety {
+    /// Whether the craft is armed.
+    pub(in crate::firmware) fn armed(&self) -> bool {
+        self.arming.armed()
+    }
+
+    /// Whether the throttle was raised since arming.
+    pub(in crate::firmware) fn raised(&self) -> bool {
+        self.arming.raised()
+    }
+
+    /// What blocks arming.
+    pub(in crate::firmware) fn flags(&self) -> ArmingFlags {
+        self.arming.flags()
+    }
+
+    /// Why the craft was disarmed last.
+    pub(in crate::firmware) fn last_disarm(&self) -> Option<DisarmReason> {
+        self.last_disarm
+    }
+
+    /// Where the craft was armed, when that was known.
+    pub(in crate::firmware) fn home(&self) -> Option<LatLon> {
+        self.home
+    }
+
+    /// Heading that HEADFREE refers to, rad clockwise from north.
+    pub(in crate::firmware) fn headfree_rad(&self) -> f64 {
+        self.headfree_rad
+    }
+
+    /// Makes HEADFREE refer to this heading, rad clockwise from north.
+    pub(in crate::firmware) fn set_headfree(&mut self, heading_rad: f64) {
+        self.headfree_rad = heading_rad;
+    }
+
+    /// Whether the craft is being levelled after a crash, whatever the sticks say.
+    pub(in crate::firmware) fn is_levelling(&self) -> bool {
+        self.crash.is_levelling()
+    }
+
+    /// A command line session was opened on a serial link: no arming until reboot.
+    pub(in crate::firmware) fn cli_opened(&mut self) {
+        self.arming.cli_opened();
+    }
+
+    /// The failsafe ended with the ARM switch on: it must be switched off first.
+    pub(in crate::firmware) fn require_switch_off(&mut self) {
+        self.arming.require_switch_off();
+    }
+
+    /// One update of arming, with what the receiver just told. `uptime` counts from boot; `failsafe_landed`: a failsafe
+    /// ended the last flight and the link is not good again.
+    pub(in crate::firmware) fn update(
+        &mut self,
+        parameters: &Parameters,
+        uptime: SimTime,
+        (rc, new_frame): (&RcInput, bool),
+        estimate: &Estimate,
+        failsafe_landed: bool,
+    ) -> Option<ArmingChange> {
+        let receiver = rc.receiver();
+        let facts = ArmingFacts {
+            now: uptime,
+            new_frame,
+            boxes: rc.boxes(),
+            sticks: *receiver.sticks(),
+            signal: receiver.signal(),
+            link_good: rc.link().good(),
+            from_udp: receiver.sources().in_charge() == Some(RcSource::Udp),
+            failsafe_landed,
+            tilt_rad: estimate.attitude_valid.then(|| tilt_rad(estimate)),
+            calibrating: estimate.calibrating,
+            fix_sats: estimate.gps.fix.then_some(estimate.gps.sats),
+        };
+        let change = self.arming.update(&parameters.arming, &facts);
+        match change {
+            Some(ArmingChange::Armed { .. }) => {
+                if !(parameters.rescue.home_once && self.home.is_some()) {
+                    self.home = trusted_position(parameters, estimate);
+                }
+                self.headfree_rad = estimate.heading_rad;
+                self.runaway.rearm();
+            }
+            Some(ArmingChange::Disarmed(reason)) => self.last_disarm = Some(reason),
+            Some(ArmingChange::CalibrateGyro) | None => {}
+        }
+        change
+    }
+
+    /// Stops the motors for a reason; `false` when they were stopped already.
+    pub(in crate::firmware) fn disarm(&mut self, reason: DisarmReason) -> bool {
+        let was_armed = self.arming.disarm(reason);
+        if was_armed {
+            self.last_disarm = Some(reason);
+        }
+        was_armed
+    }
+
+    /// The state after a restart, which ends a flight.
+    pub(in crate::firmware) fn restarted(&self) -> Self {
+        let last_disarm = self.armed().then_some(DisarmReason::System);
+        Self { last_disarm, ..Self::default() }
+    }
+
+    /// Whether the craft turns against its controller in the take-off, as with mixed-up motors.
+    pub(in crate::firmware) fn is_runaway(
+        &mut self,
+        parameters: &Parameters,
+        now: SimTime,
+        rc: &RcInput,
+        state: &ControlState,
+    ) -> bool {
+        let facts = RunawayFacts {
+            now,
+            pid_sum: state.pid_sum.into(),
+            rate_dps: state.gyro_dps.into(),
+            throttle_percent: rc.throttle_percent(),
+            stick_percent: rc.receiver().sticks().deflection_percent(),
+        };
+        self.armed() && self.runaway.update(&parameters.runaway, &facts)
+    }
+
+    /// What to do about a crash that is noticed in this step, where the settings ask for it.
+    pub(in crate::firmware) fn crash(
+        &mut self,
+        parameters: &Parameters,
+        now: SimTime,
+        state: &ControlState,
+        estimate: &Estimate,
+    ) -> Option<CrashAction> {
+        let config = &parameters.crash;
+        if config.action == CrashAction::Off || !self.arming.armed() || !self.arming.raised() {
+            // Also when it is switched off while it levels: the sticks are the pilot's again.
+            self.crash.reset();
+            return None;
+        }
+        let motors = &state.motors_us;
+        let spread = motors.iter().copied().fold(f64::NEG_INFINITY, f64::max)
+            - motors.iter().copied().fold(f64::INFINITY, f64::min);
+        let mixer = &parameters.control.mixer;
+        let facts = CrashFacts {
+            now,
+            gyro_dps: state.gyro_dps,
+            setpoint_dps: state.setpoint_dps,
+            motor_spread: spread / (mixer.max_us - mixer.idle_us).max(1.0),
+            tilt_rad: tilt_rad(estimate),
+        };
+        self.crash.update(config, &facts).then_some(config.action)
+    }
+
+    /// Whether the bump of the ground ends the flight. To be asked a hundred times a second, `dt` seconds apart, armed
+    /// or not.
+    pub(in crate::firmware) fn is_touchdown(
+        &mut self,
+        parameters: &Parameters,
+        rc: &RcInput,
+        alt_hold: bool,
+        estimate: &Estimate,
+        dt: f64,
+    ) -> bool {
+        self.impact.observe(estimate.force_flu, dt);
+        let facts = ImpactFacts {
+            raised: self.arming.raised(),
+            stick_percent: rc.receiver().sticks().deflection_percent(),
+            throttle_percent: rc.throttle_percent(),
+            alt_hold,
+            near_ground: estimate.alt_m < f64::from(parameters.nav.landing_altitude_m),
+        };
+        self.armed() && self.impact.is_touchdown(parameters.landing_disarm_threshold, &facts)
+    }
+}
+
+/// Where the craft is, when enough satellites say so to fly home by it.
+pub(in crate::firmware) fn trusted_position(parameters: &Parameters, estimate: &Estimate) -> Option<LatLon> {
+    let gps = &estimate.gps;
+    let trusted = gps.fix && gps.sats >= parameters.rescue.min_sats;
+    gps.solution.filter(|_| trusted).map(|solution| solution.position)
+}
+
+fn tilt_rad(estimate: &Estimate) -> f64 {
+    estimate.cos_tilt.clamp(-1.0, 1.0).acos()
+}

@@ -1,0 +1,164 @@
+//! The estimator, the battery, and what the sensors report of themselves: fix, hanging samples, calibrations.
+
+use nalgebra::Vector3;
+
+use crate::firmware::FirmwareOptions;
+use crate::firmware::battery::{Battery, BatteryState};
+use crate::firmware::estimate::{DueTasks, Estimate, Estimator, EstimatorOptions, NotTurned};
+use crate::firmware::outbox::Outbox;
+use crate::firmware::parameters::Parameters;
+use crate::geo::LatLon;
+use crate::signals::{BatterySample, SensorFrame, SimTime};
+use crate::telemetry::FirmwareEvent;
+
+/// What the sensors tell of the craft.
+#[derive(Debug, Clone)]
+pub(in crate::firmware) struct Sensing {
+    estimator: Estimator,
+    battery: Battery,
+    imu_frozen: bool,
+    /// Newest magnetic field, body forward-left-up, as sensed.
+    mag_flu: Vector3<f64>,
+    fix: bool,
+    fix_since: SimTime,
+}
+
+impl Sensing {
+    /// Nothing is known yet.
+    pub(in crate::firmware) fn new(options: &FirmwareOptions, parameters: &Parameters) -> Self {
+        let options = EstimatorOptions {
+            attitude: options.attitude,
+            gps_timeout_s: options.gps_timeout_s,
+            declination_deg: options.declination_deg,
+        };
+        Self {
+            estimator: Estimator::new(options, parameters.estimator.clone()),
+            battery: Battery::default(),
+            imu_frozen: false,
+            mag_flu: Vector3::zeros(),
+            fix: false,
+            fix_since: SimTime::ZERO,
+        }
+    }
+
+    /// Follows the settings.
+    pub(in crate::firmware) fn set_tuning(&mut self, parameters: &Parameters) {
+        self.estimator.set_tuning(parameters.estimator.clone());
+    }
+
+    /// Takes the samples of one step; tells which slower loops are due.
+    pub(in crate::firmware) fn update(
+        &mut self,
+        frame: &SensorFrame,
+        parameters: &Parameters,
+        outbox: &mut Outbox,
+    ) -> DueTasks {
+        let due = self.estimator.update(frame);
+        if let Some(sample) = frame.battery {
+            self.update_battery(sample, parameters, outbox);
+        }
+        self.mag_flu = frame.mag_flu.unwrap_or(self.mag_flu);
+        due
+    }
+
+    fn update_battery(&mut self, sample: BatterySample, parameters: &Parameters, outbox: &mut Outbox) {
+        match self.battery.receive(&parameters.battery, sample) {
+            Some(BatteryState::Warning) => {
+                outbox.push(FirmwareEvent::Notice("Battery low: land soon."));
+            }
+            Some(BatteryState::Critical) => {
+                outbox.push(FirmwareEvent::Notice("Battery critical: land now."));
+            }
+            Some(BatteryState::Init | BatteryState::NotPresent | BatteryState::Ok) | None => {}
+        }
+    }
+
+    /// Reports inertial sensors that begin to hang.
+    pub(in crate::firmware) fn watch_imu(&mut self, outbox: &mut Outbox) {
+        let frozen = self.estimate().imu_frozen;
+        if frozen && !self.imu_frozen {
+            outbox.push(FirmwareEvent::Notice("The inertial sensors repeat one sample: they hang."));
+        }
+        self.imu_frozen = frozen;
+    }
+
+    /// Reports a fix that comes or goes.
+    pub(in crate::firmware) fn watch_fix(
+        &mut self,
+        now: SimTime,
+        parameters: &Parameters,
+        outbox: &mut Outbox,
+    ) {
+        let gps = self.estimate().gps;
+        let fix = gps.fix && parameters.gps;
+        if fix == self.fix {
+            return;
+        }
+        self.fix = fix;
+        self.fix_since = now;
+        outbox.push(match fix {
+            true => FirmwareEvent::GpsFix { sats: gps.sats },
+            false => FirmwareEvent::GpsLost { sats: gps.sats },
+        });
+    }
+
+    /// The offsets of an accelerometer calibration that has just ended.
+    pub(in crate::firmware) fn take_acc_calibration(&mut self) -> Option<[i64; 3]> {
+        self.estimator.take_acc_calibration()
+    }
+
+    /// The offsets of a magnetometer calibration that has just ended.
+    pub(in crate::firmware) fn take_mag_calibration(&mut self) -> Option<Result<[i64; 3], NotTurned>> {
+        self.estimator.take_mag_calibration()
+    }
+
+    /// Begins to calibrate the gyro; the craft must rest.
+    pub(in crate::firmware) fn calibrate_gyro(&mut self) {
+        self.estimator.calibrate_gyro();
+    }
+
+    /// Begins to calibrate the accelerometer; the craft must stand level.
+    pub(in crate::firmware) fn calibrate_accelerometer(&mut self) {
+        self.estimator.calibrate_accelerometer();
+    }
+
+    /// Begins to calibrate the magnetometer; the craft is to be turned about all its axes.
+    pub(in crate::firmware) fn calibrate_magnetometer(&mut self) {
+        self.estimator.calibrate_magnetometer();
+    }
+
+    /// The craft was armed at this place, when it is known.
+    pub(in crate::firmware) fn on_arm(&mut self, position: Option<LatLon>) {
+        self.estimator.on_arm(position);
+    }
+
+    /// The craft was disarmed.
+    pub(in crate::firmware) fn on_disarm(&mut self) {
+        self.estimator.on_disarm();
+    }
+
+    /// What the estimator believes.
+    pub(in crate::firmware) fn estimate(&self) -> &Estimate {
+        self.estimator.estimate()
+    }
+
+    /// The battery.
+    pub(in crate::firmware) fn battery(&self) -> &Battery {
+        &self.battery
+    }
+
+    /// Newest magnetic field, body forward-left-up, as sensed, sensor counts.
+    pub(in crate::firmware) fn mag_flu(&self) -> Vector3<f64> {
+        self.mag_flu
+    }
+
+    /// Whether there is a fix.
+    pub(in crate::firmware) fn fix(&self) -> bool {
+        self.fix
+    }
+
+    /// When the fix came or went last.
+    pub(in crate::firmware) fn fix_since(&self) -> SimTime {
+        self.fix_since
+    }
+}

@@ -1,0 +1,148 @@
+//! What the craft remembers, and the typed parameters made from it.
+
+use crate::firmware::FirmwareOptions;
+use crate::firmware::cli::{BuildInfo, StorageFacts};
+use crate::firmware::config::{Configuration, Feature, MixerKind, correct};
+use crate::firmware::estimate::NotTurned;
+use crate::firmware::outbox::Outbox;
+use crate::firmware::parameters::{BootChoices, Parameters};
+use crate::firmware::settings::Value;
+use crate::telemetry::FirmwareEvent;
+
+/// The configuration in memory, what was chosen from it at boot, and the parameters in force.
+#[derive(Debug, Clone)]
+pub(in crate::firmware) struct Setup {
+    options: FirmwareOptions,
+    build: BuildInfo,
+    storage: StorageFacts,
+    configuration: Configuration,
+    boot: BootChoices,
+    parameters: Parameters,
+}
+
+impl Setup {
+    /// Boots with this configuration, made consistent.
+    pub(in crate::firmware) fn new(
+        mut configuration: Configuration,
+        options: FirmwareOptions,
+        outbox: &mut Outbox,
+    ) -> Self {
+        let had_gps = configuration.features.has(Feature::Gps);
+        correct(&mut configuration);
+        let boot = BootChoices::new(&configuration);
+        let parameters = Parameters::new(&configuration, &boot, &options);
+        if configuration.mixer.rows().is_none() && configuration.mixer != MixerKind::Custom {
+            outbox.push(FirmwareEvent::Notice(
+                "This mixer type does not fly here: QUADX, QUADP, QUADX1234 and CUSTOM do; QUADX is flown instead.",
+            ));
+        }
+        let (build, storage) = (BuildInfo::default(), StorageFacts::default());
+        let setup = Self { options, build, storage, configuration, boot, parameters };
+        setup.report_lost_gps(had_gps, outbox);
+        setup
+    }
+
+    /// What `configuration` boots into on this craft: build and storage stay.
+    pub(in crate::firmware) fn restarted(&self, configuration: Configuration, outbox: &mut Outbox) -> Self {
+        let fresh = Self::new(configuration, self.options, outbox);
+        Self { build: self.build.clone(), storage: self.storage.clone(), ..fresh }
+    }
+
+    /// How the firmware is built and helped.
+    pub(in crate::firmware) fn options(&self) -> &FirmwareOptions {
+        &self.options
+    }
+
+    /// Version and build that the firmware announces.
+    pub(in crate::firmware) fn build(&self) -> &BuildInfo {
+        &self.build
+    }
+
+    /// Sets what [`Setup::build`] tells.
+    pub(in crate::firmware) fn set_build(&mut self, build: BuildInfo) {
+        self.build = build;
+    }
+
+    /// What is known of the stored configuration.
+    pub(in crate::firmware) fn storage(&self) -> &StorageFacts {
+        &self.storage
+    }
+
+    /// Sets what [`Setup::storage`] tells.
+    pub(in crate::firmware) fn set_storage(&mut self, storage: StorageFacts) {
+        self.storage = storage;
+    }
+
+    /// The configuration in memory.
+    pub(in crate::firmware) fn configuration(&self) -> &Configuration {
+        &self.configuration
+    }
+
+    /// The configuration in memory, to be changed; [`Setup::refresh`] makes the parameters follow.
+    pub(in crate::firmware) fn configuration_mut(&mut self) -> &mut Configuration {
+        &mut self.configuration
+    }
+
+    /// What changes only with a restart.
+    pub(in crate::firmware) fn boot(&self) -> &BootChoices {
+        &self.boot
+    }
+
+    /// The typed parameters in force.
+    pub(in crate::firmware) fn parameters(&self) -> &Parameters {
+        &self.parameters
+    }
+
+    /// Makes the parameters follow the configuration.
+    pub(in crate::firmware) fn refresh(&mut self) {
+        self.parameters = Parameters::new(&self.configuration, &self.boot, &self.options);
+    }
+
+    /// Turns runaway take-off prevention off until the next refresh, when `allowed` is false; it cannot turn it on.
+    pub(in crate::firmware) fn allow_runaway_prevention(&mut self, allowed: bool) {
+        self.parameters.runaway.enabled &= allowed;
+    }
+
+    /// Makes the configuration consistent before it is stored; `had_gps` is the GPS feature before it was changed.
+    pub(in crate::firmware) fn make_consistent(&mut self, had_gps: bool, outbox: &mut Outbox) {
+        correct(&mut self.configuration);
+        self.report_lost_gps(had_gps, outbox);
+    }
+
+    /// Says so when making the configuration consistent took the GPS away.
+    fn report_lost_gps(&self, had_gps: bool, outbox: &mut Outbox) {
+        if had_gps && !self.configuration.features.has(Feature::Gps) {
+            outbox.push(FirmwareEvent::Notice(
+                "GPS is off: gps_provider wants a receiver on a serial port; set gps_provider = VIRTUAL, feature GPS, save.",
+            ));
+        }
+    }
+
+    /// Keeps the result of an accelerometer calibration: it includes what the trims levelled.
+    pub(in crate::firmware) fn keep_acc_calibration(&mut self, offsets: [i64; 3]) {
+        const DONE: i64 = 1;
+        let [x, y, z] = offsets;
+        let settings = &mut self.configuration.settings;
+        // The estimator's offsets fit the setting's type, and 0 is in every trim's range.
+        let _kept = settings.set("acc_calibration", Value::Array(vec![x, y, z, DONE]));
+        let _level = [settings.set_number("acc_trim_roll", 0), settings.set_number("acc_trim_pitch", 0)];
+    }
+
+    /// Keeps the result of a magnetometer calibration, and says how it went.
+    pub(in crate::firmware) fn keep_mag_calibration(
+        &mut self,
+        result: Result<[i64; 3], NotTurned>,
+    ) -> FirmwareEvent {
+        FirmwareEvent::Notice(match result {
+            Err(NotTurned) => {
+                "Magnetometer not calibrated: the craft was not turned about all its axes; its offsets stay."
+            }
+            Ok(offsets) => {
+                match self.configuration.settings.set("mag_calibration", Value::Array(offsets.to_vec())) {
+                    Ok(()) => "Magnetometer calibrated; save keeps the result.",
+                    Err(_) => "Magnetometer not calibrated: its field is out of range; its offsets stay.",
+                }
+            }
+        })
+    }
+}
