@@ -60,7 +60,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let mut heard = Vec::new();
         vehicle.drain_events(|event| heard.push(event));
         for event in heard {
-            update(&mut state, Msg::Event(event));
+            update(&mut state, Msg::Event(event.into()));
         }
         update(&mut state, Msg::View(view(&vehicle)));
     }

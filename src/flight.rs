@@ -37,7 +37,7 @@ pub struct Flight {
 #[derive(Debug)]
 pub enum Report<'a> {
     /// Something happened.
-    Event(&'a Event),
+    Event(Event),
     /// Time for a sample.
     Sample(&'a Vehicle),
 }
@@ -97,10 +97,9 @@ impl Flight {
                 | EventKind::Fault { .. }
                 | EventKind::Contact { .. }
                 | EventKind::Crash { .. }
-                | EventKind::Doors(_)
                 | EventKind::Notice(_) => {}
             }
-            report(Report::Event(&event));
+            report(Report::Event(event));
         });
         let now = self.vehicle.time();
         if let Some(every) = self.sample_every_us

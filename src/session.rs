@@ -2,11 +2,13 @@
 
 mod arming;
 pub mod command;
+mod event;
 mod pacer;
 mod runtime;
 mod simulator;
 pub mod upload;
 
 pub use command::{Command, SessionView};
+pub use event::{EndpointAddresses, Event, SessionEvent};
 pub use pacer::{Pacer, SPEED_RANGE};
 pub use runtime::{Doorway, Handle, SessionConfig, start};

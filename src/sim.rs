@@ -49,7 +49,7 @@ pub use battery::{BatterySpec, motor_power_w};
 pub use body::{AirSample, BodyState, Loads, Plant, ground_effect_factor, lever_arm_acceleration};
 pub use command::{COMMAND_WORDS, CommandWord, WorldCommand};
 pub use config::{Home, Noise, STEP_RATES_HZ, Turbulence, Wind, WorldConfig, WorldError, step_us};
-pub use event::{CrashCause, DivergeCause, WorldEvent, WorldEventKind};
+pub use event::{WorldEvent, WorldEventKind};
 pub use fault::{
     ActiveFault, BatteryFault, Direction, FAULTS, Fault, FaultInfo, FaultKey, FaultLink, FaultStart,
     LinkFaults, MAX_FAULTS, MotorNumber, ScheduledFault,

@@ -4,6 +4,7 @@
 
 mod arming_flag;
 pub mod event;
+mod fault;
 mod firmware_event;
 mod guard;
 mod link_state;
@@ -14,7 +15,8 @@ pub mod snapshot;
 pub mod switch;
 
 pub use arming_flag::{ArmingFlag, ArmingFlags};
-pub use event::{DoorPlaces, Event, EventKind};
+pub use event::{CrashCause, DivergeCause, Event, EventKind, VehicleNotice};
+pub use fault::{FaultKind, FaultValue};
 pub use firmware_event::{DisarmReason, FirmwareEvent};
 pub use guard::{Guard, GuardOp};
 pub use link_state::LinkState;

@@ -26,7 +26,7 @@ use crate::pilot::{Pilot, PilotFacts};
 use crate::plan::FlightPlan;
 use crate::signals::{RcSource, SensorFrame, SimTime};
 use crate::sim::{FaultLink, Stream, World, WorldCommand, WorldConfig, WorldError, WorldEventKind};
-use crate::telemetry::{DoorPlaces, Event, EventKind, FirmwareEvent, Mode, NavEvent, NavState};
+use crate::telemetry::{Event, EventKind, FirmwareEvent, Mode, NavEvent, NavState, VehicleNotice};
 use outside::Outside;
 
 /// What stands for the airframe when a simulator outside has it.
@@ -172,7 +172,7 @@ impl Vehicle {
         }
         // Returning home is always allowed.
         let _ = self.world.apply(WorldCommand::ResetToHome);
-        self.notice("The craft is back home, undamaged and disarmed.");
+        self.notice(VehicleNotice::BackHome);
     }
 
     /// One step of simulated time. When the craft is moved from outside: a step in which nothing is sensed.
@@ -193,14 +193,8 @@ impl Vehicle {
         self.events.drain(..).for_each(sink);
     }
 
-    /// Says something to the user.
-    pub fn notice(&mut self, text: impl Into<String>) {
-        self.events.push(Event { time: self.time(), kind: EventKind::Notice(text.into()) });
-    }
-
-    /// Says where other programs reach the vehicle.
-    pub fn doors_opened(&mut self, places: DoorPlaces) {
-        self.events.push(Event { time: self.time(), kind: EventKind::Doors(Box::new(places)) });
+    fn notice(&mut self, notice: VehicleNotice) {
+        self.events.push(Event { time: self.time(), kind: EventKind::Notice(notice) });
     }
 
     /// What a pilot sees.
@@ -252,9 +246,7 @@ impl Vehicle {
         }
         let lost = self.firmware.take_events_lost();
         if lost > 0 {
-            self.notice(format!(
-                "Too many events of the firmware came between two steps; lost: the last {lost}."
-            ));
+            self.notice(VehicleNotice::EventsLost(lost));
         }
         while let Some(event) = self.world.take_event() {
             let kind = match event.kind {
@@ -262,13 +254,11 @@ impl Vehicle {
                 WorldEventKind::Touchdown { impact_mps, peak_mps2 } => {
                     EventKind::Touchdown { impact_mps, peak_mps2 }
                 }
-                WorldEventKind::Crash { cause } => EventKind::Crash { cause: cause.to_string() },
+                WorldEventKind::Crash { cause } => EventKind::Crash { cause },
                 WorldEventKind::Fault { fault, on } => {
-                    EventKind::Fault { name: fault.name(), on, value: fault.to_string() }
+                    EventKind::Fault { kind: fault.kind(), on, value: fault.value() }
                 }
-                WorldEventKind::Diverged { cause } => {
-                    EventKind::Notice(format!("The simulation diverged: {cause}."))
-                }
+                WorldEventKind::Diverged { cause } => EventKind::Notice(VehicleNotice::Diverged(cause)),
             };
             self.events.push(Event { time: event.time, kind });
         }
@@ -325,8 +315,8 @@ mod tests {
         vehicle.tick();
         let mut notices = Vec::new();
         vehicle.drain_events(|event| {
-            if let EventKind::Notice(text) = event.kind {
-                notices.push(text);
+            if let EventKind::Notice(notice) = event.kind {
+                notices.push(notice.to_string());
             }
         });
         assert_eq!(notices, ["Too many events of the firmware came between two steps; lost: the last 36."]);

@@ -6,14 +6,15 @@ use std::path::Path;
 use betadeck::geo::LatLon;
 use betadeck::plan::{FlightPlan, Waypoint, WaypointType};
 use betadeck::record::{End, json};
+use betadeck::session::{EndpointAddresses, Event, SessionEvent};
 use betadeck::signals::SimTime;
 use betadeck::telemetry::{
-    AbortReason, DisarmReason, DoorPlaces, Event, EventKind, FirmwareEvent, Guard, GuardOp, ModeFlags,
-    NavEvent, NavState, PlanSource, Refusal, Snapshot,
+    AbortReason, CrashCause, DisarmReason, EventKind, FaultKind, FaultValue, FirmwareEvent, Guard, GuardOp,
+    ModeFlags, NavEvent, NavState, PlanSource, Refusal, Snapshot, VehicleNotice,
 };
 
 /// One event of each kind.
-fn one_of_each() -> Vec<EventKind> {
+fn one_of_each() -> Vec<SessionEvent> {
     let mut plan = Box::<FlightPlan>::default();
     plan.waypoints.push(Waypoint::default());
     let guard = Guard { name: "arrival", value: 4.0, limit: 5.0, op: GuardOp::AtMost, unit: "m" };
@@ -48,25 +49,37 @@ fn one_of_each() -> Vec<EventKind> {
     let firmware = firmware.into_iter().chain(nav.map(FirmwareEvent::Nav)).map(EventKind::Firmware);
     let vehicle = [
         EventKind::Boot { seed: 1, rate_hz: 1000, airframe: "iris".to_owned(), live: false },
-        EventKind::Fault { name: "motor", on: true, value: "2:0.8".to_owned() },
+        EventKind::Fault {
+            kind: FaultKind::Motor,
+            on: true,
+            value: FaultValue::Motor { motor: 2, value: 0.8 },
+        },
         EventKind::Contact { impact_mps: 0.5 },
         EventKind::Touchdown { impact_mps: 0.5, peak_mps2: 20.0 },
-        EventKind::Crash { cause: "a tree".to_owned() },
-        EventKind::Doors(Box::<DoorPlaces>::default()),
-        EventKind::Notice("a notice".to_owned()),
+        EventKind::Crash { cause: CrashCause::HullContact },
+        EventKind::Notice(VehicleNotice::BackHome),
     ];
-    firmware.chain(vehicle).collect()
+    let session =
+        [SessionEvent::Endpoints(EndpointAddresses::default()), SessionEvent::Notice("a notice".to_owned())];
+    firmware.chain(vehicle).map(SessionEvent::Vehicle).chain(session).collect()
 }
 
 /// The name on the page. A new kind of event stops the build here: it needs a row there and one above.
-fn name(kind: &EventKind) -> Option<&'static str> {
+fn name(kind: &SessionEvent) -> Option<&'static str> {
+    match kind {
+        SessionEvent::Vehicle(kind) => vehicle_name(kind),
+        SessionEvent::Endpoints(_) => Some("doors"),
+        SessionEvent::Notice(_) => Some("notice"),
+    }
+}
+
+fn vehicle_name(kind: &EventKind) -> Option<&'static str> {
     Some(match kind {
         EventKind::Boot { .. } => "boot",
         EventKind::Fault { .. } => "fault",
         EventKind::Contact { .. } => "contact",
         EventKind::Touchdown { .. } => "touchdown",
         EventKind::Crash { .. } => "crash",
-        EventKind::Doors(_) => "doors",
         EventKind::Notice(_) => "notice",
         EventKind::Firmware(event) => match event {
             FirmwareEvent::GpsFix { .. } => "gps_fix",

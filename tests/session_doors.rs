@@ -51,6 +51,7 @@ async fn rig() -> Rig {
         speed: 1.0,
         takeoff_m: 10.0,
         doorway: Some(Doorway { requests: inbox, desk, views, simulator: None }),
+        first_events: Vec::new(),
     })
     .unwrap();
     Rig { session, requests, doors, _views: views_tx }

@@ -12,10 +12,10 @@ use betadeck::link::proto::fdm_link::FdmLinkConfig;
 use betadeck::link::proto::servo::MotorOrder;
 use betadeck::link::{ClientId, Desk, Doors, DoorsConfig, ExternalSimulator, MotorPort, Request};
 use betadeck::session::command::{PLACE_IS_OUTSIDE, TIME_IS_OUTSIDE};
-use betadeck::session::{Command, Doorway, Handle, SessionConfig, SessionView, start};
+use betadeck::session::{Command, Doorway, Event, Handle, SessionConfig, SessionEvent, SessionView, start};
 use betadeck::sim::{WorldConfig, attitude};
 use betadeck::storage::Store;
-use betadeck::telemetry::{Event, EventKind, FirmwareEvent, LinkState};
+use betadeck::telemetry::{EventKind, FirmwareEvent, LinkState};
 use betadeck::vehicle::{Vehicle, VehicleConfig};
 use nalgebra::Vector3;
 use tokio::sync::{mpsc, oneshot, watch};
@@ -82,7 +82,9 @@ async fn rig_with(faults: &[&str]) -> Rig {
     let desk = Desk::new(doors.restart_bell(), true);
     let doorway = Some(Doorway { requests: inbox, desk, views, simulator: Some(simulator) });
     let store = Store::in_memory();
-    let session = start(SessionConfig { vehicle, store, speed: 1.0, takeoff_m: 10.0, doorway }).unwrap();
+    let first_events = Vec::new();
+    let session =
+        start(SessionConfig { vehicle, store, speed: 1.0, takeoff_m: 10.0, doorway, first_events }).unwrap();
     Rig {
         session,
         requests,
@@ -158,8 +160,11 @@ impl Rig {
 
     fn note(&mut self, event: Event) {
         match event.kind {
-            EventKind::Notice(notice) => self.notices.push(notice),
-            EventKind::Fault { name, on, .. } => self.faults.push((name, on, event.time.0 / 1000)),
+            SessionEvent::Notice(notice) => self.notices.push(notice),
+            SessionEvent::Vehicle(EventKind::Notice(notice)) => self.notices.push(notice.to_string()),
+            SessionEvent::Vehicle(EventKind::Fault { kind, on, .. }) => {
+                self.faults.push((kind.into(), on, event.time.0 / 1000));
+            }
             _ => {}
         }
     }
@@ -437,7 +442,7 @@ async fn faults_begin_at_the_firmwares_time_and_end_after_theirs() {
     }
     let view = rig.session.view.borrow().clone();
     assert!(!view.vehicle.craft.gps_fix, "no solution for more than 2.5 s");
-    let active: Vec<_> = view.vehicle.world.faults.iter().map(|fault| fault.0).collect();
+    let active: Vec<_> = view.vehicle.world.faults.iter().map(|fault| <&str>::from(fault.kind)).collect();
     assert_eq!(active, ["fdm-jitter", "gps-loss"]);
     for _ in 0..200 {
         rig.state(10, 0.0, 0.0).await;
@@ -466,7 +471,7 @@ async fn a_lost_receiver_hears_no_script() {
         }
         rig.flown_ms().await;
         while let Ok(event) = rig.session.events.try_recv() {
-            lost |= matches!(event.kind, EventKind::Firmware(FirmwareEvent::RxLoss));
+            lost |= matches!(event.kind, SessionEvent::Vehicle(EventKind::Firmware(FirmwareEvent::RxLoss)));
         }
         assert_eq!(lost, on);
     }

@@ -11,8 +11,7 @@ use super::AppError;
 use crate::args::{DoorArgs, FlightArgs, PhysicsArgs};
 use crate::link::proto::fdm_link::FdmLinkConfig;
 use crate::link::{Desk, DoorKind, Doors, DoorsConfig, ExternalSimulator, MotorPort};
-use crate::session::Doorway;
-use crate::telemetry::DoorPlaces;
+use crate::session::{Doorway, EndpointAddresses};
 
 /// Requests that may wait for the session.
 const WAITING: usize = 256;
@@ -34,7 +33,7 @@ pub(super) struct Opened {
     /// The session's side.
     pub doorway: Doorway,
     /// Where they are.
-    pub places: DoorPlaces,
+    pub addresses: EndpointAddresses,
     /// What is wrong with some of them, as sentences.
     pub notices: Vec<String>,
 }
@@ -67,14 +66,14 @@ pub(super) async fn open(
     if let Some(address) = args.listen.filter(|address| !address.is_loopback()) {
         notices.push(format!("The doors listen on {address}: everybody on that network can fly this craft."));
     }
-    let places = DoorPlaces {
+    let addresses = EndpointAddresses {
         ws: doors.address(DoorKind::WebSocket),
         tcp: doors.address(DoorKind::Tcp),
         fdm: doors.address(DoorKind::Fdm),
         rc: doors.address(DoorKind::Rc),
     };
     let simulator = match physics.is_external() {
-        true => Some(simulator(args, physics, flight, places.fdm, &mut notices)?),
+        true => Some(simulator(args, physics, flight, addresses.fdm, &mut notices)?),
         false => None,
     };
     let desk = Desk::new(doors.restart_bell(), true);
@@ -82,7 +81,7 @@ pub(super) async fn open(
     let stop = CancellationToken::new();
     let keeper = tokio::spawn(keep(doors, view_tx, stop.clone()));
     let doorway = Doorway { requests, desk, views, simulator };
-    Ok(Some(Opened { doors: OpenDoors { stop, keeper }, doorway, places, notices }))
+    Ok(Some(Opened { doors: OpenDoors { stop, keeper }, doorway, addresses, notices }))
 }
 
 /// The link to the simulator that moves the craft.

@@ -16,7 +16,7 @@ use crate::plan::format::PlanFile;
 use crate::plan::review::Finding;
 use crate::plan::validate::check_plan;
 use crate::record::End;
-use crate::session::{Pacer, upload};
+use crate::session::{Event, Pacer, upload};
 use crate::signals::SimTime;
 use crate::storage::Store;
 use crate::vehicle::Vehicle;
@@ -42,9 +42,9 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, AppError> {
     let mut vehicle = setup::vehicle(&args.flight, &plan, &mut store, extras, &mut notices)?;
     vehicle.hands.inputs.clone_from(&args.stick);
     upload_plan(&mut vehicle, &plan.plan)?;
-    for notice in notices {
-        vehicle.notice(notice);
-    }
+    let mut first_events: Vec<Event> = Vec::new();
+    vehicle.drain_events(|event| first_events.push(event.into()));
+    first_events.extend(notices.into_iter().map(|notice| Event::notice(vehicle.time(), notice)));
     let options = FlightOptions {
         takeoff_m: args.takeoff_m(),
         timeout: SimTime::from_secs_f64(args.timeout_s()),
@@ -56,6 +56,9 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, AppError> {
         ))
     })?;
     let mut output = Output::open(args, flight.vehicle(), &plan)?;
+    for event in &first_events {
+        output.event(event)?;
+    }
     let (end, wall) = fly(flight, args.speed(), &mut output)?;
     let end_record = End {
         result: end.verdict.result.to_string(),
@@ -122,7 +125,7 @@ fn fly(mut flight: Flight, speed: f64, output: &mut Output) -> Result<(FlightEnd
         let due = pacer.due(started.elapsed(), SLICE);
         for _ in 0..due {
             let end = flight.tick(|report| {
-                if let Err(error) = output.report(&report) {
+                if let Err(error) = output.report(report) {
                     problem.get_or_insert(error);
                 }
             });

@@ -9,8 +9,7 @@ use super::{doors, signals};
 use crate::args::{OutputFile, ServeArgs, Speed};
 use crate::plan::format::PlanFile;
 use crate::record::{json, sentence};
-use crate::session::{self, Command, Handle, SessionConfig};
-use crate::telemetry::Event;
+use crate::session::{self, Command, Event, Handle, SessionConfig, SessionEvent};
 
 /// Altitude of the scripted pilot, which nobody starts here, m.
 const TAKEOFF_M: f64 = 10.0;
@@ -39,20 +38,26 @@ pub(super) fn run(args: &ServeArgs) -> Result<u8, AppError> {
         let stop = signals::stop()
             .map_err(|error| AppError::environment(format!("cannot listen for signals: {error}")))?;
         let opened = doors::open(&args.doors, &args.physics, &args.flight).await?;
+        let mut first_events = Vec::new();
         let (doors, doorway) = match opened {
             Some(opened) => {
                 notices.extend(opened.notices);
-                vehicle.doors_opened(opened.places);
+                first_events.push(SessionEvent::Endpoints(opened.addresses));
                 (Some(opened.doors), Some(opened.doorway))
             }
             None => (None, None),
         };
-        for notice in notices {
-            vehicle.notice(notice);
-        }
+        first_events.extend(notices.into_iter().map(SessionEvent::Notice));
         let speed = args.flight.speed.map_or(1.0, |Speed(speed)| speed);
-        let session = session::start(SessionConfig { vehicle, store, speed, takeoff_m: TAKEOFF_M, doorway })
-            .map_err(|error| AppError::environment(format!("cannot start a thread: {error}")))?;
+        let session = session::start(SessionConfig {
+            vehicle,
+            store,
+            speed,
+            takeoff_m: TAKEOFF_M,
+            doorway,
+            first_events,
+        })
+        .map_err(|error| AppError::environment(format!("cannot start a thread: {error}")))?;
         let outcome = report(session, &mut output, stop).await;
         if let Some(doors) = doors {
             doors.close().await;

@@ -11,7 +11,7 @@ use crate::args::{PlanArg, Speed, TuiArgs};
 use crate::firmware::cli;
 use crate::plan::builtin::{BuiltinPlan, DEMO};
 use crate::record::sentence;
-use crate::session::{self, SessionConfig};
+use crate::session::{self, SessionConfig, SessionEvent};
 use crate::ui::{self, CliHelp, Ending, OpenPlan, SessionLink, Theme, Tui, UiConfig};
 
 /// Altitude to which the `F` key climbs before it engages, m.
@@ -39,7 +39,7 @@ pub(super) fn run(args: &TuiArgs) -> Result<u8, AppError> {
     let faults = args.physics.fault.clone();
     let extras = Extras { faults, arm_assist: true, live, external, ..Extras::default() };
     notices.extend(args.physics.idle_options(&args.flight));
-    let mut vehicle = setup::vehicle(&args.flight, &plan, &mut store, extras, &mut notices)?;
+    let vehicle = setup::vehicle(&args.flight, &plan, &mut store, extras, &mut notices)?;
     let config = UiConfig {
         theme: Theme::from_environment(|name| std::env::var(name).ok()),
         cli: CliHelp { complete: |line| cli::complete(line).lines(line), hint: |line| cli::hint(line, None) },
@@ -54,20 +54,26 @@ pub(super) fn run(args: &TuiArgs) -> Result<u8, AppError> {
         .build()
         .map_err(problem)?;
     let ending = runtime.block_on(async {
+        let mut first_events = Vec::new();
         let (doors, doorway) = match doors::open(&args.doors, &args.physics, &args.flight).await? {
             Some(opened) => {
                 notices.extend(opened.notices);
-                vehicle.doors_opened(opened.places);
+                first_events.push(SessionEvent::Endpoints(opened.addresses));
                 (Some(opened.doors), Some(opened.doorway))
             }
             None => (None, None),
         };
-        for notice in notices {
-            vehicle.notice(notice);
-        }
+        first_events.extend(notices.into_iter().map(SessionEvent::Notice));
         let speed = args.flight.speed.map_or(1.0, |Speed(speed)| speed);
-        let session = session::start(SessionConfig { vehicle, store, speed, takeoff_m: TAKEOFF_M, doorway })
-            .map_err(|error| AppError::environment(format!("cannot start a thread: {error}")))?;
+        let session = session::start(SessionConfig {
+            vehicle,
+            store,
+            speed,
+            takeoff_m: TAKEOFF_M,
+            doorway,
+            first_events,
+        })
+        .map_err(|error| AppError::environment(format!("cannot start a thread: {error}")))?;
         let link = SessionLink { commands: session.commands, view: session.view, events: session.events };
         // Before the first frame: whoever sees it may already send one.
         let stop = signals::stop().map_err(problem)?;

@@ -55,7 +55,7 @@ fn fault_line(fault: &FaultInfo) -> String {
         (value, "") => format!(" ({value})"),
         (value, default) => format!(" ({value}; {default})"),
     };
-    format!("  {}{value}: {}\n", fault.name, fault.help)
+    format!("  {}{value}: {}\n", fault.name(), fault.help)
 }
 
 /// All switches of the world, for the long help of `--world`.

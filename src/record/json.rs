@@ -9,8 +9,9 @@ mod sample;
 
 use serde::Serialize;
 
+use crate::session::Event;
 use crate::signals::SimTime;
-use crate::telemetry::{Event, Snapshot};
+use crate::telemetry::Snapshot;
 
 use super::End;
 use super::number::{Decimals, Milli};

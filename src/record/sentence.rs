@@ -1,8 +1,9 @@
 //! The same events as plain sentences, for people: `fly` without `--json`, `serve`, the log.
 
 use crate::plan::{FlightPlan, WaypointType};
+use crate::session::{EndpointAddresses, Event, SessionEvent};
 use crate::telemetry::{
-    DisarmReason, DoorPlaces, Event, EventKind, FirmwareEvent, Guard, NavEvent, NavState, PlanSource,
+    DisarmReason, EventKind, FaultValue, FirmwareEvent, Guard, NavEvent, NavState, PlanSource,
 };
 
 /// `  12.4 s  Armed.`; `None` for the few events that only matter inside the craft.
@@ -13,30 +14,38 @@ pub fn line(event: &Event) -> Option<String> {
 
 /// The sentence without the time.
 #[must_use]
-pub fn text(kind: &EventKind) -> Option<String> {
+pub fn text(kind: &SessionEvent) -> Option<String> {
+    match kind {
+        SessionEvent::Vehicle(event) => vehicle(event),
+        SessionEvent::Endpoints(addresses) => Some(endpoints(addresses)),
+        SessionEvent::Notice(notice) => Some(sentence_end(notice)),
+    }
+}
+
+fn vehicle(kind: &EventKind) -> Option<String> {
     Some(match kind {
         EventKind::Boot { seed, rate_hz, airframe, live } => {
             let live = if *live { ", open to outside influence" } else { "" };
             format!("Booted: airframe {airframe}, {rate_hz} steps a second, seed {seed}{live}.")
         }
         EventKind::Firmware(event) => return firmware(event),
-        EventKind::Fault { name, on, value } => {
-            let value = if value.is_empty() { String::new() } else { format!(" {value}") };
-            format!("Fault {name}{value} {}.", if *on { "begins" } else { "ends" })
+        EventKind::Fault { kind, on, value } => {
+            let value = if *value == FaultValue::None { String::new() } else { format!(" {value}") };
+            format!("Fault {kind}{value} {}.", if *on { "begins" } else { "ends" })
         }
         EventKind::Contact { impact_mps } => format!("Ground contact at {impact_mps:.2} m/s."),
         EventKind::Touchdown { impact_mps, peak_mps2 } => {
             format!("Touchdown: came down at {impact_mps:.2} m/s, peak {peak_mps2:.1} m/s².")
         }
-        EventKind::Crash { cause } => format!("Crashed: {}", sentence_end(cause)),
-        EventKind::Doors(places) => doors(places),
-        EventKind::Notice(notice) => sentence_end(notice),
+        EventKind::Crash { cause } => format!("Crashed: {cause}."),
+        EventKind::Notice(notice) => notice.to_string(),
     })
 }
 
-fn doors(places: &DoorPlaces) -> String {
-    let named = [("ws", places.ws), ("tcp", places.tcp), ("udp fdm", places.fdm), ("udp rc", places.rc)];
-    let open = named.iter().filter_map(|(name, place)| place.map(|place| format!("{name} {place}")));
+fn endpoints(addresses: &EndpointAddresses) -> String {
+    let EndpointAddresses { ws, tcp, fdm, rc } = addresses;
+    let named = [("ws", ws), ("tcp", tcp), ("udp fdm", fdm), ("udp rc", rc)];
+    let open = named.iter().filter_map(|(name, address)| address.map(|address| format!("{name} {address}")));
     let open: Vec<_> = open.collect();
     if open.is_empty() { "No door is open.".to_owned() } else { format!("Doors open: {}.", open.join(", ")) }
 }
@@ -161,15 +170,16 @@ mod tests {
     use super::*;
     use crate::geo::LatLon;
     use crate::signals::SimTime;
-    use crate::telemetry::{GuardOp, Refusal};
+    use crate::telemetry::{FaultKind, GuardOp, Refusal};
 
     fn say(event: FirmwareEvent) -> String {
-        text(&EventKind::Firmware(event)).expect("a sentence")
+        vehicle(&EventKind::Firmware(event)).expect("a sentence")
     }
 
     #[test]
     fn lines_start_with_the_time() {
-        let event = Event { time: SimTime(12_400_000), kind: EventKind::Firmware(FirmwareEvent::Armed) };
+        let armed = EventKind::Firmware(FirmwareEvent::Armed);
+        let event = Event { time: SimTime(12_400_000), kind: SessionEvent::Vehicle(armed) };
         assert_eq!(line(&event).as_deref(), Some("   12.4 s  Armed."));
     }
 
@@ -211,13 +221,13 @@ mod tests {
 
     #[test]
     fn open_doors_are_listed() {
-        let places = DoorPlaces {
+        let addresses = EndpointAddresses {
             tcp: "127.0.0.1:5761".parse().ok(),
             rc: "127.0.0.1:9004".parse().ok(),
-            ..DoorPlaces::default()
+            ..EndpointAddresses::default()
         };
-        assert_eq!(doors(&places), "Doors open: tcp 127.0.0.1:5761, udp rc 127.0.0.1:9004.");
-        assert_eq!(doors(&DoorPlaces::default()), "No door is open.");
+        assert_eq!(endpoints(&addresses), "Doors open: tcp 127.0.0.1:5761, udp rc 127.0.0.1:9004.");
+        assert_eq!(endpoints(&EndpointAddresses::default()), "No door is open.");
     }
 
     #[test]
@@ -233,7 +243,7 @@ mod tests {
             let sentence = say(event);
             assert!(sentence.ends_with(['.', '?']), "{sentence}");
         }
-        let fault = EventKind::Fault { name: "gps-loss", on: true, value: String::new() };
-        assert_eq!(text(&fault).as_deref(), Some("Fault gps-loss begins."));
+        let fault = EventKind::Fault { kind: FaultKind::GpsLoss, on: true, value: FaultValue::None };
+        assert_eq!(vehicle(&fault).as_deref(), Some("Fault gps-loss begins."));
     }
 }

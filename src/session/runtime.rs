@@ -10,6 +10,7 @@ use tokio::sync::{mpsc, watch};
 
 use super::arming::ArmingWatch;
 use super::command::{CliOutput, Command, DoorView, PLACE_IS_OUTSIDE, SessionView, TIME_IS_OUTSIDE};
+use super::event::{Event, EventSender, SessionEvent};
 use super::pacer::Pacer;
 use super::simulator::{RC_REPEAT_US, Simulator};
 use crate::firmware::cli::{CliAction, CliReply, Interpreter, advice};
@@ -18,7 +19,7 @@ use crate::plan::FlightPlan;
 use crate::signals::RcSource;
 use crate::sim::WorldCommand;
 use crate::storage::Store;
-use crate::telemetry::{Event, LinkState};
+use crate::telemetry::LinkState;
 use crate::vehicle::Vehicle;
 
 /// Interval of published pictures.
@@ -58,6 +59,8 @@ pub struct SessionConfig {
     pub takeoff_m: f64,
     /// The doors, when any are open; they make the flight live.
     pub doorway: Option<Doorway>,
+    /// What is reported first, after the boot.
+    pub first_events: Vec<SessionEvent>,
 }
 
 /// The ends of a running session that the outside holds.
@@ -91,12 +94,15 @@ pub fn start(mut config: SessionConfig) -> std::io::Result<Handle> {
         simulator: simulator.map(|link| Simulator::new(link, trouble, Instant::now())),
         doorway: config.doorway,
         commands: command_rx,
-        events: event_tx,
+        events: EventSender::new(event_tx),
         arming: ArmingWatch::default(),
         changed: true,
         more_waits: false,
         quit: false,
     };
+    for event in config.first_events {
+        session.events.report(&mut session.vehicle, event);
+    }
     let (view_tx, view_rx) = watch::channel(session.view());
     let thread =
         std::thread::Builder::new().name("vehicle".to_owned()).spawn(move || session.run(&view_tx))?;
@@ -112,7 +118,7 @@ struct Session {
     simulator: Option<Simulator>,
     doorway: Option<Doorway>,
     commands: mpsc::Receiver<Command>,
-    events: mpsc::UnboundedSender<Event>,
+    events: EventSender,
     arming: ArmingWatch,
     /// Something other than time changed what the picture shows.
     changed: bool,
@@ -159,7 +165,7 @@ impl Session {
                 (self.changed, moved) = (false, false);
                 let seen = self.view();
                 if let Some(notice) = self.arming.look(&seen.vehicle) {
-                    self.vehicle.notice(notice);
+                    self.notice(notice);
                 }
                 view.send_replace(seen);
             }
@@ -210,9 +216,11 @@ impl Session {
     }
 
     fn flush_events(&mut self) {
-        let events = &self.events;
-        // The receiver is gone only while the program ends.
-        self.vehicle.drain_events(|event| drop(events.send(event)));
+        self.events.send_events_of(&mut self.vehicle);
+    }
+
+    fn notice(&mut self, text: impl Into<String>) {
+        self.events.notice(&mut self.vehicle, text);
     }
 
     fn take_commands(&mut self, now: Duration, bell: &mut Context<'_>) {
@@ -250,19 +258,21 @@ impl Session {
             let Attended { notices, restarted, fdm } =
                 doorway.desk.attend(request, firmware, &mut self.store, Instant::now());
             for notice in notices {
-                self.vehicle.notice(notice);
+                self.events.notice(&mut self.vehicle, notice);
             }
             if restarted {
                 self.console = Interpreter::default();
             }
             if let (Some((datagram, at)), Some(simulator)) = (fdm, &mut self.simulator) {
                 let speed = self.pacer.achieved();
-                flown += simulator.hear(datagram, at, &mut self.vehicle, &mut doorway.desk, speed);
+                flown +=
+                    simulator.hear(datagram, at, &mut self.vehicle, &mut doorway.desk, &self.events, speed);
             }
         }
         if let Some(simulator) = &mut self.simulator {
             let speed = self.pacer.achieved();
-            flown += simulator.watch(Instant::now(), &mut self.vehicle, &mut doorway.desk, speed);
+            flown +=
+                simulator.watch(Instant::now(), &mut self.vehicle, &mut doorway.desk, &self.events, speed);
             self.changed |= simulator.take_news();
         }
         let sources = self.vehicle.firmware().receiver().sources();
@@ -271,7 +281,10 @@ impl Session {
             // Otherwise the resting virtual sticks would disarm the craft the moment a script stops.
             self.vehicle.hands.cut = true;
             self.vehicle.hands.pilot = None;
-            self.vehicle.notice("RC comes from outside now: the virtual sticks are cut, x takes them back.");
+            self.events.notice(
+                &mut self.vehicle,
+                "RC comes from outside now: the virtual sticks are cut, x takes them back.",
+            );
         }
         if doorway.views.has_changed().unwrap_or(false) {
             doorway.views.mark_unchanged();
@@ -294,7 +307,7 @@ impl Session {
     fn carry_out(&mut self, command: Command, now: Duration) {
         match command {
             Command::Pause(_) | Command::Step(_) | Command::Speed(_) if self.simulator.is_some() => {
-                self.vehicle.notice(TIME_IS_OUTSIDE);
+                self.notice(TIME_IS_OUTSIDE);
             }
             Command::Pause(paused) => self.pacer.set_paused(paused, now),
             Command::Step(ticks) => {
@@ -305,7 +318,7 @@ impl Session {
             Command::Speed(speed) => self.pacer.set_speed(speed, now),
             Command::Sticks(frame) => {
                 if self.vehicle.hands.pilot.take().is_some() {
-                    self.vehicle.notice("The sticks were moved: the scripted pilot let go.");
+                    self.notice("The sticks were moved: the scripted pilot let go.");
                 }
                 self.vehicle.hands.sticks = frame;
             }
@@ -325,7 +338,7 @@ impl Session {
             Command::Pilot(on) => self.set_pilot(on),
             Command::ReturnHome => {
                 if let Err(refusal) = self.vehicle.firmware_mut().return_to_home() {
-                    self.vehicle.notice(format!("No return home: {}", refusal.sentence()));
+                    self.notice(format!("No return home: {}", refusal.sentence()));
                 }
             }
             Command::CancelReturn => self.vehicle.firmware_mut().cancel_command(),
@@ -341,12 +354,12 @@ impl Session {
     fn reset_craft(&mut self) {
         match &self.simulator {
             Some(simulator) if simulator.state() == LinkState::Flowing => {
-                self.vehicle.notice(PLACE_IS_OUTSIDE);
+                self.notice(PLACE_IS_OUTSIDE);
                 return;
             }
             Some(_) => {
                 self.vehicle.reset_craft();
-                self.vehicle.notice("The firmware started anew, disarmed; the simulator places the craft.");
+                self.notice("The firmware started anew, disarmed; the simulator places the craft.");
             }
             None => self.vehicle.reset_craft(),
         }
@@ -364,7 +377,7 @@ impl Session {
         if !on {
             self.vehicle.hands.pilot = None;
         } else if let Err(mode) = self.vehicle.start_pilot(self.takeoff_m) {
-            self.vehicle.notice(format!(
+            self.notice(format!(
                 "The scripted pilot needs a switch for {mode}: give it one with the CLI command aux."
             ));
         }
@@ -399,7 +412,7 @@ impl Session {
         if restarted && let Some(doorway) = &mut self.doorway {
             doorway.desk.after_restart(true, self.vehicle.firmware_mut());
         }
-        notices.into_iter().for_each(|notice| self.vehicle.notice(notice));
+        notices.into_iter().for_each(|notice| self.notice(notice));
         restarted
     }
 

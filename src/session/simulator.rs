@@ -8,6 +8,7 @@ use crate::link::proto::fdm::Refusal;
 use crate::link::proto::fdm_link::Verdict;
 use crate::link::{Desk, ExternalSimulator, Trouble};
 use crate::session::command::DoorView;
+use crate::session::event::EventSender;
 use crate::telemetry::LinkState;
 use crate::vehicle::Vehicle;
 
@@ -68,18 +69,26 @@ impl Simulator {
         at: Instant,
         vehicle: &mut Vehicle,
         desk: &mut Desk,
+        events: &EventSender,
         speed: f64,
     ) -> u64 {
         self.end_faults(at, vehicle);
         self.trouble.send(datagram, at, &vehicle.world().link_faults());
-        self.take_arrived(at, vehicle, desk, speed)
+        self.take_arrived(at, vehicle, desk, events, speed)
     }
 
     /// Flies on with what has arrived by `now`.
-    fn take_arrived(&mut self, now: Instant, vehicle: &mut Vehicle, desk: &mut Desk, speed: f64) -> u64 {
+    fn take_arrived(
+        &mut self,
+        now: Instant,
+        vehicle: &mut Vehicle,
+        desk: &mut Desk,
+        events: &EventSender,
+        speed: f64,
+    ) -> u64 {
         let mut ticks = 0;
         while let Some((datagram, at)) = self.trouble.arrived(now) {
-            ticks += self.fly(&datagram, at, vehicle, desk, speed);
+            ticks += self.fly(&datagram, at, vehicle, desk, events, speed);
         }
         ticks
     }
@@ -98,6 +107,7 @@ impl Simulator {
         at: Instant,
         vehicle: &mut Vehicle,
         desk: &mut Desk,
+        events: &EventSender,
         speed: f64,
     ) -> u64 {
         let received = self.link.receive(datagram, at, |sensors, ticks| {
@@ -113,17 +123,17 @@ impl Simulator {
             vehicle.firmware().control().motors
         });
         if let Verdict::Refused(refusal) = received.verdict {
-            self.tell_refusal(refusal, vehicle);
+            self.tell_refusal(refusal, vehicle, events);
             return 0;
         }
-        self.tell_return(at, vehicle);
+        self.tell_return(at, vehicle, events);
         if received.verdict == (Verdict::Resync { restarted: true }) {
             vehicle.reset_craft();
             desk.after_restart(false, vehicle.firmware_mut());
         }
         for notice in received.notices {
             self.news = true;
-            vehicle.notice(sentence(&notice.to_string()));
+            events.notice(vehicle, sentence(&notice.to_string()));
         }
         if let Some(pose) = received.pose {
             vehicle.see(pose);
@@ -132,14 +142,21 @@ impl Simulator {
     }
 
     /// Carries out what is due by time, as [`Self::hear`] does; gives the ticks.
-    pub(super) fn watch(&mut self, now: Instant, vehicle: &mut Vehicle, desk: &mut Desk, speed: f64) -> u64 {
+    pub(super) fn watch(
+        &mut self,
+        now: Instant,
+        vehicle: &mut Vehicle,
+        desk: &mut Desk,
+        events: &EventSender,
+        speed: f64,
+    ) -> u64 {
         self.end_faults(now, vehicle);
-        let ticks = self.take_arrived(now, vehicle, desk, speed);
+        let ticks = self.take_arrived(now, vehicle, desk, events, speed);
         self.link.poll(now);
         if self.state == LinkState::Flowing && self.link.state(now) == LinkState::Silent {
             self.state = LinkState::Silent;
             self.news = true;
-            vehicle.notice("The simulator is silent: time stands still until it speaks again.");
+            events.notice(vehicle, "The simulator is silent: time stands still until it speaks again.");
         }
         ticks
     }
@@ -149,24 +166,26 @@ impl Simulator {
         std::mem::take(&mut self.news)
     }
 
-    fn tell_return(&mut self, at: Instant, vehicle: &mut Vehicle) {
+    fn tell_return(&mut self, at: Instant, vehicle: &mut Vehicle, events: &EventSender) {
         let silence = at.saturating_duration_since(std::mem::replace(&mut self.heard, at));
         let before = std::mem::replace(&mut self.state, LinkState::Flowing);
         self.news |= before != LinkState::Flowing;
         match before {
-            LinkState::Waiting => vehicle.notice("The simulator speaks: the craft's time is its time now."),
-            LinkState::Silent => vehicle.notice(format!(
-                "The simulator speaks again after {:.1} s of silence.",
-                silence.as_secs_f64()
-            )),
+            LinkState::Waiting => {
+                events.notice(vehicle, "The simulator speaks: the craft's time is its time now.");
+            }
+            LinkState::Silent => events.notice(
+                vehicle,
+                format!("The simulator speaks again after {:.1} s of silence.", silence.as_secs_f64()),
+            ),
             LinkState::Flowing => {}
         }
     }
 
-    fn tell_refusal(&mut self, refusal: Refusal, vehicle: &mut Vehicle) {
+    fn tell_refusal(&mut self, refusal: Refusal, vehicle: &mut Vehicle, events: &EventSender) {
         if !self.told_refusals.contains(&refusal) && self.told_refusals.try_push(refusal).is_ok() {
             self.news = true;
-            vehicle.notice(format!("Packets of the simulator are refused: {refusal}."));
+            events.notice(vehicle, format!("Packets of the simulator are refused: {refusal}."));
         }
     }
 }

@@ -10,6 +10,7 @@ use super::fault::{FaultLink, ScheduledFault};
 use super::parse::{ParseError, number, number_in};
 use super::switches::Switches;
 use crate::did_you_mean;
+use crate::telemetry::FaultKind;
 
 /// Step rates that a world accepts, Hz. Each divides a hundredth of a second into whole steps.
 pub const STEP_RATES_HZ: [u32; 6] = [400, 500, 1000, 2000, 4000, 8000];
@@ -82,12 +83,12 @@ pub enum WorldError {
     #[error(
         "fault {0} acts on the link to an external simulator, and this flight has none; leave it out, or use betadeck serve --physics external"
     )]
-    NeedsLink(&'static str),
+    NeedsLink(FaultKind),
     /// A fault of the craft or the air when a simulator outside has both.
     #[error(
         "fault {0} is up to the simulator that moves the craft: make it there; here there are rx-loss, gps-loss, stall, fdm-loss, fdm-late, fdm-dup and fdm-jitter"
     )]
-    OutsideFault(&'static str),
+    OutsideFault(FaultKind),
     /// A change of the air, the sensors or the craft's place when a simulator outside has them.
     #[error(
         "the simulator makes the air and places the craft: change that there; here there are faults of the links (fault=NAME, end=NAME)"

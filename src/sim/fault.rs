@@ -9,6 +9,7 @@ use nalgebra::Vector3;
 
 use super::airframe::ROTORS;
 use super::config::{Wind, WorldError};
+use crate::telemetry::{FaultKind, FaultValue};
 
 mod board;
 mod effects;
@@ -48,7 +49,16 @@ impl fmt::Display for MotorNumber {
 
 /// The six directions of a push.
 #[derive(
-    Debug, Clone, Copy, PartialEq, Eq, strum::Display, strum::EnumString, strum::VariantNames, strum::EnumIter,
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    strum::Display,
+    strum::EnumString,
+    strum::IntoStaticStr,
+    strum::VariantNames,
+    strum::EnumIter,
 )]
 #[strum(serialize_all = "lowercase")]
 #[allow(missing_docs, reason = "the names say it")]
@@ -147,38 +157,78 @@ pub enum Fault {
 }
 
 impl Fault {
+    /// Which kind it is.
+    #[must_use]
+    pub fn kind(&self) -> FaultKind {
+        match self {
+            Self::RxLoss => FaultKind::RxLoss,
+            Self::RxJitter(_) => FaultKind::RxJitter,
+            Self::GpsLoss => FaultKind::GpsLoss,
+            Self::GpsGlitch(..) => FaultKind::GpsGlitch,
+            Self::GpsFreeze => FaultKind::GpsFreeze,
+            Self::GpsNoise(_) => FaultKind::GpsNoise,
+            Self::BaroDrift(_) => FaultKind::BaroDrift,
+            Self::BaroSpike(_) => FaultKind::BaroSpike,
+            Self::MagOff => FaultKind::MagOff,
+            Self::MagBias(_) => FaultKind::MagBias,
+            Self::GyroBias(_) => FaultKind::GyroBias,
+            Self::AccBias(_) => FaultKind::AccBias,
+            Self::ImuFreeze => FaultKind::ImuFreeze,
+            Self::Motor(..) => FaultKind::Motor,
+            Self::MotorStuck(..) => FaultKind::MotorStuck,
+            Self::PropImbalance(..) => FaultKind::PropImbalance,
+            Self::Vibration(_) => FaultKind::Vibration,
+            Self::Battery(_) => FaultKind::Battery,
+            Self::Gust(_) => FaultKind::Gust,
+            Self::Wind(_) => FaultKind::Wind,
+            Self::Push(..) => FaultKind::Push,
+            Self::Teleport(_) => FaultKind::Teleport,
+            Self::Payload(_) => FaultKind::Payload,
+            Self::Stall => FaultKind::Stall,
+            Self::FdmLoss(_) => FaultKind::FdmLoss,
+            Self::FdmLate(_) => FaultKind::FdmLate,
+            Self::FdmDup(_) => FaultKind::FdmDup,
+            Self::FdmJitter(_) => FaultKind::FdmJitter,
+        }
+    }
+
     /// The name on the command line.
     #[must_use]
     pub fn name(&self) -> &'static str {
-        match self {
-            Self::RxLoss => "rx-loss",
-            Self::RxJitter(_) => "rx-jitter",
-            Self::GpsLoss => "gps-loss",
-            Self::GpsGlitch(..) => "gps-glitch",
-            Self::GpsFreeze => "gps-freeze",
-            Self::GpsNoise(_) => "gps-noise",
-            Self::BaroDrift(_) => "baro-drift",
-            Self::BaroSpike(_) => "baro-spike",
-            Self::MagOff => "mag-off",
-            Self::MagBias(_) => "mag-bias",
-            Self::GyroBias(_) => "gyro-bias",
-            Self::AccBias(_) => "acc-bias",
-            Self::ImuFreeze => "imu-freeze",
-            Self::Motor(..) => "motor",
-            Self::MotorStuck(..) => "motor-stuck",
-            Self::PropImbalance(..) => "prop-imbalance",
-            Self::Vibration(_) => "vibration",
-            Self::Battery(_) => "battery",
-            Self::Gust(_) => "gust",
-            Self::Wind(_) => "wind",
-            Self::Push(..) => "push",
-            Self::Teleport(_) => "teleport",
-            Self::Payload(_) => "payload",
-            Self::Stall => "stall",
-            Self::FdmLoss(_) => "fdm-loss",
-            Self::FdmLate(_) => "fdm-late",
-            Self::FdmDup(_) => "fdm-dup",
-            Self::FdmJitter(_) => "fdm-jitter",
+        self.kind().into()
+    }
+
+    /// The value, for those who show it.
+    #[must_use]
+    pub fn value(&self) -> FaultValue {
+        match *self {
+            Self::RxLoss | Self::GpsLoss | Self::GpsFreeze | Self::MagOff | Self::ImuFreeze | Self::Stall => {
+                FaultValue::None
+            }
+            Self::RxJitter(value)
+            | Self::GpsNoise(value)
+            | Self::BaroDrift(value)
+            | Self::BaroSpike(value)
+            | Self::MagBias(value)
+            | Self::GyroBias(value)
+            | Self::AccBias(value)
+            | Self::Vibration(value)
+            | Self::Payload(value)
+            | Self::FdmLoss(value)
+            | Self::FdmLate(value)
+            | Self::FdmDup(value)
+            | Self::FdmJitter(value)
+            | Self::Battery(BatteryFault::Offset(value)) => FaultValue::Number(value),
+            Self::Battery(BatteryFault::CellOut) => FaultValue::CellOut,
+            Self::GpsGlitch(size, deg) => FaultValue::Bearing { size, deg },
+            Self::Motor(motor, value)
+            | Self::MotorStuck(motor, value)
+            | Self::PropImbalance(motor, value) => FaultValue::Motor { motor: motor.0, value },
+            Self::Gust(wind) | Self::Wind(wind) => {
+                FaultValue::Bearing { size: wind.speed_mps, deg: wind.from_deg }
+            }
+            Self::Push(impulse, direction) => FaultValue::Push { impulse, direction: direction.into() },
+            Self::Teleport(offset) => FaultValue::Offset(offset),
         }
     }
 
@@ -207,7 +257,7 @@ impl Fault {
     /// earlier.
     #[must_use]
     pub fn key(&self) -> FaultKey {
-        FaultKey { name: self.name(), motor: self.motor() }
+        FaultKey { kind: self.kind(), motor: self.motor() }
     }
 
     fn motor(&self) -> Option<MotorNumber> {
@@ -221,7 +271,7 @@ impl Fault {
 /// A kind of fault, for motor faults perhaps of one motor only.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FaultKey {
-    name: &'static str,
+    kind: FaultKind,
     motor: Option<MotorNumber>,
 }
 
@@ -229,41 +279,13 @@ impl FaultKey {
     /// Whether a fault is of this kind: without a motor, those of all motors are.
     #[must_use]
     pub fn covers(&self, fault: &Fault) -> bool {
-        self.name == fault.name() && (self.motor.is_none() || self.motor == fault.motor())
+        self.kind == fault.kind() && (self.motor.is_none() || self.motor == fault.motor())
     }
 }
 
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match *self {
-            Self::RxLoss | Self::GpsLoss | Self::GpsFreeze | Self::MagOff | Self::ImuFreeze | Self::Stall => {
-                Ok(())
-            }
-            Self::RxJitter(value)
-            | Self::GpsNoise(value)
-            | Self::BaroDrift(value)
-            | Self::BaroSpike(value)
-            | Self::MagBias(value)
-            | Self::GyroBias(value)
-            | Self::AccBias(value)
-            | Self::Vibration(value)
-            | Self::Payload(value)
-            | Self::FdmLoss(value)
-            | Self::FdmLate(value)
-            | Self::FdmDup(value)
-            | Self::FdmJitter(value)
-            | Self::Battery(BatteryFault::Offset(value)) => write!(f, "{value}"),
-            Self::Battery(BatteryFault::CellOut) => f.write_str("cell-out"),
-            Self::GpsGlitch(metres, bearing) => write!(f, "{metres}@{bearing}"),
-            Self::Motor(motor, value)
-            | Self::MotorStuck(motor, value)
-            | Self::PropImbalance(motor, value) => {
-                write!(f, "{motor}:{value}")
-            }
-            Self::Gust(wind) | Self::Wind(wind) => write!(f, "{wind}"),
-            Self::Push(impulse, direction) => write!(f, "{impulse},{direction}"),
-            Self::Teleport([north, east, up]) => write!(f, "{north},{east},{up}"),
-        }
+        self.value().fmt(f)
     }
 }
 
@@ -320,8 +342,8 @@ impl FaultLink {
     /// Whether a fault has something to act on.
     pub(super) fn allows(self, fault: &Fault) -> Result<(), WorldError> {
         match self {
-            Self::Embedded if fault.needs_link() => Err(WorldError::NeedsLink(fault.name())),
-            Self::External if !fault.is_on_the_way_in() => Err(WorldError::OutsideFault(fault.name())),
+            Self::Embedded if fault.needs_link() => Err(WorldError::NeedsLink(fault.kind())),
+            Self::External if !fault.is_on_the_way_in() => Err(WorldError::OutsideFault(fault.kind())),
             Self::Embedded | Self::External => Ok(()),
         }
     }

@@ -3,8 +3,9 @@
 use crate::signals::SimTime;
 
 use super::body::BodyState;
-use super::event::{CrashCause, WorldEventKind};
+use super::event::WorldEventKind;
 use super::ground::Touch;
+use crate::telemetry::CrashCause;
 
 /// A touch counts as the end of a flight after this long in the air, s, or this much clearance, m.
 const FLIGHT_S: f64 = 0.5;

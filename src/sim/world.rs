@@ -12,13 +12,14 @@ use super::battery::{Battery, motor_power_w};
 use super::body::{AirSample, BodyState, Loads, Plant};
 use super::command::{check_wind, in_range};
 use super::config::{Wind, WorldConfig, WorldError, step_us};
-use super::event::{CrashCause, DivergeCause, WorldEvent, WorldEventKind};
+use super::event::{WorldEvent, WorldEventKind};
 use super::fault::{ActiveFault, Effects, FaultBoard, FaultLink, LinkFaults, MAX_FAULTS};
 use super::ground::{FREE_FEET, Feet, Touch};
 use super::sensors::{Scene, Sensors};
 use super::switches::Switches;
 use super::touchdown::{GroundWatch, crash_cause};
 use super::truth::{BatteryTruth, Truth, level_attitude};
+use crate::telemetry::{CrashCause, DivergeCause};
 
 /// Most events that can wait to be taken; when nobody takes them, later ones are lost.
 const MAX_EVENTS: usize = 64;

@@ -1,9 +1,7 @@
 //! Everything that happens to the vehicle, with its time.
 
-use std::net::SocketAddr;
-
 use crate::signals::SimTime;
-use crate::telemetry::FirmwareEvent;
+use crate::telemetry::{FaultKind, FaultValue, FirmwareEvent};
 
 /// An event and when it happened.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,19 +23,19 @@ pub enum EventKind {
         rate_hz: u32,
         /// Name of the airframe.
         airframe: String,
-        /// Whether outside doors can influence the flight, so that it is not repeatable.
+        /// Whether other programs can influence the flight, so that it is not repeatable.
         live: bool,
     },
     /// The flight controller.
     Firmware(FirmwareEvent),
     /// A fault began or ended.
     Fault {
-        /// Its name.
-        name: &'static str,
+        /// Which.
+        kind: FaultKind,
         /// Whether it began.
         on: bool,
-        /// Its value as text.
-        value: String,
+        /// Its value.
+        value: FaultValue,
     },
     /// The craft touched the ground.
     Contact {
@@ -53,24 +51,67 @@ pub enum EventKind {
     },
     /// The craft crashed.
     Crash {
-        /// What went wrong, as a sentence.
-        cause: String,
+        /// What went wrong.
+        cause: CrashCause,
     },
-    /// The doors were opened.
-    Doors(Box<DoorPlaces>),
-    /// A notice for the user, as a sentence.
-    Notice(String),
+    /// Something else that the user should know.
+    Notice(VehicleNotice),
 }
 
-/// Where other programs reach the vehicle; `None` = that door is closed.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct DoorPlaces {
-    /// The websocket of the Betaflight App.
-    pub ws: Option<SocketAddr>,
-    /// Command line and MSP over TCP.
-    pub tcp: Option<SocketAddr>,
-    /// States from an external simulator, UDP.
-    pub fdm: Option<SocketAddr>,
-    /// RC from scripts, UDP.
-    pub rc: Option<SocketAddr>,
+/// How a craft was lost; `Display` ends a sentence.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum CrashCause {
+    /// It came down too fast, m/s.
+    HardLanding(f64),
+    /// It was moving sideways too fast when it touched, m/s.
+    SidewaysLanding(f64),
+    /// The hull touched the ground.
+    HullContact,
+}
+
+impl std::fmt::Display for CrashCause {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::HardLanding(speed) => write!(f, "hit the ground sinking at {speed:.1} m/s"),
+            Self::SidewaysLanding(speed) => write!(f, "touched the ground moving sideways at {speed:.1} m/s"),
+            Self::HullContact => f.write_str("the hull touched the ground"),
+        }
+    }
+}
+
+/// How an integration failed; `Display` ends a sentence.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::Display)]
+pub enum DivergeCause {
+    /// A number is not finite.
+    #[strum(to_string = "the state is not finite")]
+    NotFinite,
+    /// More than 100 km from home.
+    #[strum(to_string = "the craft is more than 100 km from home")]
+    Position,
+    /// Turning faster than 300 rad/s.
+    #[strum(to_string = "the craft turns faster than 300 rad/s")]
+    Rate,
+}
+
+/// What the vehicle itself has to say; `Display` is the sentence.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum VehicleNotice {
+    /// The firmware's last events of a step were lost: how many.
+    EventsLost(u32),
+    /// The simulation left the range where its numbers mean something.
+    Diverged(DivergeCause),
+    /// The craft was put back home.
+    BackHome,
+}
+
+impl std::fmt::Display for VehicleNotice {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::EventsLost(count) => {
+                write!(f, "Too many events of the firmware came between two steps; lost: the last {count}.")
+            }
+            Self::Diverged(cause) => write!(f, "The simulation diverged: {cause}."),
+            Self::BackHome => f.write_str("The craft is back home, undamaged and disarmed."),
+        }
+    }
 }

@@ -5,7 +5,7 @@
 use crate::geo::LatLon;
 use crate::plan::FlightPlan;
 use crate::signals::{RC_CHANNELS, RcSource, SimTime};
-use crate::telemetry::{ModeFlags, NavTelemetry};
+use crate::telemetry::{FaultKind, FaultValue, ModeFlags, NavTelemetry};
 
 /// The whole picture.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -200,6 +200,17 @@ pub struct WorldView {
     pub turbulence: &'static str,
     /// Sensor noise on.
     pub noise: bool,
-    /// Active faults: name, value as text, seconds left (`None` = to the end).
-    pub faults: Vec<(&'static str, String, Option<f64>)>,
+    /// Active faults.
+    pub faults: Vec<FaultView>,
+}
+
+/// A fault that is on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FaultView {
+    /// Which.
+    pub kind: FaultKind,
+    /// Its value.
+    pub value: FaultValue,
+    /// Seconds left; `None` = to the end.
+    pub left_s: Option<f64>,
 }

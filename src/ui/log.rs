@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 
+use crate::session::SessionEvent;
 use crate::signals::SimTime;
 use crate::telemetry::{DisarmReason, EventKind, FirmwareEvent, NavEvent, NavState};
 
@@ -28,12 +29,16 @@ pub enum Level {
 impl Level {
     /// How serious an event is.
     #[must_use]
-    pub fn of(kind: &EventKind) -> Self {
+    pub fn of(kind: &SessionEvent) -> Self {
         match kind {
-            EventKind::Boot { .. }
-            | EventKind::Contact { .. }
-            | EventKind::Doors(_)
-            | EventKind::Notice(_) => Self::Info,
+            SessionEvent::Vehicle(event) => Self::of_vehicle(event),
+            SessionEvent::Endpoints(_) | SessionEvent::Notice(_) => Self::Info,
+        }
+    }
+
+    fn of_vehicle(kind: &EventKind) -> Self {
+        match kind {
+            EventKind::Boot { .. } | EventKind::Contact { .. } | EventKind::Notice(_) => Self::Info,
             EventKind::Touchdown { .. } => Self::Good,
             EventKind::Fault { on, .. } => {
                 if *on {
@@ -141,7 +146,7 @@ mod tests {
 
     #[test]
     fn a_restart_that_was_asked_for_is_no_fault() {
-        let disarmed = |reason| Level::of(&EventKind::Firmware(FirmwareEvent::Disarmed(reason)));
+        let disarmed = |reason| Level::of_firmware(&FirmwareEvent::Disarmed(reason));
         assert_eq!(disarmed(DisarmReason::System), Level::Info);
         assert_eq!(disarmed(DisarmReason::Failsafe), Level::Fault);
     }

@@ -5,8 +5,8 @@ use std::time::Duration;
 use crossterm::event::{KeyEvent, MouseEvent};
 
 use crate::plan::FlightPlan;
+use crate::session::Event;
 use crate::session::command::{CliOutput, Command, SessionView};
-use crate::telemetry::Event;
 
 /// Something that happened outside.
 #[derive(Debug)]

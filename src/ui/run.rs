@@ -10,8 +10,7 @@ use futures_util::StreamExt as _;
 use tokio::sync::{mpsc, oneshot, watch};
 use tokio::time::sleep;
 
-use crate::session::{Command, SessionView};
-use crate::telemetry::Event;
+use crate::session::{Command, Event, SessionView};
 
 use super::message::{Effect, Msg};
 use super::state::{AppState, UiConfig};

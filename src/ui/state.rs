@@ -4,9 +4,9 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 use crate::plan::FlightPlan;
-use crate::session::SessionView;
+use crate::session::{Event, SessionEvent, SessionView};
 use crate::signals::{RcFrame, SimTime};
-use crate::telemetry::{Event, EventKind, FirmwareEvent, NavEvent, NavState};
+use crate::telemetry::{EventKind, FirmwareEvent, NavEvent, NavState};
 
 use super::cli::{CliHelp, CliState};
 use super::keymap::Keymap;
@@ -255,7 +255,16 @@ impl AppState {
         if !text.is_empty() {
             self.log.push(event.time, level, text.clone());
         }
-        match &event.kind {
+        if let SessionEvent::Vehicle(kind) = &event.kind {
+            self.follow_vehicle(event.time, kind);
+        }
+        if matches!(level, Level::Warn | Level::Fault) && !text.is_empty() {
+            self.notice = Some(Notice { text, level, at: self.now });
+        }
+    }
+
+    fn follow_vehicle(&mut self, time: SimTime, kind: &EventKind) {
+        match kind {
             EventKind::Boot { rate_hz, .. } => self.step_ticks = (rate_hz / 100).max(1),
             EventKind::Firmware(FirmwareEvent::Armed) => self.track.clear(),
             EventKind::Firmware(FirmwareEvent::Nav(NavEvent::State { from, to, wp, reason, .. })) => {
@@ -263,7 +272,7 @@ impl AppState {
                     self.transitions.pop_front();
                 }
                 self.transitions.push_back(Transition {
-                    time: event.time,
+                    time,
                     heard: self.now,
                     from: *from,
                     to: *to,
@@ -272,9 +281,6 @@ impl AppState {
                 });
             }
             _ => {}
-        }
-        if matches!(level, Level::Warn | Level::Fault) && !text.is_empty() {
-            self.notice = Some(Notice { text, level, at: self.now });
         }
     }
 

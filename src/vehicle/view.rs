@@ -5,8 +5,8 @@ use nalgebra::Vector2;
 use super::outside::Outside;
 use super::{EXTERNAL, Vehicle};
 use crate::geo::{LocalFrame, offset_to_degrees};
-use crate::sim::Noise;
-use crate::telemetry::snapshot::{EstimateView, Snapshot, TruthView, WorldView};
+use crate::sim::{Fault, Noise};
+use crate::telemetry::snapshot::{EstimateView, FaultView, Snapshot, TruthView, WorldView};
 
 impl Vehicle {
     /// A picture of the whole vehicle at this instant.
@@ -87,8 +87,9 @@ impl Vehicle {
 
     fn world_view(&self) -> WorldView {
         let status = self.world.status();
-        let faults =
-            status.faults.iter().map(|(fault, left)| (fault.name(), fault.to_string(), *left)).collect();
+        let view =
+            |&(fault, left_s): &(Fault, _)| FaultView { kind: fault.kind(), value: fault.value(), left_s };
+        let faults = status.faults.iter().map(view).collect();
         if self.outside.is_some() {
             let airframe = EXTERNAL.to_owned();
             return WorldView { airframe, turbulence: "none", faults, ..WorldView::default() };

@@ -2,7 +2,9 @@
 
 use crate::rig::{Rig, world};
 use betadeck::sim::{Fault, WorldCommand};
-use betadeck::telemetry::{AbortReason, Event, EventKind, FirmwareEvent, Mode, NavEvent, NavState, Refusal};
+use betadeck::telemetry::{
+    AbortReason, Event, EventKind, FirmwareEvent, Mode, NavEvent, NavState, Refusal, VehicleNotice,
+};
 
 const MISSION: &str = "
 waypoint insert 0 40.4640403 -79.5182000 2000 500 FLYOVER 0 ORBIT
@@ -115,6 +117,6 @@ fn mode_events_tell_every_change_and_nothing_else() {
     assert_eq!(told.last().copied(), Some(rig.vehicle.firmware().modes()));
     let counted = told.iter().filter(|modes| modes.has(Mode::Autopilot)).count();
     assert_eq!(counted, 1);
-    let lost = |event: &&Event| matches!(&event.kind, EventKind::Notice(text) if text.contains("were lost"));
+    let lost = |event: &&Event| matches!(&event.kind, EventKind::Notice(VehicleNotice::EventsLost(_)));
     assert_eq!(rig.events.iter().find(lost), None);
 }

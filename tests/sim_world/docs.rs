@@ -16,7 +16,8 @@ fn the_example_airframe_flies() {
 fn every_fault_switch_and_key_is_described() {
     let missing_key = Airframe::from_toml("").expect_err("nothing there");
     let keys = missing_key.problems.iter().filter_map(|problem| problem.text.split(' ').next());
-    let names = FAULTS.iter().map(|fault| fault.name).chain(SWITCHES.iter().map(|switch| switch.name));
+    let names =
+        FAULTS.iter().map(|fault| <&str>::from(fault.kind)).chain(SWITCHES.iter().map(|switch| switch.name));
     for name in names.chain(keys) {
         assert!(PHYSICS.contains(&format!("`{name}`")), "{name} is not described");
     }
@@ -25,7 +26,7 @@ fn every_fault_switch_and_key_is_described() {
         assert!(
             PHYSICS.contains(&format!("({default})")),
             "the default {default} of {} is not stated",
-            fault.name
+            fault.name()
         );
     }
 }

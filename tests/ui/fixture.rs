@@ -6,13 +6,13 @@ use std::time::Duration;
 
 use betadeck::geo::{LatLon, LocalFrame};
 use betadeck::plan::{FlightPlan, HoldPattern, Waypoint, WaypointType};
-use betadeck::session::SessionView;
 use betadeck::session::command::DoorView;
+use betadeck::session::{Event, SessionEvent, SessionView};
 use betadeck::signals::{RcFrame, RcSource, SimTime};
 use betadeck::telemetry::snapshot::{ModeRange, SettingsView, TruthView};
 use betadeck::telemetry::{
-    DisarmReason, Event, EventKind, FirmwareEvent, Guard, GuardOp, L1Mode, Mode, ModeFlags, NavEvent,
-    NavState, Snapshot,
+    DisarmReason, EventKind, FirmwareEvent, Guard, GuardOp, L1Mode, Mode, ModeFlags, NavEvent, NavState,
+    Snapshot,
 };
 use betadeck::ui::theme::{Charset, Palette};
 use betadeck::ui::{AppState, CliHelp, Msg, OpenPlan, Theme, UiConfig, update};
@@ -43,7 +43,8 @@ pub(crate) fn square() -> FlightPlan {
 
 /// An event as a short sentence.
 fn sentence(event: &Event) -> String {
-    match &event.kind {
+    let SessionEvent::Vehicle(kind) = &event.kind else { return format!("{:?}", event.kind) };
+    match kind {
         EventKind::Boot { airframe, .. } => format!("started, airframe {airframe}"),
         EventKind::Firmware(FirmwareEvent::Armed) => "armed (home 40.4635000,-79.5182000)".to_owned(),
         EventKind::Firmware(FirmwareEvent::Nav(NavEvent::State { from, to, wp, reason, .. })) => {
@@ -237,7 +238,7 @@ pub(crate) fn view(flight: &SimpleFlight) -> SessionView {
 
 /// Sends an event of this time.
 pub(crate) fn hear(state: &mut AppState, time_s: f64, kind: EventKind) {
-    let event = Event { time: SimTime::from_secs_f64(time_s), kind };
+    let event = Event { time: SimTime::from_secs_f64(time_s), kind: SessionEvent::Vehicle(kind) };
     update(state, Msg::Event(event));
 }
 

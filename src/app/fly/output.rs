@@ -9,6 +9,7 @@ use crate::args::{FlyArgs, OutputFile, PlanArg};
 use crate::flight::Report;
 use crate::plan::format::PlanFile;
 use crate::record::{End, GpxHeader, GpxWriter, TrackPoint, UtcSeconds, json, sentence};
+use crate::session::Event;
 use crate::signals::SimTime;
 use crate::vehicle::Vehicle;
 
@@ -48,12 +49,16 @@ impl Output {
     }
 
     /// Writes an event or a sample.
-    pub(super) fn report(&mut self, report: &Report) -> Result<(), AppError> {
-        let line = match report {
-            Report::Event(event) if self.json => json::event_line(event),
-            Report::Event(event) => sentence::line(event),
-            Report::Sample(vehicle) => Some(json::sample_line(&vehicle.snapshot())),
-        };
+    pub(super) fn report(&mut self, report: Report) -> Result<(), AppError> {
+        match report {
+            Report::Event(event) => self.event(&event.into()),
+            Report::Sample(vehicle) => self.line(&json::sample_line(&vehicle.snapshot())),
+        }
+    }
+
+    /// Writes an event.
+    pub(super) fn event(&mut self, event: &Event) -> Result<(), AppError> {
+        let line = if self.json { json::event_line(event) } else { sentence::line(event) };
         line.map_or(Ok(()), |line| self.line(&line))
     }
 

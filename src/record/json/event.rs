@@ -7,7 +7,8 @@ use serde::Serialize;
 
 use super::super::number::{Decimals, Milli};
 use crate::plan::{FlightPlan, WaypointType};
-use crate::telemetry::{DoorPlaces, EventKind, FirmwareEvent, Guard, NavEvent, PlanSource, Refusal};
+use crate::session::{EndpointAddresses, SessionEvent};
+use crate::telemetry::{EventKind, FaultValue, FirmwareEvent, Guard, NavEvent, PlanSource, Refusal};
 
 /// A number of degrees with the resolution of plans: 1e-7.
 type Degrees = Decimals<7>;
@@ -27,12 +28,12 @@ pub(super) enum Fields<'a> {
     On { on: bool },
     Geofence { distance_m: Milli, limit_m: Milli, action: &'a str },
     Failsafe { policy: Option<&'a str>, stage: u8, procedure: Option<&'a str> },
-    Fault { name: &'a str, on: bool, value: Option<&'a str> },
+    Fault { name: &'static str, on: bool, value: Option<String> },
     Contact { impact_mps: Milli },
     Touchdown { impact_mps: Milli, peak_mps2: Milli },
-    Crash { cause: &'a str },
+    Crash { cause: String },
     Doors { ws: Option<SocketAddr>, tcp: Option<SocketAddr>, fdm: Option<SocketAddr>, rc: Option<SocketAddr> },
-    Notice { text: &'a str },
+    Notice { text: Cow<'a, str> },
 }
 
 /// A state transition.
@@ -71,16 +72,26 @@ pub(super) struct PlanWaypoint {
 
 impl<'a> Fields<'a> {
     /// Name and fields of an event; `None` when it has no line.
-    pub(super) fn of(kind: &'a EventKind) -> Option<(&'static str, Self)> {
+    pub(super) fn of(kind: &'a SessionEvent) -> Option<(&'static str, Self)> {
+        Some(match kind {
+            SessionEvent::Vehicle(event) => return Self::of_vehicle(event),
+            SessionEvent::Endpoints(EndpointAddresses { ws, tcp, fdm, rc }) => {
+                ("doors", Self::Doors { ws: *ws, tcp: *tcp, fdm: *fdm, rc: *rc })
+            }
+            SessionEvent::Notice(text) => ("notice", Self::Notice { text: text.into() }),
+        })
+    }
+
+    fn of_vehicle(kind: &'a EventKind) -> Option<(&'static str, Self)> {
         Some(match kind {
             EventKind::Boot { seed, rate_hz, airframe, live } => {
                 let version = env!("CARGO_PKG_VERSION");
                 ("boot", Self::Boot { version, seed: *seed, rate: *rate_hz, airframe, live: *live })
             }
             EventKind::Firmware(event) => return Self::of_firmware(event),
-            EventKind::Fault { name, on, value } => {
-                let value = (!value.is_empty()).then_some(value.as_str());
-                ("fault", Self::Fault { name, on: *on, value })
+            EventKind::Fault { kind, on, value } => {
+                let value = (*value != FaultValue::None).then(|| value.to_string());
+                ("fault", Self::Fault { name: kind.into(), on: *on, value })
             }
             EventKind::Contact { impact_mps } => {
                 ("contact", Self::Contact { impact_mps: Decimals(*impact_mps) })
@@ -89,12 +100,8 @@ impl<'a> Fields<'a> {
                 let (impact_mps, peak_mps2) = (Decimals(*impact_mps), Decimals(*peak_mps2));
                 ("touchdown", Self::Touchdown { impact_mps, peak_mps2 })
             }
-            EventKind::Crash { cause } => ("crash", Self::Crash { cause }),
-            EventKind::Doors(places) => {
-                let DoorPlaces { ws, tcp, fdm, rc } = **places;
-                ("doors", Self::Doors { ws, tcp, fdm, rc })
-            }
-            EventKind::Notice(text) => ("notice", Self::Notice { text }),
+            EventKind::Crash { cause } => ("crash", Self::Crash { cause: cause.to_string() }),
+            EventKind::Notice(notice) => ("notice", Self::Notice { text: notice.to_string().into() }),
         })
     }
 
@@ -116,7 +123,7 @@ impl<'a> Fields<'a> {
                 ("failsafe", Self::Failsafe { policy, stage: *stage, procedure })
             }
             FirmwareEvent::Nav(event) => return Self::of_nav(event),
-            FirmwareEvent::Notice(text) => ("notice", Self::Notice { text }),
+            FirmwareEvent::Notice(text) => ("notice", Self::Notice { text: (*text).into() }),
         })
     }
 
@@ -194,11 +201,16 @@ mod tests {
     use super::*;
     use crate::geo::LatLon;
     use crate::plan::Waypoint;
+    use crate::session::Event;
     use crate::signals::SimTime;
-    use crate::telemetry::{AbortReason, DisarmReason, Event, GuardOp, Mode, ModeFlags, NavState};
+    use crate::telemetry::{AbortReason, DisarmReason, FaultKind, GuardOp, Mode, ModeFlags, NavState};
+
+    fn session_line(kind: SessionEvent) -> String {
+        event_line(&Event { time: SimTime(12_340_000), kind }).expect("a line")
+    }
 
     fn line(kind: EventKind) -> String {
-        event_line(&Event { time: SimTime(12_340_000), kind }).expect("a line")
+        session_line(SessionEvent::Vehicle(kind))
     }
 
     fn firmware(event: FirmwareEvent) -> String {
@@ -229,24 +241,28 @@ mod tests {
             r#"{"t":12.34,"event":"failsafe","policy":"LAND","stage":2,"procedure":"LAND"}"#
         );
         assert_eq!(
-            line(EventKind::Fault { name: "motor", on: true, value: "2:0.8".to_owned() }),
+            line(EventKind::Fault {
+                kind: FaultKind::Motor,
+                on: true,
+                value: FaultValue::Motor { motor: 2, value: 0.8 }
+            }),
             r#"{"t":12.34,"event":"fault","name":"motor","on":true,"value":"2:0.8"}"#
         );
         assert_eq!(
             line(EventKind::Touchdown { impact_mps: 0.47, peak_mps2: 43.123_456 }),
             r#"{"t":12.34,"event":"touchdown","impact_mps":0.47,"peak_mps2":43.123}"#
         );
-        let places = DoorPlaces {
+        let places = EndpointAddresses {
             ws: "127.0.0.1:6761".parse().ok(),
             rc: "[::1]:9004".parse().ok(),
-            ..DoorPlaces::default()
+            ..EndpointAddresses::default()
         };
         assert_eq!(
-            line(EventKind::Doors(Box::new(places))),
+            session_line(SessionEvent::Endpoints(places)),
             r#"{"t":12.34,"event":"doors","ws":"127.0.0.1:6761","tcp":null,"fdm":null,"rc":"[::1]:9004"}"#
         );
         assert_eq!(
-            line(EventKind::Notice("a \"b\"".to_owned())),
+            session_line(SessionEvent::Notice("a \"b\"".to_owned())),
             r#"{"t":12.34,"event":"notice","text":"a \"b\""}"#
         );
     }
@@ -304,7 +320,7 @@ mod tests {
 
     #[test]
     fn the_navigators_disarm_request_has_no_line_of_its_own() {
-        let kind = EventKind::Firmware(FirmwareEvent::Nav(NavEvent::Disarm));
+        let kind = SessionEvent::Vehicle(EventKind::Firmware(FirmwareEvent::Nav(NavEvent::Disarm)));
         assert_eq!(event_line(&Event { time: SimTime::ZERO, kind }), None);
     }
 }

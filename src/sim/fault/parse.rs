@@ -7,14 +7,15 @@ use strum::VariantNames;
 use crate::did_you_mean;
 use crate::sim::config::Wind;
 use crate::sim::parse::{ParseError, number, number_in};
+use crate::telemetry::FaultKind;
 
 use super::{BatteryFault, Direction, Fault, FaultKey, FaultStart, MotorNumber, ScheduledFault};
 
 /// One kind of fault: name, form of its value, meaning.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FaultInfo {
-    /// Name before the first `@`.
-    pub name: &'static str,
+    /// Which; its name stands before the first `@`.
+    pub kind: FaultKind,
     /// What VALUE looks like; empty when there is none.
     pub value: &'static str,
     /// VALUE when it is left out; empty when there is none or it must be given.
@@ -24,6 +25,12 @@ pub struct FaultInfo {
 }
 
 impl FaultInfo {
+    /// Name before the first `@`.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        self.kind.into()
+    }
+
     /// Whether the fault acts on the link to an external simulator.
     #[must_use]
     pub fn needs_link(&self) -> bool {
@@ -31,45 +38,55 @@ impl FaultInfo {
     }
 }
 
-const fn info(
-    name: &'static str,
-    value: &'static str,
-    default: &'static str,
-    help: &'static str,
-) -> FaultInfo {
-    FaultInfo { name, value, default, help }
+const fn info(kind: FaultKind, value: &'static str, default: &'static str, help: &'static str) -> FaultInfo {
+    FaultInfo { kind, value, default, help }
 }
 
 /// All faults, for parsing, help and completion.
 pub const FAULTS: [FaultInfo; 28] = [
-    info("rx-loss", "", "", "RC frames stop"),
-    info("rx-jitter", "fraction 0 to 1", "0.5", "RC frames are dropped at random"),
-    info("gps-loss", "", "", "no GPS solution, no satellites"),
-    info("gps-glitch", "METRES@BEARING", "30@90", "GPS position shifted, velocity honest"),
-    info("gps-freeze", "", "", "the same GPS solution repeated"),
-    info("gps-noise", "factor 0 to 1000", "5", "all GPS errors times a factor"),
-    info("baro-drift", "Pa/s, -1000 to 1000", "1", "pressure ramps"),
-    info("baro-spike", "Pa, -100000 to 100000", "100", "one-sample pressure spikes, one a second"),
-    info("mag-off", "", "", "no magnetometer samples"),
-    info("mag-bias", "degrees, -180 to 180", "20", "magnetic heading off, clockwise positive"),
-    info("gyro-bias", "°/s, -2000 to 2000", "2", "step on the gyro's x axis"),
-    info("acc-bias", "m/s², -150 to 150", "0.3", "step on the accelerometer's x axis"),
-    info("imu-freeze", "", "", "the last inertial sample repeated"),
-    info("motor", "MOTOR:EFFICIENCY, 1 to 4 : 0 to 1", "2:0.8", "a weak or dead motor"),
-    info("motor-stuck", "MOTOR:COMMAND, 1 to 4 : 0 to 1", "", "a motor's command frozen"),
-    info("prop-imbalance", "MOTOR:M/S², 1 to 4 : 0 to 100", "2:2", "an unbalanced propeller shakes the IMU"),
-    info("vibration", "m/s² rms at hover, 0 to 50", "0.3", "accelerometer vibration"),
-    info("battery", "volts, -100 to 100, or cell-out", "-1", "voltage offset, or one cell short"),
-    info("gust", "M/S@FROM, 0 to 60", "8@0", "one gust, rising and falling as 1 − cos"),
-    info("wind", "M/S@FROM, 0 to 60", "", "another mean wind, over 2 s"),
-    info("push", "N·s,DIRECTION (north, east, south, west, up, down), 0 to 1000", "0.5,up", "one impulse"),
-    info("teleport", "NORTH,EAST,UP in metres, -10000 to 10000", "", "moves the craft, velocity kept"),
-    info("payload", "kg, 0 to 100", "", "a weight below the craft"),
-    info("stall", "", "", "external link: the simulator stops sending"),
-    info("fdm-loss", "fraction 0 to 1", "0.2", "external link: packets lost"),
-    info("fdm-late", "ms, 0 to 10000", "50", "external link: packets late"),
-    info("fdm-dup", "fraction 0 to 1", "0.2", "external link: packets doubled"),
-    info("fdm-jitter", "ms, 0 to 10000", "5", "external link: packets late at random"),
+    info(FaultKind::RxLoss, "", "", "RC frames stop"),
+    info(FaultKind::RxJitter, "fraction 0 to 1", "0.5", "RC frames are dropped at random"),
+    info(FaultKind::GpsLoss, "", "", "no GPS solution, no satellites"),
+    info(FaultKind::GpsGlitch, "METRES@BEARING", "30@90", "GPS position shifted, velocity honest"),
+    info(FaultKind::GpsFreeze, "", "", "the same GPS solution repeated"),
+    info(FaultKind::GpsNoise, "factor 0 to 1000", "5", "all GPS errors times a factor"),
+    info(FaultKind::BaroDrift, "Pa/s, -1000 to 1000", "1", "pressure ramps"),
+    info(FaultKind::BaroSpike, "Pa, -100000 to 100000", "100", "one-sample pressure spikes, one a second"),
+    info(FaultKind::MagOff, "", "", "no magnetometer samples"),
+    info(FaultKind::MagBias, "degrees, -180 to 180", "20", "magnetic heading off, clockwise positive"),
+    info(FaultKind::GyroBias, "°/s, -2000 to 2000", "2", "step on the gyro's x axis"),
+    info(FaultKind::AccBias, "m/s², -150 to 150", "0.3", "step on the accelerometer's x axis"),
+    info(FaultKind::ImuFreeze, "", "", "the last inertial sample repeated"),
+    info(FaultKind::Motor, "MOTOR:EFFICIENCY, 1 to 4 : 0 to 1", "2:0.8", "a weak or dead motor"),
+    info(FaultKind::MotorStuck, "MOTOR:COMMAND, 1 to 4 : 0 to 1", "", "a motor's command frozen"),
+    info(
+        FaultKind::PropImbalance,
+        "MOTOR:M/S², 1 to 4 : 0 to 100",
+        "2:2",
+        "an unbalanced propeller shakes the IMU",
+    ),
+    info(FaultKind::Vibration, "m/s² rms at hover, 0 to 50", "0.3", "accelerometer vibration"),
+    info(FaultKind::Battery, "volts, -100 to 100, or cell-out", "-1", "voltage offset, or one cell short"),
+    info(FaultKind::Gust, "M/S@FROM, 0 to 60", "8@0", "one gust, rising and falling as 1 − cos"),
+    info(FaultKind::Wind, "M/S@FROM, 0 to 60", "", "another mean wind, over 2 s"),
+    info(
+        FaultKind::Push,
+        "N·s,DIRECTION (north, east, south, west, up, down), 0 to 1000",
+        "0.5,up",
+        "one impulse",
+    ),
+    info(
+        FaultKind::Teleport,
+        "NORTH,EAST,UP in metres, -10000 to 10000",
+        "",
+        "moves the craft, velocity kept",
+    ),
+    info(FaultKind::Payload, "kg, 0 to 100", "", "a weight below the craft"),
+    info(FaultKind::Stall, "", "", "external link: the simulator stops sending"),
+    info(FaultKind::FdmLoss, "fraction 0 to 1", "0.2", "external link: packets lost"),
+    info(FaultKind::FdmLate, "ms, 0 to 10000", "50", "external link: packets late"),
+    info(FaultKind::FdmDup, "fraction 0 to 1", "0.2", "external link: packets doubled"),
+    info(FaultKind::FdmJitter, "ms, 0 to 10000", "5", "external link: packets late at random"),
 ];
 
 /// Longest time that can be asked for, s: a century, so that microseconds never overflow.
@@ -155,15 +172,15 @@ impl FromStr for FaultKey {
         if motor.is_some() && !info.value.starts_with("MOTOR") {
             return Err(error(format!("{name} is not a fault of one motor; write {name} alone")));
         }
-        Ok(Self { name: info.name, motor })
+        Ok(Self { kind: info.kind, motor })
     }
 }
 
 fn find(name: &str) -> Result<&'static FaultInfo, String> {
-    FAULTS.iter().find(|info| info.name == name).ok_or_else(|| {
-        let hint = did_you_mean::suffix(name, FAULTS.map(|info| info.name));
+    FAULTS.iter().find(|info| info.name() == name).ok_or_else(|| {
+        let hint = did_you_mean::suffix(name, FAULTS.map(|info| info.name()));
         // Those of the external link are of no use to most flights.
-        let names = FAULTS.iter().filter(|info| !info.needs_link()).map(|info| info.name);
+        let names = FAULTS.iter().filter(|info| !info.needs_link()).map(FaultInfo::name);
         format!("there is no fault {name:?}{hint}; there are {}", names.collect::<Vec<_>>().join(", "))
     })
 }
@@ -171,54 +188,54 @@ fn find(name: &str) -> Result<&'static FaultInfo, String> {
 fn parse_value(info: &FaultInfo, value: Option<&str>) -> Result<Fault, String> {
     let given = value.map(str::trim).filter(|value| !value.is_empty());
     if info.value.is_empty() && given.is_some() {
-        return Err(format!("{} has no value", info.name));
+        return Err(format!("{} has no value", info.name()));
     }
     let text = given.unwrap_or(info.default);
     if !info.value.is_empty() && text.is_empty() {
-        return Err(format!("the value of {} is missing: {}", info.name, info.value));
+        return Err(format!("the value of {} is missing: {}", info.name(), info.value));
     }
-    build(info.name, text)
-        .map_err(|problem| format!("{problem}; the value of {} is {}", info.name, info.value))
+    build(info.kind, text)
+        .map_err(|problem| format!("{problem}; the value of {} is {}", info.name(), info.value))
 }
 
-fn build(name: &str, text: &str) -> Result<Fault, String> {
+fn build(kind: FaultKind, text: &str) -> Result<Fault, String> {
     let range = |min, max| number_in("value", text, min, max);
-    Ok(match name {
-        "rx-loss" => Fault::RxLoss,
-        "rx-jitter" => Fault::RxJitter(range(0.0, 1.0)?),
-        "gps-loss" => Fault::GpsLoss,
-        "gps-glitch" => {
+    Ok(match kind {
+        FaultKind::RxLoss => Fault::RxLoss,
+        FaultKind::RxJitter => Fault::RxJitter(range(0.0, 1.0)?),
+        FaultKind::GpsLoss => Fault::GpsLoss,
+        FaultKind::GpsGlitch => {
             let (metres, bearing) = text.split_once('@').ok_or("the bearing is missing")?;
             let metres = number_in("distance", metres, -100_000.0, 100_000.0)?;
             Fault::GpsGlitch(metres, number("bearing", bearing)?.rem_euclid(360.0))
         }
-        "gps-freeze" => Fault::GpsFreeze,
-        "gps-noise" => Fault::GpsNoise(range(0.0, 1000.0)?),
-        "baro-drift" => Fault::BaroDrift(range(-1000.0, 1000.0)?),
-        "baro-spike" => Fault::BaroSpike(range(-100_000.0, 100_000.0)?),
-        "mag-off" => Fault::MagOff,
-        "mag-bias" => Fault::MagBias(range(-180.0, 180.0)?),
-        "gyro-bias" => Fault::GyroBias(range(-2000.0, 2000.0)?),
-        "acc-bias" => Fault::AccBias(range(-150.0, 150.0)?),
-        "imu-freeze" => Fault::ImuFreeze,
-        "motor" => {
+        FaultKind::GpsFreeze => Fault::GpsFreeze,
+        FaultKind::GpsNoise => Fault::GpsNoise(range(0.0, 1000.0)?),
+        FaultKind::BaroDrift => Fault::BaroDrift(range(-1000.0, 1000.0)?),
+        FaultKind::BaroSpike => Fault::BaroSpike(range(-100_000.0, 100_000.0)?),
+        FaultKind::MagOff => Fault::MagOff,
+        FaultKind::MagBias => Fault::MagBias(range(-180.0, 180.0)?),
+        FaultKind::GyroBias => Fault::GyroBias(range(-2000.0, 2000.0)?),
+        FaultKind::AccBias => Fault::AccBias(range(-150.0, 150.0)?),
+        FaultKind::ImuFreeze => Fault::ImuFreeze,
+        FaultKind::Motor => {
             let (motor, efficiency) = motor_and(text, "efficiency", 1.0)?;
             Fault::Motor(motor, efficiency)
         }
-        "motor-stuck" => {
+        FaultKind::MotorStuck => {
             let (motor, command) = motor_and(text, "command", 1.0)?;
             Fault::MotorStuck(motor, command)
         }
-        "prop-imbalance" => {
+        FaultKind::PropImbalance => {
             let (motor, shake) = motor_and(text, "acceleration", 100.0)?;
             Fault::PropImbalance(motor, shake)
         }
-        "vibration" => Fault::Vibration(range(0.0, 50.0)?),
-        "battery" if text == "cell-out" => Fault::Battery(BatteryFault::CellOut),
-        "battery" => Fault::Battery(BatteryFault::Offset(range(-100.0, 100.0)?)),
-        "gust" => Fault::Gust(text.parse::<Wind>().map_err(|error| error.to_string())?),
-        "wind" => Fault::Wind(text.parse::<Wind>().map_err(|error| error.to_string())?),
-        "push" => {
+        FaultKind::Vibration => Fault::Vibration(range(0.0, 50.0)?),
+        FaultKind::Battery if text == "cell-out" => Fault::Battery(BatteryFault::CellOut),
+        FaultKind::Battery => Fault::Battery(BatteryFault::Offset(range(-100.0, 100.0)?)),
+        FaultKind::Gust => Fault::Gust(text.parse::<Wind>().map_err(|error| error.to_string())?),
+        FaultKind::Wind => Fault::Wind(text.parse::<Wind>().map_err(|error| error.to_string())?),
+        FaultKind::Push => {
             let (impulse, direction) = text.split_once([',', ' ', '@']).ok_or("the direction is missing")?;
             let direction: Direction = direction.trim().parse().map_err(|_| {
                 let hint = did_you_mean::suffix(direction, Direction::VARIANTS.iter().copied());
@@ -226,7 +243,7 @@ fn build(name: &str, text: &str) -> Result<Fault, String> {
             })?;
             Fault::Push(number_in("impulse", impulse, 0.0, 1000.0)?, direction)
         }
-        "teleport" => {
+        FaultKind::Teleport => {
             let parts: Vec<&str> = text.split(',').collect();
             let [north, east, up] = parts[..] else {
                 return Err("three numbers are needed; a teleport has no duration, so write \
@@ -236,13 +253,12 @@ fn build(name: &str, text: &str) -> Result<Fault, String> {
             let metres = |name, text| number_in(name, text, -10_000.0, 10_000.0);
             Fault::Teleport([metres("north", north)?, metres("east", east)?, metres("up", up)?])
         }
-        "payload" => Fault::Payload(range(0.0, 100.0)?),
-        "stall" => Fault::Stall,
-        "fdm-loss" => Fault::FdmLoss(range(0.0, 1.0)?),
-        "fdm-late" => Fault::FdmLate(range(0.0, 10_000.0)?),
-        "fdm-dup" => Fault::FdmDup(range(0.0, 1.0)?),
-        "fdm-jitter" => Fault::FdmJitter(range(0.0, 10_000.0)?),
-        _ => return Err(format!("there is no fault {name}")),
+        FaultKind::Payload => Fault::Payload(range(0.0, 100.0)?),
+        FaultKind::Stall => Fault::Stall,
+        FaultKind::FdmLoss => Fault::FdmLoss(range(0.0, 1.0)?),
+        FaultKind::FdmLate => Fault::FdmLate(range(0.0, 10_000.0)?),
+        FaultKind::FdmDup => Fault::FdmDup(range(0.0, 1.0)?),
+        FaultKind::FdmJitter => Fault::FdmJitter(range(0.0, 10_000.0)?),
     })
 }
 
@@ -286,15 +302,15 @@ mod tests {
     #[test]
     fn every_fault_of_the_table_parses_and_prints_back() {
         for info in FAULTS {
-            let value = match info.name {
+            let value = match info.name() {
                 "motor-stuck" => "3:0.5",
                 "wind" => "8@270",
                 "teleport" => "1,-2,3",
                 "payload" => "0.1",
                 _ => info.default,
             };
-            let fault = Fault::parse(info.name, Some(value)).unwrap();
-            assert_eq!(fault.name(), info.name);
+            let fault = Fault::parse(info.name(), Some(value)).unwrap();
+            assert_eq!(fault.name(), info.name());
             assert_eq!(fault.to_string(), value);
             for for_s in [None, Some(2.5)] {
                 if for_s.is_some() && fault.is_instant() {
@@ -332,9 +348,9 @@ mod tests {
     #[test]
     fn link_faults_are_known_and_not_offered() {
         for info in &FAULTS {
-            let fault = build(info.name, if info.default.is_empty() { "1" } else { info.default });
+            let fault = build(info.kind, if info.default.is_empty() { "1" } else { info.default });
             if let Ok(fault) = fault {
-                assert_eq!(fault.needs_link(), info.needs_link(), "{}", info.name);
+                assert_eq!(fault.needs_link(), info.needs_link(), "{}", info.name());
             }
         }
         let offered = "banana@1".parse::<ScheduledFault>().unwrap_err().to_string();
@@ -348,7 +364,7 @@ mod tests {
         #[test]
         fn any_text_is_read_or_refused_without_panic(text in ".{0,40}", name in 0usize..FAULTS.len()) {
             let _ = text.parse::<ScheduledFault>();
-            let _ = format!("{}@{text}", FAULTS[name].name).parse::<ScheduledFault>();
+            let _ = format!("{}@{text}", FAULTS[name].name()).parse::<ScheduledFault>();
         }
     }
 }

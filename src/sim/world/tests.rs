@@ -4,6 +4,7 @@ use super::*;
 use crate::sim::command::WorldCommand;
 use crate::sim::config::{Noise, Turbulence};
 use crate::sim::fault::{FAULTS, Fault, FaultStart, ScheduledFault};
+use crate::telemetry::FaultKind;
 
 fn ideal() -> WorldConfig {
     WorldConfig { noise: Noise::None, ..WorldConfig::default() }
@@ -206,7 +207,7 @@ fn a_teleport_into_the_ground_stops_at_its_surface() {
 fn link_faults_are_refused_without_a_link() {
     let faults: Vec<ScheduledFault> = vec!["stall@5".parse().unwrap()];
     let refused = World::new(WorldConfig { faults: faults.clone(), ..ideal() });
-    assert_eq!(refused.err(), Some(WorldError::NeedsLink("stall")));
+    assert_eq!(refused.err(), Some(WorldError::NeedsLink(FaultKind::Stall)));
     let accepted = World::new(WorldConfig { faults, link: FaultLink::External, ..ideal() });
     assert!(accepted.is_ok());
 }
@@ -214,14 +215,14 @@ fn link_faults_are_refused_without_a_link() {
 #[test]
 fn with_a_link_only_what_comes_in_can_fail() {
     for info in FAULTS {
-        let Ok(fault) = Fault::parse(info.name, None) else { continue };
+        let Ok(fault) = Fault::parse(info.name(), None) else { continue };
         let start = FaultStart::Boot(5.0);
         let faults = vec![ScheduledFault { fault, start, for_s: None }];
         let made = World::new(WorldConfig { faults, link: FaultLink::External, ..ideal() });
-        match info.name {
-            "rx-loss" | "gps-loss" => assert!(made.is_ok(), "{}", info.name),
-            name if info.needs_link() => assert!(made.is_ok(), "{name}"),
-            name => assert_eq!(made.err(), Some(WorldError::OutsideFault(name))),
+        match info.kind {
+            FaultKind::RxLoss | FaultKind::GpsLoss => assert!(made.is_ok(), "{}", info.kind),
+            kind if info.needs_link() => assert!(made.is_ok(), "{kind}"),
+            kind => assert_eq!(made.err(), Some(WorldError::OutsideFault(kind))),
         }
     }
     let mut world = World::new(WorldConfig { link: FaultLink::External, ..ideal() }).unwrap();

@@ -1,0 +1,87 @@
+//! What a session reports: the vehicle's events, and what concerns the program around it.
+
+use std::net::SocketAddr;
+
+use tokio::sync::mpsc;
+
+use crate::signals::SimTime;
+use crate::telemetry::{self, EventKind};
+use crate::vehicle::Vehicle;
+
+/// An event of the session and when it happened.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Event {
+    /// Simulated time since boot.
+    pub time: SimTime,
+    /// What happened.
+    pub kind: SessionEvent,
+}
+
+/// What happened.
+#[derive(Debug, Clone, PartialEq)]
+pub enum SessionEvent {
+    /// To the vehicle.
+    Vehicle(EventKind),
+    /// A notice for the user, as a sentence.
+    Notice(String),
+    /// Other programs can reach the vehicle from now on.
+    Endpoints(EndpointAddresses),
+}
+
+/// Where other programs reach the vehicle; `None` = that endpoint is closed.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct EndpointAddresses {
+    /// The websocket of the Betaflight App.
+    pub ws: Option<SocketAddr>,
+    /// Command line and MSP over TCP.
+    pub tcp: Option<SocketAddr>,
+    /// States from an external simulator, UDP.
+    pub fdm: Option<SocketAddr>,
+    /// RC from scripts, UDP.
+    pub rc: Option<SocketAddr>,
+}
+
+impl Event {
+    /// A notice at this time.
+    #[must_use]
+    pub fn notice(time: SimTime, text: impl Into<String>) -> Self {
+        Self { time, kind: SessionEvent::Notice(text.into()) }
+    }
+}
+
+impl From<telemetry::Event> for Event {
+    fn from(event: telemetry::Event) -> Self {
+        Self { time: event.time, kind: SessionEvent::Vehicle(event.kind) }
+    }
+}
+
+/// Sends the events of a vehicle and the notices about it in the order in which they happened.
+#[derive(Debug)]
+pub(super) struct EventSender(mpsc::UnboundedSender<Event>);
+
+impl EventSender {
+    pub(super) fn new(events: mpsc::UnboundedSender<Event>) -> Self {
+        Self(events)
+    }
+
+    /// Sends what has happened to the vehicle.
+    pub(super) fn send_events_of(&self, vehicle: &mut Vehicle) {
+        vehicle.drain_events(|event| self.send(event.into()));
+    }
+
+    /// Sends a notice, after what has happened to the vehicle before.
+    pub(super) fn notice(&self, vehicle: &mut Vehicle, text: impl Into<String>) {
+        self.report(vehicle, SessionEvent::Notice(text.into()));
+    }
+
+    /// As [`Self::notice`], for any event.
+    pub(super) fn report(&self, vehicle: &mut Vehicle, kind: SessionEvent) {
+        self.send_events_of(vehicle);
+        self.send(Event { time: vehicle.time(), kind });
+    }
+
+    fn send(&self, event: Event) {
+        // The receiver is gone only while the program ends.
+        drop(self.0.send(event));
+    }
+}

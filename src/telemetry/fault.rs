@@ -1,0 +1,123 @@
+//! The identity of faults: which there are, and the value of one as plain data.
+
+use std::fmt;
+
+/// A kind of fault; `Display` is its name on the command line.
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    strum::Display,
+    strum::EnumString,
+    strum::IntoStaticStr,
+    strum::VariantNames,
+)]
+#[strum(serialize_all = "kebab-case")]
+pub enum FaultKind {
+    /// RC frames stop.
+    RxLoss,
+    /// RC frames are lost at random.
+    RxJitter,
+    /// No GPS solution.
+    GpsLoss,
+    /// The GPS position is shifted.
+    GpsGlitch,
+    /// The same GPS solution again and again.
+    GpsFreeze,
+    /// Larger GPS errors.
+    GpsNoise,
+    /// The pressure ramps.
+    BaroDrift,
+    /// Single pressure samples are off.
+    BaroSpike,
+    /// No magnetometer samples.
+    MagOff,
+    /// The magnetic heading is off.
+    MagBias,
+    /// Step on the gyro's x axis.
+    GyroBias,
+    /// Step on the accelerometer's x axis.
+    AccBias,
+    /// The last inertial sample is repeated.
+    ImuFreeze,
+    /// A weak or dead motor.
+    Motor,
+    /// A motor's command is frozen.
+    MotorStuck,
+    /// An unbalanced propeller.
+    PropImbalance,
+    /// Accelerometer vibration.
+    Vibration,
+    /// A weak battery.
+    Battery,
+    /// One gust.
+    Gust,
+    /// Another mean wind.
+    Wind,
+    /// An impulse.
+    Push,
+    /// The craft is moved at once.
+    Teleport,
+    /// A weight below the craft.
+    Payload,
+    /// External link: nothing arrives.
+    Stall,
+    /// External link: packets are lost.
+    FdmLoss,
+    /// External link: packets are late.
+    FdmLate,
+    /// External link: packets come twice.
+    FdmDup,
+    /// External link: packets are late at random.
+    FdmJitter,
+}
+
+/// The value of a fault; `Display` shows it as it is written on the command line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum FaultValue {
+    /// The kind has none.
+    None,
+    /// One number, in the unit of its kind.
+    Number(f64),
+    /// A number that concerns one motor.
+    Motor {
+        /// Motor number, 1…4.
+        motor: u8,
+        /// Efficiency, command or acceleration.
+        value: f64,
+    },
+    /// A size and the direction it points to or comes from.
+    Bearing {
+        /// Metres, or metres per second.
+        size: f64,
+        /// Degrees clockwise from north.
+        deg: f64,
+    },
+    /// One battery cell fails short.
+    CellOut,
+    /// An impulse.
+    Push {
+        /// Size, N·s.
+        impulse: f64,
+        /// Where it points.
+        direction: &'static str,
+    },
+    /// A displacement north, east and up, m.
+    Offset([f64; 3]),
+}
+
+impl fmt::Display for FaultValue {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::None => Ok(()),
+            Self::Number(value) => write!(f, "{value}"),
+            Self::Motor { motor, value } => write!(f, "{motor}:{value}"),
+            Self::Bearing { size, deg } => write!(f, "{size}@{deg}"),
+            Self::CellOut => f.write_str("cell-out"),
+            Self::Push { impulse, direction } => write!(f, "{impulse},{direction}"),
+            Self::Offset([north, east, up]) => write!(f, "{north},{east},{up}"),
+        }
+    }
+}
