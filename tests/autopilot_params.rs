@@ -12,7 +12,8 @@ mod flight;
 use betadeck::autopilot::control::{
     AltitudeController, AltitudeTarget, LEAN_SLEW_RPS, THROTTLE_SLEW_US_PER_S, YAW_SLEW_DPS2, throttle_share,
 };
-use betadeck::autopilot::guidance::{L1Limits, TouchdownFacts, l1};
+use betadeck::autopilot::guidance::{L1Limits, l1};
+use betadeck::autopilot::machine::{GroundFacts, TouchdownFacts, TouchdownGuards};
 use betadeck::autopilot::rx_loss::{RxLossFacts, decide};
 use betadeck::autopilot::{Navigator, Params};
 use betadeck::plan::WaypointType::{Flyover, Hold, Land};
@@ -279,8 +280,9 @@ fn effects() -> Vec<Effect> {
             (0..300)
                 .map(f64::from)
                 .filter(|speed| {
-                    TouchdownFacts::new(&with(name, value), 1500.0, 0.0, speed / 100.0, 1100.0, 0.0)
-                        .conditions()[1]
+                    let touchdown =
+                        TouchdownFacts::new(&with(name, value), 1500.0, 0.0, speed / 100.0, 1100.0, 0.0);
+                    TouchdownGuards::new(&touchdown, &GroundFacts::CERTAIN).all_hold()
                 })
                 .fold(0.0, f64::max)
         }),

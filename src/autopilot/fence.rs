@@ -20,9 +20,9 @@ pub struct FenceFacts {
     pub action: FenceAction,
 }
 
-/// Distance and limit to compare, when the fence counts in this state.
+/// The guard of the fence, where the fence counts in this state; it holds when the craft is outside.
 #[must_use]
-pub fn armed(facts: &FenceFacts) -> Option<(f64, f64)> {
+pub fn guard(facts: &FenceFacts) -> Option<Guard> {
     let live = match facts.state {
         NavState::Approaching
         | NavState::Arrived
@@ -32,19 +32,8 @@ pub fn armed(facts: &FenceFacts) -> Option<(f64, f64)> {
         NavState::Idle | NavState::Landing | NavState::Complete => false,
     };
     let stored = facts.source == PlanSource::Stored;
-    facts.distance_m.zip(facts.limit_m).filter(|_| live && stored)
-}
-
-/// The guard of the fence, for events and displays.
-#[must_use]
-pub fn guard(distance_m: f64, limit_m: f64) -> Guard {
-    Guard { name: "fence", value: distance_m, limit: limit_m, op: GuardOp::Above, unit: "m" }
-}
-
-/// What leaving the fence asks for now, if the craft is outside.
-#[must_use]
-pub fn in_flight(facts: &FenceFacts) -> Option<FenceAction> {
-    armed(facts).filter(|(distance, limit)| distance > limit).map(|_| facts.action)
+    let (value, limit) = facts.distance_m.zip(facts.limit_m).filter(|_| live && stored)?;
+    Some(Guard { name: "fence", value, limit, op: GuardOp::Above, unit: "m" })
 }
 
 /// Checks waypoints, given by type and distance from home (m), before a flight.

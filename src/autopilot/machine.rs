@@ -10,17 +10,19 @@
 
 mod rules;
 mod table;
+mod touchdown;
 
 use arrayvec::ArrayVec;
 
 use super::fence::FenceFacts;
-use super::guidance::{PlaneCrossing, TouchdownFacts};
+use super::guidance::PlaneCrossing;
 use super::params::FenceAction;
 use crate::plan::{HoldPattern, WaypointType};
 use crate::telemetry::{AbortReason, Guard, NavState, PlanSource};
 
 pub use rules::rules;
 pub use table::transition_table;
+pub use touchdown::{GroundFacts, TouchdownFacts, TouchdownGuards, TouchdownTimer};
 
 /// Time without progress after which a mission is given up, s.
 pub const STALL_S: f64 = 30.0;
@@ -70,32 +72,6 @@ pub struct ProgressFacts {
     pub flyaway_m: f64,
 }
 
-/// What tells the ground from a craft that hovers low with a wrongly configured hover throttle.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct GroundFacts {
-    /// How far the landing has come down, or how far the setpoint is under the craft beyond 1.5 m: m.
-    pub descent_m: f64,
-    /// Commanded throttle below the hover throttle learned in flight, µs.
-    pub below_hover_us: f64,
-    /// How far below it must be, µs.
-    pub needed_us: f64,
-}
-
-impl GroundFacts {
-    /// Evidence that needs no more.
-    pub const CERTAIN: Self =
-        Self { descent_m: f64::INFINITY, below_hover_us: f64::INFINITY, needed_us: 0.0 };
-
-    /// Whether the evidence suffices.
-    #[must_use]
-    pub fn suffices(&self) -> bool {
-        self.descent_m >= DESCENT_M && self.below_hover_us >= self.needed_us
-    }
-}
-
-/// Descent that makes a touchdown credible, m.
-pub const DESCENT_M: f64 = 0.5;
-
 /// Everything a transition depends on, as plain numbers and flags.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Facts {
@@ -115,10 +91,8 @@ pub struct Facts {
     pub progress: Option<ProgressFacts>,
     /// Time since HOLDING was entered, µs.
     pub hold_elapsed_us: u64,
-    /// The touchdown conditions.
-    pub touchdown: TouchdownFacts,
-    /// What tells the ground from a craft that hovers low.
-    pub ground: GroundFacts,
+    /// The conditions of a touchdown.
+    pub touchdown: TouchdownGuards,
     /// Time all of them have held, µs.
     pub touchdown_held_us: Option<u64>,
     /// Time they must hold, ds.
@@ -157,8 +131,7 @@ impl Default for Facts {
             climb: None,
             progress: None,
             hold_elapsed_us: 0,
-            touchdown: TouchdownFacts::default(),
-            ground: GroundFacts::CERTAIN,
+            touchdown: TouchdownGuards::new(&TouchdownFacts::default(), &GroundFacts::CERTAIN),
             touchdown_held_us: None,
             detection_time_ds: 10,
         }

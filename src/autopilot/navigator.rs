@@ -15,8 +15,9 @@ use arrayvec::ArrayVec;
 use nalgebra::Vector2;
 
 use super::control::{AltitudeController, PositionController, YawController};
-use super::guidance::{CornerArc, TouchdownTimer};
+use super::guidance::CornerArc;
 use super::io::NavInputs;
+use super::machine::TouchdownTimer;
 use super::params::Params;
 use crate::geo::LatLon;
 use crate::plan::FlightPlan;
@@ -237,7 +238,8 @@ impl Navigator {
                 self.active.waypoints.clear();
             }
             self.prepare(&now, params);
-            let facts = self.facts(&now, params);
+            let mut facts = self.facts(&now, params);
+            self.time_touchdown(&mut facts, &now);
             self.step(&facts, &now, params);
         } else {
             self.watch(&now, params);

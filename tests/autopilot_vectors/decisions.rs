@@ -3,7 +3,8 @@
 use std::str::FromStr;
 
 use betadeck::autopilot::engage::{EngageFacts, check};
-use betadeck::autopilot::fence::{FenceFacts, in_flight, pre_flight};
+use betadeck::autopilot::fence::{FenceFacts, pre_flight};
+use betadeck::autopilot::machine::{Facts, Outcome, transition};
 use betadeck::autopilot::params::{FenceAction, RxLossPolicy};
 use betadeck::autopilot::rx_loss::{RxLossFacts, decide};
 use betadeck::geo::LatLon;
@@ -29,17 +30,18 @@ fn refusal_name(verdict: Result<(), Refusal>) -> String {
 fn geofence() {
     for case in cases("geofence", "in_flight") {
         let limit = num(&case, "limit_m");
-        let facts = FenceFacts {
+        let state = state(text(&case, "state"));
+        let fence = FenceFacts {
             limit_m: (limit > 0.0).then_some(limit),
             distance_m: flag(&case, "home").then_some(num(&case, "distance_cm") / 100.0),
-            state: state(text(&case, "state")),
+            state,
             source: if flag(&case, "injected") { PlanSource::Rth } else { PlanSource::Stored },
             action: fence_action(&case, "action"),
         };
-        let got = match in_flight(&facts) {
-            None => "none",
-            Some(FenceAction::Land) => "EMERGENCY_LAND",
-            Some(FenceAction::Rth) => "RETURN_TO_HOME",
+        let got = match transition(state, &Facts { fence, ..Facts::default() }).outcome {
+            Some(Outcome::Fence(FenceAction::Land)) => "EMERGENCY_LAND",
+            Some(Outcome::Fence(FenceAction::Rth)) => "RETURN_TO_HOME",
+            _ => "none",
         };
         assert_eq!(got, text(&case, "expect"), "{case}");
     }

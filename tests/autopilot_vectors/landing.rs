@@ -1,9 +1,9 @@
 //! The way down, and the touchdown.
 
-use betadeck::autopilot::guidance::{
-    Spiral, TouchdownFacts, TouchdownTimer, landing_setpoint_m, spiral_offset,
+use betadeck::autopilot::guidance::{Spiral, landing_setpoint_m, spiral_offset};
+use betadeck::autopilot::machine::{
+    Facts, GroundFacts, Outcome, TouchdownFacts, TouchdownGuards, TouchdownTimer, transition,
 };
-use betadeck::autopilot::machine::{Facts, Outcome, transition};
 use betadeck::autopilot::params::Params;
 use betadeck::signals::SimTime;
 use betadeck::telemetry::NavState;
@@ -48,9 +48,12 @@ fn touchdowns() {
         );
         let want = ["altitude", "speed", "throttle", "not_descending"]
             .map(|condition| flag(&case["conditions"], condition));
-        assert_eq!(facts.conditions(), want, "{case}");
+        let guards = TouchdownGuards::new(&facts, &GroundFacts::CERTAIN);
+        let got: Vec<bool> = guards.iter().take(4).map(|guard| guard.holds()).collect();
+        assert_eq!(got, want, "{case}");
+        assert_eq!(guards.all_hold(), flag(&case, "all"), "{case}");
         assert_eq!(want.iter().all(|holds| *holds), flag(&case, "all"));
-        let held = Facts { touchdown: facts, touchdown_held_us: Some(9_000_000), ..Facts::default() };
+        let held = Facts { touchdown: guards, touchdown_held_us: Some(9_000_000), ..Facts::default() };
         let touched = transition(NavState::Landing, &held).outcome == Some(Outcome::Touchdown);
         assert_eq!(touched, flag(&case, "all"), "guards in {case}");
     }
@@ -60,15 +63,15 @@ fn touchdowns() {
             Facts { detection_time_ds: num(&case, "detection_time_ds") as u8, ..Facts::default() };
         let at = case["samples"].as_array().unwrap().iter().find_map(|sample| {
             let (t, holds) = (sample[0].as_f64().unwrap(), sample[1].as_bool().unwrap());
-            facts.touchdown_held_us = timer.update(SimTime::from_secs_f64(t), holds);
-            let altitude_m = if holds { -1.0 } else { 1.0 };
-            facts.touchdown = TouchdownFacts {
-                altitude_m,
+            let touchdown = TouchdownFacts {
+                altitude_m: if holds { -1.0 } else { 1.0 },
                 max_speed_mps: 1.0,
                 max_throttle_us: 1.0,
                 min_climb_mps: -1.0,
                 ..TouchdownFacts::default()
             };
+            facts.touchdown = TouchdownGuards::new(&touchdown, &GroundFacts::CERTAIN);
+            facts.touchdown_held_us = timer.update(SimTime::from_secs_f64(t), facts.touchdown.all_hold());
             transition(NavState::Landing, &facts).outcome.map(|_| t)
         });
         assert_eq!(at, case["touchdown_at_s"].as_f64(), "{case}");

@@ -2,10 +2,10 @@
 
 use std::str::FromStr;
 
-use betadeck::autopilot::guidance::{
-    PlaneCrossing, TouchdownFacts, hold_expired, hold_remaining_ds, turn_radius_m,
+use betadeck::autopilot::guidance::{PlaneCrossing, hold_remaining_ds, turn_radius_m};
+use betadeck::autopilot::machine::{
+    Facts, GroundFacts, Outcome, ProgressFacts, TouchdownFacts, TouchdownGuards, transition,
 };
-use betadeck::autopilot::machine::{Facts, Outcome, ProgressFacts, transition};
 use betadeck::autopilot::params::FenceAction;
 use betadeck::plan::{HoldPattern, WaypointType};
 use betadeck::signals::SimTime;
@@ -19,7 +19,6 @@ fn hold_timers() {
     for case in cases("hold_timer", "cases") {
         let duration = num(&case, "duration_ds") as u16;
         let elapsed = SimTime::from_secs_f64(num(&case, "elapsed_s")).0;
-        assert_eq!(hold_expired(duration, elapsed), flag(&case, "expired"), "{case}");
         let remaining = u64::from(hold_remaining_ds(duration, elapsed));
         assert_eq!(Some(remaining), case["remaining_ds"].as_u64(), "{case}");
         let mut facts = Facts { hold_elapsed_us: elapsed, ..Facts::default() };
@@ -70,13 +69,14 @@ fn transition_facts(case: &Value) -> Facts {
         facts.fence.distance_m = Some(150.0);
         facts.fence.action = fence_action(input, "geofence_action");
     }
-    facts.touchdown = TouchdownFacts {
+    let down = TouchdownFacts {
         max_speed_mps: 1.0,
         max_throttle_us: 1.0,
         landing_altitude_m: 1.0,
         min_climb_mps: -1.0,
         ..TouchdownFacts::default()
     };
+    facts.touchdown = TouchdownGuards::new(&down, &GroundFacts::CERTAIN);
     facts.touchdown_held_us = is("touchdown").then_some(1_000_000);
     facts
 }

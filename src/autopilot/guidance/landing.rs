@@ -1,9 +1,8 @@
-//! The way down, and how to tell that it is over.
+//! The way down: the altitude setpoint and the spiral of a landing.
 
 use nalgebra::Vector2;
 
 use crate::autopilot::params::Params;
-use crate::signals::SimTime;
 
 /// Altitude setpoint of a landing, m: from `start_m` down at `rate_mps` for `elapsed_s`, on below zero until the
 /// touchdown; above the landing altitude never more than 5 m below the craft, so that it cannot wind up.
@@ -51,79 +50,4 @@ pub fn spiral_offset(spiral: &Spiral, elapsed_s: f64, altitude_m: f64) -> Vector
         if half > 0.0 { ((altitude_m - half) / half).clamp(0.0, 1.0) } else { f64::from(altitude_m >= 1.0) };
     let (sin, cos) = (spiral.rate_rps * elapsed_s).sin_cos();
     Vector2::new(cos, sin) * (spiral.radius_m * open)
-}
-
-/// What decides a touchdown: four measured values and their limits, SI and µs.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct TouchdownFacts {
-    /// Altitude above home, m.
-    pub altitude_m: f64,
-    /// Below this altitude, m.
-    pub landing_altitude_m: f64,
-    /// Ground speed, m/s.
-    pub ground_speed_mps: f64,
-    /// Below this speed, m/s.
-    pub max_speed_mps: f64,
-    /// Commanded throttle, µs.
-    pub throttle_us: f64,
-    /// Below this throttle, µs.
-    pub max_throttle_us: f64,
-    /// Climb rate, m/s.
-    pub climb_mps: f64,
-    /// Above this (negative) climb rate, m/s: the craft does not descend any more.
-    pub min_climb_mps: f64,
-}
-
-impl TouchdownFacts {
-    /// The limits of the parameters around measured values; `hover_us` is the configured hover throttle, or the
-    /// captured one where none is configured.
-    #[must_use]
-    pub fn new(
-        params: &Params,
-        hover_us: f64,
-        altitude_m: f64,
-        ground_speed_mps: f64,
-        throttle_us: f64,
-        climb_mps: f64,
-    ) -> Self {
-        Self {
-            altitude_m,
-            landing_altitude_m: f64::from(params.landing_altitude_m),
-            ground_speed_mps,
-            max_speed_mps: f64::from(params.landing_velocity_threshold) / 100.0,
-            throttle_us,
-            max_throttle_us: hover_us - f64::from(params.landing_throttle_threshold),
-            climb_mps,
-            min_climb_mps: -0.25 * params.descent_rate_mps(),
-        }
-    }
-
-    /// The four conditions: low, slow, throttle low, not descending.
-    #[must_use]
-    pub fn conditions(&self) -> [bool; 4] {
-        [
-            self.altitude_m < self.landing_altitude_m,
-            self.ground_speed_mps < self.max_speed_mps,
-            self.throttle_us < self.max_throttle_us,
-            self.climb_mps > self.min_climb_mps,
-        ]
-    }
-}
-
-/// How long the touchdown conditions have held without a break.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct TouchdownTimer {
-    since: Option<SimTime>,
-}
-
-impl TouchdownTimer {
-    /// Takes the conditions of this update; returns the time they have held, µs, or `None` when they do not.
-    pub fn update(&mut self, now: SimTime, all_hold: bool) -> Option<u64> {
-        if !all_hold {
-            self.since = None;
-            return None;
-        }
-        let since = *self.since.get_or_insert(now);
-        Some(now.0.saturating_sub(since.0))
-    }
 }

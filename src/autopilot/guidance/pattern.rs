@@ -1,4 +1,4 @@
-//! Hold patterns: a target that moves at a constant angular rate, and the clock that ends a hold.
+//! Hold patterns: a target that moves at a constant angular rate, and the time left of a hold.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -56,12 +56,6 @@ pub fn pattern_rate_rps(radius_m: f64, leg_speed_mps: f64, params: &Params) -> f
     let radius = radius_m.max(0.1);
     let by_lean = (0.5 * GRAVITY * params.max_lean_rad().tan() / radius).sqrt();
     f64::from(params.max_turn_rate).to_radians().min(leg_speed_mps / radius).min(by_lean)
-}
-
-/// Whether a hold of `duration_ds` is over after `elapsed_us`; zero never ends. Exact, on integers.
-#[must_use]
-pub fn hold_expired(duration_ds: u16, elapsed_us: u64) -> bool {
-    duration_ds > 0 && elapsed_us >= u64::from(duration_ds) * 100_000
 }
 
 /// Deciseconds left of a hold; 65535 when it is endless.

@@ -2,7 +2,7 @@
 
 use arrayvec::ArrayVec;
 
-use super::{DESCENT_M, Facts, Outcome, Rule, Rules, STALL_S};
+use super::{Facts, Outcome, Rule, Rules, STALL_S};
 use crate::autopilot::fence;
 use crate::autopilot::guidance::PlaneCrossing;
 use crate::plan::{HoldPattern, WaypointType};
@@ -36,7 +36,7 @@ pub(super) fn own(state: NavState, facts: &Facts, list: &mut Rules) {
     }
 }
 
-fn guard(name: &'static str, value: f64, op: GuardOp, limit: f64, unit: &'static str) -> Guard {
+pub(super) fn guard(name: &'static str, value: f64, op: GuardOp, limit: f64, unit: &'static str) -> Guard {
     Guard { name, value, limit, op, unit }
 }
 
@@ -51,8 +51,8 @@ pub(super) fn common(state: NavState, facts: &Facts, list: &mut Rules) {
     let plan = guard(PLAN, f64::from(facts.count), GuardOp::Below, 1.0, "waypoints");
     list.push(rule([plan], Outcome::Abort(AbortReason::NoPlan), "NO_PLAN"));
     let fence = fence::FenceFacts { state, ..facts.fence };
-    if let Some((distance, limit)) = fence::armed(&fence) {
-        list.push(rule([fence::guard(distance, limit)], Outcome::Fence(fence.action), "fence"));
+    if let Some(outside) = fence::guard(&fence) {
+        list.push(rule([outside], Outcome::Fence(fence.action), "fence"));
     }
 }
 
@@ -193,20 +193,8 @@ fn duration_s(facts: &Facts) -> f64 {
 }
 
 fn landing(facts: &Facts, list: &mut Rules) {
-    let touch = &facts.touchdown;
     let held = facts.touchdown_held_us.unwrap_or(0) as f64 / 1e6;
     let needed = f64::from(facts.detection_time_ds) / 10.0;
-    list.push(rule(
-        [
-            guard("touchdown altitude", touch.altitude_m, GuardOp::Below, touch.landing_altitude_m, "m"),
-            guard("touchdown speed", touch.ground_speed_mps, GuardOp::Below, touch.max_speed_mps, "m/s"),
-            guard("touchdown throttle", touch.throttle_us, GuardOp::Below, touch.max_throttle_us, "µs"),
-            guard("touchdown sink", touch.climb_mps, GuardOp::Above, touch.min_climb_mps, "m/s"),
-            guard("descent", facts.ground.descent_m, GuardOp::AtLeast, DESCENT_M, "m"),
-            guard("below hover", facts.ground.below_hover_us, GuardOp::AtLeast, facts.ground.needed_us, "µs"),
-            guard("touchdown time", held, GuardOp::AtLeast, needed, "s"),
-        ],
-        Outcome::Touchdown,
-        "touchdown",
-    ));
+    let time = guard("touchdown time", held, GuardOp::AtLeast, needed, "s");
+    list.push(rule(facts.touchdown.iter().chain([time]), Outcome::Touchdown, "touchdown"));
 }

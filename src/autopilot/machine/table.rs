@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 use strum::IntoEnumIterator as _;
 
 use super::rules::{common, monitors, own};
-use super::{Facts, Outcome, ProgressFacts, Rules};
-use crate::autopilot::guidance::{PlaneCrossing, TouchdownFacts};
+use super::{Facts, GroundFacts, Outcome, ProgressFacts, Rules, TouchdownFacts, TouchdownGuards};
+use crate::autopilot::guidance::PlaneCrossing;
 use crate::autopilot::params::{FenceAction, Params};
 use crate::plan::{HoldPattern, WaypointType};
 use crate::telemetry::{Guard, NavState, PlanSource};
@@ -121,8 +121,10 @@ fn at_the_waypoint() -> Vec<Situation> {
     let mut landing = facts(WaypointType::Land, true);
     let params = Params::default();
     let hover = f64::from(params.hover_throttle);
-    landing.touchdown = TouchdownFacts::new(&params, hover, 0.0, 0.0, 0.0, 0.0);
-    landing.ground.needed_us = 50.0;
+    landing.touchdown = TouchdownGuards::new(
+        &TouchdownFacts::new(&params, hover, 0.0, 0.0, 0.0, 0.0),
+        &GroundFacts { needed_us: 50.0, ..GroundFacts::CERTAIN },
+    );
     add(NavState::Landing, "LAND", landing);
     list
 }

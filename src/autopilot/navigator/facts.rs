@@ -2,9 +2,11 @@
 
 use super::{Navigator, Progress};
 use crate::autopilot::fence::FenceFacts;
-use crate::autopilot::guidance::{PlaneCrossing, TouchdownFacts, plane_crossing, turn_radius_m};
+use crate::autopilot::guidance::{PlaneCrossing, plane_crossing, turn_radius_m};
 use crate::autopilot::io::NavInputs;
-use crate::autopilot::machine::{ApproachFacts, Facts, GroundFacts, ProgressFacts, WaypointFacts};
+use crate::autopilot::machine::{
+    ApproachFacts, Facts, GroundFacts, ProgressFacts, TouchdownFacts, TouchdownGuards, WaypointFacts,
+};
 use crate::autopilot::params::Params;
 use crate::geo::local_offset;
 use crate::plan::WaypointType;
@@ -24,7 +26,9 @@ impl Navigator {
         self.move_pattern(now, params);
         self.update_climb(now, params);
         self.update_progress(now);
-        self.update_touchdown(now, params);
+        if let Some(landing) = self.landing.as_mut().filter(|_| self.state == NavState::Landing) {
+            landing.highest_m = landing.highest_m.max(now.alt_m);
+        }
     }
 
     pub(super) fn facts(&self, now: &NavInputs, params: &Params) -> Facts {
@@ -63,8 +67,10 @@ impl Navigator {
                 flyaway_m: progress.best_m + (0.25 * progress.leg_m).clamp(20.0, 100.0),
             }),
             hold_elapsed_us: self.hold_elapsed_us(now),
-            touchdown: self.touchdown_facts(now, params),
-            ground: self.ground_facts(now, params),
+            touchdown: TouchdownGuards::new(
+                &self.touchdown_facts(now, params),
+                &self.ground_facts(now, params),
+            ),
             touchdown_held_us: self.touchdown_held_us,
             detection_time_ds: params.landing_detection_time,
         }
@@ -169,14 +175,11 @@ impl Navigator {
         }
     }
 
-    fn update_touchdown(&mut self, now: &NavInputs, params: &Params) {
-        if self.state != NavState::Landing {
-            return;
+    /// Runs the touchdown timer on the conditions of this update.
+    pub(super) fn time_touchdown(&mut self, facts: &mut Facts, now: &NavInputs) {
+        if self.state == NavState::Landing && self.landing.is_some() {
+            self.touchdown_held_us = self.touchdown.update(now.time, facts.touchdown.all_hold());
         }
-        let Some(landing) = &mut self.landing else { return };
-        landing.highest_m = landing.highest_m.max(now.alt_m);
-        let all = self.touchdown_facts(now, params).conditions().iter().all(|holds| *holds);
-        let certain = self.ground_facts(now, params).suffices();
-        self.touchdown_held_us = self.touchdown.update(now.time, all && certain);
+        facts.touchdown_held_us = self.touchdown_held_us;
     }
 }

@@ -125,9 +125,9 @@ impl Navigator {
         }
         // As on the leg that was given up.
         let fence = FenceFacts { state: NavState::Approaching, ..self.fence_facts(now, params) };
-        let guard = fence::armed(&fence).map(|(distance, limit)| fence::guard(distance, limit));
-        if let Some(action) = fence::in_flight(&fence) {
-            self.fence(action, "fence", guard, &fence, now, params);
+        let outside = fence::guard(&fence).filter(Guard::holds);
+        if outside.is_some() {
+            self.fence(fence.action, "fence", outside, &fence, now, params);
         }
     }
 

@@ -1,0 +1,121 @@
+//! The land detector: the conditions of a touchdown and the time they have held.
+
+use super::rules::guard;
+use crate::autopilot::params::Params;
+use crate::signals::SimTime;
+use crate::telemetry::{Guard, GuardOp};
+
+/// Descent that makes a touchdown credible, m.
+const DESCENT_M: f64 = 0.5;
+
+/// What decides a touchdown: four measured values and their limits, SI and µs.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct TouchdownFacts {
+    /// Altitude above home, m.
+    pub altitude_m: f64,
+    /// Below this altitude, m.
+    pub landing_altitude_m: f64,
+    /// Ground speed, m/s.
+    pub ground_speed_mps: f64,
+    /// Below this speed, m/s.
+    pub max_speed_mps: f64,
+    /// Commanded throttle, µs.
+    pub throttle_us: f64,
+    /// Below this throttle, µs.
+    pub max_throttle_us: f64,
+    /// Climb rate, m/s.
+    pub climb_mps: f64,
+    /// Above this (negative) climb rate, m/s: the craft does not descend any more.
+    pub min_climb_mps: f64,
+}
+
+impl TouchdownFacts {
+    /// The limits of the parameters around measured values; `hover_us` is the configured hover throttle, or the
+    /// captured one where none is configured.
+    #[must_use]
+    pub fn new(
+        params: &Params,
+        hover_us: f64,
+        altitude_m: f64,
+        ground_speed_mps: f64,
+        throttle_us: f64,
+        climb_mps: f64,
+    ) -> Self {
+        Self {
+            altitude_m,
+            landing_altitude_m: f64::from(params.landing_altitude_m),
+            ground_speed_mps,
+            max_speed_mps: f64::from(params.landing_velocity_threshold) / 100.0,
+            throttle_us,
+            max_throttle_us: hover_us - f64::from(params.landing_throttle_threshold),
+            climb_mps,
+            min_climb_mps: -0.25 * params.descent_rate_mps(),
+        }
+    }
+}
+
+/// What tells the ground from a craft that hovers low with a wrongly configured hover throttle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GroundFacts {
+    /// How far the landing has come down, or how far the setpoint is under the craft beyond 1.5 m: m.
+    pub descent_m: f64,
+    /// Commanded throttle below the hover throttle learned in flight, µs.
+    pub below_hover_us: f64,
+    /// How far below it must be, µs.
+    pub needed_us: f64,
+}
+
+impl GroundFacts {
+    /// Evidence that needs no more.
+    pub const CERTAIN: Self =
+        Self { descent_m: f64::INFINITY, below_hover_us: f64::INFINITY, needed_us: 0.0 };
+}
+
+/// The conditions of a touchdown, evaluated once in an update: the timer runs while they hold, and the rule of LANDING
+/// decides by them and shows them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TouchdownGuards([Guard; 6]);
+
+impl TouchdownGuards {
+    /// Low, slow, throttle low, not descending, come down, throttle below the learned hover throttle.
+    #[must_use]
+    pub fn new(touch: &TouchdownFacts, ground: &GroundFacts) -> Self {
+        Self([
+            guard("touchdown altitude", touch.altitude_m, GuardOp::Below, touch.landing_altitude_m, "m"),
+            guard("touchdown speed", touch.ground_speed_mps, GuardOp::Below, touch.max_speed_mps, "m/s"),
+            guard("touchdown throttle", touch.throttle_us, GuardOp::Below, touch.max_throttle_us, "µs"),
+            guard("touchdown sink", touch.climb_mps, GuardOp::Above, touch.min_climb_mps, "m/s"),
+            guard("descent", ground.descent_m, GuardOp::AtLeast, DESCENT_M, "m"),
+            guard("below hover", ground.below_hover_us, GuardOp::AtLeast, ground.needed_us, "µs"),
+        ])
+    }
+
+    /// The guards in the order they are shown.
+    pub fn iter(&self) -> impl Iterator<Item = Guard> {
+        self.0.into_iter()
+    }
+
+    /// Whether the craft is on the ground as far as one update can tell.
+    #[must_use]
+    pub fn all_hold(&self) -> bool {
+        self.0.iter().all(Guard::holds)
+    }
+}
+
+/// How long the touchdown conditions have held without a break.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct TouchdownTimer {
+    since: Option<SimTime>,
+}
+
+impl TouchdownTimer {
+    /// Takes whether all conditions hold in this update; returns the time they have held, µs, or `None` when they do not.
+    pub fn update(&mut self, now: SimTime, all_hold: bool) -> Option<u64> {
+        if !all_hold {
+            self.since = None;
+            return None;
+        }
+        let since = *self.since.get_or_insert(now);
+        Some(now.0.saturating_sub(since.0))
+    }
+}
