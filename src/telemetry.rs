@@ -13,14 +13,16 @@ mod nav;
 mod refusal;
 pub mod snapshot;
 pub mod switch;
+mod transition;
 
 pub use arming_flag::{ArmingFlag, ArmingFlags};
 pub use event::{CrashCause, DivergeCause, Event, EventKind, VehicleNotice};
 pub use fault::{FaultKind, FaultValue};
 pub use firmware_event::{DisarmReason, FirmwareEvent};
-pub use guard::{Guard, GuardOp};
+pub use guard::{Guard, GuardName, GuardOp, GuardUnit};
 pub use link_state::LinkState;
 pub use mode::{Mode, ModeFlags};
-pub use nav::{L1Mode, NavEvent, NavOutput, NavState, NavTelemetry, PlanSource};
+pub use nav::{FenceAction, L1Mode, NavEvent, NavOutput, NavState, NavTelemetry, PlanSource};
 pub use refusal::{AbortReason, Refusal};
 pub use snapshot::Snapshot;
+pub use transition::TransitionReason;

@@ -285,6 +285,7 @@ mod tests {
     use super::*;
     use crate::geo::LatLon;
     use crate::sim::Fault;
+    use crate::telemetry::TransitionReason;
 
     fn config() -> VehicleConfig {
         VehicleConfig {
@@ -345,7 +346,7 @@ mod tests {
                 to: NavState::Approaching,
                 wp: 0,
                 kind: None,
-                reason: "reset",
+                reason: TransitionReason::Reset,
                 guard: None,
                 target: LatLon::default(),
                 target_alt_m: 0.0,

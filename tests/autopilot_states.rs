@@ -14,7 +14,7 @@ use std::collections::BTreeSet;
 
 use betadeck::autopilot::{Params, Rescue};
 use betadeck::plan::{FlightPlan, HoldPattern, Waypoint, WaypointType};
-use betadeck::telemetry::{NavEvent, NavState};
+use betadeck::telemetry::{NavEvent, NavState, TransitionReason};
 use flight::{Flight, plan, waypoint};
 use nalgebra::Vector2;
 use proptest::prelude::*;
@@ -252,7 +252,7 @@ impl Run {
             if let NavEvent::State { from, to, guard, target_alt_m, reason, .. } = event {
                 prop_assert_eq!(*from, self.last, "a state changed without an event");
                 // A plan of modifiers alone is complete as soon as it is reset.
-                let at_once = *to == NavState::Complete && *reason == "reset";
+                let at_once = *to == NavState::Complete && *reason == TransitionReason::Reset;
                 prop_assert!(legal(*from, *to) || at_once, "{} -> {}", from, to);
                 prop_assert!(guard.is_none_or(|guard| guard.holds()), "{:?} fired", guard);
                 prop_assert!(target_alt_m.is_finite());

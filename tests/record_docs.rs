@@ -9,15 +9,16 @@ use betadeck::record::{End, json};
 use betadeck::session::{EndpointAddresses, Event, SessionEvent};
 use betadeck::signals::SimTime;
 use betadeck::telemetry::{
-    AbortReason, CrashCause, DisarmReason, EventKind, FaultKind, FaultValue, FirmwareEvent, Guard, GuardOp,
-    ModeFlags, NavEvent, NavState, PlanSource, Refusal, Snapshot, VehicleNotice,
+    AbortReason, CrashCause, DisarmReason, EventKind, FaultKind, FaultValue, FenceAction, FirmwareEvent,
+    Guard, GuardName, GuardOp, ModeFlags, NavEvent, NavState, PlanSource, Refusal, Snapshot,
+    TransitionReason, VehicleNotice,
 };
 
 /// One event of each kind.
 fn one_of_each() -> Vec<SessionEvent> {
     let mut plan = Box::<FlightPlan>::default();
     plan.waypoints.push(Waypoint::default());
-    let guard = Guard { name: "arrival", value: 4.0, limit: 5.0, op: GuardOp::AtMost, unit: "m" };
+    let guard = Guard { name: GuardName::Arrival, value: 4.0, limit: 5.0, op: GuardOp::AtMost };
     let nav = [
         NavEvent::Plan { source: PlanSource::Stored, plan },
         NavEvent::State {
@@ -25,13 +26,13 @@ fn one_of_each() -> Vec<SessionEvent> {
             to: NavState::Arrived,
             wp: 1,
             kind: Some(WaypointType::Hold),
-            reason: "arrival",
+            reason: TransitionReason::Arrival,
             guard: Some(guard),
             target: LatLon::new(1, 2),
             target_alt_m: 3.0,
         },
         NavEvent::Climbing(true),
-        NavEvent::Geofence { distance_m: 101.0, limit_m: 100.0, action: "RTH" },
+        NavEvent::Geofence { distance_m: 101.0, limit_m: 100.0, action: FenceAction::Rth },
         NavEvent::Refused(Refusal::Aborted(AbortReason::Flyaway)),
         NavEvent::Disarm,
     ];

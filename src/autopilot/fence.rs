@@ -1,9 +1,8 @@
 //! The fence: a greatest horizontal distance from home. Exactly on it is inside.
 
-use super::params::FenceAction;
 use crate::geo::{LatLon, distance_bearing};
 use crate::plan::{FlightPlan, WaypointType};
-use crate::telemetry::{Guard, GuardOp, NavState, PlanSource, Refusal};
+use crate::telemetry::{FenceAction, Guard, GuardName, GuardOp, NavState, PlanSource, Refusal};
 
 /// Facts for the check in flight.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,7 +32,7 @@ pub fn guard(facts: &FenceFacts) -> Option<Guard> {
     };
     let stored = facts.source == PlanSource::Stored;
     let (value, limit) = facts.distance_m.zip(facts.limit_m).filter(|_| live && stored)?;
-    Some(Guard { name: "fence", value, limit, op: GuardOp::Above, unit: "m" })
+    Some(Guard { name: GuardName::Fence, value, limit, op: GuardOp::Above })
 }
 
 /// Checks waypoints, given by type and distance from home (m), before a flight.

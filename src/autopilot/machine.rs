@@ -16,9 +16,8 @@ use arrayvec::ArrayVec;
 
 use super::fence::FenceFacts;
 use super::guidance::PlaneCrossing;
-use super::params::FenceAction;
 use crate::plan::{HoldPattern, WaypointType};
-use crate::telemetry::{AbortReason, Guard, NavState, PlanSource};
+use crate::telemetry::{AbortReason, FenceAction, Guard, GuardName, NavState, PlanSource, TransitionReason};
 
 pub use rules::rules;
 pub use table::transition_table;
@@ -217,8 +216,8 @@ pub struct Rule {
     pub guards: ArrayVec<Guard, 7>,
     /// What happens.
     pub outcome: Outcome,
-    /// The cause in a word, for events.
-    pub reason: &'static str,
+    /// The cause, for events.
+    pub reason: TransitionReason,
 }
 
 /// The rules of a state for given facts, in the order they are tried.
@@ -227,25 +226,22 @@ pub type Rules = ArrayVec<Rule, 8>;
 /// One decision.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Transition {
-    /// What happens; `None` = nothing.
-    pub outcome: Option<Outcome>,
+    /// What happens.
+    pub outcome: Outcome,
     /// The guard that fired, if the rule had one.
     pub guard: Option<Guard>,
-    /// The cause in a word; empty when nothing happens.
-    pub reason: &'static str,
+    /// The cause.
+    pub reason: TransitionReason,
 }
 
-/// Decides what an update in `state` leads to.
+/// Decides what an update in `state` leads to; `None` = nothing happens.
 #[must_use]
-pub fn transition(state: NavState, facts: &Facts) -> Transition {
-    rules(state, facts).iter().find(|rule| rule.guards.iter().all(Guard::holds)).map_or(
-        Transition { outcome: None, guard: None, reason: "" },
-        |rule| Transition {
-            outcome: Some(rule.outcome),
-            guard: rule.guards.last().copied(),
-            reason: rule.reason,
-        },
-    )
+pub fn transition(state: NavState, facts: &Facts) -> Option<Transition> {
+    rules(state, facts).iter().find(|rule| rule.guards.iter().all(Guard::holds)).map(|rule| Transition {
+        outcome: rule.outcome,
+        guard: rule.guards.last().copied(),
+        reason: rule.reason,
+    })
 }
 
 /// The guards to show for `state`: what it waits for, without those that only say that fix and plan are there.
@@ -254,7 +250,7 @@ pub fn waiting_for(state: NavState, facts: &Facts) -> ArrayVec<Guard, 8> {
     rules(state, facts)
         .iter()
         .flat_map(|rule| rule.guards.iter().copied())
-        .filter(|guard| !matches!(guard.name, rules::FIX | rules::PLAN))
+        .filter(|guard| !matches!(guard.name, GuardName::Fix | GuardName::Plan))
         .take(8)
         .collect()
 }

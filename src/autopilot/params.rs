@@ -5,8 +5,9 @@
 mod value;
 
 use crate::geo::GRAVITY;
+use crate::telemetry::FenceAction;
 use value::Value;
-pub use value::{FenceAction, RxLossPolicy, YawMode};
+pub use value::{RxLossPolicy, YawMode};
 
 /// One parameter of the list: its name, limits, and the way to its field.
 #[derive(Debug, Clone, Copy)]

@@ -3,7 +3,8 @@
 use crate::plan::{FlightPlan, WaypointType};
 use crate::session::{EndpointAddresses, Event, SessionEvent};
 use crate::telemetry::{
-    DisarmReason, EventKind, FaultValue, FirmwareEvent, Guard, NavEvent, NavState, PlanSource,
+    AbortReason, DisarmReason, EventKind, FaultValue, FenceAction, FirmwareEvent, Guard, GuardUnit, NavEvent,
+    NavState, PlanSource, Refusal, TransitionReason,
 };
 
 /// `  12.4 s  Armed.`; `None` for the few events that only matter inside the craft.
@@ -75,14 +76,17 @@ fn nav(event: &NavEvent) -> Option<String> {
         NavEvent::Plan { source, plan } => new_plan(*source, plan),
         NavEvent::State { from, to, wp, kind, reason, guard, .. } => {
             let at = waypoint(*to, *wp, *kind);
-            let why = cause(reason, *to);
+            let why = cause(*reason, *to);
             let numbers = guard.as_ref().map_or_else(String::new, |guard| format!(" ({})", because(guard)));
             format!("{from} → {to}{at}: {why}{numbers}.")
         }
         NavEvent::Climbing(true) => "Climbing to the minimum altitude first.".to_owned(),
         NavEvent::Climbing(false) => "Climb done.".to_owned(),
         NavEvent::Geofence { distance_m, limit_m, action } => {
-            let what = if *action == "RTH" { "flying home" } else { "landing here" };
+            let what = match action {
+                FenceAction::Land => "landing here",
+                FenceAction::Rth => "flying home",
+            };
             format!("Geofence: {distance_m:.1} m from home, the fence is {limit_m:.0} m: {what}.")
         }
         NavEvent::Refused(reason) => format!("The autopilot does not engage. {}", reason.sentence()),
@@ -90,31 +94,37 @@ fn nav(event: &NavEvent) -> Option<String> {
     })
 }
 
-/// The navigator's word for a cause in plain language.
-fn cause(reason: &str, to: NavState) -> &str {
+/// The cause of a transition in plain language.
+fn cause(reason: TransitionReason, to: NavState) -> &'static str {
     match reason {
-        "reset" => "the mission starts",
-        "resume" => "the mission goes on",
-        "set_current" => "sent there",
-        "arrival" => "reached",
-        "plane" => "passed",
-        "turn radius" => "the turn begins",
-        "advance" if to == NavState::Complete => "the mission is done",
-        "advance" => "on to the next",
-        "hold" => "holding there",
-        "loiter" => "waiting there",
-        "pattern" => "the pattern begins",
-        "hold time" => "the time is over",
-        "land" => "the descent begins",
-        "touchdown" => "landed",
-        "fence" => "outside the fence",
-        "emergency" => "emergency landing",
-        "disengage" => "switched off",
-        "GPS_LOST" => "the GPS fix is lost",
-        "NO_PLAN" => "the plan was cleared",
-        "STALLED" => "no progress",
-        "FLYAWAY" => "moving away from the waypoint",
-        other => other,
+        TransitionReason::Reset => "the mission starts",
+        TransitionReason::Resume => "the mission goes on",
+        TransitionReason::SetCurrent => "sent there",
+        TransitionReason::Arrival => "reached",
+        TransitionReason::Plane => "passed",
+        TransitionReason::TurnRadius => "the turn begins",
+        TransitionReason::Advance if to == NavState::Complete => "the mission is done",
+        TransitionReason::Advance => "on to the next",
+        TransitionReason::Hold => "holding there",
+        TransitionReason::Loiter => "waiting there",
+        TransitionReason::Pattern => "the pattern begins",
+        TransitionReason::HoldTime => "the time is over",
+        TransitionReason::Land => "the descent begins",
+        TransitionReason::Touchdown => "landed",
+        TransitionReason::Fence => "outside the fence",
+        TransitionReason::Emergency => "emergency landing",
+        TransitionReason::Disengage => "switched off",
+        TransitionReason::GivenUp(AbortReason::GpsLost) => "the GPS fix is lost",
+        TransitionReason::GivenUp(AbortReason::NoPlan) | TransitionReason::Refused(Refusal::NoPlan) => {
+            "the plan was cleared"
+        }
+        TransitionReason::GivenUp(AbortReason::Stalled) => "no progress",
+        TransitionReason::GivenUp(AbortReason::Flyaway) => "moving away from the waypoint",
+        TransitionReason::ReturnHome
+        | TransitionReason::Disarm
+        | TransitionReason::Climb
+        | TransitionReason::Missed
+        | TransitionReason::Refused(_) => reason.word(),
     }
 }
 
@@ -127,9 +137,9 @@ fn waypoint(to: NavState, wp: u8, kind: Option<WaypointType>) -> String {
 
 /// `arrival 4.9 m ≤ 5.0 m`; a count without a unit: `fix 0 < 1`.
 fn because(guard: &Guard) -> String {
-    let Guard { name, value, limit, op, unit } = guard;
-    match *unit {
-        "" => format!("{name} {value} {op} {limit}"),
+    let Guard { name, value, limit, op } = guard;
+    match guard.unit() {
+        GuardUnit::None => format!("{name} {value} {op} {limit}"),
         unit => format!("{name} {value:.1} {unit} {op} {limit:.1} {unit}"),
     }
 }
@@ -170,7 +180,7 @@ mod tests {
     use super::*;
     use crate::geo::LatLon;
     use crate::signals::SimTime;
-    use crate::telemetry::{FaultKind, GuardOp, Refusal};
+    use crate::telemetry::{FaultKind, GuardName, GuardOp};
 
     fn say(event: FirmwareEvent) -> String {
         vehicle(&EventKind::Firmware(event)).expect("a sentence")
@@ -197,17 +207,20 @@ mod tests {
                 target_alt_m: 50.0,
             }))
         };
-        let guard = Guard { name: "arrival", value: 1.93, limit: 2.0, op: GuardOp::AtMost, unit: "m" };
+        let guard = Guard { name: GuardName::Arrival, value: 1.93, limit: 2.0, op: GuardOp::AtMost };
         assert_eq!(
-            state(NavState::Arrived, Some(guard), "arrival"),
+            state(NavState::Arrived, Some(guard), TransitionReason::Arrival),
             "APPROACHING → ARRIVED (waypoint 2, HOLD): reached (arrival 1.9 m ≤ 2.0 m)."
         );
-        let fix = Guard { name: "fix", value: 0.0, limit: 1.0, op: GuardOp::Below, unit: "" };
+        let fix = Guard { name: GuardName::Fix, value: 0.0, limit: 1.0, op: GuardOp::Below };
         assert_eq!(
-            state(NavState::Idle, Some(fix), "GPS_LOST"),
+            state(NavState::Idle, Some(fix), TransitionReason::GivenUp(AbortReason::GpsLost)),
             "APPROACHING → IDLE: the GPS fix is lost (fix 0 < 1)."
         );
-        assert_eq!(state(NavState::Idle, None, "GPS_LOST"), "APPROACHING → IDLE: the GPS fix is lost.");
+        assert_eq!(
+            state(NavState::Idle, None, TransitionReason::GivenUp(AbortReason::GpsLost)),
+            "APPROACHING → IDLE: the GPS fix is lost."
+        );
     }
 
     #[test]
@@ -238,7 +251,11 @@ mod tests {
             FirmwareEvent::Notice("No full stop"),
             FirmwareEvent::Notice("A question?"),
             FirmwareEvent::Mode(crate::telemetry::ModeFlags::NONE),
-            FirmwareEvent::Nav(NavEvent::Geofence { distance_m: 100.4, limit_m: 100.0, action: "RTH" }),
+            FirmwareEvent::Nav(NavEvent::Geofence {
+                distance_m: 100.4,
+                limit_m: 100.0,
+                action: FenceAction::Rth,
+            }),
         ] {
             let sentence = say(event);
             assert!(sentence.ends_with(['.', '?']), "{sentence}");

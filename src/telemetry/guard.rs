@@ -17,22 +17,139 @@ pub enum GuardOp {
     Above,
 }
 
+/// What a guard compares.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::IntoStaticStr)]
+pub enum GuardName {
+    /// A 3-D fix is present, 0 or 1.
+    #[strum(to_string = "fix")]
+    Fix,
+    /// Waypoints in the active plan.
+    #[strum(to_string = "plan")]
+    Plan,
+    /// Distance from home.
+    #[strum(to_string = "fence")]
+    Fence,
+    /// Altitude in the climb before the first leg.
+    #[strum(to_string = "climb")]
+    Climb,
+    /// Time since the craft last came nearer.
+    #[strum(to_string = "no progress")]
+    NoProgress,
+    /// Distance to the waypoint, against the nearest so far.
+    #[strum(to_string = "flyaway")]
+    Flyaway,
+    /// Distance to the waypoint.
+    #[strum(to_string = "arrival")]
+    Arrival,
+    /// Altitude error of a TAKEOFF.
+    #[strum(to_string = "altitude")]
+    Altitude,
+    /// Distance to a FLYBY.
+    #[strum(to_string = "turn radius")]
+    TurnRadius,
+    /// Distance to a waypoint that was flown past.
+    #[strum(to_string = "overrun")]
+    Overrun,
+    /// Distance to the plane through the waypoint.
+    #[strum(to_string = "plane")]
+    Plane,
+    /// Distance from the waypoint where its plane was crossed.
+    #[strum(to_string = "beside")]
+    Beside,
+    /// Time in the hold.
+    #[strum(to_string = "hold time")]
+    HoldTime,
+    /// Altitude of a landing.
+    #[strum(to_string = "touchdown altitude")]
+    TouchdownAltitude,
+    /// Ground speed of a landing.
+    #[strum(to_string = "touchdown speed")]
+    TouchdownSpeed,
+    /// Commanded throttle of a landing.
+    #[strum(to_string = "touchdown throttle")]
+    TouchdownThrottle,
+    /// Climb rate of a landing.
+    #[strum(to_string = "touchdown sink")]
+    TouchdownSink,
+    /// Way down since the landing began.
+    #[strum(to_string = "descent")]
+    Descent,
+    /// Commanded throttle under the hover throttle in use.
+    #[strum(to_string = "below hover")]
+    BelowHover,
+    /// Time for which all other conditions of the touchdown have held.
+    #[strum(to_string = "touchdown time")]
+    TouchdownTime,
+}
+
+impl GuardName {
+    /// Unit of the value and its limit.
+    #[must_use]
+    pub fn unit(self) -> GuardUnit {
+        match self {
+            Self::Fix => GuardUnit::None,
+            Self::Plan => GuardUnit::Waypoints,
+            Self::Fence
+            | Self::Climb
+            | Self::Flyaway
+            | Self::Arrival
+            | Self::Altitude
+            | Self::TurnRadius
+            | Self::Overrun
+            | Self::Plane
+            | Self::Beside
+            | Self::TouchdownAltitude
+            | Self::Descent => GuardUnit::Metres,
+            Self::NoProgress | Self::HoldTime | Self::TouchdownTime => GuardUnit::Seconds,
+            Self::TouchdownSpeed | Self::TouchdownSink => GuardUnit::MetresPerSecond,
+            Self::TouchdownThrottle | Self::BelowHover => GuardUnit::Microseconds,
+        }
+    }
+}
+
+/// Unit of a guard's value and limit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::IntoStaticStr)]
+pub enum GuardUnit {
+    /// A yes or no.
+    #[strum(to_string = "")]
+    None,
+    /// A count of waypoints.
+    #[strum(to_string = "waypoints")]
+    Waypoints,
+    /// m
+    #[strum(to_string = "m")]
+    Metres,
+    /// s
+    #[strum(to_string = "s")]
+    Seconds,
+    /// m/s
+    #[strum(to_string = "m/s")]
+    MetresPerSecond,
+    /// µs of a servo pulse.
+    #[strum(to_string = "µs")]
+    Microseconds,
+}
+
 /// A named condition of the state machine with everything needed to say why it does or does not hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Guard {
-    /// What is compared: `arrival`, `turn radius`, `plane`, `hold time`, `touchdown altitude`…
-    pub name: &'static str,
+    /// What is compared.
+    pub name: GuardName,
     /// The measured value.
     pub value: f64,
-    /// The limit it is compared with.
+    /// The limit it is compared with, in the same unit.
     pub limit: f64,
     /// How.
     pub op: GuardOp,
-    /// Unit of both, `m`, `s`, `m/s`, `µs`, `deg`.
-    pub unit: &'static str,
 }
 
 impl Guard {
+    /// Unit of value and limit.
+    #[must_use]
+    pub fn unit(&self) -> GuardUnit {
+        self.name.unit()
+    }
+
     /// Whether the condition holds; never for NaN.
     #[must_use]
     pub fn holds(&self) -> bool {

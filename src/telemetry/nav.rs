@@ -6,6 +6,7 @@ use nalgebra::Vector2;
 
 use super::guard::Guard;
 use super::refusal::Refusal;
+use super::transition::TransitionReason;
 use crate::geo::LatLon;
 use crate::plan::{FlightPlan, WaypointType};
 
@@ -90,6 +91,30 @@ pub enum L1Mode {
     Direct,
 }
 
+/// What leaving the fence does.
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    Default,
+    Hash,
+    strum::Display,
+    strum::EnumIter,
+    strum::FromRepr,
+    strum::IntoStaticStr,
+)]
+#[strum(serialize_all = "UPPERCASE")]
+#[repr(u8)]
+pub enum FenceAction {
+    /// Land on the spot.
+    #[default]
+    Land = 0,
+    /// Return to home.
+    Rth = 1,
+}
+
 /// Something that happened in the navigator.
 #[derive(Debug, Clone, PartialEq)]
 pub enum NavEvent {
@@ -110,8 +135,8 @@ pub enum NavEvent {
         wp: u8,
         /// Its type, when there is one.
         kind: Option<WaypointType>,
-        /// The cause in a word: a guard's name, `reset`, `resume`, `advance`, `GPS_LOST`…
-        reason: &'static str,
+        /// The cause.
+        reason: TransitionReason,
         /// The guard that fired, if one did.
         guard: Option<Guard>,
         /// Target position.
@@ -127,8 +152,8 @@ pub enum NavEvent {
         distance_m: f64,
         /// The fence, m.
         limit_m: f64,
-        /// What is done about it: `LAND` or `RTH`.
-        action: &'static str,
+        /// What is done about it.
+        action: FenceAction,
     },
     /// The switch is on and the autopilot does not engage; sent once per cause.
     Refused(Refusal),
@@ -147,8 +172,8 @@ pub struct NavTelemetry {
     pub climbing: bool,
     /// Why the switch has no effect, if it has none.
     pub refusal: Option<Refusal>,
-    /// The cause of the last transition in a word.
-    pub reason: &'static str,
+    /// The cause of the last transition.
+    pub reason: Option<TransitionReason>,
     /// Index of the current waypoint in the active plan.
     pub wp: u8,
     /// Index of the positional waypoint after it; the same when it is the last.

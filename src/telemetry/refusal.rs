@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 /// Why the autopilot does not engage or left the mission; `Display` gives the name (without the waypoint
 /// number).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::IntoStaticStr)]
 #[strum(serialize_all = "SCREAMING_SNAKE_CASE")]
 pub enum Refusal {
     /// The craft is not armed.
@@ -39,7 +39,7 @@ pub enum Refusal {
 }
 
 /// Why a mission ended without completing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::IntoStaticStr)]
 #[strum(serialize_all = "SCREAMING_SNAKE_CASE")]
 pub enum AbortReason {
     /// No progress towards the waypoint for 30 s.

@@ -6,7 +6,7 @@ use std::time::Duration;
 use crate::plan::FlightPlan;
 use crate::session::{Event, SessionEvent, SessionView};
 use crate::signals::{RcFrame, SimTime};
-use crate::telemetry::{EventKind, FirmwareEvent, NavEvent, NavState};
+use crate::telemetry::{EventKind, FirmwareEvent, NavEvent, NavState, TransitionReason};
 
 use super::cli::{CliHelp, CliState};
 use super::keymap::Keymap;
@@ -124,7 +124,7 @@ pub struct Transition {
     /// Waypoint.
     pub wp: u8,
     /// Cause.
-    pub reason: &'static str,
+    pub reason: TransitionReason,
 }
 
 /// First visible line of the panels that scroll.
@@ -277,7 +277,7 @@ impl AppState {
                     from: *from,
                     to: *to,
                     wp: *wp,
-                    reason,
+                    reason: *reason,
                 });
             }
             _ => {}

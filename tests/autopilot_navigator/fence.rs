@@ -1,9 +1,10 @@
 //! The fence, before the flight and in it.
 
-use betadeck::autopilot::params::FenceAction;
 use betadeck::autopilot::{Navigator, Params};
 use betadeck::plan::WaypointType::{Flyover, Hold};
-use betadeck::telemetry::{NavEvent, NavState, PlanSource, Refusal};
+use betadeck::telemetry::{
+    AbortReason, FenceAction, GuardName, NavEvent, NavState, PlanSource, Refusal, TransitionReason,
+};
 
 use crate::flight::{Flight, guide, inputs, plan, waypoint, worst};
 
@@ -68,7 +69,10 @@ fn carried_away(params: Params) -> Flight {
     flight.run(1.0);
     flight.plant.pos.x = -25.0;
     flight.run(0.1);
-    assert_eq!((flight.nav.state(), flight.nav.telemetry().reason), (NavState::Idle, "FLYAWAY"));
+    assert_eq!(
+        (flight.nav.state(), flight.nav.telemetry().reason),
+        (NavState::Idle, Some(TransitionReason::GivenUp(AbortReason::Flyaway)))
+    );
     flight.plant.pos.x = -99.0;
     flight.run(0.1);
     assert_eq!(flight.nav.state(), NavState::Idle);
@@ -86,7 +90,7 @@ fn the_fence_stays_up_after_a_mission_was_given_up() {
         NavEvent::State { guard, .. } => *guard,
         _ => None,
     });
-    assert!(guard.is_some_and(|guard| guard.name == "fence" && guard.holds()), "{guard:?}");
+    assert!(guard.is_some_and(|guard| guard.name == GuardName::Fence && guard.holds()), "{guard:?}");
     let out = flight.log.last().unwrap().out;
     assert!(out.throttle_us >= 1100.0, "it is flown at once: {out:?}");
     assert!(flight.until(120.0, |f| f.disarmed));

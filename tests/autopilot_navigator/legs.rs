@@ -6,7 +6,7 @@ use betadeck::autopilot::{Navigator, Params};
 use betadeck::geo::{LatLon, distance_bearing, offset_to_latlon};
 use betadeck::plan::Waypoint;
 use betadeck::plan::WaypointType::{AltChange, Delay, Flyover, Hold, Takeoff, YawRate};
-use betadeck::telemetry::{L1Mode, NavEvent, NavState};
+use betadeck::telemetry::{GuardName, L1Mode, NavEvent, NavState};
 use nalgebra::Vector2;
 
 use crate::flight::{Flight, HOME, guide, inputs, plan, waypoint, worst};
@@ -18,7 +18,7 @@ fn climbing_comes_before_the_first_leg() {
     flight.engage();
     flight.run(0.02);
     assert!(flight.nav.telemetry().climbing);
-    assert_eq!(flight.nav.telemetry().guards[1].name, "climb");
+    assert_eq!(flight.nav.telemetry().guards[1].name, GuardName::Climb);
     assert!(flight.until(30.0, |f| !f.nav.telemetry().climbing));
     assert!(flight.plant.pos.norm() < 0.3 && flight.plant.alt >= 5.0, "it climbed on the spot");
     let events: Vec<_> = flight

@@ -2,7 +2,7 @@
 
 use betadeck::autopilot::{Navigator, Params};
 use betadeck::signals::SimTime;
-use betadeck::telemetry::{AbortReason, NavState, Refusal};
+use betadeck::telemetry::{AbortReason, NavState, Refusal, TransitionReason};
 use nalgebra::Vector2;
 
 use crate::{flying, three};
@@ -20,7 +20,10 @@ fn a_lost_fix_idles_and_resumes_two_seconds_after_it_is_back() {
         engaged
     };
     tick(&mut nav, false).unwrap();
-    assert_eq!((nav.state(), nav.telemetry().reason), (NavState::Idle, "GPS_LOST"));
+    assert_eq!(
+        (nav.state(), nav.telemetry().reason),
+        (NavState::Idle, Some(TransitionReason::GivenUp(AbortReason::GpsLost)))
+    );
     for _ in 0..50 {
         assert_eq!(tick(&mut nav, false), Err(Refusal::Aborted(AbortReason::GpsLost)));
     }
@@ -63,7 +66,7 @@ fn a_craft_that_flies_away_gives_up_but_not_while_the_pilot_flies() {
             at.pos_ne = Vector2::new(-0.1 * f64::from(step), 0.0);
             nav.update(&at, &params, &stored);
         }
-        assert_eq!(nav.telemetry().reason == "FLYAWAY", aborts);
+        assert_eq!(nav.telemetry().reason == Some(TransitionReason::GivenUp(AbortReason::Flyaway)), aborts);
     }
 }
 
@@ -88,5 +91,8 @@ fn nothing_but_finite_numbers_comes_out_of_broken_inputs() {
     assert!(out.throttle.is_finite() && nav.state() == NavState::Approaching);
     at.pos_ne.x = f64::NAN;
     nav.update(&at, &params, &stored);
-    assert_eq!((nav.state(), nav.telemetry().reason), (NavState::Idle, "GPS_LOST"));
+    assert_eq!(
+        (nav.state(), nav.telemetry().reason),
+        (NavState::Idle, Some(TransitionReason::GivenUp(AbortReason::GpsLost)))
+    );
 }

@@ -3,7 +3,7 @@
 use betadeck::autopilot::io::NavInputs;
 use betadeck::autopilot::{Navigator, Params, Rescue};
 use betadeck::plan::WaypointType::{Flyover, Hold};
-use betadeck::telemetry::{NavEvent, NavState, PlanSource, Refusal};
+use betadeck::telemetry::{AbortReason, NavEvent, NavState, PlanSource, Refusal, TransitionReason};
 use nalgebra::Vector2;
 
 use crate::flight::{Flight, guide, inputs, waypoint, worst};
@@ -83,7 +83,7 @@ fn a_return_home_that_makes_no_progress_lands_where_it_is() {
     }
     assert!((flight.t() - began - 30.0).abs() < 0.1, "{}", flight.t() - began);
     assert_eq!((flight.nav.state(), flight.nav.source()), (NavState::Landing, PlanSource::Emergency));
-    assert_eq!(flight.nav.telemetry().reason, "STALLED");
+    assert_eq!(flight.nav.telemetry().reason, Some(TransitionReason::GivenUp(AbortReason::Stalled)));
     assert!(flight.until(120.0, |f| f.disarmed));
     assert!((flight.plant.pos - held).norm() < 2.0, "{}", flight.plant.pos);
 }

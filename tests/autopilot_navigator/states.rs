@@ -4,7 +4,7 @@ use betadeck::autopilot::io::NavInputs;
 use betadeck::autopilot::{Navigator, Params};
 use betadeck::plan::WaypointType::{AltChange, Flyby, Flyover, Hold, Land};
 use betadeck::plan::{FlightPlan, HoldPattern};
-use betadeck::telemetry::{NavEvent, NavState};
+use betadeck::telemetry::{AbortReason, NavEvent, NavState, TransitionReason};
 use nalgebra::Vector2;
 
 use crate::flight::{Flight, guide, inputs, plan, waypoint, worst};
@@ -37,7 +37,7 @@ fn every_state_event_carries_the_guard_that_fired() {
         .filter_map(|(_, event)| match event {
             NavEvent::State { guard: Some(guard), to, .. } => {
                 assert!(guard.holds() && guard.margin() >= 0.0, "{guard:?}");
-                Some((guard.name, *to))
+                Some((guard.name.into(), *to))
             }
             _ => None,
         })
@@ -106,7 +106,10 @@ fn clearing_the_stored_plan_in_flight_ends_the_mission_and_editing_does_not() {
     nav.update(&at, &params, &edited);
     assert_eq!(nav.active_plan(), &stored);
     nav.update(&at, &params, &FlightPlan::default());
-    assert_eq!((nav.state(), nav.telemetry().reason), (NavState::Idle, "NO_PLAN"));
+    assert_eq!(
+        (nav.state(), nav.telemetry().reason),
+        (NavState::Idle, Some(TransitionReason::GivenUp(AbortReason::NoPlan)))
+    );
     let away = NavInputs { pos_ne: Vector2::new(50.0, 0.0), ..at };
     nav.return_to_home(&away, &params, None).unwrap();
     nav.update(&away, &params, &FlightPlan::default());

@@ -5,12 +5,12 @@ use std::str::FromStr;
 use betadeck::autopilot::engage::{EngageFacts, check};
 use betadeck::autopilot::fence::{FenceFacts, pre_flight};
 use betadeck::autopilot::machine::{Facts, Outcome, transition};
-use betadeck::autopilot::params::{FenceAction, RxLossPolicy};
+use betadeck::autopilot::params::RxLossPolicy;
 use betadeck::autopilot::rx_loss::{RxLossFacts, decide};
 use betadeck::geo::LatLon;
 use betadeck::plan::validate::{PlanFault, WaypointFault, check_records, is_valid_index};
 use betadeck::plan::{HoldPattern, Waypoint, WaypointType};
-use betadeck::telemetry::{AbortReason, PlanSource, Refusal};
+use betadeck::telemetry::{AbortReason, FenceAction, PlanSource, Refusal};
 use serde_json::Value;
 use strum::IntoEnumIterator;
 
@@ -38,11 +38,12 @@ fn geofence() {
             source: if flag(&case, "injected") { PlanSource::Rth } else { PlanSource::Stored },
             action: fence_action(&case, "action"),
         };
-        let got = match transition(state, &Facts { fence, ..Facts::default() }).outcome {
-            Some(Outcome::Fence(FenceAction::Land)) => "EMERGENCY_LAND",
-            Some(Outcome::Fence(FenceAction::Rth)) => "RETURN_TO_HOME",
-            _ => "none",
-        };
+        let got =
+            match transition(state, &Facts { fence, ..Facts::default() }).map(|decision| decision.outcome) {
+                Some(Outcome::Fence(FenceAction::Land)) => "EMERGENCY_LAND",
+                Some(Outcome::Fence(FenceAction::Rth)) => "RETURN_TO_HOME",
+                _ => "none",
+            };
         assert_eq!(got, text(&case, "expect"), "{case}");
     }
     for case in cases("geofence", "pre_flight") {

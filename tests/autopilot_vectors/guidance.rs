@@ -38,7 +38,7 @@ fn plane_crossings() {
         facts.approach.distance_m = (wp - pos).norm();
         facts.approach.arrival_radius_m = num(&case, "arrival_radius_cm") / 100.0;
         facts.waypoint.missed = flag(&case, "missed_before");
-        let outcome = transition(NavState::Approaching, &facts).outcome;
+        let outcome = transition(NavState::Approaching, &facts).map(|decision| decision.outcome);
         let expect = &case["expect"];
         assert_eq!(outcome == Some(Outcome::Arrive), flag(expect, "arrived"), "{case}");
         let missed = facts.waypoint.missed || outcome == Some(Outcome::Missed);

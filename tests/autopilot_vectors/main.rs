@@ -14,9 +14,9 @@ mod machine;
 
 use std::path::Path;
 
-use betadeck::autopilot::params::{FenceAction, Params};
+use betadeck::autopilot::params::Params;
 use betadeck::geo::LatLon;
-use betadeck::telemetry::NavState;
+use betadeck::telemetry::{FenceAction, NavState};
 use nalgebra::Vector2;
 use serde_json::Value;
 use strum::IntoEnumIterator;

@@ -6,7 +6,7 @@ use betadeck::autopilot::Params;
 use betadeck::firmware::Firmware;
 use betadeck::firmware::failsafe::Procedure;
 use betadeck::firmware::modes::boxes;
-use betadeck::telemetry::{FirmwareEvent, Mode, NavEvent, NavState};
+use betadeck::telemetry::{FirmwareEvent, Mode, NavEvent, NavState, TransitionReason};
 
 /// Updates that a changed limit may take to be in force.
 const SETTLE: u32 = 300;
@@ -133,7 +133,7 @@ impl Law {
         match event {
             FirmwareEvent::Nav(NavEvent::State { from, to, guard, target_alt_m, reason, .. }) => {
                 assert_eq!(*from, self.state, "a state changed without an event");
-                let at_once = *to == NavState::Complete && *reason == "reset";
+                let at_once = *to == NavState::Complete && *reason == TransitionReason::Reset;
                 assert!(legal(*from, *to) || at_once, "{from} -> {to}: {reason}");
                 assert!(guard.is_none_or(|guard| guard.holds()), "{guard:?} fired");
                 assert!(target_alt_m.is_finite());

@@ -11,8 +11,8 @@ use betadeck::session::{Event, SessionEvent, SessionView};
 use betadeck::signals::{RcFrame, RcSource, SimTime};
 use betadeck::telemetry::snapshot::{ModeRange, SettingsView, TruthView};
 use betadeck::telemetry::{
-    DisarmReason, EventKind, FirmwareEvent, Guard, GuardOp, L1Mode, Mode, ModeFlags, NavEvent, NavState,
-    Snapshot,
+    DisarmReason, EventKind, FirmwareEvent, Guard, GuardName, GuardOp, L1Mode, Mode, ModeFlags, NavEvent,
+    NavState, Snapshot, TransitionReason,
 };
 use betadeck::ui::theme::{Charset, Palette};
 use betadeck::ui::{AppState, CliHelp, Msg, OpenPlan, Theme, UiConfig, update};
@@ -242,7 +242,14 @@ pub(crate) fn hear(state: &mut AppState, time_s: f64, kind: EventKind) {
     update(state, Msg::Event(event));
 }
 
-fn transition(state: &mut AppState, time_s: f64, from: NavState, to: NavState, wp: u8, reason: &'static str) {
+fn transition(
+    state: &mut AppState,
+    time_s: f64,
+    from: NavState,
+    to: NavState,
+    wp: u8,
+    reason: TransitionReason,
+) {
     let event = NavEvent::State {
         from,
         to,
@@ -262,13 +269,13 @@ pub(crate) fn approach(state: &mut AppState) {
     let boot = EventKind::Boot { seed: 1, rate_hz: 1000, airframe: "iris".to_owned(), live: false };
     hear(state, 0.0, boot);
     hear(state, 29.5, EventKind::Firmware(FirmwareEvent::Armed));
-    transition(state, 31.02, NavState::Idle, NavState::Approaching, 0, "reset");
+    transition(state, 31.02, NavState::Idle, NavState::Approaching, 0, TransitionReason::Reset);
     for step in 0..=40 {
         let t = f64::from(step) / 40.0;
         fly(state, 31.02 + t * 27.0, (55.5 * t, 59.4 * t), 45.0, 0);
     }
-    transition(state, 58.31, NavState::Approaching, NavState::Arrived, 0, "plane");
-    transition(state, 58.32, NavState::Arrived, NavState::Approaching, 1, "advance");
+    transition(state, 58.31, NavState::Approaching, NavState::Arrived, 0, TransitionReason::Plane);
+    transition(state, 58.32, NavState::Arrived, NavState::Approaching, 1, TransitionReason::Advance);
     for step in 0..=20 {
         let t = f64::from(step) / 20.0;
         fly(state, 58.32 + t * 9.7, (55.5 - 48.7 * t, 59.4 + 3.0 * (t * 3.1).sin()), 180.0, 1);
@@ -276,15 +283,15 @@ pub(crate) fn approach(state: &mut AppState) {
 }
 
 fn fly(state: &mut AppState, time_s: f64, (n, e): (f64, f64), heading_deg: f64, wp: u8) {
-    let guard = |name, value, limit, op, unit| Guard { name, value, limit, op, unit };
+    let guard = |name, value, limit, op| Guard { name, value, limit, op };
     let guards = match wp {
         0 => vec![
-            guard("plane", -62.4, 0.0, GuardOp::AtLeast, "m"),
-            guard("lateral", 0.31, 5.0, GuardOp::AtMost, "m"),
+            guard(GuardName::Plane, -62.4, 0.0, GuardOp::AtLeast),
+            guard(GuardName::Beside, 0.31, 5.0, GuardOp::AtMost),
         ],
         _ => vec![
-            guard("turn radius", 62.4, 5.47, GuardOp::AtMost, "m"),
-            guard("plane", -62.4, 0.0, GuardOp::AtLeast, "m"),
+            guard(GuardName::TurnRadius, 62.4, 5.47, GuardOp::AtMost),
+            guard(GuardName::Plane, -62.4, 0.0, GuardOp::AtLeast),
         ],
     };
     let flight = SimpleFlight {
@@ -307,8 +314,8 @@ fn fly(state: &mut AppState, time_s: f64, (n, e): (f64, f64), heading_deg: f64, 
 /// Circles at WP2.
 pub(crate) fn orbit(state: &mut AppState) {
     approach(state);
-    transition(state, 90.0, NavState::Holding, NavState::Orbiting, 2, "pattern");
-    let guard = Guard { name: "hold time", value: 11.6, limit: 30.0, op: GuardOp::AtLeast, unit: "s" };
+    transition(state, 90.0, NavState::Holding, NavState::Orbiting, 2, TransitionReason::Pattern);
+    let guard = Guard { name: GuardName::HoldTime, value: 11.6, limit: 30.0, op: GuardOp::AtLeast };
     let flight = SimpleFlight {
         time_s: 101.6,
         n: -47.0,
@@ -329,8 +336,8 @@ pub(crate) fn orbit(state: &mut AppState) {
 /// Comes down at WP3.
 pub(crate) fn land(state: &mut AppState) {
     orbit(state);
-    transition(state, 190.0, NavState::Arrived, NavState::Landing, 3, "land");
-    let guard = |name, value, limit, op, unit| Guard { name, value, limit, op, unit };
+    transition(state, 190.0, NavState::Arrived, NavState::Landing, 3, TransitionReason::Land);
+    let guard = |name, value, limit, op| Guard { name, value, limit, op };
     let flight = SimpleFlight {
         time_s: 200.0,
         n: 55.5,
@@ -342,13 +349,13 @@ pub(crate) fn land(state: &mut AppState) {
         state: NavState::Landing,
         wp: 3,
         guards: vec![
-            guard("touchdown altitude", 35.1, 4.0, GuardOp::Below, "m"),
-            guard("touchdown speed", 0.3, 0.5, GuardOp::Below, "m/s"),
-            guard("touchdown throttle", 1501.5, 1400.0, GuardOp::Below, "µs"),
-            guard("touchdown sink", -0.5, -0.1, GuardOp::Above, "m/s"),
-            guard("touchdown descent", 15.1, 0.5, GuardOp::AtLeast, "m"),
-            guard("below hover", 2.7, 50.0, GuardOp::AtLeast, "µs"),
-            guard("touchdown time", 0.0, 1.0, GuardOp::AtLeast, "s"),
+            guard(GuardName::TouchdownAltitude, 35.1, 4.0, GuardOp::Below),
+            guard(GuardName::TouchdownSpeed, 0.3, 0.5, GuardOp::Below),
+            guard(GuardName::TouchdownThrottle, 1501.5, 1400.0, GuardOp::Below),
+            guard(GuardName::TouchdownSink, -0.5, -0.1, GuardOp::Above),
+            guard(GuardName::Descent, 15.1, 0.5, GuardOp::AtLeast),
+            guard(GuardName::BelowHover, 2.7, 50.0, GuardOp::AtLeast),
+            guard(GuardName::TouchdownTime, 0.0, 1.0, GuardOp::AtLeast),
         ],
         ..SimpleFlight::default()
     };
@@ -358,7 +365,7 @@ pub(crate) fn land(state: &mut AppState) {
 /// Has landed at WP3.
 pub(crate) fn complete(state: &mut AppState) {
     orbit(state);
-    transition(state, 260.0, NavState::Landing, NavState::Complete, 3, "touchdown");
+    transition(state, 260.0, NavState::Landing, NavState::Complete, 3, TransitionReason::Touchdown);
     hear(state, 260.0, EventKind::Firmware(FirmwareEvent::Disarmed(DisarmReason::Landing)));
     let flight = SimpleFlight {
         time_s: 262.0,

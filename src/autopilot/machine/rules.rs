@@ -6,12 +6,7 @@ use super::{Facts, Outcome, Rule, Rules, STALL_S};
 use crate::autopilot::fence;
 use crate::autopilot::guidance::PlaneCrossing;
 use crate::plan::{HoldPattern, WaypointType};
-use crate::telemetry::{AbortReason, Guard, GuardOp, NavState, PlanSource};
-
-/// Name of the guard on the GPS fix.
-pub(super) const FIX: &str = "fix";
-/// Name of the guard on the plan.
-pub(super) const PLAN: &str = "plan";
+use crate::telemetry::{AbortReason, Guard, GuardName, GuardOp, NavState, PlanSource, TransitionReason};
 
 /// The rules of `state`, in the order they are tried; the first whose guards all hold fires.
 #[must_use]
@@ -36,30 +31,38 @@ pub(super) fn own(state: NavState, facts: &Facts, list: &mut Rules) {
     }
 }
 
-pub(super) fn guard(name: &'static str, value: f64, op: GuardOp, limit: f64, unit: &'static str) -> Guard {
-    Guard { name, value, limit, op, unit }
+pub(super) fn guard(name: GuardName, value: f64, op: GuardOp, limit: f64) -> Guard {
+    Guard { name, value, limit, op }
 }
 
-fn rule(guards: impl IntoIterator<Item = Guard>, outcome: Outcome, reason: &'static str) -> Rule {
+fn rule(guards: impl IntoIterator<Item = Guard>, outcome: Outcome, reason: TransitionReason) -> Rule {
     Rule { guards: ArrayVec::from_iter(guards), outcome, reason }
 }
 
 /// What ends a mission from any state.
 pub(super) fn common(state: NavState, facts: &Facts, list: &mut Rules) {
-    let fix = guard(FIX, f64::from(u8::from(facts.fix)), GuardOp::Below, 1.0, "");
-    list.push(rule([fix], Outcome::Abort(AbortReason::GpsLost), "GPS_LOST"));
-    let plan = guard(PLAN, f64::from(facts.count), GuardOp::Below, 1.0, "waypoints");
-    list.push(rule([plan], Outcome::Abort(AbortReason::NoPlan), "NO_PLAN"));
+    let fix = guard(GuardName::Fix, f64::from(u8::from(facts.fix)), GuardOp::Below, 1.0);
+    list.push(rule(
+        [fix],
+        Outcome::Abort(AbortReason::GpsLost),
+        TransitionReason::GivenUp(AbortReason::GpsLost),
+    ));
+    let plan = guard(GuardName::Plan, f64::from(facts.count), GuardOp::Below, 1.0);
+    list.push(rule(
+        [plan],
+        Outcome::Abort(AbortReason::NoPlan),
+        TransitionReason::GivenUp(AbortReason::NoPlan),
+    ));
     let fence = fence::FenceFacts { state, ..facts.fence };
     if let Some(outside) = fence::guard(&fence) {
-        list.push(rule([outside], Outcome::Fence(fence.action), "fence"));
+        list.push(rule([outside], Outcome::Fence(fence.action), TransitionReason::Fence));
     }
 }
 
 fn approaching(facts: &Facts, list: &mut Rules) {
     if let Some((altitude, enough)) = facts.climb {
-        let climbed = guard("climb", altitude, GuardOp::AtLeast, enough, "m");
-        list.push(rule([climbed], Outcome::Climbed, "climb"));
+        let climbed = guard(GuardName::Climb, altitude, GuardOp::AtLeast, enough);
+        list.push(rule([climbed], Outcome::Climbed, TransitionReason::Climb));
         return;
     }
     monitors(facts, list);
@@ -70,14 +73,14 @@ fn approaching(facts: &Facts, list: &mut Rules) {
         WaypointType::Takeoff => {
             let radius = facts.approach.hold_radius_m;
             let level =
-                guard("altitude", facts.approach.altitude_error_m.abs(), GuardOp::AtMost, radius, "m");
+                guard(GuardName::Altitude, facts.approach.altitude_error_m.abs(), GuardOp::AtMost, radius);
             let mut reached = arrival(facts, radius);
             reached.guards.push(level);
             list.push(reached);
         }
         // Never current: the plan moves on to positional waypoints only.
         WaypointType::AltChange | WaypointType::Delay | WaypointType::YawRate => {
-            list.push(rule([], Outcome::Next, "advance"));
+            list.push(rule([], Outcome::Next, TransitionReason::Advance));
         }
     }
 }
@@ -89,31 +92,43 @@ pub(super) fn monitors(facts: &Facts, list: &mut Rules) {
         PlanSource::Rth | PlanSource::Emergency => Outcome::LandHere,
     };
     if let Some(progress) = facts.progress {
-        let stalled = guard("no progress", progress.no_progress_s, GuardOp::AtLeast, STALL_S, "s");
-        list.push(rule([stalled], give_up(AbortReason::Stalled), "STALLED"));
-        let away = guard("flyaway", progress.distance_m, GuardOp::Above, progress.flyaway_m, "m");
-        list.push(rule([away], give_up(AbortReason::Flyaway), "FLYAWAY"));
+        let stalled = guard(GuardName::NoProgress, progress.no_progress_s, GuardOp::AtLeast, STALL_S);
+        list.push(rule(
+            [stalled],
+            give_up(AbortReason::Stalled),
+            TransitionReason::GivenUp(AbortReason::Stalled),
+        ));
+        let away = guard(GuardName::Flyaway, progress.distance_m, GuardOp::Above, progress.flyaway_m);
+        list.push(rule(
+            [away],
+            give_up(AbortReason::Flyaway),
+            TransitionReason::GivenUp(AbortReason::Flyaway),
+        ));
     }
 }
 
 fn arrival(facts: &Facts, radius: f64) -> Rule {
-    let near = guard("arrival", facts.approach.distance_m, GuardOp::AtMost, radius, "m");
-    rule([near], Outcome::Arrive, "arrival")
+    let near = guard(GuardName::Arrival, facts.approach.distance_m, GuardOp::AtMost, radius);
+    rule([near], Outcome::Arrive, TransitionReason::Arrival)
 }
 
 /// FLYOVER and FLYBY: by radius when last, co-located or missed, else by the plane, FLYBY also by the turn radius.
 fn pass(facts: &Facts, flyby: bool, list: &mut Rules) {
     let radius = facts.approach.arrival_radius_m;
     let waypoint = facts.waypoint;
-    let turn =
-        guard("turn radius", facts.approach.distance_m, GuardOp::AtMost, facts.approach.turn_radius_m, "m");
+    let turn = guard(
+        GuardName::TurnRadius,
+        facts.approach.distance_m,
+        GuardOp::AtMost,
+        facts.approach.turn_radius_m,
+    );
     if waypoint.last || waypoint.co_located || waypoint.missed || facts.approach.plane == PlaneCrossing::NoLeg
     {
         list.push(arrival(facts, radius));
         return;
     }
     if flyby {
-        list.push(rule([turn], Outcome::Arrive, "turn radius"));
+        list.push(rule([turn], Outcome::Arrive, TransitionReason::TurnRadius));
     }
     let (to_go, lateral) = match facts.approach.plane {
         PlaneCrossing::NoLeg => return,
@@ -121,17 +136,17 @@ fn pass(facts: &Facts, flyby: bool, list: &mut Rules) {
         PlaneCrossing::Crossed { lateral_m } => (0.0, Some(lateral_m)),
         PlaneCrossing::Behind => {
             // It stood on the plane before: only when it runs away from the point does it have to come back.
-            let overrun = guard("overrun", facts.approach.distance_m, GuardOp::Above, radius, "m");
-            list.push(rule([overrun], Outcome::Missed, "missed"));
+            let overrun = guard(GuardName::Overrun, facts.approach.distance_m, GuardOp::Above, radius);
+            list.push(rule([overrun], Outcome::Missed, TransitionReason::Missed));
             return;
         }
     };
-    let plane = guard("plane", to_go, GuardOp::AtMost, 0.0, "m");
-    let beside = lateral.map(|lateral| guard("beside", lateral, GuardOp::AtMost, radius, "m"));
-    list.push(rule(std::iter::once(plane).chain(beside), Outcome::Arrive, "plane"));
+    let plane = guard(GuardName::Plane, to_go, GuardOp::AtMost, 0.0);
+    let beside = lateral.map(|lateral| guard(GuardName::Beside, lateral, GuardOp::AtMost, radius));
+    list.push(rule(std::iter::once(plane).chain(beside), Outcome::Arrive, TransitionReason::Plane));
     if let Some(lateral) = lateral {
-        let too_far = guard("beside", lateral, GuardOp::Above, radius, "m");
-        list.push(rule([plane, too_far], Outcome::Missed, "missed"));
+        let too_far = guard(GuardName::Beside, lateral, GuardOp::Above, radius);
+        list.push(rule([plane, too_far], Outcome::Missed, TransitionReason::Missed));
     }
 }
 
@@ -142,16 +157,16 @@ fn next(facts: &Facts) -> Outcome {
 fn arrived(facts: &Facts, list: &mut Rules) {
     let loiter = facts.waypoint.duration_ds > 0;
     let (outcome, reason) = match facts.waypoint.kind {
-        WaypointType::Hold => (Outcome::Hold, "hold"),
-        WaypointType::Land if loiter => (Outcome::Hold, "loiter"),
-        WaypointType::Land => (Outcome::Land, "land"),
-        WaypointType::Takeoff if loiter => (Outcome::Hold, "loiter"),
+        WaypointType::Hold => (Outcome::Hold, TransitionReason::Hold),
+        WaypointType::Land if loiter => (Outcome::Hold, TransitionReason::Loiter),
+        WaypointType::Land => (Outcome::Land, TransitionReason::Land),
+        WaypointType::Takeoff if loiter => (Outcome::Hold, TransitionReason::Loiter),
         WaypointType::Flyover
         | WaypointType::Flyby
         | WaypointType::Takeoff
         | WaypointType::AltChange
         | WaypointType::Delay
-        | WaypointType::YawRate => (next(facts), "advance"),
+        | WaypointType::YawRate => (next(facts), TransitionReason::Advance),
     };
     list.push(rule([], outcome, reason));
 }
@@ -159,13 +174,13 @@ fn arrived(facts: &Facts, list: &mut Rules) {
 fn holding(facts: &Facts, list: &mut Rules) {
     match facts.waypoint.kind {
         WaypointType::Hold => match facts.waypoint.pattern {
-            HoldPattern::Orbit => list.push(rule([], Outcome::Orbit, "pattern")),
-            HoldPattern::Figure8 => list.push(rule([], Outcome::Figure8, "pattern")),
+            HoldPattern::Orbit => list.push(rule([], Outcome::Orbit, TransitionReason::Pattern)),
+            HoldPattern::Figure8 => list.push(rule([], Outcome::Figure8, TransitionReason::Pattern)),
             HoldPattern::None => hold_time(facts, list),
         },
         WaypointType::Land => {
-            let over = guard("hold time", hold_s(facts), GuardOp::AtLeast, duration_s(facts), "s");
-            list.push(rule([over], Outcome::Land, "hold time"));
+            let over = guard(GuardName::HoldTime, hold_s(facts), GuardOp::AtLeast, duration_s(facts));
+            list.push(rule([over], Outcome::Land, TransitionReason::HoldTime));
         }
         WaypointType::Takeoff
         | WaypointType::Flyover
@@ -179,8 +194,8 @@ fn holding(facts: &Facts, list: &mut Rules) {
 /// A duration of zero is endless: the guard is shown, with a limit that is never reached.
 fn hold_time(facts: &Facts, list: &mut Rules) {
     let limit = if facts.waypoint.duration_ds > 0 { duration_s(facts) } else { f64::INFINITY };
-    let over = guard("hold time", hold_s(facts), GuardOp::AtLeast, limit, "s");
-    list.push(rule([over], next(facts), "hold time"));
+    let over = guard(GuardName::HoldTime, hold_s(facts), GuardOp::AtLeast, limit);
+    list.push(rule([over], next(facts), TransitionReason::HoldTime));
 }
 
 // Both divisions round the same rational number the same way, so the comparison is exact.
@@ -195,6 +210,6 @@ fn duration_s(facts: &Facts) -> f64 {
 fn landing(facts: &Facts, list: &mut Rules) {
     let held = facts.touchdown_held_us.unwrap_or(0) as f64 / 1e6;
     let needed = f64::from(facts.detection_time_ds) / 10.0;
-    let time = guard("touchdown time", held, GuardOp::AtLeast, needed, "s");
-    list.push(rule(facts.touchdown.iter().chain([time]), Outcome::Touchdown, "touchdown"));
+    let time = guard(GuardName::TouchdownTime, held, GuardOp::AtLeast, needed);
+    list.push(rule(facts.touchdown.iter().chain([time]), Outcome::Touchdown, TransitionReason::Touchdown));
 }

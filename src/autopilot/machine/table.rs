@@ -7,9 +7,9 @@ use strum::IntoEnumIterator as _;
 use super::rules::{common, monitors, own};
 use super::{Facts, GroundFacts, Outcome, ProgressFacts, Rules, TouchdownFacts, TouchdownGuards};
 use crate::autopilot::guidance::PlaneCrossing;
-use crate::autopilot::params::{FenceAction, Params};
+use crate::autopilot::params::Params;
 use crate::plan::{HoldPattern, WaypointType};
-use crate::telemetry::{Guard, NavState, PlanSource};
+use crate::telemetry::{FenceAction, Guard, NavState, PlanSource};
 
 /// A place in the machine, in words, and the rules that hold there.
 struct Situation {
@@ -135,7 +135,9 @@ fn condition(guards: &[Guard]) -> String {
     }
     let words: Vec<String> = guards
         .iter()
-        .map(|guard| format!("{} {} {} {}", guard.name, guard.op, guard.limit, guard.unit).trim().to_owned())
+        .map(|guard| {
+            format!("{} {} {} {}", guard.name, guard.op, guard.limit, guard.unit()).trim().to_owned()
+        })
         .collect();
     words.join(" and ")
 }

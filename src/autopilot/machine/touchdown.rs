@@ -3,7 +3,7 @@
 use super::rules::guard;
 use crate::autopilot::params::Params;
 use crate::signals::SimTime;
-use crate::telemetry::{Guard, GuardOp};
+use crate::telemetry::{Guard, GuardName, GuardOp};
 
 /// Descent that makes a touchdown credible, m.
 const DESCENT_M: f64 = 0.5;
@@ -81,12 +81,12 @@ impl TouchdownGuards {
     #[must_use]
     pub fn new(touch: &TouchdownFacts, ground: &GroundFacts) -> Self {
         Self([
-            guard("touchdown altitude", touch.altitude_m, GuardOp::Below, touch.landing_altitude_m, "m"),
-            guard("touchdown speed", touch.ground_speed_mps, GuardOp::Below, touch.max_speed_mps, "m/s"),
-            guard("touchdown throttle", touch.throttle_us, GuardOp::Below, touch.max_throttle_us, "µs"),
-            guard("touchdown sink", touch.climb_mps, GuardOp::Above, touch.min_climb_mps, "m/s"),
-            guard("descent", ground.descent_m, GuardOp::AtLeast, DESCENT_M, "m"),
-            guard("below hover", ground.below_hover_us, GuardOp::AtLeast, ground.needed_us, "µs"),
+            guard(GuardName::TouchdownAltitude, touch.altitude_m, GuardOp::Below, touch.landing_altitude_m),
+            guard(GuardName::TouchdownSpeed, touch.ground_speed_mps, GuardOp::Below, touch.max_speed_mps),
+            guard(GuardName::TouchdownThrottle, touch.throttle_us, GuardOp::Below, touch.max_throttle_us),
+            guard(GuardName::TouchdownSink, touch.climb_mps, GuardOp::Above, touch.min_climb_mps),
+            guard(GuardName::Descent, ground.descent_m, GuardOp::AtLeast, DESCENT_M),
+            guard(GuardName::BelowHover, ground.below_hover_us, GuardOp::AtLeast, ground.needed_us),
         ])
     }
 

@@ -6,7 +6,7 @@ use crate::autopilot::io::NavInputs;
 use crate::autopilot::params::Params;
 use crate::geo::{LatLon, offset_to_latlon};
 use crate::plan::{FlightPlan, HoldPattern, MAX_WAYPOINTS, Waypoint, WaypointType};
-use crate::telemetry::{AbortReason, NavEvent, NavState, PlanSource, Refusal};
+use crate::telemetry::{AbortReason, NavEvent, NavState, PlanSource, Refusal, TransitionReason};
 
 /// How long a lost fix must be back before a mission resumes, s.
 const FIX_BACK_S: f64 = 2.0;
@@ -91,7 +91,7 @@ impl Navigator {
         match at {
             Some(index) => {
                 self.begin(inputs, params, stored);
-                self.begin_first_leg(index, true, "resume", inputs, params);
+                self.begin_first_leg(index, true, TransitionReason::Resume, inputs, params);
             }
             None => self.start(inputs, params, stored),
         }
@@ -116,7 +116,7 @@ impl Navigator {
         let plan = engage::check(&EngageFacts { fix: true, fence: Ok(()), ..facts });
         if let Err(refusal) = plan.and_then(|()| engage::check(&facts)) {
             if self.state != NavState::Idle {
-                self.go_idle(refusal_word(refusal), None);
+                self.go_idle(TransitionReason::Refused(refusal), None);
             }
             self.refuse(refusal);
             return Err(refusal);
@@ -130,12 +130,12 @@ impl Navigator {
         let from = self.start_at.take().unwrap_or(0);
         self.mission = Some(Mission { plan: stored.clone(), index: from });
         match self.positional_from(from) {
-            Some(index) => self.begin_first_leg(index, false, "reset", inputs, params),
+            Some(index) => self.begin_first_leg(index, false, TransitionReason::Reset, inputs, params),
             None => {
                 self.index = 0;
                 self.leg =
                     super::Leg { waypoint: here(inputs), altitude_m: inputs.alt_m, ..super::Leg::default() };
-                self.complete("reset", None);
+                self.complete(TransitionReason::Reset, None);
             }
         }
     }
@@ -176,7 +176,7 @@ impl Navigator {
         self.refused = None;
         self.telemetry.refusal = None;
         if self.is_flying() {
-            self.go_idle("disengage", None);
+            self.go_idle(TransitionReason::Disengage, None);
         }
     }
 
@@ -190,7 +190,7 @@ impl Navigator {
             return;
         }
         if self.state != NavState::Idle {
-            self.go_idle("disarm", None);
+            self.go_idle(TransitionReason::Disarm, None);
         }
     }
 
@@ -221,7 +221,7 @@ impl Navigator {
         self.yaw_cap_dps = None;
         self.clear_clocks();
         let here = here(inputs);
-        self.begin_leg(positional, index, here, "set_current", None, inputs, params);
+        self.begin_leg(positional, index, here, TransitionReason::SetCurrent, None, inputs, params);
         true
     }
 
@@ -232,7 +232,7 @@ impl Navigator {
     pub fn emergency_land(&mut self, inputs: &NavInputs, params: &Params) -> Result<(), Refusal> {
         let inputs = &self.sane(inputs);
         self.check_command(inputs)?;
-        self.land_here("emergency", None, inputs, params);
+        self.land_here(TransitionReason::Emergency, None, inputs, params);
         Ok(())
     }
 
@@ -249,7 +249,7 @@ impl Navigator {
     ) -> Result<(), Refusal> {
         let inputs = &self.sane(inputs);
         self.check_command(inputs)?;
-        self.fly_home("return to home", None, rescue, inputs, params);
+        self.fly_home(TransitionReason::ReturnHome, None, rescue, inputs, params);
         Ok(())
     }
 
@@ -269,7 +269,7 @@ impl Navigator {
 
     pub(super) fn land_here(
         &mut self,
-        reason: &'static str,
+        reason: TransitionReason,
         guard: Option<crate::telemetry::Guard>,
         inputs: &NavInputs,
         params: &Params,
@@ -290,7 +290,7 @@ impl Navigator {
 
     pub(super) fn fly_home(
         &mut self,
-        reason: &'static str,
+        reason: TransitionReason,
         guard: Option<crate::telemetry::Guard>,
         rescue: Option<Rescue>,
         inputs: &NavInputs,
@@ -340,21 +340,5 @@ fn injected(kind: WaypointType, position: LatLon, altitude_m: f64, speed_mps: f6
         duration_ds: 0,
         kind,
         pattern: HoldPattern::None,
-    }
-}
-
-fn refusal_word(refusal: Refusal) -> &'static str {
-    match refusal {
-        Refusal::NoPlan => "NO_PLAN",
-        Refusal::PlanCorrupt => "PLAN_CORRUPT",
-        Refusal::BadWaypoint(_) => "BAD_WAYPOINT",
-        Refusal::NoFix => "NO_FIX",
-        Refusal::NoHome => "NO_HOME",
-        Refusal::Geofence { .. } => "GEOFENCE",
-        Refusal::NotArmed
-        | Refusal::Throttle
-        | Refusal::NoAltitude
-        | Refusal::Failsafe
-        | Refusal::Aborted(_) => "refused",
     }
 }

@@ -10,7 +10,7 @@ use crate::autopilot::params::Params;
 use crate::geo::{LatLon, local_offset};
 use crate::plan::{Waypoint, WaypointType};
 use crate::signals::SimTime;
-use crate::telemetry::{Guard, NavState, PlanSource};
+use crate::telemetry::{Guard, NavState, PlanSource, TransitionReason};
 
 /// Distance below which two waypoints count as one, m.
 const CO_LOCATED_M: f64 = 0.1;
@@ -55,7 +55,7 @@ impl Navigator {
         &mut self,
         index: u8,
         resumed: bool,
-        reason: &'static str,
+        reason: TransitionReason,
         inputs: &NavInputs,
         params: &Params,
     ) {
@@ -68,7 +68,7 @@ impl Navigator {
         &mut self,
         index: u8,
         resumed: bool,
-        reason: &'static str,
+        reason: TransitionReason,
         guard: Option<Guard>,
         inputs: &NavInputs,
         params: &Params,
@@ -94,7 +94,7 @@ impl Navigator {
         index: u8,
         modifiers_from: u8,
         start: LatLon,
-        reason: &'static str,
+        reason: TransitionReason,
         guard: Option<Guard>,
         inputs: &NavInputs,
         params: &Params,

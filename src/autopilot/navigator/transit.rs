@@ -4,18 +4,16 @@ use super::Navigator;
 use super::entry::here;
 use crate::autopilot::fence::{self, FenceFacts};
 use crate::autopilot::io::NavInputs;
-use crate::autopilot::machine::{Facts, Outcome, transition};
-use crate::autopilot::params::{FenceAction, Params};
+use crate::autopilot::machine::{Facts, Outcome, Transition, transition};
+use crate::autopilot::params::Params;
 use crate::geo::{LatLon, local_offset};
 use crate::plan::WaypointType;
-use crate::telemetry::{AbortReason, Guard, NavEvent, NavState};
+use crate::telemetry::{AbortReason, FenceAction, Guard, NavEvent, NavState, TransitionReason};
 
 impl Navigator {
     /// At most one transition.
     pub(super) fn step(&mut self, facts: &Facts, now: &NavInputs, params: &Params) {
-        let decision = transition(self.state, facts);
-        let Some(outcome) = decision.outcome else { return };
-        let (reason, guard) = (decision.reason, decision.guard);
+        let Some(Transition { outcome, reason, guard }) = transition(self.state, facts) else { return };
         match outcome {
             Outcome::Abort(why) => self.abort(why, reason, guard),
             Outcome::Fence(action) => self.fence(action, reason, guard, &facts.fence, now, params),
@@ -55,7 +53,7 @@ impl Navigator {
 
     /// On to the next positional waypoint. The leg begins at the waypoint just left, or at the craft when it stayed
     /// there or came back to it.
-    fn advance(&mut self, reason: &'static str, guard: Option<Guard>, now: &NavInputs, params: &Params) {
+    fn advance(&mut self, reason: TransitionReason, guard: Option<Guard>, now: &NavInputs, params: &Params) {
         let Some(next) = self.following() else {
             self.complete(reason, guard);
             return;
@@ -80,14 +78,14 @@ impl Navigator {
         }
     }
 
-    pub(super) fn complete(&mut self, reason: &'static str, guard: Option<Guard>) {
+    pub(super) fn complete(&mut self, reason: TransitionReason, guard: Option<Guard>) {
         self.mission = None;
         self.next_index = self.index;
         self.progress = None;
         self.enter(NavState::Complete, reason, guard);
     }
 
-    fn abort(&mut self, why: AbortReason, reason: &'static str, guard: Option<Guard>) {
+    fn abort(&mut self, why: AbortReason, reason: TransitionReason, guard: Option<Guard>) {
         match why {
             AbortReason::Stalled | AbortReason::Flyaway => self.aborted = Some(why),
             AbortReason::GpsLost => self.gps_lost = true,
@@ -99,7 +97,7 @@ impl Navigator {
     fn fence(
         &mut self,
         action: FenceAction,
-        reason: &'static str,
+        reason: TransitionReason,
         guard: Option<Guard>,
         fence: &FenceFacts,
         now: &NavInputs,
@@ -108,7 +106,7 @@ impl Navigator {
         self.push(NavEvent::Geofence {
             distance_m: fence.distance_m.unwrap_or_default(),
             limit_m: fence.limit_m.unwrap_or_default(),
-            action: action.into(),
+            action,
         });
         match action {
             FenceAction::Land => self.land_here(reason, guard, now, params),
@@ -127,11 +125,11 @@ impl Navigator {
         let fence = FenceFacts { state: NavState::Approaching, ..self.fence_facts(now, params) };
         let outside = fence::guard(&fence).filter(Guard::holds);
         if outside.is_some() {
-            self.fence(fence.action, "fence", outside, &fence, now, params);
+            self.fence(fence.action, TransitionReason::Fence, outside, &fence, now, params);
         }
     }
 
-    pub(super) fn go_idle(&mut self, reason: &'static str, guard: Option<Guard>) {
+    pub(super) fn go_idle(&mut self, reason: TransitionReason, guard: Option<Guard>) {
         self.enter(NavState::Idle, reason, guard);
         self.active.waypoints.clear();
         self.source = Default::default();
@@ -149,10 +147,10 @@ impl Navigator {
     }
 
     /// The only place where the state changes.
-    pub(super) fn enter(&mut self, to: NavState, reason: &'static str, guard: Option<Guard>) {
+    pub(super) fn enter(&mut self, to: NavState, reason: TransitionReason, guard: Option<Guard>) {
         let from = self.state;
         self.state = to;
-        self.telemetry.reason = reason;
+        self.telemetry.reason = Some(reason);
         if to != NavState::Approaching {
             if self.climb.at.take().is_some() {
                 self.push(NavEvent::Climbing(false));

@@ -2,6 +2,8 @@
 
 use strum::IntoEnumIterator as _;
 
+use crate::telemetry::FenceAction;
+
 /// Which way the nose points while the autopilot flies.
 #[derive(
     Debug,
@@ -56,30 +58,6 @@ pub enum RxLossPolicy {
     Continue = 1,
     /// Land where the link was lost.
     Land = 2,
-}
-
-/// What leaving the fence does.
-#[derive(
-    Debug,
-    Clone,
-    Copy,
-    PartialEq,
-    Eq,
-    Default,
-    Hash,
-    strum::Display,
-    strum::EnumIter,
-    strum::FromRepr,
-    strum::IntoStaticStr,
-)]
-#[strum(serialize_all = "UPPERCASE")]
-#[repr(u8)]
-pub enum FenceAction {
-    /// Land on the spot.
-    #[default]
-    Land = 0,
-    /// Return to home.
-    Rth = 1,
 }
 
 /// A type a parameter can have. Conversions saturate, so no number can be out of range of the type.

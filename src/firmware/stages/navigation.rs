@@ -15,7 +15,7 @@ use crate::geo::LatLon;
 use crate::plan::FlightPlan;
 use crate::signals::SimTime;
 use crate::telemetry::{
-    AbortReason, FirmwareEvent, Mode, ModeFlags, NavEvent, NavOutput, NavState, NavTelemetry, Refusal,
+    FirmwareEvent, Mode, ModeFlags, NavEvent, NavOutput, NavState, NavTelemetry, Refusal, TransitionReason,
 };
 
 use super::flight_control::Demand;
@@ -215,10 +215,8 @@ impl Navigation {
         for event in self.navigator.drain_events() {
             match event {
                 NavEvent::Disarm => touched_down = true,
-                NavEvent::State { to: NavState::Idle, reason, .. } => {
-                    if let Some(why) = abort_reason(reason) {
-                        self.orders.mission_aborted(why);
-                    }
+                NavEvent::State { to: NavState::Idle, reason: TransitionReason::GivenUp(why), .. } => {
+                    self.orders.mission_aborted(why);
                 }
                 NavEvent::State { .. }
                 | NavEvent::Plan { .. }
@@ -347,16 +345,5 @@ fn unknown_craft() -> NavInputs {
         stick_roll: 0.0,
         stick_pitch: 0.0,
         stick_yaw: 0.0,
-    }
-}
-
-/// The cause of a mission's end, when it was given up.
-fn abort_reason(word: &str) -> Option<AbortReason> {
-    match word {
-        "GPS_LOST" => Some(AbortReason::GpsLost),
-        "STALLED" => Some(AbortReason::Stalled),
-        "FLYAWAY" => Some(AbortReason::Flyaway),
-        "NO_PLAN" => Some(AbortReason::NoPlan),
-        _ => None,
     }
 }

@@ -136,7 +136,7 @@ impl<'a> Fields<'a> {
                     to: to.to_string(),
                     wp: *wp,
                     r#type: kind.map(|kind: WaypointType| kind.to_string()),
-                    reason,
+                    reason: reason.word(),
                     guard: guard.as_ref().map(GuardFields::of),
                     target_lat: Decimals(target.lat_deg()),
                     target_lon: Decimals(target.lon_deg()),
@@ -147,7 +147,7 @@ impl<'a> Fields<'a> {
             NavEvent::Climbing(on) => ("climbing", Self::On { on: *on }),
             NavEvent::Geofence { distance_m, limit_m, action } => {
                 let (distance_m, limit_m) = (Decimals(*distance_m), Decimals(*limit_m));
-                ("geofence", Self::Geofence { distance_m, limit_m, action })
+                ("geofence", Self::Geofence { distance_m, limit_m, action: action.into() })
             }
             NavEvent::Refused(refusal) => ("engage_refused", Self::of_refusal(*refusal)),
             // The disarm that follows is the event.
@@ -185,10 +185,10 @@ impl<'a> Fields<'a> {
 impl GuardFields {
     fn of(guard: &Guard) -> Self {
         Self {
-            name: guard.name,
+            name: guard.name.into(),
             value: Decimals(guard.value),
             limit: Decimals(guard.limit),
-            unit: guard.unit,
+            unit: guard.unit().into(),
             margin: Decimals(guard.margin()),
             op: guard.op.to_string(),
         }
@@ -203,7 +203,9 @@ mod tests {
     use crate::plan::Waypoint;
     use crate::session::Event;
     use crate::signals::SimTime;
-    use crate::telemetry::{AbortReason, DisarmReason, FaultKind, GuardOp, Mode, ModeFlags, NavState};
+    use crate::telemetry::{
+        AbortReason, DisarmReason, FaultKind, GuardName, GuardOp, Mode, ModeFlags, NavState, TransitionReason,
+    };
 
     fn session_line(kind: SessionEvent) -> String {
         event_line(&Event { time: SimTime(12_340_000), kind }).expect("a line")
@@ -269,13 +271,13 @@ mod tests {
 
     #[test]
     fn a_transition_says_why() {
-        let guard = Guard { name: "arrival", value: 4.95, limit: 5.0, op: GuardOp::AtMost, unit: "m" };
+        let guard = Guard { name: GuardName::Arrival, value: 4.95, limit: 5.0, op: GuardOp::AtMost };
         let event = NavEvent::State {
             from: NavState::Approaching,
             to: NavState::Arrived,
             wp: 2,
             kind: Some(WaypointType::Hold),
-            reason: "arrival",
+            reason: TransitionReason::Arrival,
             guard: Some(guard),
             target: LatLon::new(404_640_000, -795_175_000),
             target_alt_m: 50.0,

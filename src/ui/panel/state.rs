@@ -6,7 +6,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
-use crate::telemetry::Guard;
+use crate::telemetry::{Guard, GuardName};
 use crate::ui::advice;
 use crate::ui::quantity::{clock, cut, fixed, signed, within};
 use crate::ui::state::{AppState, Pane};
@@ -124,17 +124,24 @@ fn draw_guards(state: &AppState, area: Rect, buffer: &mut Buffer) -> u16 {
 
 /// Whether a guard ends the mission when it holds, so that it is good that it does not.
 fn is_watch(guard: &Guard) -> bool {
-    matches!(guard.name, "fence" | "no progress" | "flyaway" | "overrun" | "waypoints")
+    matches!(guard.name, GuardName::Fence | GuardName::NoProgress | GuardName::Flyaway | GuardName::Overrun)
 }
 
 /// The name without what the state already says.
 fn short_name(guard: &Guard) -> &'static str {
-    guard.name.strip_prefix("touchdown ").unwrap_or(guard.name)
+    match guard.name {
+        GuardName::TouchdownAltitude => "altitude",
+        GuardName::TouchdownSpeed => "speed",
+        GuardName::TouchdownThrottle => "throttle",
+        GuardName::TouchdownSink => "sink",
+        GuardName::TouchdownTime => "time",
+        other => other.into(),
+    }
 }
 
 /// How much attention a guard needs that nobody wants to hold.
 fn watch_verdict(guard: &Guard) -> (&'static str, Role) {
-    let near = if guard.name == "flyaway" {
+    let near = if guard.name == GuardName::Flyaway {
         guard.limit - guard.value < FLYAWAY_LEFT_M
     } else {
         guard.value / guard.limit > NEAR
@@ -150,7 +157,8 @@ fn watch_verdict(guard: &Guard) -> (&'static str, Role) {
 fn watch(theme: &Theme, guard: &Guard) -> Line<'static> {
     let (mark, role) = watch_verdict(guard);
     let value = fixed(Some(guard.value), 7, 1);
-    let text = format!("{mark} {:<13}{value} of {:>4} {}", short_name(guard), short(guard.limit), guard.unit);
+    let text =
+        format!("{mark} {:<13}{value} of {:>4} {}", short_name(guard), short(guard.limit), guard.unit());
     Line::from(span(theme, role, text))
 }
 
@@ -172,8 +180,8 @@ fn narrow(guard: &Guard, mark: &str, op: &str, width: u16) -> String {
     let numbers = format!("{}{op}{}", value.trim_start(), short(guard.limit));
     let name = format!("{mark} {}", short_name(guard));
     let room = usize::from(width).saturating_sub(name.chars().count() + numbers.chars().count());
-    let unit =
-        if room > guard.unit.chars().count() + 1 { format!(" {}", guard.unit) } else { guard.unit.into() };
+    let unit: &str = guard.unit().into();
+    let unit = if room > unit.chars().count() + 1 { format!(" {unit}") } else { unit.to_owned() };
     let room = usize::from(width).saturating_sub(numbers.chars().count() + unit.chars().count());
     format!("{:<room$}{numbers}{unit}", cut(&name, room))
 }
@@ -195,7 +203,7 @@ fn wide_guard(theme: &Theme, guard: &Guard) -> Line<'static> {
         span(theme, Role::Text, fixed(Some(guard.value), 7, 1)),
         span(theme, Role::Dim, format!(" {} ", guard.op)),
         span(theme, Role::Text, format!("{:>5}", short(guard.limit))),
-        span(theme, Role::Dim, format!(" {:<4}", guard.unit)),
+        span(theme, Role::Dim, format!(" {:<4}", guard.unit())),
         span(theme, role, signed(Some(guard.margin()), 7, 1)),
     ])
 }
@@ -237,7 +245,7 @@ mod tests {
     #[test]
     fn flyaway_warns_only_when_the_craft_moves_away() {
         let shown = |value, limit| {
-            let guard = Guard { name: "flyaway", value, limit, op: GuardOp::Above, unit: "m" };
+            let guard = Guard { name: GuardName::Flyaway, value, limit, op: GuardOp::Above };
             watch(&Theme::default(), &guard).to_string()
         };
         assert!(shown(112.9, 139.4).starts_with('·'), "nearer than ever");

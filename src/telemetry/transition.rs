@@ -1,0 +1,91 @@
+//! Why the state machine changed its state.
+
+use std::fmt;
+
+use super::refusal::{AbortReason, Refusal};
+
+/// The cause of a transition; `Display` gives the word in events and on the screen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum TransitionReason {
+    /// The mission starts.
+    Reset,
+    /// The mission goes on where it was left.
+    Resume,
+    /// Sent to a waypoint.
+    SetCurrent,
+    /// Ordered to land here.
+    Emergency,
+    /// Ordered to return home.
+    ReturnHome,
+    /// The switch went off.
+    Disengage,
+    /// Disarmed.
+    Disarm,
+    /// The mission cannot start over.
+    Refused(Refusal),
+    /// The mission is given up.
+    GivenUp(AbortReason),
+    /// Outside the fence.
+    Fence,
+    /// The climb before the first leg is done.
+    Climb,
+    /// Within the radius of the waypoint.
+    Arrival,
+    /// Passed the plane through the waypoint.
+    Plane,
+    /// Within the turn radius of a FLYBY.
+    TurnRadius,
+    /// Passed the waypoint too far beside.
+    Missed,
+    /// On to the next waypoint, or the plan is flown.
+    Advance,
+    /// The hold begins.
+    Hold,
+    /// The wait of a LAND or TAKEOFF begins.
+    Loiter,
+    /// The descent begins.
+    Land,
+    /// The hold pattern begins.
+    Pattern,
+    /// The time of the hold is over.
+    HoldTime,
+    /// On the ground.
+    Touchdown,
+}
+
+impl TransitionReason {
+    /// The cause in a word.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Reset => "reset",
+            Self::Resume => "resume",
+            Self::SetCurrent => "set_current",
+            Self::Emergency => "emergency",
+            Self::ReturnHome => "return to home",
+            Self::Disengage => "disengage",
+            Self::Disarm => "disarm",
+            Self::Refused(refusal) => refusal.into(),
+            Self::GivenUp(why) => why.into(),
+            Self::Fence => "fence",
+            Self::Climb => "climb",
+            Self::Arrival => "arrival",
+            Self::Plane => "plane",
+            Self::TurnRadius => "turn radius",
+            Self::Missed => "missed",
+            Self::Advance => "advance",
+            Self::Hold => "hold",
+            Self::Loiter => "loiter",
+            Self::Land => "land",
+            Self::Pattern => "pattern",
+            Self::HoldTime => "hold time",
+            Self::Touchdown => "touchdown",
+        }
+    }
+}
+
+impl fmt::Display for TransitionReason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.word())
+    }
+}
