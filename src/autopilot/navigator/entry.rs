@@ -1,15 +1,14 @@
 //! The ways into and out of a mission.
 
-use super::{Climb, Mission, Navigator};
+use super::Navigator;
+use super::climb::Climb;
+use super::leg::Leg;
 use crate::autopilot::engage::{self, EngageFacts};
 use crate::autopilot::io::NavInputs;
 use crate::autopilot::params::Params;
 use crate::geo::{LatLon, offset_to_latlon};
-use crate::plan::{FlightPlan, HoldPattern, MAX_WAYPOINTS, Waypoint, WaypointType};
-use crate::telemetry::{AbortReason, NavEvent, NavState, PlanSource, Refusal, TransitionReason};
-
-/// How long a lost fix must be back before a mission resumes, s.
-const FIX_BACK_S: f64 = 2.0;
+use crate::plan::{FlightPlan, HoldPattern, Waypoint, WaypointType};
+use crate::telemetry::{AbortReason, Guard, NavEvent, NavState, PlanSource, Refusal, TransitionReason};
 
 /// How a rescue flies home, beyond a plain return: the altitude is climbed to on the spot first.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,9 +40,9 @@ impl Navigator {
         if self.is_flying() {
             return Ok(());
         }
-        let inputs = &self.sane(inputs);
+        let inputs = &self.inputs.apply(inputs);
         let facts = self.engage_facts(inputs, params, stored);
-        let lost = self.gps_lost && (!inputs.fix || !self.fix_is_back(inputs));
+        let lost = self.engagement.waits_for_fix(inputs);
         let verdict = if facts.armed && facts.throttle_raised && lost {
             Err(Refusal::Aborted(AbortReason::GpsLost))
         } else {
@@ -60,35 +59,29 @@ impl Navigator {
     fn engage_facts(&self, inputs: &NavInputs, params: &Params, stored: &FlightPlan) -> EngageFacts {
         let (plan, fence) = EngageFacts::plan_facts(stored, inputs.home, params);
         EngageFacts {
-            armed: inputs.armed && !self.landed,
+            armed: inputs.armed && !self.engagement.has_landed(),
             throttle_raised: inputs.throttle_raised,
             fix: inputs.fix,
             altitude_valid: inputs.altitude_valid,
             plan,
             fence,
             failsafe: inputs.failsafe,
-            aborted: self.aborted,
+            aborted: self.engagement.aborted(),
         }
-    }
-
-    fn fix_is_back(&self, inputs: &NavInputs) -> bool {
-        self.fix_since.is_some_and(|since| inputs.time.seconds_since(since) >= FIX_BACK_S)
     }
 
     /// Says why nothing is flown although it is asked for; an event tells each cause once.
     pub fn refuse(&mut self, refusal: Refusal) {
-        if self.refused != Some(refusal) {
+        if self.engagement.refuse(refusal) {
             self.push(NavEvent::Refused(refusal));
         }
-        self.refused = Some(refusal);
-        self.telemetry.refusal = Some(refusal);
+        self.report_status();
     }
 
     /// Goes on with the mission that was begun since arming, when the stored plan is still the same; otherwise starts
     /// it from its first waypoint.
     fn resume(&mut self, inputs: &NavInputs, params: &Params, stored: &FlightPlan) {
-        let at = self.mission.as_ref().filter(|mission| mission.plan == *stored).map(|mission| mission.index);
-        match at {
+        match self.cursor.resume_index(stored) {
             Some(index) => {
                 self.begin(inputs, params, stored);
                 self.begin_first_leg(index, true, TransitionReason::Resume, inputs, params);
@@ -102,7 +95,7 @@ impl Navigator {
     /// # Errors
     /// When the plan cannot be flown, the fence forbids it or there is no fix; the navigator is IDLE then.
     pub fn reset(&mut self, inputs: &NavInputs, params: &Params, stored: &FlightPlan) -> Result<(), Refusal> {
-        let inputs = &self.sane(inputs);
+        let inputs = &self.inputs.apply(inputs);
         let facts = EngageFacts {
             // Preconditions of the switch, not of the plan.
             armed: true,
@@ -127,14 +120,12 @@ impl Navigator {
 
     fn start(&mut self, inputs: &NavInputs, params: &Params, stored: &FlightPlan) {
         self.begin(inputs, params, stored);
-        let from = self.start_at.take().unwrap_or(0);
-        self.mission = Some(Mission { plan: stored.clone(), index: from });
-        match self.positional_from(from) {
+        let from = self.cursor.begin_mission(stored);
+        match self.cursor.positional_from(from) {
             Some(index) => self.begin_first_leg(index, false, TransitionReason::Reset, inputs, params),
             None => {
-                self.index = 0;
-                self.leg =
-                    super::Leg { waypoint: here(inputs), altitude_m: inputs.alt_m, ..super::Leg::default() };
+                self.cursor.rewind();
+                self.leg = Leg { waypoint: here(inputs), altitude_m: inputs.alt_m, ..Leg::default() };
                 self.complete(TransitionReason::Reset, None);
             }
         }
@@ -142,10 +133,9 @@ impl Navigator {
 
     /// Makes the stored plan the active one and takes over the craft.
     fn begin(&mut self, inputs: &NavInputs, params: &Params, stored: &FlightPlan) {
-        self.active = stored.clone();
-        self.source = PlanSource::Stored;
+        self.cursor.load(stored);
         self.take_over(inputs, params);
-        self.push(NavEvent::Plan { source: self.source, plan: Box::new(self.active.clone()) });
+        self.announce_plan();
     }
 
     /// Resets what belongs to one engagement; the controllers start where the craft is, unless they fly already.
@@ -155,14 +145,12 @@ impl Navigator {
             self.position.engage(&super::fly::horizontal(inputs));
             self.yaw.reset();
         }
-        self.stop_climbing();
+        self.finish_climb();
         self.climb = Climb::default();
         self.clear_clocks();
         self.yaw_cap_dps = None;
         self.rescue = None;
-        self.gps_lost = false;
-        self.aborted = None;
-        self.refused = None;
+        self.engagement.clear();
         self.previous = Some(inputs.pos_ne);
         self.target_ne = inputs.pos_ne;
         self.target_alt_m = inputs.alt_m;
@@ -171,10 +159,8 @@ impl Navigator {
     /// Ends the flight, as the mode switch asks when it goes off: IDLE, the active plan dropped. The mission can be
     /// resumed until disarming, and a mission that was given up may start again.
     pub fn disengage(&mut self) {
-        self.aborted = None;
-        self.gps_lost = false;
-        self.refused = None;
-        self.telemetry.refusal = None;
+        self.engagement.clear();
+        self.report_status();
         if self.is_flying() {
             self.go_idle(TransitionReason::Disengage, None);
         }
@@ -182,11 +168,9 @@ impl Navigator {
 
     /// Ends the flight and forgets the mission. After a touchdown the state reads COMPLETE until the next arming.
     pub fn on_disarm(&mut self) {
-        self.mission = None;
-        self.start_at = None;
-        self.aborted = None;
-        self.gps_lost = false;
-        if self.landed {
+        self.cursor.forget_flight();
+        self.engagement.forget_mission();
+        if self.engagement.has_landed() {
             return;
         }
         if self.state != NavState::Idle {
@@ -205,19 +189,14 @@ impl Navigator {
         params: &Params,
         stored: &FlightPlan,
     ) -> bool {
-        let inputs = &self.sane(inputs);
+        let inputs = &self.inputs.apply(inputs);
         if !self.is_flying() {
-            let accepted = usize::from(index) < stored.waypoints.len().min(MAX_WAYPOINTS);
-            if accepted {
-                self.start_at = Some(index);
-                self.mission = None;
-            }
-            return accepted;
+            return self.cursor.start_next_at(index, stored);
         }
-        if self.source != PlanSource::Stored || usize::from(index) >= self.active.waypoints.len() {
+        if self.cursor.source() != PlanSource::Stored || index >= self.cursor.count() {
             return false;
         }
-        let Some(positional) = self.positional_from(index) else { return false };
+        let Some(positional) = self.cursor.positional_from(index) else { return false };
         self.yaw_cap_dps = None;
         self.clear_clocks();
         let here = here(inputs);
@@ -230,7 +209,7 @@ impl Navigator {
     /// # Errors
     /// When the craft is not armed or has no fix or no altitude.
     pub fn emergency_land(&mut self, inputs: &NavInputs, params: &Params) -> Result<(), Refusal> {
-        let inputs = &self.sane(inputs);
+        let inputs = &self.inputs.apply(inputs);
         self.check_command(inputs)?;
         self.land_here(TransitionReason::Emergency, None, inputs, params);
         Ok(())
@@ -247,15 +226,15 @@ impl Navigator {
         params: &Params,
         rescue: Option<Rescue>,
     ) -> Result<(), Refusal> {
-        let inputs = &self.sane(inputs);
+        let inputs = &self.inputs.apply(inputs);
         self.check_command(inputs)?;
         self.fly_home(TransitionReason::ReturnHome, None, rescue, inputs, params);
         Ok(())
     }
 
-    fn check_command(&mut self, inputs: &NavInputs) -> Result<(), Refusal> {
+    fn check_command(&self, inputs: &NavInputs) -> Result<(), Refusal> {
         let facts = EngageFacts {
-            armed: inputs.armed && !self.landed,
+            armed: inputs.armed && !self.engagement.has_landed(),
             throttle_raised: inputs.throttle_raised || self.is_flying(),
             fix: inputs.fix,
             altitude_valid: inputs.altitude_valid,
@@ -270,28 +249,24 @@ impl Navigator {
     pub(super) fn land_here(
         &mut self,
         reason: TransitionReason,
-        guard: Option<crate::telemetry::Guard>,
+        guard: Option<Guard>,
         inputs: &NavInputs,
         params: &Params,
     ) {
-        self.inject(PlanSource::Emergency, &[injected(WaypointType::Land, here(inputs), inputs.alt_m, 0.0)]);
+        self.cursor
+            .inject(PlanSource::Emergency, &[injected(WaypointType::Land, here(inputs), inputs.alt_m, 0.0)]);
         self.take_over(inputs, params);
         self.announce_plan();
-        self.index = 0;
-        self.next_index = 0;
-        self.leg = super::Leg {
-            waypoint: here(inputs),
-            altitude_m: inputs.alt_m,
-            start: here(inputs),
-            ..super::Leg::default()
-        };
+        self.cursor.move_to(0);
+        let here = here(inputs);
+        self.leg = Leg { waypoint: here, altitude_m: inputs.alt_m, start: here, ..Leg::default() };
         self.enter(NavState::Landing, reason, guard);
     }
 
     pub(super) fn fly_home(
         &mut self,
         reason: TransitionReason,
-        guard: Option<crate::telemetry::Guard>,
+        guard: Option<Guard>,
         rescue: Option<Rescue>,
         inputs: &NavInputs,
         params: &Params,
@@ -307,22 +282,18 @@ impl Navigator {
         let speed = rescue.map_or(0.0, |rescue| rescue.speed_mps);
         let records =
             [WaypointType::Flyover, WaypointType::Land].map(|kind| injected(kind, home, altitude, speed));
-        self.inject(PlanSource::Rth, &records);
+        self.cursor.inject(PlanSource::Rth, &records);
         self.take_over(inputs, params);
         self.rescue = rescue;
         self.announce_plan();
         self.begin_first_leg_with_guard(0, false, reason, guard, inputs, params);
     }
 
-    fn inject(&mut self, source: PlanSource, records: &[Waypoint]) {
-        self.mission = None;
-        self.source = source;
-        self.active.waypoints.clear();
-        self.active.waypoints.extend(records.iter().copied());
-    }
-
     fn announce_plan(&mut self) {
-        self.push(NavEvent::Plan { source: self.source, plan: Box::new(self.active.clone()) });
+        self.push(NavEvent::Plan {
+            source: self.cursor.source(),
+            plan: Box::new(self.cursor.plan().clone()),
+        });
     }
 }
 

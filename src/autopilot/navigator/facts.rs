@@ -1,19 +1,17 @@
 //! What the machine decides on: facts of one update.
 
-use super::{Navigator, Progress};
+use super::Navigator;
+use super::observed::Observed;
 use crate::autopilot::fence::FenceFacts;
 use crate::autopilot::guidance::{PlaneCrossing, plane_crossing, turn_radius_m};
 use crate::autopilot::io::NavInputs;
 use crate::autopilot::machine::{
-    ApproachFacts, Facts, GroundFacts, ProgressFacts, TouchdownFacts, TouchdownGuards, WaypointFacts,
+    ApproachFacts, Facts, GroundFacts, TouchdownFacts, TouchdownGuards, WaypointFacts,
 };
 use crate::autopilot::params::Params;
-use crate::geo::local_offset;
 use crate::plan::WaypointType;
-use crate::telemetry::NavState;
+use crate::telemetry::{NavEvent, NavState};
 
-/// How much nearer counts as progress, m.
-const PROGRESS_M: f64 = 2.0;
 /// How far the setpoint may be under the craft without counting as pressing on the ground, m.
 const PRESSING_M: f64 = 1.5;
 /// Most that the throttle must be below the learned hover throttle for a touchdown, µs.
@@ -21,73 +19,58 @@ const BELOW_HOVER_US: f64 = 50.0;
 
 impl Navigator {
     /// Clocks and overlays that run before the decision.
-    pub(super) fn prepare(&mut self, now: &NavInputs, params: &Params) {
-        self.stick_override = super::fly::beyond_deadband(now, params);
+    pub(super) fn prepare(&mut self, now: &NavInputs, params: &Params, seen: &Observed) {
         self.move_pattern(now, params);
-        self.update_climb(now, params);
-        self.update_progress(now);
-        if let Some(landing) = self.landing.as_mut().filter(|_| self.state == NavState::Landing) {
-            landing.highest_m = landing.highest_m.max(now.alt_m);
-        }
+        self.begin_climb(now, params, seen);
+        self.watch_progress(now, seen);
+        self.descent.follow_altitude(now.alt_m);
     }
 
-    pub(super) fn facts(&self, now: &NavInputs, params: &Params) -> Facts {
-        let waypoint = self.record(self.index).unwrap_or_default();
-        let target = local_offset(now.origin, self.leg.waypoint);
-        let start = local_offset(now.origin, self.leg.start);
-        let plane = self
-            .previous
-            .map_or(PlaneCrossing::NoLeg, |previous| plane_crossing(start, target, previous, now.pos_ne));
-        let climbing = self.climb.at.is_some();
+    pub(super) fn facts(&self, now: &NavInputs, params: &Params, seen: &Observed) -> Facts {
+        let waypoint = self.cursor.current().unwrap_or_default();
+        let plane = self.previous.map_or(PlaneCrossing::NoLeg, |previous| {
+            plane_crossing(seen.start_ne, seen.waypoint_ne, previous, now.pos_ne)
+        });
         Facts {
             fix: now.fix,
-            // A plan holds at most 30.
-            count: self.active.waypoints.len() as u8,
+            count: self.cursor.count(),
             waypoint: WaypointFacts {
                 kind: waypoint.kind,
                 pattern: waypoint.pattern,
                 duration_ds: waypoint.duration_ds,
-                last: self.following().is_none(),
-                co_located: self.co_located(),
+                last: seen.is_last,
+                co_located: seen.is_co_located,
                 missed: self.leg.missed,
             },
-            fence: self.fence_facts(now, params),
+            fence: self.fence_facts(params, seen),
             approach: ApproachFacts {
-                distance_m: (target - now.pos_ne).norm(),
+                distance_m: seen.distance_m,
                 altitude_error_m: self.leg.altitude_m - now.alt_m,
                 plane,
-                turn_radius_m: turn_radius_m(now.vel_ne.norm(), params.max_lean_rad()),
+                turn_radius_m: turn_radius_m(seen.ground_speed_mps, params.max_lean_rad()),
                 arrival_radius_m: params.arrival_radius_m(),
                 hold_radius_m: params.hold_radius_m(),
             },
-            climb: climbing.then(|| (now.alt_m, self.climb_goal_m(params))),
-            progress: self.progress.map(|progress| ProgressFacts {
-                no_progress_s: now.time.seconds_since(progress.improved_at),
-                distance_m: self.progress_distance(now),
-                flyaway_m: progress.best_m + (0.25 * progress.leg_m).clamp(20.0, 100.0),
-            }),
-            hold_elapsed_us: self.hold_elapsed_us(now),
+            climb: self.climb.is_on().then(|| (now.alt_m, self.climb_goal_m(params))),
+            progress: self.progress.facts(self.progress_distance_m(now, seen), now.time),
+            hold_elapsed_us: self.hold.elapsed_us(now.time),
             touchdown: TouchdownGuards::new(
-                &self.touchdown_facts(now, params),
+                &self.touchdown_facts(now, params, seen),
                 &self.ground_facts(now, params),
             ),
-            touchdown_held_us: self.touchdown_held_us,
+            touchdown_held_us: self.descent.held_us(),
             detection_time_ds: params.landing_detection_time,
         }
     }
 
-    pub(super) fn fence_facts(&self, now: &NavInputs, params: &Params) -> FenceFacts {
+    pub(super) fn fence_facts(&self, params: &Params, seen: &Observed) -> FenceFacts {
         FenceFacts {
             limit_m: params.fence_m(),
-            distance_m: now.home.map(|home| (local_offset(now.origin, home) - now.pos_ne).norm()),
+            distance_m: seen.home_distance_m,
             state: self.state,
-            source: self.source,
+            source: self.cursor.source(),
             action: params.geofence_action,
         }
-    }
-
-    pub(super) fn hold_elapsed_us(&self, now: &NavInputs) -> u64 {
-        now.time.0.saturating_sub(self.hold_start.0)
     }
 
     /// Altitude at which the climb before the first leg is done, m.
@@ -96,20 +79,18 @@ impl Navigator {
         f64::from(params.min_nav_altitude_m).max(rescue)
     }
 
-    fn update_climb(&mut self, now: &NavInputs, params: &Params) {
-        if self.state != NavState::Approaching || self.climb.done || self.climb.at.is_some() {
+    fn begin_climb(&mut self, now: &NavInputs, params: &Params, seen: &Observed) {
+        if self.state != NavState::Approaching || !self.climb.is_pending() {
             return;
         }
         let goal = self.climb_goal_m(params);
         if goal <= 0.0 || now.alt_m >= goal {
-            self.climb.done = true;
+            self.finish_climb();
             return;
         }
-        let kind = self.record(self.index).unwrap_or_default().kind;
-        let stops_here = match kind {
+        let stops_here = match self.cursor.kind() {
             WaypointType::Hold | WaypointType::Land | WaypointType::Takeoff => {
-                let offset = local_offset(now.origin, self.leg.waypoint) - now.pos_ne;
-                offset.norm() <= params.hold_radius_m()
+                seen.distance_m <= params.hold_radius_m()
             }
             WaypointType::Flyover
             | WaypointType::Flyby
@@ -118,48 +99,36 @@ impl Navigator {
             | WaypointType::YawRate => false,
         };
         if !stops_here {
-            self.climb.at = Some(now.pos_ne);
-            self.push(crate::telemetry::NavEvent::Climbing(true));
+            self.climb.begin(now.pos_ne);
+            self.push(NavEvent::Climbing(true));
         }
     }
 
-    fn progress_distance(&self, now: &NavInputs) -> f64 {
-        let kind = self.record(self.index).unwrap_or_default().kind;
-        if kind == WaypointType::Takeoff {
+    fn progress_distance_m(&self, now: &NavInputs, seen: &Observed) -> f64 {
+        if self.cursor.kind() == WaypointType::Takeoff {
             (self.leg.altitude_m - now.alt_m).abs()
         } else {
-            (local_offset(now.origin, self.leg.waypoint) - now.pos_ne).norm()
+            seen.distance_m
         }
     }
 
     /// The monitors run on a leg, and begin anew whenever the craft was not free to make progress.
-    fn update_progress(&mut self, now: &NavInputs) {
+    fn watch_progress(&mut self, now: &NavInputs, seen: &Observed) {
         let unwatched = self.rescue.is_some_and(|rescue| !rescue.is_watched);
-        let free = self.state == NavState::Approaching && !self.stick_override && self.climb.at.is_none();
+        let free = self.state == NavState::Approaching && !seen.stick_override && !self.climb.is_on();
         if !free || unwatched {
-            self.progress = None;
-            return;
-        }
-        let distance = self.progress_distance(now);
-        let progress = self.progress.get_or_insert(Progress {
-            best_m: distance,
-            leg_m: distance,
-            improved_m: distance,
-            improved_at: now.time,
-        });
-        progress.best_m = progress.best_m.min(distance);
-        if distance <= progress.improved_m - PROGRESS_M {
-            progress.improved_m = distance;
-            progress.improved_at = now.time;
+            self.progress.pause();
+        } else {
+            self.progress.update(self.progress_distance_m(now, seen), now.time);
         }
     }
 
-    fn touchdown_facts(&self, now: &NavInputs, params: &Params) -> TouchdownFacts {
+    fn touchdown_facts(&self, now: &NavInputs, params: &Params, seen: &Observed) -> TouchdownFacts {
         TouchdownFacts::new(
             params,
             self.altitude.reference_hover_us(params),
             now.alt_m,
-            now.vel_ne.norm(),
+            seen.ground_speed_mps,
             self.altitude.throttle_us(),
             now.climb_mps,
         )
@@ -167,19 +136,10 @@ impl Navigator {
 
     fn ground_facts(&self, now: &NavInputs, params: &Params) -> GroundFacts {
         let pressing = now.alt_m - self.altitude.setpoint_m() - PRESSING_M;
-        let drop = self.landing.map_or(0.0, |landing| landing.highest_m - now.alt_m);
         GroundFacts {
-            descent_m: drop.max(pressing),
+            descent_m: self.descent.descended_m(now.alt_m).max(pressing),
             below_hover_us: self.altitude.hover_us() - self.altitude.throttle_us(),
             needed_us: (0.5 * f64::from(params.landing_throttle_threshold)).min(BELOW_HOVER_US),
         }
-    }
-
-    /// Runs the touchdown timer on the conditions of this update.
-    pub(super) fn time_touchdown(&mut self, facts: &mut Facts, now: &NavInputs) {
-        if self.state == NavState::Landing && self.landing.is_some() {
-            self.touchdown_held_us = self.touchdown.update(now.time, facts.touchdown.all_hold());
-        }
-        facts.touchdown_held_us = self.touchdown_held_us;
     }
 }

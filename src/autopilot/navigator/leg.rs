@@ -2,55 +2,43 @@
 
 use nalgebra::Vector2;
 
+use super::Navigator;
+use super::descent::Descent;
 use super::entry::here;
-use super::{Leg, Navigator};
+use super::hold::Hold;
 use crate::autopilot::guidance::{CornerArc, PlaneCrossing, plane_crossing};
 use crate::autopilot::io::NavInputs;
 use crate::autopilot::params::Params;
 use crate::geo::{LatLon, local_offset};
 use crate::plan::{Waypoint, WaypointType};
 use crate::signals::SimTime;
-use crate::telemetry::{Guard, NavState, PlanSource, TransitionReason};
+use crate::telemetry::{Guard, NavState, TransitionReason};
 
 /// Distance below which two waypoints count as one, m.
-const CO_LOCATED_M: f64 = 0.1;
+pub(super) const CO_LOCATED_M: f64 = 0.1;
 /// Slowest speed a DELAY asks for, m/s.
 const SLOWEST_MPS: f64 = 0.1;
 /// Ground speed from which a course is known well enough for an arc, m/s.
 const MOVING_MPS: f64 = 0.5;
 
+/// The current waypoint, resolved: where and how it is flown.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Leg {
+    /// Position of the waypoint; of a TAKEOFF the place where it began.
+    pub waypoint: LatLon,
+    /// Altitude above home, m.
+    pub altitude_m: f64,
+    /// Where the leg began.
+    pub start: LatLon,
+    /// The waypoint must be come back to.
+    pub missed: bool,
+    /// Speed cap of a DELAY (m/s) and the time it ends.
+    pub delay: Option<(f64, SimTime)>,
+    /// The arc at the start of the leg.
+    pub arc: Option<CornerArc>,
+}
+
 impl Navigator {
-    pub(super) fn record(&self, index: u8) -> Option<Waypoint> {
-        self.active.waypoints.get(usize::from(index)).copied()
-    }
-
-    /// The first positional waypoint at or after `index`.
-    pub(super) fn positional_from(&self, index: u8) -> Option<u8> {
-        (index..)
-            .zip(self.active.waypoints.iter().skip(usize::from(index)))
-            .find(|(_, waypoint)| waypoint.kind.is_positional())
-            .map(|(index, _)| index)
-    }
-
-    /// The positional waypoint after the current one.
-    pub(super) fn following(&self) -> Option<u8> {
-        self.positional_from(self.index.saturating_add(1))
-    }
-
-    /// Whether the next positional waypoint lies on the current one.
-    pub(super) fn co_located(&self) -> bool {
-        let next = self.following().and_then(|index| self.record(index));
-        next.is_some_and(|next| {
-            let position = if next.kind.uses_position() { next.position } else { self.leg.waypoint };
-            local_offset(self.leg.waypoint, position).norm() < CO_LOCATED_M
-        })
-    }
-
-    /// Number of positional waypoints in the active plan.
-    pub(super) fn positional_count(&self) -> usize {
-        self.active.waypoints.iter().filter(|waypoint| waypoint.kind.is_positional()).count()
-    }
-
     pub(super) fn begin_first_leg(
         &mut self,
         index: u8,
@@ -73,15 +61,14 @@ impl Navigator {
         inputs: &NavInputs,
         params: &Params,
     ) {
-        let before = self.active.waypoints.iter().take(usize::from(index));
+        let before = self.cursor.plan().waypoints.iter().take(usize::from(index));
         let run = before.rev().take_while(|waypoint| !waypoint.kind.is_positional()).count();
         // Both are below 30.
         let modifiers_from = index - run as u8;
         self.begin_leg(index, modifiers_from, here(inputs), reason, guard, inputs, params);
         if resumed {
             self.leg.delay = None;
-            let caps = self.active.waypoints.iter().take(usize::from(index));
-            if let Some(cap) = caps.rev().find(|waypoint| waypoint.kind == WaypointType::YawRate) {
+            if let Some(cap) = self.cursor.yaw_rate_before(index) {
                 self.yaw_cap_dps = yaw_cap(cap);
             }
         }
@@ -99,14 +86,8 @@ impl Navigator {
         inputs: &NavInputs,
         params: &Params,
     ) {
-        let Some(waypoint) = self.record(index) else { return };
-        self.index = index;
-        self.next_index = self.following().unwrap_or(index);
-        if self.source == PlanSource::Stored
-            && let Some(mission) = &mut self.mission
-        {
-            mission.index = index;
-        }
+        let Some(waypoint) = self.cursor.waypoint(index) else { return };
+        self.cursor.move_to(index);
         let position = if waypoint.kind.uses_position() { waypoint.position } else { here(inputs) };
         self.leg = Leg {
             waypoint: position,
@@ -125,18 +106,16 @@ impl Navigator {
         self.enter(NavState::Approaching, reason, guard);
     }
 
+    /// Forgets the hold, the landing and the progress of what was flown.
     pub(super) fn clear_clocks(&mut self) {
-        self.hold_start = SimTime::ZERO;
-        self.pattern_angle = 0.0;
-        self.landing = None;
-        self.touchdown = Default::default();
-        self.touchdown_held_us = None;
-        self.progress = None;
+        self.hold = Hold::default();
+        self.descent = Descent::default();
+        self.progress.pause();
     }
 
     fn apply_modifiers(&mut self, from: u8, to: u8, inputs: &NavInputs) {
         for at in from..to {
-            let Some(modifier) = self.record(at) else { return };
+            let Some(modifier) = self.cursor.waypoint(at) else { return };
             match modifier.kind {
                 WaypointType::AltChange => self.leg.altitude_m = f64::from(modifier.alt_cm) / 100.0,
                 WaypointType::YawRate => self.yaw_cap_dps = yaw_cap(&modifier),

@@ -1,71 +1,92 @@
-//! The picture for displays, logs and samples.
+//! The picture for displays, logs and samples: what an update computed.
+
+use arrayvec::ArrayVec;
 
 use super::Navigator;
+use super::fly::Flown;
+use super::observed::Observed;
 use crate::autopilot::guidance::hold_remaining_ds;
 use crate::autopilot::io::NavInputs;
-use crate::autopilot::machine::waiting_for;
+use crate::autopilot::machine::{Facts, waiting_for};
 use crate::autopilot::params::Params;
-use crate::geo::local_offset;
-use crate::telemetry::{L1Mode, NavOutput, NavState, NavTelemetry};
+use crate::telemetry::{L1Mode, NavState, NavTelemetry};
 
 /// Ground speed below which a time to the waypoint says nothing, m/s.
 const ETA_MIN_MPS: f64 = 0.5;
 
 impl Navigator {
-    pub(super) fn report(&mut self, now: &NavInputs, params: &Params, output: NavOutput) {
-        let flying = self.is_flying();
-        let speed = now.vel_ne.norm();
-        let to_waypoint = self.waypoint_ne(now) - now.pos_ne;
-        let distance = to_waypoint.norm();
-        let home_distance_m =
-            now.home.filter(|_| now.fix).map(|home| (local_offset(now.origin, home) - now.pos_ne).norm());
-        let old = &self.telemetry;
-        let on_leg = flying && self.state == NavState::Approaching;
-        self.telemetry = NavTelemetry {
-            state: self.state,
-            engaged: flying,
-            climbing: self.climb.at.is_some(),
-            refusal: old.refusal.filter(|_| !flying),
-            reason: old.reason,
-            wp: self.index,
-            next_wp: self.next_index,
-            // A plan holds at most 30.
-            count: self.active.waypoints.len() as u8,
-            source: self.source,
-            kind: self.record(self.index).map(|waypoint| waypoint.kind),
-            distance_m: flying.then_some(distance),
-            bearing_rad: flying.then(|| to_waypoint.y.atan2(to_waypoint.x).rem_euclid(std::f64::consts::TAU)),
-            xte_m: old.xte_m.filter(|_| on_leg),
-            along_m: old.along_m.filter(|_| on_leg),
-            lookahead_m: old.lookahead_m.filter(|_| on_leg),
-            l1_mode: if on_leg { old.l1_mode } else { L1Mode::Off },
-            aim_ne: old.aim_ne.filter(|_| flying),
-            a_lat_mps2: old.a_lat_mps2.filter(|_| on_leg),
-            target_ne: flying.then_some(self.target_ne),
-            target_alt_m: flying.then_some(self.target_alt_m),
-            leg_start: on_leg.then_some(self.leg.start),
+    /// Tells of an update; `flown` is what was decided on and what was flown, if anything was.
+    pub(super) fn report(
+        &mut self,
+        now: &NavInputs,
+        params: &Params,
+        seen: &Observed,
+        flown: Option<(&Facts, Flown)>,
+    ) {
+        let speed = seen.ground_speed_mps;
+        let home_distance_m = seen.home_distance_m.filter(|_| now.fix);
+        let status = NavTelemetry {
             speed_mps: speed,
-            speed_setpoint_mps: flying.then(|| self.position.speed_setpoint_mps()),
-            pattern_angle_rad: matches!(self.state, NavState::Orbiting | NavState::Figure8)
-                .then_some(self.pattern_angle),
-            hold_remaining_ds: self.hold_remaining(now),
             home_distance_m,
             fence_margin_m: params.fence_m().zip(home_distance_m).map(|(limit, distance)| limit - distance),
-            eta_s: (on_leg && speed >= ETA_MIN_MPS).then(|| distance / speed),
-            stick_override: flying && self.stick_override,
-            yaw_override: flying && output.yaw_rate_rps.is_none(),
-            touchdown_held_s: self.touchdown_held_us.map(|held| held as f64 * 1e-6),
+            touchdown_held_s: self.descent.held_us().map(|held| held as f64 * 1e-6),
             hover_us: self.altitude.hover_us(),
-            guards: waiting_for(self.state, &self.facts(now, params)),
-            output,
+            ..NavTelemetry::default()
         };
+        let guards = flown.map_or_else(ArrayVec::new, |(facts, _)| waiting_for(self.state, facts));
+        let on_leg = flown.is_some() && self.state == NavState::Approaching;
+        self.telemetry = match flown {
+            None => status,
+            Some((_, Flown { output, path })) => NavTelemetry {
+                distance_m: Some(seen.distance_m),
+                bearing_rad: Some(
+                    seen.to_waypoint.y.atan2(seen.to_waypoint.x).rem_euclid(std::f64::consts::TAU),
+                ),
+                xte_m: path.xte_m.filter(|_| on_leg),
+                along_m: path.along_m.filter(|_| on_leg),
+                lookahead_m: path.lookahead_m.filter(|_| on_leg),
+                l1_mode: if on_leg { path.l1_mode } else { L1Mode::Off },
+                aim_ne: Some(path.aim_ne),
+                a_lat_mps2: path.a_lat_mps2.filter(|_| on_leg),
+                target_ne: Some(self.target_ne),
+                target_alt_m: Some(self.target_alt_m),
+                leg_start: on_leg.then_some(self.leg.start),
+                speed_setpoint_mps: Some(self.position.speed_setpoint_mps()),
+                pattern_angle_rad: matches!(self.state, NavState::Orbiting | NavState::Figure8)
+                    .then(|| self.hold.phase_rad()),
+                hold_remaining_ds: self.hold_remaining_ds(now),
+                eta_s: (on_leg && speed >= ETA_MIN_MPS).then(|| seen.distance_m / speed),
+                stick_override: seen.stick_override,
+                yaw_override: output.yaw_rate_rps.is_none(),
+                guards,
+                output,
+                ..status
+            },
+        };
+        self.report_status();
     }
 
-    fn hold_remaining(&self, now: &NavInputs) -> u16 {
+    /// Tells of state, plan and refusal, also between two updates.
+    pub(super) fn report_status(&mut self) {
+        let is_flying = self.is_flying();
+        let telemetry = &mut self.telemetry;
+        telemetry.state = self.state;
+        telemetry.engaged = is_flying;
+        telemetry.climbing = self.climb.is_on();
+        telemetry.refusal = self.engagement.refused().filter(|_| !is_flying);
+        telemetry.reason = self.reason;
+        telemetry.wp = self.cursor.index();
+        telemetry.next_wp = self.cursor.next_index();
+        telemetry.count = self.cursor.count();
+        telemetry.source = self.cursor.source();
+        telemetry.kind = self.cursor.current().map(|waypoint| waypoint.kind);
+    }
+
+    fn hold_remaining_ds(&self, now: &NavInputs) -> u16 {
         match self.state {
             NavState::Holding | NavState::Orbiting | NavState::Figure8 => {
-                let duration = self.record(self.index).unwrap_or_default().duration_ds;
-                hold_remaining_ds(duration, self.hold_elapsed_us(now))
+                let duration = self.cursor.current().unwrap_or_default().duration_ds;
+                hold_remaining_ds(duration, self.hold.elapsed_us(now.time))
             }
             NavState::Idle
             | NavState::Approaching

@@ -2,38 +2,41 @@
 
 use super::Navigator;
 use super::entry::here;
+use super::observed::Observed;
 use crate::autopilot::fence::{self, FenceFacts};
 use crate::autopilot::io::NavInputs;
 use crate::autopilot::machine::{Facts, Outcome, Transition, transition};
 use crate::autopilot::params::Params;
-use crate::geo::{LatLon, local_offset};
+use crate::geo::LatLon;
 use crate::plan::WaypointType;
 use crate::telemetry::{AbortReason, FenceAction, Guard, NavEvent, NavState, TransitionReason};
 
 impl Navigator {
-    /// At most one transition.
-    pub(super) fn step(&mut self, facts: &Facts, now: &NavInputs, params: &Params) {
-        let Some(Transition { outcome, reason, guard }) = transition(self.state, facts) else { return };
+    /// At most one transition; returns whether there was one.
+    pub(super) fn step(&mut self, facts: &Facts, now: &NavInputs, params: &Params) -> bool {
+        let Some(Transition { outcome, reason, guard }) = transition(self.state, facts) else {
+            return false;
+        };
         match outcome {
             Outcome::Abort(why) => self.abort(why, reason, guard),
             Outcome::Fence(action) => self.fence(action, reason, guard, &facts.fence, now, params),
             Outcome::LandHere => self.land_here(reason, guard, now, params),
             Outcome::Climbed => {
-                self.stop_climbing();
+                self.finish_climb();
                 self.leg.start = here(now);
             }
             Outcome::Missed => self.leg.missed = true,
             Outcome::Arrive => self.enter(NavState::Arrived, reason, guard),
             Outcome::Hold => {
-                self.hold_start = now.time;
+                self.hold.begin(now.time);
                 self.enter(NavState::Holding, reason, guard);
             }
             Outcome::Orbit => {
-                self.pattern_angle = 0.0;
+                self.hold.begin_pattern();
                 self.enter(NavState::Orbiting, reason, guard);
             }
             Outcome::Figure8 => {
-                self.pattern_angle = 0.0;
+                self.hold.begin_pattern();
                 self.enter(NavState::Figure8, reason, guard);
             }
             Outcome::Land => {
@@ -43,24 +46,25 @@ impl Navigator {
             Outcome::Next => self.advance(reason, guard, now, params),
             Outcome::Complete => self.complete(reason, guard),
             Outcome::Touchdown => {
-                self.mission = None;
-                self.landed = true;
+                self.cursor.forget_mission();
+                self.engagement.land();
                 self.enter(NavState::Complete, reason, guard);
                 self.push(NavEvent::Disarm);
             }
         }
+        true
     }
 
     /// On to the next positional waypoint. The leg begins at the waypoint just left, or at the craft when it stayed
     /// there or came back to it.
     fn advance(&mut self, reason: TransitionReason, guard: Option<Guard>, now: &NavInputs, params: &Params) {
-        let Some(next) = self.following() else {
+        let Some(next) = self.cursor.following() else {
             self.complete(reason, guard);
             return;
         };
-        let kind = self.record(self.index).unwrap_or_default().kind;
+        let kind = self.cursor.kind();
         let start = self.leg_end(kind, now);
-        let modifiers_from = self.index.saturating_add(1);
+        let modifiers_from = self.cursor.index().saturating_add(1);
         self.begin_leg(next, modifiers_from, start, reason, guard, now, params);
     }
 
@@ -79,17 +83,15 @@ impl Navigator {
     }
 
     pub(super) fn complete(&mut self, reason: TransitionReason, guard: Option<Guard>) {
-        self.mission = None;
-        self.next_index = self.index;
-        self.progress = None;
+        self.cursor.finish();
+        self.progress.pause();
         self.enter(NavState::Complete, reason, guard);
     }
 
     fn abort(&mut self, why: AbortReason, reason: TransitionReason, guard: Option<Guard>) {
-        match why {
-            AbortReason::Stalled | AbortReason::Flyaway => self.aborted = Some(why),
-            AbortReason::GpsLost => self.gps_lost = true,
-            AbortReason::NoPlan => self.mission = None,
+        self.engagement.give_up(why);
+        if why == AbortReason::NoPlan {
+            self.cursor.forget_mission();
         }
         self.go_idle(reason, guard);
     }
@@ -116,13 +118,17 @@ impl Navigator {
 
     /// A mission that was given up leaves the craft where the wind takes it: the fence stays up until the switch is
     /// cycled.
-    pub(super) fn keep_inside(&mut self, now: &NavInputs, params: &Params) {
-        let given_up = matches!(self.aborted, Some(AbortReason::Stalled | AbortReason::Flyaway));
-        if !given_up || !now.armed || !now.fix || !now.altitude_valid || now.failsafe {
+    pub(super) fn check_fence_after_abort(&mut self, now: &NavInputs, params: &Params, seen: &Observed) {
+        if self.engagement.aborted().is_none()
+            || !now.armed
+            || !now.fix
+            || !now.altitude_valid
+            || now.failsafe
+        {
             return;
         }
         // As on the leg that was given up.
-        let fence = FenceFacts { state: NavState::Approaching, ..self.fence_facts(now, params) };
+        let fence = FenceFacts { state: NavState::Approaching, ..self.fence_facts(params, seen) };
         let outside = fence::guard(&fence).filter(Guard::holds);
         if outside.is_some() {
             self.fence(fence.action, TransitionReason::Fence, outside, &fence, now, params);
@@ -131,17 +137,16 @@ impl Navigator {
 
     pub(super) fn go_idle(&mut self, reason: TransitionReason, guard: Option<Guard>) {
         self.enter(NavState::Idle, reason, guard);
-        self.active.waypoints.clear();
-        self.source = Default::default();
+        self.cursor.unload();
         self.yaw_cap_dps = None;
         self.rescue = None;
         self.clear_clocks();
         self.yaw.reset();
     }
 
-    pub(super) fn stop_climbing(&mut self) {
-        self.climb.done = true;
-        if self.climb.at.take().is_some() {
+    /// The climb before the first leg is over, once for this engagement.
+    pub(super) fn finish_climb(&mut self) {
+        if self.climb.finish() {
             self.push(NavEvent::Climbing(false));
         }
     }
@@ -150,25 +155,20 @@ impl Navigator {
     pub(super) fn enter(&mut self, to: NavState, reason: TransitionReason, guard: Option<Guard>) {
         let from = self.state;
         self.state = to;
-        self.telemetry.reason = Some(reason);
+        self.reason = Some(reason);
         if to != NavState::Approaching {
-            if self.climb.at.take().is_some() {
+            if self.climb.break_off() {
                 self.push(NavEvent::Climbing(false));
             }
-            self.progress = None;
+            self.progress.pause();
         }
-        let kind = self.record(self.index).map(|waypoint| waypoint.kind);
+        let kind = self.cursor.current().map(|waypoint| waypoint.kind);
         // A command between two updates shows at once.
-        self.telemetry.state = to;
-        self.telemetry.engaged = self.is_flying();
-        self.telemetry.wp = self.index;
-        self.telemetry.next_wp = self.next_index;
-        self.telemetry.source = self.source;
-        self.telemetry.kind = kind;
+        self.report_status();
         self.push(NavEvent::State {
             from,
             to,
-            wp: self.index,
+            wp: self.cursor.index(),
             kind,
             reason,
             guard,
@@ -180,10 +180,5 @@ impl Navigator {
     pub(super) fn push(&mut self, event: NavEvent) {
         // Full only when nobody drains: then the newest are dropped.
         let _ = self.events.try_push(event);
-    }
-
-    /// The waypoint of the leg in the local frame.
-    pub(super) fn waypoint_ne(&self, now: &NavInputs) -> nalgebra::Vector2<f64> {
-        local_offset(now.origin, self.leg.waypoint)
     }
 }

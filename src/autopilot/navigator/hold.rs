@@ -1,0 +1,37 @@
+//! The clock of a hold and the phase of its pattern.
+
+use crate::signals::SimTime;
+
+/// A hold under way.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Hold {
+    began: SimTime,
+    phase_rad: f64,
+}
+
+impl Hold {
+    /// HOLDING is entered.
+    pub(super) fn begin(&mut self, time: SimTime) {
+        self.began = time;
+    }
+
+    /// Time since HOLDING was entered, µs.
+    pub(super) fn elapsed_us(&self, time: SimTime) -> u64 {
+        time.0.saturating_sub(self.began.0)
+    }
+
+    /// A pattern begins.
+    pub(super) fn begin_pattern(&mut self) {
+        self.phase_rad = 0.0;
+    }
+
+    /// Moves on by `step_rad` on a pattern that repeats after `period_rad`.
+    pub(super) fn advance_pattern(&mut self, step_rad: f64, period_rad: f64) {
+        self.phase_rad = (self.phase_rad + step_rad).rem_euclid(period_rad);
+    }
+
+    /// Phase of the pattern, rad.
+    pub(super) fn phase_rad(&self) -> f64 {
+        self.phase_rad
+    }
+}

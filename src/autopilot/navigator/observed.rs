@@ -1,0 +1,55 @@
+//! What an update computes once from inputs, plan and leg, for all that follows.
+
+use nalgebra::Vector2;
+
+use super::Navigator;
+use super::leg::CO_LOCATED_M;
+use crate::autopilot::io::NavInputs;
+use crate::autopilot::params::Params;
+use crate::geo::local_offset;
+
+/// How the craft lies to its leg and to home; north, east, m.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Observed {
+    /// The waypoint of the leg.
+    pub waypoint_ne: Vector2<f64>,
+    /// Where the leg began.
+    pub start_ne: Vector2<f64>,
+    /// From the craft to the waypoint.
+    pub to_waypoint: Vector2<f64>,
+    /// Distance to the waypoint.
+    pub distance_m: f64,
+    /// Ground speed, m/s.
+    pub ground_speed_mps: f64,
+    /// Distance from home, when home is known.
+    pub home_distance_m: Option<f64>,
+    /// No positional waypoint follows.
+    pub is_last: bool,
+    /// The next positional waypoint lies on the current one.
+    pub is_co_located: bool,
+    /// The pilot moves roll or pitch.
+    pub stick_override: bool,
+}
+
+impl Navigator {
+    pub(super) fn observe(&self, now: &NavInputs, params: &Params) -> Observed {
+        let waypoint_ne = local_offset(now.origin, self.leg.waypoint);
+        let to_waypoint = waypoint_ne - now.pos_ne;
+        let following = self.cursor.following();
+        let deadband = f64::from(params.stick_deadband);
+        Observed {
+            waypoint_ne,
+            start_ne: local_offset(now.origin, self.leg.start),
+            to_waypoint,
+            distance_m: to_waypoint.norm(),
+            ground_speed_mps: now.vel_ne.norm(),
+            home_distance_m: now.home.map(|home| (local_offset(now.origin, home) - now.pos_ne).norm()),
+            is_last: following.is_none(),
+            is_co_located: following.and_then(|index| self.cursor.waypoint(index)).is_some_and(|next| {
+                let position = if next.kind.uses_position() { next.position } else { self.leg.waypoint };
+                local_offset(self.leg.waypoint, position).norm() < CO_LOCATED_M
+            }),
+            stick_override: now.stick_roll.abs() > deadband || now.stick_pitch.abs() > deadband,
+        }
+    }
+}
