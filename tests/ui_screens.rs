@@ -2,7 +2,6 @@
 
 use betadeck::session::command::CliOutput;
 use betadeck::telemetry::NavState;
-use betadeck::ui::picture::svg;
 use betadeck::ui::{AppState, Level, Msg, Pane, Theme, draw, update};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use ratatui::Terminal;
@@ -11,6 +10,8 @@ use strum::IntoEnumIterator as _;
 
 #[path = "ui/fixture.rs"]
 mod fixture;
+#[path = "../examples/picture/svg/mod.rs"]
+mod svg;
 
 fn screen(state: &AppState) -> TestBackend {
     let (width, height) = state.size;
@@ -294,7 +295,7 @@ fn a_picture_with_nonsense_numbers_is_drawn() {
 fn the_screen_becomes_a_picture() {
     let mut state = fixture::state((120, 40), fixture::colour());
     fixture::approach(&mut state);
-    let picture = svg(screen(&state).buffer());
+    let picture = svg::svg(screen(&state).buffer());
     assert!(picture.contains("APPROACHING") && picture.contains("1 Map"));
     assert_eq!(picture.matches("<text").count(), picture.matches("</text>").count());
 }

@@ -1,10 +1,13 @@
 //! Everything a key can do, by name: the one table behind keymap, hint bar and help.
 
-use crate::telemetry::{LinkState, Mode};
+use super::pane::Pane;
 
-use super::hands;
-use super::state::{AppState, Pane};
-use crate::session::command::{PLACE_IS_OUTSIDE, TIME_IS_OUTSIDE};
+mod enabled;
+mod table;
+
+pub use enabled::enabled;
+pub(super) use enabled::is_wrecked;
+pub use table::ACTIONS;
 
 /// Where a key means what its action says.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -127,176 +130,6 @@ pub struct Spec {
     pub context: Context,
 }
 
-const fn spec(
-    action: Action,
-    name: &'static str,
-    title: &'static str,
-    help: &'static str,
-    keys: &'static [&'static str],
-    context: Context,
-) -> Spec {
-    Spec { action, name, title, help, keys, context }
-}
-
-use Context::{Always, Global, In, Lists};
-
-/// The table, in the order help shows it.
-pub const ACTIONS: &[Spec] = &[
-    spec(
-        Action::Fly,
-        "flight.fly",
-        "fly",
-        "Fly the whole plan: arm, climb, engage (again: stop the pilot)",
-        &["F"],
-        Global,
-    ),
-    spec(Action::Arm, "flight.arm", "arm", "Arm or disarm by the ARM switch", &["a"], Global),
-    spec(
-        Action::Throttle,
-        "flight.throttle",
-        "throttle",
-        "Throttle up and hold the place; in the air come down; else low",
-        &["t"],
-        Global,
-    ),
-    spec(
-        Action::Autopilot,
-        "flight.autopilot",
-        "autopilot",
-        "AUTOPILOT switch on or off: engage, disengage",
-        &["g"],
-        Global,
-    ),
-    spec(
-        Action::ReturnHome,
-        "flight.home",
-        "home",
-        "Return to home and land there (again: take it back)",
-        &["H"],
-        Global,
-    ),
-    spec(Action::CutRc, "rc.cut", "cut RC", "Cut or restore the RC link of the sticks", &["x"], Global),
-    spec(Action::Upload, "plan.upload", "upload", "Upload the plan to the craft", &["U"], Global),
-    spec(
-        Action::ResetCraft,
-        "craft.reset",
-        "reset",
-        "Put the craft back home, disarmed; plan and settings are kept",
-        &["R"],
-        Global,
-    ),
-    spec(Action::Pause, "sim.pause", "pause", "Pause, or go on", &["space"], Global),
-    spec(
-        Action::Step,
-        "sim.step",
-        "step",
-        "Pause and advance by 10 ms, one navigator update",
-        &["."],
-        Global,
-    ),
-    spec(Action::Slower, "sim.slower", "slower", "Half the speed", &["["], Global),
-    spec(
-        Action::Faster,
-        "sim.faster",
-        "faster",
-        "Twice the speed, in the end as fast as it goes",
-        &["]"],
-        Global,
-    ),
-    spec(Action::RealTime, "sim.real-time", "real time", "Back to real time", &["\\"], Global),
-    spec(Action::Show(Pane::Map), "view.map", "map", "Map panel", &["1", "f1"], Global),
-    spec(Action::Show(Pane::Plan), "view.plan", "plan", "Plan panel", &["2", "f2"], Global),
-    spec(Action::Show(Pane::State), "view.state", "state", "State panel", &["3", "f3"], Global),
-    spec(Action::Show(Pane::Rc), "view.rc", "RC", "RC panel", &["4", "f4"], Global),
-    spec(Action::Show(Pane::Cli), "view.cli", "CLI", "CLI panel", &["5", "f5"], Global),
-    spec(Action::Show(Pane::Log), "view.log", "log", "Log panel", &["8", "f8"], Global),
-    spec(Action::Next, "view.next", "next panel", "Focus the next panel", &["tab"], Global),
-    spec(
-        Action::Previous,
-        "view.previous",
-        "previous panel",
-        "Focus the previous panel",
-        &["shift-tab"],
-        Always,
-    ),
-    spec(Action::Zoom, "view.zoom", "zoom", "The focused panel alone, or all again", &["z"], Global),
-    spec(Action::Help, "app.help", "help", "The keys of this place", &["?"], Global),
-    spec(
-        Action::Back,
-        "app.back",
-        "back",
-        "One step back: close, leave a text field, end zoom",
-        &["esc"],
-        Always,
-    ),
-    spec(Action::Quit, "app.quit", "quit", "Quit (asks while the craft is armed)", &["q"], Global),
-    spec(
-        Action::Cancel,
-        "app.cancel",
-        "cancel",
-        "Cancel what is going on; twice within 2 s: quit",
-        &["ctrl-c"],
-        Always,
-    ),
-    spec(Action::Suspend, "app.suspend", "suspend", "Back to the shell, `fg` returns", &["ctrl-z"], Always),
-    spec(Action::PanUp, "map.up", "up", "Pan up", &["up", "k"], In(Pane::Map)),
-    spec(Action::PanDown, "map.down", "down", "Pan down", &["down", "j"], In(Pane::Map)),
-    spec(Action::PanLeft, "map.left", "left", "Pan left", &["left", "h"], In(Pane::Map)),
-    spec(Action::PanRight, "map.right", "right", "Pan right", &["right", "l"], In(Pane::Map)),
-    spec(
-        Action::ZoomIn,
-        "map.zoom-in",
-        "zoom in",
-        "Zoom in (or the mouse wheel)",
-        &["+", "="],
-        In(Pane::Map),
-    ),
-    spec(Action::ZoomOut, "map.zoom-out", "zoom out", "Zoom out", &["-"], In(Pane::Map)),
-    spec(Action::Follow, "map.follow", "follow", "Keep the craft in the middle", &["f"], In(Pane::Map)),
-    spec(Action::Fit, "map.fit", "fit", "Show the whole plan", &["0"], In(Pane::Map)),
-    spec(Action::ChannelUp, "rc.up", "channel above", "Select the channel above", &["up", "k"], In(Pane::Rc)),
-    spec(
-        Action::ChannelDown,
-        "rc.down",
-        "channel below",
-        "Select the channel below",
-        &["down", "j"],
-        In(Pane::Rc),
-    ),
-    spec(Action::Lower, "rc.lower", "lower", "Lower the channel by 10 µs", &["left", "h", "-"], In(Pane::Rc)),
-    spec(
-        Action::Raise,
-        "rc.raise",
-        "raise",
-        "Raise the channel by 10 µs",
-        &["right", "l", "+"],
-        In(Pane::Rc),
-    ),
-    spec(
-        Action::LowerMuch,
-        "rc.lower-much",
-        "lower much",
-        "Lower the channel by 100 µs",
-        &["pagedown", "shift-left"],
-        In(Pane::Rc),
-    ),
-    spec(
-        Action::RaiseMuch,
-        "rc.raise-much",
-        "raise much",
-        "Raise the channel by 100 µs",
-        &["pageup", "shift-right"],
-        In(Pane::Rc),
-    ),
-    spec(Action::Flip, "rc.flip", "flip", "Flip the switch, or centre the stick", &["enter"], In(Pane::Rc)),
-    spec(Action::ScrollUp, "list.up", "up", "Scroll up", &["up", "k"], Lists),
-    spec(Action::ScrollDown, "list.down", "down", "Scroll down", &["down", "j"], Lists),
-    spec(Action::PageUp, "list.page-up", "page up", "Scroll up a page", &["pageup"], Lists),
-    spec(Action::PageDown, "list.page-down", "page down", "Scroll down a page", &["pagedown"], Lists),
-    spec(Action::Top, "list.top", "top", "To the first line", &["home"], Lists),
-    spec(Action::Bottom, "list.bottom", "end", "To the last line", &["end"], Lists),
-];
-
 /// The row of an action.
 #[must_use]
 pub fn spec_of(action: Action) -> Option<&'static Spec> {
@@ -310,75 +143,16 @@ impl Context {
         match self {
             Self::Always => true,
             Self::Global => !focus.takes_text(),
-            In(pane) => pane == focus,
-            Lists => matches!(focus, Pane::State | Pane::Log | Pane::Plan),
+            Self::In(pane) => pane == focus,
+            Self::Lists => matches!(focus, Pane::State | Pane::Log | Pane::Plan),
         }
     }
-}
-
-/// Whether the action makes sense now, else why not, in one sentence with the way out.
-///
-/// # Errors
-/// The sentence.
-pub fn enabled(state: &AppState, action: Action) -> Result<(), String> {
-    let craft = &state.view.vehicle.craft;
-    match action {
-        Action::Pause | Action::Step | Action::Slower | Action::Faster | Action::RealTime
-            if state.view.simulator.is_some() =>
-        {
-            Err(TIME_IS_OUTSIDE.to_owned())
-        }
-        Action::ResetCraft if state.view.simulator == Some(LinkState::Flowing) => {
-            Err(PLACE_IS_OUTSIDE.to_owned())
-        }
-        Action::Arm => hands::can_arm(state),
-        Action::Autopilot => hands::switch(state, Mode::Autopilot).map(drop),
-        Action::Throttle if state.view.vehicle.nav.engaged => {
-            Err("The autopilot has the throttle: `g` switches it off.".to_owned())
-        }
-        Action::ReturnHome if !craft.armed => {
-            Err("Nothing to bring home: the craft is disarmed. `F` flies the plan.".to_owned())
-        }
-        Action::ReturnHome if craft.home.is_none() => {
-            Err("Home is unknown: it is the place of arming with a GPS fix.".to_owned())
-        }
-        Action::Upload if state.plan.plan.waypoints.is_empty() => {
-            Err("No plan is open, so there is nothing to upload.".to_owned())
-        }
-        Action::Fly if state.view.pilot.is_none() && is_wrecked(state) => {
-            Err("The craft crashed and cannot fly: `R` puts it back home.".to_owned())
-        }
-        Action::Fly if state.view.pilot.is_none() && craft.armed => {
-            Err("The craft is armed already: `g` engages the autopilot, or disarm with `a` first.".to_owned())
-        }
-        _ => Ok(()),
-    }
-}
-
-/// Whether the craft lies crashed, so that only a reset helps.
-#[must_use]
-pub fn is_wrecked(state: &AppState) -> bool {
-    state.view.vehicle.truth.as_ref().is_some_and(|truth| truth.crashed)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::SessionView;
     use strum::IntoEnumIterator as _;
-
-    #[test]
-    fn a_simulator_outside_keeps_time_and_place_to_itself() {
-        let mut state = AppState::bare((80, 24), SessionView::default());
-        let times = [Action::Pause, Action::Step, Action::Slower, Action::Faster, Action::RealTime];
-        let refused = |state: &AppState| times.iter().all(|&action| enabled(state, action).is_err());
-        assert!(!refused(&state) && enabled(&state, Action::ResetCraft).is_ok());
-        state.view.simulator = Some(LinkState::Flowing);
-        assert!(refused(&state));
-        assert_eq!(enabled(&state, Action::ResetCraft), Err(PLACE_IS_OUTSIDE.to_owned()));
-        state.view.simulator = Some(LinkState::Silent);
-        assert!(refused(&state) && enabled(&state, Action::ResetCraft).is_ok(), "it disarms at least");
-    }
 
     #[test]
     fn every_action_has_a_row_a_key_and_a_name_of_its_own() {

@@ -3,9 +3,10 @@
 use crate::plan::FlightPlan;
 use crate::telemetry::{AbortReason, LinkState, Mode, NavState, Refusal};
 
-use super::hands::{self, ThrottleMove};
-use super::log::Level;
-use super::state::AppState;
+use super::app_state::AppState;
+use super::event_log::Level;
+use super::transmitter;
+use super::transmitter::ThrottleMove;
 
 /// A sentence and the way out.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -102,7 +103,7 @@ pub fn now(state: &AppState) -> Option<Advice> {
     if vehicle.nav.engaged {
         return None;
     }
-    let switched_on = hands::switch_is_on(state, Mode::Autopilot);
+    let switched_on = transmitter::switch_is_on(state, Mode::Autopilot);
     if state.view.rc_cut {
         return advice(Level::Fault, "The RC link is cut.", "x restores it");
     }
@@ -160,10 +161,12 @@ pub fn now(state: &AppState) -> Option<Advice> {
 /// An armed craft on the sticks: where it is, and the keys that lead on from there.
 fn by_hand(state: &AppState) -> Option<Advice> {
     let craft = &state.view.vehicle.craft;
-    let (what, fix) = match (hands::is_standing(state), hands::throttle_move(state)) {
+    let (what, fix) = match (transmitter::is_standing(state), transmitter::throttle_move(state)) {
         (true, ThrottleMove::Low) => ("Armed, on the ground.", "g takes off; t low, then a disarms"),
         (true, _) => ("Armed, throttle low.", "t raises it and holds, then g engages"),
-        (false, _) if hands::is_sinking(state) => ("Coming down.", "t stops that; on the ground a disarms"),
+        (false, _) if transmitter::is_sinking(state) => {
+            ("Coming down.", "t stops that; on the ground a disarms")
+        }
         (false, ThrottleMove::Sink(_)) if craft.modes.has(Mode::PosHold) => {
             ("Holds its place.", "g engages, t comes down, H flies home")
         }

@@ -6,12 +6,15 @@ use ratatui::layout::{Position, Rect};
 use ratatui::text::Line;
 use ratatui::widgets::{Block, BorderType, Clear, Widget as _};
 
+use super::app_state::AppState;
+use super::ascii;
+use super::formatting;
 use super::layout::{self, SMALLEST};
+use super::pane::{Layer, Pane};
 use super::panel::{self, span};
-use super::state::{AppState, Layer, Pane};
-use super::status;
+use super::text_wrap::wrapped;
 use super::theme::{Charset, Role};
-use super::{ascii, quantity};
+use super::{hint_bar, notice, status_bar};
 
 /// Draws the state. Reads only.
 pub fn draw(state: &AppState, frame: &mut Frame<'_>) {
@@ -19,13 +22,13 @@ pub fn draw(state: &AppState, frame: &mut Frame<'_>) {
     let buffer = frame.buffer_mut();
     let cursor = match layout::divided(state, (area.width, area.height)) {
         Some(screen) => {
-            status::draw(state, screen.status, buffer);
+            status_bar::draw(state, screen.status, buffer);
             let mut cursor = None;
             for (pane, area) in screen.panes {
                 cursor = cursor.or(pane_with_frame(state, pane, area, buffer));
             }
-            status::hints(state, screen.hints, buffer);
-            status::notice(state, screen.hints, buffer);
+            hint_bar::draw(state, screen.hints, buffer);
+            notice::draw(state, screen.hints, buffer);
             cursor
         }
         None => {
@@ -59,7 +62,7 @@ fn pane_with_frame(state: &AppState, pane: Pane, area: Rect, buffer: &mut Buffer
         Pane::Cli => panel::cli::title(state),
         Pane::Log => panel::log::title(state),
     };
-    let title = quantity::cut(&title, usize::from(area.width.saturating_sub(4)));
+    let title = formatting::cut(&title, usize::from(area.width.saturating_sub(4)));
     let (mark, frame_role, title_role) =
         if focused { ("▸", Role::Focus, Role::Focus) } else { ("", Role::Dim, Role::Title) };
     Block::bordered()
@@ -84,7 +87,7 @@ fn too_small(state: &AppState, area: Rect, buffer: &mut Buffer) {
         "betadeck needs at least {}x{}, now {}x{}. The flight goes on; q quits.",
         SMALLEST.0, SMALLEST.1, area.width, area.height
     );
-    for (row, line) in panel::wrapped(&text, usize::from(area.width)).iter().enumerate() {
+    for (row, line) in wrapped(&text, usize::from(area.width)).iter().enumerate() {
         panel::row(buffer, area, row as u16, &state.theme, Role::Text, line);
     }
 }

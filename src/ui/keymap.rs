@@ -3,7 +3,7 @@
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
 use super::action::{ACTIONS, Action, Context};
-use super::state::Pane;
+use super::pane::Pane;
 
 /// A key with its modifiers; shift is part of the character where there is one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -14,7 +14,8 @@
 
 use ratatui::layout::Rect;
 
-use super::state::{AppState, Pane};
+use super::app_state::AppState;
+use super::pane::Pane;
 
 /// The smallest screen that shows anything useful.
 pub const SMALLEST: (u16, u16) = (60, 20);

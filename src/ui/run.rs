@@ -12,8 +12,8 @@ use tokio::time::sleep;
 
 use crate::session::{Command, Event, SessionView};
 
+use super::app_state::{AppState, UiConfig};
 use super::message::{Effect, Msg};
-use super::state::{AppState, UiConfig};
 use super::terminal::Tui;
 use super::update::update;
 

@@ -15,8 +15,8 @@ use crossterm::{cursor, execute, style};
 use ratatui::Terminal;
 use ratatui::backend::CrosstermBackend;
 
+use super::app_state::AppState;
 use super::draw::draw;
-use super::state::AppState;
 
 /// Whether the terminal is ours at the moment; the panic hook of any thread must know.
 static BORROWED: AtomicBool = AtomicBool::new(false);

@@ -4,12 +4,14 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::text::Line;
 
-use crate::ui::cli::CliLineKind;
-use crate::ui::quantity::cut;
-use crate::ui::state::{AppState, Pane};
+use crate::ui::app_state::AppState;
+use crate::ui::console::CliLineKind;
+use crate::ui::formatting::cut;
+use crate::ui::pane::Pane;
 use crate::ui::theme::Role;
 
-use super::{fitting, folded, line, row, span, wrapped};
+use super::{line, row, span};
+use crate::ui::text_wrap::{fitting, folded, wrapped};
 
 /// Rows of completion candidates shown at most.
 const CANDIDATE_ROWS: usize = 4;

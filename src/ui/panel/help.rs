@@ -5,9 +5,9 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 use crate::ui::action::{ACTIONS, Context};
+use crate::ui::app_state::AppState;
 use crate::ui::draw::popup;
 use crate::ui::keymap::shown;
-use crate::ui::state::AppState;
 use crate::ui::theme::Role;
 
 use super::{line, span};

@@ -4,11 +4,13 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
-use crate::ui::quantity::clock_ms;
-use crate::ui::state::{AppState, Pane};
+use crate::ui::app_state::AppState;
+use crate::ui::formatting::clock_ms;
+use crate::ui::pane::Pane;
 use crate::ui::theme::Role;
 
-use super::{fitting, line, row, span, wrapped};
+use super::{line, row, span};
+use crate::ui::text_wrap::{fitting, wrapped};
 
 /// Columns of time and mark in front of the text.
 const STAMP: usize = 12;

@@ -6,10 +6,12 @@ use ratatui::layout::Rect;
 use crate::geo::Degrees7;
 use crate::plan::{HoldPattern, Waypoint, WaypointType};
 use crate::ui::advice::waypoint_problem;
-use crate::ui::state::{AppState, Pane};
+use crate::ui::app_state::AppState;
+use crate::ui::pane::Pane;
 use crate::ui::theme::Role;
 
-use super::{row, wrapped};
+use super::row;
+use crate::ui::text_wrap::wrapped;
 
 /// Rows of problems at most, below the waypoints.
 const PROBLEM_ROWS: usize = 2;

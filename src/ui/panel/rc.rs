@@ -5,8 +5,9 @@ use ratatui::layout::Rect;
 
 use crate::signals::{RC_CHANNELS, RcSource};
 use crate::telemetry::snapshot::{CraftView, ModeRange};
-use crate::ui::quantity::cut;
-use crate::ui::state::{AppState, Pane};
+use crate::ui::app_state::AppState;
+use crate::ui::formatting::cut;
+use crate::ui::pane::Pane;
 use crate::ui::theme::Role;
 
 use super::row;

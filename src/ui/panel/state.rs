@@ -8,12 +8,14 @@ use ratatui::text::Line;
 
 use crate::telemetry::{Guard, GuardName};
 use crate::ui::advice;
-use crate::ui::quantity::{clock, cut, fixed, signed, within};
-use crate::ui::state::{AppState, Pane};
+use crate::ui::app_state::AppState;
+use crate::ui::formatting::{clock, cut, fixed, signed, within};
+use crate::ui::pane::Pane;
 use crate::ui::theme::{Role, Theme};
 
-use super::machine::{COMPACT, Diagram, FULL, LOW};
-use super::{line, row, span, wrapped};
+use super::state_diagram::{COMPACT, Diagram, FULL, LOW};
+use super::{line, row, span};
+use crate::ui::text_wrap::wrapped;
 
 /// How long the strokes of the last transition stay lit.
 const LIT_FOR: Duration = Duration::from_millis(2500);

@@ -3,14 +3,16 @@
 use crossterm::event::{MouseButton, MouseEvent, MouseEventKind};
 use ratatui::layout::Rect;
 
-use crate::ui::hands;
+use crate::ui::app_state::AppState;
 use crate::ui::layout;
-use crate::ui::map::{Ground, MapMode, Viewport};
+use crate::ui::map_point::MapPoint;
 use crate::ui::message::Effect;
+use crate::ui::pane::Pane;
 use crate::ui::panel::rc;
-use crate::ui::state::{AppState, Pane};
+use crate::ui::transmitter;
+use crate::ui::viewport::{MapMode, Viewport};
 
-use super::{ZOOM_STEP, focus, scroll_pane};
+use super::view::{ZOOM_STEP, focus, scroll_pane};
 
 /// Lines a turn of the wheel scrolls.
 const WHEEL_LINES: isize = 3;
@@ -76,7 +78,7 @@ fn wheel(state: &mut AppState, pane: Pane, area: Rect, event: &MouseEvent, direc
 
 fn drag_map(state: &mut AppState, area: Rect, event: &MouseEvent) {
     let Some((column, row, n, e)) = state.drag else { return };
-    let view = Viewport { centre: Ground::new(n, e), ..Viewport::of(state, layout::inner(area)) };
+    let view = Viewport { centre: MapPoint::new(n, e), ..Viewport::of(state, layout::inner(area)) };
     let columns = f64::from(column) - f64::from(event.column);
     let rows = f64::from(row) - f64::from(event.row);
     if columns != 0.0 || rows != 0.0 {
@@ -88,7 +90,7 @@ fn set_channel(state: &mut AppState, area: Rect, event: &MouseEvent) -> Vec<Effe
     match rc::channel_at(layout::inner(area), state.channel, (event.column, event.row)) {
         Some((channel, Some(us))) => {
             state.channel = channel;
-            hands::set(state, channel, us)
+            transmitter::set(state, channel, us)
         }
         Some((channel, None)) => {
             state.channel = channel;

@@ -3,8 +3,9 @@
 use ratatui::buffer::Buffer;
 use unicode_width::UnicodeWidthStr as _;
 
-use crate::ui::map::{Ground, Viewport};
+use crate::ui::map_point::MapPoint;
 use crate::ui::theme::{Role, Theme};
+use crate::ui::viewport::Viewport;
 
 /// Writes marks and labels, and remembers which cells are taken.
 pub(super) struct Labels<'a> {
@@ -32,7 +33,7 @@ impl<'a> Labels<'a> {
     }
 
     /// A mark of one column at a place, over everything.
-    pub(super) fn mark(&mut self, place: Ground, symbol: &str, role: Role) {
+    pub(super) fn mark(&mut self, place: MapPoint, symbol: &str, role: Role) {
         if let Some((column, row)) = self.view.screen_cell(place) {
             self.put(column, row, symbol, role);
         }
@@ -60,7 +61,7 @@ impl<'a> Labels<'a> {
     }
 
     /// A label beside a place: right, left, below, above; the short form where the long one does not fit, else none.
-    pub(super) fn beside(&mut self, place: Ground, long: &str, short: &str, role: Role) {
+    pub(super) fn beside(&mut self, place: MapPoint, long: &str, short: &str, role: Role) {
         let Some((column, row)) = self.view.screen_cell(place) else { return };
         let (column, row) = (i32::from(column), i32::from(row));
         for text in [long, short] {

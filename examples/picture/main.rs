@@ -14,10 +14,12 @@ use betadeck::plan::builtin::{BuiltinPlan, DEMO};
 use betadeck::record::sentence;
 use betadeck::session::{SessionView, upload};
 use betadeck::sim::WorldConfig;
-use betadeck::ui::{AppState, CliHelp, Msg, OpenPlan, Theme, UiConfig, draw, picture, update};
+use betadeck::ui::{AppState, CliHelp, Msg, OpenPlan, Theme, UiConfig, draw, update};
 use betadeck::vehicle::{Vehicle, VehicleConfig};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
+
+mod svg;
 
 /// Size of the terminal.
 const SIZE: (u16, u16) = (120, 40);
@@ -66,7 +68,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let mut terminal = Terminal::new(TestBackend::new(SIZE.0, SIZE.1))?;
     terminal.draw(|frame| draw(&state, frame))?;
-    println!("{}", picture::svg(terminal.backend().buffer()));
+    println!("{}", svg::svg(terminal.backend().buffer()));
     Ok(())
 }
 

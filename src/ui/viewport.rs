@@ -3,14 +3,12 @@
 //! World: metres north and east of the boot place. A cell is taken to be twice as high as wide, so a row spans twice
 //! the metres of a column.
 
-use nalgebra::Vector3;
 use ratatui::layout::Rect;
 
-use crate::geo::{LatLon, LocalFrame};
 use crate::plan::WaypointType;
-use crate::session::SessionView;
 
-use super::state::AppState;
+use super::app_state::AppState;
+use super::map_point::{MapPoint, craft, origin, to_map};
 
 /// Metres per column at the closest and the widest.
 const SCALE_LIMITS: (f64, f64) = (0.02, 20_000.0);
@@ -43,76 +41,13 @@ pub struct MapState {
     pub mode: MapMode,
 }
 
-/// A place on the ground, metres north and east of the boot place.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) struct Ground {
-    /// North, m.
-    pub n: f64,
-    /// East, m.
-    pub e: f64,
-}
-
-impl Ground {
-    /// A place.
-    #[must_use]
-    pub(super) const fn new(n: f64, e: f64) -> Self {
-        Self { n, e }
-    }
-
-    /// Distance to another place, m.
-    #[must_use]
-    pub(super) fn distance(self, other: Self) -> f64 {
-        (self.n - other.n).hypot(self.e - other.e)
-    }
-
-    /// The place `t` of the way to `other`.
-    #[must_use]
-    pub(super) fn towards(self, other: Self, t: f64) -> Self {
-        Self::new(self.n + (other.n - self.n) * t, self.e + (other.e - self.e) * t)
-    }
-}
-
-/// The boot place as the origin of the map; home or the first waypoint when the world does not tell.
-#[must_use]
-pub(super) fn origin(state: &AppState) -> Option<LocalFrame> {
-    let vehicle = &state.view.vehicle;
-    if let Some(truth) = &vehicle.truth {
-        let here = LocalFrame::new(truth.lat_deg, truth.lon_deg, 0.0);
-        let (lat, lon, _) = here.to_geodetic(Vector3::new(-truth.e, -truth.n, 0.0));
-        return Some(LocalFrame::new(lat, lon, 0.0));
-    }
-    let first =
-        || state.shown_plan().waypoints.iter().find(|wp| wp.kind.is_positional()).map(|wp| wp.position);
-    let place = vehicle.craft.home.or_else(first)?;
-    Some(LocalFrame::new(place.lat_deg(), place.lon_deg(), 0.0))
-}
-
-/// A position in metres from the origin of the map.
-#[must_use]
-pub(super) fn ground(origin: &LocalFrame, position: LatLon) -> Ground {
-    let enu = origin.to_enu(position.lat_deg(), position.lon_deg(), 0.0);
-    Ground::new(enu.y, enu.x)
-}
-
-/// Where the craft is: in truth if the world tells, else as it believes.
-#[must_use]
-pub(super) fn craft(view: &SessionView) -> Option<Ground> {
-    let vehicle = &view.vehicle;
-    match (&vehicle.truth, vehicle.estimate.n, vehicle.estimate.e) {
-        (Some(truth), ..) => Some(Ground::new(truth.n, truth.e)),
-        (None, Some(n), Some(e)) => Some(Ground::new(n, e)),
-        _ => None,
-    }
-    .filter(|place| place.n.is_finite() && place.e.is_finite())
-}
-
 /// The window of the map.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Viewport {
     /// The cells it fills.
     pub area: Rect,
     /// Its middle.
-    pub centre: Ground,
+    pub centre: MapPoint,
     /// Metres per column; a row is twice that.
     pub scale: f64,
 }
@@ -127,7 +62,9 @@ impl Viewport {
                 let centre = craft(&state.view).unwrap_or_default();
                 Self { area, centre, scale: limited(scale) }
             }
-            MapMode::Free { n, e, scale } => Self { area, centre: Ground::new(n, e), scale: limited(scale) },
+            MapMode::Free { n, e, scale } => {
+                Self { area, centre: MapPoint::new(n, e), scale: limited(scale) }
+            }
         }
     }
 
@@ -144,14 +81,14 @@ impl Viewport {
                 .into_iter()
                 .flat_map(|plan| &plan.waypoints)
                 .filter(|wp| wp.kind.is_positional() && wp.kind != WaypointType::Takeoff);
-            waypoints.map(|wp| wp.position).chain(home).map(|position| ground(frame, position))
+            waypoints.map(|wp| wp.position).chain(home).map(|position| to_map(frame, position))
         });
-        let mut low = Ground::default();
-        let mut high = Ground::default();
+        let mut low = MapPoint::default();
+        let mut high = MapPoint::default();
         let craft = craft(&state.view);
         for place in places.chain(craft) {
-            low = Ground::new(low.n.min(place.n), low.e.min(place.e));
-            high = Ground::new(high.n.max(place.n), high.e.max(place.e));
+            low = MapPoint::new(low.n.min(place.n), low.e.min(place.e));
+            high = MapPoint::new(high.n.max(place.n), high.e.max(place.e));
         }
         // Room for numbers at the sides, and for scale bar and wind below.
         let columns = f64::from(area.width.saturating_sub(16).max(8));
@@ -172,7 +109,7 @@ impl Viewport {
 
     /// Column and row of a place, in cells from the top left of the area; may lie outside.
     #[must_use]
-    pub(super) fn cell(&self, place: Ground) -> (f64, f64) {
+    pub(super) fn cell(&self, place: MapPoint) -> (f64, f64) {
         let column = f64::from(self.area.width) / 2.0 + (place.e - self.centre.e) / self.scale;
         let row = f64::from(self.area.height) / 2.0 - (place.n - self.centre.n) / (2.0 * self.scale);
         (column, row)
@@ -180,7 +117,7 @@ impl Viewport {
 
     /// The screen cell of a place, if it is inside.
     #[must_use]
-    pub(super) fn screen_cell(&self, place: Ground) -> Option<(u16, u16)> {
+    pub(super) fn screen_cell(&self, place: MapPoint) -> Option<(u16, u16)> {
         let (column, row) = self.cell(place);
         let inside = column >= 0.0
             && row >= 0.0
@@ -191,10 +128,10 @@ impl Viewport {
 
     /// The place under the middle of a screen cell.
     #[must_use]
-    pub(super) fn place(&self, column: u16, row: u16) -> Ground {
+    pub(super) fn place(&self, column: u16, row: u16) -> MapPoint {
         let dc = f64::from(column) + 0.5 - f64::from(self.area.x) - f64::from(self.area.width) / 2.0;
         let dr = f64::from(row) + 0.5 - f64::from(self.area.y) - f64::from(self.area.height) / 2.0;
-        Ground::new(self.centre.n - dr * 2.0 * self.scale, self.centre.e + dc * self.scale)
+        MapPoint::new(self.centre.n - dr * 2.0 * self.scale, self.centre.e + dc * self.scale)
     }
 
     /// East limits of the window, m.
@@ -223,7 +160,7 @@ impl Viewport {
 
     /// The window with its scale times `factor`; `fixed` keeps its place on the screen.
     #[must_use]
-    pub(super) fn zoomed(&self, factor: f64, fixed: Ground) -> MapMode {
+    pub(super) fn zoomed(&self, factor: f64, fixed: MapPoint) -> MapMode {
         let scale = limited(self.scale * factor);
         let ratio = scale / self.scale;
         let centre = fixed.towards(self.centre, ratio);
@@ -245,11 +182,13 @@ pub(super) fn round_length(metres: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geo::LatLon;
     use crate::plan::Waypoint;
+    use crate::session::SessionView;
     use crate::telemetry::snapshot::TruthView;
 
     fn viewport() -> Viewport {
-        Viewport { area: Rect::new(3, 5, 40, 20), centre: Ground::new(10.0, -20.0), scale: 2.0 }
+        Viewport { area: Rect::new(3, 5, 40, 20), centre: MapPoint::new(10.0, -20.0), scale: 2.0 }
     }
 
     #[test]
@@ -257,10 +196,10 @@ mod tests {
         let view = viewport();
         let place = view.place(13, 9);
         assert_eq!(view.screen_cell(place), Some((13, 9)));
-        let north = view.cell(Ground::new(place.n + 4.0, place.e));
+        let north = view.cell(MapPoint::new(place.n + 4.0, place.e));
         let here = view.cell(place);
         assert!((here.1 - north.1 - 1.0).abs() < 1e-9, "a row is two columns of metres");
-        let east = view.cell(Ground::new(place.n, place.e + 2.0));
+        let east = view.cell(MapPoint::new(place.n, place.e + 2.0));
         assert!((east.0 - here.0 - 1.0).abs() < 1e-9);
     }
 
@@ -271,7 +210,7 @@ mod tests {
         let MapMode::Free { n, e, scale } = view.zoomed(0.5, fixed) else {
             panic!("zoom leaves the map free")
         };
-        let after = Viewport { centre: Ground::new(n, e), scale, ..view };
+        let after = Viewport { centre: MapPoint::new(n, e), scale, ..view };
         let (a, b) = (view.cell(fixed), after.cell(fixed));
         assert!((a.0 - b.0).abs() < 1e-9 && (a.1 - b.1).abs() < 1e-9);
     }
@@ -288,7 +227,7 @@ mod tests {
                 std::sync::Arc::make_mut(&mut state.view.vehicle).truth = Some(truth);
                 for (width, height) in [(8, 4), (20, 9), (53, 19), (180, 50)] {
                     let view = Viewport::of(&state, Rect::new(1, 3, width, height));
-                    let cell = view.screen_cell(Ground::new(n, e));
+                    let cell = view.screen_cell(MapPoint::new(n, e));
                     assert!(cell.is_some(), "{width}x{height}, {n} {e}: {view:?}");
                 }
             }

@@ -26,7 +26,7 @@ const ANSI: [&str; 16] = [
 
 /// The screen as a complete SVG document with a dark ground.
 #[must_use]
-pub fn svg(buffer: &Buffer) -> String {
+pub(crate) fn svg(buffer: &Buffer) -> String {
     let area = buffer.area;
     let width = f64::from(area.width) * CELL.0 + 2.0 * MARGIN;
     let height = f64::from(area.height) * CELL.1 + 2.0 * MARGIN;

@@ -8,70 +8,17 @@ use crate::session::{Event, SessionEvent, SessionView};
 use crate::signals::{RcFrame, SimTime};
 use crate::telemetry::{EventKind, FirmwareEvent, NavEvent, NavState, TransitionReason};
 
-use super::cli::{CliHelp, CliState};
+use super::console::{CliHelp, CliState};
+use super::event_log::{Level, LogState};
 use super::keymap::Keymap;
 use super::layout::Slots;
-use super::log::{Level, LogState};
-use super::map::MapState;
+use super::pane::{Layer, Pane};
 use super::theme::Theme;
 use super::track::Track;
+use super::viewport::MapState;
 
 /// Transitions remembered for the state panel.
 const MAX_TRANSITIONS: usize = 200;
-
-/// A panel.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::EnumIter)]
-pub enum Pane {
-    /// The map.
-    #[default]
-    Map,
-    /// The waypoint table.
-    Plan,
-    /// The state machine.
-    State,
-    /// The channels.
-    Rc,
-    /// The firmware's command line.
-    Cli,
-    /// Events and notices.
-    Log,
-}
-
-impl Pane {
-    /// All panels in the order of their numbers.
-    pub const ALL: [Self; 6] = [Self::Map, Self::Plan, Self::State, Self::Rc, Self::Cli, Self::Log];
-
-    /// Number and name.
-    #[must_use]
-    pub fn title(self) -> &'static str {
-        match self {
-            Self::Map => "1 Map",
-            Self::Plan => "2 Plan",
-            Self::State => "3 State",
-            Self::Rc => "4 RC",
-            Self::Cli => "5 CLI",
-            Self::Log => "8 Log",
-        }
-    }
-
-    /// Whether letters are text there.
-    #[must_use]
-    pub fn takes_text(self) -> bool {
-        self == Self::Cli
-    }
-}
-
-/// What lies over the panels; the last one hears keys first.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Layer {
-    /// The keys, scrolled down by this many lines.
-    Help {
-        /// First line shown.
-        scroll: usize,
-    },
-    /// "The craft is armed. Quit?"
-    Quit,
-}
 
 /// The plan that is open in the user interface.
 #[derive(Debug, Clone, Default)]

@@ -1,4 +1,4 @@
-//! Flying by hand: what the next frame of the virtual sticks is when a key is pressed.
+//! The keyboard as an RC transmitter: the next frame of sticks and switches when a key is pressed.
 
 use std::time::Duration;
 
@@ -9,10 +9,10 @@ use crate::telemetry::switch::Switch;
 use crate::telemetry::{Mode, switch};
 
 use super::advice;
-use super::log::Level;
+use super::app_state::AppState;
+use super::event_log::Level;
+use super::formatting::within;
 use super::message::Effect;
-use super::quantity::within;
-use super::state::AppState;
 
 /// Channel of the throttle.
 const THROTTLE: usize = 2;
@@ -20,7 +20,7 @@ const THROTTLE: usize = 2;
 const LOW_US: u16 = 1000;
 /// A stick in the middle, µs.
 const MIDDLE_US: u16 = 1500;
-/// The modes that hold the craft in place while the hands are off the sticks.
+/// The modes that hold the craft level and in place with centred sticks.
 const HOLD_MODES: [Mode; 3] = [Mode::Angle, Mode::AltHold, Mode::PosHold];
 /// Below this the craft counts as standing when no simulator tells, m.
 const STANDING_BELOW_M: f64 = 0.5;
@@ -82,7 +82,7 @@ fn hold_switch(state: &AppState, mode: Mode) -> Option<Switch> {
 
 /// Puts the switches of the hold modes on or off, as far as they have channels of their own: without them a craft
 /// that is flown by keys, or whose autopilot is switched off, has nobody who levels it.
-fn set_hold(state: &AppState, next: &mut RcFrame, on: bool) {
+fn set_hold_modes(state: &AppState, next: &mut RcFrame, on: bool) {
     for mode in HOLD_MODES {
         if let Some(switch) = hold_switch(state, mode)
             && is_on(state, next, mode) != on
@@ -93,11 +93,11 @@ fn set_hold(state: &AppState, next: &mut RcFrame, on: bool) {
 }
 
 /// Prepares the sticks for the moment when the navigator gives the craft back: it shall be held, not sink.
-fn hold(state: &AppState, next: &mut RcFrame) {
+fn prepare_hold(state: &AppState, next: &mut RcFrame) {
     if is_sinking(state) {
         next.channels[THROTTLE] = hover_us(state);
     }
-    set_hold(state, next, true);
+    set_hold_modes(state, next, true);
 }
 
 /// Whether the craft stands on the ground.
@@ -120,7 +120,7 @@ fn is_raised(state: &AppState, frame: &RcFrame) -> bool {
     frame.channels[THROTTLE] >= state.view.vehicle.settings.raised_stick_us
 }
 
-/// Whether the hand on the sticks lets the craft sink in ALTHOLD.
+/// Whether the throttle stick lets the craft sink in ALTHOLD.
 #[must_use]
 pub(super) fn is_sinking(state: &AppState) -> bool {
     let frame = frame(state);
@@ -178,7 +178,7 @@ pub(super) fn toggle_arm(state: &mut AppState) -> Vec<Effect> {
     next.channels[switch.channel] = if on { switch.off_us } else { switch.on_us };
     if on {
         next.channels[THROTTLE] = LOW_US;
-        set_hold(state, &mut next, false);
+        set_hold_modes(state, &mut next, false);
     }
     send(state, next)
 }
@@ -194,9 +194,9 @@ pub(super) fn toggle_autopilot(state: &mut AppState) -> Vec<Effect> {
     }
     next.channels[switch.channel] = if on { switch.off_us } else { switch.on_us };
     if on && !is_raised(state, &next) && !is_airborne(state) {
-        set_hold(state, &mut next, false);
+        set_hold_modes(state, &mut next, false);
     } else if !on && (state.view.vehicle.craft.armed || is_raised(state, &next)) {
-        hold(state, &mut next);
+        prepare_hold(state, &mut next);
     }
     send(state, next)
 }
@@ -209,7 +209,7 @@ pub(super) fn toggle_return(state: &mut AppState) -> Vec<Effect> {
     }
     let before = frame(state);
     let mut next = before;
-    hold(state, &mut next);
+    prepare_hold(state, &mut next);
     let mut effects = Vec::new();
     if next != before && state.view.pilot.is_none() {
         effects = send(state, next);
@@ -229,8 +229,8 @@ pub(super) fn move_throttle(state: &mut AppState) -> Vec<Effect> {
     };
     match to {
         ThrottleMove::Low if is_airborne(state) => {}
-        ThrottleMove::Low => set_hold(state, &mut next, false),
-        ThrottleMove::Hover | ThrottleMove::Sink(_) => set_hold(state, &mut next, true),
+        ThrottleMove::Low => set_hold_modes(state, &mut next, false),
+        ThrottleMove::Hover | ThrottleMove::Sink(_) => set_hold_modes(state, &mut next, true),
     }
     send(state, next)
 }
@@ -269,7 +269,7 @@ pub(super) fn flip(state: &mut AppState, channel: usize) -> Vec<Effect> {
     set(state, channel, us)
 }
 
-/// Sends a frame; the hand takes over from the scripted pilot.
+/// Sends a frame; the keys take over from the scripted pilot.
 fn send(state: &mut AppState, next: RcFrame) -> Vec<Effect> {
     let mut effects = Vec::new();
     if state.view.pilot.is_some() {

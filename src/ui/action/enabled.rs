@@ -1,0 +1,72 @@
+//! Which actions make sense now, and why the others do not.
+
+use crate::session::command::{PLACE_IS_OUTSIDE, TIME_IS_OUTSIDE};
+use crate::telemetry::{LinkState, Mode};
+use crate::ui::app_state::AppState;
+use crate::ui::transmitter;
+
+use super::Action;
+
+/// Whether the action makes sense now, else why not, in one sentence with the way out.
+///
+/// # Errors
+/// The sentence.
+pub fn enabled(state: &AppState, action: Action) -> Result<(), String> {
+    let craft = &state.view.vehicle.craft;
+    match action {
+        Action::Pause | Action::Step | Action::Slower | Action::Faster | Action::RealTime
+            if state.view.simulator.is_some() =>
+        {
+            Err(TIME_IS_OUTSIDE.to_owned())
+        }
+        Action::ResetCraft if state.view.simulator == Some(LinkState::Flowing) => {
+            Err(PLACE_IS_OUTSIDE.to_owned())
+        }
+        Action::Arm => transmitter::can_arm(state),
+        Action::Autopilot => transmitter::switch(state, Mode::Autopilot).map(drop),
+        Action::Throttle if state.view.vehicle.nav.engaged => {
+            Err("The autopilot has the throttle: `g` switches it off.".to_owned())
+        }
+        Action::ReturnHome if !craft.armed => {
+            Err("Nothing to bring home: the craft is disarmed. `F` flies the plan.".to_owned())
+        }
+        Action::ReturnHome if craft.home.is_none() => {
+            Err("Home is unknown: it is the place of arming with a GPS fix.".to_owned())
+        }
+        Action::Upload if state.plan.plan.waypoints.is_empty() => {
+            Err("No plan is open, so there is nothing to upload.".to_owned())
+        }
+        Action::Fly if state.view.pilot.is_none() && is_wrecked(state) => {
+            Err("The craft crashed and cannot fly: `R` puts it back home.".to_owned())
+        }
+        Action::Fly if state.view.pilot.is_none() && craft.armed => {
+            Err("The craft is armed already: `g` engages the autopilot, or disarm with `a` first.".to_owned())
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Whether the craft lies crashed, so that only a reset helps.
+#[must_use]
+pub(in crate::ui) fn is_wrecked(state: &AppState) -> bool {
+    state.view.vehicle.truth.as_ref().is_some_and(|truth| truth.crashed)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::session::SessionView;
+
+    #[test]
+    fn a_simulator_outside_keeps_time_and_place_to_itself() {
+        let mut state = AppState::bare((80, 24), SessionView::default());
+        let times = [Action::Pause, Action::Step, Action::Slower, Action::Faster, Action::RealTime];
+        let refused = |state: &AppState| times.iter().all(|&action| enabled(state, action).is_err());
+        assert!(!refused(&state) && enabled(&state, Action::ResetCraft).is_ok());
+        state.view.simulator = Some(LinkState::Flowing);
+        assert!(refused(&state));
+        assert_eq!(enabled(&state, Action::ResetCraft), Err(PLACE_IS_OUTSIDE.to_owned()));
+        state.view.simulator = Some(LinkState::Silent);
+        assert!(refused(&state) && enabled(&state, Action::ResetCraft).is_ok(), "it disarms at least");
+    }
+}

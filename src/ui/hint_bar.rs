@@ -1,0 +1,230 @@
+//! The line at the bottom: what the keys do here and now, the way out, and the doors.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::text::{Line, Span};
+use unicode_width::UnicodeWidthStr as _;
+
+use super::action::{Action, enabled, is_wrecked, spec_of};
+use super::app_state::AppState;
+use super::formatting::cut;
+use super::keymap::shown;
+use super::pane::Pane;
+use super::panel::span;
+use super::status_bar::sides;
+use super::theme::{Role, Theme};
+use super::transmitter;
+use super::transmitter::ThrottleMove;
+
+/// Width from which a door says what is wrong with it.
+const WIDE: u16 = 120;
+
+/// Draws the hint line: keys at the left; at the right the way out and the doors.
+pub(super) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
+    let theme = &state.theme;
+    let mut right: Vec<Span<'static>> =
+        way_out(state).iter().flat_map(|(keys, label)| hint(theme, keys, label)).collect();
+    right.extend(doors(state, area.width));
+    let room = usize::from(area.width).saturating_sub(Line::from(right.clone()).width());
+    let mut spans: Vec<Span<'static>> = Vec::new();
+    let mut used = 0;
+    let mut push = |keys: &str, label: &str| {
+        let width = keys.width() + label.width() + 3;
+        if used + width > room {
+            return;
+        }
+        used += width;
+        spans.extend(hint(theme, keys, label));
+    };
+    if state.focus == Pane::Cli {
+        for (keys, label) in
+            [("Enter", "run"), ("Tab", "complete"), ("↑ ↓", "history"), ("PgUp PgDn", "scroll")]
+        {
+            push(keys, label);
+        }
+    } else {
+        for (actions, label) in hint_actions(state) {
+            push(&keys_of(actions), label);
+        }
+    }
+    sides(buffer, area, &spans, &right);
+}
+
+/// The actions of the hint bar, in the order of their use here and now.
+fn hint_actions(state: &AppState) -> Vec<(&'static [Action], &'static str)> {
+    let craft = &state.view.vehicle.craft;
+    let mut hints: Vec<(&'static [Action], &'static str)> = Vec::new();
+    match state.focus {
+        Pane::Cli => {}
+        Pane::Rc => hints.extend([
+            (&[Action::ChannelUp, Action::ChannelDown] as &[_], "channel"),
+            (&[Action::Lower, Action::Raise], "value"),
+        ]),
+        Pane::Map if state.zoomed => hints.extend([
+            (&[Action::ZoomIn, Action::ZoomOut] as &[_], "zoom"),
+            (&[Action::Follow], "follow"),
+            (&[Action::Fit], "fit"),
+        ]),
+        Pane::Map | Pane::Plan | Pane::State | Pane::Log => {}
+    }
+    let wrecked = is_wrecked(state);
+    if wrecked {
+        hints.push((&[Action::ResetCraft], "reset"));
+    }
+    if state.view.pilot.is_some() {
+        hints.push((&[Action::Fly], "stop pilot"));
+    }
+    let engaged = state.view.vehicle.nav.engaged;
+    if craft.armed {
+        let autopilot = if engaged { "autopilot off" } else { "autopilot" };
+        let home = if craft.commanded { "stop return" } else { "home" };
+        let rc = if state.view.rc_cut { "restore RC" } else { "cut RC" };
+        if engaged {
+            hints.extend([
+                (&[Action::Autopilot] as &[_], autopilot),
+                (&[Action::ReturnHome], home),
+                (&[Action::CutRc], rc),
+            ]);
+        } else {
+            hints.extend([
+                (&[Action::Throttle] as &[_], throttle_label(state)),
+                (&[Action::Autopilot], autopilot),
+                (&[Action::Arm], "disarm"),
+                (&[Action::ReturnHome], home),
+                (&[Action::CutRc], rc),
+            ]);
+        }
+    } else {
+        if state.view.pilot.is_none() {
+            hints.push((&[Action::Fly], "fly"));
+        }
+        hints.extend([(&[Action::Arm] as &[_], "arm"), (&[Action::Upload], "upload")]);
+        if state.view.rc_cut {
+            hints.push((&[Action::CutRc], "restore RC"));
+        }
+        if !wrecked {
+            hints.push((&[Action::ResetCraft], "reset"));
+        }
+    }
+    hints.extend([
+        (&[Action::Pause] as &[_], if state.view.paused { "go on" } else { "pause" }),
+        (&[Action::Slower, Action::Faster], "speed"),
+    ]);
+    if craft.armed && engaged {
+        // Last: in the air nobody should press it by mistake.
+        hints.push((&[Action::Arm], "disarm"));
+    }
+    if state.focus == Pane::Rc {
+        hints.push((&[Action::Flip], "flip"));
+    }
+    hints.retain(|(actions, _)| actions.iter().all(|&action| enabled(state, action).is_ok()));
+    hints
+}
+
+/// What the throttle key does here and now.
+fn throttle_label(state: &AppState) -> &'static str {
+    match (transmitter::throttle_move(state), transmitter::is_standing(state)) {
+        (ThrottleMove::Low, _) => "throttle low",
+        (ThrottleMove::Sink(_), _) => "come down",
+        (ThrottleMove::Hover, true) => "throttle up",
+        (ThrottleMove::Hover, false) => "hold",
+    }
+}
+
+/// The keys that are never left out: the way to all others, and the way out.
+fn way_out(state: &AppState) -> Vec<(String, &'static str)> {
+    if state.focus == Pane::Cli {
+        return vec![("Esc".to_owned(), "leave")];
+    }
+    vec![(keys_of(&[Action::Help]), "help"), (keys_of(&[Action::Quit]), "quit")]
+}
+
+/// The first key of each action.
+fn keys_of(actions: &[Action]) -> String {
+    let keys: Vec<String> =
+        actions.iter().filter_map(|&action| spec_of(action)?.keys.first().map(|key| shown(key))).collect();
+    keys.join(" ")
+}
+
+/// A key and what it does, as it stands in the hint line.
+fn hint(theme: &Theme, keys: &str, label: &str) -> [Span<'static>; 2] {
+    [span(theme, Role::Key, format!(" {keys}")), span(theme, Role::Text, format!(" {label} "))]
+}
+
+/// The doors: name, whether somebody is connected, and what is wrong.
+fn doors(state: &AppState, width: u16) -> Vec<Span<'static>> {
+    let theme = &state.theme;
+    let mut spans = Vec::new();
+    for door in &state.view.doors {
+        let name = door.name.strip_prefix("udp ").unwrap_or(door.name);
+        let (text, role) = if door.fault && width >= WIDE {
+            (format!("✗{name} {}", cut(&door.state, 6)), Role::Fault)
+        } else if door.fault {
+            (format!("✗{name}"), Role::Fault)
+        } else if is_idle(&door.state) {
+            (format!("○{name}"), Role::Dim)
+        } else {
+            (format!("●{name}"), Role::Ok)
+        };
+        spans.push(span(theme, role, text));
+        spans.push(span(theme, Role::Text, " "));
+    }
+    spans
+}
+
+/// Whether nobody uses a door, going by the words about it.
+fn is_idle(words: &str) -> bool {
+    // A rate of zero is told once packets stay away.
+    matches!(words, "listening" | "closed" | "") || words.starts_with("waiting") || words.starts_with("0 Hz")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::session::SessionView;
+    use crate::session::command::DoorView;
+    use crate::telemetry::LinkState;
+    use crate::ui::status_bar;
+
+    /// The clock's line and the hint line while a simulator outside is in this state.
+    fn lines(simulator: LinkState, doors: &[(&'static str, &str, bool)]) -> String {
+        let door = |&(name, state, fault): &(&'static str, &str, bool)| DoorView {
+            name,
+            state: state.to_owned(),
+            fault,
+            ..DoorView::default()
+        };
+        let view = SessionView {
+            simulator: Some(simulator),
+            speed_wanted: f64::INFINITY,
+            speed_achieved: 0.5,
+            doors: doors.iter().map(door).collect(),
+            ..SessionView::default()
+        };
+        let state = AppState::bare((120, 40), view);
+        let area = Rect::new(0, 0, 120, 3);
+        let mut buffer = Buffer::empty(area);
+        status_bar::draw(&state, area, &mut buffer);
+        draw(&state, Rect { y: 2, height: 1, ..area }, &mut buffer);
+        buffer.content().iter().map(ratatui::buffer::Cell::symbol).collect()
+    }
+
+    #[test]
+    fn what_the_simulator_does_stands_at_the_clock() {
+        let waiting = [("udp fdm", "listening", false), ("udp motors", "waiting for a simulator", false)];
+        let text = lines(LinkState::Waiting, &waiting);
+        assert!(text.contains(" 00:00.0 no simulator "), "{text}");
+        assert!(text.contains("○fdm ○motors"), "{text}");
+
+        let flying = [("udp fdm", "250 Hz, 9 packets, 1 ms ago", false), ("udp motors", "flying", false)];
+        let text = lines(LinkState::Flowing, &flying);
+        assert!(text.contains(" 00:00.0 0.5×"), "its own speed: {text}");
+        assert!(text.contains("●fdm ●motors"), "{text}");
+        assert!(!text.contains("pause") && !text.contains("reset"), "what it decides is no hint: {text}");
+
+        let silent = [("udp fdm", "0 Hz, 9 packets, 3 s ago", false), ("udp motors", "no FDM", true)];
+        let text = lines(LinkState::Silent, &silent);
+        assert!(text.contains(" 00:00.0 ‖ simulator silent "), "{text}");
+        assert!(text.contains("○fdm ✗motors no FDM"), "{text}");
+    }
+}

@@ -1,0 +1,71 @@
+//! Places on the map: metres north and east of the boot place.
+
+use nalgebra::Vector3;
+
+use crate::geo::{LatLon, LocalFrame};
+use crate::session::SessionView;
+
+use super::app_state::AppState;
+
+/// A place on the ground, metres north and east of the boot place.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct MapPoint {
+    /// North, m.
+    pub n: f64,
+    /// East, m.
+    pub e: f64,
+}
+
+impl MapPoint {
+    /// A place.
+    #[must_use]
+    pub(super) const fn new(n: f64, e: f64) -> Self {
+        Self { n, e }
+    }
+
+    /// Distance to another place, m.
+    #[must_use]
+    pub(super) fn distance(self, other: Self) -> f64 {
+        (self.n - other.n).hypot(self.e - other.e)
+    }
+
+    /// The place `t` of the way to `other`.
+    #[must_use]
+    pub(super) fn towards(self, other: Self, t: f64) -> Self {
+        Self::new(self.n + (other.n - self.n) * t, self.e + (other.e - self.e) * t)
+    }
+}
+
+/// The boot place as the origin of the map; home or the first waypoint when the world does not tell.
+#[must_use]
+pub(super) fn origin(state: &AppState) -> Option<LocalFrame> {
+    let vehicle = &state.view.vehicle;
+    if let Some(truth) = &vehicle.truth {
+        let here = LocalFrame::new(truth.lat_deg, truth.lon_deg, 0.0);
+        let (lat, lon, _) = here.to_geodetic(Vector3::new(-truth.e, -truth.n, 0.0));
+        return Some(LocalFrame::new(lat, lon, 0.0));
+    }
+    let first =
+        || state.shown_plan().waypoints.iter().find(|wp| wp.kind.is_positional()).map(|wp| wp.position);
+    let place = vehicle.craft.home.or_else(first)?;
+    Some(LocalFrame::new(place.lat_deg(), place.lon_deg(), 0.0))
+}
+
+/// A position in metres from the origin of the map.
+#[must_use]
+pub(super) fn to_map(origin: &LocalFrame, position: LatLon) -> MapPoint {
+    let enu = origin.to_enu(position.lat_deg(), position.lon_deg(), 0.0);
+    MapPoint::new(enu.y, enu.x)
+}
+
+/// Where the craft is: in truth if the world tells, else as it believes.
+#[must_use]
+pub(super) fn craft(view: &SessionView) -> Option<MapPoint> {
+    let vehicle = &view.vehicle;
+    match (&vehicle.truth, vehicle.estimate.n, vehicle.estimate.e) {
+        (Some(truth), ..) => Some(MapPoint::new(truth.n, truth.e)),
+        (None, Some(n), Some(e)) => Some(MapPoint::new(n, e)),
+        _ => None,
+    }
+    .filter(|place| place.n.is_finite() && place.e.is_finite())
+}

@@ -1,0 +1,111 @@
+//! The text of the map: waypoints, craft, home, scale and wind.
+
+use ratatui::buffer::Buffer;
+
+use crate::plan::WaypointType;
+use crate::ui::app_state::AppState;
+use crate::ui::map_point::MapPoint;
+use crate::ui::theme::Role;
+use crate::ui::viewport::round_length;
+
+use super::labels::Labels;
+use super::{Scene, Spot};
+
+/// Eight directions, clockwise from north.
+const ARROWS: [&str; 8] = ["↑", "↗", "→", "↘", "↓", "↙", "←", "↖"];
+
+/// Writes what is text: marks, numbers, craft, scale, wind.
+pub(super) fn write(state: &AppState, scene: &Scene, buffer: &mut Buffer) {
+    let theme = &state.theme;
+    let vehicle = &state.view.vehicle;
+    let mut labels = Labels::new(theme, scene.view, buffer);
+    frame_notes(state, &mut labels);
+    let home_known = vehicle.truth.is_some() || vehicle.craft.home.is_some();
+    if home_known {
+        labels.mark(scene.home, "⌂", Role::Title);
+    }
+    for spot in &scene.spots {
+        let role = if Some(spot.index) == scene.current { Role::Target } else { Role::Title };
+        labels.mark(spot.place, glyph(spot.wp.kind), role);
+    }
+    if let Some(aim) = vehicle.nav.aim_ne.filter(|_| vehicle.nav.engaged) {
+        labels.mark(MapPoint::new(aim.x, aim.y), "◌", Role::Target);
+    }
+    if let (Some(believed), Some(craft)) = (scene.believed, scene.craft)
+        && believed.distance(craft) > 2.0
+    {
+        labels.mark(believed, "+", Role::Warn);
+    }
+    if let Some(craft) = scene.craft {
+        let heading = vehicle.truth.as_ref().map_or(vehicle.estimate.heading_deg, |truth| truth.heading_deg);
+        let crashed = vehicle.truth.as_ref().is_some_and(|truth| truth.crashed);
+        let (mark, role) = if crashed { ("✗", Role::Fault) } else { (arrow(heading), Role::Craft) };
+        labels.mark(craft, mark, role);
+    }
+    // The current waypoint chooses its place first.
+    let mut order: Vec<&Spot> = scene.spots.iter().collect();
+    order.sort_by_key(|spot| Some(spot.index) != scene.current);
+    for spot in order {
+        let role = if Some(spot.index) == scene.current { Role::Target } else { Role::Title };
+        let number = spot.index.to_string();
+        labels.beside(spot.place, &format!("{number} {}", spot.wp.kind), &number, role);
+    }
+    if home_known {
+        labels.beside(scene.home, "home", "H", Role::Dim);
+    }
+    if scene.craft.is_none() && scene.spots.is_empty() {
+        labels.middle("No position yet: waiting for GPS.", Role::Dim);
+    }
+}
+
+/// The mark of a waypoint.
+fn glyph(kind: WaypointType) -> &'static str {
+    match kind {
+        WaypointType::Flyover => "◆",
+        WaypointType::Flyby => "◇",
+        WaypointType::Hold => "◎",
+        WaypointType::Land => "▼",
+        WaypointType::Takeoff => "▲",
+        WaypointType::AltChange | WaypointType::Delay | WaypointType::YawRate => "·",
+    }
+}
+
+/// The arrow nearest to a heading.
+fn arrow(heading_deg: f64) -> &'static str {
+    let eighth = (heading_deg / 45.0).round().rem_euclid(8.0);
+    ARROWS.get(eighth as usize).copied().unwrap_or("↑")
+}
+
+/// Wind at the bottom left, scale bar and north at the bottom right.
+fn frame_notes(state: &AppState, labels: &mut Labels<'_>) {
+    let vehicle = &state.view.vehicle;
+    let (speed, to_deg) = match &vehicle.truth {
+        Some(truth) => (truth.wind_n.hypot(truth.wind_e), truth.wind_e.atan2(truth.wind_n).to_degrees()),
+        None => (vehicle.world.wind_mps, vehicle.world.wind_from_deg + 180.0),
+    };
+    let wind = match state.view.simulator {
+        // It does not tell.
+        Some(_) => String::new(),
+        None if speed < 0.05 => " calm".to_owned(),
+        None => format!(" wind {} {speed:4.1} m/s", arrow(to_deg)),
+    };
+    let scale = labels.view().scale;
+    let length = round_length(scale * f64::from(labels.view().area.width) / 5.0);
+    let columns = (length / scale).round().max(2.0) as usize;
+    let bar = format!("├{}┤ {length} m   N ↑ ", "─".repeat(columns.saturating_sub(2)));
+    labels.bottom(&wind, &bar);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn arrows_point_where_the_craft_heads() {
+        assert_eq!(arrow(0.0), "↑");
+        assert_eq!(arrow(359.0), "↑");
+        assert_eq!(arrow(-90.0), "←");
+        assert_eq!(arrow(135.0), "↘");
+        assert_eq!(arrow(f64::NAN), "↑");
+    }
+}

@@ -1,0 +1,180 @@
+//! The lines of the map: fence, legs, hold patterns, flown track.
+
+use ratatui::style::Color;
+use ratatui::widgets::canvas::{Context, Line as CanvasLine};
+
+use crate::geo::GRAVITY;
+use crate::plan::{HoldPattern, Waypoint, WaypointType};
+use crate::telemetry::NavTelemetry;
+use crate::ui::app_state::AppState;
+use crate::ui::map_point::{self, MapPoint, to_map};
+use crate::ui::theme::Role;
+
+use super::{Scene, Spot};
+
+/// Dots of a dash and of the gap behind it.
+const DASH_DOTS: f64 = 3.0;
+/// A line of more dashes than this is drawn solid: the rest lies outside anyhow.
+const MAX_DASHES: f64 = 400.0;
+
+/// The pencil of a layer: strokes of one colour in the metres of the map.
+struct Pencil<'a, 'c> {
+    context: &'a mut Context<'c>,
+    colour: Color,
+    dot_m: f64,
+}
+
+impl Pencil<'_, '_> {
+    fn line(&mut self, a: MapPoint, b: MapPoint) {
+        if a.n.is_finite() && a.e.is_finite() && b.n.is_finite() && b.e.is_finite() {
+            self.context.draw(&CanvasLine::new(a.e, a.n, b.e, b.n, self.colour));
+        }
+    }
+
+    fn dashed(&mut self, a: MapPoint, b: MapPoint) {
+        let dashes = a.distance(b) / (2.0 * DASH_DOTS * self.dot_m);
+        if !(1.0..MAX_DASHES).contains(&dashes) {
+            self.line(a, b);
+            return;
+        }
+        let count = dashes.round();
+        for dash in 0..count as u32 {
+            let from = f64::from(dash) / count;
+            self.line(a.towards(b, from), a.towards(b, from + 0.5 / count));
+        }
+    }
+
+    /// A circle; every second piece only if `broken`.
+    fn circle(&mut self, centre: MapPoint, radius_m: f64, broken: bool) {
+        if !(radius_m.is_finite() && radius_m > self.dot_m) {
+            return;
+        }
+        let pieces = (radius_m / self.dot_m).clamp(16.0, 240.0) as u32 * 2;
+        let at = |piece: u32| {
+            let angle = f64::from(piece) / f64::from(pieces) * std::f64::consts::TAU;
+            MapPoint::new(centre.n + radius_m * angle.cos(), centre.e + radius_m * angle.sin())
+        };
+        for piece in (0..pieces).filter(|piece| !broken || piece % 4 < 2) {
+            self.line(at(piece), at(piece + 1));
+        }
+    }
+}
+
+pub(super) fn paint(state: &AppState, scene: &Scene, context: &mut Context<'_>) {
+    let settings = &state.view.vehicle.settings;
+    let theme = &state.theme;
+    let dot_m = scene.view.scale / 2.0;
+    let mut layer = |role: Role, strokes: &mut dyn FnMut(&mut Pencil<'_, '_>)| {
+        strokes(&mut Pencil { context: &mut *context, colour: theme.colour(role), dot_m });
+        context.layer();
+    };
+    layer(Role::Fence, &mut |pencil| {
+        if let Some(fence_m) = settings.fence_m {
+            pencil.circle(scene.home, fence_m, true);
+        }
+    });
+    layer(Role::Dim, &mut |pencil| {
+        legs(scene, pencil);
+        for (at, spot) in scene.spots.iter().enumerate() {
+            figure(state, scene, at, spot, pencil);
+        }
+    });
+    layer(Role::Track, &mut |pencil| {
+        let points = state.track.points();
+        for pair in points.windows(2) {
+            pencil.line(MapPoint::new(pair[0].n, pair[0].e), MapPoint::new(pair[1].n, pair[1].e));
+        }
+        // From the last point kept to where the craft is.
+        if let (Some(last), Some(craft)) = (points.last(), scene.craft) {
+            pencil.line(MapPoint::new(last.n, last.e), craft);
+        }
+    });
+    layer(Role::Target, &mut |pencil| {
+        if let Some((from, to)) = current_leg(state, scene) {
+            pencil.dashed(from, to);
+        }
+    });
+}
+
+/// The legs in flight order, from home.
+fn legs(scene: &Scene, pencil: &mut Pencil<'_, '_>) {
+    let mut from = scene.home;
+    for spot in &scene.spots {
+        pencil.dashed(from, spot.place);
+        from = spot.place;
+    }
+}
+
+/// Where the current leg starts and ends.
+fn current_leg(state: &AppState, scene: &Scene) -> Option<(MapPoint, MapPoint)> {
+    let nav: &NavTelemetry = &state.view.vehicle.nav;
+    let to = scene.spots.iter().find(|spot| Some(spot.index) == scene.current)?.place;
+    let from = map_point::origin(state).zip(nav.leg_start).map(|(frame, start)| to_map(&frame, start));
+    Some((from.or(scene.craft)?, to))
+}
+
+/// What is flown at a waypoint: the radius that ends the leg, the hold pattern, the cut corner.
+fn figure(state: &AppState, scene: &Scene, at: usize, spot: &Spot, pencil: &mut Pencil<'_, '_>) {
+    let settings = &state.view.vehicle.settings;
+    match (spot.wp.kind, spot.wp.pattern) {
+        (WaypointType::Hold, HoldPattern::Orbit) => pencil.circle(spot.place, settings.orbit_radius_m, false),
+        (WaypointType::Hold, HoldPattern::Figure8) => {
+            let radius = settings.figure8_width_m / 2.0;
+            for side in [-radius, radius] {
+                pencil.circle(MapPoint::new(spot.place.n, spot.place.e + side), radius, false);
+            }
+        }
+        (WaypointType::Hold | WaypointType::Land | WaypointType::Takeoff, _) => {
+            pencil.circle(spot.place, settings.hold_radius_m, false);
+        }
+        (WaypointType::Flyby, _) => {
+            let previous = at.checked_sub(1).map_or(scene.home, |before| scene.spots[before].place);
+            match scene.spots.get(at + 1) {
+                Some(next) => {
+                    let radius = turn_radius(&spot.wp, settings.max_velocity_mps, settings.max_angle_deg);
+                    cut_corner(previous, spot.place, next.place, radius, pencil);
+                }
+                None => pencil.circle(spot.place, settings.arrival_radius_m, false),
+            }
+        }
+        (WaypointType::Flyover, _) => pencil.circle(spot.place, settings.arrival_radius_m, false),
+        (WaypointType::AltChange | WaypointType::Delay | WaypointType::YawRate, _) => {}
+    }
+}
+
+/// Radius of a coordinated turn at the speed of the leg, m: R = V² / (g·tan θ).
+fn turn_radius(wp: &Waypoint, max_velocity_mps: f64, max_angle_deg: f64) -> f64 {
+    let speed = match wp.speed_cms {
+        0 => max_velocity_mps,
+        cms => f64::from(cms) / 100.0,
+    };
+    speed * speed / (GRAVITY * max_angle_deg.to_radians().tan()).max(0.1)
+}
+
+/// The curve that leaves one leg and joins the next at `radius` from the corner.
+fn cut_corner(from: MapPoint, corner: MapPoint, to: MapPoint, radius: f64, pencil: &mut Pencil<'_, '_>) {
+    const PIECES: u32 = 12;
+    let along = |end: MapPoint| {
+        let length = corner.distance(end);
+        if length > 0.1 { corner.towards(end, (radius / length).min(1.0)) } else { corner }
+    };
+    let (a, b) = (along(from), along(to));
+    let at = |piece: u32| {
+        let t = f64::from(piece) / f64::from(PIECES);
+        a.towards(corner, t).towards(corner.towards(b, t), t)
+    };
+    for piece in 0..PIECES {
+        pencil.line(at(piece), at(piece + 1));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_turn_radius_is_that_of_a_coordinated_turn() {
+        let wp = Waypoint { speed_cms: 500, ..Waypoint::default() };
+        assert!((turn_radius(&wp, 10.0, 25.0) - 5.47).abs() < 0.01);
+    }
+}

@@ -1,0 +1,210 @@
+//! The two status lines at the top: modes, GPS, battery, RC; mission and simulated time.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::text::{Line, Span};
+use unicode_width::UnicodeWidthStr as _;
+
+use crate::signals::RcSource;
+use crate::telemetry::{LinkState, Mode, NavState};
+
+use super::app_state::AppState;
+use super::formatting::{clock, clock_ms, cut, factor, fixed, signed};
+use super::panel::span;
+use super::theme::Role;
+
+/// Empty and full cell, V.
+const CELL_V: (f64, f64) = (3.3, 4.2);
+/// Parts of the battery bar.
+const BAR: usize = 5;
+
+/// Draws the two status lines.
+pub(super) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
+    let first = Rect { height: 1, ..area };
+    sides(buffer, first, &craft(state), &sensors(state));
+    let second = Rect { y: area.y + 1, height: 1, ..area };
+    let time = time(state);
+    let room = usize::from(area.width).saturating_sub(Line::from(time.clone()).width());
+    sides(buffer, second, &mission(state, room), &time);
+}
+
+/// Left and right part of a line; the right one is never cut, the left one ends in an ellipsis where it must.
+pub(super) fn sides(buffer: &mut Buffer, area: Rect, left: &[Span<'static>], right: &[Span<'static>]) {
+    let right = Line::from(right.to_vec());
+    let width = (right.width() as u16).min(area.width);
+    let room = area.width - width;
+    let mut left = Line::from(left.to_vec());
+    if left.width() > usize::from(room) {
+        while left.width() + 2 > usize::from(room) && left.spans.pop().is_some() {}
+        left.push_span("…");
+    }
+    buffer.set_line(area.x, area.y, &left, room);
+    buffer.set_line(area.x + room, area.y, &right, width);
+}
+
+/// Armed and modes.
+fn craft(state: &AppState) -> Vec<Span<'static>> {
+    let theme = &state.theme;
+    let craft = &state.view.vehicle.craft;
+    let mut spans = vec![if craft.armed {
+        span(theme, Role::Fault, " ● ARMED ")
+    } else {
+        span(theme, Role::Ok, " ○ DISARMED ")
+    }];
+    let mut modes: Vec<Mode> = craft.modes.iter().filter(|mode| *mode != Mode::Arm).collect();
+    modes.sort_by_key(|mode| match mode {
+        Mode::Failsafe => 0,
+        Mode::Autopilot => 1,
+        Mode::GpsRescue => 2,
+        _ => 3,
+    });
+    for mode in modes {
+        let role = match mode {
+            Mode::Failsafe => Role::Fault,
+            Mode::Autopilot | Mode::GpsRescue => Role::Target,
+            _ => Role::Text,
+        };
+        // One word a mode, so that the line can be read as a list.
+        let name = mode.to_string().replace(' ', "");
+        spans.push(span(theme, role, format!("{name} ")));
+    }
+    spans
+}
+
+/// GPS, battery, RC.
+fn sensors(state: &AppState) -> Vec<Span<'static>> {
+    let theme = &state.theme;
+    let craft = &state.view.vehicle.craft;
+    let (fix, role) = if craft.gps_fix { ("3D", Role::Ok) } else { ("no", Role::Warn) };
+    let mut spans =
+        vec![span(theme, role, format!("⌖ {fix} {:>2} sats", craft.sats)), span(theme, Role::Text, "  ")];
+    let (bar, role) = battery_bar(craft.battery_v, craft.battery_cells);
+    spans.push(span(theme, role, format!("{bar} {} V", fixed(craft.battery_v, 4, 1))));
+    spans.push(span(theme, Role::Text, "  "));
+    let (text, role) = rc(state);
+    spans.push(span(theme, role, format!("⇄ {text:<8}")));
+    spans
+}
+
+fn battery_bar(volts: Option<f64>, cells: u8) -> (String, Role) {
+    let Some(volts) = volts.filter(|v| v.is_finite()) else { return ("▯".repeat(BAR), Role::Dim) };
+    let cells = if cells > 0 { f64::from(cells) } else { (volts / CELL_V.1).ceil().max(1.0) };
+    let share = ((volts / cells - CELL_V.0) / (CELL_V.1 - CELL_V.0)).clamp(0.0, 1.0);
+    let full = (share * BAR as f64).round() as usize;
+    let role = match full {
+        0 => Role::Fault,
+        1 => Role::Warn,
+        _ => Role::Ok,
+    };
+    ("▮".repeat(full) + &"▯".repeat(BAR - full), role)
+}
+
+/// Who drives the channels, in at most nine columns.
+pub(super) fn rc(state: &AppState) -> (String, Role) {
+    let craft = &state.view.vehicle.craft;
+    let ours = matches!(craft.rc_source, Some(RcSource::Sticks) | None);
+    if state.view.rc_cut && ours {
+        return ("RC CUT".to_owned(), Role::Fault);
+    }
+    match craft.rc_source {
+        Some(_) if !craft.rc_link => {
+            (format!("LOST{} s", fixed(craft.rc_age_s, 4, 1).trim_end()), Role::Fault)
+        }
+        Some(RcSource::Sticks) if state.view.pilot.is_some() => ("RC pilot".to_owned(), Role::Text),
+        Some(RcSource::Sticks) => ("RC keys".to_owned(), Role::Text),
+        Some(RcSource::Udp) => ("RC udp".to_owned(), Role::Text),
+        Some(RcSource::Msp) => ("RC msp".to_owned(), Role::Text),
+        None => ("RC —".to_owned(), Role::Dim),
+    }
+}
+
+/// State, waypoint and the numbers of the leg; without a mission those of the craft alone. A part that does not fit is
+/// left out as a whole, the least important first.
+fn mission(state: &AppState, room: usize) -> Vec<Span<'static>> {
+    let theme = &state.theme;
+    let vehicle = &state.view.vehicle;
+    let nav = &vehicle.nav;
+    let name = if nav.climbing { "CLIMBING".to_owned() } else { nav.state.to_string() };
+    let role = match nav.state {
+        NavState::Idle => Role::Dim,
+        NavState::Complete => Role::Ok,
+        _ => Role::Target,
+    };
+    let (target, columns) = match nav.kind {
+        Some(kind) if nav.engaged => (format!("WP{} {kind}", nav.wp), 12),
+        _ => (state.view.pilot.unwrap_or_default().to_owned(), 15),
+    };
+    let estimate = &vehicle.estimate;
+    let leg = if nav.engaged { leg(state) } else { Vec::new() };
+    // How important, label, value, unit.
+    let craft = [
+        (2, "", fixed(Some(estimate.ground_speed_mps), 5, 1), " m/s"),
+        (1, "", fixed(estimate.alt, 6, 1), " m"),
+        (5, "  climb", signed(Some(estimate.climb_mps), 6, 1), " m/s"),
+        (6, "  home", fixed(nav.home_distance_m, 6, 0), " m"),
+        (7, "  fence", fixed(nav.fence_margin_m, 6, 0), " m left"),
+    ];
+    let mut spans = vec![
+        span(theme, role, format!(" ◆ {name:<11} ")),
+        span(theme, Role::Text, format!("{:<columns$}", cut(&target, columns))),
+    ];
+    let parts: Vec<_> = leg.into_iter().chain(craft).collect();
+    let width =
+        |(_, label, value, unit): &(u8, &str, String, &str)| label.width() + value.width() + unit.width();
+    let fits = |most: u8| parts.iter().filter(|part| part.0 <= most).map(width).sum::<usize>();
+    let left = room.saturating_sub(15 + columns);
+    let most = (0..=7).rev().find(|&most| fits(most) <= left).unwrap_or(0);
+    for (_, label, value, unit) in parts.into_iter().filter(|part| part.0 <= most) {
+        spans.push(span(theme, Role::Dim, label));
+        spans.push(span(theme, Role::Text, value));
+        spans.push(span(theme, Role::Dim, unit));
+    }
+    spans
+}
+
+/// The numbers of the leg: how important, label, value, unit.
+fn leg(state: &AppState) -> Vec<(u8, &'static str, String, &'static str)> {
+    let nav = &state.view.vehicle.nav;
+    let bearing = nav.bearing_rad.map(|rad| rad.to_degrees().rem_euclid(360.0));
+    let last = if nav.hold_remaining_ds > 0 {
+        let left = (nav.hold_remaining_ds != u16::MAX).then(|| f64::from(nav.hold_remaining_ds) / 10.0);
+        let text = left.map_or_else(|| "∞".to_owned(), |left| fixed(Some(left), 4, 0));
+        (4, " hold", format!("{text:>4}"), " s")
+    } else {
+        (4, " xte", signed(nav.xte_m, 5, 1), " m")
+    };
+    vec![(0, "", fixed(nav.distance_m, 5, 1), " m"), (3, "", fixed(bearing, 4, 0), "°"), last]
+}
+
+/// Simulated time and speed.
+fn time(state: &AppState) -> Vec<Span<'static>> {
+    let theme = &state.theme;
+    let view = &state.view;
+    let halted = match view.simulator {
+        Some(LinkState::Waiting) => Some((" no simulator ", Role::Warn)),
+        Some(LinkState::Silent) => Some((" ‖ simulator silent ", Role::Fault)),
+        Some(LinkState::Flowing) | None => None,
+    };
+    if let Some((why, role)) = halted {
+        return vec![
+            span(theme, Role::Text, format!(" {}", clock(view.vehicle.time))),
+            span(theme, role, why),
+        ];
+    }
+    if view.paused {
+        return vec![span(theme, Role::Active, format!(" {} ‖ ", clock_ms(view.vehicle.time)))];
+    }
+    // In the first second after a start or a pause there is no figure yet.
+    let measured = view.speed_achieved > 0.0;
+    let keeps_up = !measured || view.speed_achieved >= 0.9 * view.speed_wanted;
+    let speed = if measured && (view.speed_wanted.is_infinite() || !keeps_up) {
+        factor((view.speed_achieved * 10.0).round() / 10.0)
+    } else {
+        factor(view.speed_wanted)
+    };
+    let role = if keeps_up || view.speed_wanted.is_infinite() { Role::Text } else { Role::Warn };
+    vec![
+        span(theme, Role::Text, format!(" {}", clock(view.vehicle.time))),
+        span(theme, role, format!(" {speed:>3} ")),
+    ]
+}

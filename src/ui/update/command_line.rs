@@ -1,0 +1,51 @@
+//! Keys and pasted text while the CLI panel has the focus.
+
+use crossterm::event::{Event as TerminalEvent, KeyCode, KeyEvent};
+use tui_input::backend::crossterm::EventHandler as _;
+
+use crate::ui::app_state::AppState;
+use crate::ui::event_log::Level;
+use crate::ui::message::Effect;
+use crate::ui::pane::Pane;
+
+use super::view::{focus, neighbour, scroll_pane};
+
+/// A key while the CLI has the focus.
+pub(super) fn cli_key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
+    match event.code {
+        KeyCode::Enter => {
+            state.cli.enter();
+            return run_cli(state);
+        }
+        KeyCode::Tab => {
+            if state.cli.input.value().is_empty() {
+                return focus(state, neighbour(state, 1));
+            }
+            state.cli.complete(state.cli_help);
+        }
+        KeyCode::Up => state.cli.older(),
+        KeyCode::Down => state.cli.newer(),
+        KeyCode::PageUp => scroll_pane(state, Pane::Cli, -10),
+        KeyCode::PageDown => scroll_pane(state, Pane::Cli, 10),
+        _ => {
+            if state.cli.input.handle_event(&TerminalEvent::Key(event)).is_some() {
+                state.cli.candidates.clear();
+                state.cli.scroll = 0;
+            }
+        }
+    }
+    Vec::new()
+}
+
+pub(super) fn paste(state: &mut AppState, text: &str) -> Vec<Effect> {
+    if state.focus != Pane::Cli || !state.layers.is_empty() {
+        state.notify(Level::Info, "Pasted text goes to the CLI: press 5 first.");
+        return Vec::new();
+    }
+    state.cli.paste(text);
+    run_cli(state)
+}
+
+pub(super) fn run_cli(state: &mut AppState) -> Vec<Effect> {
+    state.cli.next_to_run().map(Effect::Cli).into_iter().collect()
+}

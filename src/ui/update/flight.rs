@@ -1,0 +1,71 @@
+//! The flight as a whole: the scripted pilot, the upload of the plan, the speed of the simulation.
+
+use crate::session::Command;
+use crate::ui::app_state::AppState;
+use crate::ui::event_log::Level;
+use crate::ui::message::Effect;
+
+/// The speeds `[` and `]` go through.
+const SPEEDS: [f64; 12] = [0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, f64::INFINITY];
+
+/// Starts or stops the scripted pilot; a craft without a plan gets the open one first.
+pub(super) fn fly(state: &mut AppState) -> Vec<Effect> {
+    if state.view.pilot.is_some() {
+        return vec![Effect::Send(Command::Pilot(false))];
+    }
+    if state.view.paused {
+        state.notify(Level::Info, "The simulation is paused: Space goes on.");
+    }
+    if !state.view.vehicle.stored_plan.waypoints.is_empty() {
+        if !state.plan.plan.waypoints.is_empty() && !state.plan_is_on_craft() {
+            let text =
+                format!("Flying the plan in the craft, which is not {}: U uploads it.", state.plan.name);
+            state.notify(Level::Info, text);
+        }
+        return vec![Effect::Send(Command::Pilot(true))];
+    }
+    if state.plan.plan.waypoints.is_empty() {
+        state.notify(Level::Warn, "There is no plan to fly: `waypoint insert …` in the CLI (5) adds one.");
+        return Vec::new();
+    }
+    state.fly_after_upload = true;
+    vec![upload(state)]
+}
+
+pub(super) fn upload(state: &AppState) -> Effect {
+    Effect::Upload { plan: Box::new(state.plan.plan.clone()), settings: state.plan.settings.clone() }
+}
+
+pub(super) fn uploaded(state: &mut AppState, result: Result<(), String>) -> Vec<Effect> {
+    let fly = std::mem::take(&mut state.fly_after_upload);
+    match result {
+        Ok(()) => {
+            let text =
+                format!("Uploaded {}: {} waypoints.", state.plan.name, state.plan.plan.waypoints.len());
+            state.notify(Level::Good, text);
+            if fly { vec![Effect::Send(Command::Pilot(true))] } else { Vec::new() }
+        }
+        Err(sentence) => {
+            state.notify(Level::Fault, format!("The craft refused the plan: {sentence}"));
+            Vec::new()
+        }
+    }
+}
+
+/// Steps through the speeds; 0 = real time.
+pub(super) fn speed(state: &mut AppState, step: i32) -> Vec<Effect> {
+    let wanted = state.view.speed_wanted;
+    let next = match step {
+        0 => Some(1.0),
+        1.. => SPEEDS.into_iter().find(|&speed| speed > wanted * 1.01),
+        _ => SPEEDS.into_iter().rev().find(|&speed| speed < wanted * 0.99),
+    };
+    let Some(next) = next else { return Vec::new() };
+    // Until the session confirms, so that a second press counts from here.
+    state.view.speed_wanted = next;
+    let mut effects = vec![Effect::Send(Command::Speed(next))];
+    if step == 0 && state.view.paused {
+        effects.push(Effect::Send(Command::Pause(false)));
+    }
+    effects
+}

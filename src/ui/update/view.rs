@@ -1,0 +1,90 @@
+//! What the screen shows: focus, window of the map, scrolling.
+
+use crate::ui::app_state::AppState;
+use crate::ui::layout;
+use crate::ui::message::Effect;
+use crate::ui::pane::Pane;
+use crate::ui::panel;
+use crate::ui::viewport::{MapMode, Viewport};
+
+/// A zoom step of the map.
+pub(super) const ZOOM_STEP: f64 = 1.5;
+
+pub(super) fn focus(state: &mut AppState, pane: Pane) -> Vec<Effect> {
+    state.focus = pane;
+    state.slots.visit(pane);
+    Vec::new()
+}
+
+/// The panel before or after the focused one in the order of numbers.
+pub(super) fn neighbour(state: &AppState, step: isize) -> Pane {
+    let count = Pane::ALL.len();
+    let at = Pane::ALL.iter().position(|&pane| pane == state.focus).unwrap_or(0);
+    Pane::ALL[(at + count).wrapping_add_signed(step) % count]
+}
+
+/// The window of the map as it is on the screen.
+fn viewport(state: &AppState) -> Option<Viewport> {
+    let area = layout::screen(state)?.pane(Pane::Map)?;
+    Some(Viewport::of(state, layout::inner(area)))
+}
+
+/// Keeps the craft in the middle of the map, at the scale of now.
+pub(super) fn follow(state: &mut AppState) -> Vec<Effect> {
+    if let Some(view) = viewport(state) {
+        state.map.mode = MapMode::Follow(view.scale);
+    }
+    Vec::new()
+}
+
+/// Moves the map by an eighth of its size.
+pub(super) fn pan(state: &mut AppState, columns: f64, rows: f64) -> Vec<Effect> {
+    if let Some(view) = viewport(state) {
+        let (width, height) = (f64::from(view.area.width), f64::from(view.area.height));
+        state.map.mode = view.panned(columns * (width / 8.0).ceil(), rows * (height / 8.0).ceil());
+    }
+    Vec::new()
+}
+
+pub(super) fn zoom_map(state: &mut AppState, factor: f64) -> Vec<Effect> {
+    if let Some(view) = viewport(state) {
+        state.map.mode = match state.map.mode {
+            MapMode::Follow(scale) => MapMode::Follow(scale * factor),
+            MapMode::Fit | MapMode::Free { .. } => view.zoomed(factor, view.centre),
+        };
+    }
+    Vec::new()
+}
+
+pub(super) fn scroll(state: &mut AppState, by: isize) -> Vec<Effect> {
+    scroll_pane(state, state.focus, by);
+    Vec::new()
+}
+
+/// Scrolls a panel by lines, as far as it has some.
+pub(super) fn scroll_pane(state: &mut AppState, pane: Pane, by: isize) {
+    let Some(area) = layout::screen(state).and_then(|screen| screen.pane(pane)).map(layout::inner) else {
+        return;
+    };
+    let (at, by, last) = match pane {
+        Pane::State => {
+            let last = state.transitions.len().saturating_sub(1);
+            (&mut state.scrolls.transitions, by, last)
+        }
+        Pane::Log => {
+            let last = panel::log::last_scroll(state, area);
+            (&mut state.scrolls.log, by, last)
+        }
+        Pane::Plan => {
+            let last = panel::plan::last_scroll(state, area);
+            (&mut state.scrolls.plan, by, last)
+        }
+        // The newest line of the CLI is below, so up is forwards in its own count.
+        Pane::Cli => {
+            let last = panel::cli::last_scroll(state, area);
+            (&mut state.cli.scroll, by.saturating_neg(), last)
+        }
+        Pane::Map | Pane::Rc => return,
+    };
+    *at = (*at).min(last).saturating_add_signed(by).min(last);
+}
