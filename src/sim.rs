@@ -31,12 +31,13 @@ mod event;
 mod fault;
 mod ground;
 mod motors;
-mod parse;
+mod plant;
 mod random;
 mod sensors;
 mod switches;
 mod touchdown;
 mod truth;
+mod value_text;
 mod world;
 
 pub use air::{AIR_TICK_US, DrydenScales, one_minus_cosine};
@@ -46,7 +47,7 @@ pub use airframe::{
 };
 pub use atmosphere::{density, density_ratio, pressure_pa, temperature_k};
 pub use battery::{BatterySpec, motor_power_w};
-pub use body::{AirSample, BodyState, Loads, Plant, ground_effect_factor, lever_arm_acceleration};
+pub use body::{AirSample, BodyState, Loads, lever_arm_acceleration};
 pub use command::{COMMAND_WORDS, CommandWord, WorldCommand};
 pub use config::{Home, Noise, STEP_RATES_HZ, Turbulence, Wind, WorldConfig, WorldError, step_us};
 pub use event::{WorldEvent, WorldEventKind};
@@ -54,10 +55,11 @@ pub use fault::{
     ActiveFault, BatteryFault, Direction, FAULTS, Fault, FaultInfo, FaultKey, FaultLink, FaultStart,
     LinkFaults, MAX_FAULTS, MotorNumber, ScheduledFault,
 };
-pub use ground::{FREE_FEET, Feet, Ground, Touch};
-pub use parse::ParseError;
+pub use ground::{ContactAnchors, Ground, GroundContact, NO_ANCHORS};
+pub use plant::{Plant, ground_effect_factor};
 pub use random::Stream;
 pub use sensors::{SITL_DECLINATION_DEG, magnetic_field_enu};
 pub use switches::{AirDensity, SWITCHES, SwitchInfo, Switches, WindProfile};
 pub use truth::{BatteryTruth, Truth, attitude, level_attitude};
+pub use value_text::ParseError;
 pub use world::{World, WorldStatus};

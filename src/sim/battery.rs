@@ -90,7 +90,7 @@ impl Battery {
 
     /// Charge left, 0…1.
     #[must_use]
-    pub(super) fn left(&self) -> f64 {
+    pub(super) fn charge_left(&self) -> f64 {
         (1.0 - self.drawn_mah / (self.spec.capacity_ah * 1000.0)).max(0.0)
     }
 
@@ -104,7 +104,7 @@ impl Battery {
     pub(super) fn draw(&mut self, motor_w: f64, faults: BatteryFaults, dt: f64) {
         let alive = f64::from(self.spec.cells.saturating_sub(faults.dead_cells)) / f64::from(self.spec.cells);
         // A pack always keeps a rest of voltage: the load equations need a positive one.
-        let open = (self.spec.open_circuit_v(self.left()) * alive + faults.offset_v).max(1.0);
+        let open = (self.spec.open_circuit_v(self.charge_left()) * alive + faults.offset_v).max(1.0);
         (self.voltage_v, self.current_a) = self.spec.under_load(open, motor_w + BASE_LOAD_W);
         self.drawn_mah += self.current_a * dt / 3.6;
         self.drawn_wh += self.voltage_v * self.current_a * dt / 3600.0;

@@ -1,24 +1,6 @@
-//! The rigid body and what pushes it: rotors, drag, ground, gravity.
-//!
-//! With the air-relative velocity `va = Rᵀ(v − w)` in body axes, rotor speeds Ω, spin signs s, efficiencies e and the
-//! density ratio ρ (thrust after momentum theory's first-order inflow loss, in-plane drag linear in Ω and airspeed,
-//! quadratic body drag by axis):
-//!
-//! ```text
-//! Tᵢ = ρ·eᵢ·max(0, kT·Ωᵢ² − kz·Ωᵢ·va_z)
-//! Fᵢ = (−ρ·kd·Ωᵢ·va_x, −ρ·kd·Ωᵢ·va_y, Tᵢ)
-//! F  = Σ Fᵢ − ρ·c∘|va|∘va + ground
-//! τ  = Σ rᵢ × Fᵢ − Σ sᵢ(ρ·κ·kT·Ωᵢ²·eᵢ + Jr·Ω̇ᵢ)·ẑ − kw∘ω + ground
-//! ṗ = v    v̇ = R·F/m − g·ẑ    q̇ = ½·q⊗(0, ω)    ω̇ = J⁻¹(τ − ω × (J·ω + Σ sᵢ·Jr·Ωᵢ·ẑ))
-//! ```
+//! The state of the rigid body and what acts on it, with the stages of the integrator.
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
-
-use crate::geo::GRAVITY;
-
-use super::airframe::{Airframe, ROTORS};
-use super::ground::{Feet, Ground};
-use super::motors::{Motors, RotorSweep};
 
 /// Position, velocity, attitude and rotation of the craft.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -62,11 +44,11 @@ pub struct Loads {
 
 /// Numbers of a stage of the integrator; the quaternion need not have norm one there.
 #[derive(Clone, Copy)]
-struct Stage {
-    pos: Vector3<f64>,
-    vel: Vector3<f64>,
-    q: Quaternion<f64>,
-    rate: Vector3<f64>,
+pub(super) struct Stage {
+    pub(super) pos: Vector3<f64>,
+    pub(super) vel: Vector3<f64>,
+    pub(super) q: Quaternion<f64>,
+    pub(super) rate: Vector3<f64>,
 }
 
 impl From<&BodyState> for Stage {
@@ -77,16 +59,16 @@ impl From<&BodyState> for Stage {
 
 /// Time derivative of a [`Stage`].
 #[derive(Clone, Copy)]
-struct Slope {
-    vel: Vector3<f64>,
-    acc: Vector3<f64>,
-    q_dot: Quaternion<f64>,
-    rate_dot: Vector3<f64>,
+pub(super) struct Slope {
+    pub(super) vel: Vector3<f64>,
+    pub(super) acc: Vector3<f64>,
+    pub(super) q_dot: Quaternion<f64>,
+    pub(super) rate_dot: Vector3<f64>,
 }
 
 impl Stage {
     /// This stage moved along a slope for `dt` seconds.
-    fn along(&self, slope: &Slope, dt: f64) -> Self {
+    pub(super) fn along(&self, slope: &Slope, dt: f64) -> Self {
         Self {
             pos: self.pos + slope.vel * dt,
             vel: self.vel + slope.acc * dt,
@@ -94,229 +76,6 @@ impl Stage {
             rate: self.rate + slope.rate_dot * dt,
         }
     }
-}
-
-/// The constants of the equations of motion, prepared for one step size.
-#[derive(Debug, Clone)]
-pub struct Plant {
-    h: f64,
-    mass: f64,
-    inertia: Vector3<f64>,
-    inertia_inv: Vector3<f64>,
-    rotor_x: [f64; ROTORS],
-    rotor_y: [f64; ROTORS],
-    rotor_z: [f64; ROTORS],
-    spin: [f64; ROTORS],
-    thrust_coeff: f64,
-    torque_per_thrust: f64,
-    rotor_inertia: f64,
-    inflow_coeff: f64,
-    rotor_drag_coeff: f64,
-    body_drag: Vector3<f64>,
-    angular_damping: Vector3<f64>,
-    efficiency: [f64; ROTORS],
-    /// Rotor radius where ground effect acts, m.
-    ground_effect_radius: Option<f64>,
-    motors: Motors,
-    ground: Ground,
-}
-
-impl Plant {
-    /// The plant of an airframe stepped by `h` seconds, undamaged and without payload.
-    #[must_use]
-    pub fn new(airframe: &Airframe, h: f64) -> Self {
-        let rotors = &airframe.rotor_positions_m;
-        Self {
-            h,
-            mass: airframe.mass_kg,
-            inertia: airframe.inertia_kgm2,
-            inertia_inv: airframe.inertia_kgm2.map(f64::recip),
-            rotor_x: rotors.map(|r| r.x),
-            rotor_y: rotors.map(|r| r.y),
-            rotor_z: rotors.map(|r| r.z),
-            spin: airframe.spin_sign,
-            thrust_coeff: airframe.thrust_coeff,
-            torque_per_thrust: airframe.torque_per_thrust_m,
-            rotor_inertia: airframe.rotor_inertia_kgm2,
-            inflow_coeff: airframe.inflow_coeff,
-            rotor_drag_coeff: airframe.rotor_drag_coeff,
-            body_drag: airframe.body_drag,
-            angular_damping: airframe.angular_damping,
-            efficiency: [1.0; ROTORS],
-            ground_effect_radius: None,
-            motors: Motors::new(airframe, h),
-            ground: Ground::new(airframe),
-        }
-    }
-
-    /// Sets the thrust efficiency of each rotor, 0…1.
-    pub fn set_efficiency(&mut self, efficiency: [f64; ROTORS]) {
-        self.efficiency = efficiency;
-    }
-
-    /// Thrust efficiency of each rotor, 0…1.
-    #[must_use]
-    pub fn efficiency(&self) -> &[f64; ROTORS] {
-        &self.efficiency
-    }
-
-    /// Switches the thrust gain near the ground on (for rotors of the given radius, m) or off.
-    pub fn set_ground_effect(&mut self, rotor_radius_m: Option<f64>) {
-        self.ground_effect_radius = rotor_radius_m;
-    }
-
-    /// Hangs a point mass (kg) `depth_m` below the centre of mass, in place of any earlier one. The centre of mass is
-    /// taken to stay where it is.
-    pub fn set_payload(&mut self, airframe: &Airframe, payload_kg: f64, depth_m: f64) {
-        let swing = payload_kg * depth_m * depth_m;
-        self.mass = airframe.mass_kg + payload_kg;
-        self.inertia = airframe.inertia_kgm2 + Vector3::new(swing, swing, 0.0);
-        self.inertia_inv = self.inertia.map(f64::recip);
-    }
-
-    /// Mass with payload, kg.
-    #[must_use]
-    pub fn mass_kg(&self) -> f64 {
-        self.mass
-    }
-
-    /// The legs' and hull's part of the model.
-    #[must_use]
-    pub fn ground(&self) -> &Ground {
-        &self.ground
-    }
-
-    /// Loads in a state of the craft, for the accelerometer and as the first stage of the next step.
-    #[must_use]
-    pub fn loads(&self, state: &BodyState, rotors: &[f64; ROTORS], air: &AirSample, feet: &Feet) -> Loads {
-        let stage = Stage::from(state);
-        self.stage_loads(&stage, &rotation(&stage.q), rotors, air, feet)
-    }
-
-    /// One step of classical Runge–Kutta with motor targets (rad/s) and air held; `first` are the loads in the
-    /// present state. Feet are latched or freed after the step.
-    pub fn step(
-        &self,
-        state: &mut BodyState,
-        rotors: &mut [f64; ROTORS],
-        feet: &mut Feet,
-        target: &[f64; ROTORS],
-        air: &AirSample,
-        first: &Loads,
-    ) {
-        let h = self.h;
-        let sweep = self.motors.sweep(rotors, target);
-        let start = Stage::from(&*state);
-        let k1 = self.slope_from_loads(&start, &rotation(&start.q), &sweep, 0, first);
-        let k2 = self.slope(&start.along(&k1, 0.5 * h), &sweep, 1, air, feet);
-        let k3 = self.slope(&start.along(&k2, 0.5 * h), &sweep, 2, air, feet);
-        let k4 = self.slope(&start.along(&k3, h), &sweep, 3, air, feet);
-        let sixth = h / 6.0;
-        state.pos_enu += (k1.vel + (k2.vel + k3.vel) * 2.0 + k4.vel) * sixth;
-        state.vel_enu += (k1.acc + (k2.acc + k3.acc) * 2.0 + k4.acc) * sixth;
-        state.rate_flu += (k1.rate_dot + (k2.rate_dot + k3.rate_dot) * 2.0 + k4.rate_dot) * sixth;
-        let q = start.q + (k1.q_dot + (k2.q_dot + k3.q_dot) * 2.0 + k4.q_dot) * sixth;
-        state.attitude = UnitQuaternion::new_normalize(q);
-        *rotors = sweep.end;
-        self.ground.latch_feet(state, feet);
-    }
-
-    fn slope(&self, stage: &Stage, sweep: &RotorSweep, index: usize, air: &AirSample, feet: &Feet) -> Slope {
-        let r = rotation(&stage.q);
-        let loads = self.stage_loads(stage, &r, &sweep.speed[index], air, feet);
-        self.slope_from_loads(stage, &r, sweep, index, &loads)
-    }
-
-    fn slope_from_loads(
-        &self,
-        stage: &Stage,
-        r: &Matrix3<f64>,
-        sweep: &RotorSweep,
-        index: usize,
-        loads: &Loads,
-    ) -> Slope {
-        let mut spin_momentum = 0.0;
-        let mut reaction = 0.0;
-        for i in 0..ROTORS {
-            spin_momentum += self.spin[i] * sweep.speed[index][i];
-            reaction += self.spin[i] * sweep.acceleration[index][i];
-        }
-        let w = stage.rate;
-        let mut momentum = self.inertia.component_mul(&w);
-        momentum.z += self.rotor_inertia * spin_momentum;
-        let mut torque = loads.torque_flu - w.cross(&momentum);
-        torque.z -= self.rotor_inertia * reaction;
-        let mut acc = r * loads.force_flu / self.mass;
-        acc.z -= GRAVITY;
-        Slope {
-            vel: stage.vel,
-            acc,
-            q_dot: stage.q * Quaternion::new(0.0, 0.5 * w.x, 0.5 * w.y, 0.5 * w.z),
-            rate_dot: self.inertia_inv.component_mul(&torque),
-        }
-    }
-
-    fn stage_loads(
-        &self,
-        stage: &Stage,
-        r: &Matrix3<f64>,
-        rotors: &[f64; ROTORS],
-        air: &AirSample,
-        feet: &Feet,
-    ) -> Loads {
-        let va = r.tr_mul(&(stage.vel - air.wind_enu));
-        let rho = air.density_ratio;
-        let boost = self.ground_effect(stage, r);
-        // Sums over the rotors of thrust, speed and their moments.
-        let (mut thrust, mut thrust_x, mut thrust_y, mut drag_torque) = (0.0, 0.0, 0.0, 0.0);
-        let (mut speed, mut speed_x, mut speed_y, mut speed_z) = (0.0, 0.0, 0.0, 0.0);
-        for i in 0..ROTORS {
-            let omega = rotors[i];
-            let static_thrust = self.thrust_coeff * omega * omega;
-            let scale = rho * self.efficiency[i];
-            let t = (static_thrust - self.inflow_coeff * omega * va.z).max(0.0) * scale * boost[i];
-            thrust += t;
-            thrust_x += t * self.rotor_x[i];
-            thrust_y += t * self.rotor_y[i];
-            drag_torque += self.spin[i] * static_thrust * scale;
-            speed += omega;
-            speed_x += omega * self.rotor_x[i];
-            speed_y += omega * self.rotor_y[i];
-            speed_z += omega * self.rotor_z[i];
-        }
-        let in_plane = -rho * self.rotor_drag_coeff;
-        let mut force = -rho * self.body_drag.component_mul(&va.abs()).component_mul(&va);
-        force.x += in_plane * va.x * speed;
-        force.y += in_plane * va.y * speed;
-        force.z += thrust;
-        let mut torque = -self.angular_damping.component_mul(&stage.rate);
-        torque.x += thrust_y - in_plane * va.y * speed_z;
-        torque.y += in_plane * va.x * speed_z - thrust_x;
-        torque.z += in_plane * (va.y * speed_x - va.x * speed_y) - self.torque_per_thrust * drag_torque;
-        if stage.pos.z < self.ground.reach_m() {
-            let contact = self.ground.loads(&stage.pos, &stage.vel, r, &stage.rate, feet);
-            force += contact.force_flu;
-            torque += contact.torque_flu;
-        }
-        Loads { force_flu: force, torque_flu: torque }
-    }
-
-    /// Thrust gain of each rotor from the ground below it.
-    fn ground_effect(&self, stage: &Stage, r: &Matrix3<f64>) -> [f64; ROTORS] {
-        let Some(radius) = self.ground_effect_radius else { return [1.0; ROTORS] };
-        std::array::from_fn(|i| {
-            let hub = Vector3::new(self.rotor_x[i], self.rotor_y[i], self.rotor_z[i]);
-            ground_effect_factor(radius, stage.pos.z + r.row(2).transpose().dot(&hub))
-        })
-    }
-}
-
-/// Thrust near the ground over thrust far from it, after Cheeseman and Bennett: 1/(1 − (R/4z)²), for a rotor of
-/// radius R at height z (m), z not below R/2.
-#[must_use]
-pub fn ground_effect_factor(rotor_radius_m: f64, height_m: f64) -> f64 {
-    let ratio = rotor_radius_m / (4.0 * height_m.max(0.5 * rotor_radius_m));
-    1.0 / (1.0 - ratio * ratio)
 }
 
 /// What an accelerometer away from the centre of mass shows on top: `α × r + ω × (ω × r)`, m/s².
@@ -330,7 +89,7 @@ pub fn lever_arm_acceleration(
 }
 
 /// Body → world matrix of a quaternion of norm near one.
-fn rotation(q: &Quaternion<f64>) -> Matrix3<f64> {
+pub(super) fn rotation(q: &Quaternion<f64>) -> Matrix3<f64> {
     let (w, x, y, z) = (q.w, q.i, q.j, q.k);
     let (ww, xx, yy, zz) = (w * w, x * x, y * y, z * z);
     let (wx, wy, wz) = (2.0 * w * x, 2.0 * w * y, 2.0 * w * z);

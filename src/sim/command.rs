@@ -3,9 +3,9 @@
 use super::config::{Noise, Turbulence, Wind, WorldError};
 use super::fault::{Fault, FaultKey, MAX_TIME_S, ScheduledFault};
 
-mod parse;
+mod text;
 
-pub use parse::{COMMAND_WORDS, CommandWord};
+pub use crate::sim::command::text::{COMMAND_WORDS, CommandWord};
 
 /// A change of the world by a user, a scenario or a script; it acts from the next step on.
 #[derive(Debug, Clone, PartialEq)]

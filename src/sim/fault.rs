@@ -11,17 +11,17 @@ use super::airframe::ROTORS;
 use super::config::{Wind, WorldError};
 use crate::telemetry::{FaultKind, FaultValue};
 
-mod board;
 mod effects;
 mod parse;
+mod schedule;
 
-pub use board::{ActiveFault, MAX_FAULTS};
-pub(super) use board::{FaultBoard, Switch};
 pub(super) use effects::Effects;
 pub(super) use effects::GpsFaults;
 pub use effects::LinkFaults;
 pub(super) use parse::MAX_TIME_S;
 pub use parse::{FAULTS, FaultInfo};
+pub use schedule::{ActiveFault, MAX_FAULTS};
+pub(super) use schedule::{FaultChange, FaultSchedule};
 
 /// A motor by its number, 1…4.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -18,10 +18,10 @@ const MAX_POINTS: usize = MAX_LEGS + ROTORS;
 const INVERTED_HULL_M: f64 = 0.05;
 
 /// Where each contact point is latched to the ground, metres east and north; `None` while it slides or is in the air.
-pub type Feet = [Option<Vector2<f64>>; MAX_POINTS];
+pub type ContactAnchors = [Option<Vector2<f64>>; MAX_POINTS];
 
-/// No point latched.
-pub const FREE_FEET: Feet = [None; MAX_POINTS];
+/// No contact point is held by friction.
+pub const NO_ANCHORS: ContactAnchors = [None; MAX_POINTS];
 
 /// The contact model of one airframe.
 #[derive(Debug, Clone)]
@@ -37,7 +37,7 @@ pub struct Ground {
 
 /// Which points are on the ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Touch {
+pub struct GroundContact {
     /// At least one leg carries load.
     pub any_leg: bool,
     /// Every leg carries load.
@@ -72,7 +72,7 @@ impl Ground {
         }
     }
 
-    /// Height of the centre of mass above which nothing can touch, m.
+    /// Height of the centre of mass above which nothing can contact, m.
     #[must_use]
     pub fn reach_m(&self) -> f64 {
         self.reach
@@ -85,19 +85,19 @@ impl Ground {
         vel: &Vector3<f64>,
         r: &Matrix3<f64>,
         rate: &Vector3<f64>,
-        feet: &Feet,
+        anchors: &ContactAnchors,
     ) -> Loads {
         let rate_enu = r * rate;
         let mut force = Vector3::zeros();
         let mut torque = Vector3::zeros();
-        for (arm, foot) in self.points.iter().zip(feet) {
+        for (arm, anchor) in self.points.iter().zip(anchors) {
             let arm = r * arm;
             if pos.z + arm.z >= 0.0 {
                 continue;
             }
             let point = Point { place: pos + arm, vel: vel + rate_enu.cross(&arm) };
             let normal = self.normal_force(&point);
-            let along = self.friction_force(&point, normal, foot.as_ref());
+            let along = self.friction_force(&point, normal, anchor.as_ref());
             let push = Vector3::new(along.x, along.y, normal);
             force += push;
             torque += arm.cross(&push);
@@ -106,17 +106,17 @@ impl Ground {
     }
 
     /// Latches points that have come to rest and frees those that are pulled too hard or have left the ground.
-    pub(super) fn latch_feet(&self, state: &BodyState, feet: &mut Feet) {
+    pub(super) fn update_anchors(&self, state: &BodyState, anchors: &mut ContactAnchors) {
         if state.pos_enu.z >= self.reach {
             return;
         }
         let r = state.attitude.to_rotation_matrix();
         let rate_enu = r * state.rate_flu;
-        for (arm, foot) in self.points.iter().zip(feet) {
+        for (arm, anchor) in self.points.iter().zip(anchors) {
             let arm = r * arm;
             let point = Point { place: state.pos_enu + arm, vel: state.vel_enu + rate_enu.cross(&arm) };
             let limit = self.friction * self.normal_force(&point);
-            *foot = match *foot {
+            *anchor = match *anchor {
                 _ if limit <= 0.0 => None,
                 Some(anchor) if self.holding_force(&point, &anchor).norm() <= limit => Some(anchor),
                 None if point.vel.xy().norm() < self.full_friction_mps => Some(point.place.xy()),
@@ -127,9 +127,9 @@ impl Ground {
 
     /// What touches the ground in a state.
     #[must_use]
-    pub fn touch(&self, state: &BodyState) -> Touch {
+    pub fn contact(&self, state: &BodyState) -> GroundContact {
         if state.pos_enu.z >= 2.0 * self.reach {
-            return Touch {
+            return GroundContact {
                 any_leg: false,
                 all_legs: false,
                 hull: false,
@@ -146,7 +146,7 @@ impl Ground {
             highest = height.max(highest);
         }
         let inverted = up.z < 0.0 && state.pos_enu.z <= INVERTED_HULL_M;
-        Touch {
+        GroundContact {
             any_leg: lowest < 0.0,
             all_legs: highest < 0.0,
             hull: inverted || lowest_hull < 0.0,

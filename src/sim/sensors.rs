@@ -46,7 +46,7 @@ pub(super) struct Sensors {
 }
 
 /// What a sensor may look at.
-pub(super) struct Scene<'a> {
+pub(super) struct SensorInputs<'a> {
     pub truth: &'a Truth,
     pub effects: &'a Effects,
     pub switches: &'a Switches,
@@ -83,31 +83,31 @@ impl Sensors {
     }
 
     /// Reads everything that is due at the present instant.
-    pub(super) fn read(&mut self, scene: &Scene<'_>, frame: &mut SensorFrame) {
-        let truth = scene.truth;
+    pub(super) fn read(&mut self, inputs: &SensorInputs<'_>, frame: &mut SensorFrame) {
+        let truth = inputs.truth;
         frame.time = truth.time;
         frame.truth_attitude = Some(truth.attitude);
         frame.pressure_pa = None;
         frame.mag_flu = None;
         frame.gps = None;
         frame.battery = None;
-        if let Some(tick) = scene.slow_tick {
-            self.read_slow(tick, scene, frame);
+        if let Some(tick) = inputs.slow_tick {
+            self.read_slow(tick, inputs, frame);
         }
-        if !scene.effects.imu_freeze {
-            (frame.rate_flu, frame.specific_force_flu) = self.imu.read(scene, self.noise);
+        if !inputs.effects.imu_freeze {
+            (frame.rate_flu, frame.specific_force_flu) = self.imu.read(inputs, self.noise);
         }
     }
 
-    fn read_slow(&mut self, tick: u64, scene: &Scene<'_>, frame: &mut SensorFrame) {
-        let (truth, effects) = (scene.truth, scene.effects);
-        self.imu.drift(scene.switches, self.noise);
+    fn read_slow(&mut self, tick: u64, inputs: &SensorInputs<'_>, frame: &mut SensorFrame) {
+        let (truth, effects) = (inputs.truth, inputs.effects);
+        self.imu.drift(inputs.switches, self.noise);
         frame.mag_flu =
-            self.magnetometer.read(&truth.attitude, scene.switches.declination_deg, effects, self.noise);
+            self.magnetometer.read(&truth.attitude, inputs.switches.declination_deg, effects, self.noise);
         frame.gps = self.gps.advance(tick, truth, &self.local, &effects.gps, self.noise);
         if tick.is_multiple_of(FIFTY_HZ_TICKS) {
             let pressure = atmosphere::pressure_pa(self.local.alt_amsl_m + truth.pos_enu.z);
-            frame.pressure_pa = Some(self.barometer.read(pressure, scene.switches, effects, self.noise));
+            frame.pressure_pa = Some(self.barometer.read(pressure, inputs.switches, effects, self.noise));
             frame.battery = Some(self.read_battery(truth));
         }
     }

@@ -2,8 +2,8 @@
 
 use super::command::in_range;
 use super::config::WorldError;
-use super::parse::{ParseError, number, on_off};
 use crate::did_you_mean;
+use crate::sim::value_text::{ParseError, number, on_off};
 
 /// How the mean wind changes with height.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::Display)]

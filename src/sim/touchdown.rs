@@ -1,10 +1,10 @@
-//! Watches the legs: first contact, settled touchdown, crash.
+//! Touchdown detector: first contact, settled touchdown, crash.
 
 use crate::signals::SimTime;
 
 use super::body::BodyState;
 use super::event::WorldEventKind;
-use super::ground::Touch;
+use super::ground::GroundContact;
 use crate::telemetry::CrashCause;
 
 /// A touch counts as the end of a flight after this long in the air, s, or this much clearance, m.
@@ -16,7 +16,7 @@ const SETTLED_MPS: f64 = 0.2;
 /// A contact faster than this, down or sideways, is a crash, m/s.
 const CRASH_MPS: f64 = 3.0;
 
-/// What the watch has seen so far.
+/// What the detector has seen so far.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Phase {
     /// On the ground since the start or the last touchdown.
@@ -27,13 +27,13 @@ enum Phase {
     Settling { impact_mps: f64, peak_mps2: f64, loaded: Option<SimTime> },
 }
 
-/// The watch.
+/// Finds contact and touchdown from the load on the legs.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct GroundWatch {
+pub(super) struct TouchdownDetector {
     phase: Phase,
 }
 
-impl GroundWatch {
+impl TouchdownDetector {
     /// A craft that stands.
     pub(super) const STANDING: Self = Self { phase: Phase::Standing };
 
@@ -42,21 +42,22 @@ impl GroundWatch {
     pub(super) fn update(
         &mut self,
         now: SimTime,
-        touch: Touch,
+        contact: GroundContact,
         before: &BodyState,
         after: &BodyState,
         force_mps2: f64,
     ) -> Option<WorldEventKind> {
         match self.phase {
             Phase::Standing => {
-                if !touch.any_leg {
+                if !contact.any_leg {
                     self.phase = Phase::Airborne { since: now, cleared: false };
                 }
                 None
             }
-            Phase::Airborne { since, cleared } if !touch.any_leg && !touch.hull => {
-                let cleared =
-                    cleared || touch.clearance_m > FLIGHT_CLEARANCE_M || now.seconds_since(since) >= FLIGHT_S;
+            Phase::Airborne { since, cleared } if !contact.any_leg && !contact.hull => {
+                let cleared = cleared
+                    || contact.clearance_m > FLIGHT_CLEARANCE_M
+                    || now.seconds_since(since) >= FLIGHT_S;
                 self.phase = Phase::Airborne { since, cleared };
                 None
             }
@@ -71,13 +72,13 @@ impl GroundWatch {
             }
             Phase::Settling { impact_mps, peak_mps2, loaded } => {
                 let peak_mps2 = peak_mps2.max(force_mps2);
-                let settled = touch.all_legs && after.vel_enu.norm() < SETTLED_MPS;
+                let settled = contact.all_legs && after.vel_enu.norm() < SETTLED_MPS;
                 let loaded = settled.then(|| loaded.unwrap_or(now));
                 if loaded.is_some_and(|since| now.seconds_since(since) >= SETTLED_S) {
                     self.phase = Phase::Standing;
                     return Some(WorldEventKind::Touchdown { impact_mps, peak_mps2 });
                 }
-                self.phase = if !touch.any_leg && touch.clearance_m > FLIGHT_CLEARANCE_M {
+                self.phase = if !contact.any_leg && contact.clearance_m > FLIGHT_CLEARANCE_M {
                     Phase::Airborne { since: now, cleared: true }
                 } else {
                     Phase::Settling { impact_mps, peak_mps2, loaded }
@@ -88,13 +89,17 @@ impl GroundWatch {
     }
 
     /// Forgets the flight: the craft was put somewhere else.
-    pub(super) fn lift(&mut self, now: SimTime) {
+    pub(super) fn set_airborne(&mut self, now: SimTime) {
         self.phase = Phase::Airborne { since: now, cleared: true };
     }
 }
 
-/// Whether touching the ground like this is a crash: `new_contact` tells that this step is the first touch.
-pub(super) fn crash_cause(touch: Touch, new_contact: bool, before: &BodyState) -> Option<CrashCause> {
+/// Whether touching the ground like this is a crash: `new_contact` tells that this step is the first contact.
+pub(super) fn crash_cause(
+    contact: GroundContact,
+    new_contact: bool,
+    before: &BodyState,
+) -> Option<CrashCause> {
     if new_contact && before.vel_enu.z < -CRASH_MPS {
         return Some(CrashCause::HardLanding(-before.vel_enu.z));
     }
@@ -102,5 +107,5 @@ pub(super) fn crash_cause(touch: Touch, new_contact: bool, before: &BodyState) -
     if new_contact && sideways > CRASH_MPS {
         return Some(CrashCause::SidewaysLanding(sideways));
     }
-    touch.hull.then_some(CrashCause::HullContact)
+    contact.hull.then_some(CrashCause::HullContact)
 }

@@ -11,7 +11,7 @@ use super::airframe::ROTORS;
 pub struct Truth {
     /// The instant.
     pub time: SimTime,
-    /// Centre of mass, m; on the ground z is the height of the centre of mass over the feet.
+    /// Centre of mass, m; on the ground z is the height of the centre of mass above the legs.
     pub pos_enu: Vector3<f64>,
     /// Velocity, m/s.
     pub vel_enu: Vector3<f64>,

@@ -3,22 +3,20 @@
 use arrayvec::ArrayVec;
 use nalgebra::Vector3;
 
-use crate::geo::LocalFrame;
 use crate::signals::{MotorCommand, SensorFrame, SimTime};
 
 use super::air::{AIR_TICK_US, Air};
 use super::airframe::{Airframe, ROTORS};
 use super::battery::{Battery, motor_power_w};
-use super::body::{AirSample, BodyState, Loads, Plant};
-use super::command::{check_wind, in_range};
-use super::config::{Wind, WorldConfig, WorldError, step_us};
+use super::body::{AirSample, BodyState, Loads};
 use super::event::{WorldEvent, WorldEventKind};
-use super::fault::{ActiveFault, Effects, FaultBoard, FaultLink, LinkFaults, MAX_FAULTS};
-use super::ground::{FREE_FEET, Feet, Touch};
-use super::sensors::{Scene, Sensors};
+use super::fault::{Effects, FaultLink, FaultSchedule};
+use super::ground::{ContactAnchors, GroundContact};
+use super::plant::Plant;
+use super::sensors::{SensorInputs, Sensors};
 use super::switches::Switches;
-use super::touchdown::{GroundWatch, crash_cause};
-use super::truth::{BatteryTruth, Truth, level_attitude};
+use super::touchdown::{TouchdownDetector, crash_cause};
+use super::truth::{BatteryTruth, Truth};
 use crate::telemetry::{CrashCause, DivergeCause};
 
 /// Most events that can wait to be taken; when nobody takes them, later ones are lost.
@@ -27,9 +25,12 @@ const MAX_EVENTS: usize = 64;
 const MAX_DISTANCE_M: f64 = 100_000.0;
 const MAX_RATE: f64 = 300.0;
 
+mod boot;
 mod changes;
+mod readout;
 mod status;
 
+use boot::full_battery;
 pub use status::WorldStatus;
 
 /// The plant: truth, sensors and everything that acts on them. A clone is a frozen copy that goes on identically.
@@ -47,17 +48,17 @@ pub struct World {
     plant: Plant,
     body: BodyState,
     rotors: [f64; ROTORS],
-    feet: Feet,
+    anchors: ContactAnchors,
     battery: Battery,
     command: [f64; ROTORS],
     refused_commands: u64,
-    touch: Touch,
-    watch: GroundWatch,
+    contact: GroundContact,
+    touchdown: TouchdownDetector,
     crashed: bool,
     diverged: bool,
     // What acts on it.
     air: Air,
-    faults: FaultBoard,
+    faults: FaultSchedule,
     effects: Effects,
     // What is known of the present instant.
     air_now: AirSample,
@@ -70,64 +71,6 @@ pub struct World {
 }
 
 impl World {
-    /// A world at boot: the craft stands on its legs at home.
-    ///
-    /// # Errors
-    /// When a value of the configuration is not allowed.
-    pub fn new(config: WorldConfig) -> Result<Self, WorldError> {
-        let step_us = step_us(config.rate_hz)?;
-        check(&config)?;
-        let step_s = step_us as f64 * 1e-6;
-        let start = standing_at_home(&config);
-        let plant = Plant::new(&config.airframe, step_s);
-        let air = Air::new(&config, start.pos_enu.z);
-        let air_now = air.sample(SimTime::ZERO);
-        let mut feet = FREE_FEET;
-        plant.ground().latch_feet(&start, &mut feet);
-        let rotors = [0.0; ROTORS];
-        let mut sensors = Sensors::new(&config, step_s);
-        sensors.settle(start.pos_enu, start.vel_enu);
-        let loads = plant.loads(&start, &rotors, &air_now, &feet);
-        let touch = plant.ground().touch(&start);
-        let battery = full_battery(&config.airframe, &config.switches);
-        let WorldConfig { airframe, switches, faults, link, seed, .. } = config;
-        let mut world = Self {
-            airframe,
-            start,
-            link,
-            seed,
-            switches,
-            step_us,
-            step_s,
-            time: SimTime::ZERO,
-            plant,
-            body: start,
-            rotors,
-            feet,
-            battery,
-            command: [0.0; ROTORS],
-            refused_commands: 0,
-            touch,
-            watch: GroundWatch::STANDING,
-            crashed: false,
-            diverged: false,
-            air,
-            faults: FaultBoard::new(faults),
-            effects: Effects::NONE,
-            air_now,
-            loads,
-            rate_before: Vector3::zeros(),
-            truth: empty_truth(&start),
-            sensors,
-            frame: SensorFrame::default(),
-            events: ArrayVec::new(),
-        };
-        world.set_ground_effect();
-        world.run_faults();
-        world.present();
-        Ok(world)
-    }
-
     /// Advances by exactly one step with the given motor commands, 0…1. A command that is not a number is refused: that
     /// motor keeps its previous one.
     pub fn step(&mut self, command: &MotorCommand) {
@@ -144,8 +87,8 @@ impl World {
             self.slow_tick();
         }
         self.rate_before = before.rate_flu;
-        self.present();
-        self.watch_ground(&before);
+        self.update_outputs();
+        self.detect_touchdown(&before);
     }
 
     /// Lets one step pass in which nothing moves, for a craft that a simulator outside moves: faults begin and end.
@@ -154,88 +97,6 @@ impl World {
         if self.faults.is_due(self.time) {
             self.run_faults();
         }
-    }
-
-    /// The sensor readings of the present instant.
-    #[must_use]
-    pub fn sensors(&self) -> &SensorFrame {
-        &self.frame
-    }
-
-    /// The true state at the present instant.
-    #[must_use]
-    pub fn truth(&self) -> &Truth {
-        &self.truth
-    }
-
-    /// Simulated time since boot.
-    #[must_use]
-    pub fn time(&self) -> SimTime {
-        self.time
-    }
-
-    /// Length of a step, µs.
-    #[must_use]
-    pub fn step_us(&self) -> u64 {
-        self.step_us
-    }
-
-    /// What flies.
-    #[must_use]
-    pub fn airframe(&self) -> &Airframe {
-        &self.airframe
-    }
-
-    /// The frame that turns truth into latitude and longitude.
-    #[must_use]
-    pub fn local_frame(&self) -> &LocalFrame {
-        self.sensors.local()
-    }
-
-    /// The oldest event that was not taken yet.
-    pub fn take_event(&mut self) -> Option<WorldEvent> {
-        self.events.pop_at(0)
-    }
-
-    /// Tells that the autopilot engaged: faults without `boot+` count from the first call after boot or reset.
-    pub fn set_engaged(&mut self, time: SimTime) {
-        self.faults.set_engaged(time);
-    }
-
-    /// The seed of all randomness.
-    #[must_use]
-    pub fn seed(&self) -> u64 {
-        self.seed
-    }
-
-    /// Whether the `gps-loss` fault is on.
-    #[must_use]
-    pub fn gps_lost(&self) -> bool {
-        self.effects.gps.loss
-    }
-
-    /// Whether the `rx-loss` fault is on: no RC frame reaches the receiver.
-    #[must_use]
-    pub fn rx_lost(&self) -> bool {
-        self.effects.rx_loss
-    }
-
-    /// Fraction of RC frames that the `rx-jitter` fault drops, 0…1; draw from [`Stream::RxJitter`](super::Stream).
-    #[must_use]
-    pub fn rx_drop_fraction(&self) -> f64 {
-        self.effects.rx_jitter
-    }
-
-    /// What the active faults do to the packets of an external simulator.
-    #[must_use]
-    pub fn link_faults(&self) -> LinkFaults {
-        self.effects.link
-    }
-
-    /// The active faults.
-    #[must_use]
-    pub fn active_faults(&self) -> &[ActiveFault] {
-        self.faults.active()
     }
 
     /// Takes commands at the border: finite ones, limited to 0…1.
@@ -256,19 +117,19 @@ impl World {
         let target = std::array::from_fn(|i| {
             if self.crashed { 0.0 } else { full_speed * self.effects.stuck[i].unwrap_or(self.command[i]) }
         });
-        let (body, rotors, feet) = (self.body, self.rotors, self.feet);
+        let (body, rotors, anchors) = (self.body, self.rotors, self.anchors);
         self.plant.step(
             &mut self.body,
             &mut self.rotors,
-            &mut self.feet,
+            &mut self.anchors,
             &target,
             &self.air_now,
             &self.loads,
         );
         if let Some(cause) = divergence(&self.body) {
-            (self.body, self.rotors, self.feet) = (body, rotors, feet);
+            (self.body, self.rotors, self.anchors) = (body, rotors, anchors);
             self.diverged = true;
-            self.tell(WorldEventKind::Diverged { cause });
+            self.emit(WorldEventKind::Diverged { cause });
         }
     }
 
@@ -281,20 +142,20 @@ impl World {
     }
 
     fn refresh_loads(&mut self) {
-        self.loads = self.plant.loads(&self.body, &self.rotors, &self.air_now, &self.feet);
+        self.loads = self.plant.loads(&self.body, &self.rotors, &self.air_now, &self.anchors);
     }
 
     /// Truth and sensor readings of the present instant.
-    fn present(&mut self) {
+    fn update_outputs(&mut self) {
         let slow_tick = self.time.0.is_multiple_of(AIR_TICK_US).then_some(self.time.0 / AIR_TICK_US);
-        self.present_with(slow_tick);
+        self.update_outputs_on(slow_tick);
     }
 
-    /// As [`World::present`]; the slower sensors are read when this is the number of a slow tick.
-    fn present_with(&mut self, slow_tick: Option<u64>) {
+    /// As [`World::update_outputs`]; the slower sensors are read when this is the number of a slow tick.
+    fn update_outputs_on(&mut self, slow_tick: Option<u64>) {
         self.air_now = self.air.sample(self.time);
         self.refresh_loads();
-        self.touch = self.plant.ground().touch(&self.body);
+        self.contact = self.plant.ground().contact(&self.body);
         let truth = &mut self.truth;
         truth.time = self.time;
         truth.pos_enu = self.body.pos_enu;
@@ -311,35 +172,35 @@ impl World {
             drawn_mah: self.battery.drawn_mah,
             drawn_wh: self.battery.drawn_wh,
         };
-        truth.on_ground = self.touch.any_leg;
+        truth.on_ground = self.contact.any_leg;
         truth.crashed = self.crashed;
         truth.diverged = self.diverged;
-        let scene = Scene {
+        let inputs = SensorInputs {
             truth: &self.truth,
             effects: &self.effects,
             switches: &self.switches,
             slow_tick,
             rate_dot_flu: (self.body.rate_flu - self.rate_before) / self.step_s,
         };
-        self.sensors.read(&scene, &mut self.frame);
+        self.sensors.read(&inputs, &mut self.frame);
     }
 
     /// Contact, touchdown and crash after a step that began in the state `before`.
-    fn watch_ground(&mut self, before: &BodyState) {
-        let touch = self.touch;
+    fn detect_touchdown(&mut self, before: &BodyState) {
+        let contact = self.contact;
         let force = self.truth.specific_force_flu.norm();
-        let event = self.watch.update(self.time, touch, before, &self.body, force);
+        let event = self.touchdown.update(self.time, contact, before, &self.body, force);
         // A wreck that bounces and settles has nothing more to tell.
         if let Some(kind) = event
             && !self.crashed
         {
-            self.tell(kind);
+            self.emit(kind);
         }
-        if self.crashed || !(touch.any_leg || touch.hull) {
+        if self.crashed || !(contact.any_leg || contact.hull) {
             return;
         }
         let new_contact = matches!(event, Some(WorldEventKind::Contact { .. }));
-        if let Some(cause) = crash_cause(touch, new_contact, before) {
+        if let Some(cause) = crash_cause(contact, new_contact, before) {
             self.crash(cause);
         }
     }
@@ -347,65 +208,12 @@ impl World {
     fn crash(&mut self, cause: CrashCause) {
         self.crashed = true;
         self.truth.crashed = true;
-        self.tell(WorldEventKind::Crash { cause });
+        self.emit(WorldEventKind::Crash { cause });
     }
 
-    fn tell(&mut self, kind: WorldEventKind) {
+    fn emit(&mut self, kind: WorldEventKind) {
         // A full queue means that nobody listens.
         let _ = self.events.try_push(WorldEvent { time: self.time, kind });
-    }
-}
-
-fn check(config: &WorldConfig) -> Result<(), WorldError> {
-    if let Some(fault) = config.airframe.fault() {
-        return Err(WorldError::Airframe(config.airframe.name.clone(), fault));
-    }
-    config.home.check()?;
-    check_wind(config.wind)?;
-    in_range("gust", config.gust_mps, 0.0, Wind::MAX_MPS)?;
-    config.switches.check()?;
-    if config.faults.len() > MAX_FAULTS {
-        return Err(WorldError::TooManyFaults(MAX_FAULTS));
-    }
-    for scheduled in &config.faults {
-        scheduled.check()?;
-        config.link.allows(&scheduled.fault)?;
-    }
-    Ok(())
-}
-
-fn standing_at_home(config: &WorldConfig) -> BodyState {
-    BodyState {
-        pos_enu: Vector3::new(0.0, 0.0, config.airframe.standing_height_m()),
-        vel_enu: Vector3::zeros(),
-        attitude: level_attitude(config.home.heading_deg),
-        rate_flu: Vector3::zeros(),
-    }
-}
-
-fn full_battery(airframe: &Airframe, switches: &Switches) -> Battery {
-    let mut spec = airframe.battery;
-    if let Some(capacity_ah) = switches.battery_capacity_ah {
-        spec.capacity_ah = capacity_ah;
-    }
-    Battery::full(spec)
-}
-
-fn empty_truth(state: &BodyState) -> Truth {
-    Truth {
-        time: SimTime::ZERO,
-        pos_enu: state.pos_enu,
-        vel_enu: state.vel_enu,
-        attitude: state.attitude,
-        rate_flu: state.rate_flu,
-        rotor_speeds: [0.0; ROTORS],
-        motor_command: [0.0; ROTORS],
-        specific_force_flu: Vector3::zeros(),
-        wind_enu: Vector3::zeros(),
-        battery: BatteryTruth::default(),
-        on_ground: true,
-        crashed: false,
-        diverged: false,
     }
 }
 

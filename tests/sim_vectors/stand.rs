@@ -1,7 +1,8 @@
 //! A test stand: the bare plant with motor commands and air held, without sensors, faults or events.
 
 use betadeck::sim::{
-    AirSample, Airframe, BodyState, FREE_FEET, Feet, Loads, Plant, REFERENCE_DENSITY, ROTORS, level_attitude,
+    AirSample, Airframe, BodyState, ContactAnchors, Loads, NO_ANCHORS, Plant, REFERENCE_DENSITY, ROTORS,
+    level_attitude,
 };
 use nalgebra::Vector3;
 
@@ -12,7 +13,7 @@ pub(crate) struct Stand {
     pub(crate) rotors: [f64; ROTORS],
     pub(crate) target: [f64; ROTORS],
     pub(crate) air: AirSample,
-    feet: Feet,
+    anchors: ContactAnchors,
     h: f64,
 }
 
@@ -31,7 +32,7 @@ impl Stand {
             rotors: [0.0; ROTORS],
             target: [0.0; ROTORS],
             air: AirSample { wind_enu: Vector3::zeros(), density_ratio: 1.0 },
-            feet: FREE_FEET,
+            anchors: NO_ANCHORS,
             h,
         }
     }
@@ -48,7 +49,7 @@ impl Stand {
     }
 
     pub(crate) fn loads(&self) -> Loads {
-        self.plant.loads(&self.body, &self.rotors, &self.air, &self.feet)
+        self.plant.loads(&self.body, &self.rotors, &self.air, &self.anchors)
     }
 
     pub(crate) fn specific_force(&self) -> Vector3<f64> {
@@ -57,7 +58,7 @@ impl Stand {
 
     pub(crate) fn step(&mut self) {
         let loads = self.loads();
-        self.plant.step(&mut self.body, &mut self.rotors, &mut self.feet, &self.target, &self.air, &loads);
+        self.plant.step(&mut self.body, &mut self.rotors, &mut self.anchors, &self.target, &self.air, &loads);
     }
 
     pub(crate) fn run(&mut self, seconds: f64) {

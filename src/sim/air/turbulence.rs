@@ -34,7 +34,7 @@ pub struct DrydenScales {
 
 impl DrydenScales {
     /// The scales at a height above ground (m) for a wind at 20 ft (kt): `L_w = h`, `L_u = L_v = h/(0.177 + 0.000823·h)^1.2`, `σ_w = 0.1·W20`,
-    /// `σ_u = σ_v = σ_w/(0.177 + 0.000823·h)^0.4` with h in feet.
+    /// `σ_u = σ_v = σ_w/(0.177 + 0.000823·h)^0.4` with h in anchors.
     #[must_use]
     pub fn at(height_m: f64, wind_at_20ft_kt: f64) -> Self {
         let (low, high) = HEIGHT_FT;

@@ -6,7 +6,7 @@ use strum::VariantNames;
 
 use crate::did_you_mean;
 use crate::sim::config::Wind;
-use crate::sim::parse::{ParseError, number, number_in};
+use crate::sim::value_text::{ParseError, number, number_in};
 use crate::telemetry::FaultKind;
 
 use super::{BatteryFault, Direction, Fault, FaultKey, FaultStart, MotorNumber, ScheduledFault};

@@ -15,7 +15,7 @@ use crate::sim::config::{Noise, WorldConfig};
 use crate::sim::random::{GaussMarkov, Normals, Stream};
 use crate::sim::switches::Switches;
 
-use super::{Scene, quantise};
+use super::{SensorInputs, quantise};
 
 /// White noise of the gyro, rad/s/√Hz (0.0038 °/s/√Hz).
 const GYRO_DENSITY: f64 = 0.0038 * std::f64::consts::PI / 180.0;
@@ -114,17 +114,17 @@ impl Imu {
     }
 
     /// Body rates (rad/s) and specific force (m/s²), FLU, as measured now.
-    pub(super) fn read(&mut self, scene: &Scene<'_>, noise: Noise) -> (Vector3<f64>, Vector3<f64>) {
-        let (truth, effects) = (scene.truth, scene.effects);
+    pub(super) fn read(&mut self, inputs: &SensorInputs<'_>, noise: Noise) -> (Vector3<f64>, Vector3<f64>) {
+        let (truth, effects) = (inputs.truth, inputs.effects);
         let mut rate = truth.rate_flu + effects.gyro_bias;
         let mut force = truth.specific_force_flu + effects.acc_bias;
         if self.position_m != Vector3::zeros() {
-            force += lever_arm_acceleration(truth.rate_flu, scene.rate_dot_flu, self.position_m);
+            force += lever_arm_acceleration(truth.rate_flu, inputs.rate_dot_flu, self.position_m);
         }
         if effects.imbalance_mps2 != [0.0; ROTORS] {
             force += self.imbalance(&truth.rotor_speeds, &effects.imbalance_mps2);
         }
-        let vibration = scene.switches.vibration_mps2 + effects.vibration_mps2;
+        let vibration = inputs.switches.vibration_mps2 + effects.vibration_mps2;
         if noise == Noise::None && vibration == 0.0 {
             return (rate, force);
         }

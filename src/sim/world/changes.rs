@@ -8,9 +8,9 @@ use crate::sim::airframe::ROTORS;
 use crate::sim::command::WorldCommand;
 use crate::sim::config::{Wind, WorldError};
 use crate::sim::event::WorldEventKind;
-use crate::sim::fault::{ActiveFault, Fault, FaultLink, MAX_FAULTS, Switch};
-use crate::sim::ground::FREE_FEET;
-use crate::sim::touchdown::GroundWatch;
+use crate::sim::fault::{ActiveFault, Fault, FaultChange, FaultLink, MAX_FAULTS};
+use crate::sim::ground::NO_ANCHORS;
+use crate::sim::touchdown::TouchdownDetector;
 
 use super::{World, full_battery};
 
@@ -61,7 +61,7 @@ impl World {
             WorldCommand::Schedule(scheduled) => {
                 scheduled.check()?;
                 self.check_fault(&scheduled.fault)?;
-                self.faults.schedule(scheduled);
+                self.faults.add(scheduled);
             }
             WorldCommand::ResetToHome => self.reset_to_home(),
         }
@@ -77,17 +77,17 @@ impl World {
 
     /// Puts on and takes off the faults that are due.
     pub(super) fn run_faults(&mut self) {
-        while let Some(switch) = self.faults.take_due(self.time) {
-            match switch {
-                Switch::On(begun) => self.begin_fault(&begun),
-                Switch::Off(fault) => self.end_fault(&fault),
+        while let Some(change) = self.faults.take_due(self.time) {
+            match change {
+                FaultChange::Begin(begun) => self.begin_fault(&begun),
+                FaultChange::End(fault) => self.end_fault(&fault),
             }
         }
     }
 
     fn begin_fault(&mut self, begun: &ActiveFault) {
         let fault = begun.fault;
-        self.tell(WorldEventKind::Fault { fault, on: true });
+        self.emit(WorldEventKind::Fault { fault, on: true });
         match fault {
             Fault::Push(impulse, direction) => {
                 self.body.vel_enu += direction.enu() * (impulse / self.plant.mass_kg());
@@ -103,7 +103,7 @@ impl World {
     }
 
     fn end_fault(&mut self, fault: &Fault) {
-        self.tell(WorldEventKind::Fault { fault: *fault, on: false });
+        self.emit(WorldEventKind::Fault { fault: *fault, on: false });
         self.use_effects();
     }
 
@@ -131,11 +131,11 @@ impl World {
     /// Moves the craft, never into the ground.
     fn teleport(&mut self, by_enu: Vector3<f64>) {
         self.body.pos_enu += by_enu;
-        let clearance = self.plant.ground().touch(&self.body).clearance_m;
+        let clearance = self.plant.ground().contact(&self.body).clearance_m;
         self.body.pos_enu.z -= clearance.min(0.0);
-        self.feet = FREE_FEET;
+        self.anchors = NO_ANCHORS;
         if clearance > 0.0 {
-            self.watch.lift(self.time);
+            self.touchdown.set_airborne(self.time);
         }
     }
 
@@ -159,14 +159,14 @@ impl World {
         self.wait_for_next_flight();
         self.body = self.start;
         self.rotors = [0.0; ROTORS];
-        self.feet = FREE_FEET;
-        self.plant.ground().latch_feet(&self.start, &mut self.feet);
+        self.anchors = NO_ANCHORS;
+        self.plant.ground().update_anchors(&self.start, &mut self.anchors);
         self.battery = full_battery(&self.airframe, &self.switches);
         self.command = [0.0; ROTORS];
-        self.watch = GroundWatch::STANDING;
+        self.touchdown = TouchdownDetector::STANDING;
         (self.crashed, self.diverged) = (false, false);
         self.sensors.settle(self.start.pos_enu, self.start.vel_enu);
         self.rate_before = self.body.rate_flu;
-        self.present_with(None);
+        self.update_outputs_on(None);
     }
 }

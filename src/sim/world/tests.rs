@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::sim::command::WorldCommand;
-use crate::sim::config::{Noise, Turbulence};
+use crate::sim::config::{Noise, Turbulence, Wind, WorldConfig, WorldError};
 use crate::sim::fault::{FAULTS, Fault, FaultStart, ScheduledFault};
 use crate::telemetry::FaultKind;
 

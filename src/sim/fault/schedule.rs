@@ -20,14 +20,14 @@ pub struct ActiveFault {
 
 /// A fault that begins (and when it will end) or ends now.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::sim) enum Switch {
-    On(ActiveFault),
-    Off(Fault),
+pub(in crate::sim) enum FaultChange {
+    Begin(ActiveFault),
+    End(Fault),
 }
 
 /// Faults that wait and faults that are active.
 #[derive(Debug, Clone)]
-pub(in crate::sim) struct FaultBoard {
+pub(in crate::sim) struct FaultSchedule {
     waiting: Vec<ScheduledFault>,
     active: ArrayVec<ActiveFault, MAX_FAULTS>,
     engaged: Option<SimTime>,
@@ -37,12 +37,12 @@ pub(in crate::sim) struct FaultBoard {
     next_us: u64,
 }
 
-impl FaultBoard {
+impl FaultSchedule {
     pub(crate) fn new(waiting: Vec<ScheduledFault>) -> Self {
-        let mut board =
+        let mut schedule =
             Self { waiting, active: ArrayVec::new(), engaged: None, spent: ArrayVec::new(), next_us: 0 };
-        board.look_ahead();
-        board
+        schedule.look_ahead();
+        schedule
     }
 
     /// Whether something begins or ends at or before `now`.
@@ -51,18 +51,18 @@ impl FaultBoard {
     }
 
     /// Takes one fault that ends or begins at or before `now`: ends first, then beginnings in the order of their times.
-    pub(crate) fn take_due(&mut self, now: SimTime) -> Option<Switch> {
-        let switch = self.take_ended(now).or_else(|| self.take_begun(now));
+    pub(crate) fn take_due(&mut self, now: SimTime) -> Option<FaultChange> {
+        let change = self.take_ended(now).or_else(|| self.take_begun(now));
         self.look_ahead();
-        switch
+        change
     }
 
-    fn take_ended(&mut self, now: SimTime) -> Option<Switch> {
+    fn take_ended(&mut self, now: SimTime) -> Option<FaultChange> {
         let ended = self.active.iter().position(|active| active.until.is_some_and(|until| until <= now))?;
-        Some(Switch::Off(self.active.remove(ended).fault))
+        Some(FaultChange::End(self.active.remove(ended).fault))
     }
 
-    fn take_begun(&mut self, now: SimTime) -> Option<Switch> {
+    fn take_begun(&mut self, now: SimTime) -> Option<FaultChange> {
         let (due, index) = (0..self.waiting.len())
             .filter_map(|i| Some((self.due(&self.waiting[i])?, i)))
             .filter(|&(due, _)| due <= now)
@@ -74,7 +74,7 @@ impl FaultBoard {
         }
         let ScheduledFault { fault, for_s, .. } = scheduled;
         let until = for_s.map(|seconds| SimTime(due.0.saturating_add(SimTime::from_secs_f64(seconds).0)));
-        Some(Switch::On(self.insert(fault, until)))
+        Some(FaultChange::Begin(self.insert(fault, until)))
     }
 
     /// Puts a fault on now, in place of an active one of its kind.
@@ -129,7 +129,7 @@ impl FaultBoard {
     }
 
     /// Adds a fault that will begin.
-    pub(crate) fn schedule(&mut self, fault: ScheduledFault) {
+    pub(crate) fn add(&mut self, fault: ScheduledFault) {
         self.waiting.push(fault);
         self.look_ahead();
     }
@@ -194,67 +194,67 @@ impl FaultBoard {
 mod tests {
     use super::*;
 
-    fn switches(board: &mut FaultBoard, now_s: f64) -> Vec<(&'static str, bool)> {
+    fn changes(schedule: &mut FaultSchedule, now_s: f64) -> Vec<(&'static str, bool)> {
         let now = SimTime::from_secs_f64(now_s);
         let mut seen = Vec::new();
-        while board.is_due(now) {
-            let Some(switch) = board.take_due(now) else { break };
-            seen.push(match switch {
-                Switch::On(begun) => (begun.fault.name(), true),
-                Switch::Off(fault) => (fault.name(), false),
+        while schedule.is_due(now) {
+            let Some(change) = schedule.take_due(now) else { break };
+            seen.push(match change {
+                FaultChange::Begin(begun) => (begun.fault.name(), true),
+                FaultChange::End(fault) => (fault.name(), false),
             });
         }
         seen
     }
 
-    fn board(faults: &[&str]) -> FaultBoard {
-        FaultBoard::new(faults.iter().map(|text| text.parse().unwrap()).collect())
+    fn schedule(faults: &[&str]) -> FaultSchedule {
+        FaultSchedule::new(faults.iter().map(|text| text.parse().unwrap()).collect())
     }
 
     #[test]
     fn faults_begin_in_order_and_end_after_their_time() {
-        let mut board = board(&["mag-off@boot+2", "gps-loss@boot+1,2"]);
-        assert_eq!(switches(&mut board, 0.999), []);
-        assert_eq!(switches(&mut board, 1.0), [("gps-loss", true)]);
-        assert_eq!(switches(&mut board, 2.5), [("mag-off", true)]);
-        assert_eq!(switches(&mut board, 3.0), [("gps-loss", false)]);
-        assert_eq!(switches(&mut board, 1e6), []);
-        assert_eq!(board.active().len(), 1);
+        let mut schedule = schedule(&["mag-off@boot+2", "gps-loss@boot+1,2"]);
+        assert_eq!(changes(&mut schedule, 0.999), []);
+        assert_eq!(changes(&mut schedule, 1.0), [("gps-loss", true)]);
+        assert_eq!(changes(&mut schedule, 2.5), [("mag-off", true)]);
+        assert_eq!(changes(&mut schedule, 3.0), [("gps-loss", false)]);
+        assert_eq!(changes(&mut schedule, 1e6), []);
+        assert_eq!(schedule.active().len(), 1);
     }
 
     #[test]
     fn faults_wait_for_the_first_engagement() {
-        let mut board = board(&["gps-loss@1"]);
-        assert_eq!(switches(&mut board, 100.0), []);
-        board.set_engaged(SimTime::from_secs_f64(100.0));
-        board.set_engaged(SimTime::from_secs_f64(200.0));
-        assert_eq!(switches(&mut board, 100.5), []);
-        assert_eq!(switches(&mut board, 101.0), [("gps-loss", true)]);
+        let mut schedule = schedule(&["gps-loss@1"]);
+        assert_eq!(changes(&mut schedule, 100.0), []);
+        schedule.set_engaged(SimTime::from_secs_f64(100.0));
+        schedule.set_engaged(SimTime::from_secs_f64(200.0));
+        assert_eq!(changes(&mut schedule, 100.5), []);
+        assert_eq!(changes(&mut schedule, 101.0), [("gps-loss", true)]);
     }
 
     #[test]
     fn after_a_reset_the_faults_of_the_flight_wait_for_the_next_one() {
-        let mut board = board(&["gps-loss@1", "mag-off@5", "rx-loss@boot+1"]);
-        board.set_engaged(SimTime::from_secs_f64(100.0));
-        assert_eq!(switches(&mut board, 101.0), [("rx-loss", true), ("gps-loss", true)]);
-        assert_eq!(board.wait_for_next_flight().map(|fault| fault.name()), Some("gps-loss"));
-        assert_eq!(board.wait_for_next_flight(), None);
-        assert_eq!(switches(&mut board, 300.0), [], "nothing is engaged");
-        board.set_engaged(SimTime::from_secs_f64(300.0));
-        assert_eq!(switches(&mut board, 301.0), [("gps-loss", true)]);
-        assert_eq!(switches(&mut board, 305.0), [("mag-off", true)]);
-        assert_eq!(board.active().len(), 3, "what counts from boot stays on");
+        let mut schedule = schedule(&["gps-loss@1", "mag-off@5", "rx-loss@boot+1"]);
+        schedule.set_engaged(SimTime::from_secs_f64(100.0));
+        assert_eq!(changes(&mut schedule, 101.0), [("rx-loss", true), ("gps-loss", true)]);
+        assert_eq!(schedule.wait_for_next_flight().map(|fault| fault.name()), Some("gps-loss"));
+        assert_eq!(schedule.wait_for_next_flight(), None);
+        assert_eq!(changes(&mut schedule, 300.0), [], "nothing is engaged");
+        schedule.set_engaged(SimTime::from_secs_f64(300.0));
+        assert_eq!(changes(&mut schedule, 301.0), [("gps-loss", true)]);
+        assert_eq!(changes(&mut schedule, 305.0), [("mag-off", true)]);
+        assert_eq!(schedule.active().len(), 3, "what counts from boot stays on");
     }
 
     #[test]
     fn a_fault_of_the_same_kind_takes_the_place_of_the_first() {
-        let mut board = board(&[]);
+        let mut schedule = schedule(&[]);
         for text in ["motor@0,,2:0.5", "motor@0,,3:0.5", "motor@0,,2:0"] {
-            board.insert(text.parse::<ScheduledFault>().unwrap().fault, None);
+            schedule.insert(text.parse::<ScheduledFault>().unwrap().fault, None);
         }
-        assert_eq!(board.effects().efficiency, [1.0, 0.0, 0.5, 1.0]);
+        assert_eq!(schedule.effects().efficiency, [1.0, 0.0, 0.5, 1.0]);
         assert_eq!(
-            board.end_first(|fault| fault.name() == "motor").map(|f| f.to_string()),
+            schedule.end_first(|fault| fault.name() == "motor").map(|f| f.to_string()),
             Some("3:0.5".into())
         );
     }

@@ -5,8 +5,8 @@ use std::str::FromStr;
 use crate::did_you_mean;
 use crate::sim::config::{Noise, Turbulence, Wind};
 use crate::sim::fault::{Fault, MAX_TIME_S, ScheduledFault};
-use crate::sim::parse::{ParseError, number_in};
 use crate::sim::switches::{SWITCHES, Switches};
+use crate::sim::value_text::{ParseError, number_in};
 
 use super::WorldCommand;
 

@@ -1,0 +1,57 @@
+//! Why a world cannot be built or changed.
+
+use crate::sim::value_text::ParseError;
+use crate::telemetry::FaultKind;
+
+/// Why a world cannot be built or a command cannot be carried out.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum WorldError {
+    /// A step rate that is too slow to be stable.
+    #[error(
+        "a rate of {0} Hz is a step longer than 2.5 ms, and the physics is not stable with longer steps; \
+         choose 400, 500, 1000, 2000, 4000 or 8000 Hz"
+    )]
+    StepTooLong(u32),
+    /// A step rate that does not fit the clock.
+    #[error("a rate of {0} Hz does not fit the clock; choose 400, 500, 1000, 2000, 4000 or 8000 Hz")]
+    OddRate(u32),
+    /// An airframe that cannot fly.
+    #[error("airframe {0}: {1}")]
+    Airframe(String, String),
+    /// A home that is no place.
+    #[error("home {0} {1} is out of range; allowed are {2} to {3}")]
+    Home(&'static str, f64, f64, f64),
+    /// A fault of the external link in a world without one.
+    #[error(
+        "fault {0} acts on the link to an external simulator, and this flight has none; leave it out, or use betadeck serve --physics external"
+    )]
+    NeedsLink(FaultKind),
+    /// A fault of the craft or the air when a simulator outside has both.
+    #[error(
+        "fault {0} is up to the simulator that moves the craft: make it there; here there are rx-loss, gps-loss, stall, fdm-loss, fdm-late, fdm-dup and fdm-jitter"
+    )]
+    OutsideFault(FaultKind),
+    /// A change of the air, the sensors or the craft's place when a simulator outside has them.
+    #[error(
+        "the simulator makes the air and places the craft: change that there; here there are faults of the links (fault=NAME, end=NAME)"
+    )]
+    Outside,
+    /// More faults than can be kept.
+    #[error("there can be at most {0} faults, waiting and active ones together")]
+    TooManyFaults(usize),
+    /// A fault or a switch with a value that is not allowed.
+    #[error(transparent)]
+    Value(#[from] ParseError),
+    /// A number that is not allowed.
+    #[error("{name} {value} is out of range; allowed are {min} to {max}")]
+    OutOfRange {
+        /// What the number is.
+        name: &'static str,
+        /// The number.
+        value: f64,
+        /// Least allowed.
+        min: f64,
+        /// Greatest allowed.
+        max: f64,
+    },
+}

@@ -1,0 +1,134 @@
+//! A world at boot: the checked configuration, a craft on its legs, a full battery.
+
+use arrayvec::ArrayVec;
+use nalgebra::Vector3;
+
+use crate::signals::{SensorFrame, SimTime};
+use crate::sim::air::Air;
+use crate::sim::airframe::{Airframe, ROTORS};
+use crate::sim::battery::Battery;
+use crate::sim::body::BodyState;
+use crate::sim::command::{check_wind, in_range};
+use crate::sim::config::{Wind, WorldConfig, WorldError, step_us};
+use crate::sim::fault::{Effects, FaultSchedule, MAX_FAULTS};
+use crate::sim::ground::NO_ANCHORS;
+use crate::sim::plant::Plant;
+use crate::sim::sensors::Sensors;
+use crate::sim::switches::Switches;
+use crate::sim::touchdown::TouchdownDetector;
+use crate::sim::truth::{BatteryTruth, Truth, level_attitude};
+
+use super::World;
+
+impl World {
+    /// A world at boot: the craft stands on its legs at home.
+    ///
+    /// # Errors
+    /// When a value of the configuration is not allowed.
+    pub fn new(config: WorldConfig) -> Result<Self, WorldError> {
+        let step_us = step_us(config.rate_hz)?;
+        check(&config)?;
+        let step_s = step_us as f64 * 1e-6;
+        let start = standing_at_home(&config);
+        let plant = Plant::new(&config.airframe, step_s);
+        let air = Air::new(&config, start.pos_enu.z);
+        let air_now = air.sample(SimTime::ZERO);
+        let mut anchors = NO_ANCHORS;
+        plant.ground().update_anchors(&start, &mut anchors);
+        let rotors = [0.0; ROTORS];
+        let mut sensors = Sensors::new(&config, step_s);
+        sensors.settle(start.pos_enu, start.vel_enu);
+        let loads = plant.loads(&start, &rotors, &air_now, &anchors);
+        let contact = plant.ground().contact(&start);
+        let battery = full_battery(&config.airframe, &config.switches);
+        let WorldConfig { airframe, switches, faults, link, seed, .. } = config;
+        let mut world = Self {
+            airframe,
+            start,
+            link,
+            seed,
+            switches,
+            step_us,
+            step_s,
+            time: SimTime::ZERO,
+            plant,
+            body: start,
+            rotors,
+            anchors,
+            battery,
+            command: [0.0; ROTORS],
+            refused_commands: 0,
+            contact,
+            touchdown: TouchdownDetector::STANDING,
+            crashed: false,
+            diverged: false,
+            air,
+            faults: FaultSchedule::new(faults),
+            effects: Effects::NONE,
+            air_now,
+            loads,
+            rate_before: Vector3::zeros(),
+            truth: truth_at_boot(&start),
+            sensors,
+            frame: SensorFrame::default(),
+            events: ArrayVec::new(),
+        };
+        world.set_ground_effect();
+        world.run_faults();
+        world.update_outputs();
+        Ok(world)
+    }
+}
+
+fn check(config: &WorldConfig) -> Result<(), WorldError> {
+    if let Some(fault) = config.airframe.fault() {
+        return Err(WorldError::Airframe(config.airframe.name.clone(), fault));
+    }
+    config.home.check()?;
+    check_wind(config.wind)?;
+    in_range("gust", config.gust_mps, 0.0, Wind::MAX_MPS)?;
+    config.switches.check()?;
+    if config.faults.len() > MAX_FAULTS {
+        return Err(WorldError::TooManyFaults(MAX_FAULTS));
+    }
+    for scheduled in &config.faults {
+        scheduled.check()?;
+        config.link.allows(&scheduled.fault)?;
+    }
+    Ok(())
+}
+
+fn standing_at_home(config: &WorldConfig) -> BodyState {
+    BodyState {
+        pos_enu: Vector3::new(0.0, 0.0, config.airframe.standing_height_m()),
+        vel_enu: Vector3::zeros(),
+        attitude: level_attitude(config.home.heading_deg),
+        rate_flu: Vector3::zeros(),
+    }
+}
+
+pub(super) fn full_battery(airframe: &Airframe, switches: &Switches) -> Battery {
+    let mut spec = airframe.battery;
+    if let Some(capacity_ah) = switches.battery_capacity_ah {
+        spec.capacity_ah = capacity_ah;
+    }
+    Battery::full(spec)
+}
+
+fn truth_at_boot(state: &BodyState) -> Truth {
+    Truth {
+        time: SimTime::ZERO,
+        pos_enu: state.pos_enu,
+        vel_enu: state.vel_enu,
+        attitude: state.attitude,
+        rate_flu: state.rate_flu,
+        rotor_speeds: [0.0; ROTORS],
+        motor_command: [0.0; ROTORS],
+        specific_force_flu: Vector3::zeros(),
+        wind_enu: Vector3::zeros(),
+        battery: BatteryTruth::default(),
+        on_ground: true,
+        crashed: false,
+        diverged: false,
+    }
+}

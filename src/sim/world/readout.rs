@@ -1,0 +1,94 @@
+//! What can be read from a world at the present instant, and what it is told from outside.
+
+use crate::geo::LocalFrame;
+use crate::signals::{SensorFrame, SimTime};
+use crate::sim::airframe::Airframe;
+use crate::sim::event::WorldEvent;
+use crate::sim::fault::{ActiveFault, LinkFaults};
+use crate::sim::truth::Truth;
+
+use super::World;
+
+impl World {
+    /// The sensor readings of the present instant.
+    #[must_use]
+    pub fn sensors(&self) -> &SensorFrame {
+        &self.frame
+    }
+
+    /// The true state at the present instant.
+    #[must_use]
+    pub fn truth(&self) -> &Truth {
+        &self.truth
+    }
+
+    /// Simulated time since boot.
+    #[must_use]
+    pub fn time(&self) -> SimTime {
+        self.time
+    }
+
+    /// Length of a step, µs.
+    #[must_use]
+    pub fn step_us(&self) -> u64 {
+        self.step_us
+    }
+
+    /// What flies.
+    #[must_use]
+    pub fn airframe(&self) -> &Airframe {
+        &self.airframe
+    }
+
+    /// The frame that turns truth into latitude and longitude.
+    #[must_use]
+    pub fn local_frame(&self) -> &LocalFrame {
+        self.sensors.local()
+    }
+
+    /// The oldest event that was not taken yet.
+    pub fn take_event(&mut self) -> Option<WorldEvent> {
+        self.events.pop_at(0)
+    }
+
+    /// Tells that the autopilot engaged: faults without `boot+` count from the first call after boot or reset.
+    pub fn set_engaged(&mut self, time: SimTime) {
+        self.faults.set_engaged(time);
+    }
+
+    /// The seed of all randomness.
+    #[must_use]
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// Whether the `gps-loss` fault is on.
+    #[must_use]
+    pub fn gps_lost(&self) -> bool {
+        self.effects.gps.loss
+    }
+
+    /// Whether the `rx-loss` fault is on: no RC frame reaches the receiver.
+    #[must_use]
+    pub fn rx_lost(&self) -> bool {
+        self.effects.rx_loss
+    }
+
+    /// Fraction of RC frames that the `rx-jitter` fault drops, 0…1; draw from [`Stream::RxJitter`](crate::sim::Stream).
+    #[must_use]
+    pub fn rx_drop_fraction(&self) -> f64 {
+        self.effects.rx_jitter
+    }
+
+    /// What the active faults do to the packets of an external simulator.
+    #[must_use]
+    pub fn link_faults(&self) -> LinkFaults {
+        self.effects.link
+    }
+
+    /// The active faults.
+    #[must_use]
+    pub fn active_faults(&self) -> &[ActiveFault] {
+        self.faults.active()
+    }
+}
