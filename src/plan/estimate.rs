@@ -240,6 +240,25 @@ mod tests {
     }
 
     #[test]
+    fn a_craft_that_climbs_slower_takes_longer_up_and_down() {
+        let time_s = |setting: &str| {
+            let mut plan = FlightPlan::default();
+            plan.waypoints.extend([
+                waypoint(WaypointType::Takeoff, 0.0, 50, 0, 0),
+                waypoint(WaypointType::Flyover, 100.0, 50, 0, 0),
+                waypoint(WaypointType::Flyover, 110.0, 30, 0, 0),
+            ]);
+            estimate(&plan, HOME, &Assumptions::from_settings(&[setting.to_owned()])).time_s.unwrap()
+        };
+        // 40 m up, 100 m on the level at 10 m/s, 20 m down over a leg that is flown in 1 s.
+        assert!((time_s("alt_hold_climb_rate = 50") - (8.0 + 10.0 + 4.0)).abs() < 0.01);
+        assert!((time_s("alt_hold_climb_rate = 20") - (20.0 + 10.0 + 10.0)).abs() < 0.01);
+        assert!((time_s("ALT_HOLD_CLIMB_RATE=1") - (400.0 + 10.0 + 200.0)).abs() < 0.01);
+        // With 0 the rate stays as it is.
+        assert!((time_s("alt_hold_climb_rate = 0") - (8.0 + 10.0 + 4.0)).abs() < 0.01);
+    }
+
+    #[test]
     fn settings_change_the_assumptions() {
         let lines = [
             "ap_max_velocity = 500",
