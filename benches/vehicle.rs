@@ -19,7 +19,7 @@ use betadeck::firmware::config::Configuration;
 use betadeck::firmware::{Firmware, FirmwareOptions};
 use betadeck::flight::{Flight, FlightOptions, FlightResult};
 use betadeck::plan::builtin::{BuiltinPlan, DEMO};
-use betadeck::session::upload;
+use betadeck::plan::upload_lines;
 use betadeck::signals::{MotorCommand, RcFrame, RcSource, SensorFrame, SimTime};
 use betadeck::sim::{Turbulence, World, WorldConfig};
 use betadeck::vehicle::{Vehicle, VehicleConfig};
@@ -59,7 +59,7 @@ fn vehicle(rate_hz: u32) -> Vehicle {
     })
     .expect("the default world is sound");
     let mut console = Interpreter::default();
-    for line in upload::lines(&file.plan, &file.settings) {
+    for line in upload_lines(&file.plan, &file.settings) {
         vehicle.firmware_mut().run_cli(&mut console, &line);
     }
     vehicle

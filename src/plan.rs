@@ -3,12 +3,15 @@
 //! Pure data and rules.
 
 pub mod builtin;
+mod cli_lines;
 pub mod estimate;
 pub mod format;
 pub mod review;
 pub mod validate;
 mod waypoint;
 
+pub(crate) use cli_lines::waypoint_values;
+pub use cli_lines::{plan_lines, upload_lines};
 pub use waypoint::{HoldPattern, Waypoint, WaypointType};
 
 /// The most waypoints a plan holds.

@@ -6,7 +6,6 @@ mod event;
 mod pacer;
 mod runtime;
 mod simulator;
-pub mod upload;
 
 pub use command::{Command, SessionView};
 pub use event::{EndpointAddresses, Event, SessionEvent};

@@ -11,8 +11,9 @@ use betadeck::firmware::FirmwareOptions;
 use betadeck::firmware::cli::{self, Interpreter};
 use betadeck::firmware::config::Configuration;
 use betadeck::plan::builtin::{BuiltinPlan, DEMO};
+use betadeck::plan::upload_lines;
 use betadeck::record::sentence;
-use betadeck::session::{SessionView, upload};
+use betadeck::session::SessionView;
 use betadeck::sim::WorldConfig;
 use betadeck::ui::{AppState, CliHelp, Msg, OpenPlan, Theme, UiConfig, draw, update};
 use betadeck::vehicle::{Vehicle, VehicleConfig};
@@ -42,7 +43,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         live: false,
     })?;
     let mut console = Interpreter::default();
-    for line in upload::lines(&file.plan, &file.settings) {
+    for line in upload_lines(&file.plan, &file.settings) {
         vehicle.firmware_mut().run_cli(&mut console, &line);
     }
     vehicle.start_pilot(10.0).map_err(|mode| format!("no switch for {mode}"))?;

@@ -14,9 +14,10 @@ use crate::firmware::cli::Interpreter;
 use crate::flight::{Flight, FlightEnd, FlightOptions, FlightResult, Verdict};
 use crate::plan::format::PlanFile;
 use crate::plan::review::Finding;
+use crate::plan::upload_lines;
 use crate::plan::validate::check_plan;
 use crate::record::End;
-use crate::session::{Event, Pacer, upload};
+use crate::session::{Event, Pacer};
 use crate::signals::SimTime;
 use crate::storage::Store;
 use crate::vehicle::Vehicle;
@@ -105,7 +106,7 @@ fn open_store(args: &FlyArgs) -> Result<Store, AppError> {
 /// Uploads as a ground station does; a plan the craft refuses is invalid input.
 fn upload_plan(vehicle: &mut Vehicle, plan: &crate::plan::FlightPlan) -> Result<(), AppError> {
     let mut console = Interpreter::default();
-    for line in upload::lines(plan, &[]) {
+    for line in upload_lines(plan, &[]) {
         let reply = vehicle.firmware_mut().run_cli(&mut console, &line);
         if reply.failed {
             return Err(AppError::input(format!("the craft refused `{line}`: {}", reply.text.trim())));

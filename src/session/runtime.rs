@@ -15,7 +15,7 @@ use super::pacer::Pacer;
 use super::simulator::{RC_REPEAT_US, Simulator};
 use crate::firmware::cli::{CliAction, CliReply, Interpreter, advice};
 use crate::link::{Attended, Desk, ExternalSimulator, Request, Trouble, upkeep};
-use crate::plan::FlightPlan;
+use crate::plan::{FlightPlan, upload_lines};
 use crate::signals::RcSource;
 use crate::sim::WorldCommand;
 use crate::storage::Store;
@@ -419,7 +419,7 @@ impl Session {
     /// Uploads as a ground station does: through the command line.
     fn upload(&mut self, plan: &FlightPlan, settings: &[String]) -> Result<(), String> {
         let mut line = Interpreter::default();
-        for text in super::upload::lines(plan, settings) {
+        for text in upload_lines(plan, settings) {
             let reply = self.vehicle.firmware_mut().run_cli(&mut line, &text);
             if reply.failed {
                 return Err(format!("the craft refused `{text}`: {}", reply.text.trim()));

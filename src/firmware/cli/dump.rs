@@ -5,7 +5,8 @@ use strum::IntoEnumIterator;
 use super::super::config::{Configuration, Feature, MixRow, RxFailTable};
 use super::super::settings::{SETTINGS, Scope, Setting};
 use super::session::Session;
-use super::{craft, modes, receiver, serial, status, waypoint};
+use super::{craft, modes, receiver, serial, status};
+use crate::plan::plan_lines;
 
 /// Which part is printed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -243,7 +244,7 @@ fn serial_lines(configuration: &Configuration, style: Style, fresh: &Configurati
 }
 
 fn plan(session: &mut Session<'_>, style: Style) {
-    let lines = waypoint::plan_lines(&session.configuration.plan);
+    let lines: Vec<String> = plan_lines(&session.configuration.plan).collect();
     if !style.changes_only {
         section(session, "waypoint", &lines);
     } else if !session.configuration.plan.waypoints.is_empty() {

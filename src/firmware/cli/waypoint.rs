@@ -5,7 +5,7 @@ use std::str::FromStr as _;
 use super::CliAction;
 use super::session::{Session, integer};
 use crate::geo::{Degrees7, LatLon};
-use crate::plan::{FlightPlan, HoldPattern, MAX_WAYPOINTS, Waypoint, WaypointType};
+use crate::plan::{HoldPattern, MAX_WAYPOINTS, Waypoint, WaypointType, plan_lines, waypoint_values};
 use crate::telemetry::{NavState, Refusal};
 
 /// `waypoint [list|status|insert|update|remove|clear]`.
@@ -29,30 +29,11 @@ pub(super) fn waypoint(session: &mut Session<'_>, rest: &str) {
     }
 }
 
-/// The lines that rebuild a plan.
-pub(super) fn plan_lines(plan: &FlightPlan) -> Vec<String> {
-    let inserts = plan.waypoints.iter().enumerate().map(|(at, waypoint)| {
-        format!("waypoint insert {at} {}", record(waypoint, &waypoint.alt_cm.to_string()))
-    });
-    std::iter::once("waypoint clear".to_owned()).chain(inserts).collect()
-}
-
 fn list(session: &mut Session<'_>) {
-    for line in plan_lines(&session.configuration.plan) {
+    let lines: Vec<String> = plan_lines(&session.configuration.plan).collect();
+    for line in lines {
         session.line(line);
     }
-}
-
-fn record(waypoint: &Waypoint, altitude: &str) -> String {
-    format!(
-        "{} {} {altitude} {} {} {} {}",
-        Degrees7(waypoint.position.lat_e7),
-        Degrees7(waypoint.position.lon_e7),
-        waypoint.speed_cms,
-        waypoint.kind,
-        waypoint.duration_ds,
-        waypoint.pattern
-    )
 }
 
 /// Centimetres as metres with two decimals.
@@ -111,7 +92,10 @@ fn edit(session: &mut Session<'_>, arguments: &[&str], edit: Edit) {
             "update"
         }
     };
-    session.line(format_args!("waypoint {word} {index} {}", record(&waypoint, &metres(waypoint.alt_cm))));
+    session.line(format_args!(
+        "waypoint {word} {index} {}",
+        waypoint_values(&waypoint, metres(waypoint.alt_cm))
+    ));
     session.act(CliAction::PlanChanged);
 }
 

@@ -7,8 +7,8 @@ use std::ops::Range;
 use super::field::{self, FieldError};
 use super::{Note, NoteKind, PlanFile, Problems, Written};
 use crate::did_you_mean;
-use crate::geo::{Degrees7, LatLon};
-use crate::plan::{FlightPlan, MAX_WAYPOINTS, Waypoint};
+use crate::geo::LatLon;
+use crate::plan::{FlightPlan, MAX_WAYPOINTS, Waypoint, plan_lines};
 
 /// The values of `waypoint insert` and `waypoint update`, by name.
 const VALUES: [&str; 8] =
@@ -235,11 +235,7 @@ fn words(line: &str, start: usize) -> Vec<Word<'_>> {
 
 /// Writes what `waypoint list` prints: text that can be pasted into the CLI.
 pub(super) fn write(file: &PlanFile) -> Written {
-    let mut text = String::from("waypoint clear\n");
-    for (index, waypoint) in file.plan.waypoints.iter().enumerate() {
-        text.push_str(&insert_line(index, waypoint));
-        text.push('\n');
-    }
+    let text = plan_lines(&file.plan).map(|line| line + "\n").collect();
     let mut lost = Vec::new();
     if !file.description.is_empty() {
         lost.push("the description".to_owned());
@@ -254,13 +250,6 @@ pub(super) fn write(file: &PlanFile) -> Written {
         ));
     }
     Written { text, lost }
-}
-
-/// The CLI line that inserts the waypoint.
-fn insert_line(index: usize, waypoint: &Waypoint) -> String {
-    let Waypoint { position, alt_cm, speed_cms, duration_ds, kind, pattern } = waypoint;
-    let (lat, lon) = (Degrees7(position.lat_e7), Degrees7(position.lon_e7));
-    format!("waypoint insert {index} {lat} {lon} {alt_cm} {speed_cms} {kind} {duration_ds} {pattern}")
 }
 
 #[cfg(test)]
