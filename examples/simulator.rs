@@ -17,9 +17,10 @@ use std::error::Error;
 use std::net::{Ipv4Addr, UdpSocket};
 use std::time::{Duration, Instant};
 
-use betadeck::link::proto::fdm::{Dialect, GZ_PLUGIN_SIZE, State, mirrored, pressure_pa};
+use betadeck::link::proto::fdm::{GZ_PLUGIN_SIZE, State, mirrored, pressure_pa};
 use betadeck::link::proto::servo;
 use betadeck::signals::MotorCommand;
+use betadeck::signals::fdm::Dialect;
 use betadeck::sim::{World, WorldConfig};
 
 /// Steps of the plant in one step of the simulator, which then lasts 4 ms.

@@ -3,6 +3,8 @@
 //! Frames: world ENU (x east, y north, z up); body FLU (x forward, y left, z up); quaternions are body → world,
 //! Hamilton. All SI. A measurement that did not arrive with this frame is `None`.
 
+pub mod fdm;
+
 use nalgebra::{UnitQuaternion, Vector3};
 
 /// Simulated time since boot in whole microseconds: the only time the core knows.

@@ -6,10 +6,11 @@ use std::time::Duration;
 
 use betadeck::firmware::cli::{CliReply, MAX_LINE};
 use betadeck::link::proto::conversation::{Ask, Conversation};
-use betadeck::link::proto::fdm::{self, Dialect, Gravity, Packet, Refusal, State};
+use betadeck::link::proto::fdm::{self, Gravity, Packet, Refusal, State};
 use betadeck::link::proto::msp::{Decoder, Dropped, Form, Frame, Kind};
 use betadeck::link::proto::{rc, servo};
 use betadeck::signals::RcFrame;
+use betadeck::signals::fdm::Dialect;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use proptest::prelude::*;
 use serde_json::Value;

@@ -6,9 +6,11 @@ use std::collections::VecDeque;
 
 use betadeck::firmware::config::Configuration;
 use betadeck::firmware::{AttitudeSource, Firmware, FirmwareOptions};
-use betadeck::link::proto::fdm::{Dialect, GZ_PLUGIN_SIZE, Packet, State, pressure_pa};
-use betadeck::link::proto::fdm_link::{Answer, FdmLink, FdmLinkConfig, Mirror, Notice, Received, Verdict};
+use betadeck::link::proto::fdm::{GZ_PLUGIN_SIZE, Packet, State, pressure_pa};
+use betadeck::link::proto::fdm_link::{Answer, FdmLink, FdmLinkConfig, Notice, Received, Verdict};
 use betadeck::signals::SimTime;
+use betadeck::signals::fdm::Dialect;
+use betadeck::signals::fdm::Mirror;
 use betadeck::telemetry::{FirmwareEvent, LinkState};
 use nalgebra::{UnitQuaternion, Vector3};
 

@@ -7,13 +7,14 @@ use std::time::Duration;
 
 use betadeck::firmware::cli::BuildInfo;
 use betadeck::firmware::{AttitudeSource, FirmwareOptions};
-use betadeck::link::proto::fdm::{Dialect, State, pressure_pa};
+use betadeck::link::proto::fdm::{State, pressure_pa};
 use betadeck::link::proto::fdm_link::FdmLinkConfig;
-use betadeck::link::proto::servo::MotorOrder;
 use betadeck::link::proto::{rc, servo};
 use betadeck::link::sitl::{Said, Sitl, SitlConfig, SitlEnd, SitlError, SitlPorts};
 use betadeck::link::{DoorKind, DoorsConfig};
 use betadeck::signals::RcFrame;
+use betadeck::signals::fdm::Dialect;
+use betadeck::signals::fdm::MotorOrder;
 use betadeck::storage::Store;
 use nalgebra::{UnitQuaternion, Vector3};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};

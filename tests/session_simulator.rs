@@ -7,12 +7,12 @@ use std::time::{Duration, Instant};
 
 use betadeck::firmware::config::Configuration;
 use betadeck::firmware::{AttitudeSource, FirmwareOptions};
-use betadeck::link::proto::fdm::{Dialect, State, mirrored, pressure_pa};
+use betadeck::link::proto::fdm::{State, mirrored, pressure_pa};
 use betadeck::link::proto::fdm_link::FdmLinkConfig;
-use betadeck::link::proto::servo::MotorOrder;
 use betadeck::link::{ClientId, Desk, Doors, DoorsConfig, ExternalSimulator, MotorPort, Request};
 use betadeck::session::command::{PLACE_IS_OUTSIDE, TIME_IS_OUTSIDE};
 use betadeck::session::{Command, Doorway, Event, Handle, SessionConfig, SessionEvent, SessionView, start};
+use betadeck::signals::fdm::{Dialect, MotorOrder};
 use betadeck::sim::{WorldConfig, attitude};
 use betadeck::storage::Store;
 use betadeck::telemetry::{EventKind, FirmwareEvent, LinkState};

@@ -3,9 +3,9 @@
 use std::str::FromStr;
 
 use super::{FlightArgs, help, value};
-use crate::link::proto::fdm::Dialect;
-use crate::link::proto::fdm_link::Mirror;
-use crate::link::proto::servo::MotorOrder;
+use crate::signals::fdm::Dialect;
+use crate::signals::fdm::Mirror;
+use crate::signals::fdm::MotorOrder;
 use crate::sim::ScheduledFault;
 
 /// Whose physics moves the craft.

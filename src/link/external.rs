@@ -3,9 +3,10 @@
 use std::time::{Duration, Instant};
 
 use super::proto::fdm_link::{Answer, Counters, FdmLink, FdmLinkConfig, Received};
-use super::proto::servo::{self, MotorOrder};
+use super::proto::servo;
 use super::udp::{MotorPort, Sent};
 use crate::session::command::DoorView;
+use crate::signals::fdm::MotorOrder;
 use crate::signals::{MotorCommand, SensorFrame};
 use crate::telemetry::LinkState;
 

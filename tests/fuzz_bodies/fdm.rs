@@ -2,9 +2,10 @@
 
 use betadeck::firmware::config::Configuration;
 use betadeck::firmware::{Firmware, FirmwareOptions};
-use betadeck::link::proto::fdm::{self, Dialect, Gravity, Packet, Refusal, State};
+use betadeck::link::proto::fdm::{self, Gravity, Packet, Refusal, State};
 use betadeck::link::proto::fdm_link::{Answer, FdmLink, FdmLinkConfig, Verdict};
 use betadeck::signals::SensorFrame;
+use betadeck::signals::fdm::Dialect;
 use betadeck::telemetry::LinkState;
 
 use super::craft;

@@ -3,9 +3,9 @@
 use std::time::{Duration, Instant};
 
 use betadeck::link::proto::fdm_link::FdmLinkConfig;
-use betadeck::link::proto::servo::MotorOrder;
 use betadeck::link::proto::{rc, servo};
 use betadeck::link::{DoorKind, ExternalSimulator, MotorPort, Request, Sent};
+use betadeck::signals::fdm::MotorOrder;
 use betadeck::signals::{MotorCommand, RcFrame};
 use betadeck::telemetry::LinkState;
 use tokio::net::UdpSocket;

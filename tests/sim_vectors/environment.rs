@@ -2,6 +2,7 @@
 
 use betadeck::geo::LocalFrame;
 use betadeck::link::proto::fdm;
+use betadeck::signals::fdm::Dialect;
 use betadeck::sim::{
     DrydenScales, SITL_DECLINATION_DEG, Turbulence, density, magnetic_field_enu, one_minus_cosine,
     pressure_pa, temperature_k,
@@ -42,7 +43,7 @@ fn pressure_of_the_doors_as_an_executable_shows_it() {
 fn mirrored_positions_of_gz_math_are_the_true_ones() {
     for row in rows(&section("environment")["geodesy"]) {
         let (home, enu, wire) = (vec3(&row["home"]), vec3(&row["enu"]), vec3(&row["gz_math7_local_lla"]));
-        assert!(fdm::Dialect::GzPlugin.mirrors());
+        assert!(Dialect::GzPlugin.mirrors());
         let (lat, lon) = (fdm::mirrored(home.x, wire.x), fdm::mirrored(home.y, wire.y));
         let off = LocalFrame::new(home.x, home.y, home.z).to_enu(lat, lon, wire.z) - enu;
         let scale = (enu.xy().norm() / 250.0).powi(2).max(0.05);

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use betadeck::link::proto::fdm::Dialect;
+use betadeck::signals::fdm::Dialect;
 
 use crate::child::Child;
 use crate::simulator::{Hand, Simulator};

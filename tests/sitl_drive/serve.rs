@@ -1,6 +1,6 @@
 //! `betadeck serve --physics external`: the embedded firmware with all its doors, moved by the same simulator.
 
-use betadeck::link::proto::fdm::Dialect;
+use betadeck::signals::fdm::Dialect;
 
 use crate::child::Child;
 use crate::simulator::{Hand, Simulator};

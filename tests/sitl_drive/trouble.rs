@@ -1,6 +1,7 @@
 //! Simulators that hang, die, start anew, keep no rhythm, lose what is waited for, or talk nonsense.
 
-use betadeck::link::proto::fdm::{Dialect, GZ_PLUGIN_SIZE, SIZE};
+use betadeck::link::proto::fdm::{GZ_PLUGIN_SIZE, SIZE};
+use betadeck::signals::fdm::Dialect;
 
 use crate::plant::Plant;
 use crate::rates::sitl;

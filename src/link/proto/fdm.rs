@@ -8,11 +8,11 @@
 //! ```
 //!
 //! Eighteen little-endian doubles, 144 bytes. The same numbers mean different things depending on who wrote the
-//! sender: [`Dialect`]. Inside, everything is body FLU, world ENU, SI.
+//! sender: [`Dialect`](crate::signals::fdm::Dialect). Inside, everything is body FLU, world ENU, SI.
 
 mod dialect;
 
-pub use dialect::{Dialect, Gravity, State, mirrored};
+pub use dialect::{Gravity, State, mirrored};
 
 /// Doubles that are looked at.
 pub const FIELDS: usize = 18;

@@ -17,7 +17,8 @@ mod kicks;
 mod sensors;
 mod surroundings;
 
-use super::fdm::{Dialect, Packet, Refusal};
+use super::fdm::{Packet, Refusal};
+use crate::signals::fdm::{Dialect, Mirror};
 use crate::signals::{Pose, SensorFrame};
 use crate::telemetry::LinkState;
 use clock::StampClock;
@@ -30,19 +31,6 @@ const RESYNC_AFTER_US: u64 = 500_000;
 
 /// Silence after which the simulator counts as gone, µs.
 const SILENT_AFTER_US: u64 = 1_000_000;
-
-/// Whether positions are mirrored about the first one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, strum::Display, strum::EnumString)]
-#[strum(serialize_all = "lowercase")]
-pub enum Mirror {
-    /// As the dialect does, until the motion shows otherwise.
-    #[default]
-    Auto,
-    /// Always.
-    On,
-    /// Never.
-    Off,
-}
 
 /// How to speak with the simulator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -8,6 +8,7 @@
 //! ```
 
 use crate::signals::MotorCommand;
+use crate::signals::fdm::MotorOrder;
 
 /// Size of the normalised datagram. Receivers refuse a shorter one and ignore what is longer.
 pub const SIZE: usize = 16;
@@ -17,17 +18,6 @@ pub const RAW_SIZE: usize = 68;
 
 /// Outputs in the raw datagram.
 pub const RAW_OUTPUTS: usize = 16;
-
-/// In which order a simulator's model expects the motors.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, strum::Display, strum::EnumString)]
-#[strum(serialize_all = "lowercase")]
-pub enum MotorOrder {
-    /// M1, M2, M3, M4, as current models expect.
-    #[default]
-    Native,
-    /// M2, M3, M4, M1, as models from before spring 2026 expect.
-    Legacy,
-}
 
 impl MotorOrder {
     /// Values of M1 … M4 in the order of the packet.

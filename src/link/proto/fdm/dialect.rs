@@ -4,21 +4,7 @@ use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 
 use super::{FIELDS, Packet, SIZE, pressure_pa};
 use crate::geo::GRAVITY;
-
-/// Who speaks.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::EnumString)]
-#[strum(serialize_all = "kebab-case")]
-pub enum Dialect {
-    /// What a current SITL executable decodes right: rates (ωx, −ωy, +ωz), negated specific force on FLU axes,
-    /// quaternion (z, y, x, w) of FLU → ENU, position mirrored about the first one.
-    SitlGz,
-    /// What the public Gazebo plugin sends: rates and acceleration FRD, gravity not in the acceleration, quaternion
-    /// (w, x, −y, −z) of FLU → ENU, position mirrored about the world's origin.
-    GzPlugin,
-    /// Builds without the Gazebo bridge (X-Plane, RealFlight): rates FRD, negated specific force on FLU axes,
-    /// quaternion of FLU → north-west-up, true position, pressure.
-    Legacy,
-}
+use crate::signals::fdm::Dialect;
 
 /// Whether the acceleration contains the reaction to gravity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -5,7 +5,8 @@ use nalgebra::{Vector2, Vector3};
 
 use super::Notice;
 use crate::geo::LocalFrame;
-use crate::link::proto::fdm::{Dialect, Gravity, Packet, State, mirrored};
+use crate::link::proto::fdm::{Gravity, Packet, State, mirrored};
+use crate::signals::fdm::Dialect;
 
 /// At rest every rate stays below this, rad/s.
 const REST_RATE: f64 = 0.05;
