@@ -45,7 +45,7 @@ mod views;
 pub use estimate::AttitudeSource;
 
 use crate::signals::{MotorCommand, SensorFrame, SimTime};
-use crate::telemetry::{DisarmReason, FirmwareEvent, Mode, ModeFlags};
+use crate::telemetry::{DisarmReason, FirmwareEvent, FirmwareNotice, Mode, ModeFlags};
 
 use arming::ArmingChange;
 use arming::crash::CrashAction;
@@ -176,7 +176,7 @@ impl Firmware {
             Some(ArmingChange::Armed { assisted }) => self.on_arm(assisted),
             Some(ArmingChange::CalibrateGyro) => {
                 self.sensing.calibrate_gyro();
-                self.outbox.push(FirmwareEvent::Notice("Calibrating the gyro before the first arming."));
+                self.outbox.push(FirmwareEvent::Notice(FirmwareNotice::CalibratingGyro));
             }
             Some(ArmingChange::Disarmed(reason)) => self.on_disarm(reason),
             None => {}
@@ -189,9 +189,7 @@ impl Firmware {
         self.navigation.release_holds();
         self.outbox.push(FirmwareEvent::Armed);
         if assisted {
-            self.outbox.push(FirmwareEvent::Notice(
-                "Arm assist: armed although the ARM switch was on early or the throttle was not quite low.",
-            ));
+            self.outbox.push(FirmwareEvent::Notice(FirmwareNotice::ArmAssisted));
         }
     }
 
@@ -253,7 +251,7 @@ impl Firmware {
         if let Some(offsets) = self.sensing.take_acc_calibration() {
             self.setup.keep_acc_calibration(offsets);
             self.refresh();
-            self.outbox.push(FirmwareEvent::Notice("Accelerometer calibrated; save keeps the result."));
+            self.outbox.push(FirmwareEvent::Notice(FirmwareNotice::AccCalibrated));
         }
         if let Some(result) = self.sensing.take_mag_calibration() {
             let notice = self.setup.keep_mag_calibration(result);
@@ -280,9 +278,9 @@ impl Firmware {
         let (parameters, state) = (self.setup.parameters(), self.control.state());
         match self.safety.crash(parameters, self.now, state, self.sensing.estimate()) {
             Some(CrashAction::Disarm) => self.disarm(DisarmReason::CrashProtection),
-            Some(CrashAction::Level) => self
-                .outbox
-                .push(FirmwareEvent::Notice("Crash detected: the craft is levelled, the sticks rest.")),
+            Some(CrashAction::Level) => {
+                self.outbox.push(FirmwareEvent::Notice(FirmwareNotice::CrashDetected))
+            }
             Some(CrashAction::Off) | None => {}
         }
     }

@@ -215,17 +215,17 @@ fn climb_stick(stick_us: f64, left_m: f64, facts: &PilotFacts) -> f64 {
 mod tests {
     use super::*;
 
-    fn range(name: &'static str, channel: u8) -> ModeRange {
-        ModeRange { name, channel, start_us: 1700, end_us: 2100 }
+    fn range(mode: Mode, channel: u8) -> ModeRange {
+        ModeRange { mode_box: mode.into(), channel, start_us: 1700, end_us: 2100 }
     }
 
     fn ranges() -> Vec<ModeRange> {
         vec![
-            range("ARM", 4),
-            range("AUTOPILOT", 5),
-            range("ANGLE", 6),
-            range("ALTHOLD", 6),
-            range("POS HOLD", 6),
+            range(Mode::Arm, 4),
+            range(Mode::Autopilot, 5),
+            range(Mode::Angle, 6),
+            range(Mode::AltHold, 6),
+            range(Mode::PosHold, 6),
         ]
     }
 
@@ -245,7 +245,7 @@ mod tests {
 
     #[test]
     fn needs_arm_and_autopilot_switches() {
-        assert_eq!(Pilot::new(10.0, &[range("ARM", 4)]), Err(Mode::Autopilot));
+        assert_eq!(Pilot::new(10.0, &[range(Mode::Arm, 4)]), Err(Mode::Autopilot));
         assert_eq!(Pilot::new(10.0, &[]), Err(Mode::Arm));
     }
 

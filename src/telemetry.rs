@@ -4,11 +4,14 @@
 
 mod arming_flag;
 pub mod event;
+mod failsafe;
 mod fault;
 mod firmware_event;
+mod firmware_notice;
 mod guard;
 mod link_state;
 mod mode;
+mod mode_box;
 mod nav;
 mod refusal;
 pub mod snapshot;
@@ -17,11 +20,14 @@ mod transition;
 
 pub use arming_flag::{ArmingFlag, ArmingFlags};
 pub use event::{CrashCause, DivergeCause, Event, EventKind, VehicleNotice};
+pub use failsafe::{FailsafeProcedure, RxLossPolicy};
 pub use fault::{FaultKind, FaultValue};
 pub use firmware_event::{DisarmReason, FirmwareEvent};
+pub use firmware_notice::FirmwareNotice;
 pub use guard::{Guard, GuardName, GuardOp, GuardUnit};
 pub use link_state::LinkState;
 pub use mode::{Mode, ModeFlags};
+pub use mode_box::ModeBox;
 pub use nav::{FenceAction, L1Mode, NavEvent, NavOutput, NavState, NavTelemetry, PlanSource};
 pub use refusal::{AbortReason, Refusal};
 pub use snapshot::Snapshot;

@@ -14,7 +14,7 @@ use betadeck::firmware::cli::{
 };
 use betadeck::firmware::config::Configuration;
 use betadeck::geo::LatLon;
-use betadeck::telemetry::{NavState, NavTelemetry};
+use betadeck::telemetry::{ArmingFlag, ArmingFlags, NavState, NavTelemetry};
 use vectors::parse::{Exchange, assert_matches, exchanges};
 
 /// A craft with a command line session.
@@ -28,7 +28,9 @@ impl Bench {
     fn new() -> Self {
         let mut facts = CliFacts {
             uptime_s: 3,
-            arming_blocks: vec!["RXLOSS", "ANGLE", "BOOTGRACE", "CLI"],
+            arming_blocks: [ArmingFlag::RxLoss, ArmingFlag::Angle, ArmingFlag::BootGrace, ArmingFlag::Cli]
+                .into_iter()
+                .collect(),
             loops: LoopFacts {
                 cpu_load_percent: 0,
                 cycle_time_us: 1211,
@@ -140,7 +142,7 @@ fn what_only_a_link_knows_is_reproduced() {
     let sent = link(&mut bench, &mut in_cli(), b"wa\t");
     assert_matches(&all[&242], sent.strip_prefix("wa").expect("the echo"));
 
-    bench.interpreter.set_mode(Mode::Framed);
+    bench.interpreter = Interpreter::new(Mode::Framed);
     let sent = link(&mut bench, &mut LineEditor::default(), b"\x02foo\n\x03");
     let reply = sent.strip_prefix('\x02').and_then(|sent| sent.strip_suffix('\x03'));
     assert_matches(&all[&243], reply.expect("a reply between STX and ETX"));
@@ -299,7 +301,7 @@ fn armed_craft_refuses_to_save() {
 fn flying_craft_is_reported() {
     let all = all();
     let mut bench = Bench::new();
-    bench.interpreter.set_mode(Mode::Message);
+    bench.interpreter = Interpreter::new(Mode::Message);
     let home = LatLon::new(-275_000_000, 1_530_000_000);
     bench.facts.gps = GpsFacts::Connected(Some(GpsSolutionFacts {
         sats: 12,
@@ -307,7 +309,7 @@ fn flying_craft_is_reported() {
         vdop: 0.0,
         position: Some((home, 3000)),
     }));
-    bench.facts.arming_blocks.clear();
+    bench.facts.arming_blocks = ArmingFlags::NONE;
     bench.facts.uptime_s = 20;
     bench.facts.loops =
         LoopFacts { cycle_time_us: 1019, gyro_hz: 982, rx_hz: 50, system_hz: 10, ..Default::default() };
@@ -374,7 +376,7 @@ fn the_link_greets_echoes_and_completes() {
 #[test]
 fn framed_lines_have_no_echo() {
     let mut bench = Bench::new();
-    bench.interpreter.set_mode(Mode::Framed);
+    bench.interpreter = Interpreter::new(Mode::Framed);
     let mut editor = LineEditor::default();
     assert_eq!(link(&mut bench, &mut editor, b"\x02foo bar\n\x03"), "\x02ERR_CMD_NA: foo bar\r\n\x03");
     assert_eq!(link(&mut bench, &mut editor, b"\x02version\x03"), "\x02\x03");

@@ -238,10 +238,10 @@ fn barometer_spikes_and_ramps_make_no_steps() {
 
 #[test]
 fn the_true_attitude_can_be_chosen() {
-    use betadeck::firmware::estimate::{AttitudeSource, EstimatorOptions};
+    use betadeck::firmware::estimate::{AttitudeSource, Estimator, EstimatorOptions, EstimatorTuning};
     let mut rig = Rig::new(rough(3), &settings());
     let options = EstimatorOptions { attitude: AttitudeSource::Truth, ..EstimatorOptions::default() };
-    rig.estimator.set_options(options);
+    rig.estimator = Estimator::new(options, EstimatorTuning::from_settings(&settings()));
     rig.run(1.0);
     let truth = rig.truth().attitude;
     assert!(rig.estimate().attitude.angle_to(&truth) < 1e-6);

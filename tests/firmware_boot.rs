@@ -5,7 +5,7 @@ use betadeck::firmware::config::{Configuration, MixerKind};
 use betadeck::firmware::{Firmware, FirmwareOptions};
 use betadeck::geo::LatLon;
 use betadeck::signals::{GpsSample, RcFrame, RcSource, SensorFrame, SimTime};
-use betadeck::telemetry::{DisarmReason, FirmwareEvent};
+use betadeck::telemetry::{DisarmReason, FirmwareEvent, FirmwareNotice};
 
 /// A firmware on a bench.
 struct Bench {
@@ -238,7 +238,7 @@ fn losing_the_gps_to_a_real_quads_receiver_is_told() {
         bench
             .events
             .iter()
-            .filter(|event| matches!(event, FirmwareEvent::Notice(text) if text.starts_with("GPS is off")))
+            .filter(|event| matches!(event, FirmwareEvent::Notice(FirmwareNotice::GpsSwitchedOff)))
             .count()
     };
     let mut bench = Bench::new();

@@ -26,7 +26,7 @@ fn boxes_are_those_of_the_code() {
             BoxLevel::Flag => "is reported",
             BoxLevel::Name => "is accepted",
         };
-        table += &format!("| {} | {} | {level} |\n", entry.id, entry.name);
+        table += &format!("| {} | {} | {level} |\n", entry.id(), entry.name());
     }
     assert_on_page(&table);
 }

@@ -9,9 +9,9 @@ use betadeck::record::{End, json};
 use betadeck::session::{EndpointAddresses, Event, SessionEvent};
 use betadeck::signals::SimTime;
 use betadeck::telemetry::{
-    AbortReason, CrashCause, DisarmReason, EventKind, FaultKind, FaultValue, FenceAction, FirmwareEvent,
-    Guard, GuardName, GuardOp, ModeFlags, NavEvent, NavState, PlanSource, Refusal, Snapshot,
-    TransitionReason, VehicleNotice,
+    AbortReason, CrashCause, DisarmReason, EventKind, FailsafeProcedure, FaultKind, FaultValue, FenceAction,
+    FirmwareEvent, FirmwareNotice, Guard, GuardName, GuardOp, ModeFlags, NavEvent, NavState, PlanSource,
+    Refusal, RxLossPolicy, Snapshot, TransitionReason, VehicleNotice,
 };
 
 /// One event of each kind.
@@ -44,8 +44,8 @@ fn one_of_each() -> Vec<SessionEvent> {
         FirmwareEvent::Mode(ModeFlags::NONE),
         FirmwareEvent::RxLoss,
         FirmwareEvent::RxRecovered,
-        FirmwareEvent::Failsafe { policy: "LAND", stage: 2, procedure: "LAND" },
-        FirmwareEvent::Notice("a notice"),
+        FirmwareEvent::Failsafe { policy: RxLossPolicy::Land, stage: 2, procedure: FailsafeProcedure::Land },
+        FirmwareEvent::Notice(FirmwareNotice::BatteryLow),
     ];
     let firmware = firmware.into_iter().chain(nav.map(FirmwareEvent::Nav)).map(EventKind::Firmware);
     let vehicle = [

@@ -12,6 +12,7 @@ use betadeck::link::{ClientId, Desk, DoorKind, Doors, DoorsConfig, Request};
 use betadeck::session::{Command, Doorway, Handle, SessionConfig, SessionView, start};
 use betadeck::sim::WorldConfig;
 use betadeck::storage::Store;
+use betadeck::telemetry::ArmingFlag;
 use betadeck::vehicle::{Vehicle, VehicleConfig};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
@@ -19,9 +20,6 @@ use tokio::sync::{mpsc, oneshot, watch};
 
 /// Nothing in these tests takes this long unless it hangs.
 const PATIENCE: Duration = Duration::from_secs(120);
-
-/// The flag of an open command line among those that block arming.
-const CLI_BLOCK: &str = "CLI";
 
 /// A session with a TCP door.
 struct Rig {
@@ -84,7 +82,7 @@ impl Rig {
 }
 
 fn is_blocked_by_cli(view: &SessionView) -> bool {
-    view.vehicle.craft.arming_blocked_by.contains(&CLI_BLOCK)
+    view.vehicle.craft.arming_blocked_by.has(ArmingFlag::Cli)
 }
 
 /// A question whose answer takes the firmware long.

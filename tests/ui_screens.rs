@@ -1,7 +1,7 @@
 //! What the user interface shows: whole screens, and that no size and no picture breaks it.
 
 use betadeck::session::command::CliOutput;
-use betadeck::telemetry::NavState;
+use betadeck::telemetry::{ArmingFlag, NavState};
 use betadeck::ui::{AppState, Level, Msg, Pane, Theme, draw, update};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use ratatui::Terminal;
@@ -233,8 +233,7 @@ fn a_long_advice_leaves_the_machine_on_an_80x24_screen() {
     let mut view = state.view.clone();
     let vehicle = std::sync::Arc::make_mut(&mut view.vehicle);
     vehicle.craft.gps_fix = true;
-    vehicle.craft.arming_blocked_by.clear();
-    vehicle.craft.arming_blocked_by.push("MOTOR_PROTO");
+    vehicle.craft.arming_blocked_by = std::iter::once(ArmingFlag::MotorProtocol).collect();
     update(&mut state, Msg::View(view));
     let screen = text(&state);
     assert!(screen.contains("motor_pwm_protocol"), "{screen}");

@@ -36,7 +36,7 @@ pub use apply::{ApplyReport, FailedLine, apply_lines, provision};
 pub use command_table::{COMMANDS, Command};
 pub use complete::{Completion, complete, hint};
 pub use editor::{EditorOutput, LineEditor, LinkMode};
-pub use interpreter::{Interpreter, Mode, refused_over_msp};
+pub use interpreter::{Interpreter, Mode};
 pub use observation::{
     BatteryFacts, BuildInfo, CliFacts, GpsFacts, GpsSolutionFacts, LoopFacts, NavFacts, SmoothingFacts,
     StorageFacts, TaskFacts,

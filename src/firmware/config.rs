@@ -2,7 +2,7 @@
 //! builds that it keeps.
 //!
 //! Plain data. The command line, MSP and the stored image read and write it; the running firmware takes what it needs
-//! from it at boot and when [`Configuration::settings`] changes its generation.
+//! from it at boot and again after every command line and every message that may have changed it.
 
 use crate::plan::FlightPlan;
 

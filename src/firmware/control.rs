@@ -32,7 +32,7 @@ mod tuning;
 pub use controller::Controller;
 pub use curve::{RateCurve, RatesType, ThrottleCurve, ThrottleLimit};
 pub use tuning::{
-    AxisGains, BoostTuning, DynamicD, ItermRelax, LevelTuning, MixerTuning, RateTuning, TiltThrottle, Tuning,
+    AxisGains, BoostTuning, DMax, ItermRelax, LevelTuning, MixerTuning, RateTuning, TiltThrottle, Tuning,
 };
 
 /// How the sticks are understood.

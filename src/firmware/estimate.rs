@@ -30,12 +30,12 @@ use crate::geo::{LatLon, offset_to_latlon};
 
 mod attitude;
 mod calibration;
-mod chain;
 mod estimator;
 mod gps;
 mod heading;
 mod history;
 mod horizontal;
+mod kalman;
 mod schedule;
 mod tuning;
 mod vertical;

@@ -16,6 +16,7 @@ pub mod link;
 pub use link::LinkMonitor;
 
 use crate::signals::SimTime;
+use crate::telemetry::FailsafeProcedure;
 
 /// A mission that the autopilot does not fly any more for this long is over, s.
 const MISSION_GONE_S: f64 = 1.0;
@@ -33,17 +34,14 @@ pub enum SwitchMode {
 }
 
 /// What stage 2 does unless the autopilot's policy says otherwise.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::Display, strum::IntoStaticStr)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Procedure {
     /// Disarm.
     #[default]
-    #[strum(to_string = "DROP")]
     Drop,
     /// Level, hold the place, descend.
-    #[strum(to_string = "AUTO-LAND")]
     AutoLand,
     /// Fly home and land.
-    #[strum(to_string = "GPS-RESCUE")]
     GpsRescue,
 }
 
@@ -61,13 +59,15 @@ pub enum Response {
 }
 
 impl Response {
-    /// The word for logs and events.
+    /// What logs and events tell of it.
     #[must_use]
-    pub fn word(self) -> &'static str {
+    pub fn procedure(self) -> FailsafeProcedure {
         match self {
-            Self::Procedure(procedure) => procedure.into(),
-            Self::Continue => "CONTINUE",
-            Self::EmergencyLand | Self::KeepLanding => "LAND",
+            Self::Procedure(Procedure::Drop) => FailsafeProcedure::Drop,
+            Self::Procedure(Procedure::AutoLand) => FailsafeProcedure::AutoLand,
+            Self::Procedure(Procedure::GpsRescue) => FailsafeProcedure::GpsRescue,
+            Self::Continue => FailsafeProcedure::Continue,
+            Self::EmergencyLand | Self::KeepLanding => FailsafeProcedure::Land,
         }
     }
 }

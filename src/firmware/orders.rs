@@ -172,7 +172,7 @@ impl Orders {
             self.aborted = None;
             navigator.disengage();
         }
-        self.follow_rescue_switch(navigator, inputs, params, rescue, facts);
+        self.update_rescue_switch(navigator, inputs, params, rescue, facts);
 
         let wanted = facts.autopilot_switch && !self.switch_spent || self.order.is_some();
         if navigator.is_flying() {
@@ -223,7 +223,7 @@ impl Orders {
         }
     }
 
-    fn follow_rescue_switch(
+    fn update_rescue_switch(
         &mut self,
         navigator: &mut Navigator,
         inputs: &NavInputs,

@@ -5,8 +5,8 @@
 //! * [`judge`] says what is wrong with a setting before a craft gets it.
 //! * [`foreign_name`] knows the settings of other builds, which are kept but have no effect.
 //!
-//! The control code reads settings by name, outside the tick: it keeps typed coefficients and refreshes them when
-//! [`Settings::generation`] changes.
+//! The control code never reads settings in a step: [`parameters`](super::parameters) makes typed coefficients of
+//! them, at boot and again after every command line and every message that may have changed them.
 
 mod foreign;
 mod judge;

@@ -1,7 +1,5 @@
 //! What displays and links see of the firmware: plain data of the present instant.
 
-use arrayvec::ArrayVec;
-
 use crate::geo::LatLon;
 use crate::plan::FlightPlan;
 use crate::signals::{RC_CHANNELS, RcSource, SimTime};
@@ -48,6 +46,12 @@ impl Firmware {
     #[must_use]
     pub fn arming_flags(&self) -> ArmingFlags {
         self.safety.flags()
+    }
+
+    /// What blocks arming while disarmed; nothing while armed.
+    #[must_use]
+    pub fn arming_blocks(&self) -> ArmingFlags {
+        if self.is_armed() { ArmingFlags::NONE } else { self.arming_flags() }
     }
 
     /// The active modes.
@@ -181,10 +185,7 @@ impl Firmware {
         CraftView {
             armed: self.safety.armed(),
             modes: self.modes,
-            arming_blocked_by: match self.safety.armed() {
-                true => ArrayVec::new(),
-                false => self.safety.flags().iter().map(Into::into).collect(),
-            },
+            arming_blocked_by: self.arming_blocks(),
             gps_fix: self.gps_fix(),
             sats: gps.sats,
             hdop: Some(gps.hdop).filter(|&hdop| hdop > 0.0),
@@ -262,7 +263,7 @@ impl Firmware {
                 let channel = condition.aux_channel + channels::AUX1 as u8;
                 let entry = boxes::by_id(condition.box_id)?;
                 (usize::from(channel) < live).then_some(ModeRange {
-                    name: entry.name,
+                    mode_box: entry.kind,
                     channel,
                     start_us: condition.start_us,
                     end_us: condition.end_us,

@@ -67,7 +67,7 @@ fn firmware(event: &FirmwareEvent) -> Option<String> {
             format!("Failsafe stage {stage}: procedure {procedure}, policy {policy}.")
         }
         FirmwareEvent::Nav(event) => return nav(event),
-        FirmwareEvent::Notice(notice) => sentence_end(notice),
+        FirmwareEvent::Notice(notice) => notice.to_string(),
     })
 }
 
@@ -180,7 +180,7 @@ mod tests {
     use super::*;
     use crate::geo::LatLon;
     use crate::signals::SimTime;
-    use crate::telemetry::{FaultKind, GuardName, GuardOp};
+    use crate::telemetry::{FaultKind, FirmwareNotice, GuardName, GuardOp};
 
     fn say(event: FirmwareEvent) -> String {
         vehicle(&EventKind::Firmware(event)).expect("a sentence")
@@ -248,8 +248,7 @@ mod tests {
         for event in [
             FirmwareEvent::GpsFix { sats: 12 },
             FirmwareEvent::Disarmed(DisarmReason::Landing),
-            FirmwareEvent::Notice("No full stop"),
-            FirmwareEvent::Notice("A question?"),
+            FirmwareEvent::Notice(FirmwareNotice::BatteryLow),
             FirmwareEvent::Mode(crate::telemetry::ModeFlags::NONE),
             FirmwareEvent::Nav(NavEvent::Geofence {
                 distance_m: 100.4,
@@ -259,6 +258,9 @@ mod tests {
         ] {
             let sentence = say(event);
             assert!(sentence.ends_with(['.', '?']), "{sentence}");
+        }
+        for (notice, sentence) in [("No full stop", "No full stop."), ("A question?", "A question?")] {
+            assert_eq!(text(&SessionEvent::Notice(notice.to_owned())).as_deref(), Some(sentence));
         }
         let fault = EventKind::Fault { kind: FaultKind::GpsLoss, on: true, value: FaultValue::None };
         assert_eq!(vehicle(&fault).as_deref(), Some("Fault gps-loss begins."));

@@ -1,7 +1,5 @@
 //! Says why a script that holds the ARM switch on does not arm: it cannot see what blocks arming.
 
-use strum::IntoEnumIterator as _;
-
 use crate::signals::{RcSource, SimTime};
 use crate::telemetry::{ArmingFlag, Mode, Snapshot, switch};
 
@@ -36,7 +34,8 @@ impl ArmingWatch {
         if request.done || vehicle.time.seconds_since(request.since) < PATIENCE_S {
             return None;
         }
-        let causes: Vec<String> = craft.arming_blocked_by.iter().filter_map(|name| cause(name)).collect();
+        let with_hint = |flag: ArmingFlag| format!("{flag} ({})", flag.hint());
+        let causes: Vec<String> = craft.arming_blocked_by.causes().iter().map(with_hint).collect();
         if causes.is_empty() {
             return None;
         }
@@ -45,34 +44,33 @@ impl ArmingWatch {
     }
 }
 
-/// A flag and the way out; not for those that only say that the switch must be moved again then.
-fn cause(name: &str) -> Option<String> {
-    let flag = ArmingFlag::iter().find(|flag| name == <&str>::from(flag))?;
-    let is_cause = !matches!(flag, ArmingFlag::ArmSwitch | ArmingFlag::NotDisarmed);
-    is_cause.then(|| format!("{name} ({})", flag.hint()))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::telemetry::snapshot::ModeRange;
 
     /// A craft whose script holds the ARM switch on.
-    fn vehicle(seconds: f64, flags: &[&'static str]) -> Snapshot {
+    fn vehicle(seconds: f64, flags: &[ArmingFlag]) -> Snapshot {
         let mut vehicle = Snapshot { time: SimTime::from_secs_f64(seconds), ..Snapshot::default() };
         let craft = &mut vehicle.craft;
-        craft.mode_ranges =
-            std::iter::once(ModeRange { name: "ARM", channel: 4, start_us: 1700, end_us: 2100 }).collect();
+        craft.mode_ranges = std::iter::once(ModeRange {
+            mode_box: Mode::Arm.into(),
+            channel: 4,
+            start_us: 1700,
+            end_us: 2100,
+        })
+        .collect();
         craft.rc_source = Some(RcSource::Udp);
         craft.channels[4] = 2000;
-        craft.arming_blocked_by.extend(flags.iter().copied());
+        craft.arming_blocked_by = flags.iter().copied().collect();
         vehicle
     }
 
     #[test]
     fn a_switch_that_is_on_in_vain_is_told_once() {
         let mut watch = ArmingWatch::default();
-        let blocked = |seconds| vehicle(seconds, &["THROTTLE", "CLI", "ARM_SWITCH"]);
+        let blocked =
+            |seconds| vehicle(seconds, &[ArmingFlag::Throttle, ArmingFlag::Cli, ArmingFlag::ArmSwitch]);
         assert_eq!(watch.look(&blocked(10.0)), None);
         assert_eq!(watch.look(&blocked(10.9)), None);
         let told = watch.look(&blocked(11.0)).expect("a sentence");
@@ -92,14 +90,14 @@ mod tests {
         let mut flying = vehicle(10.0, &[]);
         flying.craft.armed = true;
         assert_eq!(watch.look(&flying), None);
-        assert_eq!(watch.look(&vehicle(99.0, &["THROTTLE", "ARM_SWITCH"])), None);
+        assert_eq!(watch.look(&vehicle(99.0, &[ArmingFlag::Throttle, ArmingFlag::ArmSwitch])), None);
     }
 
     #[test]
     fn own_sticks_have_the_screen() {
         let mut watch = ArmingWatch::default();
         for seconds in [10.0, 20.0] {
-            let mut own = vehicle(seconds, &["THROTTLE"]);
+            let mut own = vehicle(seconds, &[ArmingFlag::Throttle]);
             own.craft.rc_source = Some(RcSource::Sticks);
             assert_eq!(watch.look(&own), None);
         }

@@ -198,9 +198,34 @@ impl ArmingFlags {
         self.0
     }
 
+    /// The flags without those that only say that the ARM switch must be moved again.
+    #[must_use]
+    pub fn causes(self) -> Self {
+        self.without(ArmingFlag::ArmSwitch).without(ArmingFlag::NotDisarmed)
+    }
+
     /// The flags in bit order.
     pub fn iter(self) -> impl Iterator<Item = ArmingFlag> {
         ArmingFlag::iter().filter(move |&flag| self.has(flag))
+    }
+}
+
+impl std::fmt::Display for ArmingFlags {
+    /// The names in bit order.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        for (at, flag) in self.iter().enumerate() {
+            let gap = if at > 0 { " " } else { "" };
+            write!(f, "{gap}{flag}")?;
+        }
+        Ok(())
+    }
+}
+
+impl FromIterator<ArmingFlag> for ArmingFlags {
+    fn from_iter<I: IntoIterator<Item = ArmingFlag>>(flags: I) -> Self {
+        let mut set = Self::NONE;
+        flags.into_iter().for_each(|flag| set.set(flag, true));
+        set
     }
 }
 

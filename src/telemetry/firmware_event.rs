@@ -1,5 +1,7 @@
 //! What the flight controller reports as having happened.
 
+use super::failsafe::{FailsafeProcedure, RxLossPolicy};
+use super::firmware_notice::FirmwareNotice;
 use super::mode::ModeFlags;
 use super::nav::NavEvent;
 
@@ -60,14 +62,14 @@ pub enum FirmwareEvent {
     /// A failsafe stage began.
     Failsafe {
         /// `ap_rx_loss_policy` in force.
-        policy: &'static str,
+        policy: RxLossPolicy,
         /// 1 at the loss, 2 when the procedure starts.
         stage: u8,
-        /// The procedure, `DROP`, `AUTO-LAND`, `GPS-RESCUE`, `CONTINUE`, `LAND`.
-        procedure: &'static str,
+        /// The procedure.
+        procedure: FailsafeProcedure,
     },
     /// The navigator.
     Nav(NavEvent),
-    /// Something the pilot should read, as a sentence.
-    Notice(&'static str),
+    /// Something the pilot should read.
+    Notice(FirmwareNotice),
 }

@@ -5,7 +5,7 @@
 use crate::geo::LatLon;
 use crate::plan::FlightPlan;
 use crate::signals::{RC_CHANNELS, RcSource, SimTime};
-use crate::telemetry::{FaultKind, FaultValue, ModeFlags, NavTelemetry};
+use crate::telemetry::{ArmingFlags, FaultKind, FaultValue, ModeBox, ModeFlags, NavTelemetry};
 
 /// The whole picture.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -101,8 +101,8 @@ pub struct CraftView {
     pub armed: bool,
     /// Active modes.
     pub modes: ModeFlags,
-    /// Names of the arming-disable flags that are set, in bit order.
-    pub arming_blocked_by: arrayvec::ArrayVec<&'static str, 30>,
+    /// The arming-disable flags that are set; none while armed.
+    pub arming_blocked_by: ArmingFlags,
     /// A 3-D fix.
     pub gps_fix: bool,
     /// Satellites.
@@ -142,8 +142,8 @@ pub struct CraftView {
 /// A switch range that turns a mode on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ModeRange {
-    /// Box name.
-    pub name: &'static str,
+    /// The box that it switches on.
+    pub mode_box: ModeBox,
     /// Index into [`CraftView::channels`].
     pub channel: u8,
     /// First value inside, µs.

@@ -1,8 +1,8 @@
 //! The switch of the transmitter that turns a mode on, found from the craft's mode conditions.
 
 use crate::signals::RC_CHANNELS;
-use crate::telemetry::Mode;
 use crate::telemetry::snapshot::ModeRange;
+use crate::telemetry::{Mode, ModeBox};
 
 /// A switch: its channel and the values that turn a mode on and off.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -36,22 +36,25 @@ pub fn is_on(mode: Mode, ranges: &[ModeRange], channels: &[u16; RC_CHANNELS]) ->
 
 /// The ranges of a mode that can be reached.
 fn own(mode: Mode, ranges: &[ModeRange]) -> impl Iterator<Item = &ModeRange> {
-    let name: &'static str = mode.into();
-    ranges.iter().filter(move |range| range.name == name && range.start_us < range.end_us)
+    let mode_box = ModeBox::from(mode);
+    ranges.iter().filter(move |range| range.mode_box == mode_box && range.start_us < range.end_us)
 }
 
 #[cfg(test)]
 mod tests {
     use crate::telemetry::switch::*;
 
-    fn range(name: &'static str, channel: u8, start_us: u16, end_us: u16) -> ModeRange {
-        ModeRange { name, channel, start_us, end_us }
+    fn range(mode: Mode, channel: u8, start_us: u16, end_us: u16) -> ModeRange {
+        ModeRange { mode_box: mode.into(), channel, start_us, end_us }
     }
 
     #[test]
     fn a_switch_is_found_where_the_craft_has_it() {
-        let ranges =
-            [range("ARM", 7, 1700, 1700), range("ARM", 7, 900, 1200), range("POS HOLD", 9, 1400, 1600)];
+        let ranges = [
+            range(Mode::Arm, 7, 1700, 1700),
+            range(Mode::Arm, 7, 900, 1200),
+            range(Mode::PosHold, 9, 1400, 1600),
+        ];
         assert_eq!(Switch::of(Mode::Arm, &ranges), Some(Switch { channel: 7, on_us: 1050, off_us: 1500 }));
         assert_eq!(
             Switch::of(Mode::PosHold, &ranges),
@@ -62,7 +65,7 @@ mod tests {
 
     #[test]
     fn a_mode_is_on_while_its_channel_is_inside_a_range() {
-        let ranges = [range("ANGLE", 4, 1700, 2100), range("ANGLE", 5, 900, 1300)];
+        let ranges = [range(Mode::Angle, 4, 1700, 2100), range(Mode::Angle, 5, 900, 1300)];
         let channels = |aux1, aux2| {
             let mut channels = [1500; RC_CHANNELS];
             (channels[4], channels[5]) = (aux1, aux2);

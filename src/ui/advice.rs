@@ -1,7 +1,7 @@
 //! What stands in the way of flying, and what to do about it: one sentence and one way out.
 
 use crate::plan::FlightPlan;
-use crate::telemetry::{AbortReason, LinkState, Mode, NavState, Refusal};
+use crate::telemetry::{ArmingFlag, ArmingFlags, LinkState, Mode, NavState, Refusal};
 
 use super::app_state::AppState;
 use super::event_log::Level;
@@ -23,50 +23,37 @@ fn advice(level: Level, what: impl Into<String>, fix: impl Into<String>) -> Opti
     Some(Advice { level, what: what.into(), fix: fix.into() })
 }
 
-/// Arming-disable flags, the most useful cause first; those that only say "again" come last.
-const FLAG_ORDER: [&str; 9] =
-    ["CLI", "RXLOSS", "BOOTGRACE", "CALIB", "THROTTLE", "FAILSAFE", "GPS", "ANGLE", "AUTOPILOT_SW"];
-
-/// The flag that tells the user most.
+/// The arming-disable flag that tells the user most; those that only say "again" come last.
 #[must_use]
-pub fn most_useful<'a>(flags: &[&'a str]) -> &'a str {
-    let rank = |flag: &str| match flag {
-        "ARM_SWITCH" | "NOT_DISARMED" => FLAG_ORDER.len() + 1,
-        _ => FLAG_ORDER.iter().position(|known| *known == flag).unwrap_or(FLAG_ORDER.len()),
+pub fn most_useful(flags: ArmingFlags) -> Option<ArmingFlag> {
+    let rank = |flag: &ArmingFlag| match flag {
+        ArmingFlag::Cli => 0,
+        ArmingFlag::RxLoss => 1,
+        ArmingFlag::BootGrace => 2,
+        ArmingFlag::Calibrating => 3,
+        ArmingFlag::Throttle => 4,
+        ArmingFlag::Failsafe => 5,
+        ArmingFlag::Gps => 6,
+        ArmingFlag::Angle => 7,
+        ArmingFlag::AutopilotSwitch => 8,
+        ArmingFlag::ArmSwitch | ArmingFlag::NotDisarmed => 10,
+        _ => 9,
     };
-    flags.iter().copied().min_by_key(|flag| rank(flag)).unwrap_or_default()
+    flags.iter().min_by_key(rank)
 }
 
-/// What to do about an arming-disable flag.
+/// What to do about an arming-disable flag, and the key that does it here.
 #[must_use]
-pub fn arming_hint(flag: &str) -> &'static str {
-    match flag {
-        "NOGYRO" => "no gyro was found",
-        "FAILSAFE" => "the link was lost; wait until it is good again",
-        "RXLOSS" => "no RC frames; `x` restores the link, or send RC on UDP 9004",
-        "NOT_DISARMED" | "ARM_SWITCH" => "switch ARM off, then on again with `a`",
-        "BOXFAILSAFE" => "switch FAILSAFE off",
-        "RUNAWAY" => "motors or props are mixed up; switch ARM off",
-        "CRASH" => "a crash was detected; switch ARM off",
-        "THROTTLE" => "lower the throttle with `t`",
-        "ANGLE" => "the craft is tilted or its attitude is not known yet",
-        "BOOTGRACE" => "wait, the craft has just started",
-        "NOPREARM" => "switch PREARM on",
-        "LOAD" => "the processor is overloaded",
-        "CALIB" => "wait and keep still, sensors are calibrating",
-        "CLI" => "a CLI session is open; end it with `exit` or `save`",
-        "PARALYZE" => "PARALYZE was on; restart the craft",
-        "GPS" => "wait for the GPS fix",
-        "RESCUE_SW" => "switch GPS RESCUE off",
-        "REBOOT_REQD" => "a setting needs a restart; `save` in the CLI",
-        "NO_ACC_CAL" => "calibrate the accelerometer",
-        "MOTOR_PROTO" => "choose a motor protocol; `set motor_pwm_protocol = PWM` in the CLI",
-        "FLIP_SWITCH" => "switch FLIP OVER AFTER CRASH off",
-        "ALT_HOLD_SW" => "switch ALTHOLD off (`t` up and down does it)",
-        "POS_HOLD_SW" => "switch POS HOLD off (`t` up and down does it)",
-        "AUTOPILOT_SW" => "switch AUTOPILOT off with `g`, then arm",
-        _ => "`status` in the CLI (5) tells more",
-    }
+pub fn arming_hint(flag: ArmingFlag) -> String {
+    let key = match flag {
+        ArmingFlag::RxLoss => "`x` restores the link",
+        ArmingFlag::NotDisarmed | ArmingFlag::ArmSwitch => "`a` moves the switch",
+        ArmingFlag::Throttle => "`t` does it",
+        ArmingFlag::AltHoldSwitch | ArmingFlag::PosHoldSwitch => "`t` up and down does it",
+        ArmingFlag::AutopilotSwitch => "`g` switches it off",
+        _ => return flag.hint().to_owned(),
+    };
+    format!("{}; {key}", flag.hint())
 }
 
 /// What the user should know and do now; `None` while the mission flies.
@@ -112,8 +99,8 @@ pub fn now(state: &AppState) -> Option<Advice> {
             return advice(Level::Fault, "Failsafe: the RC link is lost.", "send RC frames again");
         }
         if let Some(refusal) = vehicle.nav.refusal.filter(|_| switched_on) {
-            let (what, fix) = refused(refusal);
-            return advice(Level::Fault, format!("AUTOPILOT refused: {what}"), fix);
+            let what = format!("AUTOPILOT refused: {}", refusal.sentence());
+            return advice(Level::Fault, what, way_out(refusal));
         }
         if let Some(doing) = state.view.pilot {
             return advice(Level::Info, format!("The pilot flies: {doing}."), "F stops it");
@@ -130,8 +117,7 @@ pub fn now(state: &AppState) -> Option<Advice> {
         return advice(Level::Good, "Mission complete.", fix);
     }
     if let Some(doing) = state.view.pilot {
-        if craft.gps_fix && !craft.arming_blocked_by.is_empty() {
-            let flag = most_useful(&craft.arming_blocked_by);
+        if let Some(flag) = most_useful(craft.arming_blocked_by).filter(|_| craft.gps_fix) {
             let what = format!("The pilot waits, arming is blocked: {flag}.");
             return advice(Level::Info, what, arming_hint(flag));
         }
@@ -140,8 +126,7 @@ pub fn now(state: &AppState) -> Option<Advice> {
     if !craft.gps_fix {
         return advice(Level::Warn, "No GPS fix yet.", "wait for satellites; F waits by itself");
     }
-    if !craft.arming_blocked_by.is_empty() {
-        let flag = most_useful(&craft.arming_blocked_by);
+    if let Some(flag) = most_useful(craft.arming_blocked_by) {
         return advice(Level::Warn, format!("Arming is blocked: {flag}."), arming_hint(flag));
     }
     if vehicle.stored_plan.waypoints.is_empty() {
@@ -177,33 +162,20 @@ fn by_hand(state: &AppState) -> Option<Advice> {
     advice(Level::Info, what, fix)
 }
 
-/// The sentence of a refusal, and the way out.
-fn refused(refusal: Refusal) -> (String, &'static str) {
+/// The way out of a refusal with the keys of the screen.
+fn way_out(refusal: Refusal) -> &'static str {
     match refusal {
-        Refusal::NotArmed => ("the craft is not armed.".into(), "a arms, then g again"),
-        Refusal::Throttle => ("the throttle was not raised since arming.".into(), "t raises it"),
-        Refusal::NoFix => ("no GPS fix.".into(), "wait for satellites"),
-        Refusal::NoAltitude => ("no altitude estimate.".into(), "wait for the barometer or GPS"),
-        Refusal::NoPlan => ("the craft has no waypoints.".into(), "U uploads the plan"),
-        Refusal::PlanCorrupt => ("the stored plan is damaged.".into(), "U uploads the plan anew"),
-        Refusal::BadWaypoint(wp) => (format!("WP{wp} is invalid."), "2 Plan shows why"),
-        Refusal::NoHome => {
-            ("a fence is set but home is unknown.".into(), "disarm, wait for the fix, arm again")
-        }
-        Refusal::Geofence { wp, distance_cm, limit_m } => (
-            format!("WP{wp} is {:.0} m from home, the fence is {limit_m} m.", f64::from(distance_cm) / 100.0),
-            "5 CLI: set ap_max_distance_from_home, or move the waypoint",
-        ),
-        Refusal::Failsafe => ("the RX failsafe is active.".into(), "x restores the link"),
-        Refusal::Aborted(why) => {
-            let what = match why {
-                AbortReason::Stalled => "no progress towards the waypoint for 30 s.",
-                AbortReason::Flyaway => "the craft moved away from the waypoint.",
-                AbortReason::GpsLost => "the GPS fix was lost.",
-                AbortReason::NoPlan => "the plan was cleared in flight.",
-            };
-            (format!("mission aborted, {what}"), "g off and on again resumes")
-        }
+        Refusal::NotArmed => "a arms, then g again",
+        Refusal::Throttle => "t raises it",
+        Refusal::NoFix => "wait for satellites",
+        Refusal::NoAltitude => "wait for the barometer or GPS",
+        Refusal::NoPlan => "U uploads the plan",
+        Refusal::PlanCorrupt => "U uploads the plan anew",
+        Refusal::BadWaypoint(_) => "2 Plan shows why",
+        Refusal::NoHome => "disarm, wait for the fix, arm again",
+        Refusal::Geofence { .. } => "5 CLI: set ap_max_distance_from_home, or move the waypoint",
+        Refusal::Failsafe => "x restores the link",
+        Refusal::Aborted(_) => "g off and on again resumes",
     }
 }
 
@@ -233,9 +205,11 @@ mod tests {
 
     #[test]
     fn the_cause_comes_before_the_latch() {
-        assert_eq!(most_useful(&["NOT_DISARMED", "THROTTLE", "CLI", "ARM_SWITCH"]), "CLI");
-        assert_eq!(most_useful(&["ARM_SWITCH", "PARALYZE"]), "PARALYZE");
-        assert_eq!(most_useful(&["ARM_SWITCH"]), "ARM_SWITCH");
-        assert_eq!(most_useful(&[]), "");
+        use ArmingFlag::{ArmSwitch, Cli, NotDisarmed, Paralyze, Throttle};
+        let first = |flags: &[ArmingFlag]| most_useful(flags.iter().copied().collect());
+        assert_eq!(first(&[NotDisarmed, Throttle, Cli, ArmSwitch]), Some(Cli));
+        assert_eq!(first(&[ArmSwitch, Paralyze]), Some(Paralyze));
+        assert_eq!(first(&[ArmSwitch]), Some(ArmSwitch));
+        assert_eq!(first(&[]), None);
     }
 }

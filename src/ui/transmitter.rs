@@ -6,7 +6,7 @@ use crate::session::Command;
 use crate::signals::{RcFrame, RcSource};
 use crate::telemetry::snapshot::ModeRange;
 use crate::telemetry::switch::Switch;
-use crate::telemetry::{Mode, switch};
+use crate::telemetry::{Mode, ModeBox, switch};
 
 use super::advice;
 use super::app_state::AppState;
@@ -74,7 +74,8 @@ fn is_on(state: &AppState, frame: &RcFrame, mode: Mode) -> bool {
 fn hold_switch(state: &AppState, mode: Mode) -> Option<Switch> {
     let switch = switch(state, mode).ok()?;
     let is_reserved = |range: &ModeRange| {
-        usize::from(range.channel) == switch.channel && matches!(range.name, "ARM" | "AUTOPILOT")
+        usize::from(range.channel) == switch.channel
+            && matches!(range.mode_box, ModeBox::Arm | ModeBox::Autopilot)
     };
     let free = switch.channel > 3 && !state.view.vehicle.craft.mode_ranges.iter().any(is_reserved);
     free.then_some(switch)
@@ -158,14 +159,10 @@ pub(super) fn can_arm(state: &AppState) -> Result<(), String> {
     if craft.armed || frame(state).channels[switch.channel] == switch.on_us {
         return Ok(());
     }
-    // The last two only say "switch off, then on again", which is what the key does.
-    let cause = craft.arming_blocked_by.iter().find(|flag| !matches!(**flag, "ARM_SWITCH" | "NOT_DISARMED"));
-    match cause {
+    // The others only say "switch off, then on again", which is what the key does.
+    match advice::most_useful(craft.arming_blocked_by.causes()) {
         None => Ok(()),
-        Some(_) => {
-            let flag = advice::most_useful(&craft.arming_blocked_by);
-            Err(format!("Cannot arm, {flag}: {}.", advice::arming_hint(flag)))
-        }
+        Some(flag) => Err(format!("Cannot arm, {flag}: {}.", advice::arming_hint(flag))),
     }
 }
 

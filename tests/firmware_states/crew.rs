@@ -15,11 +15,17 @@ const LEFT_ALONE: u32 = 200;
 const CLIMB: u32 = 500;
 /// Greatest lean a craft is armed with, cosine.
 const UPRIGHT: f64 = 0.95;
+/// At rest is slower than this, m/s and rad/s, for so many updates; a craft that takes longer is put back home.
+const STILL_MPS: f64 = 0.05;
+const STILL_RPS: f64 = 0.05;
+const REST: u32 = 50;
+const SETTLE: u32 = 1000;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 enum Work {
     #[default]
     Come,
+    Settle,
     Wait,
     Arm,
     Climb,
@@ -32,6 +38,7 @@ pub(crate) struct Crew {
     work: Work,
     since: u32,
     lying: u32,
+    resting: u32,
 }
 
 impl Crew {
@@ -62,15 +69,25 @@ impl Crew {
         self.since += 1;
         match self.work {
             Work::Come => {
-                let truth = run.vehicle.world().truth();
-                let upright = run.vehicle.firmware().estimate().cos_tilt > UPRIGHT;
-                if truth.crashed || !upright {
-                    run.restart(true);
-                }
                 run.frame = RcFrame::SAFE;
                 run.link = true;
                 run.vehicle.change_world(WorldCommand::ClearFaults).unwrap();
-                self.next(Work::Wait);
+                self.resting = 0;
+                self.next(Work::Settle);
+            }
+            Work::Settle => {
+                // A craft that rocks or tumbles may be level for a moment: only at rest its attitude counts.
+                let truth = run.vehicle.world().truth();
+                let still = truth.vel_enu.norm() < STILL_MPS && truth.rate_flu.norm() < STILL_RPS;
+                self.resting = if still { self.resting + 1 } else { 0 };
+                let upright = run.vehicle.firmware().estimate().cos_tilt > UPRIGHT;
+                let lies_badly = truth.crashed || self.resting >= REST && !upright;
+                if lies_badly || self.since >= SETTLE {
+                    run.restart(true);
+                    self.next(Work::Wait);
+                } else if self.resting >= REST {
+                    self.next(Work::Wait);
+                }
             }
             Work::Wait => {
                 let flags = run.vehicle.firmware().arming_flags();

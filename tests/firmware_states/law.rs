@@ -158,7 +158,7 @@ impl Law {
             }
             FirmwareEvent::Disarmed(reason) => self.see(format!("disarmed {reason}")),
             FirmwareEvent::Failsafe { policy, stage: 2, procedure } => {
-                self.judge_response(policy, procedure, firmware);
+                self.judge_response(policy.into(), procedure.into(), firmware);
             }
             FirmwareEvent::Failsafe { .. }
             | FirmwareEvent::GpsFix { .. }

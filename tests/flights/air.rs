@@ -3,7 +3,7 @@
 use crate::checks::{Checks, assert_met, greatest, mean};
 use crate::rig::{Rig, Sample, world};
 use betadeck::sim::{Fault, Wind, WorldCommand};
-use betadeck::telemetry::{DisarmReason, EventKind, FirmwareEvent, NavEvent, NavState};
+use betadeck::telemetry::{DisarmReason, EventKind, FirmwareEvent, FirmwareNotice, NavEvent, NavState};
 
 const HOLD: &str = "waypoint insert 0 40.4635901 -79.5182000 2000 500 HOLD 0 NONE";
 
@@ -195,7 +195,9 @@ fn sagging_battery_is_made_up_for() {
     let mut rig = Rig::new(world, HOLD, 20.0);
     rig.engaged().until_state(60.0, NavState::Holding).fly(10.0);
     let start = rig.t();
-    let is_warning = |kind: &EventKind| matches!(kind, EventKind::Firmware(FirmwareEvent::Notice(text)) if text.starts_with("Battery low"));
+    let is_warning = |kind: &EventKind| {
+        matches!(kind, EventKind::Firmware(FirmwareEvent::Notice(FirmwareNotice::BatteryLow)))
+    };
     rig.until(400.0, "a warning", |rig| rig.event_at(is_warning).is_some());
     let alt = greatest(rig.span(start, 1e9).map(|s| (s.alt - 20.0).abs()));
     assert!(alt <= 0.7, "{alt}");

@@ -17,8 +17,8 @@ fn stage_2(policy: &str, procedure: &str, engaged: bool) -> (String, String) {
     }
     rig.vehicle.hands.cut = true;
     rig.fly(2.1);
-    let word = rig.events.iter().find_map(|event| match event.kind {
-        EventKind::Firmware(FirmwareEvent::Failsafe { stage: 2, procedure, .. }) => Some(procedure),
+    let word: Option<&str> = rig.events.iter().find_map(|event| match event.kind {
+        EventKind::Firmware(FirmwareEvent::Failsafe { stage: 2, procedure, .. }) => Some(procedure.into()),
         _ => None,
     });
     let last = rig.samples.last().unwrap();

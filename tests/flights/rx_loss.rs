@@ -177,11 +177,13 @@ fn lost_fix_in_the_emergency_landing_descends_by_altitude_alone() {
     rig.fly(5.0);
     rig.vehicle.change_world(WorldCommand::FaultOn(Fault::GpsLoss, None)).unwrap();
     rig.until(60.0, "disarm", |rig| rig.disarmed().is_some());
-    let procedures: Vec<_> = rig
+    let procedures: Vec<&str> = rig
         .events
         .iter()
         .filter_map(|event| match event.kind {
-            EventKind::Firmware(FirmwareEvent::Failsafe { stage: 2, procedure, .. }) => Some(procedure),
+            EventKind::Firmware(FirmwareEvent::Failsafe { stage: 2, procedure, .. }) => {
+                Some(procedure.into())
+            }
             _ => None,
         })
         .collect();

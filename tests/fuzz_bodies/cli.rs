@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use betadeck::firmware::cli::{
-    CliContext, CliFacts, Interpreter, LineEditor, MAX_LINE, Mode, complete, hint, refused_over_msp,
+    CliContext, CliFacts, Interpreter, LineEditor, MAX_LINE, Mode, complete, hint,
 };
 use betadeck::firmware::config::Configuration;
 
@@ -39,7 +39,6 @@ fn session(text: &str, mode: Mode, facts: &CliFacts) -> Configuration {
         assert!(line.is_char_boundary(completion.start), "{line}");
         assert!(completion.candidates.iter().all(|word| word.starts_with(&completion.common)), "{line}");
         let _shown = hint(line, Some(&configuration.settings));
-        let _refused = refused_over_msp(line, facts.armed);
     }
     configuration
 }

@@ -11,8 +11,8 @@ use betadeck::session::{Event, SessionEvent, SessionView};
 use betadeck::signals::{RcFrame, RcSource, SimTime};
 use betadeck::telemetry::snapshot::{ModeRange, SettingsView, TruthView};
 use betadeck::telemetry::{
-    DisarmReason, EventKind, FirmwareEvent, Guard, GuardName, GuardOp, L1Mode, Mode, ModeFlags, NavEvent,
-    NavState, Snapshot, TransitionReason,
+    ArmingFlag, DisarmReason, EventKind, FirmwareEvent, Guard, GuardName, GuardOp, L1Mode, Mode, ModeFlags,
+    NavEvent, NavState, Snapshot, TransitionReason,
 };
 use betadeck::ui::theme::{Charset, Palette};
 use betadeck::ui::{AppState, CliHelp, Msg, OpenPlan, Theme, UiConfig, update};
@@ -183,11 +183,12 @@ pub(crate) fn view(flight: &SimpleFlight) -> SessionView {
         craft.channels[6] = 1900;
     }
     if !flight.fix {
-        craft.arming_blocked_by.push("BOOTGRACE");
+        craft.arming_blocked_by.set(ArmingFlag::BootGrace, true);
     }
-    craft.mode_ranges = [("ARM", 4), ("AUTOPILOT", 5), ("ANGLE", 6), ("ALTHOLD", 6), ("POS HOLD", 6)]
-        .map(|(name, channel)| ModeRange { name, channel, start_us: 1700, end_us: 2100 })
-        .to_vec();
+    craft.mode_ranges =
+        [(Mode::Arm, 4), (Mode::Autopilot, 5), (Mode::Angle, 6), (Mode::AltHold, 6), (Mode::PosHold, 6)]
+            .map(|(mode, channel)| ModeRange { mode_box: mode.into(), channel, start_us: 1700, end_us: 2100 })
+            .to_vec();
 
     let nav = &mut snapshot.nav;
     nav.state = flight.state;

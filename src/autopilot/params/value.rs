@@ -2,6 +2,8 @@
 
 use strum::IntoEnumIterator as _;
 
+pub use crate::telemetry::RxLossPolicy;
+
 use crate::telemetry::FenceAction;
 
 /// Which way the nose points while the autopilot flies.
@@ -32,32 +34,6 @@ pub enum YawMode {
     Fixed = 3,
     /// For wings; a multirotor treats it as [`YawMode::Fixed`].
     Dampener = 4,
-}
-
-/// What a lost receiver does to a mission.
-#[derive(
-    Debug,
-    Clone,
-    Copy,
-    PartialEq,
-    Eq,
-    Default,
-    Hash,
-    strum::Display,
-    strum::EnumIter,
-    strum::FromRepr,
-    strum::IntoStaticStr,
-)]
-#[strum(serialize_all = "UPPERCASE")]
-#[repr(u8)]
-pub enum RxLossPolicy {
-    /// The mission ends and the configured failsafe procedure runs.
-    #[default]
-    Disable = 0,
-    /// The mission goes on.
-    Continue = 1,
-    /// Land where the link was lost.
-    Land = 2,
 }
 
 /// A type a parameter can have. Conversions saturate, so no number can be out of range of the type.

@@ -14,7 +14,7 @@ pub enum Mode {
     Interactive,
     /// One line between STX and ETX on a serial link: other words for unknown commands, no restart that closes links.
     Framed,
-    /// One line in an MSP message: as framed, and `save` never restarts.
+    /// One line in an MSP message: as framed, `save` never restarts, and lines that end the link are refused.
     Message,
     /// The lines of a file: words of other builds are kept.
     File,
@@ -59,11 +59,6 @@ impl Interpreter {
         self
     }
 
-    /// Changes who is talking; an open batch stays open.
-    pub fn set_mode(&mut self, mode: Mode) {
-        self.mode = mode;
-    }
-
     /// Whether a batch is open in which a line was refused.
     #[must_use]
     pub fn batch_failed(&self) -> bool {
@@ -75,6 +70,9 @@ impl Interpreter {
         let line = code_of(line);
         if line.is_empty() {
             return CliReply::default();
+        }
+        if self.mode == Mode::Message && ends_the_link(line) {
+            return CliReply { failed: true, ..CliReply::default() };
         }
         let (word, rest) = line.split_once([' ', '\t']).unwrap_or((line, ""));
         let rest = rest.trim();
@@ -121,15 +119,13 @@ pub(super) fn code_of(line: &str) -> &str {
     line.split_once('#').map_or(line, |(code, _)| code).trim()
 }
 
-/// Whether a line must not be run from an MSP message: it would take the link down, or the craft out of the air.
-#[must_use]
-pub fn refused_over_msp(line: &str, armed: bool) -> bool {
-    let line = code_of(line).to_ascii_lowercase();
+/// Whether a line (without comment) has no place in an MSP message: it would take the link down.
+fn ends_the_link(line: &str) -> bool {
+    let line = line.to_ascii_lowercase();
     let mut words = line.split_ascii_whitespace();
     match words.next().unwrap_or("") {
         "bl" | "msc" | "serialpassthrough" => true,
-        "defaults" => armed || !words.any(|word| word == "nosave"),
-        "save" => armed,
+        "defaults" => !words.any(|word| word == "nosave"),
         _ => false,
     }
 }
@@ -209,13 +205,21 @@ mod tests {
 
     #[test]
     fn lines_that_end_the_link_are_not_for_msp() {
+        let run_message = |line: &str, armed: bool| {
+            let facts = CliFacts { armed, ..CliFacts::default() };
+            let mut configuration = Configuration::default();
+            let mut context = CliContext { configuration: &mut configuration, facts: &facts };
+            Interpreter::new(Mode::Message).run(line, &mut context)
+        };
         for line in ["bl", " BL rom", "defaults", "serialpassthrough 1", "msc # now"] {
-            assert!(refused_over_msp(line, false), "{line}");
+            let refused = CliReply { failed: true, ..CliReply::default() };
+            assert_eq!(run_message(line, false), refused, "{line}");
+            assert_eq!(run_message(line, true), refused, "{line}");
         }
         for line in ["save", "defaults nosave"] {
-            assert!(!refused_over_msp(line, false) && refused_over_msp(line, true), "{line}");
+            assert!(!run_message(line, false).failed && run_message(line, true).failed, "{line}");
         }
-        assert!(!refused_over_msp("waypoint clear", true));
+        assert!(!run_message("waypoint clear", true).failed);
         let mut configuration = Configuration::default();
         let mut context = CliContext { configuration: &mut configuration, facts: &CliFacts::default() };
         let mut message = Interpreter::new(Mode::Message);

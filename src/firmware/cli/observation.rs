@@ -3,7 +3,7 @@
 use crate::firmware::Firmware;
 use crate::geo::LatLon;
 use crate::plan::FlightPlan;
-use crate::telemetry::NavTelemetry;
+use crate::telemetry::{ArmingFlags, NavTelemetry};
 
 /// Housekeeping rate, Hz.
 const SYSTEM_HZ: u32 = 10;
@@ -17,8 +17,8 @@ pub struct CliFacts {
     pub build: BuildInfo,
     /// Whether the craft is armed; many commands are refused then.
     pub armed: bool,
-    /// Names of the reasons that block arming, in bit order.
-    pub arming_blocks: Vec<&'static str>,
+    /// What blocks arming.
+    pub arming_blocks: ArmingFlags,
     /// Seconds since boot.
     pub uptime_s: u64,
     /// The stored configuration.
@@ -48,10 +48,7 @@ impl CliFacts {
         Self {
             build: firmware.setup.build().clone(),
             armed: firmware.is_armed(),
-            arming_blocks: match firmware.is_armed() {
-                true => Vec::new(),
-                false => firmware.arming_flags().iter().map(Into::into).collect(),
-            },
+            arming_blocks: firmware.arming_blocks(),
             uptime_s: firmware.uptime().0 / 1_000_000,
             storage: firmware.setup.storage().clone(),
             gps: GpsFacts::observe(firmware),

@@ -72,8 +72,8 @@ pub(super) fn status(session: &mut Session<'_>, _rest: &str) {
         battery.voltage_v, battery.cells, battery.state
     ));
     session.raw("Arming disable flags:");
-    for name in &facts.arming_blocks {
-        session.raw(format_args!(" {name}"));
+    for flag in facts.arming_blocks.iter() {
+        session.raw(format_args!(" {flag}"));
     }
     session.line("");
 }
@@ -152,7 +152,7 @@ pub(super) fn env(session: &mut Session<'_>, prefix: &str) {
         ("VOLTAGE_V", format!("{:.2}", facts.battery.voltage_v)),
         ("BATTERY_CELLS", facts.battery.cells.to_string()),
         ("BATTERY_STATE", facts.battery.state.to_owned()),
-        ("ARMING_DISABLE_FLAGS", facts.arming_blocks.join(" ")),
+        ("ARMING_DISABLE_FLAGS", facts.arming_blocks.to_string()),
     ]);
     let prefix = prefix.to_ascii_uppercase();
     for (name, value) in rows.iter().filter(|(name, _)| name.starts_with(&prefix)) {

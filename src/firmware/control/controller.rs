@@ -279,14 +279,14 @@ impl Controller {
         let throttle = input.throttle.filter(|t| t.is_finite()).unwrap_or(by_pilot).clamp(0.0, 1.0);
         let airmode = input.airmode || is_held;
         if self.is_level_due {
-            self.derived.follow_throttle(&self.tuning, throttle);
+            self.derived.set_filters_for(&self.tuning, throttle);
         }
         let demand = RateDemand {
             setpoint,
             gyro: self.state.gyro_dps,
             levelled,
             deflection: [input.stick_roll, input.stick_pitch, input.stick_yaw].map(|s| s.abs() / FULL_STICK),
-            attenuation: self.attenuation(lift),
+            tpa: self.tpa(lift),
             // A throttle that somebody else holds does not jump with the stick.
             boost: if input.anti_gravity && !is_held { gain_boost } else { GainBoost::NONE },
             integrate: (airmode || !is_low)
@@ -311,8 +311,8 @@ impl Controller {
         state.on_legs = self.legs.are_loaded();
     }
 
-    /// Gain factor for the stick throttle (0…1): less at high throttle, and less near the ground before take-off.
-    fn attenuation(&mut self, throttle: f64) -> f64 {
+    /// TPA, the gain factor for the stick throttle (0…1): less at high throttle, and less near the ground before take-off.
+    fn tpa(&mut self, throttle: f64) -> f64 {
         let rate = &self.tuning.rate;
         if throttle >= rate.tpa_low_breakpoint {
             self.was_raised = true;

@@ -48,12 +48,12 @@ impl Derived {
             throttle_boost: pt1_gain(tuning.boost.throttle_cutoff_hz, pid_dt),
             d_boost: pt1_gain(D_BOOST_HZ, pid_dt),
         };
-        derived.follow_throttle(tuning, 0.0);
+        derived.set_filters_for(tuning, 0.0);
         derived
     }
 
     /// Moves the cutoffs that depend on the throttle (0…1).
-    pub(super) fn follow_throttle(&mut self, tuning: &Tuning, throttle: f64) {
+    pub(super) fn set_filters_for(&mut self, tuning: &Tuning, throttle: f64) {
         let (gyro, d) = (&tuning.rate.gyro_lpf1, &tuning.rate.d_lpf1);
         self.gyro_lpf1 = LowPass::new(gyro.kind, gyro.cutoff_hz(throttle), self.dt);
         self.d_lpf1 = LowPass::new(d.kind, d.cutoff_hz(throttle), self.pid_dt);

@@ -2,7 +2,7 @@
 
 use super::boost::GainBoost;
 use super::derived::Derived;
-use super::tuning::{DynamicD, RateTuning};
+use super::tuning::{DMax, RateTuning};
 use crate::firmware::filter::{LowPassState, Pt1};
 
 /// Index of yaw among the axes.
@@ -23,7 +23,7 @@ pub(super) struct RateDemand {
     /// Greatest deflection of the stick of each axis, 0…1.
     pub deflection: [f64; 3],
     /// Gains of D (and P) fall by this factor.
-    pub attenuation: f64,
+    pub tpa: f64,
     /// Rise of the gains in quick throttle changes.
     pub boost: GainBoost,
     /// The integrals work.
@@ -59,7 +59,7 @@ impl RateLoop {
 
     /// Turns the integrals against the turn of the craft (°/s): as a vector they stay where they push in the world.
     /// Yaw counts clockwise, the opposite of the axis that makes a right-handed system with roll and pitch.
-    fn rotate_integrals(&mut self, gyro: &[f64; 3], dt: f64) {
+    fn rotate_iterms(&mut self, gyro: &[f64; 3], dt: f64) {
         let turn = gyro.map(|rate| rate.to_radians() * dt);
         let [roll, pitch, yaw] = [0, 1, 2].map(|axis| self.axes[axis].integral);
         let change = [
@@ -78,8 +78,8 @@ impl RateLoop {
     pub(super) fn step(&mut self, demand: &RateDemand, tuning: &RateTuning, derived: &Derived) -> [f64; 3] {
         let mut sums = [0.0; 3];
         let rate_hz = 1.0 / derived.pid_dt;
-        if tuning.rotates_integrals {
-            self.rotate_integrals(&demand.gyro, derived.pid_dt);
+        if tuning.iterm_rotation {
+            self.rotate_iterms(&demand.gyro, derived.pid_dt);
         }
         for (index, (axis, sum)) in self.axes.iter_mut().zip(&mut sums).enumerate() {
             let gains = &tuning.gains[index];
@@ -88,7 +88,7 @@ impl RateLoop {
             let error = setpoint - gyro;
             let mut p = gains.p * error;
             if tuning.tpa_on_p {
-                p *= demand.attenuation;
+                p *= demand.tpa;
             }
             if index == YAW {
                 p = axis.p_filter.apply(p, derived.yaw_lowpass);
@@ -105,12 +105,12 @@ impl RateLoop {
             }
             let setpoint_rate = (setpoint - axis.last_setpoint) * rate_hz;
             axis.last_setpoint = setpoint;
-            let d = if gains.d == 0.0 && tuning.dynamic_d.most[index] == 0.0 {
+            let d = if gains.d == 0.0 && tuning.d_max.most[index] == 0.0 {
                 0.0
             } else {
                 let slope = axis.slope(gyro, rate_hz, derived);
-                let moved = slope.abs().max(tuning.dynamic_d.setpoint_share * setpoint_rate.abs());
-                -axis.d_gain(gains.d, index, moved, &tuning.dynamic_d, derived) * slope * demand.attenuation
+                let moved = slope.abs().max(tuning.d_max.setpoint_share * setpoint_rate.abs());
+                -axis.d_gain(gains.d, index, moved, &tuning.d_max, derived) * slope * demand.tpa
             };
             let f = if is_level {
                 0.0
@@ -139,12 +139,12 @@ impl Axis {
     }
 
     /// D between its base and its greatest, by how fast the craft moves, °/s².
-    fn d_gain(&mut self, base: f64, index: usize, moved: f64, dynamic: &DynamicD, derived: &Derived) -> f64 {
-        let most = dynamic.most[index];
-        if dynamic.readiness <= 0.0 || most <= base {
+    fn d_gain(&mut self, base: f64, index: usize, moved: f64, d_max: &DMax, derived: &Derived) -> f64 {
+        let most = d_max.most[index];
+        if d_max.readiness <= 0.0 || most <= base {
             return base;
         }
-        let share = self.d_boost.apply((dynamic.readiness * moved).min(1.0), derived.d_boost);
+        let share = self.d_boost.apply((d_max.readiness * moved).min(1.0), derived.d_boost);
         base + (most - base) * share
     }
 
@@ -194,7 +194,7 @@ mod tests {
             gyro: [gyro; 3],
             levelled: [false; 3],
             deflection: [1.0; 3],
-            attenuation: 1.0,
+            tpa: 1.0,
             boost: GainBoost::NONE,
             integrate: true,
         }
@@ -282,10 +282,10 @@ mod tests {
 
     #[test]
     fn a_moving_setpoint_raises_d_by_the_advance() {
-        let dynamic = |advance: f64| DynamicD { most: [1.0; 3], readiness: 1e-4, setpoint_share: advance };
+        let dynamic = |advance: f64| DMax { most: [1.0; 3], readiness: 1e-4, setpoint_share: advance };
         let sums = [0.0, 0.5, 2.0].map(|advance| {
             let mut tuning = Tuning::default();
-            tuning.rate.dynamic_d = dynamic(advance);
+            tuning.rate.d_max = dynamic(advance);
             let derived = Derived::new(&tuning, 0.001);
             let mut rate_loop = RateLoop::default();
             for step in 0..100 {
@@ -301,7 +301,7 @@ mod tests {
     fn integrals_turn_with_the_craft() {
         let mut tuning = Tuning::default();
         let turned = |rotates: bool, gyro: [f64; 3], tuning: &mut Tuning| {
-            tuning.rate.rotates_integrals = rotates;
+            tuning.rate.iterm_rotation = rotates;
             for gains in &mut tuning.rate.gains {
                 gains.i = 0.0;
             }

@@ -77,9 +77,9 @@ pub struct BoostTuning {
     pub throttle_cutoff_hz: f64,
 }
 
-/// D that rises in fast moves.
+/// D-max: D that rises in fast moves.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct DynamicD {
+pub struct DMax {
     /// What D rises to on roll, pitch and yaw, per °/s²; not above the base: it stays.
     pub most: [f64; 3],
     /// Share of the way for each °/s² of movement; 0: it stays at the base.
@@ -97,10 +97,10 @@ pub struct RateTuning {
     pub sum_limit: [f64; 3],
     /// Greatest integrals.
     pub integral_limit: [f64; 3],
-    /// D in fast moves.
-    pub dynamic_d: DynamicD,
-    /// The integrals turn with the craft, so that they go on pushing into the same direction of the world.
-    pub rotates_integrals: bool,
+    /// D-max.
+    pub d_max: DMax,
+    /// I-term rotation: the integrals turn with the craft, so that they go on pushing into the same direction of the world.
+    pub iterm_rotation: bool,
     /// First and second gyro filter.
     pub gyro_lpf1: DynamicLowPass,
     /// See [`RateTuning::gyro_lpf1`].
@@ -360,8 +360,8 @@ impl Reader<'_> {
         }
     }
 
-    fn dynamic_d(&self) -> DynamicD {
-        DynamicD {
+    fn d_max(&self) -> DMax {
+        DMax {
             most: ["roll", "pitch", "yaw"].map(|axis| D_SCALE * self.of("d_max_", axis, "")),
             readiness: self.number("d_max_gain") / FULL_D_DPS2,
             setpoint_share: self.number("d_max_advance") / 100.0,
@@ -379,8 +379,8 @@ impl Reader<'_> {
             gains: [self.gains("roll", 1.0), self.gains("pitch", 1.0), self.gains("yaw", YAW_I_FACTOR)],
             sum_limit: [sum, sum, sum_yaw],
             integral_limit: [sum * windup, sum * windup, sum_yaw * windup],
-            dynamic_d: self.dynamic_d(),
-            rotates_integrals: self.0.flag("iterm_rotation"),
+            d_max: self.d_max(),
+            iterm_rotation: self.0.flag("iterm_rotation"),
             gyro_lpf1,
             gyro_lpf2,
             d_lpf1,

@@ -92,7 +92,7 @@ impl Attitude {
     /// Corrects the tilt towards the vertical that follows from a specific force `force` (world axes) whose craft
     /// really accelerates by `force + missing − g`: gravity seen by an accelerometer whose motion is known. Returns
     /// how much of `missing` the turn has explained, m/s².
-    pub(super) fn steady(
+    pub(super) fn correct_tilt(
         &mut self,
         force: &Vector3<f64>,
         missing: &Vector3<f64>,
@@ -133,10 +133,10 @@ impl Attitude {
     }
 }
 
-/// What a specific force (world axes) lacks to be that of a craft in steady motion: what [`Attitude::steady`] is given
+/// What a specific force (world axes) lacks to be that of a craft in steady motion: what [`Attitude::correct_tilt`] is given
 /// when nothing better is known. `None` while the force is too far from gravity's size. The vertical part counts, too:
 /// it tells upright from upside down.
-pub(super) fn steady_missing(force: &Vector3<f64>) -> Option<Vector3<f64>> {
+pub(super) fn missing_in_steady_motion(force: &Vector3<f64>) -> Option<Vector3<f64>> {
     let size = force.norm() / GRAVITY;
     ((size - 1.0).abs() < STEADY_PART).then(|| Vector3::new(-force.x, -force.y, GRAVITY - force.z))
 }
@@ -177,8 +177,8 @@ mod tests {
         let gains = VerticalGains { kp: 0.25, ki: 0.0 };
         for _ in 0..400 {
             let force = attitude.matrix * body_up;
-            let missing = steady_missing(&force).unwrap();
-            attitude.steady(&force, &missing, &gains, 0.01);
+            let missing = missing_in_steady_motion(&force).unwrap();
+            attitude.correct_tilt(&force, &missing, &gains, 0.01);
         }
         let tilt = attitude.cos_tilt().acos();
         assert!((tilt - 0.1 * (-1.0_f64).exp()).abs() < 0.001, "{tilt}");
@@ -192,8 +192,8 @@ mod tests {
         let gains = VerticalGains { kp: 2.5, ki: 0.0 };
         for _ in 0..1000 {
             let force = attitude.matrix * body_up;
-            let missing = steady_missing(&force).unwrap();
-            attitude.steady(&force, &missing, &gains, 0.01);
+            let missing = missing_in_steady_motion(&force).unwrap();
+            attitude.correct_tilt(&force, &missing, &gains, 0.01);
         }
         assert!(attitude.cos_tilt() > 0.999, "{}", attitude.cos_tilt());
     }

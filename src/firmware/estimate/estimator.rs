@@ -2,7 +2,7 @@
 
 use nalgebra::{Rotation3, Vector2, Vector3};
 
-use super::attitude::{Attitude, VerticalGains, steady_missing};
+use super::attitude::{Attitude, VerticalGains, missing_in_steady_motion};
 use super::calibration::{AccCalibration, GyroCalibration, MagCalibration, NotTurned};
 use super::gps::GpsMonitor;
 use super::heading::{CourseComparison, MagTrust, magnetic_error};
@@ -124,11 +124,6 @@ impl Estimator {
     pub fn set_tuning(&mut self, tuning: EstimatorTuning) {
         self.horizontal.set_accel_trust(tuning.accel_trust);
         self.tuning = tuning;
-    }
-
-    /// Changes the source of the attitude and the like.
-    pub fn set_options(&mut self, options: EstimatorOptions) {
-        self.options = options;
     }
 
     /// The newest estimate.
@@ -288,10 +283,10 @@ impl Estimator {
         self.horizontal.predict(felt, dt);
         self.vertical.predict(force.z - GRAVITY, dt);
         self.course.predict(felt, dt);
-        self.hear_gps(now);
-        self.hear_baro();
+        self.fuse_gps(now);
+        self.fuse_baro();
         if self.options.attitude == AttitudeSource::Estimated || frame.truth_attitude.is_none() {
-            self.hear_mag(frame, dt);
+            self.fuse_mag(frame, dt);
             self.correct_tilt(&force, dt);
         }
         self.estimate.heading_rad = self.attitude.heading();
@@ -300,7 +295,7 @@ impl Estimator {
         self.publish();
     }
 
-    fn hear_gps(&mut self, now: SimTime) {
+    fn fuse_gps(&mut self, now: SimTime) {
         let timeout = self.options.gps_timeout_s.max(2.5 / self.tuning.gps_rate_hz);
         if let Some((sample, arrived)) = self.pending_gps.take()
             && let Some(sample) = self.gps.receive(sample, arrived)
@@ -323,7 +318,7 @@ impl Estimator {
         }
     }
 
-    fn hear_baro(&mut self) {
+    fn fuse_baro(&mut self) {
         let Some(pressure) = self.pending_pressure.take() else { return };
         let altitude = pressure_altitude_m(pressure);
         if self.tuning.altitude_source != AltitudeSource::GpsOnly && altitude.is_finite() {
@@ -336,7 +331,7 @@ impl Estimator {
         self.tuning.has_mag && self.since_mag_s < MAG_VALID_S
     }
 
-    fn hear_mag(&mut self, frame: &SensorFrame, dt: f64) {
+    fn fuse_mag(&mut self, frame: &SensorFrame, dt: f64) {
         self.since_mag_s += dt;
         let declination = match self.tuning.declination_deg {
             0.0 => self.options.declination_deg,
@@ -398,10 +393,10 @@ impl Estimator {
                 (true, true) => ORPHANED_FACTOR,
             };
             let gains = VerticalGains { kp: self.tuning.kp * factor, ki: self.tuning.ki };
-            let Some(missing) = steady_missing(&filtered) else { return };
+            let Some(missing) = missing_in_steady_motion(&filtered) else { return };
             (missing, gains)
         };
-        let explained = self.attitude.steady(&filtered, &missing, &gains, dt);
+        let explained = self.attitude.correct_tilt(&filtered, &missing, &gains, dt);
         self.horizontal.explain(Vector2::new(explained.y, explained.x));
     }
 

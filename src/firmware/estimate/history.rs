@@ -1,6 +1,6 @@
 //! The recent past of one axis, so that a late measurement is compared with what was believed at its own time.
 
-use super::chain::Gain;
+use super::kalman::Gain;
 
 /// Steps remembered: 320 ms at 100 Hz.
 const DEPTH: usize = 32;

@@ -2,8 +2,8 @@
 
 use nalgebra::Vector2;
 
-use super::chain::{Chain, ChainNoise, Gain};
 use super::history::Axis;
+use super::kalman::{Gain, KalmanCovariance, ProcessNoise};
 use crate::geo::{LatLon, local_offset};
 use crate::signals::GpsSample;
 
@@ -31,8 +31,8 @@ const VALID_S: f64 = 2.0;
 /// The horizontal filter; vectors are (north, east) of the origin.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Horizontal {
-    chain: Chain,
-    noise: ChainNoise,
+    covariance: KalmanCovariance,
+    noise: ProcessNoise,
     north: Axis,
     east: Axis,
     origin: Option<LatLon>,
@@ -44,8 +44,8 @@ pub(super) struct Horizontal {
 impl Horizontal {
     pub(super) fn new() -> Self {
         Self {
-            chain: Chain::new(POSITION_SIGMA, VELOCITY_SIGMA, 0.3),
-            noise: ChainNoise { accel: ACCEL_NOISE, drift: DRIFT_NOISE },
+            covariance: KalmanCovariance::new(POSITION_SIGMA, VELOCITY_SIGMA, 0.3),
+            noise: ProcessNoise { accel: ACCEL_NOISE, drift: DRIFT_NOISE },
             north: Axis::new(),
             east: Axis::new(),
             origin: None,
@@ -110,7 +110,7 @@ impl Horizontal {
             self.solutions = 0;
             return;
         }
-        self.chain.predict(dt, &self.noise);
+        self.covariance.predict(dt, &self.noise);
         self.north.predict(accel.x, dt);
         self.east.predict(accel.y, dt);
     }
@@ -128,8 +128,8 @@ impl Horizontal {
         }
         let dilution = if sample.hdop > 0.0 { (sample.hdop / GOOD_HDOP).clamp(1.0, 20.0) } else { 1.0 };
         let age = (age_s / STEP_S).round().max(0.0) as usize;
-        let mut chain = self.chain;
-        let by_velocity = chain.measure_velocity((VELOCITY_SIGMA * dilution).powi(2));
+        let mut covariance = self.covariance;
+        let by_velocity = covariance.measure_velocity((VELOCITY_SIGMA * dilution).powi(2));
         let (p, v) = self.past(age);
         let velocity_error = velocity - v;
         if exceeds(velocity_error, &by_velocity, VELOCITY_GATE) {
@@ -139,12 +139,12 @@ impl Horizontal {
             return;
         }
         self.correct(&by_velocity, velocity_error, age);
-        let before = chain;
-        let by_position = chain.measure_position((POSITION_SIGMA * dilution).powi(2));
+        let before = covariance;
+        let by_position = covariance.measure_position((POSITION_SIGMA * dilution).powi(2));
         let position_error = position - p;
         if exceeds(position_error, &by_position, POSITION_GATE) {
             // An honest velocity with a displaced position: after a while it is the place that has changed.
-            self.chain = before;
+            self.covariance = before;
             if self.lose_patience() {
                 let (p, _) = self.past(age);
                 self.north.shift(position.x - p.x);
@@ -152,7 +152,7 @@ impl Horizontal {
             }
             return;
         }
-        self.chain = chain;
+        self.covariance = covariance;
         // The correction by the velocity has moved the past position, too.
         let (p, _) = self.past(age);
         self.correct(&by_position, position - p, age);
@@ -183,7 +183,7 @@ impl Horizontal {
         let now = position + velocity * age_s;
         self.north.reset(now.x, velocity.x, STEP_S);
         self.east.reset(now.y, velocity.y, STEP_S);
-        self.chain = Chain::new(POSITION_SIGMA, VELOCITY_SIGMA, 0.3);
+        self.covariance = KalmanCovariance::new(POSITION_SIGMA, VELOCITY_SIGMA, 0.3);
         (self.suspicious, self.solutions) = (0, 0);
     }
 }

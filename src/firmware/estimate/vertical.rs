@@ -1,13 +1,13 @@
 //! Altitude and climb rate: dead reckoning by the accelerometer, held by barometer and GPS.
 
-use super::chain::{Chain, ChainNoise};
 use super::history::Axis;
+use super::kalman::{KalmanCovariance, ProcessNoise};
 use crate::signals::GpsSample;
 
 /// Nominal step, s.
 const STEP_S: f64 = 0.01;
 /// White error of the acceleration, (m/s²)²/Hz, and walk of its slow error, (m/s³)²/Hz.
-const NOISE: ChainNoise = ChainNoise { accel: 4e-4, drift: 4e-4 };
+const NOISE: ProcessNoise = ProcessNoise { accel: 4e-4, drift: 4e-4 };
 /// Standard deviation of a barometer sample, m (1 Pa is 8 cm), fully preferred.
 const BARO_SIGMA: f64 = 0.1;
 /// Steps between the pressure and its sample: half way between an ideal sensor and a filtered one.
@@ -40,7 +40,7 @@ pub enum AltitudeSource {
 /// The vertical filter. Zero is where it was set last.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Vertical {
-    chain: Chain,
+    covariance: KalmanCovariance,
     axis: Axis,
     /// Barometric and GPS altitude (m) of the zero.
     baro_zero: Option<f64>,
@@ -58,7 +58,7 @@ pub(super) fn pressure_altitude_m(pressure_pa: f64) -> f64 {
 impl Vertical {
     pub(super) fn new() -> Self {
         Self {
-            chain: Chain::new(0.5, 0.1, 0.1),
+            covariance: KalmanCovariance::new(0.5, 0.1, 0.1),
             axis: Axis::new(),
             baro_zero: None,
             gps_zero: None,
@@ -100,7 +100,7 @@ impl Vertical {
             self.axis.velocity = 0.0;
             return;
         }
-        self.chain.predict(dt, &NOISE);
+        self.covariance.predict(dt, &NOISE);
         self.axis.predict(accel, dt);
     }
 
@@ -111,8 +111,8 @@ impl Vertical {
         }
         let zero = *self.baro_zero.get_or_insert(altitude - self.axis.position);
         let sigma = BARO_SIGMA / preference.sqrt();
-        let mut chain = self.chain;
-        let gain = chain.measure_position(sigma * sigma);
+        let mut covariance = self.covariance;
+        let gain = covariance.measure_position(sigma * sigma);
         let error = altitude - zero - self.axis.past(BARO_AGE).0;
         self.since_baro_s = 0.0;
         if error.abs() > BARO_GATE + 5.0 * gain.innovation.sqrt() && self.spikes < PATIENCE {
@@ -120,7 +120,7 @@ impl Vertical {
             return;
         }
         self.spikes = 0;
-        self.chain = chain;
+        self.covariance = covariance;
         self.axis.correct(&gain, error, BARO_AGE, STEP_S);
     }
 
@@ -138,12 +138,12 @@ impl Vertical {
         }
         let zero = *zero;
         self.since_gps_s = 0.0;
-        let gain = self.chain.measure_velocity((CLIMB_SIGMA * dilution).powi(2));
+        let gain = self.covariance.measure_velocity((CLIMB_SIGMA * dilution).powi(2));
         let error = sample.vel_enu.z - self.axis.past(age).1;
         self.axis.correct(&gain, error.clamp(-5.0, 5.0), age, STEP_S);
         let sigma =
             if has_baro && source == AltitudeSource::Both { GPS_BESIDE_SIGMA } else { GPS_ALONE_SIGMA };
-        let gain = self.chain.measure_position((sigma * dilution).powi(2));
+        let gain = self.covariance.measure_position((sigma * dilution).powi(2));
         let error = altitude - zero - self.axis.past(age).0;
         self.axis.correct(&gain, error, age, STEP_S);
     }

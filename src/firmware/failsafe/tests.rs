@@ -134,7 +134,7 @@ fn throttle_long_low_just_disarms_unless_held_or_rescued() {
         assert_eq!(
             machine.update(&config, &FailsafeFacts { throttle_low: true, held, ..later }),
             Some(FailsafeAction::Stage2(expected)),
-            "{procedure} {high:?}"
+            "{procedure:?} {high:?}"
         );
     }
 }
@@ -220,7 +220,7 @@ fn mission_that_ends_is_replaced() {
         assert_eq!(
             machine.update(&config(procedure), &facts),
             Some(FailsafeAction::Switch(next)),
-            "{response:?} {procedure} {mission:?} fix {fix}"
+            "{response:?} {procedure:?} {mission:?} fix {fix}"
         );
         assert_eq!((machine.auto_landing(), machine.landed()), (next == AUTO_LAND, next == DROP));
     }

@@ -3,43 +3,45 @@
 //! The permanent id is what mode conditions, `aux` lines and protocols carry; the order of [`BOXES`] is the order in
 //! which protocols list them.
 
+use crate::telemetry::ModeBox;
+
 /// Permanent id of a box.
 pub type BoxId = u8;
 
 /// ARM.
-pub const ARM: BoxId = 0;
+pub const ARM: BoxId = ModeBox::Arm as BoxId;
 /// ANGLE.
-pub const ANGLE: BoxId = 1;
+pub const ANGLE: BoxId = ModeBox::Angle as BoxId;
 /// HORIZON.
-pub const HORIZON: BoxId = 2;
+pub const HORIZON: BoxId = ModeBox::Horizon as BoxId;
 /// ALTHOLD.
-pub const ALTHOLD: BoxId = 3;
+pub const ALTHOLD: BoxId = ModeBox::AltHold as BoxId;
 /// ANTI GRAVITY: the gains rise in quick throttle changes.
-pub const ANTI_GRAVITY: BoxId = 4;
+pub const ANTI_GRAVITY: BoxId = ModeBox::AntiGravity as BoxId;
 /// MAG: hold the heading while the yaw stick is centred.
-pub const MAG: BoxId = 5;
+pub const MAG: BoxId = ModeBox::Mag as BoxId;
 /// HEADFREE: sticks relative to the heading at arming.
-pub const HEADFREE: BoxId = 6;
+pub const HEADFREE: BoxId = ModeBox::HeadFree as BoxId;
 /// HEADADJ: take the present heading as the headfree reference.
-pub const HEADADJ: BoxId = 7;
+pub const HEADADJ: BoxId = ModeBox::HeadAdjust as BoxId;
 /// POS HOLD.
-pub const POS_HOLD: BoxId = 11;
+pub const POS_HOLD: BoxId = ModeBox::PosHold as BoxId;
 /// FAILSAFE, the switch.
-pub const FAILSAFE: BoxId = 27;
+pub const FAILSAFE: BoxId = ModeBox::Failsafe as BoxId;
 /// AIR MODE.
-pub const AIR_MODE: BoxId = 28;
+pub const AIR_MODE: BoxId = ModeBox::AirMode as BoxId;
 /// FLIP OVER AFTER CRASH: blocks arming, since nothing here can be flipped.
-pub const CRASH_FLIP: BoxId = 35;
+pub const CRASH_FLIP: BoxId = ModeBox::CrashFlip as BoxId;
 /// PREARM.
-pub const PREARM: BoxId = 36;
+pub const PREARM: BoxId = ModeBox::Prearm as BoxId;
 /// PARALYZE: no arming until reboot.
-pub const PARALYZE: BoxId = 45;
+pub const PARALYZE: BoxId = ModeBox::Paralyze as BoxId;
 /// GPS RESCUE.
-pub const GPS_RESCUE: BoxId = 46;
+pub const GPS_RESCUE: BoxId = ModeBox::GpsRescue as BoxId;
 /// STICK COMMANDS DISABLE: the sticks do not arm or disarm.
-pub const STICK_COMMANDS_DISABLE: BoxId = 51;
+pub const STICK_COMMANDS_DISABLE: BoxId = ModeBox::StickCommandsDisable as BoxId;
 /// AUTOPILOT.
-pub const AUTOPILOT: BoxId = 56;
+pub const AUTOPILOT: BoxId = ModeBox::Autopilot as BoxId;
 
 /// What happens when a box is switched on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -55,84 +57,96 @@ pub enum BoxLevel {
 /// One box.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BoxInfo {
-    /// Permanent id.
-    pub id: BoxId,
-    /// Name as protocols and displays print it.
-    pub name: &'static str,
+    /// Which box.
+    pub kind: ModeBox,
     /// What it does here.
     pub level: BoxLevel,
 }
 
-const fn full(id: BoxId, name: &'static str) -> BoxInfo {
-    BoxInfo { id, name, level: BoxLevel::Full }
+impl BoxInfo {
+    /// Its permanent id.
+    #[must_use]
+    pub fn id(&self) -> BoxId {
+        self.kind as BoxId
+    }
+
+    /// Its name as protocols and displays print it.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        self.kind.into()
+    }
 }
 
-const fn flag(id: BoxId, name: &'static str) -> BoxInfo {
-    BoxInfo { id, name, level: BoxLevel::Flag }
+const fn full(kind: ModeBox) -> BoxInfo {
+    BoxInfo { kind, level: BoxLevel::Full }
 }
 
-const fn name(id: BoxId, name: &'static str) -> BoxInfo {
-    BoxInfo { id, name, level: BoxLevel::Name }
+const fn flag(kind: ModeBox) -> BoxInfo {
+    BoxInfo { kind, level: BoxLevel::Flag }
+}
+
+const fn name(kind: ModeBox) -> BoxInfo {
+    BoxInfo { kind, level: BoxLevel::Name }
 }
 
 /// All boxes in the order in which protocols list them.
 pub const BOXES: [BoxInfo; 50] = [
-    full(ARM, "ARM"),
-    full(ANGLE, "ANGLE"),
-    full(HORIZON, "HORIZON"),
-    full(MAG, "MAG"),
-    full(ALTHOLD, "ALTHOLD"),
-    full(HEADFREE, "HEADFREE"),
-    name(55, "CHIRP"),
-    name(12, "PASSTHRU"),
-    full(FAILSAFE, "FAILSAFE"),
-    full(POS_HOLD, "POS HOLD"),
-    full(GPS_RESCUE, "GPS RESCUE"),
-    full(AUTOPILOT, "AUTOPILOT"),
-    full(ANTI_GRAVITY, "ANTI GRAVITY"),
-    full(HEADADJ, "HEADADJ"),
-    name(8, "CAMSTAB"),
-    flag(13, "BEEPER"),
-    name(15, "LEDLOW"),
-    flag(17, "CALIB"),
-    flag(19, "OSD DISABLE"),
-    name(20, "TELEMETRY"),
-    name(23, "SERVO1"),
-    name(24, "SERVO2"),
-    name(25, "SERVO3"),
-    flag(26, "BLACKBOX"),
-    full(AIR_MODE, "AIR MODE"),
-    name(29, "3D DISABLE"),
-    flag(30, "FPV ANGLE MIX"),
-    name(31, "BLACKBOX ERASE"),
-    flag(32, "CAMERA CONTROL 1"),
-    flag(33, "CAMERA CONTROL 2"),
-    flag(34, "CAMERA CONTROL 3"),
-    name(CRASH_FLIP, "FLIP OVER AFTER CRASH"),
-    full(PREARM, "PREARM"),
-    flag(37, "GPS BEEP SATELLITE COUNT"),
-    name(39, "VTX PIT MODE"),
-    full(PARALYZE, "PARALYZE"),
-    flag(40, "USER1"),
-    flag(41, "USER2"),
-    flag(42, "USER3"),
-    flag(43, "USER4"),
-    name(44, "PID AUDIO"),
-    name(47, "ACRO TRAINER"),
-    name(48, "VTX CONTROL DISABLE"),
-    flag(49, "LAUNCH CONTROL"),
-    name(50, "MSP OVERRIDE"),
-    full(STICK_COMMANDS_DISABLE, "STICK COMMANDS DISABLE"),
-    flag(52, "BEEPER MUTE"),
-    flag(53, "READY"),
-    name(54, "LAP TIMER RESET"),
-    flag(57, "WP CAPTURE"),
+    full(ModeBox::Arm),
+    full(ModeBox::Angle),
+    full(ModeBox::Horizon),
+    full(ModeBox::Mag),
+    full(ModeBox::AltHold),
+    full(ModeBox::HeadFree),
+    name(ModeBox::Chirp),
+    name(ModeBox::PassThru),
+    full(ModeBox::Failsafe),
+    full(ModeBox::PosHold),
+    full(ModeBox::GpsRescue),
+    full(ModeBox::Autopilot),
+    full(ModeBox::AntiGravity),
+    full(ModeBox::HeadAdjust),
+    name(ModeBox::CamStab),
+    flag(ModeBox::Beeper),
+    name(ModeBox::LedLow),
+    flag(ModeBox::Calib),
+    flag(ModeBox::OsdDisable),
+    name(ModeBox::Telemetry),
+    name(ModeBox::Servo1),
+    name(ModeBox::Servo2),
+    name(ModeBox::Servo3),
+    flag(ModeBox::Blackbox),
+    full(ModeBox::AirMode),
+    name(ModeBox::ThreeDDisable),
+    flag(ModeBox::FpvAngleMix),
+    name(ModeBox::BlackboxErase),
+    flag(ModeBox::CameraControl1),
+    flag(ModeBox::CameraControl2),
+    flag(ModeBox::CameraControl3),
+    name(ModeBox::CrashFlip),
+    full(ModeBox::Prearm),
+    flag(ModeBox::GpsBeepSatelliteCount),
+    name(ModeBox::VtxPitMode),
+    full(ModeBox::Paralyze),
+    flag(ModeBox::User1),
+    flag(ModeBox::User2),
+    flag(ModeBox::User3),
+    flag(ModeBox::User4),
+    name(ModeBox::PidAudio),
+    name(ModeBox::AcroTrainer),
+    name(ModeBox::VtxControlDisable),
+    flag(ModeBox::LaunchControl),
+    name(ModeBox::MspOverride),
+    full(ModeBox::StickCommandsDisable),
+    flag(ModeBox::BeeperMute),
+    flag(ModeBox::Ready),
+    name(ModeBox::LapTimerReset),
+    flag(ModeBox::WpCapture),
 ];
 
 /// The box with this permanent id.
 #[must_use]
 pub fn by_id(id: BoxId) -> Option<&'static BoxInfo> {
-    BOXES.iter().find(|entry| entry.id == id)
+    BOXES.iter().find(|entry| entry.id() == id)
 }
 
 /// Whether any build knows a box of this permanent id.
@@ -156,7 +170,7 @@ pub struct Equipment {
 
 /// The boxes that protocols list with this equipment, in order.
 pub fn listed(equipment: Equipment) -> impl Iterator<Item = &'static BoxInfo> {
-    BOXES.iter().filter(move |entry| match entry.id {
+    BOXES.iter().filter(move |entry| match entry.id() {
         MAG => equipment.mag,
         POS_HOLD | GPS_RESCUE | AUTOPILOT | 37 => equipment.gps,
         AIR_MODE => !equipment.airmode_feature,
@@ -197,7 +211,7 @@ mod tests {
     fn default_list_is_the_one_configurators_know() {
         let ids: Vec<_> =
             listed(Equipment { gps: true, airmode_feature: true, anti_gravity_feature: true, mag: true })
-                .map(|entry| entry.id)
+                .map(|entry| entry.id())
                 .collect();
         assert_eq!(
             ids,
@@ -209,7 +223,7 @@ mod tests {
     fn equipment_changes_the_list() {
         let bare: Vec<_> =
             listed(Equipment { gps: false, airmode_feature: false, anti_gravity_feature: false, mag: false })
-                .map(|entry| entry.id)
+                .map(|entry| entry.id())
                 .collect();
         for missing in [MAG, POS_HOLD, GPS_RESCUE, AUTOPILOT] {
             assert!(!bare.contains(&missing));
@@ -219,7 +233,7 @@ mod tests {
 
     #[test]
     fn permanent_ids_are_unique() {
-        let mut ids: Vec<_> = BOXES.iter().map(|entry| entry.id).collect();
+        let mut ids: Vec<_> = BOXES.iter().map(|entry| entry.id()).collect();
         ids.sort_unstable();
         ids.dedup();
         assert_eq!(ids.len(), BOXES.len());

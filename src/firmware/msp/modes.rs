@@ -29,7 +29,7 @@ fn listed(configuration: &Configuration, facts: &MspFacts) -> impl Iterator<Item
 pub(super) fn box_names(call: &mut Call<'_>) -> Result<(), Refused> {
     let page = usize::from(call.request.u8());
     for entry in listed(call.configuration, call.facts).skip(page * PAGE).take(PAGE) {
-        call.reply.bytes(entry.name.as_bytes());
+        call.reply.bytes(entry.name().as_bytes());
         call.reply.u8(b';');
     }
     Ok(())
@@ -38,7 +38,7 @@ pub(super) fn box_names(call: &mut Call<'_>) -> Result<(), Refused> {
 pub(super) fn box_ids(call: &mut Call<'_>) -> Result<(), Refused> {
     let page = usize::from(call.request.u8());
     for entry in listed(call.configuration, call.facts).skip(page * PAGE).take(PAGE) {
-        call.reply.u8(entry.id);
+        call.reply.u8(entry.id());
     }
     Ok(())
 }
@@ -56,7 +56,7 @@ pub(super) fn mode_bits(configuration: &Configuration, facts: &MspFacts) -> u64 
 
 /// Flight modes are on while they fly, other boxes while they are switched on.
 fn is_on(facts: &MspFacts, entry: &BoxInfo) -> bool {
-    let mode = match entry.id {
+    let mode = match entry.id() {
         boxes::ARM => return facts.armed,
         boxes::ANGLE => Mode::Angle,
         boxes::HORIZON => Mode::Horizon,

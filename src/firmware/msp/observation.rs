@@ -8,7 +8,7 @@ use crate::firmware::cli::BuildInfo;
 use crate::firmware::modes::BoxSet;
 use crate::geo::{LatLon, distance_bearing};
 use crate::signals::RC_CHANNELS;
-use crate::telemetry::ModeFlags;
+use crate::telemetry::{ArmingFlags, ModeFlags};
 
 /// Full signal strength.
 const RSSI_MAX: u16 = 1023;
@@ -24,8 +24,8 @@ pub struct MspFacts {
     pub modes: ModeFlags,
     /// Boxes that are switched on.
     pub switches: BoxSet,
-    /// Arming-disable flags, by bit.
-    pub arming_blocks: u32,
+    /// What blocks arming.
+    pub arming_blocks: ArmingFlags,
     /// Whether a change waits for a restart.
     pub reboot_required: bool,
     /// Period of the control loop, µs.
@@ -78,7 +78,7 @@ impl Default for MspFacts {
             armed: false,
             modes: ModeFlags::NONE,
             switches: BoxSet::NONE,
-            arming_blocks: 0,
+            arming_blocks: ArmingFlags::NONE,
             reboot_required: false,
             cycle_time_us: 1000,
             cpu_load_percent: 0,
@@ -114,7 +114,7 @@ impl MspFacts {
             armed: firmware.is_armed(),
             modes: firmware.modes(),
             switches: firmware.boxes(),
-            arming_blocks: if firmware.is_armed() { 0 } else { firmware.arming_flags().bits() },
+            arming_blocks: firmware.arming_blocks(),
             reboot_required: firmware.parameters().arming.reboot_required,
             cycle_time_us: 1_000_000 / firmware.setup.options().rate_hz.max(1),
             cpu_load_percent: 0,

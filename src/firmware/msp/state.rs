@@ -65,7 +65,7 @@ fn write_status(call: &mut Call<'_>, extended: bool) {
     reply.u8(used as i64);
     reply.bytes(&more[..used]);
     reply.u8(ARMING_FLAGS);
-    reply.u32(facts.arming_blocks);
+    reply.u32(facts.arming_blocks.bits());
     reply.u8(u8::from(facts.reboot_required));
     reply.u16(0); // temperature unknown
     reply.u8(Scope::RateProfile.instances());

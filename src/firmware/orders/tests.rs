@@ -251,7 +251,7 @@ fn failsafe_response_by_policy_and_procedure() {
                 failsafe_response(&landing.navigator, &params, procedure, true),
                 failsafe_response(&approaching.navigator, &params, procedure, false),
             ];
-            assert_eq!(got, expected, "{policy} {procedure}");
+            assert_eq!(got, expected, "{policy} {procedure:?}");
         }
     }
 }

@@ -17,19 +17,10 @@ pub enum Value {
 }
 
 /// The values of all settings, of all profiles.
-///
-/// Two stores are equal when their values and active profiles are; the generation does not count.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
     values: Vec<Value>,
     active: [u8; 4],
-    generation: u32,
-}
-
-impl PartialEq for Settings {
-    fn eq(&self, other: &Self) -> bool {
-        self.values == other.values && self.active == other.active
-    }
 }
 
 impl Default for Settings {
@@ -40,7 +31,7 @@ impl Default for Settings {
                 values.extend(of_scope(scope).map(Setting::default_value));
             }
         }
-        Self { values, active: [0; 4], generation: 0 }
+        Self { values, active: [0; 4] }
     }
 }
 
@@ -50,12 +41,6 @@ fn of_scope(scope: Scope) -> impl Iterator<Item = &'static Setting> {
 }
 
 impl Settings {
-    /// Grows by one with every change, so that readers know when to refresh what they derived.
-    #[must_use]
-    pub fn generation(&self) -> u32 {
-        self.generation
-    }
-
     /// A number, the position of the chosen word, or a port number, in the active profile; 0 for any other name.
     #[must_use]
     pub fn number(&self, name: &str) -> i64 {
@@ -119,9 +104,8 @@ impl Settings {
     /// Makes another profile the active one; an instance that does not exist is refused with `false`.
     pub fn select(&mut self, scope: Scope, instance: u8) -> bool {
         let exists = instance < scope.instances();
-        if exists && self.active[scope as usize] != instance {
+        if exists {
             self.active[scope as usize] = instance;
-            self.touch();
         }
         exists
     }
@@ -157,20 +141,13 @@ impl Settings {
         let value = check(setting, value)?;
         let place = offset(setting, instance).and_then(|at| self.values.get_mut(at));
         let place = place.ok_or(AssignError::UnknownName)?;
-        if *place != value {
-            *place = value;
-            self.touch();
-        }
+        *place = value;
         Ok(())
     }
 
     /// Returns all values and the profile selection to those of a fresh vehicle.
     pub fn reset(&mut self) {
-        *self = Self { generation: self.generation.wrapping_add(1), ..Self::default() };
-    }
-
-    fn touch(&mut self) {
-        self.generation = self.generation.wrapping_add(1);
+        *self = Self::default();
     }
 }
 
@@ -205,20 +182,18 @@ mod tests {
     }
 
     #[test]
-    fn every_change_is_announced_and_nothing_else() {
+    fn refused_values_change_nothing_and_reset_brings_all_defaults_back() {
         let mut settings = Settings::default();
-        let mut seen = settings.generation();
-        let mut changed = |settings: &Settings| std::mem::replace(&mut seen, settings.generation()) != seen;
         settings.set_number("small_angle", 25).expect("allowed");
-        assert!(!changed(&settings), "the value was there already");
+        assert_eq!(settings, Settings::default(), "the value was there already");
         settings.set_number("small_angle", 180).expect("allowed");
-        assert!(changed(&settings));
+        let changed = settings.clone();
+        assert_ne!(changed, Settings::default());
         settings.set_number("small_angle", 181).expect_err("too large");
-        assert!(!changed(&settings));
+        assert_eq!(settings, changed);
         assert!(settings.select(Scope::Profile, 1));
-        assert!(changed(&settings));
+        assert_ne!(settings, changed);
         settings.reset();
-        assert!(changed(&settings));
         assert_eq!(settings, Settings::default());
     }
 

@@ -15,7 +15,8 @@ use crate::geo::LatLon;
 use crate::plan::FlightPlan;
 use crate::signals::SimTime;
 use crate::telemetry::{
-    FirmwareEvent, Mode, ModeFlags, NavEvent, NavOutput, NavState, NavTelemetry, Refusal, TransitionReason,
+    FirmwareEvent, FirmwareNotice, Mode, ModeFlags, NavEvent, NavOutput, NavState, NavTelemetry, Refusal,
+    TransitionReason,
 };
 
 use super::flight_control::Demand;
@@ -138,9 +139,9 @@ impl Navigation {
             mission: self.orders.status(&self.navigator),
             response: failsafe_response(&self.navigator, &parameters.nav, procedure, inputs.fix),
         };
-        let policy = parameters.nav.rx_loss_policy.into();
+        let policy = parameters.nav.rx_loss_policy;
         let mut report = |stage, response: Response| {
-            outbox.push(FirmwareEvent::Failsafe { policy, stage, procedure: response.word() });
+            outbox.push(FirmwareEvent::Failsafe { policy, stage, procedure: response.procedure() });
         };
         match self.failsafe.update(&parameters.failsafe, &facts)? {
             FailsafeAction::Stage1 => {
@@ -268,7 +269,7 @@ impl Navigation {
         let (nav, tuning) = (&parameters.nav, &parameters.hold);
         let held = self.holds.update(hold, &self.inputs, throttle_stick_us, nav, tuning);
         if held.no_position && !self.no_position_reported {
-            outbox.push(FirmwareEvent::Notice("POS HOLD has no position: the craft is only levelled."));
+            outbox.push(FirmwareEvent::Notice(FirmwareNotice::NoPosition));
         }
         self.no_position_reported = held.no_position;
         let demand = match self.output {

@@ -9,7 +9,7 @@ use crate::firmware::outbox::Outbox;
 use crate::firmware::parameters::Parameters;
 use crate::geo::LatLon;
 use crate::signals::{BatterySample, SensorFrame, SimTime};
-use crate::telemetry::FirmwareEvent;
+use crate::telemetry::{FirmwareEvent, FirmwareNotice};
 
 /// What the sensors tell of the craft.
 #[derive(Debug, Clone)]
@@ -64,10 +64,10 @@ impl Sensing {
     fn update_battery(&mut self, sample: BatterySample, parameters: &Parameters, outbox: &mut Outbox) {
         match self.battery.receive(&parameters.battery, sample) {
             Some(BatteryState::Warning) => {
-                outbox.push(FirmwareEvent::Notice("Battery low: land soon."));
+                outbox.push(FirmwareEvent::Notice(FirmwareNotice::BatteryLow));
             }
             Some(BatteryState::Critical) => {
-                outbox.push(FirmwareEvent::Notice("Battery critical: land now."));
+                outbox.push(FirmwareEvent::Notice(FirmwareNotice::BatteryCritical));
             }
             Some(BatteryState::Init | BatteryState::NotPresent | BatteryState::Ok) | None => {}
         }
@@ -77,7 +77,7 @@ impl Sensing {
     pub(in crate::firmware) fn watch_imu(&mut self, outbox: &mut Outbox) {
         let frozen = self.estimate().imu_frozen;
         if frozen && !self.imu_frozen {
-            outbox.push(FirmwareEvent::Notice("The inertial sensors repeat one sample: they hang."));
+            outbox.push(FirmwareEvent::Notice(FirmwareNotice::ImuFrozen));
         }
         self.imu_frozen = frozen;
     }

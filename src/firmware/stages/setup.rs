@@ -7,7 +7,7 @@ use crate::firmware::estimate::NotTurned;
 use crate::firmware::outbox::Outbox;
 use crate::firmware::parameters::{BootChoices, Parameters};
 use crate::firmware::settings::Value;
-use crate::telemetry::FirmwareEvent;
+use crate::telemetry::{FirmwareEvent, FirmwareNotice};
 
 /// The configuration in memory, what was chosen from it at boot, and the parameters in force.
 #[derive(Debug, Clone)]
@@ -32,9 +32,7 @@ impl Setup {
         let boot = BootChoices::new(&configuration);
         let parameters = Parameters::new(&configuration, &boot, &options);
         if configuration.mixer.rows().is_none() && configuration.mixer != MixerKind::Custom {
-            outbox.push(FirmwareEvent::Notice(
-                "This mixer type does not fly here: QUADX, QUADP, QUADX1234 and CUSTOM do; QUADX is flown instead.",
-            ));
+            outbox.push(FirmwareEvent::Notice(FirmwareNotice::MixerNotFlown));
         }
         let (build, storage) = (BuildInfo::default(), StorageFacts::default());
         let setup = Self { options, build, storage, configuration, boot, parameters };
@@ -112,9 +110,7 @@ impl Setup {
     /// Says so when making the configuration consistent took the GPS away.
     fn report_lost_gps(&self, had_gps: bool, outbox: &mut Outbox) {
         if had_gps && !self.configuration.features.has(Feature::Gps) {
-            outbox.push(FirmwareEvent::Notice(
-                "GPS is off: gps_provider wants a receiver on a serial port; set gps_provider = VIRTUAL, feature GPS, save.",
-            ));
+            outbox.push(FirmwareEvent::Notice(FirmwareNotice::GpsSwitchedOff));
         }
     }
 
@@ -134,13 +130,11 @@ impl Setup {
         result: Result<[i64; 3], NotTurned>,
     ) -> FirmwareEvent {
         FirmwareEvent::Notice(match result {
-            Err(NotTurned) => {
-                "Magnetometer not calibrated: the craft was not turned about all its axes; its offsets stay."
-            }
+            Err(NotTurned) => FirmwareNotice::MagNotTurned,
             Ok(offsets) => {
                 match self.configuration.settings.set("mag_calibration", Value::Array(offsets.to_vec())) {
-                    Ok(()) => "Magnetometer calibrated; save keeps the result.",
-                    Err(_) => "Magnetometer not calibrated: its field is out of range; its offsets stay.",
+                    Ok(()) => FirmwareNotice::MagCalibrated,
+                    Err(_) => FirmwareNotice::MagOutOfRange,
                 }
             }
         })

@@ -18,8 +18,6 @@ const PAGE_MAX: usize = 512;
 const CUT: u8 = 1;
 /// The line was refused.
 const REFUSED: u8 = 2;
-/// Commands that have no place in a message.
-const FORBIDDEN: [&str; 3] = ["bl", "msc", "serialpassthrough"];
 
 /// The last line and its output.
 #[derive(Debug, Clone, Default)]
@@ -50,10 +48,6 @@ impl CommandMessage {
         line.clone_into(&mut self.line);
         self.output.clear();
         self.flags = 0;
-        if is_forbidden(line) {
-            self.flags = REFUSED;
-            return Some(Err(Some(self.page(0))));
-        }
         self.open = Some(frame.clone());
         Some(Ok(line.to_owned()))
     }
@@ -77,11 +71,4 @@ impl CommandMessage {
         payload.extend(&rest[..rest.len().min(PAGE_MAX)]);
         payload
     }
-}
-
-fn is_forbidden(line: &str) -> bool {
-    let mut words = line.split_ascii_whitespace();
-    let first = words.next().unwrap_or_default();
-    let bare_defaults = first.eq_ignore_ascii_case("defaults") && words.next().is_none();
-    bare_defaults || FORBIDDEN.iter().any(|word| first.eq_ignore_ascii_case(word))
 }

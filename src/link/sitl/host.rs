@@ -295,7 +295,7 @@ impl Sitl {
         let t_ms = self.time.0 / 1000;
         let craft = firmware.craft_view();
         if !craft.armed && !craft.arming_blocked_by.is_empty() {
-            print(Said::Out(lines::blocked_line(t_ms, &craft.arming_blocked_by)));
+            print(Said::Out(lines::blocked_line(t_ms, craft.arming_blocked_by)));
         }
         let facts = firmware.msp_facts(None);
         let line = FlightLine {

@@ -4,6 +4,7 @@ use std::net::SocketAddr;
 
 use crate::geo::LatLon;
 use crate::signals::RcFrame;
+use crate::telemetry::ArmingFlags;
 
 use crate::link::proto::fdm;
 
@@ -105,8 +106,8 @@ impl std::fmt::Display for FlightLine {
 
 /// The once-a-second line while arming is blocked.
 #[must_use]
-pub(super) fn blocked_line(t_ms: u64, reasons: &[&str]) -> String {
-    format!("[SITL] t={t_ms}ms Arming disabled: {}", reasons.join(" "))
+pub(super) fn blocked_line(t_ms: u64, reasons: ArmingFlags) -> String {
+    format!("[SITL] t={t_ms}ms Arming disabled: {reasons}")
 }
 
 /// The restart of the firmware.
@@ -115,6 +116,7 @@ pub(super) const RESET_LINE: &str = "[system]Reset!";
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::telemetry::ArmingFlag;
 
     #[test]
     fn start_lines_are_those_that_scripts_wait_for() {
@@ -147,7 +149,10 @@ mod tests {
             line.to_string(),
             "[SITL] t=12345ms  spd=5.00m/s  pos=(404635000,-795182500)  alt=50.00m  att=(0.0,-1.0,360.0)"
         );
-        assert_eq!(blocked_line(7, &["RXLOSS", "CLI"]), "[SITL] t=7ms Arming disabled: RXLOSS CLI");
+        assert_eq!(
+            blocked_line(7, [ArmingFlag::RxLoss, ArmingFlag::Cli].into_iter().collect()),
+            "[SITL] t=7ms Arming disabled: RXLOSS CLI"
+        );
         assert_eq!(
             first_rc_line(1.5, &RcFrame::SAFE),
             "[SITL] new rc 40: t:1.500000 AETR: 1500 1500 1000 1500 AUX1-4: 1000 1000 1000 1000"

@@ -119,11 +119,13 @@ impl<'a> Fields<'a> {
                 ("rx_recovered", Self::Failsafe { policy: None, stage: 0, procedure: None })
             }
             FirmwareEvent::Failsafe { policy, stage, procedure } => {
-                let (policy, procedure) = (Some(*policy), Some(*procedure));
+                let (policy, procedure) = (Some((*policy).into()), Some((*procedure).into()));
                 ("failsafe", Self::Failsafe { policy, stage: *stage, procedure })
             }
             FirmwareEvent::Nav(event) => return Self::of_nav(event),
-            FirmwareEvent::Notice(text) => ("notice", Self::Notice { text: (*text).into() }),
+            FirmwareEvent::Notice(notice) => {
+                ("notice", Self::Notice { text: <&'static str>::from(notice).into() })
+            }
         })
     }
 
@@ -204,7 +206,8 @@ mod tests {
     use crate::session::Event;
     use crate::signals::SimTime;
     use crate::telemetry::{
-        AbortReason, DisarmReason, FaultKind, GuardName, GuardOp, Mode, ModeFlags, NavState, TransitionReason,
+        AbortReason, DisarmReason, FailsafeProcedure, FaultKind, GuardName, GuardOp, Mode, ModeFlags,
+        NavState, RxLossPolicy, TransitionReason,
     };
 
     fn session_line(kind: SessionEvent) -> String {
@@ -239,7 +242,11 @@ mod tests {
             r#"{"t":12.34,"event":"mode","active":["ARM","POS HOLD"]}"#
         );
         assert_eq!(
-            firmware(FirmwareEvent::Failsafe { policy: "LAND", stage: 2, procedure: "LAND" }),
+            firmware(FirmwareEvent::Failsafe {
+                policy: RxLossPolicy::Land,
+                stage: 2,
+                procedure: FailsafeProcedure::Land,
+            }),
             r#"{"t":12.34,"event":"failsafe","policy":"LAND","stage":2,"procedure":"LAND"}"#
         );
         assert_eq!(

@@ -111,7 +111,7 @@ fn name(craft: &CraftView, channel: usize) -> String {
         2 => "THROTTLE".to_owned(),
         3 => "YAW".to_owned(),
         _ => {
-            let mut names = ranges(craft, channel).map(|range| range.name);
+            let mut names = ranges(craft, channel).map(|range| <&'static str>::from(range.mode_box));
             match (names.next(), names.count()) {
                 (None, _) => format!("AUX{}", channel - 3),
                 (Some(first), 0) => first.to_owned(),
@@ -158,8 +158,9 @@ pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
             for column in from..=to {
                 put(buffer, column, "░", role);
             }
-            if several && usize::from(to - from) > range.name.len() {
-                buffer.set_string(from + 1, bar.y, range.name, theme.style(role));
+            let name: &'static str = range.mode_box.into();
+            if several && usize::from(to - from) > name.len() {
+                buffer.set_string(from + 1, bar.y, name, theme.style(role));
             }
         }
         if known {

@@ -2,15 +2,21 @@
 
 use super::*;
 use crate::session::SessionView;
+use crate::telemetry::ArmingFlag;
 
 const SINK_US: u16 = 1194;
 
-fn state(ranges: &[(&'static str, u8, u16, u16)]) -> AppState {
+fn state(ranges: &[(Mode, u8, u16, u16)]) -> AppState {
     let mut view = SessionView::default();
     let vehicle = std::sync::Arc::make_mut(&mut view.vehicle);
     vehicle.craft.mode_ranges = ranges
         .iter()
-        .map(|&(name, channel, start_us, end_us)| ModeRange { name, channel, start_us, end_us })
+        .map(|&(mode, channel, start_us, end_us)| ModeRange {
+            mode_box: mode.into(),
+            channel,
+            start_us,
+            end_us,
+        })
         .collect();
     vehicle.settings.hover_stick_us = 1500;
     vehicle.settings.raised_stick_us = 1300;
@@ -27,7 +33,7 @@ fn sticks(effects: &[Effect]) -> RcFrame {
 
 #[test]
 fn switches_are_found_where_the_craft_has_them() {
-    let mut state = state(&[("ARM", 7, 900, 1200), ("AUTOPILOT", 9, 1700, 2100)]);
+    let mut state = state(&[(Mode::Arm, 7, 900, 1200), (Mode::Autopilot, 9, 1700, 2100)]);
     assert_eq!(switch(&state, Mode::Arm), Ok(Switch { channel: 7, on_us: 1050, off_us: 1500 }));
     let frame = sticks(&toggle_autopilot(&mut state));
     assert_eq!(frame.channels[9], 1900);
@@ -48,12 +54,12 @@ fn the_throttle_goes_to_hover_and_back() {
     assert_eq!(sticks(&move_throttle(&mut state)).channels[2], 1000);
 }
 
-const HOLDS: [(&str, u8, u16, u16); 5] = [
-    ("ARM", 4, 1700, 2100),
-    ("AUTOPILOT", 5, 1700, 2100),
-    ("ANGLE", 6, 1300, 2100),
-    ("ALTHOLD", 6, 1700, 2100),
-    ("POS HOLD", 7, 900, 1200),
+const HOLDS: [(Mode, u8, u16, u16); 5] = [
+    (Mode::Arm, 4, 1700, 2100),
+    (Mode::Autopilot, 5, 1700, 2100),
+    (Mode::Angle, 6, 1300, 2100),
+    (Mode::AltHold, 6, 1700, 2100),
+    (Mode::PosHold, 7, 900, 1200),
 ];
 
 #[test]
@@ -146,17 +152,17 @@ fn a_return_home_is_taken_back_by_its_own_key_and_by_that_of_the_autopilot() {
 
 #[test]
 fn a_hold_mode_on_the_arm_channel_is_left_alone() {
-    let mut state = state(&[("ARM", 4, 1700, 2100), ("ANGLE", 4, 900, 1300)]);
+    let mut state = state(&[(Mode::Arm, 4, 1700, 2100), (Mode::Angle, 4, 900, 1300)]);
     assert_eq!(sticks(&toggle_arm(&mut state)).channels[4], 1900);
     assert_eq!(sticks(&move_throttle(&mut state)).channels[4], 1900);
 }
 
 #[test]
 fn arming_is_refused_with_the_cause_but_disarming_never() {
-    let mut state = state(&[("ARM", 4, 1700, 2100)]);
+    let mut state = state(&[(Mode::Arm, 4, 1700, 2100)]);
     let vehicle = std::sync::Arc::make_mut(&mut state.view.vehicle);
-    vehicle.craft.arming_blocked_by.push("BOOTGRACE");
-    vehicle.craft.arming_blocked_by.push("ARM_SWITCH");
+    vehicle.craft.arming_blocked_by.set(ArmingFlag::BootGrace, true);
+    vehicle.craft.arming_blocked_by.set(ArmingFlag::ArmSwitch, true);
     let sentence = can_arm(&state).expect_err("blocked");
     assert!(sentence.contains("BOOTGRACE"), "{sentence}");
     std::sync::Arc::make_mut(&mut state.view.vehicle).craft.armed = true;

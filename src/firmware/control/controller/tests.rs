@@ -205,10 +205,10 @@ fn a_new_flight_knows_nothing_of_the_throttle_of_the_last() {
 #[test]
 fn gains_fall_with_throttle_and_before_take_off() {
     let mut controller = Controller::new(Tuning::default(), DT);
-    assert!((controller.attenuation(0.0) - 0.8).abs() < 1e-9);
-    assert!((controller.attenuation(0.2) - 1.0).abs() < 1e-9);
-    assert!((controller.attenuation(0.0) - 1.0).abs() < 1e-9);
-    assert!((controller.attenuation(1.0) - 0.35).abs() < 1e-9);
+    assert!((controller.tpa(0.0) - 0.8).abs() < 1e-9);
+    assert!((controller.tpa(0.2) - 1.0).abs() < 1e-9);
+    assert!((controller.tpa(0.0) - 1.0).abs() < 1e-9);
+    assert!((controller.tpa(1.0) - 0.35).abs() < 1e-9);
 }
 
 #[test]

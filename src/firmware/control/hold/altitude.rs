@@ -241,6 +241,54 @@ mod tests {
         assert_eq!(sink_stick_us(1.0, &Params { hover_throttle: 1050, ..Params::default() }, &tuning), None);
     }
 
+    /// Seconds until a craft that neither sinks nor carries its weight is called landed, while it drifts; 10 s at most.
+    fn seconds_to_touchdown(drift_mps: f64, fix: bool) -> f64 {
+        let (params, tuning) = (Params::default(), HoldTuning::default());
+        let now = NavInputs {
+            time: crate::signals::SimTime::ZERO,
+            dt: 0.01,
+            armed: true,
+            fix,
+            altitude_valid: true,
+            throttle_raised: true,
+            failsafe: true,
+            home: None,
+            origin: crate::geo::LatLon::default(),
+            pos_ne: nalgebra::Vector2::zeros(),
+            vel_ne: nalgebra::Vector2::new(0.6 * drift_mps, -0.8 * drift_mps),
+            alt_m: 0.0,
+            climb_mps: 0.0,
+            heading_rad: 0.0,
+            yaw_rate_rps: 0.0,
+            roll_rad: 0.0,
+            pitch_rad: 0.0,
+            cos_tilt: 1.0,
+            accel_ne: nalgebra::Vector2::zeros(),
+            throttle_us: 1000.0,
+            stick_roll: 0.0,
+            stick_pitch: 0.0,
+            stick_yaw: 0.0,
+        };
+        let mut hold = AltitudeHold::default();
+        let mut updates = 0;
+        while !hold.has_touched_down() && updates < 1000 {
+            hold.update(None, &now, &params, &tuning);
+            updates += 1;
+        }
+        f64::from(updates) * now.dt
+    }
+
+    #[test]
+    fn a_craft_that_drifts_over_the_ground_has_not_landed() {
+        assert!(seconds_to_touchdown(0.0, true) < 5.0);
+        assert!(seconds_to_touchdown(0.49, true) < 5.0);
+        for drift_mps in [0.51, 2.0] {
+            assert!(seconds_to_touchdown(drift_mps, true) >= 10.0, "{drift_mps} m/s");
+        }
+        // Without a fix the drift is not known.
+        assert!(seconds_to_touchdown(2.0, false) < 5.0);
+    }
+
     #[test]
     fn the_descent_slows_down_towards_the_ground() {
         let params = Params::default();

@@ -1,8 +1,8 @@
-//! Covariance of one axis of dead reckoning: position, velocity, acceleration error.
+//! Kalman covariance of one axis of dead reckoning: position, velocity, acceleration error.
 
 /// How much the model of one axis is trusted.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct ChainNoise {
+pub(super) struct ProcessNoise {
     /// Spectral density of the acceleration's white error, (m/s²)²/Hz.
     pub accel: f64,
     /// Spectral density of the walk of its slow error, (m/s³)²/Hz.
@@ -22,7 +22,7 @@ pub(super) struct Gain {
 /// The symmetric covariance of a Kalman filter with the states position `p`, velocity `v` and acceleration error `b`,
 /// driven by a measured acceleration: `p' = v`, `v' = a + b`, `b' = noise`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Chain {
+pub(super) struct KalmanCovariance {
     pp: f64,
     pv: f64,
     pb: f64,
@@ -31,7 +31,7 @@ pub(super) struct Chain {
     bb: f64,
 }
 
-impl Chain {
+impl KalmanCovariance {
     /// Independent states with these standard deviations.
     pub(super) fn new(position: f64, velocity: f64, accel: f64) -> Self {
         Self {
@@ -45,7 +45,7 @@ impl Chain {
     }
 
     /// `dt` seconds later: `F P Fᵀ + Q` with `F = [1 dt dt²/2; 0 1 dt; 0 0 1]`.
-    pub(super) fn predict(&mut self, dt: f64, noise: &ChainNoise) {
+    pub(super) fn predict(&mut self, dt: f64, noise: &ProcessNoise) {
         let Self { pv, pb, vv, vb, bb, .. } = *self;
         let half = 0.5 * dt * dt;
         self.pp += dt * (2.0 * pv + dt * (vv + pb + dt * (vb + 0.25 * dt * bb)));
@@ -59,16 +59,16 @@ impl Chain {
     /// Takes in a measurement of the position with this variance.
     pub(super) fn measure_position(&mut self, variance: f64) -> Gain {
         let (h, innovation) = ((self.pp, self.pv, self.pb), self.pp + variance);
-        self.condense(h, innovation)
+        self.update(h, innovation)
     }
 
     /// Takes in a measurement of the velocity with this variance.
     pub(super) fn measure_velocity(&mut self, variance: f64) -> Gain {
         let (h, innovation) = ((self.pv, self.vv, self.vb), self.vv + variance);
-        self.condense(h, innovation)
+        self.update(h, innovation)
     }
 
-    fn condense(&mut self, (p, v, b): (f64, f64, f64), innovation: f64) -> Gain {
+    fn update(&mut self, (p, v, b): (f64, f64, f64), innovation: f64) -> Gain {
         let gain =
             Gain { position: p / innovation, velocity: v / innovation, accel: b / innovation, innovation };
         // The floors keep rounding from ever making a variance negative.
@@ -87,43 +87,43 @@ mod tests {
     use super::*;
     use nalgebra::Matrix3;
 
-    fn matrix(c: &Chain) -> Matrix3<f64> {
+    fn matrix(c: &KalmanCovariance) -> Matrix3<f64> {
         Matrix3::new(c.pp, c.pv, c.pb, c.pv, c.vv, c.vb, c.pb, c.vb, c.bb)
     }
 
     #[test]
     fn prediction_is_the_matrix_product() {
-        let mut chain = Chain { pp: 2.0, pv: 0.3, pb: -0.1, vv: 1.5, vb: 0.2, bb: 0.7 };
+        let mut covariance = KalmanCovariance { pp: 2.0, pv: 0.3, pb: -0.1, vv: 1.5, vb: 0.2, bb: 0.7 };
         let dt = 0.2;
         let f = Matrix3::new(1.0, dt, 0.5 * dt * dt, 0.0, 1.0, dt, 0.0, 0.0, 1.0);
-        let expected = f * matrix(&chain) * f.transpose();
-        chain.predict(dt, &ChainNoise { accel: 0.0, drift: 0.0 });
-        assert!((matrix(&chain) - expected).norm() < 1e-12);
+        let expected = f * matrix(&covariance) * f.transpose();
+        covariance.predict(dt, &ProcessNoise { accel: 0.0, drift: 0.0 });
+        assert!((matrix(&covariance) - expected).norm() < 1e-12);
     }
 
     #[test]
     fn a_velocity_measurement_is_the_textbook_update() {
-        let mut chain = Chain { pp: 2.0, pv: 0.3, pb: -0.1, vv: 1.5, vb: 0.2, bb: 0.7 };
-        let p = matrix(&chain);
+        let mut covariance = KalmanCovariance { pp: 2.0, pv: 0.3, pb: -0.1, vv: 1.5, vb: 0.2, bb: 0.7 };
+        let p = matrix(&covariance);
         let k = p.column(1) / (p[(1, 1)] + 0.5);
         let expected = p - k * p.row(1);
-        let gain = chain.measure_velocity(0.5);
+        let gain = covariance.measure_velocity(0.5);
         assert!((gain.accel - k[2]).abs() < 1e-12);
-        assert!((matrix(&chain) - expected).norm() < 1e-12);
+        assert!((matrix(&covariance) - expected).norm() < 1e-12);
     }
 
     #[test]
     fn stays_positive_over_an_hour() {
-        let mut chain = Chain::new(10.0, 1.0, 0.5);
-        let noise = ChainNoise { accel: 4e-4, drift: 1e-3 };
+        let mut covariance = KalmanCovariance::new(10.0, 1.0, 0.5);
+        let noise = ProcessNoise { accel: 4e-4, drift: 1e-3 };
         for step in 0..360_000 {
-            chain.predict(0.01, &noise);
+            covariance.predict(0.01, &noise);
             if step % 10 == 0 {
-                chain.measure_position(0.09);
-                chain.measure_velocity(0.0049);
+                covariance.measure_position(0.09);
+                covariance.measure_velocity(0.0049);
             }
         }
-        assert!(matrix(&chain).cholesky().is_some());
-        assert!(chain.pp < 0.01);
+        assert!(matrix(&covariance).cholesky().is_some());
+        assert!(covariance.pp < 0.01);
     }
 }

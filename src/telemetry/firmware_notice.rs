@@ -1,0 +1,53 @@
+//! What the flight controller has to say to its pilot.
+
+/// Something the pilot should read; `Display` is the sentence.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::IntoStaticStr)]
+pub enum FirmwareNotice {
+    /// The airframe type of the configuration is not flown.
+    #[strum(
+        to_string = "This mixer type does not fly here: QUADX, QUADP, QUADX1234 and CUSTOM do; QUADX is flown instead."
+    )]
+    MixerNotFlown,
+    /// Making the configuration consistent switched the GPS feature off.
+    #[strum(
+        to_string = "GPS is off: gps_provider wants a receiver on a serial port; set gps_provider = VIRTUAL, feature GPS, save."
+    )]
+    GpsSwitchedOff,
+    /// The first arming waits for a gyro calibration.
+    #[strum(to_string = "Calibrating the gyro before the first arming.")]
+    CalibratingGyro,
+    /// Arm assist was needed.
+    #[strum(
+        to_string = "Arm assist: armed although the ARM switch was on early or the throttle was not quite low."
+    )]
+    ArmAssisted,
+    /// An accelerometer calibration ended.
+    #[strum(to_string = "Accelerometer calibrated; save keeps the result.")]
+    AccCalibrated,
+    /// A magnetometer calibration ended.
+    #[strum(to_string = "Magnetometer calibrated; save keeps the result.")]
+    MagCalibrated,
+    /// A magnetometer calibration ended in vain.
+    #[strum(
+        to_string = "Magnetometer not calibrated: the craft was not turned about all its axes; its offsets stay."
+    )]
+    MagNotTurned,
+    /// The offsets that a magnetometer calibration found are too large.
+    #[strum(to_string = "Magnetometer not calibrated: its field is out of range; its offsets stay.")]
+    MagOutOfRange,
+    /// Position hold is asked for without a position.
+    #[strum(to_string = "POS HOLD has no position: the craft is only levelled.")]
+    NoPosition,
+    /// The battery is below its warning voltage.
+    #[strum(to_string = "Battery low: land soon.")]
+    BatteryLow,
+    /// The battery is below its lowest voltage.
+    #[strum(to_string = "Battery critical: land now.")]
+    BatteryCritical,
+    /// The inertial sensors hang.
+    #[strum(to_string = "The inertial sensors repeat one sample: they hang.")]
+    ImuFrozen,
+    /// A crash was detected.
+    #[strum(to_string = "Crash detected: the craft is levelled, the sticks rest.")]
+    CrashDetected,
+}

@@ -1,0 +1,177 @@
+//! The boxes: what a mode condition binds to a switch.
+
+use super::mode::Mode;
+
+/// A box. The discriminant is its permanent id in mode conditions and protocols, `Display` its name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::IntoStaticStr)]
+#[repr(u8)]
+pub enum ModeBox {
+    /// Motors may run.
+    #[strum(to_string = "ARM")]
+    Arm = 0,
+    /// Self-levelling with an angle limit.
+    #[strum(to_string = "ANGLE")]
+    Angle = 1,
+    /// Self-levelling about the stick centre.
+    #[strum(to_string = "HORIZON")]
+    Horizon = 2,
+    /// Altitude hold.
+    #[strum(to_string = "ALTHOLD")]
+    AltHold = 3,
+    /// Gains rise in quick throttle changes.
+    #[strum(to_string = "ANTI GRAVITY")]
+    AntiGravity = 4,
+    /// Heading hold while the yaw stick is centred.
+    #[strum(to_string = "MAG")]
+    Mag = 5,
+    /// Sticks relative to the heading at arming.
+    #[strum(to_string = "HEADFREE")]
+    HeadFree = 6,
+    /// Takes the present heading as the headfree reference.
+    #[strum(to_string = "HEADADJ")]
+    HeadAdjust = 7,
+    /// CAMSTAB.
+    #[strum(to_string = "CAMSTAB")]
+    CamStab = 8,
+    /// Position hold.
+    #[strum(to_string = "POS HOLD")]
+    PosHold = 11,
+    /// PASSTHRU.
+    #[strum(to_string = "PASSTHRU")]
+    PassThru = 12,
+    /// BEEPER.
+    #[strum(to_string = "BEEPER")]
+    Beeper = 13,
+    /// LEDLOW.
+    #[strum(to_string = "LEDLOW")]
+    LedLow = 15,
+    /// CALIB.
+    #[strum(to_string = "CALIB")]
+    Calib = 17,
+    /// OSD DISABLE.
+    #[strum(to_string = "OSD DISABLE")]
+    OsdDisable = 19,
+    /// TELEMETRY.
+    #[strum(to_string = "TELEMETRY")]
+    Telemetry = 20,
+    /// SERVO1.
+    #[strum(to_string = "SERVO1")]
+    Servo1 = 23,
+    /// SERVO2.
+    #[strum(to_string = "SERVO2")]
+    Servo2 = 24,
+    /// SERVO3.
+    #[strum(to_string = "SERVO3")]
+    Servo3 = 25,
+    /// BLACKBOX.
+    #[strum(to_string = "BLACKBOX")]
+    Blackbox = 26,
+    /// The FAILSAFE switch.
+    #[strum(to_string = "FAILSAFE")]
+    Failsafe = 27,
+    /// Full stabilisation at zero throttle.
+    #[strum(to_string = "AIR MODE")]
+    AirMode = 28,
+    /// 3D DISABLE.
+    #[strum(to_string = "3D DISABLE")]
+    ThreeDDisable = 29,
+    /// FPV ANGLE MIX.
+    #[strum(to_string = "FPV ANGLE MIX")]
+    FpvAngleMix = 30,
+    /// BLACKBOX ERASE.
+    #[strum(to_string = "BLACKBOX ERASE")]
+    BlackboxErase = 31,
+    /// CAMERA CONTROL 1.
+    #[strum(to_string = "CAMERA CONTROL 1")]
+    CameraControl1 = 32,
+    /// CAMERA CONTROL 2.
+    #[strum(to_string = "CAMERA CONTROL 2")]
+    CameraControl2 = 33,
+    /// CAMERA CONTROL 3.
+    #[strum(to_string = "CAMERA CONTROL 3")]
+    CameraControl3 = 34,
+    /// Turn the craft over after a crash.
+    #[strum(to_string = "FLIP OVER AFTER CRASH")]
+    CrashFlip = 35,
+    /// Must be on for arming.
+    #[strum(to_string = "PREARM")]
+    Prearm = 36,
+    /// GPS BEEP SATELLITE COUNT.
+    #[strum(to_string = "GPS BEEP SATELLITE COUNT")]
+    GpsBeepSatelliteCount = 37,
+    /// VTX PIT MODE.
+    #[strum(to_string = "VTX PIT MODE")]
+    VtxPitMode = 39,
+    /// USER1.
+    #[strum(to_string = "USER1")]
+    User1 = 40,
+    /// USER2.
+    #[strum(to_string = "USER2")]
+    User2 = 41,
+    /// USER3.
+    #[strum(to_string = "USER3")]
+    User3 = 42,
+    /// USER4.
+    #[strum(to_string = "USER4")]
+    User4 = 43,
+    /// PID AUDIO.
+    #[strum(to_string = "PID AUDIO")]
+    PidAudio = 44,
+    /// No arming until reboot.
+    #[strum(to_string = "PARALYZE")]
+    Paralyze = 45,
+    /// Fly home and land.
+    #[strum(to_string = "GPS RESCUE")]
+    GpsRescue = 46,
+    /// ACRO TRAINER.
+    #[strum(to_string = "ACRO TRAINER")]
+    AcroTrainer = 47,
+    /// VTX CONTROL DISABLE.
+    #[strum(to_string = "VTX CONTROL DISABLE")]
+    VtxControlDisable = 48,
+    /// LAUNCH CONTROL.
+    #[strum(to_string = "LAUNCH CONTROL")]
+    LaunchControl = 49,
+    /// MSP OVERRIDE.
+    #[strum(to_string = "MSP OVERRIDE")]
+    MspOverride = 50,
+    /// The sticks do not arm or disarm.
+    #[strum(to_string = "STICK COMMANDS DISABLE")]
+    StickCommandsDisable = 51,
+    /// BEEPER MUTE.
+    #[strum(to_string = "BEEPER MUTE")]
+    BeeperMute = 52,
+    /// READY.
+    #[strum(to_string = "READY")]
+    Ready = 53,
+    /// LAP TIMER RESET.
+    #[strum(to_string = "LAP TIMER RESET")]
+    LapTimerReset = 54,
+    /// CHIRP.
+    #[strum(to_string = "CHIRP")]
+    Chirp = 55,
+    /// The waypoint autopilot flies.
+    #[strum(to_string = "AUTOPILOT")]
+    Autopilot = 56,
+    /// WP CAPTURE.
+    #[strum(to_string = "WP CAPTURE")]
+    WpCapture = 57,
+}
+
+impl From<Mode> for ModeBox {
+    /// The box whose switch asks for the mode.
+    fn from(mode: Mode) -> Self {
+        match mode {
+            Mode::Arm => Self::Arm,
+            Mode::Angle => Self::Angle,
+            Mode::Horizon => Self::Horizon,
+            Mode::Mag => Self::Mag,
+            Mode::AltHold => Self::AltHold,
+            Mode::HeadFree => Self::HeadFree,
+            Mode::PosHold => Self::PosHold,
+            Mode::Failsafe => Self::Failsafe,
+            Mode::GpsRescue => Self::GpsRescue,
+            Mode::Autopilot => Self::Autopilot,
+        }
+    }
+}
