@@ -1,5 +1,7 @@
 //! The fence, before the flight and in it.
 
+use betadeck::autopilot::fence::pre_flight;
+use betadeck::autopilot::machine::{Facts, transition};
 use betadeck::autopilot::{Navigator, Params};
 use betadeck::plan::WaypointType::{Flyover, Hold};
 use betadeck::telemetry::{
@@ -61,6 +63,22 @@ fn a_plan_outside_the_fence_is_refused_once_with_its_distance() {
     assert_eq!(nav.drain_events().count(), 1);
     nav.update(&inputs(), &params, &stored);
     assert!(nav.telemetry().refusal.is_some());
+}
+
+#[test]
+fn exactly_on_the_fence_is_inside() {
+    for (waypoint_m, allowed) in [(100.0, true), (100.01, false)] {
+        let verdict = pre_flight(100, true, [(Flyover, waypoint_m)]);
+        assert_eq!(verdict.is_ok(), allowed, "a waypoint at {waypoint_m} m");
+    }
+    for (distance_m, inside) in [(100.0, true), (100.01, false)] {
+        let mut facts = Facts::default();
+        facts.approach.distance_m = 50.0;
+        facts.fence.limit_m = Some(100.0);
+        facts.fence.distance_m = Some(distance_m);
+        let decision = transition(NavState::Approaching, &facts);
+        assert_eq!(decision.is_none(), inside, "the craft at {distance_m} m: {decision:?}");
+    }
 }
 
 /// A mission that was given up because the craft was carried away, and the craft then beyond the fence.

@@ -149,3 +149,34 @@ fn legs_cross_the_antimeridian() {
     assert!((telemetry.distance_m.unwrap() - 50.0).abs() < 0.05);
     assert!((telemetry.bearing_rad.unwrap().to_degrees() - 90.0).abs() < 0.1);
 }
+
+#[test]
+fn a_delay_counts_the_height_of_its_leg() {
+    let mut slow = waypoint(Delay, 0.0, 0.0, 0.0, 0.0);
+    slow.duration_ds = 500;
+    // 60 m along and 80 m up are 100 m in 50 s.
+    let mut flight = Flight::new(guide(), &[slow, waypoint(Hold, 60.0, 0.0, 100.0, 5.0)], 20.0).launch();
+    let mut fastest: f64 = 0.0;
+    while flight.t() < 25.0 {
+        flight.tick();
+        fastest = fastest.max(flight.nav.telemetry().speed_setpoint_mps.unwrap_or(0.0));
+    }
+    assert!((fastest - 2.0).abs() < 0.1, "{fastest} m/s");
+}
+
+#[test]
+fn a_resumed_mission_keeps_the_yaw_rate_cap_of_the_plan_before_it() {
+    let mut cap = waypoint(YawRate, 0.0, 0.0, 0.0, 0.0);
+    cap.speed_cms = 5;
+    let waypoints = [cap, waypoint(Flyover, 0.0, 40.0, 20.0, 5.0), waypoint(Hold, 60.0, 40.0, 20.0, 5.0)];
+    let mut flight = Flight::new(guide(), &waypoints, 20.0).launch();
+    assert!(flight.until(60.0, |f| f.nav.index() == 2));
+    flight.nav.disengage();
+    flight.engage();
+    assert_eq!((flight.nav.state(), flight.nav.index()), (NavState::Approaching, 2));
+    let resumed = flight.t();
+    flight.run(8.0);
+    let rates = || flight.since(resumed).map(|s| s.out.yaw_rate_rps.unwrap().abs().to_degrees());
+    assert!(worst(rates()) > 4.0, "it turns to the new leg");
+    assert!(worst(rates()) <= 5.0 + 1e-9, "{}", worst(rates()));
+}

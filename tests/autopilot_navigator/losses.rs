@@ -96,3 +96,33 @@ fn nothing_but_finite_numbers_comes_out_of_broken_inputs() {
         (NavState::Idle, Some(TransitionReason::GivenUp(AbortReason::GpsLost)))
     );
 }
+
+#[test]
+fn a_craft_up_to_20_m_farther_than_at_its_best_does_not_fly_away() {
+    let stored = three();
+    let params = Params::default();
+    let (mut nav, mut at) = flying(0, &stored, &params);
+    for (back_m, flies) in [(19.9, true), (20.1, false)] {
+        at.time = SimTime(at.time.0 + 10_000);
+        at.pos_ne.x = -back_m;
+        nav.update(&at, &params, &stored);
+        assert_eq!(nav.is_flying(), flies, "{back_m} m");
+    }
+    assert_eq!(nav.telemetry().reason, Some(TransitionReason::GivenUp(AbortReason::Flyaway)));
+}
+
+#[test]
+fn a_craft_that_comes_less_than_2_m_nearer_in_30_s_makes_no_progress() {
+    let stored = three();
+    let params = Params::default();
+    for (nearer_m, flies) in [(1.9, false), (2.1, true)] {
+        let (mut nav, mut at) = flying(0, &stored, &params);
+        let (began, from) = (at.time, at.pos_ne.x);
+        while at.time.seconds_since(began) < 31.0 {
+            at.time = SimTime(at.time.0 + 10_000);
+            at.pos_ne.x = from + nearer_m * (at.time.seconds_since(began) / 29.0).min(1.0);
+            nav.update(&at, &params, &stored);
+        }
+        assert_eq!(nav.is_flying(), flies, "{nearer_m} m nearer");
+    }
+}

@@ -15,6 +15,7 @@ mod orders;
 mod pilot;
 mod states;
 mod vectors;
+mod windup;
 
 use betadeck::autopilot::io::NavInputs;
 use betadeck::autopilot::{Navigator, Params};
