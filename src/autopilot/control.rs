@@ -1,9 +1,9 @@
 //! How to get there: altitude, position and yaw control, shared by the autopilot and the firmware's hold modes.
 
 mod altitude;
-mod blend;
+mod bumpless;
 mod disturbance;
-mod hover;
+mod hover_throttle;
 mod position;
 mod yaw;
 
@@ -11,9 +11,9 @@ pub use altitude::{
     AltitudeController, AltitudeMeasurement, AltitudeTarget, THROTTLE_SLEW_US_PER_S, ThrottleTerms,
     throttle_share,
 };
-pub use blend::Blend;
+pub use bumpless::BumplessTransfer;
 pub use disturbance::DisturbanceObserver;
-pub use hover::{Balance, HOVER_MAX_US, HOVER_MIN_US, HoverLearner};
+pub use hover_throttle::{HOVER_MAX_US, HOVER_MIN_US, HoverMeasurement, HoverThrottleEstimator};
 pub use position::{
     LEAN_SLEW_RPS, PositionController, PositionLaw, PositionMeasurement, PositionTarget, earth_to_body,
 };

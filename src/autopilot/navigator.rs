@@ -2,7 +2,7 @@
 //!
 //! One update, in this order: facts (fix, plan, fence, distances, progress, hold and touchdown clocks) → at most one
 //! transition → target and aim of the state → position, altitude and yaw control → demands. While nothing is flown it
-//! only watches, so that wind and hover throttle are known when it takes over.
+//! only tracks the flight, so that wind and hover throttle are known when it takes over.
 
 mod climb;
 mod cursor;
@@ -137,7 +137,7 @@ impl Navigator {
             facts.touchdown_held_us = self.descent.time_touchdown(&facts.touchdown, now.time);
             (!self.step(&facts, &now, params)).then_some((facts, seen))
         } else {
-            self.watch(&now, params);
+            self.track(&now, params);
             self.check_fence_after_abort(&now, params, &seen);
             None
         };

@@ -1,7 +1,7 @@
 //! Altitude control: a setpoint that moves as the craft can, and the throttle that follows it.
 
-use super::blend::Blend;
-use super::hover::{Balance, HoverLearner};
+use super::bumpless::BumplessTransfer;
+use super::hover_throttle::{HoverMeasurement, HoverThrottleEstimator};
 use crate::autopilot::params::Params;
 
 /// How fast the setpoint's speed may change, m/s².
@@ -91,7 +91,7 @@ pub fn throttle_share(throttle_us: f64, params: &Params) -> f64 {
 /// One altitude controller for the autopilot, altitude hold and the failsafe descent.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct AltitudeController {
-    hover: HoverLearner,
+    hover: HoverThrottleEstimator,
     /// Hover throttle when this controller took over, µs.
     captured_us: f64,
     setpoint_m: f64,
@@ -103,13 +103,13 @@ pub struct AltitudeController {
     relief_us: f64,
     limits_us: Option<(f64, f64)>,
     params: Option<Params>,
-    blend: Blend,
+    transfer: BumplessTransfer,
 }
 
 impl AltitudeController {
-    /// Watches a cycle that somebody else flies, so that the hover throttle is known when this controller takes over.
-    pub fn watch(&mut self, now: &AltitudeMeasurement, params: &Params, dt: f64) {
-        self.hover.watch(&balance(now, params), dt);
+    /// Tracks a cycle that somebody else flies, so that the hover throttle is known when this controller takes over.
+    pub fn track(&mut self, now: &AltitudeMeasurement, params: &Params, dt: f64) {
+        self.hover.update(&hover_measurement(now, params), dt);
     }
 
     /// Takes over: the setpoint starts at the craft, the throttle where it was.
@@ -129,7 +129,7 @@ impl AltitudeController {
         self.params = Some(*params);
         let law = self.terms(now).throttle_us(params);
         self.throttle_us = now.throttle_us;
-        self.blend.start(now.throttle_us, law);
+        self.transfer.start(now.throttle_us, law);
     }
 
     /// Altitude setpoint now, m above home.
@@ -154,7 +154,7 @@ impl AltitudeController {
         }
     }
 
-    /// Takes this much (µs) off the throttle of the law from now on: a landing that feels for the ground.
+    /// Takes this much (µs) off the throttle of the law from now on: a landing that does not sink any more.
     pub fn set_relief_us(&mut self, relief_us: f64) {
         self.relief_us = relief_us;
     }
@@ -176,17 +176,17 @@ impl AltitudeController {
         if !(now.altitude_m + now.climb_mps + now.cos_tilt + now.throttle_us).is_finite() {
             return self.throttle_us;
         }
-        self.hover.watch(&balance(now, params), dt);
+        self.hover.update(&hover_measurement(now, params), dt);
         let landing = self.move_setpoint(now, target, params, dt);
         self.integrate(now, landing, params, dt);
         if let Some(old) = self.params.filter(|old| old != params) {
             // A changed parameter must not step the throttle.
             let terms = self.terms(now);
-            let before = terms.throttle_us(&old) + self.blend.remaining();
-            self.blend.start(before, terms.throttle_us(params));
+            let before = terms.throttle_us(&old) + self.transfer.remaining();
+            self.transfer.start(before, terms.throttle_us(params));
             self.params = Some(*params);
         }
-        let wanted = self.blend.apply(self.terms(now).throttle_us(params), dt) - self.relief_us;
+        let wanted = self.transfer.apply(self.terms(now).throttle_us(params), dt) - self.relief_us;
         let (min, max) = self.slew_limits(params, dt);
         let step = THROTTLE_SLEW_US_PER_S * dt;
         let slewed = wanted.clamp(self.throttle_us - step, self.throttle_us + step);
@@ -284,8 +284,8 @@ fn flare_mps(setpoint_m: f64, target_m: f64) -> f64 {
     if flares { (FLARE * setpoint_m).max(SLOWEST_FLARE_MPS) } else { f64::INFINITY }
 }
 
-fn balance(now: &AltitudeMeasurement, params: &Params) -> Balance {
-    Balance {
+fn hover_measurement(now: &AltitudeMeasurement, params: &Params) -> HoverMeasurement {
+    HoverMeasurement {
         throttle_us: now.throttle_us,
         zero_us: params.throttle_zero_us(),
         climb_mps: now.climb_mps,

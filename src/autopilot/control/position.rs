@@ -2,7 +2,7 @@
 
 use nalgebra::Vector2;
 
-use super::blend::Blend;
+use super::bumpless::BumplessTransfer;
 use super::disturbance::DisturbanceObserver;
 use crate::autopilot::guidance::stop_speed_mps;
 use crate::autopilot::params::Params;
@@ -115,7 +115,7 @@ pub struct PositionController {
     saturated: bool,
     limit_rad: Option<f64>,
     params: Option<Params>,
-    fade: [Blend; 2],
+    transfer: [BumplessTransfer; 2],
     /// Lean flown by somebody else until now, to lead on from.
     flown: Option<Vector2<f64>>,
     /// Demand of the last update, rad.
@@ -123,9 +123,9 @@ pub struct PositionController {
 }
 
 impl PositionController {
-    /// Watches a cycle that somebody else flies: wind and drag stay known, integrals bleed, the setpoints follow the
+    /// Tracks a cycle that somebody else flies: wind and drag stay known, integrals bleed, the setpoints follow the
     /// craft.
-    pub fn watch(&mut self, now: &PositionMeasurement, dt: f64) {
+    pub fn track(&mut self, now: &PositionMeasurement, dt: f64) {
         self.observe(now, dt);
         let keep = 0.5_f64.powf(dt / BLEED_HALF_LIFE_S);
         self.speed_integral *= keep;
@@ -144,7 +144,7 @@ impl PositionController {
     pub fn engage(&mut self, now: &PositionMeasurement) {
         let observer = self.observer;
         *self = Self { observer, ..Self::default() };
-        self.watch(now, 0.0);
+        self.track(now, 0.0);
     }
 
     /// Speed setpoint, m/s.
@@ -168,13 +168,13 @@ impl PositionController {
         self.integrate(now, target, params, dt);
         let law = self.law(now, target, params);
         if let Some(flown) = self.flown.take() {
-            self.start_fade(flown, law);
+            self.start_transfer(flown, law);
         } else if let Some(old) = self.params.filter(|old| old != params) {
-            let before = self.law(now, target, &old) + self.fade_remaining();
-            self.start_fade(before, law);
+            let before = self.law(now, target, &old) + self.transfer_remaining();
+            self.start_transfer(before, law);
         }
         self.params = Some(*params);
-        let wanted = Vector2::new(self.fade[0].apply(law.x, dt), self.fade[1].apply(law.y, dt));
+        let wanted = Vector2::new(self.transfer[0].apply(law.x, dt), self.transfer[1].apply(law.y, dt));
         let limit = self.slew_limit(params, dt);
         self.saturated = wanted.norm() > limit;
         let finite = wanted.iter().all(|axis| axis.is_finite());
@@ -269,13 +269,13 @@ impl PositionController {
             + (target.target_accel - self.accel_filtered) * a
     }
 
-    fn start_fade(&mut self, old: Vector2<f64>, new: Vector2<f64>) {
-        self.fade[0].start(old.x, new.x);
-        self.fade[1].start(old.y, new.y);
+    fn start_transfer(&mut self, old: Vector2<f64>, new: Vector2<f64>) {
+        self.transfer[0].start(old.x, new.x);
+        self.transfer[1].start(old.y, new.y);
     }
 
-    fn fade_remaining(&self) -> Vector2<f64> {
-        Vector2::new(self.fade[0].remaining(), self.fade[1].remaining())
+    fn transfer_remaining(&self) -> Vector2<f64> {
+        Vector2::new(self.transfer[0].remaining(), self.transfer[1].remaining())
     }
 
     /// The greatest lean, led to the parameter's at a limited rate.

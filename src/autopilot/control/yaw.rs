@@ -1,6 +1,6 @@
 //! Where the nose points while the autopilot flies.
 
-use crate::autopilot::control::blend::Blend;
+use super::bumpless::BumplessTransfer;
 use crate::autopilot::params::{Params, YawMode};
 use crate::geo::wrap_pi;
 
@@ -67,7 +67,7 @@ pub struct YawController {
     course_trusted: bool,
     ramp: f64,
     params: Option<Params>,
-    fade: Blend,
+    transfer: BumplessTransfer,
     last_dps: f64,
 }
 
@@ -91,10 +91,10 @@ impl YawController {
             0.0
         };
         if self.params.is_some_and(|old| old != *params) {
-            self.fade.start(self.last_dps, rate);
+            self.transfer.start(self.last_dps, rate);
         }
         self.params = Some(*params);
-        let faded = self.fade.apply(rate, dt);
+        let faded = self.transfer.apply(rate, dt);
         let wanted = if faded.is_finite() { faded } else { 0.0 };
         let step = YAW_SLEW_DPS2 * dt;
         self.last_dps += (wanted - self.last_dps).clamp(-step, step);

@@ -54,11 +54,11 @@ fn stick_share(stick: f64, params: &Params) -> f64 {
 }
 
 impl Navigator {
-    /// Follows a cycle that somebody else flies.
-    pub(super) fn watch(&mut self, now: &NavInputs, params: &Params) {
-        self.altitude.watch(&vertical(now), params, now.dt);
+    /// Tracks a cycle that somebody else flies.
+    pub(super) fn track(&mut self, now: &NavInputs, params: &Params) {
+        self.altitude.track(&vertical(now), params, now.dt);
         if now.fix {
-            self.position.watch(&horizontal(now), now.dt);
+            self.position.track(&horizontal(now), now.dt);
         }
     }
 
@@ -75,7 +75,7 @@ impl Navigator {
             AltitudeTarget::Rate(_) => self.altitude.setpoint_m(),
         };
         let lean = if seen.stick_override {
-            self.position.watch(&horizontal(now), now.dt);
+            self.position.track(&horizontal(now), now.dt);
             Vector2::new(stick_share(now.stick_pitch, params), stick_share(now.stick_roll, params))
                 .cap_magnitude(1.0)
                 * params.max_lean_rad()

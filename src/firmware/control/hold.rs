@@ -115,13 +115,13 @@ impl Holds {
             let throttle = self.altitude.update(stick, now, params, tuning);
             (Some(throttle), self.altitude.has_touched_down())
         } else {
-            self.altitude.watch(now, params);
+            self.altitude.track(now, params);
             (None, false)
         };
         let lean = if modes.position && now.fix && tuning.uses_gps {
             Some(self.position.update(now, params, tuning))
         } else {
-            self.position.watch(now);
+            self.position.track(now);
             None
         };
         HoldOutput { lean, throttle, no_position: modes.position && lean.is_none(), touchdown }

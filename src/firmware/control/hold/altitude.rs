@@ -55,10 +55,10 @@ pub(super) struct AltitudeHold {
 
 impl AltitudeHold {
     /// Somebody else flies.
-    pub(super) fn watch(&mut self, now: &NavInputs, params: &Params) {
+    pub(super) fn track(&mut self, now: &NavInputs, params: &Params) {
         self.phase = Phase::Off;
         self.grounded_s = 0.0;
-        self.controller.watch(&measurement(now), params, now.dt);
+        self.controller.track(&measurement(now), params, now.dt);
     }
 
     /// Whether the descent has ended on the ground.

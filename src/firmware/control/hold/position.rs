@@ -24,10 +24,10 @@ pub(super) struct PositionHold {
 
 impl PositionHold {
     /// Somebody else flies.
-    pub(super) fn watch(&mut self, now: &NavInputs) {
+    pub(super) fn track(&mut self, now: &NavInputs) {
         (self.point, self.is_on) = (None, false);
         if now.fix {
-            self.controller.watch(&measurement(now), now.dt);
+            self.controller.track(&measurement(now), now.dt);
         }
     }
 
@@ -45,7 +45,7 @@ impl PositionHold {
         );
         if stick != Vector2::zeros() {
             self.point = None;
-            self.controller.watch(&measured, now.dt);
+            self.controller.track(&measured, now.dt);
             let lean = stick.cap_magnitude(1.0) * limit;
             return LeanDemand { pitch_rad: lean.x, roll_rad: lean.y };
         }

@@ -1,17 +1,17 @@
-//! Changing hands without a step: the difference between the old and the new demand fades out.
+//! Bumpless transfer: the difference between the old and the new demand fades out.
 
 /// Time in which a difference fades out, s.
 const FADE_S: f64 = 1.0;
 
 /// A difference that fades out linearly.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Blend {
+pub struct BumplessTransfer {
     offset: f64,
     left_s: f64,
 }
 
-impl Blend {
-    /// From now on [`Blend::apply`] leads from `old` to `new`, the demands of the same instant.
+impl BumplessTransfer {
+    /// From now on [`BumplessTransfer::apply`] leads from `old` to `new`, the demands of the same instant.
     pub fn start(&mut self, old: f64, new: f64) {
         let offset = old - new;
         *self = if offset.is_finite() { Self { offset, left_s: FADE_S } } else { Self::default() };
@@ -42,10 +42,10 @@ mod tests {
 
     #[test]
     fn leads_from_the_old_to_the_new_value() {
-        let mut blend = Blend::default();
-        blend.start(10.0, 2.0);
-        assert!((blend.apply(2.0, 0.5) - 10.0).abs() < 1e-12);
-        assert!((blend.apply(2.0, 0.5) - 6.0).abs() < 1e-12);
-        assert!((blend.apply(2.0, 0.5) - 2.0).abs() < 1e-12);
+        let mut transfer = BumplessTransfer::default();
+        transfer.start(10.0, 2.0);
+        assert!((transfer.apply(2.0, 0.5) - 10.0).abs() < 1e-12);
+        assert!((transfer.apply(2.0, 0.5) - 6.0).abs() < 1e-12);
+        assert!((transfer.apply(2.0, 0.5) - 2.0).abs() < 1e-12);
     }
 }

@@ -1,14 +1,14 @@
-//! Learning the throttle that holds the craft, whatever the parameter says.
+//! Estimate of the throttle that holds the craft, whatever the parameter says.
 
 use crate::geo::GRAVITY;
 
-/// Limits of the learned hover throttle, µs.
+/// Limits of the estimated hover throttle, µs.
 pub const HOVER_MIN_US: f64 = 1050.0;
 /// See [`HOVER_MIN_US`].
 pub const HOVER_MAX_US: f64 = 1700.0;
 /// Time constant of the filters on throttle and climb rate, s.
 const FILTER_S: f64 = 0.15;
-/// Time constant of the estimate while watching and right after engaging, s.
+/// Time constant of the estimate while somebody else flies and right after engaging, s.
 const FAST_S: f64 = 0.8;
 /// How long the estimate is followed after engaging, s of quiet flight.
 const FAST_FOR_S: f64 = 5.0;
@@ -16,17 +16,17 @@ const FAST_FOR_S: f64 = 5.0;
 const SLOW_S: f64 = 10.0;
 /// Altitude error beyond which the integral of the altitude nearly rests, m.
 const FAR_M: f64 = 2.0;
-/// Wanted climb rate at which learning counts half, m/s: climbing and sinking take another throttle than hovering.
+/// Wanted climb rate at which the estimate follows half as fast, m/s: climbing and sinking take another throttle than hovering.
 const HALF_CLIMB_MPS: f64 = 1.0;
 /// How long the craft must have been airborne before an estimate counts at engaging, s.
 const SETTLED_S: f64 = 2.0;
 /// Altitude above home from which the craft counts as airborne, m.
 const AIRBORNE_M: f64 = 1.0;
 
-/// Learns the hover throttle from the vertical balance: thrust grows about with the square of the throttle above its
+/// Estimates the hover throttle from the vertical balance: thrust grows about with the square of the throttle above its
 /// zero, so a craft that accelerates upwards by `a` hovers at `zero + (throttle − zero)·√(cos tilt/(1 + a/g))`.
 #[derive(Debug, Clone, PartialEq)]
-pub struct HoverLearner {
+pub struct HoverThrottleEstimator {
     /// Hover throttle in use, µs.
     hover_us: f64,
     /// Estimate from the balance, µs, when there is one.
@@ -38,7 +38,7 @@ pub struct HoverLearner {
     followed_s: f64,
 }
 
-impl Default for HoverLearner {
+impl Default for HoverThrottleEstimator {
     fn default() -> Self {
         Self {
             hover_us: 1500.0,
@@ -51,9 +51,9 @@ impl Default for HoverLearner {
     }
 }
 
-/// What the learner watches.
+/// What the estimate is made from.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Balance {
+pub struct HoverMeasurement {
     /// Throttle that drove the mixer in the previous cycle, µs.
     pub throttle_us: f64,
     /// Throttle that is zero thrust, µs.
@@ -66,15 +66,15 @@ pub struct Balance {
     pub cos_tilt: f64,
 }
 
-impl HoverLearner {
+impl HoverThrottleEstimator {
     /// Hover throttle in use, µs.
     #[must_use]
     pub fn hover_us(&self) -> f64 {
         self.hover_us
     }
 
-    /// Watches one cycle, flown by anyone.
-    pub fn watch(&mut self, now: &Balance, dt: f64) {
+    /// Takes one cycle, flown by anyone.
+    pub fn update(&mut self, now: &HoverMeasurement, dt: f64) {
         let Some(estimate) = self.estimate_us else {
             self.estimate_us = Some(now.throttle_us);
             self.throttle_filter = now.throttle_us;
