@@ -14,15 +14,14 @@
 use std::hint::black_box;
 use std::time::Instant;
 
+use betadeck::firmware::Firmware;
 use betadeck::firmware::cli::Interpreter;
-use betadeck::firmware::config::Configuration;
-use betadeck::firmware::{Firmware, FirmwareOptions};
-use betadeck::flight::{Flight, FlightOptions, FlightResult};
+use betadeck::flight::{Flight, FlightOptions, FlightResult, FlightSetup};
 use betadeck::plan::builtin::{BuiltinPlan, DEMO};
 use betadeck::plan::upload_lines;
 use betadeck::signals::{MotorCommand, RcFrame, RcSource, SensorFrame, SimTime};
 use betadeck::sim::{Turbulence, World, WorldConfig};
-use betadeck::vehicle::{Vehicle, VehicleConfig};
+use betadeck::vehicle::Vehicle;
 
 const RUNS: usize = 5;
 /// Ticks of the replayed part of the mission.
@@ -49,15 +48,9 @@ fn main() {
 
 fn vehicle(rate_hz: u32) -> Vehicle {
     let file = BuiltinPlan::find(DEMO).expect("the demo is built in").read().expect("the demo reads");
-    let mut configuration = Configuration::default();
-    configuration.starter_modes();
-    let mut vehicle = Vehicle::new(VehicleConfig {
-        world: WorldConfig { rate_hz, turbulence: Turbulence::Light, ..WorldConfig::default() },
-        firmware: FirmwareOptions { rate_hz, ..FirmwareOptions::default() },
-        configuration,
-        live: false,
-    })
-    .expect("the default world is sound");
+    let world = WorldConfig { rate_hz, turbulence: Turbulence::Light, ..WorldConfig::default() };
+    let setup = FlightSetup { world, ..FlightSetup::default() };
+    let (mut vehicle, _) = setup.build().expect("the default world is sound");
     let mut console = Interpreter::default();
     for line in upload_lines(&file.plan, &file.settings) {
         vehicle.firmware_mut().run_cli(&mut console, &line);

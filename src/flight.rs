@@ -4,8 +4,11 @@
 //! events and samples and decides what to do with them.
 
 mod judge;
+pub mod setup;
 
+pub use crate::vehicle::StickInput;
 pub use judge::{FlightResult, Judge, JudgeFacts, Verdict};
+pub use setup::FlightSetup;
 
 use crate::plan::{FlightPlan, WaypointType};
 use crate::signals::SimTime;

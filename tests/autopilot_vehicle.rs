@@ -6,13 +6,12 @@
     reason = "a test may stop at a surprise and say what it measured"
 )]
 
-use betadeck::firmware::FirmwareOptions;
 use betadeck::firmware::cli::Interpreter;
-use betadeck::firmware::config::Configuration;
+use betadeck::flight::FlightSetup;
 use betadeck::geo::{LatLon, LocalFrame};
 use betadeck::sim::{Noise, Wind, WorldConfig};
 use betadeck::telemetry::NavState;
-use betadeck::vehicle::{Vehicle, VehicleConfig};
+
 use nalgebra::{Vector2, Vector3};
 
 const GUIDE: &str = "
@@ -142,10 +141,7 @@ fn fly(case: Case, points: &[Point], takeoff_m: f64, limit_s: f64, done: fn(&Sam
         ..WorldConfig::default()
     };
     let frame = LocalFrame::new(world.home.lat_deg, world.home.lon_deg, world.home.alt_amsl_m);
-    let mut configuration = Configuration::default();
-    configuration.starter_modes();
-    let firmware = FirmwareOptions { rate_hz: world.rate_hz, ..FirmwareOptions::default() };
-    let mut vehicle = Vehicle::new(VehicleConfig { world, firmware, configuration, live: false }).unwrap();
+    let (mut vehicle, _) = FlightSetup { world, ..FlightSetup::default() }.build().unwrap();
     let mut session = Interpreter::default();
     let mut cli = |line: &str| {
         let reply = vehicle.firmware_mut().run_cli(&mut session, line);

@@ -7,16 +7,15 @@
 use std::error::Error;
 use std::sync::Arc;
 
-use betadeck::firmware::FirmwareOptions;
 use betadeck::firmware::cli::{self, Interpreter};
-use betadeck::firmware::config::Configuration;
+use betadeck::flight::FlightSetup;
 use betadeck::plan::builtin::{BuiltinPlan, DEMO};
 use betadeck::plan::upload_lines;
 use betadeck::record::sentence;
 use betadeck::session::SessionView;
 use betadeck::sim::WorldConfig;
 use betadeck::ui::{AppState, CliHelp, Msg, OpenPlan, Theme, UiConfig, draw, update};
-use betadeck::vehicle::{Vehicle, VehicleConfig};
+use betadeck::vehicle::Vehicle;
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 
@@ -34,14 +33,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         .ok_or("no demo plan")?
         .read()
         .map_err(|errors| betadeck::plan::format::report(&errors))?;
-    let mut configuration = Configuration::default();
-    configuration.starter_modes();
-    let mut vehicle = Vehicle::new(VehicleConfig {
-        world: WorldConfig { wind: "3@230".parse()?, ..WorldConfig::default() },
-        firmware: FirmwareOptions::default(),
-        configuration,
-        live: false,
-    })?;
+    let world = WorldConfig { wind: "3@230".parse()?, ..WorldConfig::default() };
+    let (mut vehicle, _) = FlightSetup { world, ..FlightSetup::default() }.build()?;
     let mut console = Interpreter::default();
     for line in upload_lines(&file.plan, &file.settings) {
         vehicle.firmware_mut().run_cli(&mut console, &line);

@@ -8,9 +8,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use super::error::{self, AppError};
-use super::setup::{self, Extras};
+use super::setup;
 use crate::args::FlyArgs;
 use crate::firmware::cli::Interpreter;
+use crate::flight::setup::{BootLines, PhysicsSource};
 use crate::flight::{Flight, FlightEnd, FlightOptions, FlightResult, Verdict};
 use crate::plan::format::PlanFile;
 use crate::plan::review::Finding;
@@ -32,16 +33,12 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, AppError> {
     refuse_unflyable(&plan)?;
     let mut notices: Vec<String> = plan.notes.iter().map(ToString::to_string).collect();
     let mut store = open_store(args)?;
-    let extras = Extras {
-        faults: args.faults().collect(),
-        set: args.set.clone(),
-        plan_settings: plan.settings.clone(),
-        arm_assist: false,
-        live: false,
-        external: false,
-    };
-    let mut vehicle = setup::vehicle(&args.flight, &plan, &mut store, extras, &mut notices)?;
-    vehicle.hands.inputs.clone_from(&args.stick);
+    let stored = setup::stored(&mut store, &mut notices);
+    let mut setup = setup::from_args(&args.flight, PhysicsSource::Embedded, plan.clone(), stored)?;
+    setup.world.faults = args.faults().collect();
+    setup.boot_lines.push(BootLines::settings("--set", &args.set));
+    setup.stick_inputs.clone_from(&args.stick);
+    let mut vehicle = setup::build(setup, &mut notices)?;
     upload_plan(&mut vehicle, &plan.plan)?;
     let mut first_events: Vec<Event> = Vec::new();
     vehicle.drain_events(|event| first_events.push(event.into()));

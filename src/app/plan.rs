@@ -2,7 +2,8 @@
 
 use super::error::{self, AppError};
 use super::setup;
-use crate::args::{FlightArgs, PlanArg};
+use crate::args::PlanArg;
+use crate::flight::FlightSetup;
 use crate::geo::LatLon;
 use crate::plan::estimate::Assumptions;
 use crate::plan::format;
@@ -11,11 +12,12 @@ use crate::plan::review::{Finding, review};
 /// Prints the plan; a plan that the craft would refuse is invalid input.
 pub(super) fn show(plan: &PlanArg) -> Result<u8, AppError> {
     let file = setup::read_plan(plan)?;
-    let (home, guess) = FlightArgs::default().start(file.home, &file.plan);
+    let setup = FlightSetup { plan: file.clone(), ..FlightSetup::default() };
+    let (home, notice) = setup.boot_home();
     let home = LatLon::from_degrees(home.lat_deg, home.lon_deg);
     let mut text = format::table(&file, home);
-    if let Some(guess) = guess {
-        text.push_str(&format!("{guess}\n"));
+    if let Some(notice) = notice {
+        text.push_str(&format!("{notice}\n"));
     }
     error::write_stdout(text.as_bytes())?;
     let refused =

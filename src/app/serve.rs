@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 
 use super::error::{self, AppError};
-use super::setup::{self, Extras};
+use super::setup;
 use super::{doors, signals};
 use crate::args::{OutputFile, ServeArgs, Speed};
 use crate::plan::format::PlanFile;
@@ -20,13 +20,11 @@ pub(super) fn run(args: &ServeArgs) -> Result<u8, AppError> {
     let mut notices = Vec::new();
     let mut store = setup::open_store(&args.flight)?;
     notices.extend(setup::storage_notice(&store));
-    let external = args.physics.is_external();
-    let live = external || !args.doors.no_ports;
-    let faults = args.physics.fault.clone();
-    let extras = Extras { faults, arm_assist: true, live, external, ..Extras::default() };
     notices.extend(args.physics.idle_options(&args.flight));
-    let nowhere = PlanFile::default();
-    let mut vehicle = setup::vehicle(&args.flight, &nowhere, &mut store, extras, &mut notices)?;
+    let stored = setup::stored(&mut store, &mut notices);
+    let no_plan = PlanFile::default();
+    let setup = setup::for_session(&args.flight, &args.physics, &args.doors, no_plan, stored)?;
+    let mut vehicle = setup::build(setup, &mut notices)?;
     // RC comes through the doors only; resting virtual sticks would hide the loss of a script.
     vehicle.hands.cut = true;
     let runtime = tokio::runtime::Builder::new_multi_thread()

@@ -1,23 +1,21 @@
-//! Builds the vehicle that the options ask for.
+//! Reads the files that the options name, and makes of both what a flight starts from.
 
 use std::io::Read as _;
 use std::path::Path;
 
 use super::AppError;
-use super::sitl::{DECLINATION_DEG, GPS_TIMEOUT_S};
-use crate::args::{Attitude, FlightArgs, PlanArg};
-use crate::firmware::cli::{
-    BuildInfo, CliContext, CliFacts, CliReply, Interpreter, Mode, advice, apply_lines,
-};
+use crate::args::{Attitude, DoorArgs, FlightArgs, OnOff, PhysicsArgs, PlanArg};
+use crate::firmware::AttitudeSource;
+use crate::firmware::cli::BuildInfo;
 use crate::firmware::config::Configuration;
-use crate::firmware::settings;
-use crate::firmware::{AttitudeSource, FirmwareOptions};
+use crate::flight::FlightSetup;
+use crate::flight::setup::{BootLines, PhysicsSource, check_setting};
 use crate::plan::builtin::BuiltinPlan;
-use crate::plan::format::{self, PlanFile, Problems, SettingPart};
+use crate::plan::format::{self, PlanFile};
 use crate::record::UtcSeconds;
-use crate::sim::{Airframe, FaultLink, Noise, ScheduledFault, Wind, WorldConfig};
+use crate::sim::{Airframe, Home, WorldConfig};
 use crate::storage::Store;
-use crate::vehicle::{Vehicle, VehicleConfig};
+use crate::vehicle::Vehicle;
 
 /// Largest plan or settings file that is read, bytes.
 const MAX_FILE: u64 = 4 << 20;
@@ -30,7 +28,7 @@ pub(super) fn read_plan(plan: &PlanArg) -> Result<PlanFile, AppError> {
         PlanArg::Stdin(_) => read_text(std::io::stdin().lock(), "standard input")?,
         PlanArg::File(path, _) => read_file(path)?,
     };
-    format::parse_checked(&name, &text, plan.format(&text), settings::judge)
+    format::parse_checked(&name, &text, plan.format(&text), check_setting)
         .map_err(|errors| AppError::input(format::report(&errors).trim_end().to_owned()))
 }
 
@@ -54,87 +52,84 @@ fn read_text(source: impl std::io::Read, name: &str) -> Result<String, AppError>
     String::from_utf8(bytes).map_err(|_| AppError::input(format!("{name} is not a text file (UTF-8)")))
 }
 
-/// What a command adds to the shared options.
-#[derive(Debug, Default)]
-pub(super) struct Extras {
-    /// Faults of the flight.
-    pub faults: Vec<ScheduledFault>,
-    /// Settings after all other sources, as `name=value`.
-    pub set: Vec<String>,
-    /// Settings of the plan.
-    pub plan_settings: Vec<String>,
-    /// The default of `--arm-assist`.
-    pub arm_assist: bool,
-    /// Doors or files can influence the flight.
-    pub live: bool,
-    /// A simulator outside moves the craft.
-    pub external: bool,
+/// What the options that all flying commands share make of a flight with this plan.
+pub(super) fn from_args(
+    args: &FlightArgs,
+    physics: PhysicsSource,
+    plan: PlanFile,
+    stored: Configuration,
+) -> Result<FlightSetup, AppError> {
+    let world = WorldConfig {
+        rate_hz: args.rate_hz(),
+        seed: args.seed.unwrap_or(WorldConfig::default().seed),
+        ..match physics {
+            PhysicsSource::Embedded => embedded_world(args)?,
+            PhysicsSource::External => WorldConfig::default(),
+        }
+    };
+    let mut boot_lines = Vec::new();
+    if let Some(path) = &args.settings {
+        boot_lines.push(BootLines { source: path.display().to_string(), text: read_file(path)? });
+    }
+    Ok(FlightSetup {
+        physics,
+        world,
+        home: args.home,
+        plan,
+        attitude: args.attitude.map(attitude_source),
+        arm_assist: args.arm_assist.is_some_and(OnOff::is_on),
+        stored,
+        boot_lines,
+        stick_inputs: Vec::new(),
+        live: false,
+        build: build_info(),
+    })
 }
 
-/// Builds a vehicle at boot. Notices for the user are added to `notices`.
-pub(super) fn vehicle(
-    args: &FlightArgs,
-    plan: &PlanFile,
-    store: &mut Store,
-    extras: Extras,
-    notices: &mut Vec<String>,
-) -> Result<Vehicle, AppError> {
-    let rate_hz = args.rate_hz();
-    let usual = if extras.external { Attitude::Truth } else { Attitude::Estimated };
-    let mut firmware = FirmwareOptions {
-        rate_hz,
-        arm_assist: args.arm_assist.map_or(extras.arm_assist, crate::args::OnOff::is_on),
-        attitude: match args.attitude.unwrap_or(usual) {
-            Attitude::Truth => AttitudeSource::Truth,
-            Attitude::Estimated => AttitudeSource::Estimated,
-        },
-        ..FirmwareOptions::default()
-    };
-    let world = if extras.external {
-        firmware.gps_timeout_s = GPS_TIMEOUT_S;
-        firmware.declination_deg = DECLINATION_DEG;
-        let seed = args.seed.unwrap_or(WorldConfig::default().seed);
-        WorldConfig { rate_hz, seed, faults: extras.faults, ..WorldConfig::default() }
-    } else {
-        world(args, plan, rate_hz, extras.faults, notices)?
-    };
-    let mut configuration = load(store, notices);
-    let plan_lines = set_lines(&extras.plan_settings);
-    apply(&mut configuration, &plan_lines, &format!("settings of plan {}", plan.name))?;
-    if let Some(path) = &args.settings {
-        apply(&mut configuration, &read_file(path)?, &path.display().to_string())?;
-    }
-    apply(&mut configuration, &set_lines(&extras.set), "--set")?;
-    let config = VehicleConfig { world, firmware, configuration, live: extras.live };
-    let vehicle = if extras.external { Vehicle::moved_from_outside(config) } else { Vehicle::new(config) };
-    let mut vehicle = vehicle.map_err(|error| AppError::input(error.to_string()))?;
-    vehicle.firmware_mut().set_build(build_info());
+/// What the options make of a flight that a session flies in real time.
+pub(super) fn for_session(
+    flight: &FlightArgs,
+    physics: &PhysicsArgs,
+    doors: &DoorArgs,
+    plan: PlanFile,
+    stored: Configuration,
+) -> Result<FlightSetup, AppError> {
+    let source = if physics.is_external() { PhysicsSource::External } else { PhysicsSource::Embedded };
+    let mut setup = from_args(flight, source, plan, stored)?;
+    setup.world.faults.clone_from(&physics.fault);
+    setup.arm_assist = flight.arm_assist.is_none_or(OnOff::is_on);
+    setup.live = physics.is_external() || !doors.no_ports;
+    Ok(setup)
+}
+
+/// Builds the vehicle. Notices for the user are added to `notices`.
+pub(super) fn build(setup: FlightSetup, notices: &mut Vec<String>) -> Result<Vehicle, AppError> {
+    let (vehicle, found) = setup.build().map_err(|error| AppError::input(error.to_string()))?;
+    notices.extend(found.iter().map(ToString::to_string));
     Ok(vehicle)
 }
 
-/// The embedded world.
-fn world(
-    args: &FlightArgs,
-    plan: &PlanFile,
-    rate_hz: u32,
-    faults: Vec<ScheduledFault>,
-    notices: &mut Vec<String>,
-) -> Result<WorldConfig, AppError> {
-    let (home, guess) = args.start(plan.home, &plan.plan);
-    notices.extend(guess);
+/// The embedded world, but for step rate, seed and faults.
+fn embedded_world(args: &FlightArgs) -> Result<WorldConfig, AppError> {
+    let usual = WorldConfig::default();
     Ok(WorldConfig {
         airframe: airframe(args.airframe.as_deref())?,
-        home,
-        rate_hz,
-        seed: args.seed.unwrap_or(1),
-        noise: args.noise.unwrap_or(Noise::Real),
-        wind: args.wind.unwrap_or(Wind::CALM),
-        gust_mps: args.gust.unwrap_or(0.0),
+        home: Home { heading_deg: args.heading.unwrap_or(0.0), ..usual.home },
+        noise: args.noise.unwrap_or(usual.noise),
+        wind: args.wind.unwrap_or(usual.wind),
+        gust_mps: args.gust.unwrap_or(usual.gust_mps),
         turbulence: args.turbulence.unwrap_or_default(),
         switches: args.switches().map_err(|error| AppError::input(error.to_string()))?,
-        faults,
-        link: FaultLink::Embedded,
+        ..usual
     })
+}
+
+/// The option as the firmware has it.
+pub(super) fn attitude_source(attitude: Attitude) -> AttitudeSource {
+    match attitude {
+        Attitude::Truth => AttitudeSource::Truth,
+        Attitude::Estimated => AttitudeSource::Estimated,
+    }
 }
 
 /// What the CLI's `version` and MSP tell about this executable.
@@ -144,59 +139,11 @@ pub(super) fn build_info() -> BuildInfo {
     BuildInfo { date, time, revision: env!("BETADECK_REVISION").to_owned(), ..BuildInfo::default() }
 }
 
-/// The stored configuration, with the starter modes when it has no modes at all.
-pub(super) fn load(store: &mut Store, notices: &mut Vec<String>) -> Configuration {
+/// The stored configuration. What is wrong with it is added to `notices`.
+pub(super) fn stored(store: &mut Store, notices: &mut Vec<String>) -> Configuration {
     let loaded = store.load();
     notices.extend(loaded.findings);
-    let mut configuration = loaded.configuration;
-    if configuration.starter_modes() {
-        notices.push(
-            "The craft had no modes: ARM is on AUX1, AUTOPILOT on AUX2, ANGLE, ALTHOLD and POS HOLD on AUX3, each above \
-             1700 µs; the CLI command save keeps them."
-                .to_owned(),
-        );
-    }
-    configuration
-}
-
-fn set_lines(settings: &[String]) -> String {
-    settings.iter().map(|setting| format!("set {setting}\n")).collect()
-}
-
-/// Applies command lines at boot, as if typed; all refused lines are reported with their places.
-fn apply(configuration: &mut Configuration, text: &str, source: &str) -> Result<(), AppError> {
-    let facts = CliFacts::default();
-    let mut context = CliContext { configuration, facts: &facts };
-    let mut reasons = Vec::new();
-    let report = apply_lines(text.lines(), &mut Interpreter::new(Mode::File), &mut context, |line, reply| {
-        if reply.failed {
-            reasons.push(refusal(line, reply));
-        }
-    });
-    let mut problems = Problems::new(source, text);
-    for (failed, (span, message, hint)) in std::iter::zip(&report.failed, reasons) {
-        problems.add_line_part(failed.number, span, message, hint);
-    }
-    if problems.is_empty() {
-        return Ok(());
-    }
-    Err(AppError::input(format::report(&problems.into_errors())))
-}
-
-/// The part of a refused line that is wrong, what is wrong with it, and what is allowed.
-fn refusal(line: &str, reply: &CliReply) -> (String, String, String) {
-    let setting =
-        line.split_once(' ').filter(|(word, _)| word.eq_ignore_ascii_case("set")).map(|(_, rest)| rest);
-    if let Some((name, value)) = setting.and_then(|rest| rest.split_once('='))
-        && let Err(fault) = settings::judge(name.trim(), value.trim())
-    {
-        let part = if fault.part == SettingPart::Name { name } else { value };
-        return (part.trim().to_owned(), fault.message, fault.hint);
-    }
-    let mut said = reply.text.lines().filter(|line| !line.is_empty());
-    let message = said.next().unwrap_or("refused").trim_matches('#').to_owned();
-    let hint = said.map(str::to_owned).chain(advice(line, reply)).collect::<Vec<_>>().join(" ");
-    (line.to_owned(), message, hint)
+    loaded.configuration
 }
 
 fn airframe(name: Option<&str>) -> Result<Airframe, AppError> {

@@ -8,11 +8,13 @@ use std::path::Path;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use super::error::{self, AppError};
-use super::setup::read_file;
+use super::setup::{attitude_source, read_file};
 use super::signals;
-use crate::args::{Attitude, OnOff, SitlArgs};
+use crate::args::{OnOff, SitlArgs};
+use crate::firmware::Firmware;
 use crate::firmware::cli::{ApplyReport, CliContext, CliFacts, Interpreter, Mode, provision};
-use crate::firmware::{AttitudeSource, Firmware, FirmwareOptions};
+use crate::flight::FlightSetup;
+use crate::flight::setup::PhysicsSource;
 use crate::link::DoorsConfig;
 use crate::link::proto::fdm_link::FdmLinkConfig;
 use crate::link::sitl::{Said, Sitl, SitlConfig, SitlEnd, SitlError, SitlPorts, show_links};
@@ -21,12 +23,6 @@ use crate::storage::Store;
 
 /// Name of the track.
 const TRACK: &str = "sitl_track.gpx";
-
-/// Silence of the GPS that ends the fix while a simulator outside moves the craft, s.
-pub(super) const GPS_TIMEOUT_S: f64 = 2.5;
-
-/// Declination of the magnetic field that the virtual magnetometer senses, degrees east.
-pub(super) const DECLINATION_DEG: f64 = 2.0;
 
 /// Runs until a signal, or through a configuration file; gives the exit code.
 pub(super) fn run(args: &SitlArgs) -> Result<u8, AppError> {
@@ -68,16 +64,13 @@ fn config(args: &SitlArgs) -> SitlConfig {
         },
         motors_ip: args.ip.unwrap_or(IpAddr::V4(Ipv4Addr::LOCALHOST)),
         ports: SitlPorts { raw: ports.raw, motors: ports.motors, fdm: ports.fdm, rc: ports.rc },
-        firmware: FirmwareOptions {
+        firmware: FlightSetup {
+            physics: PhysicsSource::External,
             arm_assist: args.arm_assist.is_none_or(OnOff::is_on),
-            attitude: match args.attitude {
-                Some(Attitude::Estimated) => AttitudeSource::Estimated,
-                Some(Attitude::Truth) | None => AttitudeSource::Truth,
-            },
-            gps_timeout_s: GPS_TIMEOUT_S,
-            declination_deg: DECLINATION_DEG,
-            ..FirmwareOptions::default()
-        },
+            attitude: args.attitude.map(attitude_source),
+            ..FlightSetup::default()
+        }
+        .firmware_options(),
         build: super::setup::build_info(),
         fdm: FdmLinkConfig {
             dialect: args.simulator.fdm_dialect.unwrap_or_default().0,

@@ -5,11 +5,12 @@ use std::io::IsTerminal as _;
 
 use super::doors;
 use super::error::{self, AppError};
-use super::setup::{self, Extras};
+use super::setup;
 use super::signals;
 use crate::args::{PlanArg, Speed, TuiArgs};
 use crate::firmware::cli;
 use crate::plan::builtin::{BuiltinPlan, DEMO};
+use crate::plan::format::PlanFile;
 use crate::record::sentence;
 use crate::session::{self, SessionConfig, SessionEvent};
 use crate::ui::{self, CliHelp, Ending, OpenPlan, SessionLink, Theme, Tui, UiConfig};
@@ -34,12 +35,12 @@ pub(super) fn run(args: &TuiArgs) -> Result<u8, AppError> {
     let mut notices: Vec<String> = plan.notes.iter().map(ToString::to_string).collect();
     let mut store = setup::open_store(&args.flight)?;
     notices.extend(setup::storage_notice(&store));
-    let external = args.physics.is_external();
-    let live = external || !args.doors.no_ports;
-    let faults = args.physics.fault.clone();
-    let extras = Extras { faults, arm_assist: true, live, external, ..Extras::default() };
     notices.extend(args.physics.idle_options(&args.flight));
-    let vehicle = setup::vehicle(&args.flight, &plan, &mut store, extras, &mut notices)?;
+    let stored = setup::stored(&mut store, &mut notices);
+    // The plan's settings go to the craft with its upload.
+    let on_the_ground = PlanFile { settings: Vec::new(), ..plan.clone() };
+    let setup = setup::for_session(&args.flight, &args.physics, &args.doors, on_the_ground, stored)?;
+    let vehicle = setup::build(setup, &mut notices)?;
     let config = UiConfig {
         theme: Theme::from_environment(|name| std::env::var(name).ok()),
         cli: CliHelp { complete: |line| cli::complete(line).lines(line), hint: |line| cli::hint(line, None) },

@@ -2,16 +2,11 @@
 
 use std::path::PathBuf;
 
-use crate::geo::{LatLon, distance_bearing};
-use crate::plan::FlightPlan;
 use crate::plan::format::Home;
 use crate::sim::{self, Noise, Switches, Turbulence, Wind};
 
 use super::help;
 use super::value::{self, Attitude, OnOff, Speed};
-
-/// Beyond this distance from home the first waypoint is far: a default home moves there, m.
-const FAR_FROM_HOME_M: f64 = 10_000.0;
 
 /// The options that all flying commands share; `None` = the command's default.
 #[derive(Debug, Clone, Default, PartialEq, clap::Args)]
@@ -106,93 +101,11 @@ impl FlightArgs {
     pub fn rate_hz(&self) -> u32 {
         self.rate.unwrap_or(1000)
     }
-
-    /// Where the craft stands at boot, and a sentence for the user when that is a guess or far from the plan.
-    #[must_use]
-    pub fn start(&self, plan_home: Option<Home>, plan: &FlightPlan) -> (sim::Home, Option<String>) {
-        let default = sim::Home { heading_deg: self.heading.unwrap_or(0.0), ..sim::Home::default() };
-        let at = |home: Home| sim::Home {
-            lat_deg: home.position.lat_deg(),
-            lon_deg: home.position.lon_deg(),
-            alt_amsl_m: home.amsl_m.unwrap_or(default.alt_amsl_m),
-            ..default
-        };
-        let chosen = self.home.or(plan_home);
-        let home = chosen.map_or(default, at);
-        let place = LatLon::from_degrees(home.lat_deg, home.lon_deg);
-        let first = plan.waypoints.iter().find(|waypoint| waypoint.kind.uses_position());
-        let Some((first, distance_m)) = first
-            .map(|first| (first.position, distance_bearing(place, first.position).0))
-            .filter(|&(_, distance_m)| distance_m > FAR_FROM_HOME_M)
-        else {
-            return (home, None);
-        };
-        let kilometres = distance_m / 1000.0;
-        if chosen.is_some() {
-            let notice =
-                format!("The plan's first waypoint, {first}, is {kilometres:.0} km from home, {place}.");
-            return (home, Some(notice));
-        }
-        let notice = format!(
-            "The plan is {kilometres:.0} km from the default home: the craft starts at its first waypoint, {first} \
-             (--home chooses another place)."
-        );
-        (at(Home { position: first, amsl_m: None }), Some(notice))
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::{Waypoint, WaypointType};
-
-    fn plan_at(lat_e7: i32) -> FlightPlan {
-        let mut plan = FlightPlan::default();
-        plan.waypoints.push(Waypoint { kind: WaypointType::Takeoff, ..Waypoint::default() });
-        plan.waypoints.push(Waypoint { position: LatLon::new(lat_e7, -795_182_000), ..Waypoint::default() });
-        plan
-    }
-
-    #[test]
-    fn home_is_the_users_the_plans_or_the_default() {
-        let mut flight = FlightArgs { heading: Some(90.0), ..FlightArgs::default() };
-        let plan_home: Home = "10,20".parse().unwrap();
-        let near = plan_at(404_640_000);
-        let (home, notice) = flight.start(None, &near);
-        assert_eq!((home.lat_deg, home.alt_amsl_m, home.heading_deg, notice), (40.4635, 300.0, 90.0, None));
-        assert!((flight.start(Some(plan_home), &near).0.lat_deg - 10.0).abs() < 1e-9);
-        flight.home = "30,40,55".parse().ok();
-        let (home, _) = flight.start(Some(plan_home), &near);
-        assert!((home.lat_deg - 30.0).abs() < 1e-9 && (home.alt_amsl_m - 55.0).abs() < 1e-9);
-    }
-
-    #[test]
-    fn a_far_plan_moves_the_default_home_with_a_notice() {
-        let (home, notice) = FlightArgs::default().start(None, &plan_at(500_000_000));
-        assert!((home.lat_deg - 50.0).abs() < 1e-9);
-        assert!(notice.unwrap().contains("50.0000000,-79.5182000"));
-        let (home, notice) = FlightArgs::default().start(None, &plan_at(405_500_000));
-        assert_eq!((home, notice), (sim::Home::default(), None));
-    }
-
-    #[test]
-    fn a_chosen_home_far_from_the_plan_stays_with_a_notice() {
-        let far: Option<Home> = "10,10".parse().ok();
-        for (typed, of_plan) in [(far, None), (None, far)] {
-            let flight = FlightArgs { home: typed, ..FlightArgs::default() };
-            let (home, notice) = flight.start(of_plan, &plan_at(404_640_000));
-            assert!((home.lat_deg - 10.0).abs() < 1e-9);
-            let notice = notice.expect("a notice");
-            assert!(
-                notice.contains("40.4640000,-79.5182000, is 9631 km from home, 10.0000000,10.0000000"),
-                "{notice}"
-            );
-        }
-        assert_eq!(
-            FlightArgs { home: far, ..FlightArgs::default() }.start(None, &FlightPlan::default()).1,
-            None
-        );
-    }
 
     #[test]
     fn later_switches_win() {

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
+use crate::flight::StickInput;
 use crate::sim::ScheduledFault;
-use crate::vehicle::StickInput;
 
 use super::plan_arg::PlanArg;
 use super::value::{self, OutputFile};

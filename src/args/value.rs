@@ -5,11 +5,11 @@ use std::path::PathBuf;
 use std::str::FromStr;
 
 use crate::did_you_mean;
-use crate::firmware::settings;
+use crate::flight::StickInput;
+use crate::flight::setup::check_setting;
 use crate::plan::format::{Format, setting_line};
 use crate::signals::RC_CHANNELS;
 use crate::sim::{Noise, ParseError, ScheduledFault, Switches, Turbulence, Wind, step_us};
-use crate::vehicle::StickInput;
 
 /// A switch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
@@ -222,7 +222,7 @@ pub(super) fn gps_loss(text: &str) -> Result<ScheduledFault, String> {
 pub(super) fn setting(text: &str) -> Result<String, String> {
     let line = setting_line(text).ok_or("write NAME=VALUE, such as ap_max_angle=25")?;
     let (name, value) = line.split_once(" = ").unwrap_or((&line, ""));
-    settings::judge(name, value).map(|()| line.clone()).map_err(|fault| fault.to_string())
+    check_setting(name, value).map(|()| line.clone()).map_err(|fault| fault.to_string())
 }
 
 /// The seed of all randomness.

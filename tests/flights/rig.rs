@@ -1,15 +1,14 @@
 //! A vehicle, its pilot, and a record of what happened.
 
-use betadeck::firmware::FirmwareOptions;
 use betadeck::firmware::cli::Interpreter;
-use betadeck::firmware::config::Configuration;
+use betadeck::flight::FlightSetup;
 use betadeck::plan::FlightPlan;
 use betadeck::signals::SimTime;
 use betadeck::sim::{Noise, Switches, WindProfile, WorldConfig};
 use betadeck::telemetry::{
     DisarmReason, Event, EventKind, FirmwareEvent, ModeFlags, NavEvent, NavState, PlanSource,
 };
-use betadeck::vehicle::{Vehicle, VehicleConfig};
+use betadeck::vehicle::Vehicle;
 
 /// The guide's configuration, Step 5, without its `save`: nothing restarts here.
 pub(crate) fn guide_settings() -> impl Iterator<Item = &'static str> {
@@ -81,10 +80,7 @@ impl Rig {
     /// A vehicle with the guide's settings and the starter modes in this world, with these further CLI lines, and the
     /// scripted pilot who climbs to `takeoff_m` and engages.
     pub(crate) fn new(world: WorldConfig, lines: &str, takeoff_m: f64) -> Self {
-        let mut configuration = Configuration::default();
-        configuration.starter_modes();
-        let firmware = FirmwareOptions { rate_hz: world.rate_hz, ..FirmwareOptions::default() };
-        let vehicle = Vehicle::new(VehicleConfig { world, firmware, configuration, live: false }).unwrap();
+        let (vehicle, _) = FlightSetup { world, ..FlightSetup::default() }.build().unwrap();
         let standing_m = vehicle.world().truth().pos_enu.z;
         let mut rig = Self { vehicle, events: Vec::new(), samples: Vec::new(), standing_m };
         rig.cli(&guide_settings().collect::<Vec<_>>().join("\n"));

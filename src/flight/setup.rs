@@ -1,0 +1,218 @@
+//! What a flight starts from, as plain data, and the vehicle at boot that it makes.
+//!
+//! Arguments, configuration files and tests produce a [`FlightSetup`]; files were read before. What follows from it is
+//! decided here: where the craft stands, in which order settings are applied, whether the craft needs starter modes, and
+//! what an external physics changes in the firmware.
+
+mod boot_lines;
+mod home;
+mod notice;
+
+pub use boot_lines::BootLines;
+pub use notice::SetupNotice;
+
+use crate::firmware::cli::BuildInfo;
+use crate::firmware::config::Configuration;
+use crate::firmware::{AttitudeSource, FirmwareOptions, settings};
+use crate::plan::format::{self, Home, PlanError, PlanFile, SettingFault};
+use crate::sim::{WorldConfig, WorldError};
+use crate::vehicle::{StickInput, Vehicle, VehicleConfig};
+
+/// Silence of the GPS that ends the fix while an external simulator moves the craft, s: its packets may stall.
+const EXTERNAL_GPS_TIMEOUT_S: f64 = 2.5;
+
+/// Declination of the field that the virtual magnetometer senses while an external simulator moves the craft, degrees
+/// east.
+const EXTERNAL_DECLINATION_DEG: f64 = 2.0;
+
+/// Whose physics moves the craft.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum PhysicsSource {
+    /// The world of this program.
+    #[default]
+    Embedded,
+    /// A simulator over UDP.
+    External,
+}
+
+/// What a flight starts from.
+#[derive(Debug, Clone, Default)]
+pub struct FlightSetup {
+    /// Whose physics moves the craft.
+    pub physics: PhysicsSource,
+    /// The craft, the air, step rate, seed and faults; its home is the default home and gives the heading at boot. With
+    /// an external physics only step rate, seed and faults count.
+    pub world: WorldConfig,
+    /// Where the craft stands, whatever the plan says.
+    pub home: Option<Home>,
+    /// The plan: its home is where the craft stands unless `home` says otherwise, its settings are applied at boot.
+    pub plan: PlanFile,
+    /// Where the attitude comes from; `None` = the estimator, or with an external physics the simulator's truth.
+    pub attitude: Option<AttitudeSource>,
+    /// Arming rules are softened for RC from UDP.
+    pub arm_assist: bool,
+    /// What the craft has stored.
+    pub stored: Configuration,
+    /// Command lines that are applied at boot, after what is stored and the plan's settings; later ones win.
+    pub boot_lines: Vec<BootLines>,
+    /// Channels that are moved for a while, whoever flies.
+    pub stick_inputs: Vec<StickInput>,
+    /// Other programs can influence the flight, so that it is not repeatable.
+    pub live: bool,
+    /// What `version` and MSP tell about this executable.
+    pub build: BuildInfo,
+}
+
+/// Why no vehicle can be made.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SetupError {
+    /// Command lines that the firmware refuses, each with its place; `Display` is the whole report.
+    #[error("{}", format::report(.0))]
+    BootLines(Vec<PlanError>),
+    /// The world cannot be built.
+    #[error(transparent)]
+    World(#[from] WorldError),
+}
+
+impl FlightSetup {
+    /// How the firmware is built.
+    #[must_use]
+    pub fn firmware_options(&self) -> FirmwareOptions {
+        let usual = FirmwareOptions {
+            rate_hz: self.world.rate_hz,
+            arm_assist: self.arm_assist,
+            ..FirmwareOptions::default()
+        };
+        match self.physics {
+            PhysicsSource::Embedded => {
+                FirmwareOptions { attitude: self.attitude.unwrap_or(AttitudeSource::Estimated), ..usual }
+            }
+            PhysicsSource::External => FirmwareOptions {
+                attitude: self.attitude.unwrap_or(AttitudeSource::Truth),
+                gps_timeout_s: EXTERNAL_GPS_TIMEOUT_S,
+                declination_deg: EXTERNAL_DECLINATION_DEG,
+                ..usual
+            },
+        }
+    }
+
+    /// The craft's configuration at boot: what is stored, with the starter modes when that has no mode condition, the plan's
+    /// settings and the boot lines. Says whether the craft got the starter modes.
+    ///
+    /// # Errors
+    /// All lines that the firmware refuses, of the first source that has any.
+    pub fn configuration(&self) -> Result<(Configuration, bool), SetupError> {
+        let mut configuration = self.stored.clone();
+        let got_starter_modes = configuration.starter_modes();
+        let of_plan =
+            BootLines::settings(format!("settings of plan {}", self.plan.name), &self.plan.settings);
+        for lines in std::iter::once(&of_plan).chain(&self.boot_lines) {
+            lines.apply(&mut configuration).map_err(SetupError::BootLines)?;
+        }
+        Ok((configuration, got_starter_modes))
+    }
+
+    /// The vehicle at boot, and what its user should know.
+    ///
+    /// # Errors
+    /// When the firmware refuses a line, or the world cannot be built.
+    pub fn build(self) -> Result<(Vehicle, Vec<SetupNotice>), SetupError> {
+        let (configuration, got_starter_modes) = self.configuration()?;
+        let firmware = self.firmware_options();
+        let (home, home_notice) = match self.physics {
+            PhysicsSource::Embedded => self.boot_home(),
+            PhysicsSource::External => (self.world.home, None),
+        };
+        let starter_notice = got_starter_modes.then_some(SetupNotice::StarterModes);
+        let world = WorldConfig { home, ..self.world };
+        let config = VehicleConfig { world, firmware, configuration, live: self.live };
+        let mut vehicle = match self.physics {
+            PhysicsSource::Embedded => Vehicle::new(config),
+            PhysicsSource::External => Vehicle::moved_from_outside(config),
+        }?;
+        vehicle.firmware_mut().set_build(self.build);
+        vehicle.hands.inputs = self.stick_inputs;
+        Ok((vehicle, home_notice.into_iter().chain(starter_notice).collect()))
+    }
+}
+
+/// Whether the firmware takes a setting's value.
+///
+/// # Errors
+/// What is wrong and what is allowed.
+pub fn check_setting(name: &str, value: &str) -> Result<(), SettingFault> {
+    settings::judge(name, value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::telemetry::Mode;
+
+    fn with_lines(text: &str) -> FlightSetup {
+        let lines = BootLines { source: "craft.txt".to_owned(), text: text.to_owned() };
+        FlightSetup { boot_lines: vec![lines], ..FlightSetup::default() }
+    }
+
+    /// The modes with a condition, in their order, and whether the user is told that they are the starter modes.
+    fn modes(setup: FlightSetup) -> (Vec<&'static str>, bool) {
+        let (vehicle, notices) = setup.build().unwrap();
+        let names = vehicle.firmware().mode_ranges().iter().map(|range| range.name).collect();
+        (names, notices.contains(&SetupNotice::StarterModes))
+    }
+
+    #[test]
+    fn a_craft_without_modes_gets_the_starter_modes_and_is_told() {
+        let starter = ["ARM", "AUTOPILOT", "ANGLE", "ALTHOLD", "POS HOLD"];
+        assert_eq!(modes(FlightSetup::default()), (starter.to_vec(), true));
+        assert_eq!(modes(with_lines("set ap_max_angle = 25")), (starter.to_vec(), true));
+    }
+
+    #[test]
+    fn stored_settings_yield_to_the_plans_and_those_to_the_given_ones() {
+        let (stored, _) =
+            with_lines("set ap_max_angle = 20\nset ap_max_velocity = 700").configuration().unwrap();
+        let plan = PlanFile {
+            settings: vec!["ap_max_angle = 30".to_owned(), "ap_landing_descent_rate = 70".to_owned()],
+            ..PlanFile::default()
+        };
+        let set = BootLines::settings("--set", &["ap_max_angle = 50".to_owned()]);
+        let mut setup = FlightSetup { stored, plan, ..with_lines("set ap_max_angle = 40") };
+        let number = |setup: &FlightSetup, name| setup.configuration().unwrap().0.settings.number(name);
+        assert_eq!(number(&setup, "ap_max_angle"), 40);
+        setup.boot_lines.push(set);
+        assert_eq!(number(&setup, "ap_max_angle"), 50);
+        assert_eq!(number(&setup, "ap_max_velocity"), 700);
+        assert_eq!(number(&setup, "ap_landing_descent_rate"), 70);
+        setup.boot_lines.clear();
+        assert_eq!(number(&setup, "ap_max_angle"), 30);
+    }
+
+    #[test]
+    fn refused_lines_are_all_reported_with_their_places() {
+        let error = with_lines("set ap_max_angle = 25\nset ap_max_angel = 9\nset ap_max_angle = 999")
+            .build()
+            .unwrap_err();
+        let report = error.to_string();
+        assert!(report.starts_with("craft.txt:2:5: "), "{report}");
+        assert!(
+            report.contains("did you mean ap_max_angle?") && report.contains("\ncraft.txt:3:20: "),
+            "{report}"
+        );
+        assert!(report.ends_with("craft.txt: 2 problems; nothing was changed"), "{report}");
+    }
+
+    #[test]
+    fn an_external_physics_changes_what_the_firmware_believes() {
+        let embedded = FlightSetup::default();
+        assert_eq!(embedded.firmware_options().attitude, AttitudeSource::Estimated);
+        let external = FlightSetup { physics: PhysicsSource::External, ..embedded };
+        let options = external.firmware_options();
+        assert_eq!(options.attitude, AttitudeSource::Truth);
+        assert!((options.gps_timeout_s - 2.5).abs() < 1e-9 && (options.declination_deg - 2.0).abs() < 1e-9);
+        let asked = FlightSetup { attitude: Some(AttitudeSource::Estimated), ..external };
+        assert_eq!(asked.firmware_options().attitude, AttitudeSource::Estimated);
+        let (vehicle, _) = asked.build().unwrap();
+        assert!(!vehicle.firmware().modes().has(Mode::Arm));
+    }
+}

@@ -1,0 +1,49 @@
+//! What the user should know about a flight before it begins.
+
+use std::fmt;
+
+use crate::geo::LatLon;
+
+/// Something that was decided for the user, or that is probably a mistake; `Display` is the sentence.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SetupNotice {
+    /// The craft had no mode condition and got the starter modes.
+    StarterModes,
+    /// The default home is far from the plan, so the craft starts at the plan's first waypoint.
+    HomeAtFirstWaypoint {
+        /// The first waypoint with a place.
+        first: LatLon,
+        /// How far it is from the default home, m.
+        distance_m: f64,
+    },
+    /// The plan is far from the home that the user or the plan chose.
+    PlanFarFromHome {
+        /// The first waypoint with a place.
+        first: LatLon,
+        /// Home.
+        home: LatLon,
+        /// How far one is from the other, m.
+        distance_m: f64,
+    },
+}
+
+impl fmt::Display for SetupNotice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::StarterModes => f.write_str(
+                "The craft had no modes: ARM is on AUX1, AUTOPILOT on AUX2, ANGLE, ALTHOLD and POS HOLD on AUX3, each \
+                 above 1700 µs; the CLI command save keeps them.",
+            ),
+            Self::HomeAtFirstWaypoint { first, distance_m } => write!(
+                f,
+                "The plan is {:.0} km from the default home: the craft starts at its first waypoint, {first} (--home \
+                 chooses another place).",
+                distance_m / 1000.0
+            ),
+            Self::PlanFarFromHome { first, home, distance_m } => {
+                let kilometres = distance_m / 1000.0;
+                write!(f, "The plan's first waypoint, {first}, is {kilometres:.0} km from home, {home}.")
+            }
+        }
+    }
+}
