@@ -96,19 +96,19 @@ impl FlightSetup {
         }
     }
 
-    /// The craft's configuration at boot: what is stored, with the starter modes when that has no mode condition, the plan's
-    /// settings and the boot lines. Says whether the craft got the starter modes.
+    /// The craft's configuration at boot: what is stored, the plan's settings, the boot lines, and the starter modes when
+    /// none of these has a mode condition. Says whether the craft got the starter modes.
     ///
     /// # Errors
     /// All lines that the firmware refuses, of the first source that has any.
     pub fn configuration(&self) -> Result<(Configuration, bool), SetupError> {
         let mut configuration = self.stored.clone();
-        let got_starter_modes = configuration.starter_modes();
         let of_plan =
             BootLines::settings(format!("settings of plan {}", self.plan.name), &self.plan.settings);
         for lines in std::iter::once(&of_plan).chain(&self.boot_lines) {
             lines.apply(&mut configuration).map_err(SetupError::BootLines)?;
         }
+        let got_starter_modes = configuration.starter_modes();
         Ok((configuration, got_starter_modes))
     }
 
@@ -166,6 +166,20 @@ mod tests {
         let starter = ["ARM", "AUTOPILOT", "ANGLE", "ALTHOLD", "POS HOLD"];
         assert_eq!(modes(FlightSetup::default()), (starter.to_vec(), true));
         assert_eq!(modes(with_lines("set ap_max_angle = 25")), (starter.to_vec(), true));
+    }
+
+    #[test]
+    fn one_mode_condition_in_the_given_lines_keeps_the_starter_modes_away() {
+        assert_eq!(modes(with_lines("aux 3 0 0 1700 2100 0 0")), (vec!["ARM"], false));
+    }
+
+    #[test]
+    fn one_stored_mode_condition_keeps_the_starter_modes_away() {
+        let (stored, _) = with_lines("aux 0 0 4 1700 2100 0 0").configuration().unwrap();
+        let setup = FlightSetup { stored: stored.clone(), ..FlightSetup::default() };
+        assert_eq!(modes(setup), (vec!["ARM"], false));
+        let removed = FlightSetup { stored, ..with_lines("defaults nosave") };
+        assert_eq!(modes(removed).0.len(), 5, "what was removed again does not count");
     }
 
     #[test]

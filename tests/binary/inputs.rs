@@ -154,13 +154,23 @@ fn settings_come_from_plan_file_and_command_line_and_the_later_wins() {
 #[test]
 fn the_pilot_uses_the_switches_of_the_craft() {
     let sandbox = Sandbox::new();
-    // ARM on AUX4, AUTOPILOT in the middle of AUX6.
-    sandbox.write("modes.txt", "aux 0 0 3 1700 2100 0 0\naux 1 56 5 1300 1700 0 0\n");
+    // ARM on AUX4, AUTOPILOT in the middle of AUX6, ANGLE, ALTHOLD and POS HOLD on AUX7.
+    let levelling = "aux 2 1 6 1700 2100 0 0\naux 3 3 6 1700 2100 0 0\naux 4 11 6 1700 2100 0 0\n";
+    let switches = "aux 0 0 3 1700 2100 0 0\naux 1 56 5 1300 1700 0 0\n";
+    sandbox.write("modes.txt", &format!("{switches}{levelling}"));
     sandbox.fly(&["hold-none", "--settings", "modes.txt"]).ends(0, "complete");
-    // The AUTOPILOT condition is gone.
-    sandbox.write("modes.txt", "aux 1 1 2 1700 2100 0 0\n");
+}
+
+#[test]
+fn a_craft_that_is_given_a_mode_gets_no_starter_modes_beside_it() {
+    let sandbox = Sandbox::new();
+    // ARM on AUX4 and nothing else: the autopilot has no switch.
+    sandbox.write("modes.txt", "aux 0 0 3 1700 2100 0 0\n");
     let ran = sandbox.run(&["fly", "hold-none", "--settings", "modes.txt"]).exits(2);
-    assert!(ran.err.contains("AUTOPILOT"), "{}", ran.err);
+    assert!(ran.err.contains("no channel switches AUTOPILOT"), "{}", ran.err);
+    // Settings alone are no modes.
+    sandbox.write("settings.txt", "set ap_max_angle = 25\n");
+    sandbox.fly(&["hold-none", "--settings", "settings.txt"]).ends(0, "complete");
 }
 
 #[test]
