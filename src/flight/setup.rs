@@ -157,7 +157,7 @@ mod tests {
     /// The modes with a condition, in their order, and whether the user is told that they are the starter modes.
     fn modes(setup: FlightSetup) -> (Vec<&'static str>, bool) {
         let (vehicle, notices) = setup.build().unwrap();
-        let names = vehicle.firmware().mode_ranges().iter().map(|range| range.name).collect();
+        let names = vehicle.firmware().mode_ranges().iter().map(|range| range.mode_box.into()).collect();
         (names, notices.contains(&SetupNotice::StarterModes))
     }
 
