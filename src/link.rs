@@ -7,28 +7,28 @@
 //! tcp 5761 ──┐                                    ┌── Msp, EnterCli, Cli, LeftCli, Restart ─▶ session
 //! ws  6761 ──┴─ listener ─ client ─ conversation ─┘                    ◀─ oneshot replies ──
 //! udp 9004 ──── receive ── Rc  ──────────────────────────────────────────────────────────▶
-//! udp 9003 ──── receive ── Fdm ────────────────────────────────────────────────▶ Trouble ─▶ ExternalSimulator
+//! udp 9003 ──── receive ── Fdm ────────────────────────────────────────────────▶ ImpairedLink ─▶ ExternalSimulator
 //! udp 9002, 9001 ◀── MotorPort ◀──────────────────────────────────────────────────────────
 //! ```
 
 mod client;
 mod desk;
 mod doors;
+mod endpoint_stats;
 mod external;
-mod gauge;
+mod impairment;
 mod listener;
 mod origin;
 pub mod proto;
 mod request;
 pub mod sitl;
 mod transport;
-mod trouble;
 mod udp;
 pub mod upkeep;
 
 pub use desk::{Attended, Desk};
 pub use doors::{DoorError, DoorKind, Doors, DoorsConfig, RestartBell};
 pub use external::ExternalSimulator;
+pub use impairment::{ImpairedLink, LinkImpairment};
 pub use request::{CliAnswer, ClientId, Request};
-pub use trouble::Trouble;
 pub use udp::{MotorPort, Sent};

@@ -3,6 +3,7 @@
 //! Plain data without behaviour of its own, made by the core and read by session, record, link and ui alike.
 
 mod arming_flag;
+mod endpoint;
 pub mod event;
 mod failsafe;
 mod fault;
@@ -19,6 +20,7 @@ pub mod switch;
 mod transition;
 
 pub use arming_flag::{ArmingFlag, ArmingFlags};
+pub use endpoint::{ClientStats, EndpointState, EndpointStatus, PacketStats, SimulatorStats};
 pub use event::{CrashCause, DivergeCause, Event, EventKind, VehicleNotice};
 pub use failsafe::{FailsafeProcedure, RxLossPolicy};
 pub use fault::{FaultKind, FaultValue};

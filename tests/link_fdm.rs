@@ -121,7 +121,7 @@ fn knocks_while_nobody_speaks() {
         }
     }
     assert_eq!(link.counters().kicks, 19);
-    assert_eq!(link.state(10_000 * MS).to_string(), "waiting for a simulator");
+    assert_eq!(link.state(10_000 * MS), LinkState::Waiting);
 }
 
 #[test]

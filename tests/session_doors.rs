@@ -26,7 +26,7 @@ struct Rig {
     session: Handle,
     requests: mpsc::Sender<Request>,
     doors: Doors,
-    _views: watch::Sender<Vec<betadeck::session::command::DoorView>>,
+    _views: watch::Sender<Vec<betadeck::telemetry::EndpointStatus>>,
 }
 
 async fn rig() -> Rig {

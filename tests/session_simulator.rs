@@ -15,7 +15,9 @@ use betadeck::session::{Command, Doorway, Event, Handle, SessionConfig, SessionE
 use betadeck::signals::fdm::{Dialect, MotorOrder};
 use betadeck::sim::{WorldConfig, attitude};
 use betadeck::storage::Store;
-use betadeck::telemetry::{EventKind, FirmwareEvent, LinkState};
+use betadeck::telemetry::{
+    EndpointState, EndpointStatus, EventKind, FirmwareEvent, LinkState, SimulatorStats,
+};
 use betadeck::vehicle::{Vehicle, VehicleConfig};
 use nalgebra::Vector3;
 use tokio::sync::{mpsc, oneshot, watch};
@@ -43,7 +45,14 @@ struct Rig {
     /// North of the start and above it, m, in the newest state.
     place: (f64, f64),
     _doors: Doors,
-    _views: watch::Sender<Vec<betadeck::session::command::DoorView>>,
+    _views: watch::Sender<Vec<EndpointStatus>>,
+}
+
+/// What the link to the simulator has seen.
+fn stats(view: &SessionView) -> SimulatorStats {
+    let motors = view.endpoints.iter().find(|endpoint| endpoint.name == "udp motors").unwrap();
+    let EndpointState::Simulator(stats) = motors.state else { panic!("{motors:?}") };
+    stats
 }
 
 async fn rig() -> Rig {
@@ -204,9 +213,9 @@ async fn until_a_simulator_speaks_the_firmware_lives_and_nothing_is_made_up() {
         (None, None, false)
     );
     assert_eq!(view.vehicle.world.airframe, "external");
-    let door = view.doors.iter().find(|door| door.name == "udp motors").unwrap();
-    assert_eq!(door.state, "waiting for a simulator");
-    assert!(!door.fault && door.address == rig.motors.local_addr().unwrap().to_string());
+    assert_eq!(stats(&view).link, LinkState::Waiting);
+    let motors = view.endpoints.iter().find(|endpoint| endpoint.name == "udp motors").unwrap();
+    assert_eq!(motors.address, rig.motors.local_addr().unwrap().to_string());
 
     let (reply, answer) = oneshot::channel();
     rig.command(Command::Cli { line: "get ap_max_angle".to_owned(), reply }).await;
@@ -235,8 +244,8 @@ async fn the_simulators_stamps_are_the_time_and_its_state_the_truth() {
     assert!((truth.roll_deg + 3.0).abs() < 1e-6 && (truth.vn - 10.0).abs() < 1e-6 && !truth.on_ground);
     assert!((view.vehicle.estimate.pitch_deg - 5.0).abs() < 0.1, "the firmware believes it");
     assert!(view.vehicle.craft.gps_fix && view.vehicle.craft.sats == 12);
-    let door = view.doors.iter().find(|door| door.name == "udp motors").unwrap();
-    assert_eq!(door.state, "flying, sitl-gz");
+    let flying = SimulatorStats { link: LinkState::Flowing, dialect: Some("sitl-gz"), refused: 0, old: 0 };
+    assert_eq!(stats(&view), flying);
 }
 
 #[tokio::test]
@@ -269,8 +278,7 @@ async fn silence_stops_time_and_is_shown_until_the_simulator_returns() {
     }
     rig.hear("The simulator is silent: time stands still").await;
     let view = rig.picture(|view| view.simulator == Some(LinkState::Silent)).await;
-    let door = view.doors.iter().find(|door| door.name == "udp motors").unwrap();
-    assert!(door.fault && door.state == "no FDM", "{door:?}");
+    assert_eq!(stats(&view).link, LinkState::Silent);
 
     // Keys still act: the firmware can be started anew, and the way out is told.
     rig.command(Command::ResetCraft).await;
@@ -410,9 +418,9 @@ async fn late_packets_come_later_and_those_overtaken_are_old() {
         rig.state(10, 0.0, 0.0).await;
     }
     assert_eq!(rig.flown_ms().await, begun + 200);
-    let view = rig.picture(|view| view.doors.iter().any(|door| door.state.contains("old"))).await;
-    let door = view.doors.iter().find(|door| door.name == "udp motors").unwrap();
-    assert_eq!(door.state, "flying, sitl-gz, 4 old");
+    let view = rig.picture(|view| stats(view).old > 0).await;
+    let flying = SimulatorStats { link: LinkState::Flowing, dialect: Some("sitl-gz"), refused: 0, old: 4 };
+    assert_eq!(stats(&view), flying);
 }
 
 #[tokio::test]

@@ -137,13 +137,12 @@ fn the_speed_is_the_wanted_one_until_it_is_measured() {
 fn a_busy_door_is_marked_and_named_where_there_is_room() {
     for (width, shown) in [(80, "✗rc "), (120, "✗rc busy ")] {
         let mut state = fixture::state((width, 40), fixture::colour());
-        let door = betadeck::session::command::DoorView {
+        let door = betadeck::telemetry::EndpointStatus {
             name: "udp rc",
-            state: "busy".to_owned(),
-            fault: true,
-            ..Default::default()
+            address: String::new(),
+            state: betadeck::telemetry::EndpointState::Busy,
         };
-        state.view.doors = vec![door];
+        state.view.endpoints = vec![door];
         let screen = text(&state);
         assert!(screen.contains(shown), "{screen}");
     }

@@ -115,7 +115,7 @@ fn simulator(
 /// Publishes the state of the doors when it changes, until it is told to close them.
 async fn keep(
     doors: Doors,
-    views: watch::Sender<Vec<crate::session::command::DoorView>>,
+    views: watch::Sender<Vec<crate::telemetry::EndpointStatus>>,
     stop: CancellationToken,
 ) {
     loop {

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use tokio::sync::{mpsc, oneshot, watch};
 use tokio_util::sync::CancellationToken;
 
-use super::gauge::Gauge;
+use super::endpoint_stats::EndpointStats;
 use super::proto::conversation::{Ask, Conversation};
 use super::request::{CliAnswer, ClientId, Request};
 use super::transport::Transport;
@@ -51,7 +51,7 @@ pub(super) struct Client {
     id: ClientId,
     transport: Transport,
     reception: Reception,
-    gauge: Arc<Gauge>,
+    stats: Arc<EndpointStats>,
     conversation: Conversation,
     interpreter: Interpreter,
     arrived: Instant,
@@ -62,7 +62,7 @@ impl Client {
         id: ClientId,
         transport: Transport,
         mut reception: Reception,
-        gauge: Arc<Gauge>,
+        stats: Arc<EndpointStats>,
     ) -> Self {
         // A restart before the client came does not concern it.
         reception.restarts.mark_unchanged();
@@ -70,7 +70,7 @@ impl Client {
             id,
             transport,
             reception,
-            gauge,
+            stats,
             conversation: Conversation::default(),
             interpreter: Interpreter::default(),
             arrived: Instant::now(),
@@ -80,7 +80,7 @@ impl Client {
     /// Serves the client until it goes, the firmware restarts or the doors close.
     pub(super) async fn serve(mut self) {
         if let Stop::Failed = self.talk().await {
-            self.gauge.error();
+            self.stats.error();
         }
         if self.conversation.is_in_cli() {
             let _gone = self.reception.requests.send(Request::LeftCli { client: self.id }).await;
@@ -109,7 +109,7 @@ impl Client {
                 }
                 bytes = self.transport.read() => match bytes {
                     Ok(Some(bytes)) => {
-                        self.gauge.received(bytes.len());
+                        self.stats.received(bytes.len());
                         self.conversation.push(&bytes);
                     }
                     Ok(None) => return Stop::Ended,
@@ -125,7 +125,7 @@ impl Client {
         while let Some(ask) = self.conversation.next(self.arrived.elapsed()) {
             match ask {
                 Ask::Request(frame) => {
-                    self.gauge.asked(frame.code);
+                    self.stats.asked(frame.code);
                     let (code, payload, client) = (frame.code, frame.payload.clone(), self.id);
                     let payload = self.ask(|reply| Request::Msp { client, code, payload, reply }).await?;
                     self.conversation.reply(&frame, payload);
@@ -147,7 +147,7 @@ impl Client {
             }
         }
         if self.conversation.dropped() != before {
-            self.gauge.error();
+            self.stats.error();
         }
         Ok(())
     }
@@ -185,7 +185,7 @@ impl Client {
         if output.is_empty() {
             return Ok(());
         }
-        self.gauge.sent(output.len());
+        self.stats.sent(output.len());
         Ok(tokio::time::timeout(SLOW, self.transport.write(output)).await.map_err(io::Error::from)??)
     }
 }

@@ -13,11 +13,11 @@ use tokio_util::sync::CancellationToken;
 use tokio_util::task::TaskTracker;
 
 use super::client::Reception;
-use super::gauge::Gauge;
+use super::endpoint_stats::EndpointStats;
 use super::listener::{self, Kind};
 use super::request::Request;
 use super::udp::{self, Datagrams};
-use crate::session::command::DoorView;
+use crate::telemetry::{EndpointState, EndpointStatus};
 
 /// How long the doors may take to close.
 const CLOSING: Duration = Duration::from_secs(1);
@@ -127,7 +127,7 @@ struct Door {
     kind: DoorKind,
     /// Where it listens, or why it does not.
     place: Result<SocketAddr, DoorError>,
-    gauge: Arc<Gauge>,
+    stats: Arc<EndpointStats>,
 }
 
 /// The open doors.
@@ -141,7 +141,7 @@ pub struct Doors {
 
 impl Doors {
     /// Opens the doors. One that cannot be opened says why in its view; the others work.
-    pub async fn open(config: &DoorsConfig, requests: mpsc::Sender<Request>) -> (Self, Vec<DoorView>) {
+    pub async fn open(config: &DoorsConfig, requests: mpsc::Sender<Request>) -> (Self, Vec<EndpointStatus>) {
         let (restarts, restarted) = watch::channel(0);
         let mut doors = Self {
             doors: Vec::new(),
@@ -176,28 +176,34 @@ impl Doors {
         kind: &Kind,
         reception: &Reception,
     ) {
-        let gauge = Arc::new(Gauge::new(Instant::now()));
+        let stats = Arc::new(EndpointStats::new(Instant::now()));
         let address = SocketAddr::new(listen.unwrap_or(IpAddr::V4(Ipv4Addr::LOCALHOST)), port);
         let place = match bind_tcp(door, address).await {
             Ok((listener, place)) => {
-                self.spawn_listener(listener, kind, reception, &gauge);
+                self.spawn_listener(listener, kind, reception, &stats);
                 if listen.is_none() {
                     // A machine without IPv6 is no trouble.
                     let six = SocketAddr::new(IpAddr::V6(Ipv6Addr::LOCALHOST), place.port());
                     if let Ok((listener, _)) = bind_tcp(door, six).await {
-                        self.spawn_listener(listener, kind, reception, &gauge);
+                        self.spawn_listener(listener, kind, reception, &stats);
                     }
                 }
                 Ok(place)
             }
             Err(error) => Err(error),
         };
-        self.doors.push(Door { kind: door, place, gauge });
+        self.doors.push(Door { kind: door, place, stats });
     }
 
-    fn spawn_listener(&self, listener: TcpListener, kind: &Kind, reception: &Reception, gauge: &Arc<Gauge>) {
-        let (tasks, gauge) = (self.tasks.clone(), Arc::clone(gauge));
-        self.tasks.spawn(listener::listen(listener, kind.clone(), reception.clone(), gauge, tasks));
+    fn spawn_listener(
+        &self,
+        listener: TcpListener,
+        kind: &Kind,
+        reception: &Reception,
+        stats: &Arc<EndpointStats>,
+    ) {
+        let (tasks, stats) = (self.tasks.clone(), Arc::clone(stats));
+        self.tasks.spawn(listener::listen(listener, kind.clone(), reception.clone(), stats, tasks));
     }
 
     async fn open_datagrams(
@@ -208,22 +214,22 @@ impl Doors {
         datagrams: Datagrams,
         reception: &Reception,
     ) {
-        let gauge = Arc::new(Gauge::new(Instant::now()));
+        let stats = Arc::new(EndpointStats::new(Instant::now()));
         let address = SocketAddr::new(listen.unwrap_or(IpAddr::V4(Ipv4Addr::LOCALHOST)), port);
         let bound = UdpSocket::bind(address).await.and_then(|socket| Ok((socket.local_addr()?, socket)));
         let place = match bound {
             Ok((place, socket)) => {
-                self.tasks.spawn(udp::receive(socket, datagrams, reception.clone(), Arc::clone(&gauge)));
+                self.tasks.spawn(udp::receive(socket, datagrams, reception.clone(), Arc::clone(&stats)));
                 Ok(place)
             }
             Err(error) => Err(explain(door, address, error)),
         };
-        self.doors.push(Door { kind: door, place, gauge });
+        self.doors.push(Door { kind: door, place, stats });
     }
 
     /// One line a door.
     #[must_use]
-    pub fn views(&self) -> Vec<DoorView> {
+    pub fn views(&self) -> Vec<EndpointStatus> {
         let now = Instant::now();
         self.doors.iter().map(|door| door.view(now)).collect()
     }
@@ -243,7 +249,7 @@ impl Doors {
     /// How many clients a door has.
     #[must_use]
     pub fn clients(&self, kind: DoorKind) -> u32 {
-        self.doors.iter().find(|door| door.kind == kind).map_or(0, |door| door.gauge.clients())
+        self.doors.iter().find(|door| door.kind == kind).map_or(0, |door| door.stats.clients())
     }
 
     /// The bell that a restart of the firmware rings.
@@ -278,19 +284,19 @@ impl RestartBell {
 }
 
 impl Door {
-    fn view(&self, now: Instant) -> DoorView {
+    fn view(&self, now: Instant) -> EndpointStatus {
         let (address, state) = match &self.place {
             Ok(place) => {
-                let words = match self.kind {
-                    DoorKind::WebSocket | DoorKind::Tcp => self.gauge.stream_words(),
-                    DoorKind::Fdm | DoorKind::Rc => self.gauge.packet_words(now),
+                let state = match self.kind {
+                    DoorKind::WebSocket | DoorKind::Tcp => EndpointState::Clients(self.stats.client_stats()),
+                    DoorKind::Fdm | DoorKind::Rc => EndpointState::Packets(self.stats.packet_stats(now)),
                 };
-                (place.to_string(), words)
+                (place.to_string(), state)
             }
-            Err(DoorError::Busy { port, .. }) => (port.to_string(), "busy".to_owned()),
-            Err(DoorError::Refused { address, .. }) => (address.to_string(), "closed".to_owned()),
+            Err(DoorError::Busy { port, .. }) => (port.to_string(), EndpointState::Busy),
+            Err(DoorError::Refused { address, .. }) => (address.to_string(), EndpointState::Closed),
         };
-        DoorView { name: self.kind.name(), address, state, fault: self.place.is_err() }
+        EndpointStatus { name: self.kind.name(), address, state }
     }
 }
 

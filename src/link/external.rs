@@ -5,10 +5,9 @@ use std::time::{Duration, Instant};
 use super::proto::fdm_link::{Answer, Counters, FdmLink, FdmLinkConfig, Received};
 use super::proto::servo;
 use super::udp::{MotorPort, Sent};
-use crate::session::command::DoorView;
 use crate::signals::fdm::MotorOrder;
 use crate::signals::{MotorCommand, SensorFrame};
-use crate::telemetry::LinkState;
+use crate::telemetry::{EndpointState, EndpointStatus, LinkState, SimulatorStats};
 
 /// Drives a firmware by the packets of a simulator.
 #[derive(Debug)]
@@ -84,25 +83,19 @@ impl ExternalSimulator {
         self.link.counters()
     }
 
-    /// The line that shows where motors are sent and whether the simulator is there.
+    /// Where motors are sent, and whether the simulator is there.
     #[must_use]
-    pub fn view(&self, now: Instant) -> DoorView {
-        let state = self.state(now);
-        let mut words = state.to_string();
-        if let Some(dialect) = self.link.dialect().filter(|_| state == LinkState::Flowing) {
-            words += &format!(", {dialect}");
-        }
+    pub fn status(&self, now: Instant) -> EndpointStatus {
         let Counters { senseless, old, .. } = self.link.counters();
-        for (count, what) in [(senseless, "refused"), (old, "old")] {
-            if count > 0 {
-                words += &format!(", {count} {what}");
-            }
-        }
-        DoorView {
+        EndpointStatus {
             name: "udp motors",
             address: self.port.address().map_or_else(String::new, |address| address.to_string()),
-            state: words,
-            fault: state == LinkState::Silent,
+            state: EndpointState::Simulator(SimulatorStats {
+                link: self.state(now),
+                dialect: self.link.dialect().map(Into::into),
+                refused: senseless,
+                old,
+            }),
         }
     }
 

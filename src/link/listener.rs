@@ -14,7 +14,7 @@ use tokio_tungstenite::tungstenite::protocol::WebSocketConfig;
 use tokio_util::task::TaskTracker;
 
 use super::client::{Client, Reception};
-use super::gauge::Gauge;
+use super::endpoint_stats::EndpointStats;
 use super::origin;
 use super::request::{ClientId, Request};
 use super::transport::Transport;
@@ -63,7 +63,7 @@ pub(super) async fn listen(
     listener: TcpListener,
     kind: Kind,
     reception: Reception,
-    gauge: Arc<Gauge>,
+    stats: Arc<EndpointStats>,
     tasks: TaskTracker,
 ) {
     let mut told_full = false;
@@ -73,15 +73,15 @@ pub(super) async fn listen(
             accepted = listener.accept() => match accepted {
                 Ok((stream, _)) => stream,
                 Err(_) => {
-                    gauge.error();
+                    stats.error();
                     tokio::time::sleep(ACCEPT_PAUSE).await;
                     continue;
                 }
             },
         };
-        if gauge.client_came() > CLIENTS_MAX {
-            gauge.client_left();
-            gauge.error();
+        if stats.client_came() > CLIENTS_MAX {
+            stats.client_left();
+            stats.error();
             if !std::mem::replace(&mut told_full, true) {
                 let notice = format!(
                     "The {} door serves {CLIENTS_MAX} clients at once: another one was turned away.",
@@ -92,18 +92,18 @@ pub(super) async fn listen(
             }
             continue;
         }
-        let (kind, reception, gauge) = (kind.clone(), reception.clone(), Arc::clone(&gauge));
+        let (kind, reception, stats) = (kind.clone(), reception.clone(), Arc::clone(&stats));
         tasks.spawn(async move {
             // An interactive line is small packets both ways.
             let _only_slower = stream.set_nodelay(true);
             match admit(stream, &kind, &reception).await {
                 Some(transport) => {
                     let id = ClientId(NEXT_CLIENT.fetch_add(1, Relaxed));
-                    Client::new(id, transport, reception, Arc::clone(&gauge)).serve().await;
+                    Client::new(id, transport, reception, Arc::clone(&stats)).serve().await;
                 }
-                None => gauge.error(),
+                None => stats.error(),
             }
-            gauge.client_left();
+            stats.client_left();
         });
     }
 }

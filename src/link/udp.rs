@@ -8,7 +8,7 @@ use std::time::Instant;
 use tokio::net::UdpSocket;
 
 use super::client::Reception;
-use super::gauge::Gauge;
+use super::endpoint_stats::EndpointStats;
 use super::proto::{fdm, rc, servo};
 use super::request::Request;
 
@@ -29,7 +29,7 @@ pub(super) async fn receive(
     socket: UdpSocket,
     datagrams: Datagrams,
     reception: Reception,
-    gauge: Arc<Gauge>,
+    stats: Arc<EndpointStats>,
 ) {
     let mut buffer = [0; BUFFER];
     loop {
@@ -38,11 +38,11 @@ pub(super) async fn receive(
             received = socket.recv_from(&mut buffer) => received,
         };
         let Ok((size, from)) = received else {
-            gauge.error();
+            stats.error();
             continue;
         };
         let at = Instant::now();
-        gauge.received(size);
+        stats.received(size);
         let datagram = &buffer[..size];
         let request = match datagrams {
             Datagrams::Rc => {
@@ -56,12 +56,12 @@ pub(super) async fn receive(
         };
         match request {
             Some(request) => {
-                gauge.packet(at);
+                stats.packet(at);
                 if reception.requests.try_send(request).is_err() {
-                    gauge.error();
+                    stats.error();
                 }
             }
-            None => gauge.wrong_size(),
+            None => stats.wrong_size(),
         }
     }
 }

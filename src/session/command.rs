@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::plan::FlightPlan;
 use crate::signals::RcFrame;
-use crate::telemetry::{LinkState, Snapshot};
+use crate::telemetry::{EndpointStatus, LinkState, Snapshot};
 
 /// Why time cannot be paused, stepped or made faster while a simulator outside moves the craft.
 pub const TIME_IS_OUTSIDE: &str = "The simulator sets the time: pause it or change its speed there.";
@@ -89,23 +89,10 @@ pub struct SessionView {
     pub rc_cut: bool,
     /// The scripted pilot is flying, and what it is doing in a word or two.
     pub pilot: Option<&'static str>,
-    /// One line a door: name, address and state in words.
-    pub doors: Vec<DoorView>,
+    /// Where other programs reach the craft.
+    pub endpoints: Vec<EndpointStatus>,
     /// Whether the simulator outside speaks that moves the craft; `None` when the world is inside.
     pub simulator: Option<LinkState>,
     /// Files or doors influence the flight: not repeatable.
     pub live: bool,
-}
-
-/// The state of one door.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct DoorView {
-    /// `ws`, `tcp`, `udp fdm`, `udp rc`, `udp motors`.
-    pub name: &'static str,
-    /// Address it listens on or sends to.
-    pub address: String,
-    /// `listening`, `closed`, `busy`, `2 clients`…
-    pub state: String,
-    /// Whether something is wrong with it.
-    pub fault: bool,
 }

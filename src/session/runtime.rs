@@ -9,17 +9,17 @@ use std::time::{Duration, Instant};
 use tokio::sync::{mpsc, watch};
 
 use super::arming::ArmingWatch;
-use super::command::{CliOutput, Command, DoorView, PLACE_IS_OUTSIDE, SessionView, TIME_IS_OUTSIDE};
+use super::command::{CliOutput, Command, PLACE_IS_OUTSIDE, SessionView, TIME_IS_OUTSIDE};
 use super::event::{Event, EventSender, SessionEvent};
 use super::pacer::Pacer;
 use super::simulator::{RC_REPEAT_US, Simulator};
 use crate::firmware::cli::{CliAction, CliReply, Interpreter, advice};
-use crate::link::{Attended, Desk, ExternalSimulator, Request, Trouble, upkeep};
+use crate::link::{Attended, Desk, ExternalSimulator, ImpairedLink, Request, upkeep};
 use crate::plan::{FlightPlan, upload_lines};
 use crate::signals::RcSource;
-use crate::sim::WorldCommand;
+use crate::sim::{Stream, WorldCommand};
 use crate::storage::Store;
-use crate::telemetry::LinkState;
+use crate::telemetry::{EndpointStatus, LinkState};
 use crate::vehicle::Vehicle;
 
 /// Interval of published pictures.
@@ -41,7 +41,7 @@ pub struct Doorway {
     /// Answers them.
     pub desk: Desk,
     /// The state of the doors.
-    pub views: watch::Receiver<Vec<DoorView>>,
+    pub views: watch::Receiver<Vec<EndpointStatus>>,
     /// The simulator that moves the craft, when the vehicle is moved from outside.
     pub simulator: Option<ExternalSimulator>,
 }
@@ -82,7 +82,7 @@ pub struct Handle {
 /// When the system gives no thread.
 pub fn start(mut config: SessionConfig) -> std::io::Result<Handle> {
     let simulator = config.doorway.as_mut().and_then(|doorway| doorway.simulator.take());
-    let trouble = Trouble::new(config.vehicle.world().seed());
+    let incoming = ImpairedLink::new(Stream::Link.rng(config.vehicle.world().seed()));
     let (command_tx, command_rx) = mpsc::channel(256);
     let (event_tx, event_rx) = mpsc::unbounded_channel();
     let mut session = Session {
@@ -91,7 +91,7 @@ pub fn start(mut config: SessionConfig) -> std::io::Result<Handle> {
         vehicle: config.vehicle,
         store: config.store,
         takeoff_m: config.takeoff_m,
-        simulator: simulator.map(|link| Simulator::new(link, trouble, Instant::now())),
+        simulator: simulator.map(|link| Simulator::new(link, incoming, Instant::now())),
         doorway: config.doorway,
         commands: command_rx,
         events: EventSender::new(event_tx),
@@ -203,16 +203,16 @@ impl Session {
             sticks: self.vehicle.hands.sticks,
             rc_cut: self.vehicle.hands.cut,
             pilot: self.vehicle.hands.pilot.as_ref().map(crate::pilot::Pilot::doing),
-            doors: self.doors(),
+            endpoints: self.endpoints(),
             simulator: self.simulator.as_ref().map(Simulator::state),
             live: self.doorway.is_some(),
         }
     }
 
-    fn doors(&self) -> Vec<DoorView> {
-        let mut doors = self.doorway.as_ref().map_or_else(Vec::new, |way| way.views.borrow().clone());
-        doors.extend(self.simulator.as_ref().map(|simulator| simulator.view(Instant::now())));
-        doors
+    fn endpoints(&self) -> Vec<EndpointStatus> {
+        let mut all = self.doorway.as_ref().map_or_else(Vec::new, |way| way.views.borrow().clone());
+        all.extend(self.simulator.as_ref().map(|simulator| simulator.status(Instant::now())));
+        all
     }
 
     fn flush_events(&mut self) {

@@ -6,10 +6,10 @@ use arrayvec::ArrayVec;
 
 use crate::link::proto::fdm::Refusal;
 use crate::link::proto::fdm_link::Verdict;
-use crate::link::{Desk, ExternalSimulator, Trouble};
-use crate::session::command::DoorView;
+use crate::link::{Desk, ExternalSimulator, ImpairedLink, LinkImpairment};
 use crate::session::event::EventSender;
-use crate::telemetry::LinkState;
+use crate::sim::LinkFaults;
+use crate::telemetry::{EndpointStatus, LinkState};
 use crate::vehicle::Vehicle;
 
 /// How often frames from sockets are repeated while time runs fast, µs of simulated time.
@@ -23,7 +23,7 @@ const REFUSALS: usize = 6;
 pub(super) struct Simulator {
     link: ExternalSimulator,
     /// What goes wrong before its packets arrive.
-    trouble: Trouble,
+    incoming: ImpairedLink,
     /// The state that was told last.
     state: LinkState,
     /// When it spoke last.
@@ -34,10 +34,10 @@ pub(super) struct Simulator {
 }
 
 impl Simulator {
-    pub(super) fn new(link: ExternalSimulator, trouble: Trouble, now: Instant) -> Self {
+    pub(super) fn new(link: ExternalSimulator, incoming: ImpairedLink, now: Instant) -> Self {
         Self {
             link,
-            trouble,
+            incoming,
             state: LinkState::Waiting,
             heard: now,
             told_refusals: ArrayVec::new(),
@@ -52,13 +52,13 @@ impl Simulator {
 
     /// How long to wait at most until [`Self::watch`] has something to do.
     pub(super) fn patience(&self, now: Instant) -> Duration {
-        let due = self.trouble.due().map_or(self.link.due(), |arrives| arrives.min(self.link.due()));
+        let due = self.incoming.due().map_or(self.link.due(), |arrives| arrives.min(self.link.due()));
         due.saturating_duration_since(now)
     }
 
-    /// The line about it among the doors.
-    pub(super) fn view(&self, now: Instant) -> DoorView {
-        self.link.view(now)
+    /// Its line among the endpoints.
+    pub(super) fn status(&self, now: Instant) -> EndpointStatus {
+        self.link.status(now)
     }
 
     /// Takes a datagram that was sent at `at`, while simulated time has run `speed` times as fast as the wall clock;
@@ -73,7 +73,7 @@ impl Simulator {
         speed: f64,
     ) -> u64 {
         self.end_faults(at, vehicle);
-        self.trouble.send(datagram, at, &vehicle.world().link_faults());
+        self.incoming.send(datagram, at, &impairment(vehicle.world().link_faults()));
         self.take_arrived(at, vehicle, desk, events, speed)
     }
 
@@ -87,7 +87,7 @@ impl Simulator {
         speed: f64,
     ) -> u64 {
         let mut ticks = 0;
-        while let Some((datagram, at)) = self.trouble.arrived(now) {
+        while let Some((datagram, at)) = self.incoming.arrived(now) {
             ticks += self.fly(&datagram, at, vehicle, desk, events, speed);
         }
         ticks
@@ -188,6 +188,12 @@ impl Simulator {
             events.notice(vehicle, format!("Packets of the simulator are refused: {refusal}."));
         }
     }
+}
+
+/// The simulated faults of the link, for the link that carries the packets.
+fn impairment(faults: LinkFaults) -> LinkImpairment {
+    let LinkFaults { stall, loss, late_ms, duplicated, jitter_ms } = faults;
+    LinkImpairment { stall, loss, late_ms, duplicated, jitter_ms }
 }
 
 /// A remark of the link as a sentence.

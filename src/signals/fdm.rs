@@ -1,7 +1,9 @@
 //! How an external simulator speaks: what options choose and the link to it (FDM, flight dynamics model) carries out.
 
 /// What the numbers of a simulator's state datagram mean.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::EnumString)]
+#[derive(
+    Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::EnumString, strum::IntoStaticStr,
+)]
 #[strum(serialize_all = "kebab-case")]
 pub enum Dialect {
     /// What a current SITL executable decodes right: rates (ωx, −ωy, +ωz), negated specific force on FLU axes,

@@ -5,9 +5,10 @@ use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 use unicode_width::UnicodeWidthStr as _;
 
+use crate::telemetry::{EndpointState, LinkState};
+
 use super::action::{Action, enabled, is_wrecked, spec_of};
 use super::app_state::AppState;
-use super::formatting::cut;
 use super::keymap::shown;
 use super::pane::Pane;
 use super::panel::span;
@@ -155,16 +156,13 @@ fn hint(theme: &Theme, keys: &str, label: &str) -> [Span<'static>; 2] {
 fn doors(state: &AppState, width: u16) -> Vec<Span<'static>> {
     let theme = &state.theme;
     let mut spans = Vec::new();
-    for door in &state.view.doors {
-        let name = door.name.strip_prefix("udp ").unwrap_or(door.name);
-        let (text, role) = if door.fault && width >= WIDE {
-            (format!("✗{name} {}", cut(&door.state, 6)), Role::Fault)
-        } else if door.fault {
-            (format!("✗{name}"), Role::Fault)
-        } else if is_idle(&door.state) {
-            (format!("○{name}"), Role::Dim)
-        } else {
-            (format!("●{name}"), Role::Ok)
+    for endpoint in &state.view.endpoints {
+        let name = endpoint.name.strip_prefix("udp ").unwrap_or(endpoint.name);
+        let (text, role) = match fault(&endpoint.state) {
+            Some(fault) if width >= WIDE => (format!("✗{name} {fault}"), Role::Fault),
+            Some(_) => (format!("✗{name}"), Role::Fault),
+            None if endpoint.state.is_idle() => (format!("○{name}"), Role::Dim),
+            None => (format!("●{name}"), Role::Ok),
         };
         spans.push(span(theme, role, text));
         spans.push(span(theme, Role::Text, " "));
@@ -172,33 +170,57 @@ fn doors(state: &AppState, width: u16) -> Vec<Span<'static>> {
     spans
 }
 
-/// Whether nobody uses a door, going by the words about it.
-fn is_idle(words: &str) -> bool {
-    // A rate of zero is told once packets stay away.
-    matches!(words, "listening" | "closed" | "") || words.starts_with("waiting") || words.starts_with("0 Hz")
+/// What is wrong with an endpoint, in a word or two.
+fn fault(state: &EndpointState) -> Option<&'static str> {
+    match state {
+        EndpointState::Busy => Some("busy"),
+        EndpointState::Closed => Some("closed"),
+        EndpointState::Simulator(stats) if stats.link == LinkState::Silent => Some("no FDM"),
+        EndpointState::Simulator(_) | EndpointState::Clients(_) | EndpointState::Packets(_) => None,
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::session::SessionView;
-    use crate::session::command::DoorView;
-    use crate::telemetry::LinkState;
+    use crate::telemetry::{ClientStats, EndpointStatus, PacketStats, SimulatorStats};
     use crate::ui::status_bar;
 
-    /// The clock's line and the hint line while a simulator outside is in this state.
-    fn lines(simulator: LinkState, doors: &[(&'static str, &str, bool)]) -> String {
-        let door = |&(name, state, fault): &(&'static str, &str, bool)| DoorView {
-            name,
-            state: state.to_owned(),
-            fault,
-            ..DoorView::default()
+    fn endpoint((name, state): (&'static str, EndpointState)) -> EndpointStatus {
+        EndpointStatus { name, address: String::new(), state }
+    }
+
+    #[test]
+    fn an_endpoint_whose_client_left_is_not_shown_as_connected() {
+        let shown = |clients| {
+            let stats = ClientStats { clients, received_bytes: 6, sent_bytes: 9, ..ClientStats::default() };
+            let endpoints = vec![endpoint(("tcp", EndpointState::Clients(stats)))];
+            let state = AppState::bare((120, 40), SessionView { endpoints, ..SessionView::default() });
+            doors(&state, 120).iter().map(|span| span.content.to_string()).collect::<String>()
         };
+        assert_eq!((shown(1).trim(), shown(0).trim()), ("●tcp", "○tcp"));
+    }
+
+    /// The clock's line and the hint line while a simulator outside is in this state.
+    fn lines(simulator: LinkState, rate_hz: u32) -> String {
+        let states = [
+            ("udp fdm", EndpointState::Packets(PacketStats { rate_hz, ..PacketStats::default() })),
+            (
+                "udp motors",
+                EndpointState::Simulator(SimulatorStats {
+                    link: simulator,
+                    dialect: None,
+                    refused: 0,
+                    old: 0,
+                }),
+            ),
+        ];
         let view = SessionView {
             simulator: Some(simulator),
             speed_wanted: f64::INFINITY,
             speed_achieved: 0.5,
-            doors: doors.iter().map(door).collect(),
+            endpoints: states.map(endpoint).to_vec(),
             ..SessionView::default()
         };
         let state = AppState::bare((120, 40), view);
@@ -211,19 +233,16 @@ mod tests {
 
     #[test]
     fn what_the_simulator_does_stands_at_the_clock() {
-        let waiting = [("udp fdm", "listening", false), ("udp motors", "waiting for a simulator", false)];
-        let text = lines(LinkState::Waiting, &waiting);
+        let text = lines(LinkState::Waiting, 0);
         assert!(text.contains(" 00:00.0 no simulator "), "{text}");
         assert!(text.contains("○fdm ○motors"), "{text}");
 
-        let flying = [("udp fdm", "250 Hz, 9 packets, 1 ms ago", false), ("udp motors", "flying", false)];
-        let text = lines(LinkState::Flowing, &flying);
+        let text = lines(LinkState::Flowing, 250);
         assert!(text.contains(" 00:00.0 0.5×"), "its own speed: {text}");
         assert!(text.contains("●fdm ●motors"), "{text}");
         assert!(!text.contains("pause") && !text.contains("reset"), "what it decides is no hint: {text}");
 
-        let silent = [("udp fdm", "0 Hz, 9 packets, 3 s ago", false), ("udp motors", "no FDM", true)];
-        let text = lines(LinkState::Silent, &silent);
+        let text = lines(LinkState::Silent, 0);
         assert!(text.contains(" 00:00.0 ‖ simulator silent "), "{text}");
         assert!(text.contains("○fdm ✗motors no FDM"), "{text}");
     }

@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use betadeck::firmware::msp::HomeReading;
 use betadeck::link::{DoorKind, Doors, DoorsConfig, Request};
 use betadeck::telemetry::Mode;
+use betadeck::telemetry::{ClientStats, EndpointState};
 use futures_util::SinkExt;
 use tokio::io::AsyncWriteExt;
 use tokio::net::TcpStream;
@@ -310,8 +311,9 @@ async fn a_busy_port_is_named_with_the_way_out() {
         )
     );
     assert!(problems[1].contains("--udp-ports"), "{problems:?}");
-    let words: Vec<_> = views.iter().map(|view| (view.name, view.state.as_str(), view.fault)).collect();
-    assert_eq!(words, [("ws", "listening", false), ("tcp", "busy", true), ("udp rc", "busy", true)]);
+    let states: Vec<_> = views.iter().map(|view| (view.name, view.state)).collect();
+    let listening = EndpointState::Clients(ClientStats::default());
+    assert_eq!(states, [("ws", listening), ("tcp", EndpointState::Busy), ("udp rc", EndpointState::Busy)]);
     assert!(doors.address(DoorKind::WebSocket).unwrap().ip().is_loopback());
     doors.close().await;
 }
@@ -322,7 +324,14 @@ async fn doors_show_who_is_there() {
     let mut client = house.tcp().await;
     client.assert_speaks_msp().await;
     let view = house.doors.views().into_iter().find(|view| view.name == "tcp").unwrap();
-    assert_eq!(view.state, "1 client, API_VERSION, 6 B in, 9 B out");
+    let stats = ClientStats {
+        clients: 1,
+        last_message: Some(1),
+        received_bytes: 6,
+        sent_bytes: 9,
+        ..ClientStats::default()
+    };
+    assert_eq!(view.state, EndpointState::Clients(stats));
     house.doors.close().await;
     assert!(client.is_closed().await);
 }

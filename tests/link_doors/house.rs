@@ -10,6 +10,7 @@ use betadeck::firmware::msp::{GpsReading, MspAction, MspFacts, handle};
 use betadeck::geo::LatLon;
 use betadeck::link::{CliAnswer, DoorKind, Doors, DoorsConfig, Request, RestartBell};
 use betadeck::plan::{HoldPattern, Waypoint, WaypointType};
+use betadeck::telemetry::{EndpointState, EndpointStatus};
 use futures_util::{SinkExt, StreamExt};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
@@ -146,7 +147,9 @@ impl House {
     pub(crate) async fn open(config: DoorsConfig) -> Self {
         let (requests, inbox) = mpsc::channel(64);
         let (doors, views) = Doors::open(&config, requests).await;
-        assert!(views.iter().all(|view| !view.fault), "{views:?}");
+        let closed =
+            |view: &EndpointStatus| matches!(view.state, EndpointState::Busy | EndpointState::Closed);
+        assert!(!views.iter().any(closed), "{views:?}");
         let craft = Arc::new(Mutex::new(captured_craft()));
         let (others_in, others) = mpsc::channel(256);
         tokio::spawn(desk(Arc::clone(&craft), inbox, doors.restart_bell(), others_in));

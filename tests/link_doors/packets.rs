@@ -7,7 +7,7 @@ use betadeck::link::proto::{rc, servo};
 use betadeck::link::{DoorKind, ExternalSimulator, MotorPort, Request, Sent};
 use betadeck::signals::fdm::MotorOrder;
 use betadeck::signals::{MotorCommand, RcFrame};
-use betadeck::telemetry::LinkState;
+use betadeck::telemetry::{EndpointState, LinkState};
 use tokio::net::UdpSocket;
 
 use super::house::{House, PATIENCE, hex, unhex};
@@ -33,7 +33,8 @@ async fn rc_and_states_arrive_and_other_sizes_are_counted() {
     let Some(Request::Fdm { datagram, .. }) = house.others.recv().await else { panic!("no state") };
     assert_eq!(datagram.len(), 296);
     for view in house.doors.views().iter().filter(|view| view.name.starts_with("udp")) {
-        assert!(view.state.contains("1 packets") && view.state.contains("1 of wrong size"), "{view:?}");
+        let EndpointState::Packets(stats) = view.state else { panic!("{view:?}") };
+        assert_eq!((stats.packets, stats.wrong_size), (1, 1), "{view:?}");
     }
 }
 
@@ -181,5 +182,5 @@ async fn a_simulator_is_answered_packet_by_packet() {
     assert_eq!(servo::decode(&buffer[..16]), Some([0.2, 0.3, 0.4, 0.1]));
     servo_socket.set_nonblocking(true).unwrap();
     assert!(servo_socket.recv(&mut buffer).is_err(), "one answer a packet");
-    assert_eq!(simulator.view(start).name, "udp motors");
+    assert_eq!(simulator.status(start).name, "udp motors");
 }

@@ -6,13 +6,12 @@ use std::time::Duration;
 
 use betadeck::geo::{LatLon, LocalFrame};
 use betadeck::plan::{FlightPlan, HoldPattern, Waypoint, WaypointType};
-use betadeck::session::command::DoorView;
 use betadeck::session::{Event, SessionEvent, SessionView};
 use betadeck::signals::{RcFrame, RcSource, SimTime};
 use betadeck::telemetry::snapshot::{ModeRange, SettingsView, TruthView};
 use betadeck::telemetry::{
-    ArmingFlag, DisarmReason, EventKind, FirmwareEvent, Guard, GuardName, GuardOp, L1Mode, Mode, ModeFlags,
-    NavEvent, NavState, Snapshot, TransitionReason,
+    ArmingFlag, ClientStats, DisarmReason, EndpointState, EndpointStatus, EventKind, FirmwareEvent, Guard,
+    GuardName, GuardOp, L1Mode, Mode, ModeFlags, NavEvent, NavState, PacketStats, Snapshot, TransitionReason,
 };
 use betadeck::ui::theme::{Charset, Palette};
 use betadeck::ui::{AppState, CliHelp, Msg, OpenPlan, Theme, UiConfig, update};
@@ -224,15 +223,18 @@ pub(crate) fn view(flight: &SimpleFlight) -> SessionView {
         raised_stick_us: 1300,
         sink_stick_us: Some(1410),
     };
-    let doors = [("ws", "1 client"), ("tcp", "listening"), ("udp", "listening")];
+    let endpoint = |name, state| EndpointStatus { name, address: String::new(), state };
+    let clients = |clients| EndpointState::Clients(ClientStats { clients, ..ClientStats::default() });
     SessionView {
         vehicle: std::sync::Arc::new(snapshot),
         speed_wanted: 1.0,
         speed_achieved: 1.0,
         sticks: RcFrame::SAFE,
-        doors: doors
-            .map(|(name, state)| DoorView { name, state: state.to_owned(), ..DoorView::default() })
-            .to_vec(),
+        endpoints: vec![
+            endpoint("ws", clients(1)),
+            endpoint("tcp", clients(0)),
+            endpoint("udp", EndpointState::Packets(PacketStats::default())),
+        ],
         ..SessionView::default()
     }
 }

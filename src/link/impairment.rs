@@ -1,6 +1,6 @@
 //! What goes wrong on the way from a simulator: packets that are lost, late, doubled or out of order.
 //!
-//! The caller tells when a packet was sent and which faults are on, and takes out what has arrived by now. With the same
+//! The caller tells when a packet was sent and what is wrong then, and takes out what has arrived by now. With the same
 //! seed the same packets meet the same fate.
 
 use std::collections::VecDeque;
@@ -9,15 +9,28 @@ use std::time::{Duration, Instant};
 use rand::RngExt as _;
 use rand_chacha::ChaCha8Rng;
 
-use crate::sim::{LinkFaults, Stream};
-
 /// Most packets that are on the way together; what is sent beyond them is lost, as in a socket that is full.
 const MAX_UNDERWAY: usize = 16_384;
 
+/// What goes wrong on the way.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct LinkImpairment {
+    /// Nothing is sent.
+    pub stall: bool,
+    /// Fraction of packets lost.
+    pub loss: f64,
+    /// Delay of every packet, ms.
+    pub late_ms: f64,
+    /// Fraction of packets that come twice.
+    pub duplicated: f64,
+    /// Greatest additional random delay, ms.
+    pub jitter_ms: f64,
+}
+
 /// The way from a simulator to the firmware.
 #[derive(Debug, Clone)]
-pub struct Trouble {
-    dice: ChaCha8Rng,
+pub struct ImpairedLink {
+    rng: ChaCha8Rng,
     /// In the order of arrival.
     underway: VecDeque<Packet>,
 }
@@ -28,28 +41,28 @@ struct Packet {
     datagram: Vec<u8>,
 }
 
-impl Trouble {
-    /// A way that is free.
+impl ImpairedLink {
+    /// A link on which nothing is underway; `rng` decides the fate of packets.
     #[must_use]
-    pub fn new(seed: u64) -> Self {
-        Self { dice: Stream::Link.rng(seed), underway: VecDeque::new() }
+    pub fn new(rng: ChaCha8Rng) -> Self {
+        Self { rng, underway: VecDeque::new() }
     }
 
-    /// Sends a packet on its way at `at`, with these faults.
-    pub fn send(&mut self, datagram: Vec<u8>, at: Instant, faults: &LinkFaults) {
-        if *faults == LinkFaults::default() {
+    /// Sends a packet on its way at `at`, through these impairments.
+    pub fn send(&mut self, datagram: Vec<u8>, at: Instant, impairment: &LinkImpairment) {
+        if *impairment == LinkImpairment::default() {
             self.put(datagram, at);
             return;
         }
-        // All drawn for each packet, so that one fault leaves the fate of the others' packets as it is.
-        let [loss, doubling, jitter, jitter_of_second] = std::array::from_fn(|_| self.dice.random::<f64>());
-        if faults.stall || loss < faults.loss {
+        // All drawn for each packet, so that one of them leaves the fate of the others' packets as it is.
+        let [loss, doubling, jitter, jitter_of_second] = std::array::from_fn(|_| self.rng.random::<f64>());
+        if impairment.stall || loss < impairment.loss {
             return;
         }
         let late = |part: f64| {
-            Duration::from_micros(((faults.late_ms + part * faults.jitter_ms) * 1000.0).round() as u64)
+            Duration::from_micros(((impairment.late_ms + part * impairment.jitter_ms) * 1000.0).round() as u64)
         };
-        if doubling < faults.duplicated {
+        if doubling < impairment.duplicated {
             self.put(datagram.clone(), at + late(jitter_of_second));
         }
         self.put(datagram, at + late(jitter));
@@ -80,16 +93,21 @@ impl Trouble {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+    use rand::SeedableRng as _;
 
-    const NONE: LinkFaults =
-        LinkFaults { stall: false, loss: 0.0, late_ms: 0.0, duplicated: 0.0, jitter_ms: 0.0 };
+    const NONE: LinkImpairment =
+        LinkImpairment { stall: false, loss: 0.0, late_ms: 0.0, duplicated: 0.0, jitter_ms: 0.0 };
+
+    fn link(seed: u64) -> ImpairedLink {
+        ImpairedLink::new(ChaCha8Rng::seed_from_u64(seed))
+    }
 
     /// Sends packets 0, 1, 2… one a millisecond; gives number and time of arrival (µs after the first was sent).
-    fn carry(seed: u64, count: u32, faults: &LinkFaults) -> Vec<(u32, u128)> {
+    fn carry(seed: u64, count: u32, impairment: &LinkImpairment) -> Vec<(u32, u128)> {
         let start = Instant::now();
-        let mut way = Trouble::new(seed);
+        let mut way = link(seed);
         let mut seen = Vec::new();
-        let mut look = |way: &mut Trouble, now: Instant| {
+        let mut look = |way: &mut ImpairedLink, now: Instant| {
             while let Some((datagram, at)) = way.arrived(now) {
                 assert!(at <= now);
                 let number = u32::from_le_bytes(datagram[..].try_into().unwrap());
@@ -98,7 +116,7 @@ mod tests {
         };
         for number in 0..count {
             let at = start + Duration::from_millis(number.into());
-            way.send(number.to_le_bytes().to_vec(), at, faults);
+            way.send(number.to_le_bytes().to_vec(), at, impairment);
             look(&mut way, at);
         }
         look(&mut way, start + Duration::from_secs(3600));
@@ -114,18 +132,18 @@ mod tests {
     fn without_faults_everything_passes_at_once_and_nothing_is_drawn() {
         let seen = carry(1, 50, &NONE);
         assert_eq!(seen, (0..50).map(|n| (n, u128::from(n) * 1000)).collect::<Vec<_>>());
-        let mut way = Trouble::new(1);
-        let (fresh, now) = (way.dice.clone(), Instant::now());
+        let mut way = link(1);
+        let (fresh, now) = (way.rng.clone(), Instant::now());
         way.send(vec![1], now, &NONE);
-        assert_eq!(way.dice, fresh);
+        assert_eq!(way.rng, fresh);
     }
 
     #[test]
     fn a_stall_lets_nothing_through_but_what_is_on_its_way() {
-        assert_eq!(carry(1, 50, &LinkFaults { stall: true, ..NONE }), []);
-        let (mut way, now) = (Trouble::new(1), Instant::now());
-        way.send(vec![7], now, &LinkFaults { late_ms: 5.0, ..NONE });
-        way.send(vec![8], now, &LinkFaults { stall: true, ..NONE });
+        assert_eq!(carry(1, 50, &LinkImpairment { stall: true, ..NONE }), []);
+        let (mut way, now) = (link(1), Instant::now());
+        way.send(vec![7], now, &LinkImpairment { late_ms: 5.0, ..NONE });
+        way.send(vec![8], now, &LinkImpairment { stall: true, ..NONE });
         assert_eq!(way.arrived(now + Duration::from_micros(4999)), None);
         let arrives = now + Duration::from_millis(5);
         assert_eq!(way.due(), Some(arrives));
@@ -135,39 +153,39 @@ mod tests {
 
     #[test]
     fn the_asked_fraction_is_lost_and_another_doubled() {
-        let lost = 10_000 - carry(3, 10_000, &LinkFaults { loss: 0.2, ..NONE }).len();
+        let lost = 10_000 - carry(3, 10_000, &LinkImpairment { loss: 0.2, ..NONE }).len();
         assert!((1880..2120).contains(&lost), "three standard deviations: {lost}");
-        let doubled = carry(3, 10_000, &LinkFaults { duplicated: 0.2, ..NONE });
+        let doubled = carry(3, 10_000, &LinkImpairment { duplicated: 0.2, ..NONE });
         assert!((11_880..12_120).contains(&doubled.len()), "{}", doubled.len());
         assert!(doubled.is_sorted(), "a second one follows the first at once");
-        assert_eq!(carry(3, 100, &LinkFaults { loss: 1.0, ..NONE }), []);
-        assert_eq!(carry(3, 100, &LinkFaults { duplicated: 1.0, ..NONE }).len(), 200);
+        assert_eq!(carry(3, 100, &LinkImpairment { loss: 1.0, ..NONE }), []);
+        assert_eq!(carry(3, 100, &LinkImpairment { duplicated: 1.0, ..NONE }).len(), 200);
     }
 
     #[test]
     fn late_packets_keep_their_order_and_jittered_ones_overtake() {
-        let late = carry(1, 50, &LinkFaults { late_ms: 12.5, ..NONE });
+        let late = carry(1, 50, &LinkImpairment { late_ms: 12.5, ..NONE });
         assert_eq!(late, (0..50).map(|n| (n, u128::from(n) * 1000 + 12_500)).collect::<Vec<_>>());
-        let jitter = carry(1, 1000, &LinkFaults { jitter_ms: 5.0, ..NONE });
+        let jitter = carry(1, 1000, &LinkImpairment { jitter_ms: 5.0, ..NONE });
         assert!(jitter.iter().all(|&(n, at)| (0..=5000).contains(&(at - u128::from(n) * 1000))));
         assert!(!numbers(&jitter).is_sorted() && jitter.iter().map(|(_, at)| at).is_sorted());
     }
 
     #[test]
     fn the_seed_decides_and_one_fault_leaves_the_losses_of_another() {
-        let faults = LinkFaults { loss: 0.3, jitter_ms: 5.0, ..NONE };
+        let faults = LinkImpairment { loss: 0.3, jitter_ms: 5.0, ..NONE };
         assert_eq!(carry(4, 300, &faults), carry(4, 300, &faults));
         assert_ne!(carry(4, 300, &faults), carry(5, 300, &faults));
         let mut with = numbers(&carry(4, 300, &faults));
         with.sort_unstable();
-        assert_eq!(with, numbers(&carry(4, 300, &LinkFaults { loss: 0.3, ..NONE })));
+        assert_eq!(with, numbers(&carry(4, 300, &LinkImpairment { loss: 0.3, ..NONE })));
     }
 
     #[test]
     fn the_way_holds_no_more_than_a_socket_does() {
-        let (mut way, now) = (Trouble::new(1), Instant::now());
+        let (mut way, now) = (link(1), Instant::now());
         for _ in 0..MAX_UNDERWAY + 5 {
-            way.send(vec![0], now, &LinkFaults { late_ms: 1.0, ..NONE });
+            way.send(vec![0], now, &LinkImpairment { late_ms: 1.0, ..NONE });
         }
         let later = now + Duration::from_secs(1);
         assert_eq!(std::iter::from_fn(|| way.arrived(later)).count(), MAX_UNDERWAY);
@@ -179,7 +197,7 @@ mod tests {
             seed: u64, loss in 0.0..1.0_f64, late_ms in 0.0..10_000.0_f64, duplicated in 0.0..1.0_f64,
             jitter_ms in 0.0..10_000.0_f64, count in 0_u32..200,
         ) {
-            let faults = LinkFaults { stall: false, loss, late_ms, duplicated, jitter_ms };
+            let faults = LinkImpairment { stall: false, loss, late_ms, duplicated, jitter_ms };
             let seen = carry(seed, count, &faults);
             let mut copies = vec![0; count as usize];
             for &(number, at) in &seen {
@@ -190,7 +208,7 @@ mod tests {
             }
             prop_assert!(copies.iter().all(|copies| *copies <= 2));
             prop_assert!(seen.iter().map(|(_, at)| at).is_sorted());
-            let lossless = numbers(&carry(seed, count, &LinkFaults { loss: 0.0, duplicated: 0.0, ..faults }));
+            let lossless = numbers(&carry(seed, count, &LinkImpairment { loss: 0.0, duplicated: 0.0, ..faults }));
             prop_assert_eq!(lossless.len(), count as usize);
         }
     }

@@ -1,19 +1,19 @@
-//! What a door has seen, counted where it happens and read where it is shown.
+//! What an endpoint has seen, counted where it happens and read where it is shown.
 
 use std::sync::atomic::{AtomicU32, AtomicU64, Ordering::Relaxed};
 use std::time::{Duration, Instant};
 
-use crate::firmware::msp::MESSAGES;
+use crate::telemetry::{ClientStats, PacketStats};
 
-/// After this long without a packet the rate is shown as zero.
+/// After this long without a packet the rate counts as zero.
 const RATE_EXPIRES: Duration = Duration::from_secs(2);
 
 /// Marks that no message was asked yet.
 const NO_MESSAGE: u32 = u32::MAX;
 
-/// The counters of one door.
+/// The counters of one endpoint.
 #[derive(Debug)]
-pub(super) struct Gauge {
+pub(super) struct EndpointStats {
     opened: Instant,
     clients: AtomicU32,
     last_message: AtomicU32,
@@ -29,7 +29,7 @@ pub(super) struct Gauge {
     rate_hz: AtomicU32,
 }
 
-impl Gauge {
+impl EndpointStats {
     pub(super) fn new(now: Instant) -> Self {
         Self {
             opened: now,
@@ -98,63 +98,29 @@ impl Gauge {
         now.saturating_duration_since(self.opened).as_millis() as u64
     }
 
-    /// `2 clients, STATUS, 1.2 kB in, 3.4 kB out, 1 error`.
-    pub(super) fn stream_words(&self) -> String {
-        let clients = self.clients.load(Relaxed);
-        let mut words = match clients {
-            0 => "listening".to_owned(),
-            1 => "1 client".to_owned(),
-            more => format!("{more} clients"),
-        };
+    /// The server's counters as they are now.
+    pub(super) fn client_stats(&self) -> ClientStats {
         let last = self.last_message.load(Relaxed);
-        if clients > 0
-            && let Some(message) = MESSAGES.iter().find(|message| u32::from(message.code) == last)
-        {
-            words += &format!(", {}", message.name);
+        ClientStats {
+            clients: self.clients(),
+            last_message: (last != NO_MESSAGE).then_some(last as u16),
+            received_bytes: self.received_bytes.load(Relaxed),
+            sent_bytes: self.sent_bytes.load(Relaxed),
+            errors: self.errors.load(Relaxed),
         }
-        let (received, sent) = (self.received_bytes.load(Relaxed), self.sent_bytes.load(Relaxed));
-        if received + sent > 0 {
-            words += &format!(", {} in, {} out", bytes(received), bytes(sent));
-        }
-        words + &self.error_words()
     }
 
-    /// `50 Hz, 1234 packets, 12 ms ago, 1 of wrong size`.
-    pub(super) fn packet_words(&self, now: Instant) -> String {
+    /// The receiver's counters as they are at `now`.
+    pub(super) fn packet_stats(&self, now: Instant) -> PacketStats {
         let packets = self.packets.load(Relaxed);
-        if packets == 0 {
-            let wrong = self.wrong_size.load(Relaxed);
-            return if wrong > 0 {
-                format!("listening, {wrong} of wrong size")
-            } else {
-                "listening".to_owned()
-            };
+        let age_ms = (packets > 0).then(|| self.millis(now).saturating_sub(self.newest_ms.load(Relaxed)));
+        let is_flowing = age_ms.is_some_and(|age| u128::from(age) <= RATE_EXPIRES.as_millis());
+        PacketStats {
+            packets,
+            rate_hz: if is_flowing { self.rate_hz.load(Relaxed) } else { 0 },
+            age_ms,
+            wrong_size: self.wrong_size.load(Relaxed),
+            errors: self.errors.load(Relaxed),
         }
-        let age_ms = self.millis(now).saturating_sub(self.newest_ms.load(Relaxed));
-        let stale = u128::from(age_ms) > RATE_EXPIRES.as_millis();
-        let rate = if stale { 0 } else { self.rate_hz.load(Relaxed) };
-        let age = if age_ms < 1000 { format!("{age_ms} ms") } else { format!("{} s", age_ms / 1000) };
-        let mut words = format!("{rate} Hz, {packets} packets, {age} ago");
-        let wrong = self.wrong_size.load(Relaxed);
-        if wrong > 0 {
-            words += &format!(", {wrong} of wrong size");
-        }
-        words + &self.error_words()
-    }
-
-    fn error_words(&self) -> String {
-        match self.errors.load(Relaxed) {
-            0 => String::new(),
-            1 => ", 1 error".to_owned(),
-            more => format!(", {more} errors"),
-        }
-    }
-}
-
-fn bytes(count: u64) -> String {
-    match count {
-        0..1000 => format!("{count} B"),
-        1000..1_000_000 => format!("{:.1} kB", count as f64 / 1e3),
-        _ => format!("{:.1} MB", count as f64 / 1e6),
     }
 }
