@@ -4,15 +4,14 @@
 //! else here moves bytes between sockets and those machines and turns what arrives into [`Request`]s to the session.
 //!
 //! ```text
-//! tcp 5761 ──┐                                    ┌── Msp, EnterCli, Cli, LeftCli, Restart ─▶ session
-//! ws  6761 ──┴─ listener ─ client ─ conversation ─┘                    ◀─ oneshot replies ──
+//! tcp 5761 ──┐                                      ┌── Msp, EnterCli, Cli, LeftCli, Restart ─▶ session
+//! ws  6761 ──┴─ listener ─ client ─ serial session ─┘                    ◀─ oneshot replies ──
 //! udp 9004 ──── receive ── Rc  ──────────────────────────────────────────────────────────▶
 //! udp 9003 ──── receive ── Fdm ────────────────────────────────────────────────▶ ImpairedLink ─▶ ExternalSimulator
 //! udp 9002, 9001 ◀── MotorPort ◀──────────────────────────────────────────────────────────
 //! ```
 
 mod client;
-mod desk;
 mod doors;
 mod endpoint_stats;
 mod external;
@@ -24,11 +23,9 @@ mod request;
 pub mod sitl;
 mod transport;
 mod udp;
-pub mod upkeep;
 
-pub use desk::{Attended, Desk};
 pub use doors::{DoorError, DoorKind, Doors, DoorsConfig, RestartBell};
 pub use external::ExternalSimulator;
 pub use impairment::{ImpairedLink, LinkImpairment};
-pub use request::{CliAnswer, ClientId, Request};
+pub use request::{ClientId, Request};
 pub use udp::{MotorPort, Sent};

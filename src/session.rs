@@ -4,10 +4,13 @@ mod arming;
 pub mod command;
 mod event;
 mod pacer;
+mod persistence;
+mod request_handler;
 mod runtime;
 mod simulator;
 
 pub use command::{Command, SessionView};
 pub use event::{EndpointAddresses, Event, SessionEvent};
 pub use pacer::{Pacer, SPEED_RANGE};
+pub use request_handler::{Handled, RequestHandler};
 pub use runtime::{Doorway, Handle, SessionConfig, start};

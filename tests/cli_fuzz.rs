@@ -8,12 +8,12 @@ mod meter;
 
 use std::time::Duration;
 
-use betadeck::firmware::cli::{
-    COMMANDS, CliContext, CliFacts, Interpreter, LineEditor, Mode, complete, hint,
-};
+use betadeck::firmware::cli::{COMMANDS, CliContext, CliFacts, Interpreter, Mode, complete, hint};
 use betadeck::firmware::config::{Configuration, correct};
 use betadeck::firmware::settings::SETTINGS;
 use betadeck::firmware::storage::{decode, encode};
+use betadeck::link::proto::command_line::Completion;
+use betadeck::link::proto::line_editor::LineEditor;
 use meter::measured;
 use proptest::prelude::*;
 
@@ -52,10 +52,16 @@ fn feed_editor(bytes: &[u8]) {
         let now = Duration::from_millis(at as u64 * 60);
         let output = editor.feed(*byte, at % 7 == 3, now);
         assert!(output.bytes.len() <= MIB);
+        if output.completes {
+            let found = complete(editor.line());
+            let completion =
+                Completion { tail: found.tail(editor.line()).to_owned(), words: found.candidates };
+            assert!(editor.complete(completion).len() <= MIB);
+        }
         if let Some(line) = output.line {
             assert!(line.len() <= 255);
             let mut context = CliContext { configuration: &mut configuration, facts: &facts };
-            editor.answer(&interpreter.run(&line, &mut context));
+            editor.answer(&interpreter.run(&line, &mut context).into());
         }
         editor.poll(at % 5 == 0, now + Duration::from_millis(at as u64 % 200));
     }

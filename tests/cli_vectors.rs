@@ -9,11 +9,13 @@ use std::ops::RangeInclusive;
 use std::time::Duration;
 
 use betadeck::firmware::cli::{
-    CliAction, CliContext, CliFacts, GpsFacts, GpsSolutionFacts, Interpreter, LineEditor, LoopFacts, Mode,
-    TaskFacts,
+    CliAction, CliContext, CliFacts, GpsFacts, GpsSolutionFacts, Interpreter, LoopFacts, Mode, TaskFacts,
+    complete,
 };
 use betadeck::firmware::config::Configuration;
 use betadeck::geo::LatLon;
+use betadeck::link::proto::command_line::Completion;
+use betadeck::link::proto::line_editor::{LineEditor, LinkMode};
 use betadeck::telemetry::{ArmingFlag, ArmingFlags, NavState, NavTelemetry};
 use vectors::parse::{Exchange, assert_matches, exchanges};
 
@@ -136,7 +138,7 @@ fn what_only_a_link_knows_is_reproduced() {
     let mut editor = in_cli();
     let output = editor.feed(4, false, Duration::ZERO);
     assert_matches(&all[&216], &String::from_utf8(output.bytes).expect("ASCII"));
-    assert!(output.restart && editor.mode() == betadeck::firmware::cli::LinkMode::Msp);
+    assert!(output.restart && editor.mode() == LinkMode::Msp);
 
     let mut bench = Bench::new();
     let sent = link(&mut bench, &mut in_cli(), b"wa\t");
@@ -341,9 +343,15 @@ fn link(bench: &mut Bench, editor: &mut LineEditor, bytes: &[u8]) -> String {
     for byte in bytes {
         let output = editor.feed(*byte, false, Duration::ZERO);
         sent.extend(output.bytes);
+        if output.completes {
+            let found = complete(editor.line());
+            let completion =
+                Completion { tail: found.tail(editor.line()).to_owned(), words: found.candidates };
+            sent.extend(editor.complete(completion));
+        }
         if let Some(line) = output.line {
             let reply = bench.run(&line);
-            sent.extend(editor.answer(&reply));
+            sent.extend(editor.answer(&reply.into()));
         }
     }
     String::from_utf8(sent).expect("ASCII")
@@ -399,7 +407,7 @@ fn leaving_returns_the_link_to_msp() {
         editor.poll(false, Duration::from_secs(1)).expect("a greeting");
         let text = link(&mut bench, &mut editor, format!("{line}\n").as_bytes());
         assert!(!text.ends_with("# "), "{line}: {text:?}");
-        assert_eq!(editor.mode(), betadeck::firmware::cli::LinkMode::Msp, "{line}");
+        assert_eq!(editor.mode(), LinkMode::Msp, "{line}");
         let reply = bench.run(line);
         let restarts = reply.actions.contains(&CliAction::Restart { close_links: true });
         assert_eq!(restarts, closes, "{line}");

@@ -9,14 +9,15 @@ use std::path::Path;
 use std::time::Duration;
 
 use betadeck::firmware::cli::{
-    COMMANDS, CliContext, CliFacts, CliReply, Interpreter, LineEditor, MAX_LINE, Mode, apply_lines, complete,
-    hint, provision,
+    COMMANDS, CliContext, CliFacts, Interpreter, MAX_LINE, Mode, apply_lines, complete, hint, provision,
 };
 use betadeck::firmware::config::{Configuration, KeptLine};
 use betadeck::firmware::settings::Scope;
 use betadeck::firmware::storage::{MAX_IMAGE, decode, encode};
-use betadeck::link::proto::conversation::{Ask, Conversation, OUTPUT_MAX};
+use betadeck::link::proto::command_line::{Completion, LineReply};
+use betadeck::link::proto::line_editor::LineEditor;
 use betadeck::link::proto::msp::{Decoder, MAX_REPLY, MAX_REQUEST};
+use betadeck::link::proto::serial_session::{Ask, OUTPUT_MAX, SerialSession};
 use betadeck::plan::MAX_WAYPOINTS;
 use betadeck::plan::format::{Format, parse, report};
 use betadeck::sim::Airframe;
@@ -189,25 +190,30 @@ fn ten_megabytes_of_garbage_through_the_decoders() {
 }
 
 /// What a stream takes beyond the bytes read at once when every line is answered with `reply`.
-fn stream(bytes: &[u8], reply: &CliReply) -> Taken {
-    let mut conversation = Conversation::default();
+fn stream(bytes: &[u8], reply: &LineReply) -> Taken {
+    let mut session = SerialSession::default();
     let mut now = Duration::ZERO;
     measured(|| {
-        conversation.push(b"#");
-        assert!(conversation.next(now).is_none());
+        session.push(b"#");
+        assert!(session.next(now).is_none());
         now += Duration::from_millis(150);
         for chunk in bytes.chunks(CHUNK) {
-            conversation.push(chunk);
-            while let Some(ask) = conversation.next(now) {
+            session.push(chunk);
+            while let Some(ask) = session.next(now) {
                 match ask {
-                    Ask::Request(frame) => conversation.reply(&frame, Some(vec![0; MAX_REQUEST])),
-                    Ask::EnterCli { .. } => conversation.admit(true, now),
-                    Ask::Line { .. } => assert!(!conversation.answer(reply)),
-                    Ask::Flush => drop(conversation.take_output()),
+                    Ask::Request(frame) => session.reply(&frame, Some(vec![0; MAX_REQUEST])),
+                    Ask::EnterCli { .. } => session.admit(true, now),
+                    Ask::Line { .. } => assert!(!session.answer(reply)),
+                    Ask::Complete { line } => {
+                        let found = complete(&line);
+                        let tail = found.tail(&line).to_owned();
+                        session.complete(Completion { tail, words: found.candidates });
+                    }
+                    Ask::Flush => drop(session.take_output()),
                     Ask::Restart | Ask::LeftCli => {}
                 }
             }
-            drop(conversation.take_output());
+            drop(session.take_output());
         }
     })
     .1
@@ -215,7 +221,7 @@ fn stream(bytes: &[u8], reply: &CliReply) -> Taken {
 
 #[test]
 fn a_stream_takes_no_more_than_it_reads_at_once_and_an_answer() {
-    let reply = CliReply { text: "x".repeat(CHUNK), ..CliReply::default() };
+    let reply = LineReply { text: "x".repeat(CHUNK), ..LineReply::default() };
     let noise = noise(LONG / 10);
     let long_line = vec![b'x'; LONG];
     let tabs: Vec<u8> = b"set ".iter().copied().chain(std::iter::repeat_n(b'\t', 20_000)).collect();

@@ -4,10 +4,11 @@
 
 use std::time::Duration;
 
-use betadeck::firmware::cli::{CliReply, MAX_LINE};
-use betadeck::link::proto::conversation::{Ask, Conversation};
+use betadeck::link::proto::command_line::{Completion, LineReply};
 use betadeck::link::proto::fdm::{self, Gravity, Packet, Refusal, State};
+use betadeck::link::proto::line_editor::MAX_LINE;
 use betadeck::link::proto::msp::{Decoder, Dropped, Form, Frame, Kind};
+use betadeck::link::proto::serial_session::{Ask, SerialSession};
 use betadeck::link::proto::{rc, servo};
 use betadeck::signals::RcFrame;
 use betadeck::signals::fdm::Dialect;
@@ -166,27 +167,28 @@ proptest! {
             0..40,
         ),
     ) {
-        let mut conversation = Conversation::default();
+        let mut session = SerialSession::default();
         for (k, (byte, count)) in (1..).zip(pieces) {
             // These ask for the list of what could follow.
             let byte = if matches!(byte, b'\t' | b'?') { b'x' } else { byte };
-            conversation.push(&vec![byte; count]);
+            session.push(&vec![byte; count]);
             let now = Duration::from_secs(k);
             let mut sent = 0;
-            while let Some(ask) = conversation.next(now) {
+            while let Some(ask) = session.next(now) {
                 match &ask {
-                    Ask::Request(frame) => conversation.reply(frame, None),
-                    Ask::Flush => sent += conversation.take_output().len(),
-                    Ask::EnterCli { .. } => conversation.admit(true, now),
+                    Ask::Request(frame) => session.reply(frame, None),
+                    Ask::Flush => sent += session.take_output().len(),
+                    Ask::EnterCli { .. } => session.admit(true, now),
                     Ask::Line { line, .. } => {
                         prop_assert!(line.len() <= MAX_LINE);
-                        let _stays = conversation.answer(&CliReply::default());
+                        let _stays = session.answer(&LineReply::default());
                     }
+                    Ask::Complete { .. } => session.complete(Completion::default()),
                     Ask::Restart | Ask::LeftCli => {}
                 }
             }
             // Echo and error frames of what has come, no more.
-            sent += conversation.take_output().len();
+            sent += session.take_output().len();
             prop_assert!(sent <= 40 * count + 2000, "{} bytes for {} times {}", sent, count, byte);
         }
     }
@@ -221,25 +223,26 @@ proptest! {
 
 /// Everything that a client's stream asks for when nobody is armed and every line is answered with "ok".
 fn found_in(pieces: &[&[u8]]) -> (Vec<Ask>, Vec<u8>) {
-    let mut conversation = Conversation::default();
+    let mut session = SerialSession::default();
     let mut all = Vec::new();
     let now = Duration::from_secs(1);
     for piece in pieces {
-        conversation.push(piece);
-        while let Some(ask) = conversation.next(now) {
+        session.push(piece);
+        while let Some(ask) = session.next(now) {
             match &ask {
-                Ask::Request(frame) => conversation.reply(frame, Some(Vec::new())),
-                Ask::EnterCli { .. } => conversation.admit(true, now),
+                Ask::Request(frame) => session.reply(frame, Some(Vec::new())),
+                Ask::EnterCli { .. } => session.admit(true, now),
                 Ask::Line { .. } => {
-                    let reply = CliReply { text: "ok\r\n".to_owned(), ..CliReply::default() };
-                    assert!(!conversation.answer(&reply));
+                    let reply = LineReply { text: "ok\r\n".to_owned(), ..LineReply::default() };
+                    assert!(!session.answer(&reply));
                 }
+                Ask::Complete { .. } => session.complete(Completion::default()),
                 Ask::Flush | Ask::Restart | Ask::LeftCli => {}
             }
             all.push(ask);
         }
     }
-    (all, conversation.take_output())
+    (all, session.take_output())
 }
 
 fn assert_sane(state: &State) {

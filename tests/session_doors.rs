@@ -6,10 +6,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 use betadeck::firmware::FirmwareOptions;
-use betadeck::firmware::cli::{Interpreter, Mode};
 use betadeck::firmware::config::Configuration;
-use betadeck::link::{ClientId, Desk, DoorKind, Doors, DoorsConfig, Request};
-use betadeck::session::{Command, Doorway, Handle, SessionConfig, SessionView, start};
+use betadeck::link::proto::command_line::LineSource;
+use betadeck::link::{ClientId, DoorKind, Doors, DoorsConfig, Request};
+use betadeck::session::{Command, Doorway, Handle, RequestHandler, SessionConfig, SessionView, start};
 use betadeck::sim::WorldConfig;
 use betadeck::storage::Store;
 use betadeck::telemetry::ArmingFlag;
@@ -42,13 +42,13 @@ async fn rig() -> Rig {
         configuration,
         live: true,
     };
-    let desk = Desk::new(doors.restart_bell(), true);
+    let handler = RequestHandler::new(doors.restart_bell(), true);
     let session = start(SessionConfig {
         vehicle: Vehicle::new(config).unwrap(),
         store: Store::in_memory(),
         speed: 1.0,
         takeoff_m: 10.0,
-        doorway: Some(Doorway { requests: inbox, desk, views, simulator: None }),
+        doorway: Some(Doorway { requests: inbox, handler, views, simulator: None }),
         first_events: Vec::new(),
     })
     .unwrap();
@@ -87,9 +87,8 @@ fn is_blocked_by_cli(view: &SessionView) -> bool {
 
 /// A question whose answer takes the firmware long.
 fn long_question(client: u64) -> Request {
-    let interpreter = Interpreter::new(Mode::Framed);
     let (reply, _nobody_listens) = oneshot::channel();
-    Request::Cli { client: ClientId(client), line: "dump all".to_owned(), interpreter, reply }
+    Request::Cli { client: ClientId(client), line: "dump all".to_owned(), source: LineSource::Framed, reply }
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
@@ -151,9 +150,11 @@ async fn what_a_client_changes_is_seen_while_time_stands_still() {
     rig.session.commands.send(Command::Pause(true)).await.unwrap();
     rig.picture("the pause", |view| view.paused).await;
     let (reply, answer) = oneshot::channel();
-    let interpreter = Interpreter::new(Mode::Framed);
     let line = "waypoint insert 0 40.4640000 -79.5175000 5000 0 FLYOVER 0 ORBIT".to_owned();
-    rig.requests.send(Request::Cli { client: ClientId(1), line, interpreter, reply }).await.unwrap();
-    assert!(!answer.await.unwrap().reply.failed);
+    rig.requests
+        .send(Request::Cli { client: ClientId(1), line, source: LineSource::Framed, reply })
+        .await
+        .unwrap();
+    assert!(!answer.await.unwrap().refused);
     rig.picture("the waypoint", |view| view.vehicle.stored_plan.waypoints.len() == 1).await;
 }

@@ -9,9 +9,11 @@ use betadeck::firmware::config::Configuration;
 use betadeck::firmware::{AttitudeSource, FirmwareOptions};
 use betadeck::link::proto::fdm::{State, mirrored, pressure_pa};
 use betadeck::link::proto::fdm_link::FdmLinkConfig;
-use betadeck::link::{ClientId, Desk, Doors, DoorsConfig, ExternalSimulator, MotorPort, Request};
+use betadeck::link::{ClientId, Doors, DoorsConfig, ExternalSimulator, MotorPort, Request};
 use betadeck::session::command::{PLACE_IS_OUTSIDE, TIME_IS_OUTSIDE};
-use betadeck::session::{Command, Doorway, Event, Handle, SessionConfig, SessionEvent, SessionView, start};
+use betadeck::session::{
+    Command, Doorway, Event, Handle, RequestHandler, SessionConfig, SessionEvent, SessionView, start,
+};
 use betadeck::signals::fdm::{Dialect, MotorOrder};
 use betadeck::sim::{WorldConfig, attitude};
 use betadeck::storage::Store;
@@ -88,8 +90,8 @@ async fn rig_with(faults: &[&str]) -> Rig {
         live: true,
     })
     .unwrap();
-    let desk = Desk::new(doors.restart_bell(), true);
-    let doorway = Some(Doorway { requests: inbox, desk, views, simulator: Some(simulator) });
+    let handler = RequestHandler::new(doors.restart_bell(), true);
+    let doorway = Some(Doorway { requests: inbox, handler, views, simulator: Some(simulator) });
     let store = Store::in_memory();
     let first_events = Vec::new();
     let session =

@@ -10,8 +10,8 @@ use tokio_util::sync::CancellationToken;
 use super::AppError;
 use crate::args::{DoorArgs, FlightArgs, PhysicsArgs};
 use crate::link::proto::fdm_link::FdmLinkConfig;
-use crate::link::{Desk, DoorKind, Doors, DoorsConfig, ExternalSimulator, MotorPort};
-use crate::session::{Doorway, EndpointAddresses};
+use crate::link::{DoorKind, Doors, DoorsConfig, ExternalSimulator, MotorPort};
+use crate::session::{Doorway, EndpointAddresses, RequestHandler};
 
 /// Requests that may wait for the session.
 const WAITING: usize = 256;
@@ -76,11 +76,11 @@ pub(super) async fn open(
         true => Some(simulator(args, physics, flight, addresses.fdm, &mut notices)?),
         false => None,
     };
-    let desk = Desk::new(doors.restart_bell(), true);
+    let handler = RequestHandler::new(doors.restart_bell(), true);
     let (view_tx, views) = watch::channel(first);
     let stop = CancellationToken::new();
     let keeper = tokio::spawn(keep(doors, view_tx, stop.clone()));
-    let doorway = Doorway { requests, desk, views, simulator };
+    let doorway = Doorway { requests, handler, views, simulator };
     Ok(Some(Opened { doors: OpenDoors { stop, keeper }, doorway, addresses, notices }))
 }
 

@@ -1,12 +1,12 @@
 //! The command line.
 //!
-//! Two layers. The [`Interpreter`] turns one line into text and a list of things to do; the console panel, files, MSP
-//! and scripts use it as it is. The [`LineEditor`] turns the bytes of one serial link into lines and back.
+//! The [`Interpreter`] turns one line into text and a list of things to do. Where lines come from (a console, a file, a
+//! message, the bytes of a serial link) is not its concern.
 //!
 //! ```text
-//! bytes ── LineEditor ── line ──▶ Interpreter::run(line, CliContext) ──▶ CliReply { text, actions }
-//!                                      │ edits                                   │
-//!                                 Configuration                 saved, restarted, … by the owner
+//! line ──▶ Interpreter::run(line, CliContext) ──▶ CliReply { text, actions }
+//!               │ edits                                   │
+//!          Configuration                 saved, restarted, … by the owner
 //! ```
 
 mod advice;
@@ -16,7 +16,6 @@ mod command_table;
 mod complete;
 mod craft;
 mod dump;
-mod editor;
 mod foreign;
 mod get_set;
 mod interpreter;
@@ -35,7 +34,6 @@ pub use advice::advice;
 pub use apply::{ApplyReport, FailedLine, apply_lines, provision};
 pub use command_table::{COMMANDS, Command};
 pub use complete::{Completion, complete, hint};
-pub use editor::{EditorOutput, LineEditor, LinkMode};
 pub use interpreter::{Interpreter, Mode};
 pub use observation::{
     BatteryFacts, BuildInfo, CliFacts, GpsFacts, GpsSolutionFacts, LoopFacts, NavFacts, SmoothingFacts,

@@ -1,4 +1,4 @@
-//! One client of the TCP or the websocket door: moves bytes between its transport and its conversation, and asks the
+//! One client of the TCP or the websocket door: moves bytes between its transport and its serial session, and asks the
 //! session.
 
 #![allow(clippy::disallowed_methods, reason = "the doors wait for people and programs")]
@@ -11,10 +11,10 @@ use tokio::sync::{mpsc, oneshot, watch};
 use tokio_util::sync::CancellationToken;
 
 use super::endpoint_stats::EndpointStats;
-use super::proto::conversation::{Ask, Conversation};
-use super::request::{CliAnswer, ClientId, Request};
+use super::proto::command_line::LineSource;
+use super::proto::serial_session::{Ask, SerialSession};
+use super::request::{ClientId, Request};
 use super::transport::Transport;
-use crate::firmware::cli::{Interpreter, Mode};
 
 /// A client that neither sends nor gets anything for this long is closed.
 const IDLE: Duration = Duration::from_secs(120);
@@ -52,8 +52,7 @@ pub(super) struct Client {
     transport: Transport,
     reception: Reception,
     stats: Arc<EndpointStats>,
-    conversation: Conversation,
-    interpreter: Interpreter,
+    session: SerialSession,
     arrived: Instant,
 }
 
@@ -66,15 +65,7 @@ impl Client {
     ) -> Self {
         // A restart before the client came does not concern it.
         reception.restarts.mark_unchanged();
-        Self {
-            id,
-            transport,
-            reception,
-            stats,
-            conversation: Conversation::default(),
-            interpreter: Interpreter::default(),
-            arrived: Instant::now(),
-        }
+        Self { id, transport, reception, stats, session: SerialSession::default(), arrived: Instant::now() }
     }
 
     /// Serves the client until it goes, the firmware restarts or the doors close.
@@ -82,7 +73,7 @@ impl Client {
         if let Stop::Failed = self.talk().await {
             self.stats.error();
         }
-        if self.conversation.is_in_cli() {
+        if self.session.is_in_cli() {
             let _gone = self.reception.requests.send(Request::LeftCli { client: self.id }).await;
         }
         let _gone = tokio::time::timeout(GOODBYE, self.transport.close()).await;
@@ -97,7 +88,7 @@ impl Client {
             if let Err(stop) = answered.and(flushed) {
                 return stop;
             }
-            let due = self.conversation.due();
+            let due = self.session.due();
             let wait = due.map_or(IDLE, |due| due.saturating_sub(self.arrived.elapsed()));
             tokio::select! {
                 () = self.reception.shutdown.cancelled() => return Stop::Ended,
@@ -110,7 +101,7 @@ impl Client {
                 bytes = self.transport.read() => match bytes {
                     Ok(Some(bytes)) => {
                         self.stats.received(bytes.len());
-                        self.conversation.push(&bytes);
+                        self.session.push(&bytes);
                     }
                     Ok(None) => return Stop::Ended,
                     Err(error) => return error.into(),
@@ -121,23 +112,25 @@ impl Client {
 
     /// Answers everything that the bytes so far ask for.
     async fn answer_all(&mut self) -> Result<(), Stop> {
-        let before = self.conversation.dropped();
-        while let Some(ask) = self.conversation.next(self.arrived.elapsed()) {
+        let before = self.session.dropped();
+        while let Some(ask) = self.session.next(self.arrived.elapsed()) {
             match ask {
                 Ask::Request(frame) => {
                     self.stats.asked(frame.code);
                     let (code, payload, client) = (frame.code, frame.payload.clone(), self.id);
                     let payload = self.ask(|reply| Request::Msp { client, code, payload, reply }).await?;
-                    self.conversation.reply(&frame, payload);
+                    self.session.reply(&frame, payload);
                 }
                 Ask::EnterCli { interactive } => {
                     let client = self.id;
                     let admitted = self.ask(|reply| Request::EnterCli { client, interactive, reply }).await?;
-                    self.conversation.admit(admitted, self.arrived.elapsed());
-                    self.interpreter =
-                        Interpreter::new(if interactive { Mode::Interactive } else { Mode::Framed });
+                    self.session.admit(admitted, self.arrived.elapsed());
                 }
-                Ask::Line { line, mode } => self.run(line, mode).await?,
+                Ask::Line { line, source } => self.run(line, source).await?,
+                Ask::Complete { line } => {
+                    let completion = self.ask(|reply| Request::Complete { line, reply }).await?;
+                    self.session.complete(completion);
+                }
                 Ask::Flush => self.flush().await?,
                 Ask::Restart => {
                     self.tell(Request::Restart { client: self.id }).await?;
@@ -146,23 +139,16 @@ impl Client {
                 Ask::LeftCli => self.tell(Request::LeftCli { client: self.id }).await?,
             }
         }
-        if self.conversation.dropped() != before {
+        if self.session.dropped() != before {
             self.stats.error();
         }
         Ok(())
     }
 
-    async fn run(&mut self, line: String, mode: Mode) -> Result<(), Stop> {
+    async fn run(&mut self, line: String, source: LineSource) -> Result<(), Stop> {
         let client = self.id;
-        // A message is a session of its own.
-        let interpreter =
-            if mode == Mode::Message { Interpreter::new(mode) } else { self.interpreter.clone() };
-        let CliAnswer { interpreter, reply } =
-            self.ask(|reply| Request::Cli { client, line, interpreter, reply }).await?;
-        if mode != Mode::Message {
-            self.interpreter = interpreter;
-        }
-        if self.conversation.answer(&reply) { Err(Stop::Ended) } else { Ok(()) }
+        let answer = self.ask(|reply| Request::Cli { client, line, source, reply }).await?;
+        if self.session.answer(&answer) { Err(Stop::Ended) } else { Ok(()) }
     }
 
     async fn ask<T>(&self, request: impl FnOnce(oneshot::Sender<T>) -> Request) -> Result<T, Stop> {
@@ -181,7 +167,7 @@ impl Client {
     }
 
     async fn flush(&mut self) -> Result<(), Stop> {
-        let output = self.conversation.take_output();
+        let output = self.session.take_output();
         if output.is_empty() {
             return Ok(());
         }

@@ -1,10 +1,12 @@
 //! Protocols without sockets: bytes and times in, frames and bytes out. No I/O, no clock, bounded memory, no panic
 //! on any input.
 
+pub mod command_line;
 mod command_message;
-pub mod conversation;
 pub mod fdm;
 pub mod fdm_link;
+pub mod line_editor;
 pub mod msp;
 pub mod rc;
+pub mod serial_session;
 pub mod servo;

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use tokio::sync::oneshot;
 
-use crate::firmware::cli::{CliReply, Interpreter};
+use super::proto::command_line::{Completion, LineReply, LineSource};
 use crate::signals::RcFrame;
 
 /// A client of the TCP or the websocket door, by a number that is never used twice.
@@ -43,10 +43,17 @@ pub enum Request {
         client: ClientId,
         /// The line, without its end.
         line: String,
-        /// The client's interpreter, which comes back with the answer.
-        interpreter: Interpreter,
-        /// Gets the interpreter and its answer.
-        reply: oneshot::Sender<CliAnswer>,
+        /// What kind of session it comes from: the one that the client entered, or a message, which is its own.
+        source: LineSource,
+        /// Gets the answer.
+        reply: oneshot::Sender<LineReply>,
+    },
+    /// How a line being typed may go on.
+    Complete {
+        /// The line so far.
+        line: String,
+        /// Gets the possibilities.
+        reply: oneshot::Sender<Completion>,
     },
     /// A client left the command line, or went away inside it: what lasts for a session (a motor on the bench) ends.
     LeftCli {
@@ -80,13 +87,4 @@ pub enum Request {
     },
     /// Something the user should read, as a sentence.
     Notice(String),
-}
-
-/// The answer to a line.
-#[derive(Debug, Clone)]
-pub struct CliAnswer {
-    /// The interpreter after the line.
-    pub interpreter: Interpreter,
-    /// What it answered; its actions are carried out by the session.
-    pub reply: CliReply,
 }

@@ -12,9 +12,11 @@ use super::arming::ArmingWatch;
 use super::command::{CliOutput, Command, PLACE_IS_OUTSIDE, SessionView, TIME_IS_OUTSIDE};
 use super::event::{Event, EventSender, SessionEvent};
 use super::pacer::Pacer;
+use super::persistence;
+use super::request_handler::{Handled, RequestHandler};
 use super::simulator::{RC_REPEAT_US, Simulator};
 use crate::firmware::cli::{CliAction, CliReply, Interpreter, advice};
-use crate::link::{Attended, Desk, ExternalSimulator, ImpairedLink, Request, upkeep};
+use crate::link::{ExternalSimulator, ImpairedLink, Request};
 use crate::plan::{FlightPlan, upload_lines};
 use crate::signals::RcSource;
 use crate::sim::{Stream, WorldCommand};
@@ -39,7 +41,7 @@ pub struct Doorway {
     /// What clients, scripts and simulators ask.
     pub requests: mpsc::Receiver<Request>,
     /// Answers them.
-    pub desk: Desk,
+    pub handler: RequestHandler,
     /// The state of the doors.
     pub views: watch::Receiver<Vec<EndpointStatus>>,
     /// The simulator that moves the craft, when the vehicle is moved from outside.
@@ -255,8 +257,8 @@ impl Session {
             // A simulator's packets change the picture like time does, at its own rhythm.
             self.changed |= time_stands_still && !matches!(request, Request::Fdm { .. });
             let firmware = self.vehicle.firmware_mut();
-            let Attended { notices, restarted, fdm } =
-                doorway.desk.attend(request, firmware, &mut self.store, Instant::now());
+            let Handled { notices, restarted, fdm } =
+                doorway.handler.handle(request, firmware, &mut self.store, Instant::now());
             for notice in notices {
                 self.events.notice(&mut self.vehicle, notice);
             }
@@ -265,14 +267,20 @@ impl Session {
             }
             if let (Some((datagram, at)), Some(simulator)) = (fdm, &mut self.simulator) {
                 let speed = self.pacer.achieved();
-                flown +=
-                    simulator.hear(datagram, at, &mut self.vehicle, &mut doorway.desk, &self.events, speed);
+                flown += simulator.hear(
+                    datagram,
+                    at,
+                    &mut self.vehicle,
+                    &mut doorway.handler,
+                    &self.events,
+                    speed,
+                );
             }
         }
         if let Some(simulator) = &mut self.simulator {
             let speed = self.pacer.achieved();
             flown +=
-                simulator.watch(Instant::now(), &mut self.vehicle, &mut doorway.desk, &self.events, speed);
+                simulator.watch(Instant::now(), &mut self.vehicle, &mut doorway.handler, &self.events, speed);
             self.changed |= simulator.take_news();
         }
         let sources = self.vehicle.firmware().receiver().sources();
@@ -300,7 +308,7 @@ impl Session {
             && self.vehicle.time().0.is_multiple_of(RC_REPEAT_US)
         {
             let speed = self.pacer.speed().min(*super::SPEED_RANGE.end());
-            doorway.desk.keep_rc_fresh(self.vehicle.firmware_mut(), speed, Instant::now());
+            doorway.handler.keep_rc_fresh(self.vehicle.firmware_mut(), speed, Instant::now());
         }
     }
 
@@ -364,7 +372,7 @@ impl Session {
             None => self.vehicle.reset_craft(),
         }
         if let Some(doorway) = &mut self.doorway {
-            doorway.desk.after_restart(false, self.vehicle.firmware_mut());
+            doorway.handler.after_restart(false, self.vehicle.firmware_mut());
         }
     }
 
@@ -397,11 +405,11 @@ impl Session {
         for action in &reply.actions {
             match action {
                 CliAction::Save => {
-                    notices.extend(upkeep::save(self.vehicle.firmware_mut(), &mut self.store).err());
+                    notices.extend(persistence::save(self.vehicle.firmware_mut(), &mut self.store).err());
                 }
                 CliAction::Restart { .. } => {
                     let firmware = self.vehicle.firmware_mut();
-                    notices.extend(upkeep::restart(firmware, &mut self.store, true));
+                    notices.extend(persistence::restart(firmware, &mut self.store, true));
                     self.console = Interpreter::default();
                     restarted = true;
                 }
@@ -410,7 +418,7 @@ impl Session {
             }
         }
         if restarted && let Some(doorway) = &mut self.doorway {
-            doorway.desk.after_restart(true, self.vehicle.firmware_mut());
+            doorway.handler.after_restart(true, self.vehicle.firmware_mut());
         }
         notices.into_iter().for_each(|notice| self.notice(notice));
         restarted

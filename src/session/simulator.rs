@@ -4,9 +4,10 @@ use std::time::{Duration, Instant};
 
 use arrayvec::ArrayVec;
 
+use super::request_handler::RequestHandler;
 use crate::link::proto::fdm::Refusal;
 use crate::link::proto::fdm_link::Verdict;
-use crate::link::{Desk, ExternalSimulator, ImpairedLink, LinkImpairment};
+use crate::link::{ExternalSimulator, ImpairedLink, LinkImpairment};
 use crate::session::event::EventSender;
 use crate::sim::LinkFaults;
 use crate::telemetry::{EndpointStatus, LinkState};
@@ -68,13 +69,13 @@ impl Simulator {
         datagram: Vec<u8>,
         at: Instant,
         vehicle: &mut Vehicle,
-        desk: &mut Desk,
+        handler: &mut RequestHandler,
         events: &EventSender,
         speed: f64,
     ) -> u64 {
         self.end_faults(at, vehicle);
         self.incoming.send(datagram, at, &impairment(vehicle.world().link_faults()));
-        self.take_arrived(at, vehicle, desk, events, speed)
+        self.take_arrived(at, vehicle, handler, events, speed)
     }
 
     /// Flies on with what has arrived by `now`.
@@ -82,13 +83,13 @@ impl Simulator {
         &mut self,
         now: Instant,
         vehicle: &mut Vehicle,
-        desk: &mut Desk,
+        handler: &mut RequestHandler,
         events: &EventSender,
         speed: f64,
     ) -> u64 {
         let mut ticks = 0;
         while let Some((datagram, at)) = self.incoming.arrived(now) {
-            ticks += self.fly(&datagram, at, vehicle, desk, events, speed);
+            ticks += self.fly(&datagram, at, vehicle, handler, events, speed);
         }
         ticks
     }
@@ -106,7 +107,7 @@ impl Simulator {
         datagram: &[u8],
         at: Instant,
         vehicle: &mut Vehicle,
-        desk: &mut Desk,
+        handler: &mut RequestHandler,
         events: &EventSender,
         speed: f64,
     ) -> u64 {
@@ -114,7 +115,7 @@ impl Simulator {
             let mut frame = *sensors;
             for _ in 0..ticks {
                 if vehicle.time().0.is_multiple_of(RC_REPEAT_US) {
-                    desk.keep_rc_fresh(vehicle.firmware_mut(), speed, at);
+                    handler.keep_rc_fresh(vehicle.firmware_mut(), speed, at);
                 }
                 vehicle.tick_on(&frame);
                 // Held inputs; a sample is new only once.
@@ -129,7 +130,7 @@ impl Simulator {
         self.tell_return(at, vehicle, events);
         if received.verdict == (Verdict::Resync { restarted: true }) {
             vehicle.reset_craft();
-            desk.after_restart(false, vehicle.firmware_mut());
+            handler.after_restart(false, vehicle.firmware_mut());
         }
         for notice in received.notices {
             self.news = true;
@@ -146,12 +147,12 @@ impl Simulator {
         &mut self,
         now: Instant,
         vehicle: &mut Vehicle,
-        desk: &mut Desk,
+        handler: &mut RequestHandler,
         events: &EventSender,
         speed: f64,
     ) -> u64 {
         self.end_faults(now, vehicle);
-        let ticks = self.take_arrived(now, vehicle, desk, events, speed);
+        let ticks = self.take_arrived(now, vehicle, handler, events, speed);
         self.link.poll(now);
         if self.state == LinkState::Flowing && self.link.state(now) == LinkState::Silent {
             self.state = LinkState::Silent;

@@ -2,10 +2,10 @@
 
 use std::time::Duration;
 
-use betadeck::firmware::cli::{
-    CliContext, CliFacts, Interpreter, LineEditor, MAX_LINE, Mode, complete, hint,
-};
+use betadeck::firmware::cli::{CliContext, CliFacts, Interpreter, MAX_LINE, Mode, complete, hint};
 use betadeck::firmware::config::Configuration;
+use betadeck::link::proto::command_line::Completion;
+use betadeck::link::proto::line_editor::LineEditor;
 
 use super::craft;
 
@@ -53,10 +53,16 @@ fn link(data: &[u8]) {
         let now = Duration::from_millis(at as u64 * 60);
         let output = editor.feed(*byte, false, now);
         assert!(output.bytes.len() <= craft::LONGEST_REPLY);
+        if output.completes {
+            let found = complete(editor.line());
+            let completion =
+                Completion { tail: found.tail(editor.line()).to_owned(), words: found.candidates };
+            assert!(editor.complete(completion).len() <= craft::LONGEST_REPLY);
+        }
         if let Some(line) = output.line {
             assert!(line.len() <= MAX_LINE && line.bytes().all(|byte| (b' '..=b'~').contains(&byte)));
             let mut context = CliContext { configuration: &mut configuration, facts: &facts };
-            editor.answer(&interpreter.run(&line, &mut context));
+            editor.answer(&interpreter.run(&line, &mut context).into());
         }
         // Quiet every now and then, so that a `#` opens the command line.
         editor.poll(false, now + Duration::from_millis(if at % 4 == 0 { 100 } else { 50 }));

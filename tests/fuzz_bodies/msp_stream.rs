@@ -3,11 +3,12 @@
 
 use std::time::Duration;
 
-use betadeck::firmware::cli::{Interpreter, Mode};
+use betadeck::firmware::cli::{Interpreter, Mode, complete};
 use betadeck::firmware::config::Configuration;
 use betadeck::firmware::{Firmware, FirmwareOptions};
-use betadeck::link::proto::conversation::{Ask, Conversation};
+use betadeck::link::proto::command_line::{Completion, LineSource};
 use betadeck::link::proto::msp::{Decoder, Dropped, Form, Frame, Kind, MAX_REPLY, MAX_REQUEST};
+use betadeck::link::proto::serial_session::{Ask, SerialSession};
 
 use super::craft;
 
@@ -39,7 +40,7 @@ struct Talk {
 
 /// One client and the craft that it talks to.
 struct Client {
-    conversation: Conversation,
+    session: SerialSession,
     firmware: Firmware,
     interpreter: Interpreter,
     talk: Talk,
@@ -49,7 +50,7 @@ struct Client {
 
 fn talk(data: &[u8], piece: usize) -> Talk {
     let mut client = Client {
-        conversation: Conversation::default(),
+        session: SerialSession::default(),
         firmware: Firmware::new(Configuration::default(), FirmwareOptions::default()),
         interpreter: Interpreter::default(),
         talk: Talk::default(),
@@ -66,7 +67,7 @@ fn talk(data: &[u8], piece: usize) -> Talk {
     if !client.closed {
         client.assert_still_answers();
     }
-    client.talk.dropped = client.conversation.dropped();
+    client.talk.dropped = client.session.dropped();
     craft::assert_flies(&mut client.firmware);
     client.talk.configuration = client.firmware.configuration().clone();
     client.talk
@@ -89,21 +90,21 @@ impl Client {
         if self.closed {
             return;
         }
-        self.conversation.push(bytes);
-        while let Some(ask) = self.conversation.next(self.now) {
+        self.session.push(bytes);
+        while let Some(ask) = self.session.next(self.now) {
             self.answer(&ask);
             // When to send is the only thing that depends on the pieces.
             if ask != Ask::Flush {
                 self.talk.asks.push(ask);
             }
-            let output = self.conversation.take_output();
+            let output = self.session.take_output();
             assert!(output.len() <= craft::LONGEST_REPLY, "{} bytes at once", output.len());
             self.talk.output.extend(output);
             if self.closed {
                 return;
             }
         }
-        let output = self.conversation.take_output();
+        let output = self.session.take_output();
         self.talk.output.extend(output);
     }
 
@@ -112,23 +113,29 @@ impl Client {
             Ask::Request(frame) => {
                 assert!(frame.payload.len() <= MAX_REQUEST && frame.kind == Kind::Request);
                 let reply = self.firmware.run_msp(frame.code, &frame.payload, None).reply;
-                self.conversation.reply(frame, reply);
+                self.session.reply(frame, reply);
             }
             Ask::EnterCli { interactive } => {
                 let admitted = !self.firmware.is_armed();
                 if *interactive {
                     self.firmware.cli_opened();
                 }
-                self.conversation.admit(admitted, self.now);
-                assert_eq!(self.conversation.is_in_cli(), admitted);
+                self.session.admit(admitted, self.now);
+                assert_eq!(self.session.is_in_cli(), admitted);
                 self.interpreter =
                     Interpreter::new(if *interactive { Mode::Interactive } else { Mode::Framed });
             }
-            Ask::Line { line, mode } => {
-                let mut own = Interpreter::new(*mode);
-                let session = if *mode == Mode::Message { &mut own } else { &mut self.interpreter };
-                let reply = self.firmware.run_cli(session, line);
-                self.closed = self.conversation.answer(&reply);
+            Ask::Line { line, source } => {
+                let mut own = Interpreter::new(Mode::Message);
+                let interpreter =
+                    if *source == LineSource::Message { &mut own } else { &mut self.interpreter };
+                let reply = self.firmware.run_cli(interpreter, line);
+                self.closed = self.session.answer(&reply.into());
+            }
+            Ask::Complete { line } => {
+                let found = complete(line);
+                let tail = found.tail(line).to_owned();
+                self.session.complete(Completion { tail, words: found.candidates });
             }
             Ask::Restart => {
                 self.firmware.restart_in_place();
@@ -145,14 +152,14 @@ impl Client {
         // Ends a frame that garbage began, a batch of framed lines, and an interactive session that it opened.
         self.send(&[0; LONGEST_REQUEST]);
         self.send(b"\x03");
-        if self.conversation.is_in_cli() {
+        if self.session.is_in_cli() {
             self.send(b"\rexit noreboot\r");
         }
         if self.closed {
             // What was left in the buffer was an `exit`.
             return;
         }
-        assert!(!self.conversation.is_in_cli());
+        assert!(!self.session.is_in_cli());
         let asked = self.talk.asks.len();
         self.talk.output.clear();
         self.send(&Frame::request(Form::V2, 1, &[]).to_bytes());

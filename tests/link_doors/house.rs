@@ -1,14 +1,15 @@
-//! Open doors, a desk behind them that answers as the session does, and programs that come in.
+//! Open doors, a craft behind them that answers as the session does, and programs that come in.
 
 use std::net::SocketAddr;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use betadeck::firmware::cli::{CliAction, CliContext, CliFacts, CliReply};
+use betadeck::firmware::cli::{CliAction, CliContext, CliFacts, CliReply, Interpreter, Mode, complete};
 use betadeck::firmware::config::{Configuration, ModeCondition};
 use betadeck::firmware::msp::{GpsReading, MspAction, MspFacts, handle};
 use betadeck::geo::LatLon;
-use betadeck::link::{CliAnswer, DoorKind, Doors, DoorsConfig, Request, RestartBell};
+use betadeck::link::proto::command_line::{Completion, LineSource};
+use betadeck::link::{DoorKind, Doors, DoorsConfig, Request, RestartBell};
 use betadeck::plan::{HoldPattern, Waypoint, WaypointType};
 use betadeck::telemetry::{EndpointState, EndpointStatus};
 use futures_util::{SinkExt, StreamExt};
@@ -95,7 +96,7 @@ pub(crate) fn captured_craft() -> Craft {
 }
 
 /// Answers requests until the doors are gone.
-pub(crate) async fn desk(
+pub(crate) async fn answer_requests(
     craft: Shared,
     mut requests: mpsc::Receiver<Request>,
     bell: RestartBell,
@@ -116,13 +117,23 @@ pub(crate) async fn desk(
                 craft.entered.push(interactive);
                 let _gone = reply.send(!craft.msp.armed);
             }
-            Request::Cli { line, mut interpreter, reply, .. } => {
+            Request::Complete { line, reply } => {
+                let found = complete(&line);
+                let tail = found.tail(&line).to_owned();
+                let _gone = reply.send(Completion { tail, words: found.candidates });
+            }
+            Request::Cli { line, source, reply, .. } => {
+                let mut interpreter = Interpreter::new(match source {
+                    LineSource::Prompt => Mode::Interactive,
+                    LineSource::Framed => Mode::Framed,
+                    LineSource::Message => Mode::Message,
+                });
                 let craft = &mut *craft.lock().unwrap();
                 let mut context = CliContext { configuration: &mut craft.configuration, facts: &craft.cli };
                 let answer: CliReply = interpreter.run(&line, &mut context);
                 craft.saves += u32::from(answer.actions.contains(&CliAction::Save));
                 restart = answer.actions.contains(&CliAction::Restart { close_links: true });
-                let _gone = reply.send(CliAnswer { interpreter, reply: answer });
+                let _gone = reply.send(answer.into());
             }
             Request::LeftCli { .. } => craft.lock().unwrap().left_cli += 1,
             Request::Restart { .. } => restart = true,
@@ -136,7 +147,7 @@ pub(crate) async fn desk(
     }
 }
 
-/// Open doors with a desk.
+/// Open doors with a craft behind them.
 pub(crate) struct House {
     pub(crate) doors: Doors,
     pub(crate) craft: Shared,
@@ -152,7 +163,7 @@ impl House {
         assert!(!views.iter().any(closed), "{views:?}");
         let craft = Arc::new(Mutex::new(captured_craft()));
         let (others_in, others) = mpsc::channel(256);
-        tokio::spawn(desk(Arc::clone(&craft), inbox, doors.restart_bell(), others_in));
+        tokio::spawn(answer_requests(Arc::clone(&craft), inbox, doors.restart_bell(), others_in));
         Self { doors, craft, others }
     }
 

@@ -19,6 +19,13 @@ pub struct Completion {
 }
 
 impl Completion {
+    /// What is certain to follow the line.
+    #[must_use]
+    pub fn tail(&self, line: &str) -> &str {
+        let typed = line.len().saturating_sub(self.start);
+        self.common.get(typed..).unwrap_or("")
+    }
+
     /// The lines that a line may become.
     #[must_use]
     pub fn lines(&self, line: &str) -> Vec<String> {

@@ -5,8 +5,8 @@
 //! reply    length:u16 flags output from the offset on     flags: 1 = output was cut, 2 = refused
 //! ```
 
+use super::command_line::LineReply;
 use super::msp::Frame;
-use crate::firmware::cli::CliReply;
 
 /// The message's code.
 const CLI_COMMAND: u16 = 0x3012;
@@ -53,12 +53,12 @@ impl CommandMessage {
     }
 
     /// Takes the answer of the line that was run: the frame to send, unless the line came from elsewhere.
-    pub(super) fn answer(&mut self, reply: &CliReply) -> Option<Frame> {
+    pub(super) fn answer(&mut self, reply: &LineReply) -> Option<Frame> {
         let request = self.open.take()?;
         let text = reply.text.as_bytes();
         self.output = text[..text.len().min(OUTPUT_MAX)].to_vec();
         self.flags = if text.len() > OUTPUT_MAX { CUT } else { 0 };
-        if reply.failed {
+        if reply.refused {
             self.flags |= REFUSED;
         }
         Some(request.answer(Some(self.page(0))))

@@ -12,7 +12,8 @@ use super::lines::{self, FlightLine, OpenResult, SitlPorts};
 use crate::firmware::cli::BuildInfo;
 use crate::firmware::{Firmware, FirmwareOptions};
 use crate::link::proto::fdm_link::{FdmLinkConfig, Verdict};
-use crate::link::{Attended, Desk, DoorKind, Doors, DoorsConfig, ExternalSimulator, MotorPort, Request};
+use crate::link::{DoorKind, Doors, DoorsConfig, ExternalSimulator, MotorPort, Request};
+use crate::session::{Handled, RequestHandler};
 use crate::signals::fdm::MotorOrder;
 use crate::signals::{MotorCommand, SensorFrame, SimTime};
 use crate::storage::Store;
@@ -90,7 +91,7 @@ pub enum SitlError {
 pub struct Sitl {
     firmware: Firmware,
     store: Store,
-    desk: Desk,
+    handler: RequestHandler,
     simulator: ExternalSimulator,
     doors: Doors,
     requests: mpsc::Receiver<Request>,
@@ -142,7 +143,7 @@ impl Sitl {
         Ok(Self {
             firmware,
             store,
-            desk: Desk::new(doors.restart_bell(), false),
+            handler: RequestHandler::new(doors.restart_bell(), false),
             simulator: ExternalSimulator::start(config.fdm, config.motor_order, motors, now),
             doors,
             requests,
@@ -242,8 +243,8 @@ impl Sitl {
             }
             _ => {}
         }
-        let Attended { notices, restarted, fdm } =
-            self.desk.attend(request, &mut self.firmware, &mut self.store, Instant::now());
+        let Handled { notices, restarted, fdm } =
+            self.handler.handle(request, &mut self.firmware, &mut self.store, Instant::now());
         notices.into_iter().for_each(|notice| print(Said::Err(notice)));
         if restarted {
             print(Said::Out(lines::RESET_LINE.to_owned()));
@@ -256,7 +257,7 @@ impl Sitl {
 
     /// Runs the firmware on a datagram of the simulator and answers.
     fn fly(&mut self, datagram: &[u8], at: Instant, print: &mut impl FnMut(Said)) {
-        let Self { simulator, firmware, time, motors, desk, next_rc_look, speed, .. } = self;
+        let Self { simulator, firmware, time, motors, handler, next_rc_look, speed, .. } = self;
         let received = simulator.receive(datagram, at, |sensors, ticks| {
             let mut frame = *sensors;
             for _ in 0..ticks {
@@ -264,7 +265,7 @@ impl Sitl {
                 frame.time = *time;
                 if *time >= *next_rc_look {
                     next_rc_look.0 = time.0 + RC_LOOK_US;
-                    desk.keep_rc_fresh(firmware, *speed, at);
+                    handler.keep_rc_fresh(firmware, *speed, at);
                 }
                 *motors = firmware.step(&frame);
                 // Held inputs; a sample is new only once.
@@ -275,7 +276,7 @@ impl Sitl {
         self.saw_fdm |= !matches!(received.verdict, Verdict::Refused(_));
         if received.verdict == (Verdict::Resync { restarted: true }) {
             self.firmware.restart_in_place();
-            self.desk.after_restart(false, &mut self.firmware);
+            self.handler.after_restart(false, &mut self.firmware);
         }
         for notice in received.notices {
             print(Said::Err(notice.to_string()));

@@ -1,33 +1,34 @@
-//! The desk between the doors and a firmware, told the time: RC that comes in wall time, and what clients can do to
+//! The request handler between the links and a firmware, told the time: RC that comes in wall time, and what clients can do to
 //! each other.
 
 #![allow(
     clippy::unwrap_used,
     clippy::disallowed_methods,
-    reason = "tests may panic, and give the desk its time"
+    reason = "tests may panic, and give the handler its time"
 )]
 
 use std::net::SocketAddr;
 use std::time::{Duration, Instant};
 
-use betadeck::firmware::cli::{CliReply, Interpreter, Mode};
 use betadeck::firmware::config::Configuration;
 use betadeck::firmware::{Firmware, FirmwareOptions};
-use betadeck::link::{Attended, CliAnswer, ClientId, Desk, Doors, DoorsConfig, Request};
+use betadeck::link::proto::command_line::{LineReply, LineSource};
+use betadeck::link::{ClientId, Doors, DoorsConfig, Request};
+use betadeck::session::{Handled, RequestHandler};
 use betadeck::signals::{MotorCommand, RcFrame, RcSource, SensorFrame, SimTime};
 use betadeck::storage::Store;
 use betadeck::telemetry::{ArmingFlag, FirmwareEvent};
 use tokio::sync::{mpsc, oneshot};
 
 const TICK: Duration = Duration::from_millis(1);
-/// How often the desk looks after RC, ticks.
+/// How often the handler looks after RC, ticks.
 const LOOK: u64 = 20;
 
-/// A firmware on a bench behind a desk, with a wall clock of its own.
+/// A firmware on a bench behind a request handler, with a wall clock of its own.
 struct Bench {
     firmware: Firmware,
     store: Store,
-    desk: Desk,
+    handler: RequestHandler,
     ticks: u64,
     wall: Instant,
     /// Ticks that the wall clock is worth but that were not run.
@@ -48,7 +49,7 @@ impl Bench {
                 FirmwareOptions { arm_assist: true, ..FirmwareOptions::default() },
             ),
             store: Store::in_memory(),
-            desk: Desk::new(doors.restart_bell(), true),
+            handler: RequestHandler::new(doors.restart_bell(), true),
             ticks: 0,
             wall: Instant::now(),
             owed: 0.0,
@@ -59,7 +60,7 @@ impl Bench {
 
     fn tick(&mut self, speed: f64) {
         if self.ticks.is_multiple_of(LOOK) {
-            self.desk.keep_rc_fresh(&mut self.firmware, speed, self.wall);
+            self.handler.keep_rc_fresh(&mut self.firmware, speed, self.wall);
         }
         let sensors = SensorFrame { time: SimTime(self.ticks * 1000), ..SensorFrame::default() };
         self.motors = self.firmware.step(&sensors);
@@ -83,37 +84,35 @@ impl Bench {
         }
     }
 
-    fn attend(&mut self, request: Request) -> Attended {
-        self.desk.attend(request, &mut self.firmware, &mut self.store, self.wall)
+    fn handle(&mut self, request: Request) -> Handled {
+        self.handler.handle(request, &mut self.firmware, &mut self.store, self.wall)
     }
 
-    fn hear_udp(&mut self, frame: RcFrame) {
+    fn receive_udp(&mut self, frame: RcFrame) {
         let from: SocketAddr = "127.0.0.1:9".parse().unwrap();
-        self.attend(Request::Rc { stamp_s: 0.0, frame, from, at: self.wall });
+        self.handle(Request::Rc { stamp_s: 0.0, frame, from, at: self.wall });
     }
 
     fn ask(&mut self, client: u64, code: u16, payload: &[u8]) -> Option<Vec<u8>> {
         let (reply, mut answer) = oneshot::channel();
-        self.attend(Request::Msp { client: ClientId(client), code, payload: payload.to_vec(), reply });
+        self.handle(Request::Msp { client: ClientId(client), code, payload: payload.to_vec(), reply });
         answer.try_recv().unwrap()
     }
 
     fn enter(&mut self, client: u64, interactive: bool) -> bool {
         let (reply, mut answer) = oneshot::channel();
-        self.attend(Request::EnterCli { client: ClientId(client), interactive, reply });
+        self.handle(Request::EnterCli { client: ClientId(client), interactive, reply });
         answer.try_recv().unwrap()
     }
 
-    fn line(&mut self, client: u64, mode: Mode, line: &str) -> CliReply {
+    fn line(&mut self, client: u64, source: LineSource, line: &str) -> LineReply {
         let (reply, mut answer) = oneshot::channel();
-        let interpreter = Interpreter::new(mode);
-        self.attend(Request::Cli { client: ClientId(client), line: line.to_owned(), interpreter, reply });
-        let CliAnswer { reply, .. } = answer.try_recv().unwrap();
-        reply
+        self.handle(Request::Cli { client: ClientId(client), line: line.to_owned(), source, reply });
+        answer.try_recv().unwrap()
     }
 
     fn leave(&mut self, client: u64) {
-        self.attend(Request::LeftCli { client: ClientId(client) });
+        self.handle(Request::LeftCli { client: ClientId(client) });
     }
 
     fn arming_is_blocked_by_cli(&self) -> bool {
@@ -131,7 +130,7 @@ async fn wall_time_to_loss(speed: f64) -> Duration {
     let mut bench = Bench::new().await;
     for ms in 0..500_u32 {
         if ms.is_multiple_of(20) {
-            bench.hear_udp(RcFrame::SAFE);
+            bench.receive_udp(RcFrame::SAFE);
         }
         bench.pass(speed);
         // The link is good after half a second of frames.
@@ -162,7 +161,7 @@ async fn a_script_is_not_lost_while_time_stands_still() {
     let mut bench = Bench::new().await;
     for ms in 0..500_u32 {
         if ms.is_multiple_of(20) {
-            bench.hear_udp(RcFrame::SAFE);
+            bench.receive_udp(RcFrame::SAFE);
         }
         bench.pass(1.0);
     }
@@ -179,7 +178,7 @@ async fn the_script_stays_in_charge_beside_a_client_that_speaks_msp_however_fast
     let payload: Vec<u8> = RcFrame::SAFE.channels.iter().flat_map(|channel| channel.to_le_bytes()).collect();
     for ms in 0..600_u32 {
         match ms % 20 {
-            0 => bench.hear_udp(udp),
+            0 => bench.receive_udp(udp),
             10 => assert!(bench.ask(1, 200, &payload).is_some()),
             _ => {}
         }
@@ -194,7 +193,7 @@ async fn the_script_stays_in_charge_beside_a_client_that_speaks_msp_however_fast
 async fn only_who_turned_the_motors_stops_them_by_leaving() {
     let mut bench = Bench::new().await;
     assert!(bench.enter(1, true) && bench.enter(2, false));
-    bench.line(1, Mode::Interactive, "motor 1 1200");
+    bench.line(1, LineSource::Prompt, "motor 1 1200");
     assert!(bench.second_motor() > 0.1);
     bench.leave(2);
     assert!(bench.second_motor() > 0.1, "another client left");
@@ -206,11 +205,11 @@ async fn only_who_turned_the_motors_stops_them_by_leaving() {
 async fn a_client_of_the_time_before_a_restart_does_nothing_to_those_after_it() {
     let mut bench = Bench::new().await;
     bench.enter(1, true);
-    bench.line(1, Mode::Interactive, "motor 1 1200");
+    bench.line(1, LineSource::Prompt, "motor 1 1200");
     assert_eq!(bench.ask(2, 68, &[]), Some(vec![0]));
     assert!(bench.second_motor() < 0.1, "a restart stops the motors");
     bench.enter(3, true);
-    bench.line(3, Mode::Interactive, "motor 1 1300");
+    bench.line(3, LineSource::Prompt, "motor 1 1300");
     bench.leave(1);
     assert!(bench.second_motor() > 0.1);
     assert!(bench.arming_is_blocked_by_cli());
@@ -228,12 +227,12 @@ async fn a_command_line_blocks_arming_until_the_restart_that_ends_it() {
     // Somebody else saves a flight plan: that restarts the craft, and keeps the links.
     bench.enter(2, true);
     assert!(bench.enter(3, false));
-    bench.line(3, Mode::Framed, "feature TELEMETRY");
-    let reply = bench.line(3, Mode::Framed, "save");
-    assert!(!reply.failed, "{}", reply.text);
+    bench.line(3, LineSource::Framed, "feature TELEMETRY");
+    let reply = bench.line(3, LineSource::Framed, "save");
+    assert!(!reply.refused, "{}", reply.text);
     assert!(bench.arming_is_blocked_by_cli(), "the second is still there");
     bench.leave(2);
-    bench.line(3, Mode::Framed, "save");
+    bench.line(3, LineSource::Framed, "save");
     assert!(!bench.arming_is_blocked_by_cli(), "nobody is");
 }
 
@@ -247,12 +246,12 @@ async fn an_armed_craft_is_not_restarted() {
     for ms in 0..7000_u32 {
         frame.channels[4] = if ms > 6500 { 2000 } else { 1000 };
         if ms.is_multiple_of(20) {
-            bench.hear_udp(frame);
+            bench.receive_udp(frame);
         }
         bench.pass(1.0);
     }
     assert!(bench.firmware.is_armed(), "{:?}", bench.firmware.arming_flags());
-    assert!(!bench.attend(Request::Restart { client: ClientId(1) }).restarted);
+    assert!(!bench.handle(Request::Restart { client: ClientId(1) }).restarted);
     assert_eq!(bench.ask(2, 68, &[]), None);
     assert_eq!(bench.ask(2, 208, &[]), Some(vec![0]));
     assert!(!bench.enter(3, true) && !bench.enter(3, false));
@@ -271,8 +270,25 @@ async fn what_cannot_be_saved_is_told_in_a_sentence() {
     }
     std::fs::write(&folder, "").unwrap();
     let (reply, mut answer) = oneshot::channel();
-    let attended = bench.attend(Request::Msp { client: ClientId(1), code: 250, payload: Vec::new(), reply });
+    let handled = bench.handle(Request::Msp { client: ClientId(1), code: 250, payload: Vec::new(), reply });
     assert_eq!(answer.try_recv().unwrap(), None);
-    let [notice] = &attended.notices[..] else { panic!("{:?}", attended.notices) };
+    let [notice] = &handled.notices[..] else { panic!("{:?}", handled.notices) };
     assert!(notice.starts_with("Not saved: ") && notice.ends_with('.'), "{notice}");
+}
+
+#[tokio::test]
+async fn a_batch_lasts_over_the_lines_of_one_client_and_of_no_other() {
+    let mut bench = Bench::new().await;
+    assert!(bench.enter(1, true) && bench.enter(2, true));
+    bench.line(1, LineSource::Prompt, "batch start");
+    assert!(bench.line(1, LineSource::Prompt, "set nonsense = 1").refused);
+    let other = bench.line(2, LineSource::Prompt, "batch end");
+    let end = bench.line(1, LineSource::Prompt, "batch end");
+    assert_ne!(end.text, other.text);
+    // Who comes back begins anew.
+    bench.line(1, LineSource::Prompt, "batch start");
+    bench.line(1, LineSource::Prompt, "set nonsense = 1");
+    bench.leave(1);
+    assert!(bench.enter(1, true));
+    assert_eq!(bench.line(1, LineSource::Prompt, "batch end").text, other.text);
 }

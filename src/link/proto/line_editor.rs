@@ -3,11 +3,12 @@
 
 use std::time::Duration;
 
-use super::complete::complete;
-use super::{CliAction, CliReply, MAX_LINE};
+use super::command_line::{AfterLine, Completion, LineReply};
 
 /// How long the link must be quiet after a `#` for it to mean the command line.
 pub(super) const ENTRY_QUIET: Duration = Duration::from_millis(100);
+/// The most characters of a line; the rest is dropped.
+pub const MAX_LINE: usize = 255;
 /// How long a framed session may last.
 const FRAMED_LIMIT: Duration = Duration::from_secs(2);
 
@@ -51,6 +52,8 @@ pub struct EditorOutput {
     pub bytes: Vec<u8>,
     /// A line to run; its reply goes through [`LineEditor::answer`].
     pub line: Option<String>,
+    /// The word being typed is to be completed; how it may go on goes through [`LineEditor::complete`].
+    pub completes: bool,
     /// The link asked for a restart without saving.
     pub restart: bool,
     /// The byte belongs to MSP.
@@ -103,19 +106,40 @@ impl LineEditor {
     }
 
     /// The bytes that answer a line, with the prompt where one follows.
-    pub fn answer(&mut self, reply: &CliReply) -> Vec<u8> {
+    pub fn answer(&mut self, reply: &LineReply) -> Vec<u8> {
         let mut bytes = reply.text.clone().into_bytes();
-        let leaves = |action: &CliAction| {
-            matches!(action, CliAction::Leave | CliAction::Restart { close_links: true })
-        };
         if self.mode == LinkMode::Interactive {
-            if reply.actions.iter().any(leaves) {
-                self.mode = LinkMode::Msp;
-            } else {
-                bytes.extend_from_slice(PROMPT.as_bytes());
+            match reply.then {
+                AfterLine::Stay => bytes.extend_from_slice(PROMPT.as_bytes()),
+                AfterLine::Leave | AfterLine::Close => self.mode = LinkMode::Msp,
             }
         }
         bytes
+    }
+
+    /// The line as it was typed so far.
+    #[must_use]
+    pub fn line(&self) -> &str {
+        &self.buffer
+    }
+
+    /// Extends the last word as far as it is certain, and lists the possibilities when there are several: the bytes to
+    /// send.
+    pub fn complete(&mut self, found: Completion) -> Vec<u8> {
+        let Completion { mut tail, words } = found;
+        if words.len() == 1 {
+            tail.push(' ');
+        }
+        tail.truncate(MAX_LINE.saturating_sub(self.buffer.len()));
+        self.buffer.push_str(&tail);
+        match words.as_slice() {
+            [] => Vec::new(),
+            [_] => tail.into_bytes(),
+            several => {
+                let list: String = several.iter().map(|word| format!("{word}\t")).collect();
+                format!("{CLEAR_LINE}{list}{PROMPT}{}", self.buffer).into_bytes()
+            }
+        }
     }
 
     fn between_frames(&mut self, byte: u8, armed: bool, now: Duration) -> EditorOutput {
@@ -172,7 +196,7 @@ impl LineEditor {
                 Some(_) => EditorOutput::send(ERASE),
                 None => EditorOutput::default(),
             },
-            TAB | b'?' => EditorOutput::send(self.complete()),
+            TAB | b'?' => EditorOutput { completes: true, ..EditorOutput::default() },
             CTRL_L => EditorOutput::send(format!("{CLEAR_SCREEN}{PROMPT}")),
             CTRL_D if self.buffer.is_empty() => {
                 self.mode = LinkMode::Msp;
@@ -196,25 +220,5 @@ impl LineEditor {
     fn take_line(&mut self) -> Option<String> {
         let line = std::mem::take(&mut self.buffer);
         (!line.is_empty()).then_some(line)
-    }
-
-    /// Extends the last word as far as it is certain, and lists the possibilities when there are several.
-    fn complete(&mut self) -> Vec<u8> {
-        let found = complete(&self.buffer);
-        let typed = self.buffer.len().saturating_sub(found.start);
-        let mut tail = found.common.get(typed..).unwrap_or("").to_owned();
-        if found.candidates.len() == 1 {
-            tail.push(' ');
-        }
-        tail.truncate(MAX_LINE.saturating_sub(self.buffer.len()));
-        self.buffer.push_str(&tail);
-        match found.candidates.as_slice() {
-            [] => Vec::new(),
-            [_] => tail.into_bytes(),
-            several => {
-                let list: String = several.iter().map(|word| format!("{word}\t")).collect();
-                format!("{CLEAR_LINE}{list}{PROMPT}{}", self.buffer).into_bytes()
-            }
-        }
     }
 }

@@ -1,28 +1,27 @@
-//! One client's stream: MSP frames, and the command line between them, with and without framing.
+//! The serial session of one client: MSP frames, and the command line between them, with and without framing.
 //!
 //! ```text
 //! bytes ─▶ push() ─▶ next() ─┬─ Request ────▶ reply()
 //!                            ├─ EnterCli ───▶ admit()        answers go to the output, in the order of
 //!                            ├─ Line ───────▶ answer()       the questions: at most one is open at a time
+//!                            ├─ Complete ───▶ complete()
 //!                            ├─ Flush ──────▶ take_output()
 //!                            └─ Restart, LeftCli
 //! ```
 //!
-//! The owner of the stream reads more bytes only when [`Conversation::next`] has nothing left, so memory is bounded by
+//! The owner of the stream reads more bytes only when [`SerialSession::next`] has nothing left, so memory is bounded by
 //! what it reads at once, [`OUTPUT_MAX`] and one reply. One byte may cause kilobytes of output: a tab that lists all
 //! settings.
 
 use std::time::Duration;
 
+use super::command_line::{AfterLine, Completion, LineReply, LineSource};
 use super::command_message::CommandMessage;
+use super::line_editor::{ENTRY_QUIET, LineEditor, LinkMode};
 use super::msp::{Decoder, Dropped, Frame};
-use crate::firmware::cli::{CliAction, CliReply, LineEditor, LinkMode, Mode};
 
 /// Opens the command line for one batch of lines.
 const STX: u8 = 0x02;
-
-/// How long the stream must be quiet after a `#` for it to mean the command line.
-const ENTRY_QUIET: Duration = Duration::from_millis(100);
 
 /// Output that is sent before more is asked for, bytes.
 pub const OUTPUT_MAX: usize = 64 * 1024;
@@ -30,21 +29,26 @@ pub const OUTPUT_MAX: usize = 64 * 1024;
 /// What the stream wants.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Ask {
-    /// Answer a request; tell [`Conversation::reply`].
+    /// Answer a request; tell [`SerialSession::reply`].
     Request(Frame),
-    /// May the command line open? Not while armed; tell [`Conversation::admit`].
+    /// May the command line open? Not while armed; tell [`SerialSession::admit`].
     EnterCli {
         /// For a person, which blocks arming until the next restart; else for one batch of lines.
         interactive: bool,
     },
-    /// Run a line; tell [`Conversation::answer`].
+    /// Run a line; tell [`SerialSession::answer`].
     Line {
         /// The line, without its end.
         line: String,
         /// What kind of session it comes from.
-        mode: Mode,
+        source: LineSource,
     },
-    /// Send what there is: [`Conversation::take_output`].
+    /// How may this line go on? Tell [`SerialSession::complete`].
+    Complete {
+        /// The line as far as it was typed.
+        line: String,
+    },
+    /// Send what there is: [`SerialSession::take_output`].
     Flush,
     /// The firmware is to start anew, and the link to be closed.
     Restart,
@@ -54,7 +58,7 @@ pub enum Ask {
 
 /// The protocol state of one client.
 #[derive(Debug, Clone)]
-pub struct Conversation {
+pub struct SerialSession {
     decoder: Decoder,
     editor: LineEditor,
     message: CommandMessage,
@@ -66,7 +70,7 @@ pub struct Conversation {
     line: Option<String>,
 }
 
-impl Default for Conversation {
+impl Default for SerialSession {
     /// A fresh client speaks MSP.
     fn default() -> Self {
         Self {
@@ -83,7 +87,7 @@ impl Default for Conversation {
     }
 }
 
-impl Conversation {
+impl SerialSession {
     /// Takes bytes from the client.
     pub fn push(&mut self, bytes: &[u8]) {
         self.input.extend_from_slice(bytes);
@@ -97,12 +101,12 @@ impl Conversation {
                 return Some(Ask::Flush);
             }
             if let Some(line) = self.line.take() {
-                let mode = if self.editor.mode() == LinkMode::Interactive {
-                    Mode::Interactive
+                let source = if self.editor.mode() == LinkMode::Interactive {
+                    LineSource::Prompt
                 } else {
-                    Mode::Framed
+                    LineSource::Framed
                 };
-                return Some(Ask::Line { line, mode });
+                return Some(Ask::Line { line, source });
             }
             if self.restart {
                 self.restart = false;
@@ -139,6 +143,9 @@ impl Conversation {
             self.output.extend(output.bytes);
             self.line = output.line;
             self.restart = output.restart;
+            if output.completes {
+                return Some(Ask::Complete { line: self.editor.line().to_owned() });
+            }
             output.for_msp
         };
         if !for_msp {
@@ -146,7 +153,7 @@ impl Conversation {
         }
         let frame = self.decoder.push(byte)?;
         match self.message.take(&frame) {
-            Some(Ok(line)) => Some(Ask::Line { line, mode: Mode::Message }),
+            Some(Ok(line)) => Some(Ask::Line { line, source: LineSource::Message }),
             Some(Err(payload)) => {
                 frame.answer(payload).encode(&mut self.output);
                 None
@@ -175,14 +182,20 @@ impl Conversation {
 
     /// Answers a line. Says whether the link is to be closed.
     #[must_use]
-    pub fn answer(&mut self, reply: &CliReply) -> bool {
+    pub fn answer(&mut self, reply: &LineReply) -> bool {
         if let Some(frame) = self.message.answer(reply) {
             frame.encode(&mut self.output);
             return false;
         }
         let bytes = self.editor.answer(reply);
         self.output.extend(bytes);
-        reply.actions.iter().any(|action| matches!(action, CliAction::Restart { close_links: true }))
+        reply.then == AfterLine::Close
+    }
+
+    /// Answers how a line may go on.
+    pub fn complete(&mut self, completion: Completion) {
+        let bytes = self.editor.complete(completion);
+        self.output.extend(bytes);
     }
 
     /// What is to be sent, taken away.

@@ -1,58 +1,64 @@
-//! Answers the clients of the doors from a firmware and its store. Whoever owns the firmware calls it between two
-//! steps.
+//! Answers the requests of the links from a firmware and its store, between two steps.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 use tokio::sync::oneshot;
 
-use super::doors::RestartBell;
-use super::request::{CliAnswer, ClientId, Request};
-use super::upkeep;
+use super::persistence;
 use crate::firmware::Firmware;
-use crate::firmware::cli::{CliAction, CliReply};
+use crate::firmware::cli::{CliAction, CliReply, Interpreter, Mode, complete};
 use crate::firmware::msp::{MspAction, UtcTime};
+use crate::link::proto::command_line::{AfterLine, Completion, LineReply, LineSource};
+use crate::link::{ClientId, Request, RestartBell};
 use crate::signals::{RcFrame, RcSource};
 use crate::storage::Store;
 
 /// A frame from a script counts as fresh for this long of wall time.
 const RC_FRESH: Duration = Duration::from_millis(150);
 
-/// What attending to a request led to, beyond the answer.
+/// What handling a request led to, beyond the answer.
 #[derive(Debug, Default)]
-pub struct Attended {
+pub struct Handled {
     /// Sentences for the user.
     pub notices: Vec<String>,
     /// The firmware started anew.
     pub restarted: bool,
-    /// A datagram from a simulator, which is not the desk's business, and when it came.
+    /// A datagram from a simulator, which is not for the firmware, and when it came.
     pub fdm: Option<(Vec<u8>, Instant)>,
 }
 
 /// The newest frame of a source that comes through a socket.
 #[derive(Debug, Clone, Copy)]
-struct HeardRc {
+struct ReceivedRc {
     frame: RcFrame,
     at: Instant,
 }
 
-/// Attends to the requests of the doors.
+/// The command line of one client, from its entry until it is left.
 #[derive(Debug)]
-pub struct Desk {
+struct CliSession {
+    interpreter: Interpreter,
+    /// Of a person: blocks arming.
+    interactive: bool,
+}
+
+/// Handles the requests of the links.
+#[derive(Debug)]
+pub struct RequestHandler {
     bell: RestartBell,
     starter_modes: bool,
     clock: Option<(UtcTime, Instant)>,
-    udp: Option<HeardRc>,
-    msp: Option<HeardRc>,
-    /// Clients with an open command line that blocks arming.
-    people: BTreeSet<ClientId>,
+    udp: Option<ReceivedRc>,
+    msp: Option<ReceivedRc>,
+    cli_sessions: BTreeMap<ClientId, CliSession>,
     /// The client whose command line turned motors on the bench last.
     bench: Option<ClientId>,
     told_plan: bool,
 }
 
-impl Desk {
-    /// A desk that rings `bell` when the firmware starts anew. `starter_modes` gives a craft without mode conditions
+impl RequestHandler {
+    /// A handler that rings `bell` when the firmware starts anew. `starter_modes` gives a craft without mode conditions
     /// the usual ones at every start.
     #[must_use]
     pub fn new(bell: RestartBell, starter_modes: bool) -> Self {
@@ -62,53 +68,53 @@ impl Desk {
             clock: None,
             udp: None,
             msp: None,
-            people: BTreeSet::new(),
+            cli_sessions: BTreeMap::new(),
             bench: None,
             told_plan: false,
         }
     }
 
-    /// Attends to a request at `now`.
-    pub fn attend(
+    /// Handles a request at `now`.
+    pub fn handle(
         &mut self,
         request: Request,
         firmware: &mut Firmware,
         store: &mut Store,
         now: Instant,
-    ) -> Attended {
-        let mut attended = Attended::default();
+    ) -> Handled {
+        let mut handled = Handled::default();
         match request {
             Request::Msp { code, payload, reply, .. } => {
                 let outcome = firmware.run_msp(code, &payload, self.clock_at(now));
                 if outcome.action == Some(MspAction::Save)
-                    && let Err(notice) = upkeep::save(firmware, store)
+                    && let Err(notice) = persistence::save(firmware, store)
                 {
-                    attended.notices.push(notice);
+                    handled.notices.push(notice);
                     answer(reply, None);
-                    return attended;
+                    return handled;
                 }
                 // Links are closed before the answer goes out: who comes back after it is a new client.
-                self.act_on_message(outcome.action, firmware, store, now, &mut attended);
+                self.act_on_message(outcome.action, firmware, store, now, &mut handled);
                 answer(reply, outcome.reply);
             }
             Request::EnterCli { client, interactive, reply } => {
                 let admitted = !firmware.is_armed();
-                if admitted && interactive {
-                    self.people.insert(client);
-                    firmware.cli_opened();
+                if admitted {
+                    self.enter_cli(client, interactive, firmware);
                 }
                 answer(reply, admitted);
             }
-            Request::Cli { client, line, mut interpreter, reply } => {
-                let said = firmware.run_cli(&mut interpreter, &line);
-                let restart = self.act_on_line(client, &said, firmware, store, &mut attended);
+            Request::Cli { client, line, source, reply } => {
+                let said = self.run_line(client, source, &line, firmware);
+                let restart = self.act_on_line(client, &said, firmware, store, &mut handled);
                 if let Some(close_links) = restart {
-                    self.restart(close_links, firmware, store, &mut attended);
+                    self.restart(close_links, firmware, store, &mut handled);
                 }
-                answer(reply, CliAnswer { interpreter, reply: said });
+                answer(reply, said.into());
             }
+            Request::Complete { line, reply } => answer(reply, completion(&line)),
             Request::LeftCli { client } => {
-                self.people.remove(&client);
+                self.cli_sessions.remove(&client);
                 // Motors that somebody else turns go on.
                 if self.bench.take_if(|bench| *bench == client).is_some() {
                     firmware.cli_closed();
@@ -116,15 +122,43 @@ impl Desk {
             }
             // The command line was opened before the craft was armed; it does not fall from the sky for that.
             Request::Restart { .. } if firmware.is_armed() => {}
-            Request::Restart { .. } => self.restart(true, firmware, store, &mut attended),
+            Request::Restart { .. } => self.restart(true, firmware, store, &mut handled),
             Request::Rc { frame, at, .. } => {
-                self.udp = Some(HeardRc { frame, at });
+                self.udp = Some(ReceivedRc { frame, at });
                 firmware.receive_rc(&frame, RcSource::Udp);
             }
-            Request::Fdm { datagram, at, .. } => attended.fdm = Some((datagram, at)),
-            Request::Notice(text) => attended.notices.push(text),
+            Request::Fdm { datagram, at, .. } => handled.fdm = Some((datagram, at)),
+            Request::Notice(text) => handled.notices.push(text),
         }
-        attended
+        handled
+    }
+
+    fn enter_cli(&mut self, client: ClientId, interactive: bool, firmware: &mut Firmware) {
+        let mode = if interactive { Mode::Interactive } else { Mode::Framed };
+        self.cli_sessions.insert(client, CliSession { interpreter: Interpreter::new(mode), interactive });
+        if interactive {
+            firmware.cli_opened();
+        }
+    }
+
+    /// Runs a line in the client's session. A message is a session of its own, and so is a line that was underway when a
+    /// restart ended the client's.
+    fn run_line(
+        &mut self,
+        client: ClientId,
+        source: LineSource,
+        line: &str,
+        firmware: &mut Firmware,
+    ) -> CliReply {
+        let (mode, session) = match source {
+            LineSource::Prompt => (Mode::Interactive, self.cli_sessions.get_mut(&client)),
+            LineSource::Framed => (Mode::Framed, self.cli_sessions.get_mut(&client)),
+            LineSource::Message => (Mode::Message, None),
+        };
+        match session {
+            Some(session) => firmware.run_cli(&mut session.interpreter, line),
+            None => firmware.run_cli(&mut Interpreter::new(mode), line),
+        }
     }
 
     fn act_on_message(
@@ -133,20 +167,20 @@ impl Desk {
         firmware: &mut Firmware,
         store: &mut Store,
         now: Instant,
-        attended: &mut Attended,
+        handled: &mut Handled,
     ) {
         match action {
-            Some(MspAction::Reboot) => self.restart(true, firmware, store, attended),
+            Some(MspAction::Reboot) => self.restart(true, firmware, store, handled),
             Some(MspAction::SaveAndReboot) => {
-                attended.notices.extend(upkeep::save(firmware, store).err());
-                self.restart(true, firmware, store, attended);
+                handled.notices.extend(persistence::save(firmware, store).err());
+                self.restart(true, firmware, store, handled);
             }
             Some(MspAction::SetClock { unix_s, millis }) => {
                 self.clock = Some((UtcTime { unix_s, millis }, now));
             }
             // The firmware has used it; from here on it ages in wall time.
             Some(MspAction::RawRc(frame)) => {
-                self.msp = Some(HeardRc { frame, at: now });
+                self.msp = Some(ReceivedRc { frame, at: now });
             }
             // The firmware itself has carried these out.
             Some(
@@ -169,16 +203,16 @@ impl Desk {
         said: &CliReply,
         firmware: &mut Firmware,
         store: &mut Store,
-        attended: &mut Attended,
+        handled: &mut Handled,
     ) -> Option<bool> {
         let mut restart = None;
         for action in &said.actions {
             match *action {
-                CliAction::Save => attended.notices.extend(upkeep::save(firmware, store).err()),
+                CliAction::Save => handled.notices.extend(persistence::save(firmware, store).err()),
                 CliAction::Restart { close_links } => restart = Some(close_links),
                 CliAction::PlanChanged if !self.told_plan => {
                     self.told_plan = true;
-                    attended.notices.push("Waypoint altitudes count from home, in centimetres.".to_owned());
+                    handled.notices.push("Waypoint altitudes count from home, in centimetres.".to_owned());
                 }
                 CliAction::MotorTest { .. } => self.bench = Some(client),
                 CliAction::PlanChanged | CliAction::Leave => {}
@@ -192,21 +226,21 @@ impl Desk {
         close_links: bool,
         firmware: &mut Firmware,
         store: &mut Store,
-        attended: &mut Attended,
+        handled: &mut Handled,
     ) {
-        attended.notices.extend(upkeep::restart(firmware, store, self.starter_modes));
-        attended.restarted = true;
+        handled.notices.extend(persistence::restart(firmware, store, self.starter_modes));
+        handled.restarted = true;
         self.after_restart(close_links, firmware);
     }
 
-    /// Puts the clients' side in order after the firmware started anew: closes the links, or, where they are kept,
+    /// Brings the clients' sessions up to date after the firmware started anew: closes the links, or, where they are kept,
     /// lets those who are at a command line block arming as before.
     pub fn after_restart(&mut self, close_links: bool, firmware: &mut Firmware) {
         (self.udp, self.msp, self.bench) = (None, None, None);
         if close_links {
-            self.people.clear();
+            self.cli_sessions.clear();
             self.bell.ring();
-        } else if !self.people.is_empty() {
+        } else if self.cli_sessions.values().any(|session| session.interactive) {
             firmware.cli_opened();
         }
     }
@@ -221,7 +255,7 @@ impl Desk {
         // The firmware itself notices a loss after as much simulated time.
         let patience = RC_FRESH.mul_f64(1.0 - 1.0 / speed);
         for (source, heard) in [(RcSource::Udp, self.udp), (RcSource::Msp, self.msp)] {
-            if let Some(HeardRc { frame, at }) = heard
+            if let Some(ReceivedRc { frame, at }) = heard
                 && now.saturating_duration_since(at) < patience
             {
                 firmware.receive_rc(&frame, source);
@@ -238,6 +272,26 @@ impl Desk {
             millis: (millis % 1000) as u16,
         })
     }
+}
+
+impl From<CliReply> for LineReply {
+    fn from(reply: CliReply) -> Self {
+        let has = |action| reply.actions.contains(&action);
+        let then = if has(CliAction::Restart { close_links: true }) {
+            AfterLine::Close
+        } else if has(CliAction::Leave) {
+            AfterLine::Leave
+        } else {
+            AfterLine::Stay
+        };
+        Self { text: reply.text, refused: reply.failed, then }
+    }
+}
+
+/// How a line being typed may go on.
+fn completion(line: &str) -> Completion {
+    let found = complete(line);
+    Completion { tail: found.tail(line).to_owned(), words: found.candidates }
 }
 
 /// A client that went away needs no answer.
