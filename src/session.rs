@@ -8,9 +8,11 @@ mod persistence;
 mod request_handler;
 mod runtime;
 mod simulator;
+mod upload;
 
 pub use command::{Command, SessionView};
 pub use event::{EndpointAddresses, Event, SessionEvent};
 pub use pacer::{Pacer, SPEED_RANGE};
 pub use request_handler::{Handled, RequestHandler};
-pub use runtime::{Doorway, Handle, SessionConfig, start};
+pub use runtime::{Endpoints, Handle, SessionConfig, start};
+pub use upload::upload;

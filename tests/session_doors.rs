@@ -9,7 +9,7 @@ use betadeck::firmware::FirmwareOptions;
 use betadeck::firmware::config::Configuration;
 use betadeck::link::proto::command_line::LineSource;
 use betadeck::link::{ClientId, DoorKind, Doors, DoorsConfig, Request};
-use betadeck::session::{Command, Doorway, Handle, RequestHandler, SessionConfig, SessionView, start};
+use betadeck::session::{Command, Endpoints, Handle, RequestHandler, SessionConfig, SessionView, start};
 use betadeck::sim::WorldConfig;
 use betadeck::storage::Store;
 use betadeck::telemetry::ArmingFlag;
@@ -48,7 +48,7 @@ async fn rig() -> Rig {
         store: Store::in_memory(),
         speed: 1.0,
         takeoff_m: 10.0,
-        doorway: Some(Doorway { requests: inbox, handler, views, simulator: None }),
+        endpoints: Some(Endpoints { requests: inbox, handler, status: views, simulator: None }),
         first_events: Vec::new(),
     })
     .unwrap();

@@ -10,9 +10,9 @@ use betadeck::firmware::{AttitudeSource, FirmwareOptions};
 use betadeck::link::proto::fdm::{State, mirrored, pressure_pa};
 use betadeck::link::proto::fdm_link::FdmLinkConfig;
 use betadeck::link::{ClientId, Doors, DoorsConfig, ExternalSimulator, MotorPort, Request};
-use betadeck::session::command::{PLACE_IS_OUTSIDE, TIME_IS_OUTSIDE};
+use betadeck::session::command::{PLACE_IS_EXTERNAL, TIME_IS_EXTERNAL};
 use betadeck::session::{
-    Command, Doorway, Event, Handle, RequestHandler, SessionConfig, SessionEvent, SessionView, start,
+    Command, Endpoints, Event, Handle, RequestHandler, SessionConfig, SessionEvent, SessionView, start,
 };
 use betadeck::signals::fdm::{Dialect, MotorOrder};
 use betadeck::sim::{WorldConfig, attitude};
@@ -91,11 +91,12 @@ async fn rig_with(faults: &[&str]) -> Rig {
     })
     .unwrap();
     let handler = RequestHandler::new(doors.restart_bell(), true);
-    let doorway = Some(Doorway { requests: inbox, handler, views, simulator: Some(simulator) });
+    let endpoints = Some(Endpoints { requests: inbox, handler, status: views, simulator: Some(simulator) });
     let store = Store::in_memory();
     let first_events = Vec::new();
     let session =
-        start(SessionConfig { vehicle, store, speed: 1.0, takeoff_m: 10.0, doorway, first_events }).unwrap();
+        start(SessionConfig { vehicle, store, speed: 1.0, takeoff_m: 10.0, endpoints, first_events })
+            .unwrap();
     Rig {
         session,
         requests,
@@ -257,10 +258,10 @@ async fn what_is_the_simulators_business_is_refused_with_the_way_out() {
     rig.hear("The simulator speaks").await;
     for command in [Command::Pause(true), Command::Step(100), Command::Speed(8.0)] {
         rig.command(command).await;
-        rig.hear(TIME_IS_OUTSIDE).await;
+        rig.hear(TIME_IS_EXTERNAL).await;
     }
     rig.command(Command::ResetCraft).await;
-    rig.hear(PLACE_IS_OUTSIDE).await;
+    rig.hear(PLACE_IS_EXTERNAL).await;
     let refused = rig.world("wind=5@270").await.unwrap_err();
     assert!(refused.contains("the simulator makes the air"), "{refused}");
     let before = rig.session.view.borrow().vehicle.time;

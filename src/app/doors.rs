@@ -11,7 +11,7 @@ use super::AppError;
 use crate::args::{DoorArgs, FlightArgs, PhysicsArgs};
 use crate::link::proto::fdm_link::FdmLinkConfig;
 use crate::link::{DoorKind, Doors, DoorsConfig, ExternalSimulator, MotorPort};
-use crate::session::{Doorway, EndpointAddresses, RequestHandler};
+use crate::session::{EndpointAddresses, Endpoints, RequestHandler};
 
 /// Requests that may wait for the session.
 const WAITING: usize = 256;
@@ -31,7 +31,7 @@ pub(super) struct Opened {
     /// To close them.
     pub doors: OpenDoors,
     /// The session's side.
-    pub doorway: Doorway,
+    pub endpoints: Endpoints,
     /// Where they are.
     pub addresses: EndpointAddresses,
     /// What is wrong with some of them, as sentences.
@@ -80,8 +80,8 @@ pub(super) async fn open(
     let (view_tx, views) = watch::channel(first);
     let stop = CancellationToken::new();
     let keeper = tokio::spawn(keep(doors, view_tx, stop.clone()));
-    let doorway = Doorway { requests, handler, views, simulator };
-    Ok(Some(Opened { doors: OpenDoors { stop, keeper }, doorway, addresses, notices }))
+    let endpoints = Endpoints { requests, handler, status: views, simulator };
+    Ok(Some(Opened { doors: OpenDoors { stop, keeper }, endpoints, addresses, notices }))
 }
 
 /// The link to the simulator that moves the craft.
@@ -156,9 +156,9 @@ mod tests {
         assert!(open(&doors, &PhysicsArgs::default(), &flight).await.unwrap().is_none());
         let external = PhysicsArgs { physics: Some(Physics::External), ..PhysicsArgs::default() };
         let opened = open(&doors, &external, &flight).await.unwrap().unwrap();
-        let views = opened.doorway.views.borrow().clone();
+        let views = opened.endpoints.status.borrow().clone();
         assert_eq!(views.iter().map(|door| door.name).collect::<Vec<_>>(), ["udp fdm"]);
-        assert!(opened.doorway.simulator.is_some());
+        assert!(opened.endpoints.simulator.is_some());
         assert!(
             opened.notices.iter().any(|notice| notice.contains(&views[0].address)),
             "{:?}",

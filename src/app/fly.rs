@@ -10,18 +10,15 @@ use std::time::{Duration, Instant};
 use super::error::{self, AppError};
 use super::setup;
 use crate::args::FlyArgs;
-use crate::firmware::cli::Interpreter;
 use crate::flight::setup::{BootLines, PhysicsSource};
 use crate::flight::{Flight, FlightEnd, FlightOptions, FlightResult, Verdict};
 use crate::plan::format::PlanFile;
 use crate::plan::review::Finding;
-use crate::plan::upload_lines;
 use crate::plan::validate::check_plan;
 use crate::record::End;
-use crate::session::{Event, Pacer};
+use crate::session::{Event, Pacer, upload};
 use crate::signals::SimTime;
 use crate::storage::Store;
-use crate::vehicle::Vehicle;
 use output::Output;
 
 /// Ticks between two looks at the clock and at an interrupt.
@@ -39,7 +36,8 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, AppError> {
     setup.boot_lines.push(BootLines::settings("--set", &args.set));
     setup.stick_inputs.clone_from(&args.stick);
     let mut vehicle = setup::build(setup, &mut notices)?;
-    upload_plan(&mut vehicle, &plan.plan)?;
+    // A plan that the craft refuses is invalid input.
+    upload(vehicle.firmware_mut(), &plan.plan, &[]).map_err(AppError::input)?;
     let mut first_events: Vec<Event> = Vec::new();
     vehicle.drain_events(|event| first_events.push(event.into()));
     first_events.extend(notices.into_iter().map(|notice| Event::notice(vehicle.time(), notice)));
@@ -98,18 +96,6 @@ fn open_store(args: &FlyArgs) -> Result<Store, AppError> {
         }
         None => Ok(Store::in_memory()),
     }
-}
-
-/// Uploads as a ground station does; a plan the craft refuses is invalid input.
-fn upload_plan(vehicle: &mut Vehicle, plan: &crate::plan::FlightPlan) -> Result<(), AppError> {
-    let mut console = Interpreter::default();
-    for line in upload_lines(plan, &[]) {
-        let reply = vehicle.firmware_mut().run_cli(&mut console, &line);
-        if reply.failed {
-            return Err(AppError::input(format!("the craft refused `{line}`: {}", reply.text.trim())));
-        }
-    }
-    Ok(())
 }
 
 /// Runs the flight to its end; the wall time counts from the engagement, or from boot when there was none.

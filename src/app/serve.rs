@@ -37,11 +37,11 @@ pub(super) fn run(args: &ServeArgs) -> Result<u8, AppError> {
             .map_err(|error| AppError::environment(format!("cannot listen for signals: {error}")))?;
         let opened = doors::open(&args.doors, &args.physics, &args.flight).await?;
         let mut first_events = Vec::new();
-        let (doors, doorway) = match opened {
+        let (doors, endpoints) = match opened {
             Some(opened) => {
                 notices.extend(opened.notices);
                 first_events.push(SessionEvent::Endpoints(opened.addresses));
-                (Some(opened.doors), Some(opened.doorway))
+                (Some(opened.doors), Some(opened.endpoints))
             }
             None => (None, None),
         };
@@ -52,7 +52,7 @@ pub(super) fn run(args: &ServeArgs) -> Result<u8, AppError> {
             store,
             speed,
             takeoff_m: TAKEOFF_M,
-            doorway,
+            endpoints,
             first_events,
         })
         .map_err(|error| AppError::environment(format!("cannot start a thread: {error}")))?;

@@ -56,11 +56,11 @@ pub(super) fn run(args: &TuiArgs) -> Result<u8, AppError> {
         .map_err(problem)?;
     let ending = runtime.block_on(async {
         let mut first_events = Vec::new();
-        let (doors, doorway) = match doors::open(&args.doors, &args.physics, &args.flight).await? {
+        let (doors, endpoints) = match doors::open(&args.doors, &args.physics, &args.flight).await? {
             Some(opened) => {
                 notices.extend(opened.notices);
                 first_events.push(SessionEvent::Endpoints(opened.addresses));
-                (Some(opened.doors), Some(opened.doorway))
+                (Some(opened.doors), Some(opened.endpoints))
             }
             None => (None, None),
         };
@@ -71,7 +71,7 @@ pub(super) fn run(args: &TuiArgs) -> Result<u8, AppError> {
             store,
             speed,
             takeoff_m: TAKEOFF_M,
-            doorway,
+            endpoints,
             first_events,
         })
         .map_err(|error| AppError::environment(format!("cannot start a thread: {error}")))?;

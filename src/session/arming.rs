@@ -4,9 +4,9 @@ use crate::signals::{RcSource, SimTime};
 use crate::telemetry::{ArmingFlag, Mode, Snapshot, switch};
 
 /// How long the switch is on before the user is told, s.
-const PATIENCE_S: f64 = 1.0;
+const TELL_AFTER_S: f64 = 1.0;
 
-/// Looks at the ARM switch of RC from outside.
+/// Looks at the ARM switch of RC that comes over a link.
 #[derive(Debug, Default)]
 pub(super) struct ArmingWatch {
     request: Option<Request>,
@@ -22,7 +22,7 @@ struct Request {
 
 impl ArmingWatch {
     /// Looks at the craft; gives the sentence for the user, once each time the switch is moved in vain.
-    pub(super) fn look(&mut self, vehicle: &Snapshot) -> Option<String> {
+    pub(super) fn check(&mut self, vehicle: &Snapshot) -> Option<String> {
         let craft = &vehicle.craft;
         let from_outside = matches!(craft.rc_source, Some(RcSource::Udp | RcSource::Msp));
         if !from_outside || !switch::is_on(Mode::Arm, &craft.mode_ranges, &craft.channels) {
@@ -31,7 +31,7 @@ impl ArmingWatch {
         }
         let request = self.request.get_or_insert(Request { since: vehicle.time, done: false });
         request.done |= craft.armed;
-        if request.done || vehicle.time.seconds_since(request.since) < PATIENCE_S {
+        if request.done || vehicle.time.seconds_since(request.since) < TELL_AFTER_S {
             return None;
         }
         let with_hint = |flag: ArmingFlag| format!("{flag} ({})", flag.hint());
@@ -71,17 +71,17 @@ mod tests {
         let mut watch = ArmingWatch::default();
         let blocked =
             |seconds| vehicle(seconds, &[ArmingFlag::Throttle, ArmingFlag::Cli, ArmingFlag::ArmSwitch]);
-        assert_eq!(watch.look(&blocked(10.0)), None);
-        assert_eq!(watch.look(&blocked(10.9)), None);
-        let told = watch.look(&blocked(11.0)).expect("a sentence");
+        assert_eq!(watch.check(&blocked(10.0)), None);
+        assert_eq!(watch.check(&blocked(10.9)), None);
+        let told = watch.check(&blocked(11.0)).expect("a sentence");
         assert!(told.contains("THROTTLE (lower the throttle), CLI (a CLI session was opened: "), "{told}");
         assert!(!told.contains("ARM_SWITCH"), "{told}");
-        assert_eq!(watch.look(&blocked(20.0)), None);
+        assert_eq!(watch.check(&blocked(20.0)), None);
         let mut off = blocked(21.0);
         off.craft.channels[4] = 1000;
-        assert_eq!(watch.look(&off), None);
-        assert_eq!(watch.look(&blocked(22.0)), None);
-        assert!(watch.look(&blocked(23.0)).is_some());
+        assert_eq!(watch.check(&off), None);
+        assert_eq!(watch.check(&blocked(22.0)), None);
+        assert!(watch.check(&blocked(23.0)).is_some());
     }
 
     #[test]
@@ -89,8 +89,8 @@ mod tests {
         let mut watch = ArmingWatch::default();
         let mut flying = vehicle(10.0, &[]);
         flying.craft.armed = true;
-        assert_eq!(watch.look(&flying), None);
-        assert_eq!(watch.look(&vehicle(99.0, &[ArmingFlag::Throttle, ArmingFlag::ArmSwitch])), None);
+        assert_eq!(watch.check(&flying), None);
+        assert_eq!(watch.check(&vehicle(99.0, &[ArmingFlag::Throttle, ArmingFlag::ArmSwitch])), None);
     }
 
     #[test]
@@ -99,7 +99,7 @@ mod tests {
         for seconds in [10.0, 20.0] {
             let mut own = vehicle(seconds, &[ArmingFlag::Throttle]);
             own.craft.rc_source = Some(RcSource::Sticks);
-            assert_eq!(watch.look(&own), None);
+            assert_eq!(watch.check(&own), None);
         }
     }
 }

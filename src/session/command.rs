@@ -6,11 +6,11 @@ use crate::plan::FlightPlan;
 use crate::signals::RcFrame;
 use crate::telemetry::{EndpointStatus, LinkState, Snapshot};
 
-/// Why time cannot be paused, stepped or made faster while a simulator outside moves the craft.
-pub const TIME_IS_OUTSIDE: &str = "The simulator sets the time: pause it or change its speed there.";
+/// Why time cannot be paused, stepped or made faster with an external simulator.
+pub const TIME_IS_EXTERNAL: &str = "The simulator sets the time: pause it or change its speed there.";
 
-/// Why the craft cannot be put back home while a simulator outside moves it.
-pub const PLACE_IS_OUTSIDE: &str =
+/// Why the craft cannot be put back home with an external simulator.
+pub const PLACE_IS_EXTERNAL: &str =
     "The simulator places the craft: reset its world there, and the firmware starts anew by itself.";
 
 /// A request to the session. Requests are carried out between two ticks, in the order they were sent.
@@ -72,7 +72,7 @@ pub struct CliOutput {
     pub restarted: bool,
 }
 
-/// The picture published after each slice of simulation.
+/// What is published after each slice of simulation.
 #[derive(Debug, Clone, Default)]
 pub struct SessionView {
     /// The vehicle.
@@ -91,7 +91,7 @@ pub struct SessionView {
     pub pilot: Option<&'static str>,
     /// Where other programs reach the craft.
     pub endpoints: Vec<EndpointStatus>,
-    /// Whether the simulator outside speaks that moves the craft; `None` when the world is inside.
+    /// Whether the external simulator speaks; `None` when the physics is our own.
     pub simulator: Option<LinkState>,
     /// Files or doors influence the flight: not repeatable.
     pub live: bool,

@@ -1,4 +1,4 @@
-//! A simulator outside that moves the craft: its packets are the time, its silence stops it.
+//! An external simulator that moves the craft: its packets are the time, its silence stops it.
 
 use std::time::{Duration, Instant};
 
@@ -28,10 +28,10 @@ pub(super) struct Simulator {
     /// The state that was told last.
     state: LinkState,
     /// When it spoke last.
-    heard: Instant,
+    received_at: Instant,
     told_refusals: ArrayVec<Refusal, REFUSALS>,
-    /// Something was told that the picture should show at once.
-    news: bool,
+    /// Something happened that the view should show at once.
+    changed: bool,
 }
 
 impl Simulator {
@@ -40,9 +40,9 @@ impl Simulator {
             link,
             incoming,
             state: LinkState::Waiting,
-            heard: now,
+            received_at: now,
             told_refusals: ArrayVec::new(),
-            news: false,
+            changed: false,
         }
     }
 
@@ -51,8 +51,8 @@ impl Simulator {
         self.state
     }
 
-    /// How long to wait at most until [`Self::watch`] has something to do.
-    pub(super) fn patience(&self, now: Instant) -> Duration {
+    /// How long to wait at most until [`Self::poll`] has something to do.
+    pub(super) fn longest_wait(&self, now: Instant) -> Duration {
         let due = self.incoming.due().map_or(self.link.due(), |arrives| arrives.min(self.link.due()));
         due.saturating_duration_since(now)
     }
@@ -64,7 +64,7 @@ impl Simulator {
 
     /// Takes a datagram that was sent at `at`, while simulated time has run `speed` times as fast as the wall clock;
     /// flies on with what has arrived by then and gives the ticks.
-    pub(super) fn hear(
+    pub(super) fn receive(
         &mut self,
         datagram: Vec<u8>,
         at: Instant,
@@ -97,8 +97,8 @@ impl Simulator {
     /// The firmware's time stands still while nothing arrives: that of the faults which are the reason goes on.
     fn end_faults(&mut self, now: Instant, vehicle: &mut Vehicle) {
         if self.state != LinkState::Waiting {
-            let silence = now.saturating_duration_since(self.heard);
-            self.news |= vehicle.end_link_faults(silence.as_micros() as u64);
+            let silence = now.saturating_duration_since(self.received_at);
+            self.changed |= vehicle.end_link_faults(silence.as_micros() as u64);
         }
     }
 
@@ -133,7 +133,7 @@ impl Simulator {
             handler.after_restart(false, vehicle.firmware_mut());
         }
         for notice in received.notices {
-            self.news = true;
+            self.changed = true;
             events.notice(vehicle, sentence(&notice.to_string()));
         }
         if let Some(pose) = received.pose {
@@ -142,8 +142,8 @@ impl Simulator {
         u64::from(received.ticks)
     }
 
-    /// Carries out what is due by time, as [`Self::hear`] does; gives the ticks.
-    pub(super) fn watch(
+    /// Carries out what is due by time, as [`Self::receive`] does; gives the ticks.
+    pub(super) fn poll(
         &mut self,
         now: Instant,
         vehicle: &mut Vehicle,
@@ -156,21 +156,21 @@ impl Simulator {
         self.link.poll(now);
         if self.state == LinkState::Flowing && self.link.state(now) == LinkState::Silent {
             self.state = LinkState::Silent;
-            self.news = true;
+            self.changed = true;
             events.notice(vehicle, "The simulator is silent: time stands still until it speaks again.");
         }
         ticks
     }
 
     /// Whether there is something to show at once.
-    pub(super) fn take_news(&mut self) -> bool {
-        std::mem::take(&mut self.news)
+    pub(super) fn take_changed(&mut self) -> bool {
+        std::mem::take(&mut self.changed)
     }
 
     fn tell_return(&mut self, at: Instant, vehicle: &mut Vehicle, events: &EventSender) {
-        let silence = at.saturating_duration_since(std::mem::replace(&mut self.heard, at));
+        let silence = at.saturating_duration_since(std::mem::replace(&mut self.received_at, at));
         let before = std::mem::replace(&mut self.state, LinkState::Flowing);
-        self.news |= before != LinkState::Flowing;
+        self.changed |= before != LinkState::Flowing;
         match before {
             LinkState::Waiting => {
                 events.notice(vehicle, "The simulator speaks: the craft's time is its time now.");
@@ -185,7 +185,7 @@ impl Simulator {
 
     fn tell_refusal(&mut self, refusal: Refusal, vehicle: &mut Vehicle, events: &EventSender) {
         if !self.told_refusals.contains(&refusal) && self.told_refusals.try_push(refusal).is_ok() {
-            self.news = true;
+            self.changed = true;
             events.notice(vehicle, format!("Packets of the simulator are refused: {refusal}."));
         }
     }

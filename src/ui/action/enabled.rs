@@ -1,6 +1,6 @@
 //! Which actions make sense now, and why the others do not.
 
-use crate::session::command::{PLACE_IS_OUTSIDE, TIME_IS_OUTSIDE};
+use crate::session::command::{PLACE_IS_EXTERNAL, TIME_IS_EXTERNAL};
 use crate::telemetry::{LinkState, Mode};
 use crate::ui::app_state::AppState;
 use crate::ui::transmitter;
@@ -17,10 +17,10 @@ pub fn enabled(state: &AppState, action: Action) -> Result<(), String> {
         Action::Pause | Action::Step | Action::Slower | Action::Faster | Action::RealTime
             if state.view.simulator.is_some() =>
         {
-            Err(TIME_IS_OUTSIDE.to_owned())
+            Err(TIME_IS_EXTERNAL.to_owned())
         }
         Action::ResetCraft if state.view.simulator == Some(LinkState::Flowing) => {
-            Err(PLACE_IS_OUTSIDE.to_owned())
+            Err(PLACE_IS_EXTERNAL.to_owned())
         }
         Action::Arm => transmitter::can_arm(state),
         Action::Autopilot => transmitter::switch(state, Mode::Autopilot).map(drop),
@@ -65,7 +65,7 @@ mod tests {
         assert!(!refused(&state) && enabled(&state, Action::ResetCraft).is_ok());
         state.view.simulator = Some(LinkState::Flowing);
         assert!(refused(&state));
-        assert_eq!(enabled(&state, Action::ResetCraft), Err(PLACE_IS_OUTSIDE.to_owned()));
+        assert_eq!(enabled(&state, Action::ResetCraft), Err(PLACE_IS_EXTERNAL.to_owned()));
         state.view.simulator = Some(LinkState::Silent);
         assert!(refused(&state) && enabled(&state, Action::ResetCraft).is_ok(), "it disarms at least");
     }

@@ -1,0 +1,107 @@
+//! Carries out the commands of the user interface.
+
+use std::task::{Context, Poll};
+use std::time::Duration;
+
+use super::Session;
+use crate::session::command::{Command, PLACE_IS_EXTERNAL, TIME_IS_EXTERNAL};
+use crate::session::upload::upload;
+use crate::sim::WorldCommand;
+use crate::telemetry::LinkState;
+
+impl Session {
+    pub(super) fn take_commands(&mut self, now: Duration, context: &mut Context<'_>) {
+        loop {
+            match self.commands.poll_recv(context) {
+                Poll::Ready(Some(command)) => {
+                    self.changed = true;
+                    self.carry_out(command, now);
+                }
+                Poll::Ready(None) => {
+                    self.quit = true;
+                    return;
+                }
+                Poll::Pending => return,
+            }
+        }
+    }
+
+    fn carry_out(&mut self, command: Command, now: Duration) {
+        match command {
+            Command::Pause(_) | Command::Step(_) | Command::Speed(_) if self.simulator.is_some() => {
+                self.notice(TIME_IS_EXTERNAL);
+            }
+            Command::Pause(paused) => self.pacer.set_paused(paused, now),
+            Command::Step(ticks) => {
+                for _ in 0..ticks {
+                    self.vehicle.tick();
+                }
+            }
+            Command::Speed(speed) => self.pacer.set_speed(speed, now),
+            Command::Sticks(frame) => {
+                if self.vehicle.hands.pilot.take().is_some() {
+                    self.notice("The sticks were moved: the scripted pilot let go.");
+                }
+                self.vehicle.hands.sticks = frame;
+            }
+            Command::CutRc(cut) => {
+                // Taking the sticks back wins over a script that still sends.
+                self.vehicle.firmware_mut().take_over_sticks(!cut);
+                self.vehicle.hands.cut = cut;
+            }
+            Command::Cli { line, reply } => {
+                let output = self.run_cli(&line);
+                drop(reply.send(output));
+            }
+            Command::Upload { plan, settings, reply } => {
+                let result = upload(self.vehicle.firmware_mut(), &plan, &settings);
+                drop(reply.send(result));
+            }
+            Command::Pilot(on) => self.set_pilot(on),
+            Command::ReturnHome => {
+                if let Err(refusal) = self.vehicle.firmware_mut().return_to_home() {
+                    self.notice(format!("No return home: {}", refusal.sentence()));
+                }
+            }
+            Command::CancelReturn => self.vehicle.firmware_mut().cancel_command(),
+            Command::ResetCraft => self.reset_craft(),
+            Command::World { line, reply } => {
+                let changed = self.change_world(&line);
+                drop(reply.send(changed));
+            }
+            Command::Quit => self.quit = true,
+        }
+    }
+
+    fn reset_craft(&mut self) {
+        match &self.simulator {
+            Some(simulator) if simulator.state() == LinkState::Flowing => {
+                self.notice(PLACE_IS_EXTERNAL);
+                return;
+            }
+            Some(_) => {
+                self.vehicle.reset_craft();
+                self.notice("The firmware started anew, disarmed; the simulator places the craft.");
+            }
+            None => self.vehicle.reset_craft(),
+        }
+        if let Some(endpoints) = &mut self.endpoints {
+            endpoints.handler.after_restart(false, self.vehicle.firmware_mut());
+        }
+    }
+
+    fn change_world(&mut self, line: &str) -> Result<(), String> {
+        let command = WorldCommand::parse(line).map_err(|error| error.to_string())?;
+        self.vehicle.change_world(command).map_err(|error| error.to_string())
+    }
+
+    fn set_pilot(&mut self, on: bool) {
+        if !on {
+            self.vehicle.hands.pilot = None;
+        } else if let Err(mode) = self.vehicle.start_pilot(self.takeoff_m) {
+            self.notice(format!(
+                "The scripted pilot needs a switch for {mode}: give it one with the CLI command aux."
+            ));
+        }
+    }
+}

@@ -1,0 +1,37 @@
+//! The view that the session publishes.
+#![allow(clippy::disallowed_methods, reason = "this is where wall time meets simulated time")]
+
+use std::sync::Arc;
+use std::time::Instant;
+
+use super::Session;
+use crate::session::command::SessionView;
+use crate::session::simulator::Simulator;
+use crate::telemetry::EndpointStatus;
+
+impl Session {
+    pub(super) fn view(&self) -> SessionView {
+        SessionView {
+            vehicle: Arc::new(self.vehicle.snapshot()),
+            paused: self.pacer.is_paused(),
+            speed_wanted: match self.simulator {
+                Some(_) => f64::INFINITY,
+                None => self.pacer.speed(),
+            },
+            speed_achieved: self.pacer.achieved(),
+            sticks: self.vehicle.hands.sticks,
+            rc_cut: self.vehicle.hands.cut,
+            pilot: self.vehicle.hands.pilot.as_ref().map(crate::pilot::Pilot::doing),
+            endpoints: self.endpoints(),
+            simulator: self.simulator.as_ref().map(Simulator::state),
+            live: self.endpoints.is_some(),
+        }
+    }
+
+    fn endpoints(&self) -> Vec<EndpointStatus> {
+        let mut all =
+            self.endpoints.as_ref().map_or_else(Vec::new, |endpoints| endpoints.status.borrow().clone());
+        all.extend(self.simulator.as_ref().map(|simulator| simulator.status(Instant::now())));
+        all
+    }
+}

@@ -1,0 +1,98 @@
+//! Handles what comes over the links.
+#![allow(clippy::disallowed_methods, reason = "this is where wall time meets simulated time")]
+
+use std::task::{Context, Poll};
+use std::time::{Duration, Instant};
+
+use super::{SLICE, Session};
+use crate::firmware::cli::Interpreter;
+use crate::link::Request;
+use crate::session::SPEED_RANGE;
+use crate::session::request_handler::Handled;
+use crate::session::simulator::RC_REPEAT_US;
+use crate::signals::RcSource;
+
+/// Most wall time that requests get in one round of the loop; what is left waits for the next.
+const REQUEST_TIME: Duration = Duration::from_millis(1);
+
+impl Session {
+    /// Handles the requests that wait; gives the ticks that an external simulator made the craft fly.
+    pub(super) fn handle_requests(&mut self, context: &mut Context<'_>) -> u64 {
+        // Otherwise the next view is due soon.
+        let time_stands_still = self.pacer.is_paused() || !self.follows_wall_clock();
+        let Some(endpoints) = &mut self.endpoints else { return 0 };
+        let mut flown = 0;
+        let until = Instant::now() + REQUEST_TIME;
+        self.more_waits = true;
+        while flown < SLICE && Instant::now() < until {
+            let Poll::Ready(Some(request)) = endpoints.requests.poll_recv(context) else {
+                self.more_waits = false;
+                break;
+            };
+            // A simulator's packets change the view like time does, at its own rhythm.
+            self.changed |= time_stands_still && !matches!(request, Request::Fdm { .. });
+            let firmware = self.vehicle.firmware_mut();
+            let Handled { notices, restarted, fdm } =
+                endpoints.handler.handle(request, firmware, &mut self.store, Instant::now());
+            for notice in notices {
+                self.events.notice(&mut self.vehicle, notice);
+            }
+            if restarted {
+                self.console = Interpreter::default();
+            }
+            if let (Some((datagram, at)), Some(simulator)) = (fdm, &mut self.simulator) {
+                let speed = self.pacer.achieved();
+                flown += simulator.receive(
+                    datagram,
+                    at,
+                    &mut self.vehicle,
+                    &mut endpoints.handler,
+                    &self.events,
+                    speed,
+                );
+            }
+        }
+        if let Some(simulator) = &mut self.simulator {
+            let speed = self.pacer.achieved();
+            flown += simulator.poll(
+                Instant::now(),
+                &mut self.vehicle,
+                &mut endpoints.handler,
+                &self.events,
+                speed,
+            );
+            self.changed |= simulator.take_changed();
+        }
+        if endpoints.status.has_changed().unwrap_or(false) {
+            endpoints.status.mark_unchanged();
+            self.changed = true;
+        }
+        self.yield_sticks();
+        flown
+    }
+
+    /// Cuts the virtual sticks once RC comes over a link: resting, they would disarm the craft the moment a script stops.
+    fn yield_sticks(&mut self) {
+        let sources = self.vehicle.firmware().receiver().sources();
+        let from_link = matches!(sources.in_charge(), Some(RcSource::Udp | RcSource::Msp));
+        if from_link && !sources.taken_over() && !self.vehicle.hands.cut {
+            self.vehicle.hands.cut = true;
+            self.vehicle.hands.pilot = None;
+            self.events.notice(
+                &mut self.vehicle,
+                "RC comes from outside now: the virtual sticks are cut, x takes them back.",
+            );
+        }
+    }
+
+    /// A script sends fifty frames of wall time a second; at a higher speed the receiver would miss it.
+    pub(super) fn keep_rc_fresh(&mut self) {
+        if let Some(endpoints) = &self.endpoints
+            && self.pacer.speed() > 1.0
+            && self.vehicle.time().0.is_multiple_of(RC_REPEAT_US)
+        {
+            let speed = self.pacer.speed().min(*SPEED_RANGE.end());
+            endpoints.handler.keep_rc_fresh(self.vehicle.firmware_mut(), speed, Instant::now());
+        }
+    }
+}
