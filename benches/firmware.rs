@@ -114,7 +114,7 @@ fn on_a_leg() -> (Firmware, Vec<SensorFrame>) {
     for line in
         ["set ap_hover_throttle = 1500", "waypoint insert 0 40.4700000 -79.5182000 2000 500 FLYOVER 0 ORBIT"]
     {
-        vehicle.firmware_mut().run_cli(&mut session, line);
+        vehicle.embedded_mut().unwrap().run_cli(&mut session, line);
     }
     vehicle.start_pilot(10.0).expect("the starter modes");
     let engaged = (0..60_000).any(|_| {
@@ -125,9 +125,9 @@ fn on_a_leg() -> (Firmware, Vec<SensorFrame>) {
     for _ in 0..10_000 {
         vehicle.tick();
     }
-    let firmware = vehicle.firmware().clone();
+    let firmware = vehicle.embedded().unwrap().clone();
     let frames = (0..1000).map(|_| {
-        let frame = *vehicle.world().sensors();
+        let frame = *vehicle.world().unwrap().sensors();
         vehicle.tick();
         frame
     });

@@ -53,7 +53,7 @@ fn vehicle(rate_hz: u32) -> Vehicle {
     let (mut vehicle, _) = setup.build().expect("the default world is sound");
     let mut console = Interpreter::default();
     for line in upload_lines(&file.plan, &file.settings) {
-        vehicle.firmware_mut().run_cli(&mut console, &line);
+        vehicle.embedded_mut().unwrap().run_cli(&mut console, &line);
     }
     vehicle
 }
@@ -95,16 +95,16 @@ fn record() -> Recording {
     vehicle.drain_events(drop);
     let mut recording = Recording {
         start: vehicle.clone(),
-        firmware: vehicle.firmware().clone(),
-        world: vehicle.world().clone(),
+        firmware: vehicle.embedded().unwrap().clone(),
+        world: vehicle.world().unwrap().clone(),
         frames: Vec::with_capacity(REPLAY),
         commands: Vec::with_capacity(REPLAY),
-        sticks: vehicle.hands.sticks,
+        sticks: vehicle.transmitter().sticks(),
     };
     for _ in 0..REPLAY {
-        recording.frames.push(*vehicle.world().sensors());
+        recording.frames.push(*vehicle.world().unwrap().sensors());
         vehicle.tick();
-        recording.commands.push(MotorCommand(vehicle.world().truth().motor_command));
+        recording.commands.push(MotorCommand(vehicle.world().unwrap().truth().motor_command));
         vehicle.drain_events(drop);
     }
     recording

@@ -6,13 +6,13 @@
 mod judge;
 pub mod setup;
 
-pub use crate::vehicle::StickInput;
 pub use judge::{FlightResult, Judge, JudgeFacts, Verdict};
 pub use setup::FlightSetup;
 
+pub use crate::pilot::StickInput;
 use crate::plan::{FlightPlan, WaypointType};
 use crate::signals::SimTime;
-use crate::telemetry::{Event, EventKind, Mode, PlanSource};
+use crate::telemetry::{Event, EventKind, Mode, NavTelemetry, PlanSource};
 use crate::vehicle::Vehicle;
 
 /// How a flight is flown.
@@ -63,7 +63,7 @@ impl Flight {
     /// The mode that no channel switches.
     pub fn new(mut vehicle: Vehicle, options: &FlightOptions) -> Result<Self, Mode> {
         vehicle.start_pilot(options.takeoff_m)?;
-        let ends_in_land = ends_in_land(vehicle.firmware().stored_plan());
+        let ends_in_land = vehicle.controller().stored_plan().is_some_and(ends_in_land);
         let sample_every_us =
             (options.samples_hz > 0.0).then(|| ((1e6 / options.samples_hz).round() as u64).max(1));
         Ok(Self {
@@ -116,22 +116,23 @@ impl Flight {
     }
 
     fn facts(&self) -> JudgeFacts {
-        let firmware = self.vehicle.firmware();
-        let truth = self.vehicle.world().truth();
-        let nav = firmware.nav();
+        let controller = self.vehicle.controller();
+        let unknown = NavTelemetry::default();
+        let nav = controller.nav().unwrap_or(&unknown);
         JudgeFacts {
             time: self.vehicle.time(),
-            engaged: firmware.modes().has(Mode::Autopilot) || nav.source != PlanSource::Stored && nav.engaged,
-            armed: firmware.is_armed(),
-            last_disarm: firmware.last_disarm(),
+            engaged: controller.modes().has(Mode::Autopilot)
+                || nav.source != PlanSource::Stored && nav.engaged,
+            armed: controller.is_armed(),
+            last_disarm: controller.last_disarm(),
             state: nav.state,
             wp: nav.wp,
             source: nav.source,
             refusal: nav.refusal,
             ends_in_land: self.ends_in_land,
             touched_down: self.touched_down,
-            crashed: truth.crashed,
-            diverged: truth.diverged,
+            crashed: self.vehicle.crashed(),
+            diverged: self.vehicle.diverged(),
         }
     }
 }

@@ -6,6 +6,10 @@
 //!
 //! It sees what a pilot sees (the OSD), and touches nothing but the sixteen channels.
 
+mod transmitter;
+
+pub use transmitter::{FRAME_US, RcTransmitter, StickInput};
+
 use crate::signals::{RcFrame, SimTime};
 use crate::telemetry::Mode;
 use crate::telemetry::snapshot::ModeRange;

@@ -1,36 +1,39 @@
-//! Firmware and world in lockstep, and the hands on the sticks.
+//! Flight controller and physics in lockstep, and the RC transmitter.
 //!
-//! One [`Vehicle::tick`] takes the world from one instant to the next, always in this order:
+//! One [`Vehicle::tick`] takes the physics from one instant to the next, always in this order:
 //!
 //! 1. RC frames due now (every 20 ms) go to the receiver;
-//! 2. the firmware steps on the sensor frame of this instant and gives motor commands;
-//! 3. the world steps with them, which makes the sensor frame of the next instant.
+//! 2. the flight controller steps on the sensor frame of this instant and gives motor commands;
+//! 3. the physics steps with them, which makes the sensor frame of the next instant.
 //!
 //! A clone is a frozen vehicle: going on from it gives the same trajectory to the last bit.
 //!
-//! A vehicle that is moved from outside has a firmware and hands, but no world that moves: each [`Vehicle::tick_on`]
-//! steps the firmware on what a simulator outside measured, and [`Vehicle::see`] tells where that has put the craft.
+//! The flight controller is embedded or remote ([`FlightController`]), the physics is the simulated world or an external
+//! simulator: then each [`Vehicle::tick_on`] steps the flight controller on what that simulator measured, and
+//! [`Vehicle::see`] tells where it has put the craft.
 
-mod hands;
-mod outside;
+mod controller;
+mod physics;
 mod view;
 
 use rand::RngExt as _;
 use rand_chacha::ChaCha8Rng;
 
-pub use hands::{Hands, StickInput};
+pub use controller::{
+    Answer, FlightController, FrameOut, LateAnswer, RemoteController, RemoteTelemetry, Request, Ticket,
+};
 
 use crate::firmware::config::Configuration;
 use crate::firmware::{Firmware, FirmwareOptions};
-use crate::pilot::{Pilot, PilotFacts};
+use crate::geo::LocalFrame;
+use crate::pilot::{FRAME_US, Pilot, RcTransmitter};
 use crate::plan::FlightPlan;
-use crate::signals::{RcSource, SensorFrame, SimTime};
-use crate::sim::{FaultLink, Stream, World, WorldCommand, WorldConfig, WorldError, WorldEventKind};
+use crate::signals::{MotorCommand, Pose, RcFrame, RcSource, SensorFrame, SimTime};
+use crate::sim::{
+    FaultLink, LinkFaults, Stream, World, WorldCommand, WorldConfig, WorldError, WorldEventKind,
+};
 use crate::telemetry::{Event, EventKind, FirmwareEvent, Mode, NavEvent, NavState, VehicleNotice};
-use outside::Outside;
-
-/// What stands for the airframe when a simulator outside has it.
-const EXTERNAL: &str = "external";
+use physics::{ExternalPhysics, Physics};
 
 /// What a vehicle is made of.
 #[derive(Debug, Clone)]
@@ -45,15 +48,12 @@ pub struct VehicleConfig {
     pub live: bool,
 }
 
-/// A craft with its firmware, in its world.
+/// A craft with its flight controller, the physics that moves it, and an RC transmitter.
 #[derive(Debug, Clone)]
 pub struct Vehicle {
-    firmware: Firmware,
-    world: World,
-    /// What a simulator outside tells, when one moves the craft; the world then has only the time and the faults.
-    outside: Option<Outside>,
-    /// Who moves the sticks.
-    pub hands: Hands,
+    controller: FlightController,
+    physics: Physics,
+    transmitter: RcTransmitter,
     rx_jitter: ChaCha8Rng,
     engaged_at: Option<SimTime>,
     active_plan: Option<Box<FlightPlan>>,
@@ -66,72 +66,130 @@ impl Vehicle {
     /// # Errors
     /// When the world cannot be built.
     pub fn new(config: VehicleConfig) -> Result<Self, WorldError> {
-        Self::build(config, None)
+        let controller = embedded(config.configuration, config.firmware);
+        let physics = Physics::World(Box::new(World::new(config.world)?));
+        Ok(Self::build(controller, physics, config.live))
     }
 
-    /// A vehicle at boot that a simulator outside moves: of the world, only step rate, seed and faults count.
+    /// A vehicle at boot that an external simulator moves: of the world, only step rate, seed and faults count.
     ///
     /// # Errors
     /// When the step rate is not allowed, or a fault.
-    pub fn moved_from_outside(config: VehicleConfig) -> Result<Self, WorldError> {
-        Self::build(config, Some(Outside::default()))
+    pub fn with_external_physics(config: VehicleConfig) -> Result<Self, WorldError> {
+        let controller = embedded(config.configuration, config.firmware);
+        let links = World::new(WorldConfig { link: FaultLink::External, ..config.world })?;
+        let physics = Physics::External(Box::new(ExternalPhysics::new(links)));
+        Ok(Self::build(controller, physics, config.live))
     }
 
-    fn build(mut config: VehicleConfig, outside: Option<Outside>) -> Result<Self, WorldError> {
-        if outside.is_some() {
-            config.world.link = FaultLink::External;
-        }
-        let airframe = match outside {
-            None => config.world.airframe.name.clone(),
-            Some(_) => EXTERNAL.to_owned(),
-        };
+    /// A vehicle at boot in the simulated world whose flight controller is remote, so that its flight is not repeatable.
+    ///
+    /// # Errors
+    /// When the world cannot be built.
+    pub fn with_remote_controller(world: WorldConfig) -> Result<Self, WorldError> {
+        let physics = Physics::World(Box::new(World::new(world)?));
+        Ok(Self::build(FlightController::Remote(Box::default()), physics, true))
+    }
+
+    fn build(controller: FlightController, physics: Physics, live: bool) -> Self {
         let boot = EventKind::Boot {
-            seed: config.world.seed,
-            rate_hz: config.world.rate_hz,
-            airframe,
-            live: config.live,
+            seed: physics.seed(),
+            rate_hz: (1_000_000 / physics.step_us()) as u32,
+            airframe: physics.airframe().to_owned(),
+            live,
         };
         let mut events = Vec::with_capacity(64);
         events.push(Event { time: SimTime::ZERO, kind: boot });
-        Ok(Self {
-            rx_jitter: Stream::RxJitter.rng(config.world.seed),
-            world: World::new(config.world)?,
-            outside,
-            firmware: Firmware::new(config.configuration, config.firmware),
-            hands: Hands::default(),
+        Self {
+            rx_jitter: Stream::RxJitter.rng(physics.seed()),
+            controller,
+            physics,
+            transmitter: RcTransmitter::default(),
             engaged_at: None,
             active_plan: None,
             events,
-        })
+        }
     }
 
     /// Simulated time since boot.
     #[must_use]
     pub fn time(&self) -> SimTime {
-        self.world.time()
+        self.physics.time()
     }
 
     /// Length of a tick, µs.
     #[must_use]
     pub fn step_us(&self) -> u64 {
-        self.world.step_us()
+        self.physics.step_us()
     }
 
     /// The flight controller.
     #[must_use]
-    pub fn firmware(&self) -> &Firmware {
-        &self.firmware
+    pub fn controller(&self) -> &FlightController {
+        &self.controller
     }
 
     /// The flight controller, to talk to it.
-    pub fn firmware_mut(&mut self) -> &mut Firmware {
-        &mut self.firmware
+    pub fn controller_mut(&mut self) -> &mut FlightController {
+        &mut self.controller
     }
 
-    /// The world; nothing in it moves when the craft is moved from outside.
+    /// The embedded firmware, if that is what flies.
     #[must_use]
-    pub fn world(&self) -> &World {
-        &self.world
+    pub fn embedded(&self) -> Option<&Firmware> {
+        self.controller.embedded()
+    }
+
+    /// As [`Self::embedded`].
+    pub fn embedded_mut(&mut self) -> Option<&mut Firmware> {
+        self.controller.embedded_mut()
+    }
+
+    /// The RC transmitter.
+    #[must_use]
+    pub fn transmitter(&self) -> &RcTransmitter {
+        &self.transmitter
+    }
+
+    /// The RC transmitter, to move its sticks.
+    pub fn transmitter_mut(&mut self) -> &mut RcTransmitter {
+        &mut self.transmitter
+    }
+
+    /// The simulated world, if that is what moves the craft.
+    #[must_use]
+    pub fn world(&self) -> Option<&World> {
+        self.physics.world()
+    }
+
+    /// The seed of all randomness.
+    #[must_use]
+    pub fn seed(&self) -> u64 {
+        self.physics.seed()
+    }
+
+    /// The frame whose origin is the boot place; `None` before an external simulator has told where that is.
+    #[must_use]
+    pub fn local_frame(&self) -> Option<&LocalFrame> {
+        self.physics.local_frame()
+    }
+
+    /// What active faults do to the packets of an external simulator.
+    #[must_use]
+    pub fn link_faults(&self) -> LinkFaults {
+        self.physics.link_faults()
+    }
+
+    /// Whether the craft is lost, as far as is known.
+    #[must_use]
+    pub fn crashed(&self) -> bool {
+        self.physics.crashed()
+    }
+
+    /// Whether the simulation left the range where its numbers mean something.
+    #[must_use]
+    pub fn diverged(&self) -> bool {
+        self.physics.diverged()
     }
 
     /// When the autopilot engaged for the first time since boot or reset.
@@ -145,7 +203,7 @@ impl Vehicle {
     /// # Errors
     /// When a value is not allowed; then nothing has changed.
     pub fn change_world(&mut self, command: WorldCommand) -> Result<(), WorldError> {
-        self.world.apply(command)
+        self.physics.apply(command)
     }
 
     /// Lets the scripted pilot fly the mission from here: climb to `takeoff_m`, engage.
@@ -153,39 +211,73 @@ impl Vehicle {
     /// # Errors
     /// The mode that no channel switches.
     pub fn start_pilot(&mut self, takeoff_m: f64) -> Result<(), Mode> {
-        self.hands.pilot = Some(Pilot::new(takeoff_m, &self.firmware.mode_ranges())?);
+        self.transmitter.start_pilot(Pilot::new(takeoff_m, &self.controller.mode_ranges())?);
         Ok(())
     }
 
     /// Puts the craft back home, undamaged and disarmed; plan, settings, air and faults stay, and what counts from the
-    /// engagement waits for the next one. A craft that is moved from outside is disarmed only, and starts where it is
-    /// seen next.
+    /// engagement waits for the next one. A craft that an external simulator moves is disarmed only, and starts
+    /// where it is seen next.
     pub fn reset_craft(&mut self) {
         self.engaged_at = None;
-        self.hands.pilot = None;
-        self.hands.sticks = crate::signals::RcFrame::SAFE;
-        self.firmware.restart_in_place();
-        if let Some(outside) = &mut self.outside {
-            outside.forget();
-            self.world.wait_for_next_flight();
+        self.transmitter.stop_pilot();
+        *self.transmitter.sticks_mut() = RcFrame::SAFE;
+        self.controller.restart_in_place();
+        if let Some(external) = self.physics.external_mut() {
+            external.reset();
             return;
         }
         // Returning home is always allowed.
-        let _ = self.world.apply(WorldCommand::ResetToHome);
+        let _ = self.physics.apply(WorldCommand::ResetToHome);
         self.notice(VehicleNotice::BackHome);
     }
 
-    /// One step of simulated time. When the craft is moved from outside: a step in which nothing is sensed.
+    /// One step of simulated time. With an external simulator: a step in which nothing is sensed.
     pub fn tick(&mut self) {
-        if self.outside.is_some() {
-            self.tick_on(&SensorFrame::default());
-            return;
+        self.step(None);
+    }
+
+    /// One step on what an external simulator measured; the motors' answer is the simulator's to carry out.
+    ///
+    /// Only for a vehicle of [`Vehicle::with_external_physics`]; the world of another would not follow.
+    pub fn tick_on(&mut self, sensors: &SensorFrame) -> MotorCommand {
+        match self.physics {
+            Physics::World(_) => MotorCommand::default(),
+            Physics::External(_) => self.step(Some(sensors)),
         }
+    }
+
+    fn step(&mut self, measured: Option<&SensorFrame>) -> MotorCommand {
         self.send_due_rc();
-        self.lose_rc();
-        let command = self.firmware.step(self.world.sensors());
-        self.world.step(&command);
+        // With the `rx-loss` fault no frame reaches the receiver, whoever sent it.
+        if self.physics.rx_lost() {
+            self.controller.lose_rc();
+        }
+        if let Some(external) = self.physics.external_mut() {
+            external.measure(measured.unwrap_or(&SensorFrame::default()));
+        }
+        let motors = self.controller.step(self.physics.sensors());
+        self.physics.step(&motors);
         self.collect_events();
+        motors
+    }
+
+    /// Ends faults of the link whose time is over after a silence of this length, µs: meanwhile the vehicle's time stands
+    /// still. Says whether there were any.
+    pub fn end_link_faults(&mut self, silence_us: u64) -> bool {
+        let before = self.events.len();
+        if let Some(external) = self.physics.external_mut() {
+            external.end_link_faults(silence_us);
+        }
+        self.collect_events();
+        self.events.len() != before
+    }
+
+    /// Takes in where an external simulator says the craft is.
+    pub fn see(&mut self, pose: Pose) {
+        if let Some(external) = self.physics.external_mut() {
+            external.see(pose);
+        }
     }
 
     /// Moves the events since the last call into `sink`, oldest first.
@@ -197,58 +289,34 @@ impl Vehicle {
         self.events.push(Event { time: self.time(), kind: EventKind::Notice(notice) });
     }
 
-    /// What a pilot sees.
-    #[must_use]
-    pub fn pilot_facts(&self) -> PilotFacts {
-        let fw = &self.firmware;
-        PilotFacts {
-            time: self.time(),
-            fix: fw.gps_fix(),
-            arming_blocked: !fw.arming_flags().is_empty(),
-            armed: fw.is_armed(),
-            engaged: fw.modes().has(Mode::Autopilot),
-            alt_m: fw.altitude_m(),
-            climb_mps: fw.climb_mps(),
-            hover_stick_us: fw.hover_stick_us(),
-            raised_stick_us: fw.raised_stick_us(),
-        }
-    }
-
     fn send_due_rc(&mut self) {
-        if !self.time().0.is_multiple_of(hands::FRAME_US) {
+        if !self.time().0.is_multiple_of(FRAME_US) {
             return;
         }
-        let facts = self.pilot_facts();
-        let frame = self.hands.frame(&facts, self.engaged_at);
-        let fraction = self.world.rx_drop_fraction();
-        let dropped = !self.world.rx_lost() && fraction > 0.0 && self.rx_jitter.random::<f64>() < fraction;
+        let facts = self.controller.pilot_facts(self.time());
+        let frame = self.transmitter.frame(&facts, self.engaged_at);
+        let fraction = self.physics.rx_drop_fraction();
+        let dropped = !self.physics.rx_lost() && fraction > 0.0 && self.rx_jitter.random::<f64>() < fraction;
         if let Some(frame) = frame
             && !dropped
         {
-            self.firmware.receive_rc(&frame, RcSource::Sticks);
-        }
-    }
-
-    /// With the `rx-loss` fault no frame reaches the receiver, whoever sent it.
-    fn lose_rc(&mut self) {
-        if self.world.rx_lost() {
-            self.firmware.lose_rc();
+            self.controller.receive_rc(&frame, RcSource::Sticks);
         }
     }
 
     fn collect_events(&mut self) {
         let time = self.time();
-        while let Some(event) = self.firmware.take_event() {
+        while let Some(event) = self.controller.take_event() {
             if let FirmwareEvent::Nav(nav) = &event {
                 self.note_nav_event(nav, time);
             }
             self.events.push(Event { time, kind: EventKind::Firmware(event) });
         }
-        let lost = self.firmware.take_events_lost();
+        let lost = self.controller.take_events_lost();
         if lost > 0 {
             self.notice(VehicleNotice::EventsLost(lost));
         }
-        while let Some(event) = self.world.take_event() {
+        while let Some(event) = self.physics.take_event() {
             let kind = match event.kind {
                 WorldEventKind::Contact { impact_mps } => EventKind::Contact { impact_mps },
                 WorldEventKind::Touchdown { impact_mps, peak_mps2 } => {
@@ -269,7 +337,7 @@ impl Vehicle {
             NavEvent::Plan { plan, .. } => self.active_plan = Some(plan.clone()),
             NavEvent::State { to, .. } if *to != NavState::Idle && self.engaged_at.is_none() => {
                 self.engaged_at = Some(time);
-                self.world.set_engaged(time);
+                self.physics.set_engaged(time);
             }
             NavEvent::State { .. }
             | NavEvent::Climbing(_)
@@ -280,10 +348,15 @@ impl Vehicle {
     }
 }
 
+fn embedded(configuration: Configuration, options: FirmwareOptions) -> FlightController {
+    FlightController::Embedded(Box::new(Firmware::new(configuration, options)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::geo::LatLon;
+    use crate::pilot::StickInput;
     use crate::sim::Fault;
     use crate::telemetry::TransitionReason;
 
@@ -311,7 +384,7 @@ mod tests {
         let mut vehicle = vehicle();
         for _ in 0..100 {
             // Refused, for the craft is not armed.
-            assert!(vehicle.firmware_mut().return_to_home().is_err());
+            assert!(vehicle.controller_mut().return_to_home().is_err());
         }
         vehicle.tick();
         let mut notices = Vec::new();
@@ -326,11 +399,11 @@ mod tests {
     #[test]
     fn after_a_reset_faults_and_sticks_count_from_the_next_engagement() {
         counts_from_the_next_engagement(vehicle());
-        counts_from_the_next_engagement(Vehicle::moved_from_outside(config()).unwrap());
+        counts_from_the_next_engagement(Vehicle::with_external_physics(config()).unwrap());
     }
 
     fn counts_from_the_next_engagement(mut vehicle: Vehicle) {
-        vehicle.hands.inputs.push(StickInput {
+        vehicle.transmitter_mut().inputs_mut().push(StickInput {
             channel: 0,
             value_us: 1900,
             at_s: 0.5,
@@ -354,11 +427,12 @@ mod tests {
             vehicle.note_nav_event(&engaged, vehicle.time());
             run(&mut vehicle, engaged_s + 0.4);
             let stick = |vehicle: &Vehicle| {
-                vehicle.hands.clone().frame(&vehicle.pilot_facts(), vehicle.engaged_at()).unwrap().channels[0]
+                let facts = vehicle.controller.pilot_facts(vehicle.time());
+                vehicle.transmitter.clone().frame(&facts, vehicle.engaged_at()).unwrap().channels[0]
             };
-            assert_eq!((stick(&vehicle), vehicle.world().status().faults.len()), (1500, 0));
+            assert_eq!((stick(&vehicle), vehicle.snapshot().world.faults.len()), (1500, 0));
             run(&mut vehicle, engaged_s + 0.6);
-            assert_eq!((stick(&vehicle), vehicle.world().status().faults.len()), (1900, 1));
+            assert_eq!((stick(&vehicle), vehicle.snapshot().world.faults.len()), (1900, 1));
             vehicle.reset_craft();
         }
     }
@@ -372,9 +446,9 @@ mod tests {
         run(&mut vehicle, 5.0);
         vehicle.reset_craft();
         run(&mut vehicle, 15.0);
-        let estimate = vehicle.firmware().altitude_m();
+        let estimate = vehicle.embedded().unwrap().altitude_m();
         assert!(estimate.abs() < 1.0, "{estimate}");
-        let flags = vehicle.firmware().arming_flags();
+        let flags = vehicle.embedded().unwrap().arming_flags();
         assert!(!flags.has(crate::telemetry::ArmingFlag::Angle), "{flags:?}");
     }
 }

@@ -144,7 +144,7 @@ fn fly(case: Case, points: &[Point], takeoff_m: f64, limit_s: f64, done: fn(&Sam
     let (mut vehicle, _) = FlightSetup { world, ..FlightSetup::default() }.build().unwrap();
     let mut session = Interpreter::default();
     let mut cli = |line: &str| {
-        let reply = vehicle.firmware_mut().run_cli(&mut session, line);
+        let reply = vehicle.embedded_mut().unwrap().run_cli(&mut session, line);
         assert!(!reply.failed, "{line}: {}", reply.text);
     };
     COMMON.lines().chain(case.settings.lines()).for_each(&mut cli);
@@ -156,7 +156,7 @@ fn fly(case: Case, points: &[Point], takeoff_m: f64, limit_s: f64, done: fn(&Sam
         cli(&format!("waypoint insert {index} {at} {alt} {speed} {} 0 {}", point.kind, point.pattern));
     }
     vehicle.start_pilot(takeoff_m).unwrap();
-    let ground = vehicle.world().truth().pos_enu.z;
+    let ground = vehicle.world().unwrap().truth().pos_enu.z;
     let mut log = Vec::new();
     let mut last = 0;
     while vehicle.time().as_secs_f64() < 60.0 + limit_s {
@@ -167,8 +167,8 @@ fn fly(case: Case, points: &[Point], takeoff_m: f64, limit_s: f64, done: fn(&Sam
             continue;
         }
         last = vehicle.time().0 / 10_000;
-        let truth = vehicle.world().truth();
-        let nav = vehicle.firmware().nav();
+        let truth = vehicle.world().unwrap().truth();
+        let nav = vehicle.embedded().unwrap().nav();
         let sample = Sample {
             t,
             state: nav.state,
@@ -177,7 +177,7 @@ fn fly(case: Case, points: &[Point], takeoff_m: f64, limit_s: f64, done: fn(&Sam
             alt: truth.pos_enu.z - ground,
             speed: truth.vel_enu.xy().norm(),
             lean_deg: truth.lean_deg(),
-            armed: vehicle.firmware().is_armed(),
+            armed: vehicle.embedded().unwrap().is_armed(),
             on_ground: truth.on_ground,
         };
         log.push(sample);

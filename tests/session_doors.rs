@@ -82,7 +82,7 @@ impl Rig {
 }
 
 fn is_blocked_by_cli(view: &SessionView) -> bool {
-    view.vehicle.craft.arming_blocked_by.has(ArmingFlag::Cli)
+    view.vehicle.craft.arming_flags().has(ArmingFlag::Cli)
 }
 
 /// A question whose answer takes the firmware long.
@@ -156,5 +156,5 @@ async fn what_a_client_changes_is_seen_while_time_stands_still() {
         .await
         .unwrap();
     assert!(!answer.await.unwrap().refused);
-    rig.picture("the waypoint", |view| view.vehicle.stored_plan.waypoints.len() == 1).await;
+    rig.picture("the waypoint", |view| view.vehicle.stored_plan.as_ref().unwrap().waypoints.len() == 1).await;
 }

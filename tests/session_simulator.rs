@@ -80,7 +80,7 @@ async fn rig_with(faults: &[&str]) -> Rig {
     let simulator = ExternalSimulator::start(config, MotorOrder::Native, port, Instant::now());
     let mut configuration = Configuration::default();
     configuration.starter_modes();
-    let vehicle = Vehicle::moved_from_outside(VehicleConfig {
+    let vehicle = Vehicle::with_external_physics(VehicleConfig {
         world: WorldConfig {
             faults: faults.iter().map(|fault| fault.parse().unwrap()).collect(),
             ..WorldConfig::default()
@@ -245,7 +245,7 @@ async fn the_simulators_stamps_are_the_time_and_its_state_the_truth() {
     assert!((truth.lat_deg - (START.0 + 40.0 / 111_043.55)).abs() < 1e-9, "{truth:?}");
     assert!((truth.heading_deg - 90.0).abs() < 1e-6 && (truth.pitch_deg - 5.0).abs() < 1e-6);
     assert!((truth.roll_deg + 3.0).abs() < 1e-6 && (truth.vn - 10.0).abs() < 1e-6 && !truth.on_ground);
-    assert!((view.vehicle.estimate.pitch_deg - 5.0).abs() < 0.1, "the firmware believes it");
+    assert!((view.vehicle.estimate.pitch_deg.unwrap() - 5.0).abs() < 0.1, "the firmware believes it");
     assert!(view.vehicle.craft.gps_fix && view.vehicle.craft.sats == 12);
     let flying = SimulatorStats { link: LinkState::Flowing, dialect: Some("sitl-gz"), refused: 0, old: 0 };
     assert_eq!(stats(&view), flying);

@@ -232,7 +232,7 @@ fn a_long_advice_leaves_the_machine_on_an_80x24_screen() {
     let mut view = state.view.clone();
     let vehicle = std::sync::Arc::make_mut(&mut view.vehicle);
     vehicle.craft.gps_fix = true;
-    vehicle.craft.arming_blocked_by = std::iter::once(ArmingFlag::MotorProtocol).collect();
+    vehicle.craft.arming_blocked_by = Some(std::iter::once(ArmingFlag::MotorProtocol).collect());
     update(&mut state, Msg::View(view));
     let screen = text(&state);
     assert!(screen.contains("motor_pwm_protocol"), "{screen}");
@@ -279,10 +279,12 @@ fn a_picture_with_nonsense_numbers_is_drawn() {
         truth.n = nonsense;
         truth.lat_deg = nonsense;
         truth.heading_deg = nonsense;
-        vehicle.nav.distance_m = Some(nonsense);
-        vehicle.nav.aim_ne = Some(nalgebra::Vector2::new(nonsense, 0.0));
-        vehicle.settings.fence_m = Some(nonsense);
-        vehicle.settings.orbit_radius_m = nonsense;
+        let nav = vehicle.nav.as_mut().unwrap();
+        nav.distance_m = Some(nonsense);
+        nav.aim_ne = Some(nalgebra::Vector2::new(nonsense, 0.0));
+        let settings = vehicle.settings.as_mut().unwrap();
+        settings.fence_m = Some(nonsense);
+        settings.orbit_radius_m = nonsense;
         vehicle.craft.battery_v = Some(nonsense);
         update(&mut state, Msg::View(view));
         assert!(text(&state).contains("APPROACHING"));

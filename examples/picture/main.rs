@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (mut vehicle, _) = FlightSetup { world, ..FlightSetup::default() }.build()?;
     let mut console = Interpreter::default();
     for line in upload_lines(&file.plan, &file.settings) {
-        vehicle.firmware_mut().run_cli(&mut console, &line);
+        vehicle.embedded_mut().unwrap().run_cli(&mut console, &line);
     }
     vehicle.start_pilot(10.0).map_err(|mode| format!("no switch for {mode}"))?;
 
@@ -71,8 +71,8 @@ fn view(vehicle: &Vehicle) -> SessionView {
         vehicle: Arc::new(vehicle.snapshot()),
         speed_wanted: 1.0,
         speed_achieved: 1.0,
-        sticks: vehicle.hands.sticks,
-        pilot: vehicle.hands.pilot.as_ref().map(betadeck::pilot::Pilot::doing),
+        sticks: vehicle.transmitter().sticks(),
+        pilot: vehicle.transmitter().pilot_doing(),
         ..SessionView::default()
     }
 }

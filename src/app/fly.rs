@@ -37,7 +37,7 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, AppError> {
     setup.stick_inputs.clone_from(&args.stick);
     let mut vehicle = setup::build(setup, &mut notices)?;
     // A plan that the craft refuses is invalid input.
-    upload(vehicle.firmware_mut(), &plan.plan, &[]).map_err(AppError::input)?;
+    upload(vehicle.controller_mut(), &plan.plan, &[]).map_err(AppError::input)?;
     let mut first_events: Vec<Event> = Vec::new();
     vehicle.drain_events(|event| first_events.push(event.into()));
     first_events.extend(notices.into_iter().map(|notice| Event::notice(vehicle.time(), notice)));

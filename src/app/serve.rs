@@ -26,7 +26,7 @@ pub(super) fn run(args: &ServeArgs) -> Result<u8, AppError> {
     let setup = setup::for_session(&args.flight, &args.physics, &args.doors, no_plan, stored)?;
     let mut vehicle = setup::build(setup, &mut notices)?;
     // RC comes through the doors only; resting virtual sticks would hide the loss of a script.
-    vehicle.hands.cut = true;
+    vehicle.transmitter_mut().set_cut(true);
     let runtime = tokio::runtime::Builder::new_multi_thread()
         .worker_threads(1)
         .enable_all()

@@ -14,9 +14,10 @@ pub use notice::SetupNotice;
 use crate::firmware::cli::BuildInfo;
 use crate::firmware::config::Configuration;
 use crate::firmware::{AttitudeSource, FirmwareOptions, settings};
+use crate::pilot::StickInput;
 use crate::plan::format::{self, Home, PlanError, PlanFile, SettingFault};
 use crate::sim::{WorldConfig, WorldError};
-use crate::vehicle::{StickInput, Vehicle, VehicleConfig};
+use crate::vehicle::{Vehicle, VehicleConfig};
 
 /// Silence of the GPS that ends the fix while an external simulator moves the craft, s: its packets may stall.
 const EXTERNAL_GPS_TIMEOUT_S: f64 = 2.5;
@@ -128,10 +129,10 @@ impl FlightSetup {
         let config = VehicleConfig { world, firmware, configuration, live: self.live };
         let mut vehicle = match self.physics {
             PhysicsSource::Embedded => Vehicle::new(config),
-            PhysicsSource::External => Vehicle::moved_from_outside(config),
+            PhysicsSource::External => Vehicle::with_external_physics(config),
         }?;
-        vehicle.firmware_mut().set_build(self.build);
-        vehicle.hands.inputs = self.stick_inputs;
+        vehicle.controller_mut().set_build(self.build);
+        *vehicle.transmitter_mut().inputs_mut() = self.stick_inputs;
         Ok((vehicle, home_notice.into_iter().chain(starter_notice).collect()))
     }
 }
@@ -157,7 +158,8 @@ mod tests {
     /// The modes with a condition, in their order, and whether the user is told that they are the starter modes.
     fn modes(setup: FlightSetup) -> (Vec<&'static str>, bool) {
         let (vehicle, notices) = setup.build().unwrap();
-        let names = vehicle.firmware().mode_ranges().iter().map(|range| range.mode_box.into()).collect();
+        let names =
+            vehicle.embedded().unwrap().mode_ranges().iter().map(|range| range.mode_box.into()).collect();
         (names, notices.contains(&SetupNotice::StarterModes))
     }
 
@@ -227,6 +229,6 @@ mod tests {
         let asked = FlightSetup { attitude: Some(AttitudeSource::Estimated), ..external };
         assert_eq!(asked.firmware_options().attitude, AttitudeSource::Estimated);
         let (vehicle, _) = asked.build().unwrap();
-        assert!(!vehicle.firmware().modes().has(Mode::Arm));
+        assert!(!vehicle.embedded().unwrap().modes().has(Mode::Arm));
     }
 }

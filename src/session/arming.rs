@@ -35,7 +35,7 @@ impl ArmingWatch {
             return None;
         }
         let with_hint = |flag: ArmingFlag| format!("{flag} ({})", flag.hint());
-        let causes: Vec<String> = craft.arming_blocked_by.causes().iter().map(with_hint).collect();
+        let causes: Vec<String> = craft.arming_flags().causes().iter().map(with_hint).collect();
         if causes.is_empty() {
             return None;
         }
@@ -62,7 +62,7 @@ mod tests {
         .collect();
         craft.rc_source = Some(RcSource::Udp);
         craft.channels[4] = 2000;
-        craft.arming_blocked_by = flags.iter().copied().collect();
+        craft.arming_blocked_by = Some(flags.iter().copied().collect());
         vehicle
     }
 

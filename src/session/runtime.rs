@@ -9,15 +9,16 @@ mod console;
 mod publishing;
 mod requests;
 
+use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::task::{Context, Wake, Waker};
 use std::thread::Thread;
 use std::time::{Duration, Instant};
 
-use tokio::sync::{mpsc, watch};
+use tokio::sync::{mpsc, oneshot, watch};
 
 use super::arming::ArmingWatch;
-use super::command::{Command, SessionView};
+use super::command::{CliOutput, Command, SessionView};
 use super::event::{Event, EventSender, SessionEvent};
 use super::pacer::Pacer;
 use super::request_handler::RequestHandler;
@@ -27,7 +28,7 @@ use crate::link::{ExternalSimulator, ImpairedLink, Request};
 use crate::sim::Stream;
 use crate::storage::Store;
 use crate::telemetry::{EndpointStatus, LinkState};
-use crate::vehicle::Vehicle;
+use crate::vehicle::{Ticket, Vehicle};
 
 /// Interval of published views.
 const VIEW_INTERVAL: Duration = Duration::from_millis(16);
@@ -87,7 +88,7 @@ pub struct Handle {
 /// When the system gives no thread.
 pub fn start(mut config: SessionConfig) -> std::io::Result<Handle> {
     let simulator = config.endpoints.as_mut().and_then(|endpoints| endpoints.simulator.take());
-    let incoming = ImpairedLink::new(Stream::Link.rng(config.vehicle.world().seed()));
+    let incoming = ImpairedLink::new(Stream::Link.rng(config.vehicle.seed()));
     let (command_tx, command_rx) = mpsc::channel(256);
     let (event_tx, event_rx) = mpsc::unbounded_channel();
     let mut session = Session {
@@ -101,6 +102,7 @@ pub fn start(mut config: SessionConfig) -> std::io::Result<Handle> {
         commands: command_rx,
         events: EventSender::new(event_tx),
         arming: ArmingWatch::default(),
+        unanswered: BTreeMap::new(),
         changed: true,
         more_waits: false,
         quit: false,
@@ -125,6 +127,8 @@ struct Session {
     commands: mpsc::Receiver<Command>,
     events: EventSender,
     arming: ArmingWatch,
+    /// Lines of the console that a remote flight controller has not answered yet.
+    unanswered: BTreeMap<Ticket, (String, oneshot::Sender<CliOutput>)>,
     /// Something other than time changed what the view shows.
     changed: bool,
     /// Clients asked more than one round of the loop has time for.
@@ -151,6 +155,7 @@ impl Session {
         self.flush_events();
         while !self.quit {
             self.take_commands(start.elapsed(), &mut context);
+            self.take_late_answers();
             let flown = self.handle_requests(&mut context);
             let now = start.elapsed();
             let due = if self.follows_wall_clock() { self.pacer.due(now, SLICE) } else { 0 };

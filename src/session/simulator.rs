@@ -74,7 +74,7 @@ impl Simulator {
         speed: f64,
     ) -> u64 {
         self.end_faults(at, vehicle);
-        self.incoming.send(datagram, at, &impairment(vehicle.world().link_faults()));
+        self.incoming.send(datagram, at, &impairment(vehicle.link_faults()));
         self.take_arrived(at, vehicle, handler, events, speed)
     }
 
@@ -115,13 +115,15 @@ impl Simulator {
             let mut frame = *sensors;
             for _ in 0..ticks {
                 if vehicle.time().0.is_multiple_of(RC_REPEAT_US) {
-                    handler.keep_rc_fresh(vehicle.firmware_mut(), speed, at);
+                    if let Some(firmware) = vehicle.embedded_mut() {
+                        handler.keep_rc_fresh(firmware, speed, at);
+                    }
                 }
                 vehicle.tick_on(&frame);
                 // Held inputs; a sample is new only once.
                 (frame.pressure_pa, frame.mag_flu, frame.gps) = (None, None, None);
             }
-            vehicle.firmware().control().motors
+            vehicle.controller().motors()
         });
         if let Verdict::Refused(refusal) = received.verdict {
             self.tell_refusal(refusal, vehicle, events);
@@ -130,7 +132,9 @@ impl Simulator {
         self.tell_return(at, vehicle, events);
         if received.verdict == (Verdict::Resync { restarted: true }) {
             vehicle.reset_craft();
-            handler.after_restart(false, vehicle.firmware_mut());
+            if let Some(firmware) = vehicle.embedded_mut() {
+                handler.after_restart(false, firmware);
+            }
         }
         for notice in received.notices {
             self.changed = true;

@@ -2,6 +2,8 @@
 //!
 //! All `n`, `e`, `alt` count in metres from the place where the craft stood at boot, estimates and targets too.
 
+use nalgebra::Vector2;
+
 use crate::geo::LatLon;
 use crate::plan::FlightPlan;
 use crate::signals::{RC_CHANNELS, RcSource, SimTime};
@@ -18,16 +20,24 @@ pub struct Snapshot {
     pub estimate: EstimateView,
     /// Modes, arming and receiver.
     pub craft: CraftView,
-    /// The navigator.
-    pub nav: NavTelemetry,
+    /// The navigator; like everything else of the flight controller `None` when a remote one does not tell.
+    pub nav: Option<NavTelemetry>,
     /// The plan being flown, when one is.
     pub active_plan: Option<FlightPlan>,
     /// The plan stored in the craft.
-    pub stored_plan: FlightPlan,
+    pub stored_plan: Option<FlightPlan>,
     /// Settings the displays need, as the firmware uses them.
-    pub settings: SettingsView,
+    pub settings: Option<SettingsView>,
     /// Wind, noise and faults.
     pub world: WorldView,
+}
+
+impl Snapshot {
+    /// Whether the autopilot is known to fly a mission.
+    #[must_use]
+    pub fn is_engaged(&self) -> bool {
+        self.nav.as_ref().is_some_and(|nav| nav.engaged)
+    }
 }
 
 /// The craft's true motion.
@@ -57,10 +67,8 @@ pub struct TruthView {
     pub heading_deg: f64,
     /// Motor commands M1…M4, 0…1.
     pub motors: [f64; 4],
-    /// Wind at the craft, towards north, m/s; 0 from an external simulator, which does not tell.
-    pub wind_n: f64,
-    /// Wind at the craft, towards east, m/s; likewise.
-    pub wind_e: f64,
+    /// Wind at the craft, towards north and east, m/s; `None` from an external simulator, which does not tell.
+    pub wind_ne: Option<Vector2<f64>>,
     /// Standing on the ground; with an external simulator: low and slow.
     pub on_ground: bool,
     /// Crashed.
@@ -79,15 +87,15 @@ pub struct EstimateView {
     /// Above the boot place, m.
     pub alt: Option<f64>,
     /// Ground speed, m/s.
-    pub ground_speed_mps: f64,
+    pub ground_speed_mps: Option<f64>,
     /// Climb rate, m/s.
-    pub climb_mps: f64,
+    pub climb_mps: Option<f64>,
     /// Roll, degrees, right positive.
-    pub roll_deg: f64,
+    pub roll_deg: Option<f64>,
     /// Pitch, degrees, nose **up** positive.
-    pub pitch_deg: f64,
+    pub pitch_deg: Option<f64>,
     /// Heading, degrees clockwise from north.
-    pub heading_deg: f64,
+    pub heading_deg: Option<f64>,
     /// Demanded roll, degrees, right positive, in a levelling mode.
     pub roll_demand_deg: Option<f64>,
     /// Demanded pitch, degrees, nose **up** positive, in a levelling mode.
@@ -101,8 +109,8 @@ pub struct CraftView {
     pub armed: bool,
     /// Active modes.
     pub modes: ModeFlags,
-    /// The arming-disable flags that are set; none while armed.
-    pub arming_blocked_by: ArmingFlags,
+    /// The arming-disable flags that are set, when known; none while armed.
+    pub arming_blocked_by: Option<ArmingFlags>,
     /// A 3-D fix.
     pub gps_fix: bool,
     /// Satellites.
@@ -119,8 +127,8 @@ pub struct CraftView {
     pub battery_mah: Option<f64>,
     /// Cells of the battery.
     pub battery_cells: u8,
-    /// Throttle that drives the mixer, RC µs.
-    pub throttle_us: f64,
+    /// Throttle that drives the mixer, RC µs, when known.
+    pub throttle_us: Option<f64>,
     /// Motor outputs M1…M4 as commanded by the firmware, 0…1.
     pub motors: [f64; 4],
     /// Channel values the firmware uses, µs (substituted while the link is lost).
@@ -129,14 +137,22 @@ pub struct CraftView {
     pub rc_source: Option<RcSource>,
     /// Age of the newest frame, s.
     pub rc_age_s: Option<f64>,
-    /// Whether the receiver link is up.
-    pub rc_link: bool,
+    /// Whether the receiver link is up, when known.
+    pub rc_link: Option<bool>,
     /// Failsafe stage: 0 none, 1 guard time, 2 procedure.
     pub failsafe_stage: u8,
     /// A command, not a switch, has the craft fly home or land.
     pub commanded: bool,
     /// The mode conditions in force: what the RC panel draws on the AUX bars.
     pub mode_ranges: Vec<ModeRange>,
+}
+
+impl CraftView {
+    /// The arming-disable flags that are known to be set.
+    #[must_use]
+    pub fn arming_flags(&self) -> ArmingFlags {
+        self.arming_blocked_by.unwrap_or_default()
+    }
 }
 
 /// A switch range that turns a mode on.
@@ -160,7 +176,7 @@ impl ModeRange {
     }
 }
 
-/// The settings that displays and hands need, in SI units.
+/// The settings that displays and sticks need, in SI units.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct SettingsView {
     /// `ap_waypoint_arrival_radius`, m.
@@ -190,10 +206,8 @@ pub struct SettingsView {
 pub struct WorldView {
     /// Name of the airframe.
     pub airframe: String,
-    /// Mean wind speed, m/s.
-    pub wind_mps: f64,
-    /// Direction the mean wind comes from, degrees.
-    pub wind_from_deg: f64,
+    /// The mean wind, when known.
+    pub wind: Option<WindView>,
     /// Gust amplitude, m/s.
     pub gust_mps: f64,
     /// Turbulence level: `none`, `light`, `moderate`, `severe`.
@@ -202,6 +216,15 @@ pub struct WorldView {
     pub noise: bool,
     /// Active faults.
     pub faults: Vec<FaultView>,
+}
+
+/// The mean wind.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WindView {
+    /// Speed, m/s.
+    pub speed_mps: f64,
+    /// Direction it comes from, degrees.
+    pub from_deg: f64,
 }
 
 /// A fault that is on.

@@ -87,7 +87,7 @@ pub fn now(state: &AppState) -> Option<Advice> {
             );
         }
     }
-    if vehicle.nav.engaged {
+    if vehicle.is_engaged() {
         return None;
     }
     let switched_on = transmitter::switch_is_on(state, Mode::Autopilot);
@@ -98,7 +98,7 @@ pub fn now(state: &AppState) -> Option<Advice> {
         if craft.failsafe_stage > 0 {
             return advice(Level::Fault, "Failsafe: the RC link is lost.", "send RC frames again");
         }
-        if let Some(refusal) = vehicle.nav.refusal.filter(|_| switched_on) {
+        if let Some(refusal) = vehicle.nav.as_ref().and_then(|nav| nav.refusal).filter(|_| switched_on) {
             let what = format!("AUTOPILOT refused: {}", refusal.sentence());
             return advice(Level::Fault, what, way_out(refusal));
         }
@@ -112,12 +112,12 @@ pub fn now(state: &AppState) -> Option<Advice> {
         let fix = if outside { "reset the simulator's world" } else { "R puts the craft back home" };
         return advice(Level::Fault, "Disarmed in the air.", fix);
     }
-    if vehicle.nav.state == NavState::Complete {
+    if vehicle.nav.as_ref().is_some_and(|nav| nav.state == NavState::Complete) {
         let fix = if outside { "F flies again" } else { "R puts the craft back home, F flies again" };
         return advice(Level::Good, "Mission complete.", fix);
     }
     if let Some(doing) = state.view.pilot {
-        if let Some(flag) = most_useful(craft.arming_blocked_by).filter(|_| craft.gps_fix) {
+        if let Some(flag) = most_useful(craft.arming_flags()).filter(|_| craft.gps_fix) {
             let what = format!("The pilot waits, arming is blocked: {flag}.");
             return advice(Level::Info, what, arming_hint(flag));
         }
@@ -126,10 +126,10 @@ pub fn now(state: &AppState) -> Option<Advice> {
     if !craft.gps_fix {
         return advice(Level::Warn, "No GPS fix yet.", "wait for satellites; F waits by itself");
     }
-    if let Some(flag) = most_useful(craft.arming_blocked_by) {
+    if let Some(flag) = most_useful(craft.arming_flags()) {
         return advice(Level::Warn, format!("Arming is blocked: {flag}."), arming_hint(flag));
     }
-    if vehicle.stored_plan.waypoints.is_empty() {
+    if vehicle.stored_plan.as_ref().is_some_and(|plan| plan.waypoints.is_empty()) {
         let fix = if state.plan.plan.waypoints.is_empty() {
             "`waypoint insert …` in the CLI (5) adds one".to_owned()
         } else {

@@ -237,7 +237,9 @@ impl AppState {
         let vehicle = &self.view.vehicle;
         match &vehicle.active_plan {
             Some(plan) => plan,
-            None if self.plan.plan.waypoints.is_empty() => &vehicle.stored_plan,
+            None if self.plan.plan.waypoints.is_empty() => {
+                vehicle.stored_plan.as_ref().unwrap_or(&self.plan.plan)
+            }
             None => &self.plan.plan,
         }
     }
@@ -245,6 +247,6 @@ impl AppState {
     /// Whether the craft stores the open plan.
     #[must_use]
     pub fn plan_is_on_craft(&self) -> bool {
-        self.view.vehicle.stored_plan == self.plan.plan
+        self.view.vehicle.stored_plan.as_ref() == Some(&self.plan.plan)
     }
 }

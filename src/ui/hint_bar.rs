@@ -75,7 +75,7 @@ fn hint_actions(state: &AppState) -> Vec<(&'static [Action], &'static str)> {
     if state.view.pilot.is_some() {
         hints.push((&[Action::Fly], "stop pilot"));
     }
-    let engaged = state.view.vehicle.nav.engaged;
+    let engaged = state.view.vehicle.is_engaged();
     if craft.armed {
         let autopilot = if engaged { "autopilot off" } else { "autopilot" };
         let home = if craft.commanded { "stop return" } else { "home" };

@@ -6,7 +6,7 @@ use ratatui::text::{Line, Span};
 use unicode_width::UnicodeWidthStr as _;
 
 use crate::signals::RcSource;
-use crate::telemetry::{LinkState, Mode, NavState};
+use crate::telemetry::{LinkState, Mode, NavState, NavTelemetry};
 
 use super::app_state::AppState;
 use super::formatting::{clock, clock_ms, cut, factor, fixed, signed};
@@ -107,7 +107,7 @@ pub(super) fn rc(state: &AppState) -> (String, Role) {
         return ("RC CUT".to_owned(), Role::Fault);
     }
     match craft.rc_source {
-        Some(_) if !craft.rc_link => {
+        Some(_) if craft.rc_link == Some(false) => {
             (format!("LOST{} s", fixed(craft.rc_age_s, 4, 1).trim_end()), Role::Fault)
         }
         Some(RcSource::Sticks) if state.view.pilot.is_some() => ("RC pilot".to_owned(), Role::Text),
@@ -123,26 +123,31 @@ pub(super) fn rc(state: &AppState) -> (String, Role) {
 fn mission(state: &AppState, room: usize) -> Vec<Span<'static>> {
     let theme = &state.theme;
     let vehicle = &state.view.vehicle;
-    let nav = &vehicle.nav;
-    let name = if nav.climbing { "CLIMBING".to_owned() } else { nav.state.to_string() };
-    let role = match nav.state {
-        NavState::Idle => Role::Dim,
-        NavState::Complete => Role::Ok,
-        _ => Role::Target,
+    let nav = vehicle.nav.as_ref();
+    let name = match nav {
+        None => "—".to_owned(),
+        Some(nav) if nav.climbing => "CLIMBING".to_owned(),
+        Some(nav) => nav.state.to_string(),
     };
-    let (target, columns) = match nav.kind {
-        Some(kind) if nav.engaged => (format!("WP{} {kind}", nav.wp), 12),
-        _ => (state.view.pilot.unwrap_or_default().to_owned(), 15),
+    let role = match nav.map(|nav| nav.state) {
+        None | Some(NavState::Idle) => Role::Dim,
+        Some(NavState::Complete) => Role::Ok,
+        Some(_) => Role::Target,
+    };
+    let engaged = nav.filter(|nav| nav.engaged);
+    let (target, columns) = match engaged.and_then(|nav| nav.kind.map(|kind| (nav.wp, kind))) {
+        Some((wp, kind)) => (format!("WP{wp} {kind}"), 12),
+        None => (state.view.pilot.unwrap_or_default().to_owned(), 15),
     };
     let estimate = &vehicle.estimate;
-    let leg = if nav.engaged { leg(state) } else { Vec::new() };
+    let leg = engaged.map_or_else(Vec::new, leg);
     // How important, label, value, unit.
     let craft = [
-        (2, "", fixed(Some(estimate.ground_speed_mps), 5, 1), " m/s"),
+        (2, "", fixed(estimate.ground_speed_mps, 5, 1), " m/s"),
         (1, "", fixed(estimate.alt, 6, 1), " m"),
-        (5, "  climb", signed(Some(estimate.climb_mps), 6, 1), " m/s"),
-        (6, "  home", fixed(nav.home_distance_m, 6, 0), " m"),
-        (7, "  fence", fixed(nav.fence_margin_m, 6, 0), " m left"),
+        (5, "  climb", signed(estimate.climb_mps, 6, 1), " m/s"),
+        (6, "  home", fixed(nav.and_then(|nav| nav.home_distance_m), 6, 0), " m"),
+        (7, "  fence", fixed(nav.and_then(|nav| nav.fence_margin_m), 6, 0), " m left"),
     ];
     let mut spans = vec![
         span(theme, role, format!(" ◆ {name:<11} ")),
@@ -163,8 +168,7 @@ fn mission(state: &AppState, room: usize) -> Vec<Span<'static>> {
 }
 
 /// The numbers of the leg: how important, label, value, unit.
-fn leg(state: &AppState) -> Vec<(u8, &'static str, String, &'static str)> {
-    let nav = &state.view.vehicle.nav;
+fn leg(nav: &NavTelemetry) -> Vec<(u8, &'static str, String, &'static str)> {
     let bearing = nav.bearing_rad.map(|rad| rad.to_degrees().rem_euclid(360.0));
     let last = if nav.hold_remaining_ds > 0 {
         let left = (nav.hold_remaining_ds != u16::MAX).then(|| f64::from(nav.hold_remaining_ds) / 10.0);

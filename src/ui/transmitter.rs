@@ -5,6 +5,7 @@ use std::time::Duration;
 use crate::session::Command;
 use crate::signals::{RcFrame, RcSource};
 use crate::telemetry::snapshot::ModeRange;
+use crate::telemetry::snapshot::SettingsView;
 use crate::telemetry::switch::Switch;
 use crate::telemetry::{Mode, ModeBox, switch};
 
@@ -118,7 +119,7 @@ fn is_airborne(state: &AppState) -> bool {
 
 /// Whether the throttle stick of a frame counts as raised.
 fn is_raised(state: &AppState, frame: &RcFrame) -> bool {
-    frame.channels[THROTTLE] >= state.view.vehicle.settings.raised_stick_us
+    frame.channels[THROTTLE] >= settings(state).raised_stick_us
 }
 
 /// Whether the throttle stick lets the craft sink in ALTHOLD.
@@ -127,7 +128,7 @@ pub(super) fn is_sinking(state: &AppState) -> bool {
     let frame = frame(state);
     is_airborne(state)
         && is_on(state, &frame, Mode::AltHold)
-        && state.view.vehicle.settings.sink_stick_us == Some(frame.channels[THROTTLE])
+        && settings(state).sink_stick_us == Some(frame.channels[THROTTLE])
 }
 
 /// What the throttle key does now: on the ground hover and low take turns; in the air the first press holds the craft,
@@ -138,7 +139,7 @@ pub(super) fn throttle_move(state: &AppState) -> ThrottleMove {
     if !is_airborne(state) {
         return if now.channels[THROTTLE] > LOW_US { ThrottleMove::Low } else { ThrottleMove::Hover };
     }
-    let sink_us = state.view.vehicle.settings.sink_stick_us;
+    let sink_us = settings(state).sink_stick_us;
     match (hold_switch(state, Mode::AltHold), sink_us) {
         (Some(_), Some(us)) if is_on(state, &now, Mode::AltHold) && !is_sinking(state) => {
             ThrottleMove::Sink(us)
@@ -160,7 +161,7 @@ pub(super) fn can_arm(state: &AppState) -> Result<(), String> {
         return Ok(());
     }
     // The others only say "switch off, then on again", which is what the key does.
-    match advice::most_useful(craft.arming_blocked_by.causes()) {
+    match advice::most_useful(craft.arming_flags().causes()) {
         None => Ok(()),
         Some(flag) => Err(format!("Cannot arm, {flag}: {}.", advice::arming_hint(flag))),
     }
@@ -232,9 +233,14 @@ pub(super) fn move_throttle(state: &mut AppState) -> Vec<Effect> {
     send(state, next)
 }
 
+/// The settings of the sticks; zero where the flight controller does not tell.
+fn settings(state: &AppState) -> SettingsView {
+    state.view.vehicle.settings.unwrap_or_default()
+}
+
 /// Where the throttle stick hovers, with ALTHOLD and without; raised in any case.
 fn hover_us(state: &AppState) -> u16 {
-    let settings = &state.view.vehicle.settings;
+    let settings = settings(state);
     settings.hover_stick_us.max(settings.raised_stick_us)
 }
 
@@ -274,7 +280,7 @@ fn send(state: &mut AppState, next: RcFrame) -> Vec<Effect> {
         state.notify(Level::Info, "The pilot let go: the sticks are yours.");
     }
     match state.view.vehicle.craft.rc_source {
-        Some(RcSource::Udp | RcSource::Msp) if state.view.vehicle.craft.rc_link => {
+        Some(RcSource::Udp | RcSource::Msp) if state.view.vehicle.craft.rc_link == Some(true) => {
             state.notify(Level::Warn, "Another RC source drives the craft: stop it to fly by keys.");
         }
         _ if state.view.rc_cut => {

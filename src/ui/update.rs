@@ -74,7 +74,7 @@ fn take_view(state: &mut AppState, view: SessionView) {
     }
     state.view = view;
     if let Some(place) = map_point::craft(&state.view) {
-        let engaged = state.view.vehicle.nav.engaged;
+        let engaged = state.view.vehicle.is_engaged();
         let time_s = state.view.vehicle.time.as_secs_f64();
         if !state.view.vehicle.craft.armed {
             state.track.disarmed_at(place.n, place.e);

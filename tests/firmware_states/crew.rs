@@ -53,7 +53,7 @@ impl Crew {
 
     /// Comes when the craft has been lying for a while; now and then it is left to itself longer.
     pub(crate) fn watch(&mut self, run: &Run, rng: &mut ChaCha8Rng) {
-        self.lying = if run.vehicle.firmware().is_armed() { 0 } else { self.lying + 1 };
+        self.lying = if run.vehicle.embedded().unwrap().is_armed() { 0 } else { self.lying + 1 };
         if self.is_done() && self.lying > LEFT_ALONE && rng.random_bool(0.02) {
             *self = Self::default();
         }
@@ -77,10 +77,10 @@ impl Crew {
             }
             Work::Settle => {
                 // A craft that rocks or tumbles may be level for a moment: only at rest its attitude counts.
-                let truth = run.vehicle.world().truth();
+                let truth = run.vehicle.world().unwrap().truth();
                 let still = truth.vel_enu.norm() < STILL_MPS && truth.rate_flu.norm() < STILL_RPS;
                 self.resting = if still { self.resting + 1 } else { 0 };
-                let upright = run.vehicle.firmware().estimate().cos_tilt > UPRIGHT;
+                let upright = run.vehicle.embedded().unwrap().estimate().cos_tilt > UPRIGHT;
                 let lies_badly = truth.crashed || self.resting >= REST && !upright;
                 if lies_badly || self.since >= SETTLE {
                     run.restart(true);
@@ -90,15 +90,17 @@ impl Crew {
                 }
             }
             Work::Wait => {
-                let flags = run.vehicle.firmware().arming_flags();
-                if run.vehicle.firmware().arming_flags().is_empty() && run.vehicle.firmware().gps_fix() {
+                let flags = run.vehicle.embedded().unwrap().arming_flags();
+                if run.vehicle.embedded().unwrap().arming_flags().is_empty()
+                    && run.vehicle.embedded().unwrap().gps_fix()
+                {
                     run.switch(ARM, true);
                     self.next(Work::Arm);
                 }
                 assert!(self.since < PATIENCE, "can never be armed: {:?}", flags.iter().collect::<Vec<_>>());
             }
             Work::Arm => {
-                if run.vehicle.firmware().is_armed() {
+                if run.vehicle.embedded().unwrap().is_armed() {
                     run.switch(HOLDS, true);
                     run.frame.channels[THROTTLE] = 1750;
                     self.next(Work::Climb);
@@ -106,7 +108,7 @@ impl Crew {
                 assert!(self.since < 100, "nothing blocks arming, and it does not arm");
             }
             Work::Climb => {
-                if self.since >= CLIMB || !run.vehicle.firmware().is_armed() {
+                if self.since >= CLIMB || !run.vehicle.embedded().unwrap().is_armed() {
                     run.frame.channels[THROTTLE] = 1500;
                     run.switch(AUTOPILOT, true);
                     self.next(Work::Done);

@@ -60,11 +60,11 @@ pub(crate) fn happen(run: &mut Run, rng: &mut ChaCha8Rng) -> String {
             run.cli(&line);
             line
         }
-        73..77 => command(run, "home", |run| run.vehicle.firmware_mut().return_to_home().is_ok()),
-        77..80 => command(run, "land", |run| run.vehicle.firmware_mut().emergency_land().is_ok()),
+        73..77 => command(run, "home", |run| run.vehicle.embedded_mut().unwrap().return_to_home().is_ok()),
+        77..80 => command(run, "land", |run| run.vehicle.embedded_mut().unwrap().emergency_land().is_ok()),
         80..84 => {
-            run.vehicle.firmware_mut().cancel_command();
-            let view = run.vehicle.firmware().craft_view();
+            run.vehicle.embedded_mut().unwrap().cancel_command();
+            let view = run.vehicle.embedded().unwrap().craft_view();
             assert!(!view.commanded, "a command that was taken back stays");
             "undo".to_owned()
         }
@@ -81,7 +81,7 @@ pub(crate) fn happen(run: &mut Run, rng: &mut ChaCha8Rng) -> String {
         92 => {
             // Questions of a configurator; whether they are known does not matter.
             let code = rng.random_range(1..200);
-            let _answer = run.vehicle.firmware_mut().run_msp(code, &[], None);
+            let _answer = run.vehicle.embedded_mut().unwrap().run_msp(code, &[], None);
             format!("msp {code}")
         }
         93..95 => {
@@ -158,7 +158,7 @@ fn set_parameter(run: &mut Run, rng: &mut ChaCha8Rng) -> String {
 fn waypoint(run: &Run, rng: &mut ChaCha8Rng) -> String {
     let mut metres = || f64::from(rng.random_range(-5..=5)) * 6.0;
     let place = Vector3::new(metres(), metres(), 0.0);
-    let (lat, lon, _) = run.vehicle.world().local_frame().to_geodetic(place);
+    let (lat, lon, _) = run.vehicle.world().unwrap().local_frame().to_geodetic(place);
     let kind = pick(rng, &WaypointType::iter().collect::<Vec<_>>());
     let pattern = pick(rng, &HoldPattern::iter().collect::<Vec<_>>());
     let alt_cm = rng.random_range(100..2500);
@@ -199,6 +199,6 @@ fn edit_plan(run: &mut Run, rng: &mut ChaCha8Rng) -> String {
 
 /// The memory after an edit is what flying must not change.
 fn edited(run: &mut Run) -> &FlightPlan {
-    run.plan = run.vehicle.firmware().stored_plan().clone();
+    run.plan = run.vehicle.embedded().unwrap().stored_plan().clone();
     &run.plan
 }

@@ -80,7 +80,7 @@ impl Run {
             update: 0,
             law: Law::default(),
         };
-        run.vehicle.hands.cut = true;
+        run.vehicle.transmitter_mut().set_cut(true);
         for line in [
             "aux 5 46 3 1700 2100 0 0",
             "aux 6 27 4 1700 2100 0 0",
@@ -93,16 +93,16 @@ impl Run {
     }
 
     fn cli(&mut self, line: &str) {
-        let reply = self.vehicle.firmware_mut().run_cli(&mut self.console, line);
+        let reply = self.vehicle.embedded_mut().unwrap().run_cli(&mut self.console, line);
         assert!(!reply.failed, "{line}: {}", reply.text);
-        self.law.settings_changed(self.vehicle.firmware(), self.update);
+        self.law.settings_changed(self.vehicle.embedded().unwrap(), self.update);
     }
 
     /// Restarts the firmware where the craft is, or puts the whole craft back home.
     fn restart(&mut self, whole: bool) {
         match whole {
             true => self.vehicle.reset_craft(),
-            false => self.vehicle.firmware_mut().restart_in_place(),
+            false => self.vehicle.embedded_mut().unwrap().restart_in_place(),
         }
         self.law.restarted();
     }
@@ -115,15 +115,17 @@ impl Run {
     fn fly(&mut self) {
         for _ in 0..TICKS_PER_UPDATE {
             if self.link && self.vehicle.time().0.is_multiple_of(20_000) {
-                self.vehicle.firmware_mut().receive_rc(&self.frame, self.source);
+                self.vehicle.embedded_mut().unwrap().receive_rc(&self.frame, self.source);
             }
             self.vehicle.tick();
-            self.law.judge_motors(self.vehicle.firmware());
+            self.law.judge_motors(self.vehicle.embedded().unwrap());
             let mut events = Vec::new();
             self.vehicle.drain_events(|event| events.push(event.kind));
             for event in events {
                 match event {
-                    EventKind::Firmware(event) => self.law.judge_event(&event, self.vehicle.firmware()),
+                    EventKind::Firmware(event) => {
+                        self.law.judge_event(&event, self.vehicle.embedded().unwrap())
+                    }
                     EventKind::Notice(notice) => {
                         assert!(!matches!(notice, VehicleNotice::EventsLost(_)), "{notice}");
                     }
@@ -131,8 +133,12 @@ impl Run {
                 }
             }
         }
-        assert_eq!(self.vehicle.firmware().stored_plan(), &self.plan, "flying changed the stored plan");
-        self.law.judge_update(self.vehicle.firmware(), self.update, self.link);
+        assert_eq!(
+            self.vehicle.embedded().unwrap().stored_plan(),
+            &self.plan,
+            "flying changed the stored plan"
+        );
+        self.law.judge_update(self.vehicle.embedded().unwrap(), self.update, self.link);
         self.update += 1;
     }
 }

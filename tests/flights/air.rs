@@ -87,10 +87,10 @@ fn weak_motor_is_recovered_from() {
 fn dead_motor_is_a_crash_without_nonsense() {
     let mut rig = holding(0, "calm", 0.0);
     rig.vehicle.change_world(fault("motor", "2:0")).unwrap();
-    rig.until(20.0, "crash", |rig| rig.vehicle.world().truth().crashed).fly(1.0);
+    rig.until(20.0, "crash", |rig| rig.vehicle.world().unwrap().truth().crashed).fly(1.0);
     let last = rig.samples.last().unwrap();
     assert!([last.n, last.e, last.alt, last.roll].iter().all(|value| value.is_finite()));
-    let firmware = rig.vehicle.firmware();
+    let firmware = rig.vehicle.embedded().unwrap();
     assert!(firmware.control().motors.0.iter().all(|motor| motor.is_finite()));
 }
 

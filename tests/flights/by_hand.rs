@@ -8,18 +8,18 @@ use betadeck::telemetry::{EventKind, Mode, NavState};
 /// A craft that hovers ten metres up, held by the switches of the scripted pilot, who has let go.
 fn hovering() -> (Rig, RcFrame) {
     let mut rig = Rig::new(world(1).0, "", 10.0);
-    rig.until(60.0, "hover", |rig| rig.vehicle.hands.pilot.as_ref().is_some_and(|p| p.doing() == "hovering"));
-    rig.vehicle.hands.pilot = None;
+    rig.until(60.0, "hover", |rig| rig.vehicle.transmitter().pilot_doing() == Some("hovering"));
+    rig.vehicle.transmitter_mut().stop_pilot();
     rig.fly(3.0);
-    let sticks = rig.vehicle.hands.sticks;
+    let sticks = rig.vehicle.transmitter().sticks();
     (rig, sticks)
 }
 
 #[test]
 fn the_sinking_stick_brings_the_craft_down_softly() {
     let (mut rig, mut sticks) = hovering();
-    sticks.channels[2] = rig.vehicle.firmware().sink_stick_us().unwrap();
-    rig.vehicle.hands.sticks = sticks;
+    sticks.channels[2] = rig.vehicle.embedded().unwrap().sink_stick_us().unwrap();
+    *rig.vehicle.transmitter_mut().sticks_mut() = sticks;
     rig.fly(3.0);
     let from = rig.samples.len();
     rig.fly(4.0);
@@ -34,21 +34,24 @@ fn the_sinking_stick_brings_the_craft_down_softly() {
         _ => None,
     });
     assert!(impact.is_some_and(|impact| impact < 1.5), "{impact:?}");
-    assert!(!rig.vehicle.world().truth().crashed);
+    assert!(!rig.vehicle.world().unwrap().truth().crashed);
 }
 
 #[test]
 fn a_return_home_that_is_taken_back_leaves_the_craft_held() {
     let (mut rig, _) = hovering();
-    rig.vehicle.firmware_mut().return_to_home().unwrap();
+    rig.vehicle.embedded_mut().unwrap().return_to_home().unwrap();
     rig.fly(1.0);
-    assert!(rig.vehicle.snapshot().craft.commanded && rig.vehicle.firmware().modes().has(Mode::Autopilot));
-    rig.vehicle.firmware_mut().cancel_command();
+    assert!(
+        rig.vehicle.snapshot().craft.commanded
+            && rig.vehicle.embedded().unwrap().modes().has(Mode::Autopilot)
+    );
+    rig.vehicle.embedded_mut().unwrap().cancel_command();
     rig.fly(1.0);
     let snapshot = rig.vehicle.snapshot();
-    assert_eq!((snapshot.craft.commanded, snapshot.nav.state), (false, NavState::Idle));
+    assert_eq!((snapshot.craft.commanded, snapshot.nav.unwrap().state), (false, NavState::Idle));
     assert!(snapshot.craft.modes.has(Mode::PosHold) && !snapshot.craft.modes.has(Mode::Autopilot));
-    let height = rig.vehicle.firmware().altitude_m();
+    let height = rig.vehicle.embedded().unwrap().altitude_m();
     let from = rig.samples.len();
     rig.fly(10.0);
     let fallen = greatest(rig.samples[from..].iter().map(|sample| (sample.alt - height).abs()));

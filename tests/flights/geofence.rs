@@ -2,9 +2,9 @@
 
 use crate::checks::{Checks, assert_met, greatest};
 use crate::rig::{Rig, SEEDS, world};
+use betadeck::pilot::StickInput;
 use betadeck::plan::WaypointType;
 use betadeck::telemetry::{EventKind, FirmwareEvent, Mode, NavEvent, NavState, PlanSource, Refusal};
-use betadeck::vehicle::StickInput;
 
 const FENCE: &str = "set ap_max_distance_from_home = 100\n";
 
@@ -50,10 +50,10 @@ fn pushed_out(seed: u64, action: &str, alt_cm: u32, takeoff_m: f64) -> Rig {
     let mut rig = Rig::new(world(seed).0, &lines, takeoff_m);
     rig.engaged().until_state(60.0, NavState::Holding).fly(5.0);
     let forward = StickInput { channel: 1, value_us: 2000, at_s: 0.0, for_s: None, from_boot: true };
-    rig.vehicle.hands.inputs.push(forward);
+    rig.vehicle.transmitter_mut().inputs_mut().push(forward);
     let seen = rig.transitions().len();
     rig.until(30.0, "the fence", |rig| rig.transitions().len() > seen);
-    rig.vehicle.hands.inputs.clear();
+    rig.vehicle.transmitter_mut().inputs_mut().clear();
     rig
 }
 
@@ -70,8 +70,12 @@ fn trigger_checks(checks: &mut Checks, rig: &Rig, extra: crate::rig::Allowance) 
         .count();
     checks.same("geofence events", fences, 1);
     checks.within("triggered at", rig.at(trigger).n, 99.0 - extra.h, 100.3 + extra.h);
-    checks.same("stored plan", rig.vehicle.firmware().stored_plan().waypoints.len(), 1);
-    checks.same("stored type", rig.vehicle.firmware().stored_plan().waypoints[0].kind, WaypointType::Hold);
+    checks.same("stored plan", rig.vehicle.embedded().unwrap().stored_plan().waypoints.len(), 1);
+    checks.same(
+        "stored type",
+        rig.vehicle.embedded().unwrap().stored_plan().waypoints[0].kind,
+        WaypointType::Hold,
+    );
     trigger
 }
 

@@ -18,15 +18,15 @@ const HOLDS: usize = 6;
 fn on_its_way() -> Rig {
     let mut rig = Rig::new(world(0).0, MISSION, 20.0);
     rig.engaged().fly(8.0);
-    rig.vehicle.hands.pilot = None;
-    rig.vehicle.hands.sticks.channels[HOLDS] = 1000;
+    rig.vehicle.transmitter_mut().stop_pilot();
+    rig.vehicle.transmitter_mut().sticks_mut().channels[HOLDS] = 1000;
     rig.fly(0.1);
     assert_eq!(modes(&rig), "ARM ANGLE ALTHOLD POS HOLD AUTOPILOT");
     rig
 }
 
 fn modes(rig: &Rig) -> String {
-    let names: Vec<_> = rig.vehicle.firmware().modes().iter().map(|mode| mode.to_string()).collect();
+    let names: Vec<_> = rig.vehicle.embedded().unwrap().modes().iter().map(|mode| mode.to_string()).collect();
     names.join(" ")
 }
 
@@ -44,13 +44,13 @@ fn refusals(rig: &Rig) -> Vec<Refusal> {
 fn switch_off_leaves_what_the_pilots_switches_say_and_on_again_resumes() {
     let mut rig = on_its_way();
     rig.until_state(30.0, NavState::Arrived).fly(1.0);
-    rig.vehicle.hands.sticks.channels[AUTOPILOT] = 1000;
-    rig.vehicle.hands.sticks.channels[HOLDS] = 2000;
-    rig.until(0.1, "IDLE", |rig| rig.vehicle.firmware().nav().state == NavState::Idle);
+    rig.vehicle.transmitter_mut().sticks_mut().channels[AUTOPILOT] = 1000;
+    rig.vehicle.transmitter_mut().sticks_mut().channels[HOLDS] = 2000;
+    rig.until(0.1, "IDLE", |rig| rig.vehicle.embedded().unwrap().nav().state == NavState::Idle);
     rig.fly(0.011);
     assert_eq!(modes(&rig), "ARM ANGLE ALTHOLD POS HOLD");
     rig.fly(2.0);
-    rig.vehicle.hands.sticks.channels[AUTOPILOT] = 2000;
+    rig.vehicle.transmitter_mut().sticks_mut().channels[AUTOPILOT] = 2000;
     rig.until_state(0.2, NavState::Approaching);
     assert!(rig.path().ends_with("IDLE 1, APPROACHING 1"), "{}", rig.path());
 }
@@ -74,10 +74,10 @@ fn flyaway_parks_the_craft_until_the_switch_is_cycled() {
     rig.until_state(3.0, NavState::Idle).fly(5.0);
     assert_eq!(modes(&rig), "ARM ANGLE ALTHOLD POS HOLD");
     assert_eq!(refusals(&rig), [Refusal::Aborted(AbortReason::Flyaway)], "told once");
-    rig.vehicle.hands.sticks.channels[AUTOPILOT] = 1000;
+    rig.vehicle.transmitter_mut().sticks_mut().channels[AUTOPILOT] = 1000;
     rig.fly(0.2);
     assert_eq!(modes(&rig), "ARM", "acro, as the pilot's switches say");
-    rig.vehicle.hands.sticks.channels[AUTOPILOT] = 2000;
+    rig.vehicle.transmitter_mut().sticks_mut().channels[AUTOPILOT] = 2000;
     rig.until_state(0.2, NavState::Approaching);
 }
 
@@ -103,7 +103,7 @@ fn edited_plan_does_not_touch_the_mission() {
 #[test]
 fn mode_events_tell_every_change_and_nothing_else() {
     let mut rig = on_its_way();
-    rig.vehicle.hands.sticks.channels[AUTOPILOT] = 1000;
+    rig.vehicle.transmitter_mut().sticks_mut().channels[AUTOPILOT] = 1000;
     rig.fly(1.0);
     let told: Vec<_> = rig
         .events
@@ -114,7 +114,7 @@ fn mode_events_tell_every_change_and_nothing_else() {
         })
         .collect();
     assert!(told.windows(2).all(|pair| pair[0] != pair[1]), "{told:?}");
-    assert_eq!(told.last().copied(), Some(rig.vehicle.firmware().modes()));
+    assert_eq!(told.last().copied(), Some(rig.vehicle.embedded().unwrap().modes()));
     let counted = told.iter().filter(|modes| modes.has(Mode::Autopilot)).count();
     assert_eq!(counted, 1);
     let lost = |event: &&Event| matches!(&event.kind, EventKind::Notice(VehicleNotice::EventsLost(_)));

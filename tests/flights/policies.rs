@@ -13,9 +13,9 @@ fn stage_2(policy: &str, procedure: &str, engaged: bool) -> (String, String) {
     if engaged {
         rig.engaged().fly(3.0);
     } else {
-        rig.until(60.0, "hover", |rig| rig.vehicle.firmware().altitude_m() > 9.0);
+        rig.until(60.0, "hover", |rig| rig.vehicle.embedded().unwrap().altitude_m() > 9.0);
     }
-    rig.vehicle.hands.cut = true;
+    rig.vehicle.transmitter_mut().set_cut(true);
     rig.fly(2.1);
     let word: Option<&str> = rig.events.iter().find_map(|event| match event.kind {
         EventKind::Firmware(FirmwareEvent::Failsafe { stage: 2, procedure, .. }) => Some(procedure.into()),
@@ -67,7 +67,7 @@ fn rescue_climb(min_start_dist_m: u32) -> f64 {
     rig.until(60.0, "12 m from home", |rig| {
         rig.samples.last().is_some_and(|now| now.from([0.0, 0.0]) > 12.0)
     });
-    rig.vehicle.hands.cut = true;
+    rig.vehicle.transmitter_mut().set_cut(true);
     let plans = rig.plans().len();
     rig.until(10.0, "the rescue", |rig| rig.plans().len() > plans);
     let now = *rig.samples.last().unwrap();

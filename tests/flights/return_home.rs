@@ -13,7 +13,7 @@ fn return_home(seed: u64, wind: Wind) -> Option<String> {
     let lines = "set ap_max_velocity = 1000\nwaypoint insert 0 40.4644005 -79.5176105 2000 500 HOLD 0 NONE";
     let mut rig = Rig::new(world, lines, 20.0);
     rig.engaged().until_state(90.0, NavState::Holding).fly(5.0);
-    rig.vehicle.firmware_mut().return_to_home().unwrap();
+    rig.vehicle.embedded_mut().unwrap().return_to_home().unwrap();
     let command = rig.t();
     rig.until(150.0, "disarm", |rig| rig.disarmed().is_some());
     let mut checks = Checks::default();
@@ -21,7 +21,7 @@ fn return_home(seed: u64, wind: Wind) -> Option<String> {
     checks.same("source", source, PlanSource::Rth);
     let kinds: Vec<_> = plan.waypoints.iter().map(|waypoint| waypoint.kind).collect();
     checks.same("types", kinds, vec![WaypointType::Flyover, WaypointType::Land]);
-    let home = rig.vehicle.firmware().home().unwrap();
+    let home = rig.vehicle.embedded().unwrap().home().unwrap();
     for waypoint in &plan.waypoints {
         checks.same("place", waypoint.position, home);
         let alt = f64::from(waypoint.alt_cm) / 100.0;
@@ -46,7 +46,11 @@ fn return_home(seed: u64, wind: Wind) -> Option<String> {
     checks.at_most("altitude", alt, 1.6 + extra.v);
     let last = rig.samples.last().unwrap();
     checks.at_most("touchdown", last.from([0.0, 0.0]), if windy { 1.5 } else { 1.0 } + extra.h);
-    checks.same("stored plan", rig.vehicle.firmware().stored_plan().waypoints[0].kind, WaypointType::Hold);
+    checks.same(
+        "stored plan",
+        rig.vehicle.embedded().unwrap().stored_plan().waypoints[0].kind,
+        WaypointType::Hold,
+    );
     checks.verdict(&format!("return home, seed {seed}, wind {wind}"), &rig.story())
 }
 

@@ -81,7 +81,7 @@ impl Rig {
     /// scripted pilot who climbs to `takeoff_m` and engages.
     pub(crate) fn new(world: WorldConfig, lines: &str, takeoff_m: f64) -> Self {
         let (vehicle, _) = FlightSetup { world, ..FlightSetup::default() }.build().unwrap();
-        let standing_m = vehicle.world().truth().pos_enu.z;
+        let standing_m = vehicle.world().unwrap().truth().pos_enu.z;
         let mut rig = Self { vehicle, events: Vec::new(), samples: Vec::new(), standing_m };
         rig.cli(&guide_settings().collect::<Vec<_>>().join("\n"));
         rig.cli("set ap_geofence_action = LAND");
@@ -94,7 +94,7 @@ impl Rig {
     pub(crate) fn cli(&mut self, lines: &str) {
         let mut session = Interpreter::default();
         for line in lines.lines() {
-            let reply = self.vehicle.firmware_mut().run_cli(&mut session, line);
+            let reply = self.vehicle.embedded_mut().unwrap().run_cli(&mut session, line);
             assert!(!reply.failed, "{line}: {}", reply.text);
         }
     }
@@ -163,8 +163,8 @@ impl Rig {
     }
 
     fn sample(&self) -> Sample {
-        let truth = self.vehicle.world().truth();
-        let firmware = self.vehicle.firmware();
+        let truth = self.vehicle.world().unwrap().truth();
+        let firmware = self.vehicle.embedded().unwrap();
         let nav = firmware.nav();
         let craft = firmware.craft_view();
         Sample {
@@ -178,7 +178,7 @@ impl Rig {
             roll: truth.roll_deg(),
             pitch: truth.pitch_deg(),
             heading: truth.heading_deg(),
-            throttle_us: craft.throttle_us,
+            throttle_us: craft.throttle_us.unwrap(),
             motors: craft.motors,
             armed: craft.armed,
             modes: craft.modes,
@@ -258,13 +258,14 @@ impl Rig {
 
     /// A place of a plan from the boot place in the world's projection (north, east), m.
     pub(crate) fn place(&self, position: betadeck::geo::LatLon) -> [f64; 2] {
-        let enu = self.vehicle.world().local_frame().to_enu(position.lat_deg(), position.lon_deg(), 0.0);
+        let enu =
+            self.vehicle.world().unwrap().local_frame().to_enu(position.lat_deg(), position.lon_deg(), 0.0);
         [enu.y, enu.x]
     }
 
     /// Place of a waypoint of the stored plan.
     pub(crate) fn waypoint(&self, index: usize) -> [f64; 2] {
-        self.place(self.vehicle.firmware().stored_plan().waypoints[index].position)
+        self.place(self.vehicle.embedded().unwrap().stored_plan().waypoints[index].position)
     }
 
     /// One line an event, for failure messages.

@@ -13,7 +13,7 @@ waypoint insert 1 40.4648508 -79.5174926 2000 500 LAND 0 ORBIT";
 fn cut(seed: u64, policy: &str) -> (Rig, f64) {
     let mut rig = Rig::new(world(seed).0, &format!("set ap_rx_loss_policy = {policy}{MISSION}"), 20.0);
     rig.engaged().fly(14.0);
-    rig.vehicle.hands.cut = true;
+    rig.vehicle.transmitter_mut().set_cut(true);
     let cut = rig.t();
     (rig, cut)
 }
@@ -60,7 +60,7 @@ fn lands(seed: u64) -> Option<String> {
     checks.at_most("stops within", greatest(rig.span(landing, 1e9).map(|s| s.from(place))), 8.0 + extra.h);
     checks.at_most("touchdown", rig.samples.last().unwrap().from(place), 2.0 + extra.h);
     checks.same("reason", rig.disarmed().unwrap().1, DisarmReason::Landing);
-    checks.same("stored plan", rig.vehicle.firmware().stored_plan().waypoints.len(), 2);
+    checks.same("stored plan", rig.vehicle.embedded().unwrap().stored_plan().waypoints.len(), 2);
     checks.verdict(&format!("RX loss LAND, seed {seed}"), &rig.story())
 }
 
@@ -73,7 +73,7 @@ fn policy_land_lands_where_the_link_was_lost() {
 fn link_back_with_centred_sticks_keeps_landing() {
     let (mut rig, cut) = cut(0, "LAND");
     rig.fly(10.0);
-    rig.vehicle.hands.cut = false;
+    rig.vehicle.transmitter_mut().set_cut(false);
     rig.until(120.0, "disarm", |rig| rig.disarmed().is_some());
     assert_eq!(rig.path(), "APPROACHING 0, LANDING 0, COMPLETE 0");
     assert!(rig.disarmed().unwrap().0 > cut + 30.0);
@@ -83,12 +83,12 @@ fn link_back_with_centred_sticks_keeps_landing() {
 fn stick_takes_over_from_the_emergency_landing() {
     let (mut rig, _) = cut(0, "LAND");
     rig.fly(5.0);
-    rig.vehicle.hands.cut = false;
-    rig.vehicle.hands.pilot = None;
-    rig.vehicle.hands.sticks.channels[5] = 1000;
+    rig.vehicle.transmitter_mut().set_cut(false);
+    rig.vehicle.transmitter_mut().stop_pilot();
+    rig.vehicle.transmitter_mut().sticks_mut().channels[5] = 1000;
     rig.fly(1.0);
     assert!(rig.samples.last().unwrap().modes.has(Mode::Failsafe));
-    rig.vehicle.hands.sticks.channels[0] = 1700;
+    rig.vehicle.transmitter_mut().sticks_mut().channels[0] = 1700;
     rig.fly(0.2);
     let now = *rig.samples.last().unwrap();
     assert!(
@@ -135,7 +135,7 @@ fn policy_disable_runs_the_procedure() {
 fn auto_land_descends_and_disarms() {
     let mut rig = Rig::new(world(0).0, &format!("set failsafe_procedure = AUTO-LAND{MISSION}"), 20.0);
     rig.engaged().fly(14.0);
-    rig.vehicle.hands.cut = true;
+    rig.vehicle.transmitter_mut().set_cut(true);
     rig.until(60.0, "disarm", |rig| rig.disarmed().is_some());
     assert_eq!(rig.disarmed().unwrap().1, DisarmReason::Landing);
     let began = stage_2(&rig);
@@ -148,7 +148,7 @@ fn auto_land_descends_and_disarms() {
     });
     assert!(impact.unwrap() < 1.3, "{impact:?}");
     rig.fly(0.2);
-    let flags = rig.vehicle.firmware().arming_flags();
+    let flags = rig.vehicle.embedded().unwrap().arming_flags();
     assert!(flags.iter().any(|flag| flag.to_string() == "FAILSAFE"));
 }
 
@@ -159,7 +159,7 @@ fn rescue_flies_home_at_its_altitude() {
     );
     let mut rig = Rig::new(world(0).0, &lines, 20.0);
     rig.engaged().fly(14.0);
-    rig.vehicle.hands.cut = true;
+    rig.vehicle.transmitter_mut().set_cut(true);
     rig.until(180.0, "disarm", |rig| rig.disarmed().is_some());
     assert_eq!(rig.plans().last().unwrap().0, PlanSource::Rth);
     let began = stage_2(&rig);

@@ -138,8 +138,7 @@ pub(crate) fn view(flight: &SimpleFlight) -> SessionView {
         e: flight.e,
         alt: flight.alt,
         heading_deg: flight.heading_deg,
-        wind_n: -2.2,
-        wind_e: 2.3,
+        wind_ne: Some(Vector2::new(-2.2, 2.3)),
         on_ground: flight.alt < 0.1,
         ..TruthView::default()
     });
@@ -149,8 +148,9 @@ pub(crate) fn view(flight: &SimpleFlight) -> SessionView {
         estimate.e = Some(flight.e - 0.2);
     }
     estimate.alt = Some(flight.alt);
-    estimate.ground_speed_mps = flight.speed;
-    estimate.heading_deg = flight.heading_deg;
+    estimate.ground_speed_mps = Some(flight.speed);
+    estimate.climb_mps = Some(0.0);
+    estimate.heading_deg = Some(flight.heading_deg);
 
     let craft = &mut snapshot.craft;
     craft.armed = flight.armed;
@@ -172,8 +172,8 @@ pub(crate) fn view(flight: &SimpleFlight) -> SessionView {
     craft.battery_cells = 3;
     craft.rc_source = Some(RcSource::Sticks);
     craft.rc_age_s = Some(0.02);
-    craft.rc_link = true;
-    craft.throttle_us = if flight.armed { 1500.0 } else { 1000.0 };
+    craft.rc_link = Some(true);
+    craft.throttle_us = Some(if flight.armed { 1500.0 } else { 1000.0 });
     craft.channels = RcFrame::SAFE.channels;
     if flight.armed {
         craft.channels[2] = 1500;
@@ -182,14 +182,14 @@ pub(crate) fn view(flight: &SimpleFlight) -> SessionView {
         craft.channels[6] = 1900;
     }
     if !flight.fix {
-        craft.arming_blocked_by.set(ArmingFlag::BootGrace, true);
+        craft.arming_blocked_by.get_or_insert_default().set(ArmingFlag::BootGrace, true);
     }
     craft.mode_ranges =
         [(Mode::Arm, 4), (Mode::Autopilot, 5), (Mode::Angle, 6), (Mode::AltHold, 6), (Mode::PosHold, 6)]
             .map(|(mode, channel)| ModeRange { mode_box: mode.into(), channel, start_us: 1700, end_us: 2100 })
             .to_vec();
 
-    let nav = &mut snapshot.nav;
+    let nav = snapshot.nav.get_or_insert_default();
     nav.state = flight.state;
     nav.engaged = engaged && flight.armed;
     nav.wp = flight.wp;
@@ -210,8 +210,8 @@ pub(crate) fn view(flight: &SimpleFlight) -> SessionView {
         nav.leg_start = Some(from);
         snapshot.active_plan = Some(plan.clone());
     }
-    snapshot.stored_plan = plan;
-    snapshot.settings = SettingsView {
+    snapshot.stored_plan = Some(plan);
+    snapshot.settings = Some(SettingsView {
         arrival_radius_m: 5.0,
         hold_radius_m: 2.0,
         orbit_radius_m: 10.0,
@@ -222,7 +222,7 @@ pub(crate) fn view(flight: &SimpleFlight) -> SessionView {
         hover_stick_us: 1500,
         raised_stick_us: 1300,
         sink_stick_us: Some(1410),
-    };
+    });
     let endpoint = |name, state| EndpointStatus { name, address: String::new(), state };
     let clients = |clients| EndpointState::Clients(ClientStats { clients, ..ClientStats::default() });
     SessionView {

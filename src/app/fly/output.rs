@@ -34,7 +34,7 @@ impl Output {
         let gpx = match &args.gpx {
             None => None,
             Some(path) => {
-                let home_amsl_m = vehicle.world().local_frame().alt_amsl_m;
+                let home_amsl_m = vehicle.local_frame().map_or(0.0, |frame| frame.alt_amsl_m);
                 let header = GpxHeader {
                     creator: "betadeck (simulated)".to_owned(),
                     track: plan.name.clone(),
@@ -93,8 +93,9 @@ impl Output {
         if !vehicle.time().0.is_multiple_of(1_000_000) {
             return Ok(());
         }
-        let truth = vehicle.world().truth();
-        let frame = vehicle.world().local_frame();
+        let Some(world) = vehicle.world() else { return Ok(()) };
+        let truth = world.truth();
+        let frame = world.local_frame();
         let (lat_deg, lon_deg, amsl_m) = frame.to_geodetic(truth.pos_enu);
         let alt_m = amsl_m - frame.alt_amsl_m;
         gpx.offer(&TrackPoint { time: vehicle.time(), lat_deg, lon_deg, alt_m }).map_err(write_failed)

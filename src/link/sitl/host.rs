@@ -295,8 +295,8 @@ impl Sitl {
         let firmware = &self.firmware;
         let t_ms = self.time.0 / 1000;
         let craft = firmware.craft_view();
-        if !craft.armed && !craft.arming_blocked_by.is_empty() {
-            print(Said::Out(lines::blocked_line(t_ms, craft.arming_blocked_by)));
+        if !craft.armed && !craft.arming_flags().is_empty() {
+            print(Said::Out(lines::blocked_line(t_ms, craft.arming_flags())));
         }
         let facts = firmware.msp_facts(None);
         let line = FlightLine {

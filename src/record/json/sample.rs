@@ -25,22 +25,22 @@ pub(super) struct Fields {
     est_n: Option<Milli>,
     est_e: Option<Milli>,
     est_alt: Option<Milli>,
-    throttle_us: Centi,
+    throttle_us: Option<Centi>,
     motors: [Decimals<4>; 4],
     battery_v: Option<Milli>,
     battery_a: Option<Milli>,
     battery_mah: Option<Milli>,
-    state: String,
+    state: Option<String>,
     wp: Option<u8>,
     wp_type: Option<String>,
     dist_m: Option<Milli>,
     bearing: Option<Centi>,
     xte_m: Option<Milli>,
-    l1_mode: String,
+    l1_mode: Option<String>,
     target_n: Option<Milli>,
     target_e: Option<Milli>,
     target_alt: Option<Milli>,
-    hold_remaining_ds: u16,
+    hold_remaining_ds: Option<u16>,
     wind_n: Option<Milli>,
     wind_e: Option<Milli>,
 }
@@ -51,7 +51,10 @@ impl Fields {
             |value: fn(&TruthView) -> f64| snapshot.truth.as_ref().map(|truth| Decimals(value(truth)));
         let place =
             |value: fn(&TruthView) -> f64| snapshot.truth.as_ref().map(|truth| Decimals(value(truth)));
-        let (craft, nav, estimate) = (&snapshot.craft, &snapshot.nav, &snapshot.estimate);
+        let (craft, nav, estimate) = (&snapshot.craft, snapshot.nav.as_ref(), &snapshot.estimate);
+        let kind = nav.and_then(|nav| nav.kind);
+        let target = nav.and_then(|nav| nav.target_ne);
+        let wind = snapshot.truth.and_then(|truth| truth.wind_ne);
         Self {
             lat: place(|truth| truth.lat_deg),
             lon: place(|truth| truth.lon_deg),
@@ -67,24 +70,24 @@ impl Fields {
             est_n: estimate.n.map(Decimals),
             est_e: estimate.e.map(Decimals),
             est_alt: estimate.alt.map(Decimals),
-            throttle_us: Decimals(craft.throttle_us),
+            throttle_us: craft.throttle_us.map(Decimals),
             motors: craft.motors.map(Decimals),
             battery_v: craft.battery_v.map(Decimals),
             battery_a: craft.battery_a.map(Decimals),
             battery_mah: craft.battery_mah.map(Decimals),
-            state: nav.state.to_string(),
-            wp: nav.kind.map(|_| nav.wp),
-            wp_type: nav.kind.map(|kind| kind.to_string()),
-            dist_m: nav.distance_m.map(Decimals),
-            bearing: nav.bearing_rad.map(|bearing| compass(bearing.to_degrees())),
-            xte_m: nav.xte_m.map(Decimals),
-            l1_mode: nav.l1_mode.to_string(),
-            target_n: nav.target_ne.map(|target| Decimals(target.x)),
-            target_e: nav.target_ne.map(|target| Decimals(target.y)),
-            target_alt: nav.target_alt_m.map(Decimals),
-            hold_remaining_ds: nav.hold_remaining_ds,
-            wind_n: truth(|truth| truth.wind_n),
-            wind_e: truth(|truth| truth.wind_e),
+            state: nav.map(|nav| nav.state.to_string()),
+            wp: nav.filter(|_| kind.is_some()).map(|nav| nav.wp),
+            wp_type: kind.map(|kind| kind.to_string()),
+            dist_m: nav.and_then(|nav| nav.distance_m).map(Decimals),
+            bearing: nav.and_then(|nav| nav.bearing_rad).map(|bearing| compass(bearing.to_degrees())),
+            xte_m: nav.and_then(|nav| nav.xte_m).map(Decimals),
+            l1_mode: nav.map(|nav| nav.l1_mode.to_string()),
+            target_n: target.map(|target| Decimals(target.x)),
+            target_e: target.map(|target| Decimals(target.y)),
+            target_alt: nav.and_then(|nav| nav.target_alt_m).map(Decimals),
+            hold_remaining_ds: nav.map(|nav| nav.hold_remaining_ds),
+            wind_n: wind.map(|ne| Decimals(ne.x)),
+            wind_e: wind.map(|ne| Decimals(ne.y)),
         }
     }
 }
@@ -93,8 +96,8 @@ impl Fields {
 mod tests {
     use super::super::sample_line;
     use crate::signals::SimTime;
-    use crate::telemetry::Snapshot;
     use crate::telemetry::snapshot::TruthView;
+    use crate::telemetry::{NavTelemetry, Snapshot};
 
     /// The keys of a sample, in their order.
     const KEYS: [&str; 34] = [
@@ -136,7 +139,8 @@ mod tests {
 
     #[test]
     fn an_empty_snapshot_has_all_keys_in_order() {
-        let line = sample_line(&Snapshot { time: SimTime(1_500), ..Snapshot::default() });
+        let nav = Some(NavTelemetry::default());
+        let line = sample_line(&Snapshot { time: SimTime(1_500), nav, ..Snapshot::default() });
         let mut rest = line.as_str();
         for key in KEYS {
             let (_, after) =
@@ -161,7 +165,8 @@ mod tests {
             ..Snapshot::default()
         };
         assert!(sample_line(&snapshot).contains(r#""heading":0.0"#));
-        snapshot.nav.bearing_rad = Some(std::f64::consts::FRAC_PI_2);
+        let bearing_rad = Some(std::f64::consts::FRAC_PI_2);
+        snapshot.nav = Some(NavTelemetry { bearing_rad, ..NavTelemetry::default() });
         snapshot.craft.motors = [0.502_565_52, 0.0, 1.0, 0.25];
         let line = sample_line(&snapshot);
         for part in [

@@ -39,31 +39,28 @@ impl Session {
             }
             Command::Speed(speed) => self.pacer.set_speed(speed, now),
             Command::Sticks(frame) => {
-                if self.vehicle.hands.pilot.take().is_some() {
+                if self.vehicle.transmitter_mut().stop_pilot() {
                     self.notice("The sticks were moved: the scripted pilot let go.");
                 }
-                self.vehicle.hands.sticks = frame;
+                *self.vehicle.transmitter_mut().sticks_mut() = frame;
             }
             Command::CutRc(cut) => {
                 // Taking the sticks back wins over a script that still sends.
-                self.vehicle.firmware_mut().take_over_sticks(!cut);
-                self.vehicle.hands.cut = cut;
+                self.vehicle.controller_mut().take_over_sticks(!cut);
+                self.vehicle.transmitter_mut().set_cut(cut);
             }
-            Command::Cli { line, reply } => {
-                let output = self.run_cli(&line);
-                drop(reply.send(output));
-            }
+            Command::Cli { line, reply } => self.run_cli(line, reply),
             Command::Upload { plan, settings, reply } => {
-                let result = upload(self.vehicle.firmware_mut(), &plan, &settings);
+                let result = upload(self.vehicle.controller_mut(), &plan, &settings);
                 drop(reply.send(result));
             }
             Command::Pilot(on) => self.set_pilot(on),
             Command::ReturnHome => {
-                if let Err(refusal) = self.vehicle.firmware_mut().return_to_home() {
+                if let Err(refusal) = self.vehicle.controller_mut().return_to_home() {
                     self.notice(format!("No return home: {}", refusal.sentence()));
                 }
             }
-            Command::CancelReturn => self.vehicle.firmware_mut().cancel_command(),
+            Command::CancelReturn => self.vehicle.controller_mut().cancel_command(),
             Command::ResetCraft => self.reset_craft(),
             Command::World { line, reply } => {
                 let changed = self.change_world(&line);
@@ -85,8 +82,8 @@ impl Session {
             }
             None => self.vehicle.reset_craft(),
         }
-        if let Some(endpoints) = &mut self.endpoints {
-            endpoints.handler.after_restart(false, self.vehicle.firmware_mut());
+        if let (Some(endpoints), Some(firmware)) = (&mut self.endpoints, self.vehicle.embedded_mut()) {
+            endpoints.handler.after_restart(false, firmware);
         }
     }
 
@@ -97,7 +94,7 @@ impl Session {
 
     fn set_pilot(&mut self, on: bool) {
         if !on {
-            self.vehicle.hands.pilot = None;
+            self.vehicle.transmitter_mut().stop_pilot();
         } else if let Err(mode) = self.vehicle.start_pilot(self.takeoff_m) {
             self.notice(format!(
                 "The scripted pilot needs a switch for {mode}: give it one with the CLI command aux."

@@ -31,7 +31,8 @@ impl Session {
             };
             // A simulator's packets change the view like time does, at its own rhythm.
             self.changed |= time_stands_still && !matches!(request, Request::Fdm { .. });
-            let firmware = self.vehicle.firmware_mut();
+            // A remote flight controller is reached by its own endpoints.
+            let Some(firmware) = self.vehicle.embedded_mut() else { continue };
             let Handled { notices, restarted, fdm } =
                 endpoints.handler.handle(request, firmware, &mut self.store, Instant::now());
             for notice in notices {
@@ -73,11 +74,11 @@ impl Session {
 
     /// Cuts the virtual sticks once RC comes over a link: resting, they would disarm the craft the moment a script stops.
     fn yield_sticks(&mut self) {
-        let sources = self.vehicle.firmware().receiver().sources();
-        let from_link = matches!(sources.in_charge(), Some(RcSource::Udp | RcSource::Msp));
-        if from_link && !sources.taken_over() && !self.vehicle.hands.cut {
-            self.vehicle.hands.cut = true;
-            self.vehicle.hands.pilot = None;
+        let controller = self.vehicle.controller();
+        let from_link = matches!(controller.rc_source(), Some(RcSource::Udp | RcSource::Msp));
+        if from_link && !controller.sticks_taken_over() && !self.vehicle.transmitter().is_cut() {
+            self.vehicle.transmitter_mut().set_cut(true);
+            self.vehicle.transmitter_mut().stop_pilot();
             self.events.notice(
                 &mut self.vehicle,
                 "RC comes from outside now: the virtual sticks are cut, x takes them back.",
@@ -92,7 +93,9 @@ impl Session {
             && self.vehicle.time().0.is_multiple_of(RC_REPEAT_US)
         {
             let speed = self.pacer.speed().min(*SPEED_RANGE.end());
-            endpoints.handler.keep_rc_fresh(self.vehicle.firmware_mut(), speed, Instant::now());
+            if let Some(firmware) = self.vehicle.embedded_mut() {
+                endpoints.handler.keep_rc_fresh(firmware, speed, Instant::now());
+            }
         }
     }
 }

@@ -24,7 +24,7 @@ pub fn enabled(state: &AppState, action: Action) -> Result<(), String> {
         }
         Action::Arm => transmitter::can_arm(state),
         Action::Autopilot => transmitter::switch(state, Mode::Autopilot).map(drop),
-        Action::Throttle if state.view.vehicle.nav.engaged => {
+        Action::Throttle if state.view.vehicle.is_engaged() => {
             Err("The autopilot has the throttle: `g` switches it off.".to_owned())
         }
         Action::ReturnHome if !craft.armed => {

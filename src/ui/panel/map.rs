@@ -38,10 +38,12 @@ struct Scene {
 pub(crate) fn title(state: &AppState) -> String {
     let name = Pane::Map.title();
     let source = match &state.view.vehicle.active_plan {
-        Some(_) if state.view.vehicle.nav.source != PlanSource::Stored => {
-            format!(" — {} plan", state.view.vehicle.nav.source)
-        }
-        _ => String::new(),
+        Some(_) => state.view.vehicle.nav.as_ref().map_or(PlanSource::Stored, |nav| nav.source),
+        None => PlanSource::Stored,
+    };
+    let source = match source {
+        PlanSource::Stored => String::new(),
+        injected => format!(" — {injected} plan"),
     };
     match state.map.mode {
         MapMode::Fit => format!("{name}{source}"),
@@ -80,7 +82,7 @@ fn scene(state: &AppState, area: Rect) -> Scene {
         home,
         craft: map_point::craft(&state.view),
         believed: believed.filter(|place| place.n.is_finite() && place.e.is_finite()),
-        current: vehicle.nav.engaged.then_some(usize::from(vehicle.nav.wp)),
+        current: vehicle.nav.as_ref().filter(|nav| nav.engaged).map(|nav| usize::from(nav.wp)),
     }
 }
 

@@ -30,7 +30,7 @@ pub(crate) fn title(state: &AppState) -> String {
 fn problems(state: &AppState) -> Vec<String> {
     let plan = &state.plan.plan;
     let vehicle = &state.view.vehicle;
-    let fence = vehicle.craft.home.zip(vehicle.settings.fence_m);
+    let fence = vehicle.craft.home.zip(vehicle.settings.and_then(|settings| settings.fence_m));
     (0..plan.waypoints.len()).filter_map(|index| waypoint_problem(plan, index, fence)).collect()
 }
 
@@ -61,14 +61,14 @@ pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     };
     row(buffer, area, 0, theme, Role::Title, head);
     let vehicle = &state.view.vehicle;
-    let fence = vehicle.craft.home.zip(vehicle.settings.fence_m);
+    let fence = vehicle.craft.home.zip(vehicle.settings.and_then(|settings| settings.fence_m));
     let problems = problems(state);
     let below = problems.len().min(PROBLEM_ROWS) as u16;
     let rows = waypoint_rows(area, &problems);
     let first = state.scrolls.plan.min(plan.waypoints.len().saturating_sub(rows));
-    let flying = vehicle.nav.engaged && vehicle.active_plan.as_ref() == Some(plan);
+    let flying = vehicle.nav.as_ref().filter(|nav| nav.engaged && vehicle.active_plan.as_ref() == Some(plan));
     for (at, (index, wp)) in plan.waypoints.iter().enumerate().skip(first).take(rows).enumerate() {
-        let current = flying && index == usize::from(vehicle.nav.wp);
+        let current = flying.is_some_and(|nav| index == usize::from(nav.wp));
         let problem = waypoint_problem(plan, index, fence).is_some();
         let (mark, role) = match (problem, current) {
             (true, _) => ('✗', Role::Fault),

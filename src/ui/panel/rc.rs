@@ -32,7 +32,7 @@ pub(crate) fn title(state: &AppState) -> String {
     };
     let source = match craft.rc_source {
         None => return format!("{name} — no frames"),
-        Some(_) if !craft.rc_link => return format!("{name} — LOST {age}"),
+        Some(_) if craft.rc_link == Some(false) => return format!("{name} — LOST {age}"),
         Some(RcSource::Sticks) if state.view.pilot.is_some() => "pilot",
         Some(RcSource::Sticks) => "keys",
         Some(RcSource::Udp) => "udp",

@@ -31,11 +31,10 @@ const GUARD_ROWS: u16 = 8;
 
 /// The title: the waypoint of the mission.
 pub(crate) fn title(state: &AppState) -> String {
-    let nav = &state.view.vehicle.nav;
     let name = Pane::State.title();
-    if !nav.engaged || nav.count == 0 {
+    let Some(nav) = state.view.vehicle.nav.as_ref().filter(|nav| nav.engaged && nav.count > 0) else {
         return name.to_owned();
-    }
+    };
     let kind = nav.kind.map_or_else(String::new, |kind| format!(" {kind}"));
     format!("{name} WP{}/{}{kind}", nav.wp, nav.count.saturating_sub(1))
 }
@@ -82,7 +81,10 @@ fn draw_advice(state: &AppState, area: Rect, diagram: &Diagram, buffer: &mut Buf
 
 /// The machine; gives the rows used.
 fn draw_machine(state: &AppState, area: Rect, diagram: &Diagram, buffer: &mut Buffer) -> u16 {
-    let nav = &state.view.vehicle.nav;
+    let Some(nav) = &state.view.vehicle.nav else {
+        row(buffer, area, 0, &state.theme, Role::Dim, " — the flight controller does not tell its state");
+        return 1.min(area.height);
+    };
     let last = state.transitions.back().filter(|last| within(state.now, last.heard, LIT_FOR));
     let left = (area.width.saturating_sub(diagram.width)) / 2;
     let place = Rect { x: area.x + left, width: area.width - left, ..area };
@@ -92,8 +94,8 @@ fn draw_machine(state: &AppState, area: Rect, diagram: &Diagram, buffer: &mut Bu
 
 /// The guards of the active state, and how fast it gets nearer; gives the rows used.
 fn draw_guards(state: &AppState, area: Rect, buffer: &mut Buffer) -> u16 {
-    let nav = &state.view.vehicle.nav;
-    if nav.guards.is_empty() || area.height == 0 {
+    let Some(nav) = state.view.vehicle.nav.as_ref().filter(|nav| !nav.guards.is_empty()) else { return 0 };
+    if area.height == 0 {
         return 0;
     }
     let theme = &state.theme;
@@ -105,7 +107,7 @@ fn draw_guards(state: &AppState, area: Rect, buffer: &mut Buffer) -> u16 {
         .map(|guard| if wide { wide_guard(theme, guard) } else { narrow_guard(theme, guard, area.width) })
         .collect();
     if let Some(eta) = nav.eta_s.filter(|eta| eta.is_finite()) {
-        let speed = fixed(Some(state.view.vehicle.estimate.ground_speed_mps), 4, 1);
+        let speed = fixed(state.view.vehicle.estimate.ground_speed_mps, 4, 1);
         let text = format!("  in{} s at {speed} m/s", fixed(Some(eta), 5, 0));
         lines.push(Line::from(span(theme, Role::Dim, text)));
     }

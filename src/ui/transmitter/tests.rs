@@ -18,9 +18,10 @@ fn state(ranges: &[(Mode, u8, u16, u16)]) -> AppState {
             end_us,
         })
         .collect();
-    vehicle.settings.hover_stick_us = 1500;
-    vehicle.settings.raised_stick_us = 1300;
-    vehicle.settings.sink_stick_us = Some(SINK_US);
+    let settings = vehicle.settings.get_or_insert_default();
+    settings.hover_stick_us = 1500;
+    settings.raised_stick_us = 1300;
+    settings.sink_stick_us = Some(SINK_US);
     AppState::bare((80, 24), view)
 }
 
@@ -49,7 +50,7 @@ fn a_missing_switch_is_explained_with_the_cure() {
 #[test]
 fn the_throttle_goes_to_hover_and_back() {
     let mut state = state(&[]);
-    std::sync::Arc::make_mut(&mut state.view.vehicle).settings.hover_stick_us = 1420;
+    std::sync::Arc::make_mut(&mut state.view.vehicle).settings.get_or_insert_default().hover_stick_us = 1420;
     assert_eq!(sticks(&move_throttle(&mut state)).channels[2], 1420);
     assert_eq!(sticks(&move_throttle(&mut state)).channels[2], 1000);
 }
@@ -161,8 +162,8 @@ fn a_hold_mode_on_the_arm_channel_is_left_alone() {
 fn arming_is_refused_with_the_cause_but_disarming_never() {
     let mut state = state(&[(Mode::Arm, 4, 1700, 2100)]);
     let vehicle = std::sync::Arc::make_mut(&mut state.view.vehicle);
-    vehicle.craft.arming_blocked_by.set(ArmingFlag::BootGrace, true);
-    vehicle.craft.arming_blocked_by.set(ArmingFlag::ArmSwitch, true);
+    vehicle.craft.arming_blocked_by.get_or_insert_default().set(ArmingFlag::BootGrace, true);
+    vehicle.craft.arming_blocked_by.get_or_insert_default().set(ArmingFlag::ArmSwitch, true);
     let sentence = can_arm(&state).expect_err("blocked");
     assert!(sentence.contains("BOOTGRACE"), "{sentence}");
     std::sync::Arc::make_mut(&mut state.view.vehicle).craft.armed = true;

@@ -16,7 +16,7 @@ pub(super) fn fly(state: &mut AppState) -> Vec<Effect> {
     if state.view.paused {
         state.notify(Level::Info, "The simulation is paused: Space goes on.");
     }
-    if !state.view.vehicle.stored_plan.waypoints.is_empty() {
+    if state.view.vehicle.stored_plan.as_ref().is_none_or(|plan| !plan.waypoints.is_empty()) {
         if !state.plan.plan.waypoints.is_empty() && !state.plan_is_on_craft() {
             let text =
                 format!("Flying the plan in the craft, which is not {}: U uploads it.", state.plan.name);

@@ -28,7 +28,7 @@ pub(super) fn write(state: &AppState, scene: &Scene, buffer: &mut Buffer) {
         let role = if Some(spot.index) == scene.current { Role::Target } else { Role::Title };
         labels.mark(spot.place, glyph(spot.wp.kind), role);
     }
-    if let Some(aim) = vehicle.nav.aim_ne.filter(|_| vehicle.nav.engaged) {
+    if let Some(aim) = vehicle.nav.as_ref().filter(|nav| nav.engaged).and_then(|nav| nav.aim_ne) {
         labels.mark(MapPoint::new(aim.x, aim.y), "◌", Role::Target);
     }
     if let (Some(believed), Some(craft)) = (scene.believed, scene.craft)
@@ -37,9 +37,10 @@ pub(super) fn write(state: &AppState, scene: &Scene, buffer: &mut Buffer) {
         labels.mark(believed, "+", Role::Warn);
     }
     if let Some(craft) = scene.craft {
-        let heading = vehicle.truth.as_ref().map_or(vehicle.estimate.heading_deg, |truth| truth.heading_deg);
+        let heading = vehicle.truth.map(|truth| truth.heading_deg).or(vehicle.estimate.heading_deg);
         let crashed = vehicle.truth.as_ref().is_some_and(|truth| truth.crashed);
-        let (mark, role) = if crashed { ("✗", Role::Fault) } else { (arrow(heading), Role::Craft) };
+        let (mark, role) =
+            if crashed { ("✗", Role::Fault) } else { (heading.map_or("●", arrow), Role::Craft) };
         labels.mark(craft, mark, role);
     }
     // The current waypoint chooses its place first.
@@ -79,15 +80,14 @@ fn arrow(heading_deg: f64) -> &'static str {
 /// Wind at the bottom left, scale bar and north at the bottom right.
 fn frame_notes(state: &AppState, labels: &mut Labels<'_>) {
     let vehicle = &state.view.vehicle;
-    let (speed, to_deg) = match &vehicle.truth {
-        Some(truth) => (truth.wind_n.hypot(truth.wind_e), truth.wind_e.atan2(truth.wind_n).to_degrees()),
-        None => (vehicle.world.wind_mps, vehicle.world.wind_from_deg + 180.0),
+    let wind = match &vehicle.truth {
+        Some(truth) => truth.wind_ne.map(|ne| (ne.x.hypot(ne.y), ne.y.atan2(ne.x).to_degrees())),
+        None => vehicle.world.wind.map(|wind| (wind.speed_mps, wind.from_deg + 180.0)),
     };
-    let wind = match state.view.simulator {
-        // It does not tell.
-        Some(_) => String::new(),
-        None if speed < 0.05 => " calm".to_owned(),
-        None => format!(" wind {} {speed:4.1} m/s", arrow(to_deg)),
+    let wind = match wind {
+        None => " wind —".to_owned(),
+        Some((speed, _)) if speed < 0.05 => " calm".to_owned(),
+        Some((speed, to_deg)) => format!(" wind {} {speed:4.1} m/s", arrow(to_deg)),
     };
     let scale = labels.view().scale;
     let length = round_length(scale * f64::from(labels.view().area.width) / 5.0);

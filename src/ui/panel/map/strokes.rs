@@ -61,7 +61,7 @@ impl Pencil<'_, '_> {
 }
 
 pub(super) fn paint(state: &AppState, scene: &Scene, context: &mut Context<'_>) {
-    let settings = &state.view.vehicle.settings;
+    let settings = state.view.vehicle.settings;
     let theme = &state.theme;
     let dot_m = scene.view.scale / 2.0;
     let mut layer = |role: Role, strokes: &mut dyn FnMut(&mut Pencil<'_, '_>)| {
@@ -69,7 +69,7 @@ pub(super) fn paint(state: &AppState, scene: &Scene, context: &mut Context<'_>) 
         context.layer();
     };
     layer(Role::Fence, &mut |pencil| {
-        if let Some(fence_m) = settings.fence_m {
+        if let Some(fence_m) = settings.and_then(|settings| settings.fence_m) {
             pencil.circle(scene.home, fence_m, true);
         }
     });
@@ -107,7 +107,7 @@ fn legs(scene: &Scene, pencil: &mut Pencil<'_, '_>) {
 
 /// Where the current leg starts and ends.
 fn current_leg(state: &AppState, scene: &Scene) -> Option<(MapPoint, MapPoint)> {
-    let nav: &NavTelemetry = &state.view.vehicle.nav;
+    let nav: &NavTelemetry = state.view.vehicle.nav.as_ref()?;
     let to = scene.spots.iter().find(|spot| Some(spot.index) == scene.current)?.place;
     let from = map_point::origin(state).zip(nav.leg_start).map(|(frame, start)| to_map(&frame, start));
     Some((from.or(scene.craft)?, to))
@@ -115,7 +115,7 @@ fn current_leg(state: &AppState, scene: &Scene) -> Option<(MapPoint, MapPoint)> 
 
 /// What is flown at a waypoint: the radius that ends the leg, the hold pattern, the cut corner.
 fn figure(state: &AppState, scene: &Scene, at: usize, spot: &Spot, pencil: &mut Pencil<'_, '_>) {
-    let settings = &state.view.vehicle.settings;
+    let Some(settings) = &state.view.vehicle.settings else { return };
     match (spot.wp.kind, spot.wp.pattern) {
         (WaypointType::Hold, HoldPattern::Orbit) => pencil.circle(spot.place, settings.orbit_radius_m, false),
         (WaypointType::Hold, HoldPattern::Figure8) => {

@@ -1,10 +1,10 @@
-//! The hands on the sticks: fifty RC frames a simulated second from the virtual sticks or the scripted pilot.
+//! The RC transmitter: fifty frames a simulated second from the virtual sticks or the scripted pilot.
 
-use crate::pilot::{Pilot, PilotFacts};
+use super::{Pilot, PilotFacts};
 use crate::signals::{RC_CHANNELS, RcFrame, SimTime};
 
 /// Interval of RC frames, µs.
-pub(super) const FRAME_US: u64 = 20_000;
+pub const FRAME_US: u64 = 20_000;
 
 /// A channel forced to a value for a while.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,20 +31,63 @@ impl StickInput {
     }
 }
 
-/// Who moves the sticks, and what is done to them.
+/// The transmitter: who moves its sticks, and what is done to its link.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Hands {
+pub struct RcTransmitter {
     /// The virtual sticks; also what the pilot sent last.
-    pub sticks: RcFrame,
+    sticks: RcFrame,
     /// The link is cut: no frames are sent.
-    pub cut: bool,
+    cut: bool,
     /// The scripted pilot, while it flies.
-    pub pilot: Option<Pilot>,
+    pilot: Option<Pilot>,
     /// Forced channels.
-    pub inputs: Vec<StickInput>,
+    inputs: Vec<StickInput>,
 }
 
-impl Hands {
+impl RcTransmitter {
+    /// The frame of the virtual sticks.
+    #[must_use]
+    pub fn sticks(&self) -> RcFrame {
+        self.sticks
+    }
+
+    /// The virtual sticks, to move them.
+    pub fn sticks_mut(&mut self) -> &mut RcFrame {
+        &mut self.sticks
+    }
+
+    /// Whether the link is cut.
+    #[must_use]
+    pub fn is_cut(&self) -> bool {
+        self.cut
+    }
+
+    /// Cuts the link (`true`) or restores it.
+    pub fn set_cut(&mut self, cut: bool) {
+        self.cut = cut;
+    }
+
+    /// The channels that are forced to values.
+    pub fn inputs_mut(&mut self) -> &mut Vec<StickInput> {
+        &mut self.inputs
+    }
+
+    /// Gives the sticks to the scripted pilot.
+    pub fn start_pilot(&mut self, pilot: Pilot) {
+        self.pilot = Some(pilot);
+    }
+
+    /// The scripted pilot lets go; says whether it was flying.
+    pub fn stop_pilot(&mut self) -> bool {
+        self.pilot.take().is_some()
+    }
+
+    /// What the scripted pilot is doing, in a word or two, while it flies.
+    #[must_use]
+    pub fn pilot_doing(&self) -> Option<&'static str> {
+        self.pilot.as_ref().map(Pilot::doing)
+    }
+
     /// The frame to send now, `None` while the link is cut. To be called every [`FRAME_US`].
     pub fn frame(&mut self, facts: &PilotFacts, engaged_at: Option<SimTime>) -> Option<RcFrame> {
         if let Some(pilot) = &mut self.pilot {

@@ -1,0 +1,333 @@
+//! The flight controller of a vehicle: embedded in this program, or remote.
+
+mod remote;
+
+pub use remote::{FrameOut, RemoteController, RemoteTelemetry, Request};
+
+use crate::firmware::Firmware;
+use crate::firmware::cli::{BuildInfo, CliReply, Interpreter, StorageFacts};
+use crate::firmware::config::Configuration;
+use crate::firmware::msp::{Outcome, UtcTime};
+use crate::pilot::PilotFacts;
+use crate::plan::FlightPlan;
+use crate::signals::{MotorCommand, RcFrame, RcSource, SensorFrame, SimTime};
+use crate::telemetry::snapshot::{CraftView, EstimateView, ModeRange, SettingsView};
+use crate::telemetry::{DisarmReason, FirmwareEvent, Mode, ModeFlags, NavTelemetry, Refusal};
+
+/// Identifies a request to a remote flight controller until its answer comes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Ticket(u64);
+
+/// An answer of the flight controller.
+#[derive(Debug)]
+pub enum Answer<T> {
+    /// Here it is.
+    Now(T),
+    /// It comes with this ticket from [`FlightController::take_answer`].
+    Later(Ticket),
+}
+
+/// An answer that came later.
+#[derive(Debug, Clone, PartialEq)]
+pub enum LateAnswer {
+    /// To a CLI line.
+    Cli(CliReply),
+    /// To an MSP message.
+    Msp(Outcome),
+}
+
+/// What flies the craft. A clone goes on identically.
+#[derive(Debug, Clone)]
+pub enum FlightController {
+    /// In this program: answers at once and tells everything.
+    Embedded(Box<Firmware>),
+    /// Somewhere else: answers later and tells what it tells.
+    Remote(Box<RemoteController>),
+}
+
+impl FlightController {
+    /// One step: one frame of the sensors in, the motor command in force out.
+    pub(super) fn step(&mut self, frame: &SensorFrame) -> MotorCommand {
+        match self {
+            Self::Embedded(firmware) => firmware.step(frame),
+            Self::Remote(remote) => remote.step(frame),
+        }
+    }
+
+    /// Takes an RC frame for the next step; of one source only the newest counts.
+    pub fn receive_rc(&mut self, frame: &RcFrame, source: RcSource) {
+        match self {
+            Self::Embedded(firmware) => firmware.receive_rc(frame, source),
+            Self::Remote(remote) => remote.receive_rc(frame, source),
+        }
+    }
+
+    /// The RC frames that came since the last step never arrived.
+    pub fn lose_rc(&mut self) {
+        match self {
+            Self::Embedded(firmware) => firmware.lose_rc(),
+            Self::Remote(remote) => remote.lose_rc(),
+        }
+    }
+
+    /// Lets the virtual sticks win over the other sources of RC, or ends that. A remote one has its own rule.
+    pub fn take_over_sticks(&mut self, sticks_first: bool) {
+        if let Self::Embedded(firmware) = self {
+            firmware.take_over_sticks(sticks_first);
+        }
+    }
+
+    /// Whether the virtual sticks win over the other sources of RC.
+    #[must_use]
+    pub fn sticks_taken_over(&self) -> bool {
+        self.embedded().is_some_and(|firmware| firmware.receiver().sources().taken_over())
+    }
+
+    /// The source of RC that is flown; `None` before the first frame.
+    #[must_use]
+    pub fn rc_source(&self) -> Option<RcSource> {
+        match self {
+            Self::Embedded(firmware) => firmware.receiver().sources().in_charge(),
+            Self::Remote(remote) => remote.telemetry().craft.rc_source,
+        }
+    }
+
+    /// Runs a CLI line; `session` is the state of an embedded one's command line. Storing and restarting are left to the
+    /// owner: the reply says so.
+    pub fn run_cli(&mut self, session: &mut Interpreter, line: &str) -> Answer<CliReply> {
+        match self {
+            Self::Embedded(firmware) => Answer::Now(firmware.run_cli(session, line)),
+            Self::Remote(remote) => Answer::Later(remote.ask(Request::Cli(line.to_owned()))),
+        }
+    }
+
+    /// Answers an MSP message. `clock` is the time of day, when somebody set it.
+    pub fn run_msp(&mut self, code: u16, payload: &[u8], clock: Option<UtcTime>) -> Answer<Outcome> {
+        match self {
+            Self::Embedded(firmware) => Answer::Now(firmware.run_msp(code, payload, clock)),
+            Self::Remote(remote) => {
+                Answer::Later(remote.ask(Request::Msp { code, payload: payload.to_vec() }))
+            }
+        }
+    }
+
+    /// Takes the oldest answer that came later and was not taken yet.
+    pub fn take_answer(&mut self) -> Option<(Ticket, LateAnswer)> {
+        match self {
+            Self::Embedded(_) => None,
+            Self::Remote(remote) => remote.take_answer(),
+        }
+    }
+
+    /// A command line session was opened on a serial link: no arming until reboot.
+    pub fn cli_opened(&mut self) {
+        if let Self::Embedded(firmware) = self {
+            firmware.cli_opened();
+        }
+    }
+
+    /// The session ended: motors that it turned stop.
+    pub fn cli_closed(&mut self) {
+        if let Self::Embedded(firmware) = self {
+            firmware.cli_closed();
+        }
+    }
+
+    /// The configuration in memory, to be stored here; a remote one stores its own.
+    #[must_use]
+    pub fn configuration(&self) -> Option<&Configuration> {
+        self.embedded().map(Firmware::configuration)
+    }
+
+    /// What the commands of an embedded one tell about the stored configuration.
+    pub fn set_storage_facts(&mut self, facts: StorageFacts) {
+        if let Self::Embedded(firmware) = self {
+            firmware.set_storage_facts(facts);
+        }
+    }
+
+    /// Version and build that an embedded one announces.
+    pub fn set_build(&mut self, build: BuildInfo) {
+        if let Self::Embedded(firmware) = self {
+            firmware.set_build(build);
+        }
+    }
+
+    /// Restarts; an embedded one with this configuration, a remote one with what it has stored.
+    pub fn restart(&mut self, configuration: Configuration) {
+        match self {
+            Self::Embedded(firmware) => firmware.restart(configuration),
+            Self::Remote(remote) => remote.restart(),
+        }
+    }
+
+    /// Restarts with the configuration in memory, stored or not.
+    pub(super) fn restart_in_place(&mut self) {
+        match self {
+            Self::Embedded(firmware) => firmware.restart_in_place(),
+            Self::Remote(remote) => remote.restart(),
+        }
+    }
+
+    /// Flies home and lands, whatever the AUTOPILOT switch says; a remote one is asked to.
+    ///
+    /// # Errors
+    /// Why an embedded one does not.
+    pub fn return_to_home(&mut self) -> Result<(), Refusal> {
+        match self {
+            Self::Embedded(firmware) => firmware.return_to_home(),
+            Self::Remote(remote) => {
+                remote.ask(Request::ReturnHome);
+                Ok(())
+            }
+        }
+    }
+
+    /// Takes [`Self::return_to_home`] back.
+    pub fn cancel_command(&mut self) {
+        match self {
+            Self::Embedded(firmware) => firmware.cancel_command(),
+            Self::Remote(remote) => {
+                remote.ask(Request::CancelReturn);
+            }
+        }
+    }
+
+    pub(super) fn take_event(&mut self) -> Option<FirmwareEvent> {
+        match self {
+            Self::Embedded(firmware) => firmware.take_event(),
+            Self::Remote(remote) => remote.take_event(),
+        }
+    }
+
+    pub(super) fn take_events_lost(&mut self) -> u32 {
+        match self {
+            Self::Embedded(firmware) => firmware.take_events_lost(),
+            Self::Remote(_) => 0,
+        }
+    }
+
+    /// The embedded firmware, if that is what flies.
+    #[must_use]
+    pub fn embedded(&self) -> Option<&Firmware> {
+        match self {
+            Self::Embedded(firmware) => Some(firmware),
+            Self::Remote(_) => None,
+        }
+    }
+
+    /// As [`Self::embedded`].
+    pub fn embedded_mut(&mut self) -> Option<&mut Firmware> {
+        match self {
+            Self::Embedded(firmware) => Some(firmware),
+            Self::Remote(_) => None,
+        }
+    }
+
+    /// The mailbox of a remote one, for whoever speaks with it.
+    pub fn remote_mut(&mut self) -> Option<&mut RemoteController> {
+        match self {
+            Self::Embedded(_) => None,
+            Self::Remote(remote) => Some(remote),
+        }
+    }
+
+    /// Whether the craft is armed, as far as is known.
+    #[must_use]
+    pub fn is_armed(&self) -> bool {
+        match self {
+            Self::Embedded(firmware) => firmware.is_armed(),
+            Self::Remote(remote) => remote.telemetry().craft.armed,
+        }
+    }
+
+    /// The active modes, as far as is known.
+    #[must_use]
+    pub fn modes(&self) -> ModeFlags {
+        match self {
+            Self::Embedded(firmware) => firmware.modes(),
+            Self::Remote(remote) => remote.telemetry().craft.modes,
+        }
+    }
+
+    /// Why the craft was disarmed last.
+    #[must_use]
+    pub fn last_disarm(&self) -> Option<DisarmReason> {
+        self.embedded().and_then(Firmware::last_disarm)
+    }
+
+    /// The navigator's telemetry.
+    #[must_use]
+    pub fn nav(&self) -> Option<&NavTelemetry> {
+        match self {
+            Self::Embedded(firmware) => Some(firmware.nav()),
+            Self::Remote(remote) => remote.telemetry().nav.as_ref(),
+        }
+    }
+
+    /// The plan in the craft's memory.
+    #[must_use]
+    pub fn stored_plan(&self) -> Option<&FlightPlan> {
+        match self {
+            Self::Embedded(firmware) => Some(firmware.stored_plan()),
+            Self::Remote(remote) => remote.telemetry().stored_plan.as_ref(),
+        }
+    }
+
+    /// The motor command in force.
+    #[must_use]
+    pub fn motors(&self) -> MotorCommand {
+        match self {
+            Self::Embedded(firmware) => firmware.control().motors,
+            Self::Remote(remote) => remote.motors(),
+        }
+    }
+
+    pub(super) fn craft_view(&self) -> CraftView {
+        match self {
+            Self::Embedded(firmware) => firmware.craft_view(),
+            Self::Remote(remote) => {
+                CraftView { motors: remote.motors().0, ..remote.telemetry().craft.clone() }
+            }
+        }
+    }
+
+    pub(super) fn estimate_view(&self) -> EstimateView {
+        match self {
+            Self::Embedded(firmware) => firmware.estimate_view(),
+            Self::Remote(remote) => remote.telemetry().estimate,
+        }
+    }
+
+    pub(super) fn settings_view(&self) -> Option<SettingsView> {
+        match self {
+            Self::Embedded(firmware) => Some(firmware.settings_view()),
+            Self::Remote(remote) => remote.telemetry().settings,
+        }
+    }
+
+    pub(super) fn mode_ranges(&self) -> Vec<ModeRange> {
+        match self {
+            Self::Embedded(firmware) => firmware.mode_ranges(),
+            Self::Remote(remote) => remote.telemetry().craft.mode_ranges.clone(),
+        }
+    }
+
+    /// What a pilot sees.
+    pub(super) fn pilot_facts(&self, time: SimTime) -> PilotFacts {
+        match self {
+            Self::Embedded(fw) => PilotFacts {
+                time,
+                fix: fw.gps_fix(),
+                arming_blocked: !fw.arming_flags().is_empty(),
+                armed: fw.is_armed(),
+                engaged: fw.modes().has(Mode::Autopilot),
+                alt_m: fw.altitude_m(),
+                climb_mps: fw.climb_mps(),
+                hover_stick_us: fw.hover_stick_us(),
+                raised_stick_us: fw.raised_stick_us(),
+            },
+            Self::Remote(remote) => remote.pilot_facts(time),
+        }
+    }
+}

@@ -1,0 +1,196 @@
+//! A flight controller that runs somewhere else, as a mailbox: plain data in and out, without I/O.
+//!
+//! The vehicle puts frames and requests into it; whoever speaks with the real thing takes them out and delivers motor
+//! commands, telemetry, events and answers.
+
+use std::collections::VecDeque;
+
+use strum::{EnumCount as _, IntoEnumIterator as _};
+
+use super::{LateAnswer, Ticket};
+use crate::pilot::PilotFacts;
+use crate::plan::FlightPlan;
+use crate::signals::{MotorCommand, RcFrame, RcSource, SensorFrame, SimTime};
+use crate::telemetry::snapshot::{CraftView, EstimateView, SettingsView};
+use crate::telemetry::{FirmwareEvent, Mode, NavTelemetry};
+
+/// Frames that wait to be taken out; beyond that the oldest is dropped, for old measurements are of no use.
+const MAX_FRAMES: usize = 1024;
+/// The middle of a stick, µs.
+const MID_US: u16 = 1500;
+
+/// A frame on its way to the flight controller.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[allow(clippy::large_enum_variant, reason = "most frames are of the sensors")]
+pub enum FrameOut {
+    /// What the sensors measured.
+    Sensors(SensorFrame),
+    /// What the RC transmitter sent.
+    Rc(RcFrame, RcSource),
+}
+
+/// What the flight controller is asked.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Request {
+    /// To run a CLI line; answered by [`LateAnswer::Cli`].
+    Cli(String),
+    /// An MSP message; answered by [`LateAnswer::Msp`].
+    Msp {
+        /// The message's code.
+        code: u16,
+        /// Its payload.
+        payload: Vec<u8>,
+    },
+    /// To restart.
+    Restart,
+    /// To fly home and land.
+    ReturnHome,
+    /// To take that back.
+    CancelReturn,
+}
+
+/// What a remote flight controller has told of itself; what it has not told is unknown.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct RemoteTelemetry {
+    /// What it believes of the craft's motion.
+    pub estimate: EstimateView,
+    /// Modes, arming, receiver and battery.
+    pub craft: CraftView,
+    /// Its navigator.
+    pub nav: Option<NavTelemetry>,
+    /// Its settings.
+    pub settings: Option<SettingsView>,
+    /// The plan it has stored.
+    pub stored_plan: Option<FlightPlan>,
+}
+
+/// The mailbox.
+#[derive(Debug, Clone)]
+pub struct RemoteController {
+    frames: VecDeque<FrameOut>,
+    requests: VecDeque<(Ticket, Request)>,
+    next_ticket: u64,
+    rc: [Option<RcFrame>; RcSource::COUNT],
+    motors: MotorCommand,
+    telemetry: RemoteTelemetry,
+    events: VecDeque<FirmwareEvent>,
+    answers: VecDeque<(Ticket, LateAnswer)>,
+}
+
+impl Default for RemoteController {
+    fn default() -> Self {
+        Self {
+            frames: VecDeque::with_capacity(MAX_FRAMES),
+            requests: VecDeque::new(),
+            next_ticket: 0,
+            rc: [None; RcSource::COUNT],
+            motors: MotorCommand::default(),
+            telemetry: RemoteTelemetry::default(),
+            events: VecDeque::new(),
+            answers: VecDeque::new(),
+        }
+    }
+}
+
+impl RemoteController {
+    /// Takes the oldest frame out.
+    pub fn take_frame(&mut self) -> Option<FrameOut> {
+        self.frames.pop_front()
+    }
+
+    /// Takes the oldest request out.
+    pub fn take_request(&mut self) -> Option<(Ticket, Request)> {
+        self.requests.pop_front()
+    }
+
+    /// Delivers a motor command, which stays in force until the next.
+    pub fn deliver_motors(&mut self, motors: MotorCommand) {
+        self.motors = motors;
+    }
+
+    /// Delivers telemetry in place of what was told before.
+    pub fn deliver_telemetry(&mut self, telemetry: RemoteTelemetry) {
+        self.telemetry = telemetry;
+    }
+
+    /// Delivers an event.
+    pub fn deliver_event(&mut self, event: FirmwareEvent) {
+        self.events.push_back(event);
+    }
+
+    /// Delivers the answer to a request.
+    pub fn deliver_answer(&mut self, ticket: Ticket, answer: LateAnswer) {
+        self.answers.push_back((ticket, answer));
+    }
+
+    pub(super) fn step(&mut self, frame: &SensorFrame) -> MotorCommand {
+        for source in RcSource::iter() {
+            if let Some(rc) = self.rc[source as usize].take() {
+                self.put(FrameOut::Rc(rc, source));
+            }
+        }
+        self.put(FrameOut::Sensors(*frame));
+        self.motors
+    }
+
+    fn put(&mut self, frame: FrameOut) {
+        if self.frames.len() == MAX_FRAMES {
+            self.frames.pop_front();
+        }
+        self.frames.push_back(frame);
+    }
+
+    pub(super) fn receive_rc(&mut self, frame: &RcFrame, source: RcSource) {
+        self.rc[source as usize] = Some(*frame);
+    }
+
+    pub(super) fn lose_rc(&mut self) {
+        self.rc.fill(None);
+    }
+
+    pub(super) fn ask(&mut self, request: Request) -> Ticket {
+        let ticket = Ticket(self.next_ticket);
+        self.next_ticket += 1;
+        self.requests.push_back((ticket, request));
+        ticket
+    }
+
+    /// Asks for a restart; what was told before it means nothing, and its motors stand still.
+    pub(super) fn restart(&mut self) {
+        self.ask(Request::Restart);
+        self.motors = MotorCommand::default();
+        self.telemetry = RemoteTelemetry::default();
+    }
+
+    pub(super) fn take_event(&mut self) -> Option<FirmwareEvent> {
+        self.events.pop_front()
+    }
+
+    pub(super) fn take_answer(&mut self) -> Option<(Ticket, LateAnswer)> {
+        self.answers.pop_front()
+    }
+
+    pub(super) fn telemetry(&self) -> &RemoteTelemetry {
+        &self.telemetry
+    }
+
+    pub(super) fn motors(&self) -> MotorCommand {
+        self.motors
+    }
+
+    /// What a pilot sees; without telemetry there is no fix, so that a scripted pilot waits.
+    pub(super) fn pilot_facts(&self, time: SimTime) -> PilotFacts {
+        let RemoteTelemetry { estimate, craft, settings, .. } = &self.telemetry;
+        PilotFacts {
+            time,
+            fix: craft.gps_fix,
+            arming_blocked: craft.arming_blocked_by.as_ref().is_none_or(|flags| !flags.is_empty()),
+            armed: craft.armed,
+            engaged: craft.modes.has(Mode::Autopilot),
+            alt_m: estimate.alt.unwrap_or_default(),
+            climb_mps: estimate.climb_mps.unwrap_or_default(),
+            hover_stick_us: settings.map_or(MID_US, |settings| settings.hover_stick_us),
+            raised_stick_us: settings.map_or(MID_US, |settings| settings.raised_stick_us),
+        }
+    }
+}

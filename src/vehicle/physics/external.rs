@@ -1,0 +1,165 @@
+//! A craft that an external simulator moves: its time, what it measures, and where that simulator says it is.
+
+use nalgebra::Vector3;
+
+use crate::geo::LocalFrame;
+use crate::signals::{Pose, SensorFrame};
+use crate::sim::World;
+use crate::telemetry::snapshot::TruthView;
+
+/// Lower than this above its start (m) and slower than [`STANDING_MPS`], the craft counts as standing: a simulator does
+/// not tell of contact.
+const STANDING_M: f64 = 0.3;
+/// See [`STANDING_M`], m/s.
+const STANDING_MPS: f64 = 0.3;
+
+/// What is known of a craft that an external simulator moves.
+#[derive(Debug, Clone)]
+pub(in crate::vehicle) struct ExternalPhysics {
+    /// Has the time and the faults of the links; nothing in it moves.
+    links: World,
+    /// What was measured for the present step.
+    sensors: SensorFrame,
+    /// Where it is.
+    track: Track,
+}
+
+impl ExternalPhysics {
+    /// Physics whose time and faults `links` has.
+    pub(in crate::vehicle) fn new(links: World) -> Self {
+        Self { links, sensors: SensorFrame::default(), track: Track::default() }
+    }
+
+    pub(super) fn links(&self) -> &World {
+        &self.links
+    }
+
+    pub(super) fn links_mut(&mut self) -> &mut World {
+        &mut self.links
+    }
+
+    pub(super) fn sensors(&self) -> &SensorFrame {
+        &self.sensors
+    }
+
+    pub(super) fn frame(&self) -> Option<&LocalFrame> {
+        self.track.frame()
+    }
+
+    pub(super) fn truth_view(&self, motors: [f64; 4]) -> Option<TruthView> {
+        self.track.truth_view(motors)
+    }
+
+    /// One step passes, for which the simulator measured this.
+    pub(in crate::vehicle) fn measure(&mut self, sensors: &SensorFrame) {
+        self.links.pass();
+        let gps = sensors.gps.filter(|_| !self.links.gps_lost());
+        self.sensors = SensorFrame { time: self.links.time(), gps, ..*sensors };
+    }
+
+    /// Ends faults of the link whose time is over after a silence of this length, µs.
+    pub(in crate::vehicle) fn end_link_faults(&mut self, silence_us: u64) {
+        self.links.end_link_faults(silence_us);
+    }
+
+    /// Takes in where the simulator says the craft is.
+    pub(in crate::vehicle) fn see(&mut self, pose: Pose) {
+        self.track.see(pose);
+    }
+
+    /// The craft is put somewhere else and starts where it is seen next.
+    pub(in crate::vehicle) fn reset(&mut self) {
+        self.track = Track::default();
+        self.links.wait_for_next_flight();
+    }
+}
+
+/// Where the craft was seen.
+#[derive(Debug, Clone, Default)]
+struct Track {
+    /// The newest pose and the frame at the first one.
+    seen: Option<(Pose, LocalFrame)>,
+}
+
+impl Track {
+    /// The frame whose origin is the place where the craft was seen first.
+    fn frame(&self) -> Option<&LocalFrame> {
+        self.seen.as_ref().map(|(_, frame)| frame)
+    }
+
+    /// The craft's motion as the simulator tells it.
+    fn truth_view(&self, motors: [f64; 4]) -> Option<TruthView> {
+        let (pose, frame) = self.seen.as_ref()?;
+        let (lat_deg, lon_deg) = pose.place_deg?;
+        let enu = frame.to_enu(lat_deg, lon_deg, pose.alt_m);
+        let nose = pose.attitude * Vector3::x();
+        let up = pose.attitude.inverse_transform_vector(&Vector3::z());
+        Some(TruthView {
+            lat_deg,
+            lon_deg,
+            n: enu.y,
+            e: enu.x,
+            alt: enu.z,
+            vn: pose.vel_enu.y,
+            ve: pose.vel_enu.x,
+            vu: pose.vel_enu.z,
+            roll_deg: up.y.atan2(up.z).to_degrees(),
+            pitch_deg: nose.z.clamp(-1.0, 1.0).asin().to_degrees(),
+            heading_deg: nose.x.atan2(nose.y).to_degrees().rem_euclid(360.0),
+            motors,
+            on_ground: enu.z < STANDING_M && pose.vel_enu.norm() < STANDING_MPS,
+            wind_ne: None,
+            crashed: false,
+            diverged: false,
+        })
+    }
+
+    fn see(&mut self, pose: Pose) {
+        let frame = match (&self.seen, pose.place_deg) {
+            (Some((_, frame)), _) => *frame,
+            (None, Some((lat_deg, lon_deg))) => LocalFrame::new(lat_deg, lon_deg, pose.alt_m),
+            (None, None) => return,
+        };
+        self.seen = Some((pose, frame));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sim::{attitude, level_attitude};
+
+    fn pose(lat_deg: f64, alt_m: f64) -> Pose {
+        Pose {
+            place_deg: Some((lat_deg, -79.5)),
+            alt_m,
+            vel_enu: Vector3::zeros(),
+            attitude: level_attitude(0.0),
+        }
+    }
+
+    #[test]
+    fn positions_count_from_where_the_craft_was_seen_first() {
+        let mut track = Track::default();
+        assert_eq!(track.truth_view([0.0; 4]), None, "nothing is made up");
+        track.see(Pose { place_deg: None, ..pose(0.0, 0.0) });
+        assert_eq!(track.truth_view([0.0; 4]), None);
+        track.see(pose(40.0, 250.0));
+        let start = track.truth_view([0.0; 4]).unwrap();
+        assert!(start.n.abs() < 1e-9 && start.alt.abs() < 1e-9 && start.on_ground);
+
+        let moved = Pose { attitude: attitude(200.0, -12.0, 7.0), ..pose(40.001, 260.0) };
+        track.see(Pose { vel_enu: Vector3::new(1.0, 2.0, 3.0), ..moved });
+        let truth = track.truth_view([0.5; 4]).unwrap();
+        assert!((truth.n - 111.04).abs() < 0.1 && (truth.alt - 10.0).abs() < 1e-9 && !truth.on_ground);
+        assert!((truth.heading_deg - 200.0).abs() < 1e-9 && (truth.pitch_deg + 12.0).abs() < 1e-9);
+        assert!((truth.roll_deg - 7.0).abs() < 1e-9);
+        assert_eq!((truth.ve, truth.vn, truth.vu, truth.motors), (1.0, 2.0, 3.0, [0.5; 4]));
+
+        track.see(Pose { place_deg: None, ..moved });
+        assert_eq!(track.truth_view([0.0; 4]), None, "an old place is not shown as the present one");
+        track = Track::default();
+        track.see(pose(41.0, 0.0));
+        assert!(track.truth_view([0.0; 4]).unwrap().n.abs() < 1e-9);
+    }
+}

@@ -1,0 +1,245 @@
+//! The seams of a vehicle: a flight controller behind a mailbox flies the simulated world, and what it does not tell is
+//! unknown.
+
+use std::collections::VecDeque;
+
+use betadeck::firmware::cli::Interpreter;
+use betadeck::firmware::config::Configuration;
+use betadeck::firmware::{Firmware, FirmwareOptions};
+use betadeck::record::json;
+use betadeck::session::SessionView;
+use betadeck::signals::MotorCommand;
+use betadeck::sim::{WorldCommand, WorldConfig};
+use betadeck::telemetry::Snapshot;
+use betadeck::telemetry::snapshot::EstimateView;
+use betadeck::ui::{AppState, Msg, draw, update};
+use betadeck::vehicle::{
+    Answer, FrameOut, LateAnswer, RemoteController, RemoteTelemetry, Request, Ticket, Vehicle, VehicleConfig,
+};
+use ratatui::Terminal;
+use ratatui::backend::TestBackend;
+
+#[path = "ui/fixture.rs"]
+mod fixture;
+
+/// Ticks until a motor command or an answer of the stand-in arrives.
+const DELAY: usize = 4;
+const THROTTLE: usize = 2;
+const ARM: usize = 4;
+const LEVELLED: usize = 6;
+
+/// A flight controller at the far end of a slow wire, which tells only its attitude.
+#[derive(Debug, Clone)]
+struct StandIn {
+    firmware: Firmware,
+    console: Interpreter,
+    motors: VecDeque<MotorCommand>,
+    answers: VecDeque<(usize, Ticket, LateAnswer)>,
+    ticks: usize,
+}
+
+impl StandIn {
+    fn new() -> Self {
+        let mut configuration = Configuration::default();
+        configuration.starter_modes();
+        Self {
+            firmware: Firmware::new(configuration, FirmwareOptions::default()),
+            console: Interpreter::default(),
+            motors: VecDeque::new(),
+            answers: VecDeque::new(),
+            ticks: 0,
+        }
+    }
+
+    /// Takes out what waits in the mailbox and delivers what is due.
+    fn exchange(&mut self, mailbox: &mut RemoteController) {
+        self.ticks += 1;
+        while let Some(frame) = mailbox.take_frame() {
+            match frame {
+                FrameOut::Rc(frame, source) => self.firmware.receive_rc(&frame, source),
+                FrameOut::Sensors(frame) => self.motors.push_back(self.firmware.step(&frame)),
+            }
+        }
+        while self.motors.len() > DELAY {
+            mailbox.deliver_motors(self.motors.pop_front().unwrap());
+        }
+        while let Some((ticket, request)) = mailbox.take_request() {
+            let answer = match request {
+                Request::Cli(line) => LateAnswer::Cli(self.firmware.run_cli(&mut self.console, &line)),
+                Request::Msp { code, payload } => {
+                    LateAnswer::Msp(self.firmware.run_msp(code, &payload, None))
+                }
+                Request::Restart | Request::ReturnHome | Request::CancelReturn => continue,
+            };
+            self.answers.push_back((self.ticks + DELAY, ticket, answer));
+        }
+        while let Some((_, ticket, answer)) = self.answers.pop_front_if(|(due, ..)| *due <= self.ticks) {
+            mailbox.deliver_answer(ticket, answer);
+        }
+        let EstimateView { roll_deg, pitch_deg, heading_deg, .. } = self.firmware.estimate_view();
+        let estimate = EstimateView { roll_deg, pitch_deg, heading_deg, ..EstimateView::default() };
+        mailbox.deliver_telemetry(RemoteTelemetry { estimate, ..RemoteTelemetry::default() });
+    }
+}
+
+/// A craft in the simulated world with the stand-in as its flight controller.
+#[derive(Debug, Clone)]
+struct Rig {
+    vehicle: Vehicle,
+    stand_in: StandIn,
+}
+
+impl Rig {
+    fn new() -> Self {
+        let vehicle = Vehicle::with_remote_controller(WorldConfig::default()).unwrap();
+        Self { vehicle, stand_in: StandIn::new() }
+    }
+
+    fn run(&mut self, seconds: f64) {
+        for _ in 0..(seconds * 1000.0) as usize {
+            self.vehicle.tick();
+            self.stand_in.exchange(self.vehicle.controller_mut().remote_mut().unwrap());
+        }
+    }
+
+    fn set(&mut self, channel: usize, us: u16) {
+        self.vehicle.transmitter_mut().sticks_mut().channels[channel] = us;
+    }
+
+    /// Arms and climbs in ALTHOLD, then hovers.
+    fn hover(&mut self) {
+        for _ in 0..30 {
+            if !self.stand_in.firmware.arming_flags().is_empty() {
+                self.run(1.0);
+            }
+        }
+        self.set(ARM, 2000);
+        self.run(0.5);
+        assert!(self.stand_in.firmware.is_armed(), "{:?}", self.stand_in.firmware.arming_flags());
+        self.set(THROTTLE, 1600);
+        self.run(0.5);
+        self.set(LEVELLED, 2000);
+        self.run(3.0);
+        self.set(THROTTLE, 1500);
+        self.run(4.0);
+    }
+}
+
+fn truth_altitude(snapshot: &Snapshot) -> f64 {
+    snapshot.truth.unwrap().alt
+}
+
+#[test]
+fn a_remote_flight_controller_flies_the_simulated_world() {
+    let mut rig = Rig::new();
+    rig.hover();
+    let hovering = rig.vehicle.snapshot();
+    let truth = hovering.truth.unwrap();
+    assert!((1.0..30.0).contains(&truth.alt), "{truth:?}");
+    assert!(truth.vu.abs() < 0.5 && truth.roll_deg.abs() < 10.0 && truth.pitch_deg.abs() < 10.0, "{truth:?}");
+    assert!(hovering.craft.motors.iter().all(|&motor| motor > 0.1), "{:?}", hovering.craft.motors);
+    assert!((hovering.estimate.pitch_deg.unwrap() - truth.pitch_deg).abs() < 3.0, "its attitude arrives");
+    rig.run(2.0);
+    assert!((truth_altitude(&rig.vehicle.snapshot()) - truth.alt).abs() < 2.0, "it holds the altitude");
+}
+
+#[test]
+fn a_copy_of_the_vehicle_goes_on_identically() {
+    let mut rig = Rig::new();
+    rig.hover();
+    let mut copy = rig.clone();
+    rig.run(2.0);
+    copy.run(2.0);
+    assert_eq!(rig.vehicle.snapshot(), copy.vehicle.snapshot());
+}
+
+#[test]
+fn a_command_line_is_answered_later_by_its_ticket() {
+    let mut rig = Rig::new();
+    let mut ask = |line: &str| match rig.vehicle.controller_mut().run_cli(&mut Interpreter::default(), line) {
+        Answer::Later(ticket) => ticket,
+        Answer::Now(reply) => panic!("{reply:?}"),
+    };
+    let (first, second) = (ask("get ap_max_angle"), ask("nonsense"));
+    assert_eq!(rig.vehicle.controller_mut().take_answer(), None);
+    rig.run(0.001 * (DELAY + 2) as f64);
+    let Some((ticket, LateAnswer::Cli(reply))) = rig.vehicle.controller_mut().take_answer() else { panic!() };
+    assert!(ticket == first && reply.text.contains("ap_max_angle = "), "{reply:?}");
+    let Some((ticket, LateAnswer::Cli(reply))) = rig.vehicle.controller_mut().take_answer() else { panic!() };
+    assert!(ticket == second && reply.failed, "{reply:?}");
+}
+
+#[test]
+fn what_the_flight_controller_does_not_tell_is_shown_as_unknown() {
+    let mut rig = Rig::new();
+    rig.run(1.0);
+    let snapshot = rig.vehicle.snapshot();
+    assert!(snapshot.nav.is_none() && snapshot.settings.is_none() && snapshot.stored_plan.is_none());
+    assert!(snapshot.craft.arming_blocked_by.is_none() && snapshot.craft.rc_link.is_none());
+    assert_eq!((snapshot.estimate.alt, snapshot.estimate.climb_mps), (None, None));
+    let line = json::sample_line(&snapshot);
+    for unknown in ["state", "l1_mode", "est_alt", "throttle_us", "hold_remaining_ds", "target_alt"] {
+        assert!(line.contains(&format!("\"{unknown}\":null")), "{unknown} in {line}");
+    }
+    let screen = screen(snapshot);
+    assert!(screen.contains("◆ — "), "the state of the machine:\n{screen}");
+    assert!(screen.contains("— m/s") && screen.contains("does not tell its state"), "{screen}");
+}
+
+#[test]
+fn unknown_wind_is_unknown_and_not_calm() {
+    let mut vehicle = Vehicle::with_external_physics(VehicleConfig {
+        world: WorldConfig::default(),
+        firmware: FirmwareOptions::default(),
+        configuration: Configuration::default(),
+        live: true,
+    })
+    .unwrap();
+    vehicle.tick();
+    vehicle.see(betadeck::signals::Pose {
+        place_deg: Some((40.0, -79.5)),
+        alt_m: 250.0,
+        vel_enu: nalgebra::Vector3::zeros(),
+        attitude: nalgebra::UnitQuaternion::identity(),
+    });
+    let snapshot = vehicle.snapshot();
+    assert!(snapshot.truth.is_some());
+    let line = json::sample_line(&snapshot);
+    assert!(line.contains(r#""wind_n":null,"wind_e":null"#), "{line}");
+    let screen = screen(snapshot);
+    assert!(screen.contains("wind —") && !screen.contains("calm"), "{screen}");
+}
+
+fn screen(snapshot: Snapshot) -> String {
+    let mut state: AppState = fixture::state((120, 40), fixture::colour());
+    let vehicle = std::sync::Arc::new(snapshot);
+    update(&mut state, Msg::View(SessionView { vehicle, ..SessionView::default() }));
+    let mut terminal = Terminal::new(TestBackend::new(120, 40)).unwrap();
+    terminal.draw(|frame| draw(&state, frame)).unwrap();
+    terminal.backend().to_string()
+}
+
+#[test]
+fn rx_jitter_drops_its_fraction_of_the_rc_frames() {
+    for (fault, expected) in [(None, 1000..=1000), (Some("fault=rx-jitter,,0.2"), 740..=860)] {
+        let mut vehicle = Vehicle::with_remote_controller(WorldConfig::default()).unwrap();
+        if let Some(fault) = fault {
+            vehicle.change_world(WorldCommand::parse(fault).unwrap()).unwrap();
+        }
+        let mut frames = 0;
+        for _ in 0..20_000 {
+            vehicle.tick();
+            let mailbox = vehicle.controller_mut().remote_mut().unwrap();
+            while let Some(frame) = mailbox.take_frame() {
+                frames += usize::from(matches!(frame, FrameOut::Rc(..)));
+            }
+        }
+        assert!(expected.contains(&frames), "{frames} frames of 1000 with {fault:?}");
+    }
+}
+
+#[test]
+fn the_altitude_shown_is_zero_where_the_craft_stands() {
+    let vehicle = Vehicle::with_remote_controller(WorldConfig::default()).unwrap();
+    assert!(truth_altitude(&vehicle.snapshot()).abs() < 0.02, "{:?}", vehicle.snapshot().truth);
+}
