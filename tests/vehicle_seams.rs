@@ -108,20 +108,18 @@ impl Rig {
 
     /// Arms and climbs in ALTHOLD, then hovers.
     fn hover(&mut self) {
-        for _ in 0..30 {
-            if !self.stand_in.firmware.arming_flags().is_empty() {
-                self.run(1.0);
-            }
-        }
+        // The boot grace, the calibration and the first fix.
+        self.run(10.0);
         self.set(ARM, 2000);
         self.run(0.5);
         assert!(self.stand_in.firmware.is_armed(), "{:?}", self.stand_in.firmware.arming_flags());
         self.set(THROTTLE, 1600);
         self.run(0.5);
         self.set(LEVELLED, 2000);
-        self.run(3.0);
-        self.set(THROTTLE, 1500);
-        self.run(4.0);
+        self.set(THROTTLE, 1900);
+        self.run(5.0);
+        self.set(THROTTLE, self.stand_in.firmware.hover_stick_us());
+        self.run(6.0);
     }
 }
 

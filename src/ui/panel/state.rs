@@ -82,7 +82,7 @@ fn draw_advice(state: &AppState, area: Rect, diagram: &Diagram, buffer: &mut Buf
 /// The machine; gives the rows used.
 fn draw_machine(state: &AppState, area: Rect, diagram: &Diagram, buffer: &mut Buffer) -> u16 {
     let Some(nav) = &state.view.vehicle.nav else {
-        row(buffer, area, 0, &state.theme, Role::Dim, " — the flight controller does not tell its state");
+        row(buffer, area, 0, &state.theme, Role::Dim, " — the firmware does not tell its state");
         return 1.min(area.height);
     };
     let last = state.transitions.back().filter(|last| within(state.now, last.heard, LIT_FOR));
