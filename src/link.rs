@@ -20,7 +20,6 @@ mod listener;
 mod origin;
 pub mod proto;
 mod request;
-pub mod sitl;
 mod transport;
 mod udp;
 

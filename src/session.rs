@@ -8,6 +8,7 @@ mod persistence;
 mod request_handler;
 mod runtime;
 mod simulator;
+pub mod sitl;
 mod upload;
 
 pub use command::{Command, SessionView};

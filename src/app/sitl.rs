@@ -17,8 +17,8 @@ use crate::flight::FlightSetup;
 use crate::flight::setup::PhysicsSource;
 use crate::link::DoorsConfig;
 use crate::link::proto::fdm_link::FdmLinkConfig;
-use crate::link::sitl::{Said, Sitl, SitlConfig, SitlEnd, SitlError, SitlPorts, show_links};
 use crate::record::gpx::{GpxHeader, GpxWriter, TrackPoint, UtcSeconds};
+use crate::session::sitl::{Said, Sitl, SitlConfig, SitlEnd, SitlError, SitlPorts, show_links};
 use crate::storage::Store;
 
 /// Name of the track.

@@ -1,0 +1,63 @@
+//! The rooms of `docs/architecture.md` against the code: who may use whom, and how large things are.
+#![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a test may stop and say what it expects")]
+
+mod page;
+mod paths;
+mod size;
+mod source;
+
+use std::collections::BTreeSet;
+
+use page::Room;
+use source::SourceFile;
+
+/// An arrow from a room to one that it uses, with the file in which it was found.
+type Use = (String, String, String);
+
+fn uses(files: &[SourceFile]) -> BTreeSet<Use> {
+    files
+        .iter()
+        .flat_map(|file| {
+            let room = file.room();
+            paths::rooms_used(file)
+                .into_iter()
+                .filter(move |used| *used != file.room())
+                .map(move |used| (room.clone(), used, file.name.clone()))
+        })
+        .collect()
+}
+
+#[test]
+fn every_room_is_on_the_page_and_uses_what_the_page_allows() {
+    let (rooms, files) = (page::rooms(), source::files());
+    let in_code: BTreeSet<_> = files.iter().map(SourceFile::room).filter(|room| room != "lib").collect();
+    let on_page: BTreeSet<_> = rooms.iter().map(|room| room.name.clone()).collect();
+    assert_eq!(in_code, on_page, "the rooms of src/ and those of docs/architecture.md");
+
+    let allowed = |from: &str, to: &str| rooms.iter().any(|room| room.name == from && room.may_use(to));
+    let forbidden: Vec<_> = uses(&files).into_iter().filter(|(from, to, _)| !allowed(from, to)).collect();
+    assert!(forbidden.is_empty(), "arrows that docs/architecture.md does not allow: {forbidden:#?}");
+}
+
+#[test]
+fn what_the_page_allows_is_used() {
+    let used: BTreeSet<(String, String)> =
+        uses(&source::files()).into_iter().map(|(from, to, _)| (from, to)).collect();
+    let idle: Vec<_> =
+        page::rooms().iter().flat_map(Room::arrows).filter(|arrow| !used.contains(arrow)).collect();
+    assert!(idle.is_empty(), "arrows of docs/architecture.md that no code uses: {idle:?}");
+}
+
+#[test]
+fn no_two_rooms_use_each_other_directly_or_on_a_detour() {
+    // The page lists the rooms from the ground up: each uses only rooms above it in the table.
+    let rooms = page::rooms();
+    for (index, room) in rooms.iter().enumerate() {
+        for (from, to) in room.arrows() {
+            assert!(
+                rooms[..index].iter().any(|lower| lower.name == to),
+                "{from} uses {to}, which stands further down the table"
+            );
+        }
+    }
+}

@@ -1,0 +1,44 @@
+//! The table of rooms in `docs/architecture.md`.
+
+const PAGE: &str = include_str!("../../docs/architecture.md");
+
+/// A row of the table.
+#[derive(Debug)]
+pub(crate) struct Room {
+    /// Name of the module.
+    pub(crate) name: String,
+    /// The rooms it may use; `None` = all of them.
+    uses: Option<Vec<String>>,
+}
+
+impl Room {
+    pub(crate) fn may_use(&self, other: &str) -> bool {
+        self.uses.as_ref().is_none_or(|uses| uses.iter().any(|used| used == other))
+    }
+
+    /// The arrows that the page draws one by one.
+    pub(crate) fn arrows(&self) -> Vec<(String, String)> {
+        self.uses.iter().flatten().map(|used| (self.name.clone(), used.clone())).collect()
+    }
+}
+
+/// The rooms in the order of the table; a row may name several that have the same arrows.
+pub(crate) fn rooms() -> Vec<Room> {
+    let table = PAGE.split("| room | is | may use |").nth(1).expect("the table of rooms");
+    let mut rooms = Vec::new();
+    for row in table.lines().skip(2).take_while(|line| line.starts_with('|')) {
+        let [_, names, _, uses, ..] = row.split('|').collect::<Vec<_>>()[..] else { panic!("{row}") };
+        let uses = match uses.trim() {
+            "everything" => None,
+            uses => Some(words(uses)),
+        };
+        rooms.extend(words(names).into_iter().map(|name| Room { name, uses: uses.clone() }));
+    }
+    assert!(rooms.len() > 10, "{rooms:?}");
+    rooms
+}
+
+/// The words in backticks.
+fn words(cell: &str) -> Vec<String> {
+    cell.split('`').skip(1).step_by(2).map(str::to_owned).collect()
+}

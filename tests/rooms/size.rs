@@ -1,0 +1,63 @@
+//! How large files and rooms are.
+
+use crate::source::{self, SourceFile};
+
+/// Longest file, lines.
+const LONGEST: usize = 500;
+/// Most lines of the file in the middle.
+const MEDIAN: usize = 150;
+/// Lines of the core for each line of the shell.
+const CORE_TO_SHELL: f64 = 2.5;
+/// Files of a room beyond which its first page explains the layers inside.
+const MANY_FILES: usize = 60;
+
+/// What talks to people, sockets, files and the clock; all the rest is the core.
+fn is_shell(file: &SourceFile) -> bool {
+    match file.room().as_str() {
+        "link" => !file.name.starts_with("link/proto"),
+        "app" | "args" | "session" | "storage" | "ui" => true,
+        _ => false,
+    }
+}
+
+#[test]
+fn files_are_small() {
+    let mut lines: Vec<_> =
+        source::files().iter().map(|file| (file.text.lines().count(), file.name.clone())).collect();
+    lines.sort();
+    let (median, longest) = (lines[lines.len() / 2].0, lines.last().unwrap());
+    println!("{} files, median {median} lines, longest {longest:?}", lines.len());
+    assert!(median <= MEDIAN, "{median}");
+    assert!(longest.0 <= LONGEST, "{longest:?}");
+}
+
+#[test]
+fn the_core_outweighs_the_shell() {
+    let (shell, core): (Vec<_>, Vec<_>) = source::files().into_iter().partition(is_shell);
+    let count = |files: &[SourceFile]| files.iter().map(SourceFile::product_lines).sum::<usize>() as f64;
+    let (core, shell) = (count(&core), count(&shell));
+    println!("core {core} lines, shell {shell} lines, {:.2} : 1", core / shell);
+    assert!(core / shell >= CORE_TO_SHELL, "{core} : {shell}");
+}
+
+#[test]
+fn a_room_with_many_files_explains_its_layers() {
+    let files = source::files();
+    for first_page in files.iter().filter(|file| !file.name.contains('/')) {
+        let room = first_page.room();
+        let inside = format!("{room}/");
+        let layers: std::collections::BTreeSet<_> = files
+            .iter()
+            .filter_map(|file| file.name.strip_prefix(&inside)?.split_once('/'))
+            .map(|(layer, _)| layer)
+            .collect();
+        let count = files.iter().filter(|file| file.name.starts_with(&inside)).count();
+        if count <= MANY_FILES {
+            continue;
+        }
+        let page: String = first_page.text.lines().take_while(|line| line.starts_with("//!")).collect();
+        for layer in layers {
+            assert!(page.contains(&format!("`{layer}`")), "src/{room}.rs does not explain its layer {layer}");
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! The files of `src/`.
+
+use std::path::{Path, PathBuf};
+
+/// A file of the crate.
+#[derive(Debug)]
+pub(crate) struct SourceFile {
+    /// Path below `src/`, with `/`.
+    pub(crate) name: String,
+    /// Its text.
+    pub(crate) text: String,
+}
+
+impl SourceFile {
+    /// The top-level module it belongs to.
+    pub(crate) fn room(&self) -> String {
+        self.module().into_iter().next().unwrap_or_else(|| "lib".to_owned())
+    }
+
+    /// The module that the file is, from the crate's root.
+    pub(crate) fn module(&self) -> Vec<String> {
+        let path = self.name.trim_end_matches(".rs");
+        if path == "lib" { Vec::new() } else { path.split('/').map(str::to_owned).collect() }
+    }
+
+    /// The text up to the unit tests.
+    pub(crate) fn product_lines(&self) -> usize {
+        if self.name.ends_with("tests.rs") || self.name.contains("/tests/") {
+            return 0;
+        }
+        self.text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default().lines().count()
+    }
+}
+
+/// All files, in the order of their names; `main.rs` is a crate of its own, in the same room as `app`.
+pub(crate) fn files() -> Vec<SourceFile> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut files = Vec::new();
+    let mut folders = vec![root.clone()];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|ending| ending == "rs") {
+                let name = below(&root, &path);
+                let text = std::fs::read_to_string(&path).unwrap();
+                files.push(SourceFile { name, text });
+            }
+        }
+    }
+    files.retain(|file| file.name != "main.rs");
+    files.sort_by(|a, b| a.name.cmp(&b.name));
+    files
+}
+
+fn below(root: &Path, path: &PathBuf) -> String {
+    let parts: Vec<_> = path.strip_prefix(root).unwrap().iter().map(|part| part.to_str().unwrap()).collect();
+    parts.join("/")
+}
