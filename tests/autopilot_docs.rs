@@ -23,7 +23,7 @@ fn the_transition_table_is_the_one_of_the_code() {
 }
 
 fn value(field: &Field, code: i64) -> String {
-    let words = (field.words)();
+    let words = field.words;
     let word = usize::try_from(code).ok().and_then(|index| words.get(index).copied());
     word.map_or_else(|| code.to_string(), str::to_owned)
 }
@@ -36,7 +36,7 @@ fn every_parameter_has_its_row_with_range_and_default() {
         .iter()
         .filter(|field| field.name.starts_with("ap_"))
         .map(|field| {
-            let words = (field.words)();
+            let words = field.words;
             let range =
                 if words.is_empty() { format!("{}–{}", field.min, field.max) } else { words.join(" ") };
             format!("| `{}` | {range} | {} |", field.name, value(field, (field.get)(&defaults)))

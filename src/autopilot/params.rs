@@ -1,4 +1,5 @@
-//! The autopilot's parameters: one list from which the struct, its defaults, ranges and names follow.
+//! The autopilot's parameters: one list from which the struct, its defaults, ranges and names follow, and the settings
+//! that users see.
 //!
 //! Fields keep the units of the settings (documented on each); the methods of [`Params`] give SI values.
 
@@ -9,7 +10,7 @@ use crate::telemetry::FenceAction;
 use value::Value;
 pub use value::{RxLossPolicy, YawMode};
 
-/// One parameter of the list: its name, limits, and the way to its field.
+/// One parameter of the list: all that is known of it, and the way to its field.
 #[derive(Debug, Clone, Copy)]
 pub struct Field {
     /// The name of the setting, such as `ap_max_angle`.
@@ -22,8 +23,25 @@ pub struct Field {
     pub get: fn(&Params) -> i64,
     /// Writes the field; the caller keeps to `min` and `max`.
     pub set: fn(&mut Params, i64),
+    /// Value of a fresh vehicle.
+    pub default: i64,
+    /// Size on the wire, bytes.
+    pub bytes: usize,
     /// The words of an enumeration or switch in the order of their codes; empty for plain numbers.
-    pub words: fn() -> Vec<&'static str>,
+    pub words: &'static [&'static str],
+    /// Whether it has an effect here.
+    pub effect: Effect,
+    /// One line for people, with the unit.
+    pub help: &'static str,
+}
+
+/// Whether a parameter has an effect.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Effect {
+    /// The autopilot flies by it.
+    Live,
+    /// It is kept for other firmware versions.
+    Stored,
 }
 
 /// Why a parameter was not set.
@@ -48,7 +66,8 @@ pub enum ParamError {
 
 /// Struct, defaults and table from one list: the only way to write each name, range and default once.
 macro_rules! parameters {
-    ($($(#[$doc:meta])* $name:literal $field:ident : $ty:ty = $default:expr, $min:literal ..= $max:literal;)*) => {
+    ($($(#[$doc:meta])* $name:literal $field:ident : $ty:ty = $default:expr, $min:literal ..= $max:literal,
+        $effect:ident, $help:literal;)*) => {
         /// Every parameter of the autopilot, in the units of the settings; two settings of other groups that it
         /// needs, `alt_hold_climb_rate` and `min_check`, come last.
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -63,6 +82,9 @@ macro_rules! parameters {
         }
 
         impl Params {
+            /// How many parameters at the end of the list are settings of other groups.
+            pub const SHARED: usize = 2;
+
             /// All parameters in the order of the settings list.
             pub const FIELDS: &'static [Field] = &[
                 $(Field {
@@ -71,7 +93,14 @@ macro_rules! parameters {
                     max: $max,
                     get: |params| params.$field.to_number(),
                     set: |params, number| params.$field = <$ty>::from_number(number),
-                    words: <$ty>::words,
+                    default: {
+                        const DEFAULT: $ty = $default;
+                        DEFAULT as i64
+                    },
+                    bytes: size_of::<$ty>(),
+                    words: <$ty as Value>::WORDS,
+                    effect: Effect::$effect,
+                    help: $help,
                 },)*
             ];
         }
@@ -80,127 +109,188 @@ macro_rules! parameters {
 
 parameters! {
     /// Below this altitude (m) a touchdown may be declared.
-    "ap_landing_altitude_m" landing_altitude_m: u8 = 4, 0..=200;
+    "ap_landing_altitude_m" landing_altitude_m: u8 = 4, 0..=200, Live,
+        "Height below which a touchdown may be declared, m.";
     /// Throttle at hover, µs; 0 = what held the craft when the autopilot engaged.
-    "ap_hover_throttle" hover_throttle: u16 = 1275, 0..=1700;
+    "ap_hover_throttle" hover_throttle: u16 = 1275, 0..=1700, Live,
+        "Throttle at hover, µs; 0 takes it over when the autopilot engages.";
     /// Throttle floor in flight, µs.
-    "ap_throttle_min" throttle_min: u16 = 1100, 1050..=1400;
+    "ap_throttle_min" throttle_min: u16 = 1100, 1050..=1400, Live,
+        "Least throttle in flight, µs.";
     /// Throttle ceiling, µs.
-    "ap_throttle_max" throttle_max: u16 = 1900, 1400..=2000;
+    "ap_throttle_max" throttle_max: u16 = 1900, 1400..=2000, Live,
+        "Most throttle in flight, µs.";
     /// Altitude error gain, 0.01 µs per cm.
-    "ap_altitude_p" altitude_p: u8 = 15, 0..=200;
+    "ap_altitude_p" altitude_p: u8 = 15, 0..=200, Live,
+        "Throttle for altitude error.";
     /// Altitude integral gain, 0.003 µs per cm·s.
-    "ap_altitude_i" altitude_i: u8 = 20, 0..=200;
+    "ap_altitude_i" altitude_i: u8 = 20, 0..=200, Live,
+        "Throttle for lasting altitude error.";
     /// Climb rate gain, 0.01 µs per cm/s.
-    "ap_altitude_d" altitude_d: u8 = 30, 0..=200;
+    "ap_altitude_d" altitude_d: u8 = 30, 0..=200, Live,
+        "Throttle for climb rate error.";
     /// Climb rate feed-forward, 0.0033 µs per cm/s.
-    "ap_altitude_f" altitude_f: u8 = 30, 0..=200;
+    "ap_altitude_f" altitude_f: u8 = 30, 0..=200, Live,
+        "Throttle for the climb rate asked for.";
     /// Position gain: 0.025 per s of the speed law, 0.12 deg per m of the direct law.
-    "ap_position_p" position_p: u8 = 30, 0..=200;
+    "ap_position_p" position_p: u8 = 30, 0..=200, Live,
+        "Lean for position error.";
     /// Position integral of the direct law, 0.01 deg per m·s.
-    "ap_position_i" position_i: u8 = 30, 0..=200;
+    "ap_position_i" position_i: u8 = 30, 0..=200, Live,
+        "Lean for lasting position error.";
     /// Position damping of the direct law, 0.15 deg per m/s.
-    "ap_position_d" position_d: u8 = 30, 0..=200;
+    "ap_position_d" position_d: u8 = 30, 0..=200, Live,
+        "Lean for speed.";
     /// Acceleration feedback of the direct law, 0.08 deg per m/s².
-    "ap_position_a" position_a: u8 = 30, 0..=200;
+    "ap_position_a" position_a: u8 = 30, 0..=200, Live,
+        "Lean for acceleration, and trust in the accelerometer.";
     /// Stored, without effect.
-    "ap_position_f" position_f: u8 = 30, 0..=200;
+    "ap_position_f" position_f: u8 = 30, 0..=200, Stored,
+        "Lean for the speed asked for.";
     /// Low-pass of the measured acceleration, 0.1 Hz.
-    "ap_position_cutoff" position_cutoff: u8 = 30, 1..=250;
+    "ap_position_cutoff" position_cutoff: u8 = 30, 1..=250, Live,
+        "Smoothing of the lean angle, 0.1 Hz.";
     /// Stored, without effect, cm/s.
-    "ap_stop_threshold" stop_threshold: u8 = 10, 0..=100;
+    "ap_stop_threshold" stop_threshold: u8 = 10, 0..=100, Stored,
+        "Speed below which a hold counts as stopped, cm/s.";
     /// Greatest lean, deg.
-    "ap_max_angle" max_angle: u8 = 50, 10..=70;
+    "ap_max_angle" max_angle: u8 = 50, 10..=70, Live,
+        "Greatest lean of the autopilot, deg; also sets the turn radius.";
     /// Whether holds fly the speed law too (else the direct law).
-    "ap_velocity_control_enable" velocity_control_enable: bool = true, 0..=1;
+    "ap_velocity_control_enable" velocity_control_enable: bool = true, 0..=1, Live,
+        "Control the speed over ground, not only the position.";
     /// Speed error gain, 0.1 deg per m/s.
-    "ap_velocity_p" velocity_p: u8 = 50, 0..=200;
+    "ap_velocity_p" velocity_p: u8 = 50, 0..=200, Live,
+        "Lean for speed error, 0.1 deg per m/s.";
     /// Speed error integral gain, 0.1 deg per m.
-    "ap_velocity_i" velocity_i: u8 = 10, 0..=200;
+    "ap_velocity_i" velocity_i: u8 = 10, 0..=200, Live,
+        "Lean for lasting speed error, 0.1 deg per m.";
     /// Acceleration damping, 0.1 deg per m/s².
-    "ap_velocity_d" velocity_d: u8 = 5, 0..=100;
+    "ap_velocity_d" velocity_d: u8 = 5, 0..=100, Live,
+        "Lean for acceleration, 0.1 deg per m/s².";
     /// Drag feed-forward, 1e-4 deg per (m/s)².
-    "ap_velocity_drag_coeff" velocity_drag_coeff: u16 = 50, 0..=1000;
+    "ap_velocity_drag_coeff" velocity_drag_coeff: u16 = 50, 0..=1000, Live,
+        "Lean that makes up for air drag, 0.0001 deg per (m/s)2.";
     /// Default and greatest leg speed, cm/s.
-    "ap_max_velocity" max_velocity: u16 = 1000, 100..=5000;
+    "ap_max_velocity" max_velocity: u16 = 1000, 100..=5000, Live,
+        "Greatest speed, and that of legs without their own, cm/s.";
     /// Arrival radius of FLYOVER and FLYBY, cm.
-    "ap_waypoint_arrival_radius" waypoint_arrival_radius: u16 = 500, 100..=5000;
+    "ap_waypoint_arrival_radius" waypoint_arrival_radius: u16 = 500, 100..=5000, Live,
+        "Distance at which FLYOVER and FLYBY waypoints count as reached, cm.";
     /// Arrival radius of HOLD, LAND and TAKEOFF, cm.
-    "ap_waypoint_hold_radius" waypoint_hold_radius: u16 = 200, 50..=1000;
+    "ap_waypoint_hold_radius" waypoint_hold_radius: u16 = 200, 50..=1000, Live,
+        "Distance at which HOLD, LAND and TAKEOFF waypoints count as reached, cm.";
     /// Stick deflection (full stick = 500) beyond which the pilot overrides.
-    "ap_stick_deadband" stick_deadband: u16 = 50, 0..=500;
+    "ap_stick_deadband" stick_deadband: u16 = 50, 0..=500, Live,
+        "Stick movement beyond which the pilot steers, µs.";
     /// Stored, without effect: the throttle stick never overrides.
-    "ap_throttle_deadband" throttle_deadband: u16 = 50, 0..=500;
+    "ap_throttle_deadband" throttle_deadband: u16 = 50, 0..=500, Stored,
+        "Throttle movement beyond which the pilot climbs, µs.";
     /// Where the nose points.
-    "ap_yaw_mode" yaw_mode: YawMode = YawMode::Velocity, 0..=4;
+    "ap_yaw_mode" yaw_mode: YawMode = YawMode::Velocity, 0..=4, Live,
+        "Where the nose points: along the path, at the waypoint, both, nowhere in particular, or damped.";
     /// Heading error gain, 0.01 per s.
-    "ap_yaw_p" yaw_p: u16 = 50, 0..=500;
+    "ap_yaw_p" yaw_p: u16 = 50, 0..=500, Live,
+        "Yaw rate for heading error, 0.01 per s.";
     /// Yaw rate damping, 0.01.
-    "ap_yaw_d" yaw_d: u16 = 10, 0..=200;
+    "ap_yaw_d" yaw_d: u16 = 10, 0..=200, Live,
+        "Damping of the yaw rate, 0.01.";
     /// Greatest yaw rate, deg/s.
-    "ap_max_yaw_rate" max_yaw_rate: u16 = 30, 10..=360;
+    "ap_max_yaw_rate" max_yaw_rate: u16 = 30, 10..=360, Live,
+        "Greatest yaw rate of the autopilot, deg/s.";
     /// Ground speed from which the course is trusted, cm/s.
-    "ap_min_forward_velocity" min_forward_velocity: u16 = 300, 10..=500;
+    "ap_min_forward_velocity" min_forward_velocity: u16 = 300, 10..=500, Live,
+        "Speed above which the course is trusted, cm/s.";
     /// Stored, without effect, cm/s.
-    "ap_nav_corner_speed" nav_corner_speed: u16 = 220, 50..=2000;
+    "ap_nav_corner_speed" nav_corner_speed: u16 = 220, 50..=2000, Stored,
+        "Speed through corners, cm/s.";
     /// Stored, without effect, cm/s.
-    "ap_nav_corner_delta_v" nav_corner_delta_v: u16 = 440, 100..=4000;
+    "ap_nav_corner_delta_v" nav_corner_delta_v: u16 = 440, 100..=4000, Stored,
+        "Change of velocity allowed at a corner, cm/s.";
     /// Stored, without effect, cm/s².
-    "ap_nav_decel" nav_decel: u16 = 250, 20..=1000;
+    "ap_nav_decel" nav_decel: u16 = 250, 20..=1000, Stored,
+        "Braking before corners, cm/s².";
     /// Stored, without effect, cm/s².
-    "ap_nav_accel" nav_accel: u16 = 250, 20..=1000;
+    "ap_nav_accel" nav_accel: u16 = 250, 20..=1000, Stored,
+        "Acceleration after corners, cm/s².";
     /// Stored, without effect, ds.
-    "ap_nav_carrot_lead_time" nav_carrot_lead_time: u8 = 12, 2..=40;
+    "ap_nav_carrot_lead_time" nav_carrot_lead_time: u8 = 12, 2..=40, Stored,
+        "How far ahead of the craft the aim point runs, 0.1 s.";
     /// Stored, without effect, cm.
-    "ap_nav_carrot_lead_max" nav_carrot_lead_max: u16 = 2500, 600..=6000;
+    "ap_nav_carrot_lead_max" nav_carrot_lead_max: u16 = 2500, 600..=6000, Stored,
+        "Greatest distance of the aim point, cm.";
     /// Stored, without effect, cm.
-    "ap_nav_preturn_dist" nav_preturn_dist: u16 = 1500, 500..=5000;
+    "ap_nav_preturn_dist" nav_preturn_dist: u16 = 1500, 500..=5000, Stored,
+        "Distance before a corner at which the turn begins, cm.";
     /// Lean that sets how fast speed builds up, deg; 0 = half of the greatest lean.
-    "ap_velocity_buildup_max_pitch" velocity_buildup_max_pitch: u8 = 8, 0..=20;
+    "ap_velocity_buildup_max_pitch" velocity_buildup_max_pitch: u8 = 8, 0..=20, Live,
+        "Nose-down lean that helps a slow craft to gain speed, deg.";
     /// Angular rate along hold patterns, deg/s.
-    "ap_max_turn_rate" max_turn_rate: u8 = 3, 1..=90;
+    "ap_max_turn_rate" max_turn_rate: u8 = 3, 1..=90, Live,
+        "Angular speed along orbits and figures of eight, deg/s.";
     /// Radius of ORBIT, cm.
-    "ap_hold_orbit_radius" hold_orbit_radius: u16 = 1000, 300..=5000;
+    "ap_hold_orbit_radius" hold_orbit_radius: u16 = 1000, 300..=5000, Live,
+        "Radius of orbits, cm.";
     /// Distance between the circle centres of FIGURE8, cm.
-    "ap_hold_figure8_width" hold_figure8_width: u16 = 2000, 500..=10000;
+    "ap_hold_figure8_width" hold_figure8_width: u16 = 2000, 500..=10000, Live,
+        "Distance between the two circles of a figure of eight, cm.";
     /// Sink rate of a landing, cm/s.
-    "ap_landing_descent_rate" landing_descent_rate: u8 = 50, 10..=200;
+    "ap_landing_descent_rate" landing_descent_rate: u8 = 50, 10..=200, Live,
+        "Descent rate of a landing, cm/s.";
     /// Time the touchdown conditions must hold, ds.
-    "ap_landing_detection_time" landing_detection_time: u8 = 10, 5..=50;
+    "ap_landing_detection_time" landing_detection_time: u8 = 10, 5..=50, Live,
+        "How long the signs of a touchdown must last, 0.1 s.";
     /// Whether a landing descends on a spiral.
-    "ap_landing_spiral_enable" landing_spiral_enable: bool = true, 0..=1;
+    "ap_landing_spiral_enable" landing_spiral_enable: bool = true, 0..=1, Live,
+        "Descend in a spiral.";
     /// Radius of the spiral, cm.
-    "ap_landing_spiral_radius" landing_spiral_radius: u16 = 200, 50..=2000;
+    "ap_landing_spiral_radius" landing_spiral_radius: u16 = 200, 50..=2000, Live,
+        "Radius of that spiral, cm.";
     /// Angular rate of the spiral, deg/s.
-    "ap_landing_spiral_rate" landing_spiral_rate: u8 = 10, 1..=45;
+    "ap_landing_spiral_rate" landing_spiral_rate: u8 = 10, 1..=45, Live,
+        "Angular speed of that spiral, deg/s.";
     /// Ground speed below which a touchdown may be declared, cm/s.
-    "ap_landing_velocity_threshold" landing_velocity_threshold: u8 = 50, 10..=200;
+    "ap_landing_velocity_threshold" landing_velocity_threshold: u8 = 50, 10..=200, Live,
+        "Ground speed below which a touchdown is possible, cm/s.";
     /// How far below hover the throttle must be for a touchdown, µs.
-    "ap_landing_throttle_threshold" landing_throttle_threshold: u16 = 100, 10..=500;
+    "ap_landing_throttle_threshold" landing_throttle_threshold: u16 = 100, 10..=500, Live,
+        "Throttle this far below hover is a sign of a touchdown, µs.";
     /// Whether legs are followed as lines.
-    "ap_l1_enable" l1_enable: bool = true, 0..=1;
+    "ap_l1_enable" l1_enable: bool = true, 0..=1, Live,
+        "Follow the line between waypoints instead of pointing at the next one.";
     /// Period of the path following, ds.
-    "ap_l1_period" l1_period: u16 = 20, 5..=100;
+    "ap_l1_period" l1_period: u16 = 20, 5..=100, Live,
+        "Period of the path following; shorter is sharper, 0.1 s.";
     /// Least lookahead, cm.
-    "ap_l1_min_lookahead" l1_min_lookahead: u16 = 1000, 100..=5000;
+    "ap_l1_min_lookahead" l1_min_lookahead: u16 = 1000, 100..=5000, Live,
+        "Least distance of the aim point on the path, cm.";
     /// Greatest lookahead, cm; wins over the least.
-    "ap_l1_max_lookahead" l1_max_lookahead: u16 = 10000, 1000..=50000;
+    "ap_l1_max_lookahead" l1_max_lookahead: u16 = 10000, 1000..=50000, Live,
+        "Greatest distance of the aim point on the path, cm.";
     /// Cross-track error beyond which the leg starts anew at the craft, cm.
-    "ap_l1_max_cross_track_error" l1_max_cross_track_error: u16 = 10000, 1000..=50000;
+    "ap_l1_max_cross_track_error" l1_max_cross_track_error: u16 = 10000, 1000..=50000, Live,
+        "Farther from the path than this the craft flies straight back to it, cm.";
     /// Turn rate of arcs at the start of a leg, deg/s; 0 = no arcs.
-    "ap_l1_turn_rate" l1_turn_rate: u8 = 0, 0..=90;
+    "ap_l1_turn_rate" l1_turn_rate: u8 = 0, 0..=90, Live,
+        "Rounds corners with arcs of this angular speed, deg/s; 0 does not.";
     /// Altitude (m) to climb to on the spot before the first leg; 0 = none.
-    "ap_min_nav_altitude_m" min_nav_altitude_m: u8 = 5, 0..=50;
+    "ap_min_nav_altitude_m" min_nav_altitude_m: u8 = 5, 0..=50, Live,
+        "Below this height the craft climbs before it flies off, m.";
     /// What a lost receiver does.
-    "ap_rx_loss_policy" rx_loss_policy: RxLossPolicy = RxLossPolicy::Disable, 0..=2;
+    "ap_rx_loss_policy" rx_loss_policy: RxLossPolicy = RxLossPolicy::Disable, 0..=2, Live,
+        "What a mission does when the link is lost.";
     /// The fence: greatest distance from home, m; 0 = no fence.
-    "ap_max_distance_from_home" max_distance_from_home: u16 = 0, 0..=10000;
+    "ap_max_distance_from_home" max_distance_from_home: u16 = 0, 0..=10000, Live,
+        "Radius of the fence around home, m; 0 for no fence.";
     /// What leaving the fence does.
-    "ap_geofence_action" geofence_action: FenceAction = FenceAction::Land, 0..=1;
+    "ap_geofence_action" geofence_action: FenceAction = FenceAction::Land, 0..=1, Live,
+        "What happens outside the fence.";
     /// Greatest climb and sink rate, 10 cm/s; 0 counts as 50.
-    "alt_hold_climb_rate" alt_hold_climb_rate: u8 = 50, 0..=200;
+    "alt_hold_climb_rate" alt_hold_climb_rate: u8 = 50, 0..=200, Live,
+        "Climb rate at full stick in altitude hold, 0.1 m/s.";
     /// Throttle pulse that counts as zero, µs.
-    "min_check" min_check: u16 = 1050, 750..=2250;
+    "min_check" min_check: u16 = 1050, 750..=2250, Live,
+        "Throttle below this counts as low, µs.";
 }
 
 impl Params {
@@ -300,6 +390,7 @@ mod tests {
         for field in Params::FIELDS {
             let value = (field.get)(&defaults);
             assert!((field.min..=field.max).contains(&value), "{} = {value}", field.name);
+            assert_eq!(value, field.default, "{}", field.name);
         }
     }
 
@@ -307,6 +398,7 @@ mod tests {
     fn there_are_fifty_nine_and_two() {
         let own = Params::FIELDS.iter().filter(|field| field.name.starts_with("ap_")).count();
         assert_eq!((own, Params::FIELDS.len()), (59, 61));
+        assert_eq!(own + Params::SHARED, Params::FIELDS.len());
     }
 
     #[test]
@@ -334,8 +426,8 @@ mod tests {
 
     #[test]
     fn words_follow_their_codes() {
-        let words = (Params::field("ap_yaw_mode").unwrap().words)();
+        let words = Params::field("ap_yaw_mode").unwrap().words;
         assert_eq!(words, ["VELOCITY", "BEARING", "HYBRID", "FIXED", "DAMPENER"]);
-        assert_eq!((Params::field("ap_l1_enable").unwrap().words)(), ["OFF", "ON"]);
+        assert_eq!(Params::field("ap_l1_enable").unwrap().words, ["OFF", "ON"]);
     }
 }

@@ -13,6 +13,7 @@
     strum::EnumIter,
     strum::FromRepr,
     strum::IntoStaticStr,
+    strum::VariantNames,
 )]
 #[strum(serialize_all = "UPPERCASE")]
 #[repr(u8)]

@@ -104,6 +104,7 @@ pub enum L1Mode {
     strum::EnumIter,
     strum::FromRepr,
     strum::IntoStaticStr,
+    strum::VariantNames,
 )]
 #[strum(serialize_all = "UPPERCASE")]
 #[repr(u8)]

@@ -144,7 +144,7 @@ fn set_wind(run: &mut Run, rng: &mut ChaCha8Rng) -> String {
 fn set_parameter(run: &mut Run, rng: &mut ChaCha8Rng) -> String {
     let field = &Params::FIELDS[rng.random_range(0..Params::FIELDS.len())];
     let number = rng.random_range(field.min..=field.max);
-    let words = (field.words)();
+    let words = field.words;
     let value = match usize::try_from(number).ok().and_then(|index| words.get(index)) {
         Some(word) => (*word).to_owned(),
         None => number.to_string(),

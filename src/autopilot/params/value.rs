@@ -1,6 +1,6 @@
 //! The types a parameter can have.
 
-use strum::IntoEnumIterator as _;
+use strum::VariantNames as _;
 
 pub use crate::telemetry::RxLossPolicy;
 
@@ -19,6 +19,7 @@ use crate::telemetry::FenceAction;
     strum::EnumIter,
     strum::FromRepr,
     strum::IntoStaticStr,
+    strum::VariantNames,
 )]
 #[strum(serialize_all = "UPPERCASE")]
 #[repr(u8)]
@@ -38,80 +39,68 @@ pub enum YawMode {
 
 /// A type a parameter can have. Conversions saturate, so no number can be out of range of the type.
 pub(super) trait Value: Copy {
+    /// The words of an enumeration in the order of their numbers; empty for plain numbers.
+    const WORDS: &'static [&'static str];
     fn to_number(self) -> i64;
     fn from_number(number: i64) -> Self;
-    /// The words of an enumeration in the order of their numbers; empty for plain numbers.
-    fn words() -> Vec<&'static str>;
 }
 
 impl Value for u8 {
+    const WORDS: &'static [&'static str] = &[];
     fn to_number(self) -> i64 {
         i64::from(self)
     }
     fn from_number(number: i64) -> Self {
         Self::try_from(number.max(0)).unwrap_or(Self::MAX)
-    }
-    fn words() -> Vec<&'static str> {
-        Vec::new()
     }
 }
 
 impl Value for u16 {
+    const WORDS: &'static [&'static str] = &[];
     fn to_number(self) -> i64 {
         i64::from(self)
     }
     fn from_number(number: i64) -> Self {
         Self::try_from(number.max(0)).unwrap_or(Self::MAX)
     }
-    fn words() -> Vec<&'static str> {
-        Vec::new()
-    }
 }
 
 impl Value for bool {
+    const WORDS: &'static [&'static str] = &["OFF", "ON"];
     fn to_number(self) -> i64 {
         i64::from(self)
     }
     fn from_number(number: i64) -> Self {
         number != 0
     }
-    fn words() -> Vec<&'static str> {
-        vec!["OFF", "ON"]
-    }
 }
 
 impl Value for YawMode {
+    const WORDS: &'static [&'static str] = Self::VARIANTS;
     fn to_number(self) -> i64 {
         self as i64
     }
     fn from_number(number: i64) -> Self {
         u8::try_from(number).ok().and_then(Self::from_repr).unwrap_or_default()
-    }
-    fn words() -> Vec<&'static str> {
-        Self::iter().map(Into::into).collect()
     }
 }
 
 impl Value for RxLossPolicy {
+    const WORDS: &'static [&'static str] = Self::VARIANTS;
     fn to_number(self) -> i64 {
         self as i64
     }
     fn from_number(number: i64) -> Self {
         u8::try_from(number).ok().and_then(Self::from_repr).unwrap_or_default()
-    }
-    fn words() -> Vec<&'static str> {
-        Self::iter().map(Into::into).collect()
     }
 }
 
 impl Value for FenceAction {
+    const WORDS: &'static [&'static str] = Self::VARIANTS;
     fn to_number(self) -> i64 {
         self as i64
     }
     fn from_number(number: i64) -> Self {
         u8::try_from(number).ok().and_then(Self::from_repr).unwrap_or_default()
-    }
-    fn words() -> Vec<&'static str> {
-        Self::iter().map(Into::into).collect()
     }
 }

@@ -1,74 +1,56 @@
-//! The waypoint autopilot.
+//! The waypoint autopilot: the rows follow from its own table of parameters.
 
-use super::super::Role::{Carry, Live};
-use super::super::Scope;
-use super::super::Width::{U8, U16};
-use super::{Group, choice, number, switch};
+use super::super::{Kind, Role, Scope, Setting, Width};
+use super::{Group, row};
+use crate::autopilot::Params;
+use crate::autopilot::params::{Effect, Field};
+
+/// Settings of this group; the parameters after them belong to other groups.
+const COUNT: usize = Params::FIELDS.len() - Params::SHARED;
 
 /// Autopilot.
-#[rustfmt::skip]
-pub(super) const AUTOPILOT: Group = Group {
-    title: "Autopilot",
-    scope: Scope::Master,
-    settings: &[
-        number("ap_landing_altitude_m", U8, 0, 200, 4, Live, "Height below which a touchdown may be declared, m."),
-        number("ap_hover_throttle", U16, 0, 1700, 1275, Live, "Throttle at hover, µs; 0 takes it over when the autopilot engages."),
-        number("ap_throttle_min", U16, 1050, 1400, 1100, Live, "Least throttle in flight, µs."),
-        number("ap_throttle_max", U16, 1400, 2000, 1900, Live, "Most throttle in flight, µs."),
-        number("ap_altitude_p", U8, 0, 200, 15, Live, "Throttle for altitude error."),
-        number("ap_altitude_i", U8, 0, 200, 20, Live, "Throttle for lasting altitude error."),
-        number("ap_altitude_d", U8, 0, 200, 30, Live, "Throttle for climb rate error."),
-        number("ap_altitude_f", U8, 0, 200, 30, Live, "Throttle for the climb rate asked for."),
-        number("ap_position_p", U8, 0, 200, 30, Live, "Lean for position error."),
-        number("ap_position_i", U8, 0, 200, 30, Live, "Lean for lasting position error."),
-        number("ap_position_d", U8, 0, 200, 30, Live, "Lean for speed."),
-        number("ap_position_a", U8, 0, 200, 30, Live, "Lean for acceleration, and trust in the accelerometer."),
-        number("ap_position_f", U8, 0, 200, 30, Carry, "Lean for the speed asked for."),
-        number("ap_position_cutoff", U8, 1, 250, 30, Live, "Smoothing of the lean angle, 0.1 Hz."),
-        number("ap_stop_threshold", U8, 0, 100, 10, Carry, "Speed below which a hold counts as stopped, cm/s."),
-        number("ap_max_angle", U8, 10, 70, 50, Live, "Greatest lean of the autopilot, deg; also sets the turn radius."),
-        switch("ap_velocity_control_enable", U8, true, Live, "Control the speed over ground, not only the position."),
-        number("ap_velocity_p", U8, 0, 200, 50, Live, "Lean for speed error, 0.1 deg per m/s."),
-        number("ap_velocity_i", U8, 0, 200, 10, Live, "Lean for lasting speed error, 0.1 deg per m."),
-        number("ap_velocity_d", U8, 0, 100, 5, Live, "Lean for acceleration, 0.1 deg per m/s²."),
-        number("ap_velocity_drag_coeff", U16, 0, 1000, 50, Live, "Lean that makes up for air drag, 0.0001 deg per (m/s)2."),
-        number("ap_max_velocity", U16, 100, 5000, 1000, Live, "Greatest speed, and that of legs without their own, cm/s."),
-        number("ap_waypoint_arrival_radius", U16, 100, 5000, 500, Live, "Distance at which FLYOVER and FLYBY waypoints count as reached, cm."),
-        number("ap_waypoint_hold_radius", U16, 50, 1000, 200, Live, "Distance at which HOLD, LAND and TAKEOFF waypoints count as reached, cm."),
-        number("ap_stick_deadband", U16, 0, 500, 50, Live, "Stick movement beyond which the pilot steers, µs."),
-        number("ap_throttle_deadband", U16, 0, 500, 50, Carry, "Throttle movement beyond which the pilot climbs, µs."),
-        choice("ap_yaw_mode", U8, &["VELOCITY", "BEARING", "HYBRID", "FIXED", "DAMPENER"], 0, Live, "Where the nose points: along the path, at the waypoint, both, nowhere in particular, or damped."),
-        number("ap_yaw_p", U16, 0, 500, 50, Live, "Yaw rate for heading error, 0.01 per s."),
-        number("ap_yaw_d", U16, 0, 200, 10, Live, "Damping of the yaw rate, 0.01."),
-        number("ap_max_yaw_rate", U16, 10, 360, 30, Live, "Greatest yaw rate of the autopilot, deg/s."),
-        number("ap_min_forward_velocity", U16, 10, 500, 300, Live, "Speed above which the course is trusted, cm/s."),
-        number("ap_nav_corner_speed", U16, 50, 2000, 220, Carry, "Speed through corners, cm/s."),
-        number("ap_nav_corner_delta_v", U16, 100, 4000, 440, Carry, "Change of velocity allowed at a corner, cm/s."),
-        number("ap_nav_decel", U16, 20, 1000, 250, Carry, "Braking before corners, cm/s²."),
-        number("ap_nav_accel", U16, 20, 1000, 250, Carry, "Acceleration after corners, cm/s²."),
-        number("ap_nav_carrot_lead_time", U8, 2, 40, 12, Carry, "How far ahead of the craft the aim point runs, 0.1 s."),
-        number("ap_nav_carrot_lead_max", U16, 600, 6000, 2500, Carry, "Greatest distance of the aim point, cm."),
-        number("ap_nav_preturn_dist", U16, 500, 5000, 1500, Carry, "Distance before a corner at which the turn begins, cm."),
-        number("ap_velocity_buildup_max_pitch", U8, 0, 20, 8, Live, "Nose-down lean that helps a slow craft to gain speed, deg."),
-        number("ap_max_turn_rate", U8, 1, 90, 3, Live, "Angular speed along orbits and figures of eight, deg/s."),
-        number("ap_hold_orbit_radius", U16, 300, 5000, 1000, Live, "Radius of orbits, cm."),
-        number("ap_hold_figure8_width", U16, 500, 10000, 2000, Live, "Distance between the two circles of a figure of eight, cm."),
-        number("ap_landing_descent_rate", U8, 10, 200, 50, Live, "Descent rate of a landing, cm/s."),
-        number("ap_landing_detection_time", U8, 5, 50, 10, Live, "How long the signs of a touchdown must last, 0.1 s."),
-        switch("ap_landing_spiral_enable", U8, true, Live, "Descend in a spiral."),
-        number("ap_landing_spiral_radius", U16, 50, 2000, 200, Live, "Radius of that spiral, cm."),
-        number("ap_landing_spiral_rate", U8, 1, 45, 10, Live, "Angular speed of that spiral, deg/s."),
-        number("ap_landing_velocity_threshold", U8, 10, 200, 50, Live, "Ground speed below which a touchdown is possible, cm/s."),
-        number("ap_landing_throttle_threshold", U16, 10, 500, 100, Live, "Throttle this far below hover is a sign of a touchdown, µs."),
-        switch("ap_l1_enable", U8, true, Live, "Follow the line between waypoints instead of pointing at the next one."),
-        number("ap_l1_period", U16, 5, 100, 20, Live, "Period of the path following; shorter is sharper, 0.1 s."),
-        number("ap_l1_min_lookahead", U16, 100, 5000, 1000, Live, "Least distance of the aim point on the path, cm."),
-        number("ap_l1_max_lookahead", U16, 1000, 50000, 10000, Live, "Greatest distance of the aim point on the path, cm."),
-        number("ap_l1_max_cross_track_error", U16, 1000, 50000, 10000, Live, "Farther from the path than this the craft flies straight back to it, cm."),
-        number("ap_l1_turn_rate", U8, 0, 90, 0, Live, "Rounds corners with arcs of this angular speed, deg/s; 0 does not."),
-        number("ap_min_nav_altitude_m", U8, 0, 50, 5, Live, "Below this height the craft climbs before it flies off, m."),
-        choice("ap_rx_loss_policy", U8, &["DISABLE", "CONTINUE", "LAND"], 0, Live, "What a mission does when the link is lost."),
-        number("ap_max_distance_from_home", U16, 0, 10000, 0, Live, "Radius of the fence around home, m; 0 for no fence."),
-        choice("ap_geofence_action", U8, &["LAND", "RTH"], 0, Live, "What happens outside the fence."),
-    ],
-};
+pub(super) const AUTOPILOT: Group =
+    Group { title: "Autopilot", scope: Scope::Master, settings: &settings_of_parameters() };
+
+const fn settings_of_parameters() -> [Setting; COUNT] {
+    let mut all = [setting_of(&Params::FIELDS[0]); COUNT];
+    let mut at = 1;
+    while at < COUNT {
+        all[at] = setting_of(&Params::FIELDS[at]);
+        at += 1;
+    }
+    all
+}
+
+/// The setting of a parameter of the autopilot that is listed in another group.
+pub(super) const fn setting(name: &str) -> Setting {
+    let mut at = COUNT;
+    while !is_same(Params::FIELDS[at].name, name) {
+        at += 1;
+    }
+    setting_of(&Params::FIELDS[at])
+}
+
+const fn setting_of(field: &Field) -> Setting {
+    let width = if field.bytes == 1 { Width::U8 } else { Width::U16 };
+    let (min, max, default) = (field.min, field.max, field.default);
+    let kind = if field.words.is_empty() {
+        Kind::Number { min, max, default }
+    } else {
+        Kind::Choice { words: field.words, default }
+    };
+    let role = match field.effect {
+        Effect::Live => Role::Live,
+        Effect::Stored => Role::Carry,
+    };
+    row(field.name, width, kind, role, field.help)
+}
+
+const fn is_same(a: &str, b: &str) -> bool {
+    let (a, b) = (a.as_bytes(), b.as_bytes());
+    let mut at = 0;
+    while at < a.len() && at < b.len() && a[at] == b[at] {
+        at += 1;
+    }
+    at == a.len() && at == b.len()
+}

@@ -11,7 +11,7 @@ pub(super) const HOLD: Group = Group {
     title: "Altitude and position hold",
     scope: Scope::Master,
     settings: &[
-        number("alt_hold_climb_rate", U8, 0, 200, 50, Live, "Climb rate at full stick in altitude hold, 0.1 m/s."),
+        super::autopilot::setting("alt_hold_climb_rate"),
         number("alt_hold_deadband", U8, 0, 70, 20, Live, "Throttle stick around hover that keeps the altitude, percent."),
         number("pos_hold_deadband", U8, 0, 50, 5, Live, "Stick movement beyond which the pilot steers in position hold, percent."),
         choice("poshold_position_source", U8, &["AUTO", "GPS_ONLY", "OPTICALFLOW_ONLY"], 0, Live, "Where position hold takes its position from; with OPTICALFLOW_ONLY there is none here."),

@@ -12,7 +12,7 @@ pub(super) const RECEIVER: Group = Group {
     scope: Scope::Master,
     settings: &[
         number("mid_rc", U16, 1200, 1700, 1500, Live, "Pulse of a centred stick, µs."),
-        number("min_check", U16, 750, 2250, 1050, Live, "Throttle below this counts as low, µs."),
+        super::autopilot::setting("min_check"),
         number("max_check", U16, 750, 2250, 1900, Live, "Sticks above this count as high, µs."),
         number("rssi_channel", I8, 0, 18, 0, Live, "Channel that carries the signal strength; 0 for none."),
         switch("rssi_src_frame_errors", I8, false, Carry, "Derive the signal strength from lost frames."),
