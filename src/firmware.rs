@@ -279,7 +279,7 @@ impl Firmware {
         match self.safety.crash(parameters, self.now, state, self.sensing.estimate()) {
             Some(CrashAction::Disarm) => self.disarm(DisarmReason::CrashProtection),
             Some(CrashAction::Level) => {
-                self.outbox.push(FirmwareEvent::Notice(FirmwareNotice::CrashDetected))
+                self.outbox.push(FirmwareEvent::Notice(FirmwareNotice::CrashDetected));
             }
             Some(CrashAction::Off) | None => {}
         }

@@ -114,10 +114,10 @@ impl Simulator {
         let received = self.link.receive(datagram, at, |sensors, ticks| {
             let mut frame = *sensors;
             for _ in 0..ticks {
-                if vehicle.time().0.is_multiple_of(RC_REPEAT_US) {
-                    if let Some(firmware) = vehicle.embedded_mut() {
-                        handler.keep_rc_fresh(firmware, speed, at);
-                    }
+                if vehicle.time().0.is_multiple_of(RC_REPEAT_US)
+                    && let Some(firmware) = vehicle.embedded_mut()
+                {
+                    handler.keep_rc_fresh(firmware, speed, at);
                 }
                 vehicle.tick_on(&frame);
                 // Held inputs; a sample is new only once.

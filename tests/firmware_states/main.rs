@@ -124,7 +124,7 @@ impl Run {
             for event in events {
                 match event {
                     EventKind::Firmware(event) => {
-                        self.law.judge_event(&event, self.vehicle.embedded().unwrap())
+                        self.law.judge_event(&event, self.vehicle.embedded().unwrap());
                     }
                     EventKind::Notice(notice) => {
                         assert!(!matches!(notice, VehicleNotice::EventsLost(_)), "{notice}");

@@ -1,6 +1,6 @@
 //! The files of `src/`.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// A file of the crate.
 #[derive(Debug)]
@@ -54,7 +54,7 @@ pub(crate) fn files() -> Vec<SourceFile> {
     files
 }
 
-fn below(root: &Path, path: &PathBuf) -> String {
+fn below(root: &Path, path: &Path) -> String {
     let parts: Vec<_> = path.strip_prefix(root).unwrap().iter().map(|part| part.to_str().unwrap()).collect();
     parts.join("/")
 }

@@ -211,7 +211,7 @@ mod tests {
     fn default_list_is_the_one_configurators_know() {
         let ids: Vec<_> =
             listed(Equipment { gps: true, airmode_feature: true, anti_gravity_feature: true, mag: true })
-                .map(|entry| entry.id())
+                .map(super::BoxInfo::id)
                 .collect();
         assert_eq!(
             ids,
@@ -223,7 +223,7 @@ mod tests {
     fn equipment_changes_the_list() {
         let bare: Vec<_> =
             listed(Equipment { gps: false, airmode_feature: false, anti_gravity_feature: false, mag: false })
-                .map(|entry| entry.id())
+                .map(super::BoxInfo::id)
                 .collect();
         for missing in [MAG, POS_HOLD, GPS_RESCUE, AUTOPILOT] {
             assert!(!bare.contains(&missing));
@@ -233,7 +233,7 @@ mod tests {
 
     #[test]
     fn permanent_ids_are_unique() {
-        let mut ids: Vec<_> = BOXES.iter().map(|entry| entry.id()).collect();
+        let mut ids: Vec<_> = BOXES.iter().map(super::BoxInfo::id).collect();
         ids.sort_unstable();
         ids.dedup();
         assert_eq!(ids.len(), BOXES.len());
