@@ -3,6 +3,7 @@
 mod arming;
 pub mod command;
 mod event;
+mod links;
 mod pacer;
 mod persistence;
 mod request_handler;
@@ -13,7 +14,9 @@ mod upload;
 
 pub use command::{Command, SessionView};
 pub use event::{EndpointAddresses, Event, SessionEvent};
+pub use links::{Links, MotorTargets, MotorsError};
 pub use pacer::{Pacer, SPEED_RANGE};
 pub use request_handler::{Handled, RequestHandler};
 pub use runtime::{Endpoints, Handle, SessionConfig, start};
+pub use simulator::SimulatorRemark;
 pub use upload::upload;

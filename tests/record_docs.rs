@@ -70,7 +70,10 @@ fn name(kind: &SessionEvent) -> Option<&'static str> {
     match kind {
         SessionEvent::Vehicle(kind) => vehicle_name(kind),
         SessionEvent::Endpoints(_) => Some("doors"),
-        SessionEvent::Notice(_) => Some("notice"),
+        SessionEvent::Notice(_) | SessionEvent::ArmingBlocked(_) | SessionEvent::Simulator(_) => {
+            Some("notice")
+        }
+        SessionEvent::FirstState { .. } | SessionEvent::FirstRc { .. } | SessionEvent::Restarted => None,
     }
 }
 

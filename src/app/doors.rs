@@ -4,17 +4,15 @@
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::time::{Duration, Instant};
 
-use tokio::sync::{mpsc, watch};
+use tokio::sync::watch;
 use tokio_util::sync::CancellationToken;
 
 use super::AppError;
 use crate::args::{DoorArgs, FlightArgs, PhysicsArgs};
 use crate::link::proto::fdm_link::FdmLinkConfig;
-use crate::link::{DoorKind, Doors, DoorsConfig, ExternalSimulator, MotorPort};
-use crate::session::{EndpointAddresses, Endpoints, RequestHandler};
+use crate::link::{DoorKind, Doors, DoorsConfig, ExternalSimulator};
+use crate::session::{EndpointAddresses, Endpoints, Links, MotorTargets};
 
-/// Requests that may wait for the session.
-const WAITING: usize = 256;
 /// Rhythm in which the state of the doors is published.
 const VIEW: Duration = Duration::from_millis(250);
 
@@ -51,7 +49,6 @@ pub(super) async fn open(
     if args.no_ports && !physics.is_external() {
         return Ok(None);
     }
-    let (request_tx, requests) = mpsc::channel(WAITING);
     let wanted = |port: u16| (!args.no_ports).then_some(port);
     let config = DoorsConfig {
         listen: args.listen,
@@ -61,7 +58,8 @@ pub(super) async fn open(
         fdm_port: physics.is_external().then_some(args.udp_ports().fdm),
         allow_origin: args.allow_origin.clone(),
     };
-    let (doors, first) = Doors::open(&config, request_tx).await;
+    let links = Links::open(&config).await;
+    let doors = &links.doors;
     let mut notices: Vec<String> = doors.problems().map(|problem| format!("{problem}.")).collect();
     if let Some(address) = args.listen.filter(|address| !address.is_loopback()) {
         notices.push(format!("The doors listen on {address}: everybody on that network can fly this craft."));
@@ -76,11 +74,9 @@ pub(super) async fn open(
         true => Some(simulator(args, physics, flight, addresses.fdm, &mut notices)?),
         false => None,
     };
-    let handler = RequestHandler::new(doors.restart_bell(), true);
-    let (view_tx, views) = watch::channel(first);
+    let (doors, endpoints, view_tx) = links.endpoints(simulator, true);
     let stop = CancellationToken::new();
     let keeper = tokio::spawn(keep(doors, view_tx, stop.clone()));
-    let endpoints = Endpoints { requests, handler, status: views, simulator };
     Ok(Some(Opened { doors: OpenDoors { stop, keeper }, endpoints, addresses, notices }))
 }
 
@@ -92,15 +88,13 @@ fn simulator(
     hears_at: Option<SocketAddr>,
     notices: &mut Vec<String>,
 ) -> Result<ExternalSimulator, AppError> {
-    let to = |port| SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), port);
     let ports = args.udp_ports();
-    let motors = MotorPort::open(to(ports.motors), to(ports.raw)).map_err(|error| {
-        AppError::environment(format!("cannot send motors to {}: {error}", to(ports.motors)))
-    })?;
+    let targets = MotorTargets { ip: IpAddr::V4(Ipv4Addr::LOCALHOST), motors: ports.motors, raw: ports.raw };
+    let motors = targets.open().map_err(|error| AppError::environment(error.to_string()))?;
     if let Some(address) = hears_at {
         notices.push(format!(
             "A simulator moves the craft: its states come to UDP {address}, motors go to {}. Waiting for it.",
-            to(ports.motors)
+            targets.motors()
         ));
     }
     let speech = &physics.simulator;

@@ -11,7 +11,6 @@ use super::error::{self, AppError};
 use super::setup::{attitude_source, read_file};
 use super::signals;
 use crate::args::{OnOff, SitlArgs};
-use crate::firmware::Firmware;
 use crate::firmware::cli::{ApplyReport, CliContext, CliFacts, Interpreter, Mode, provision};
 use crate::flight::FlightSetup;
 use crate::flight::setup::PhysicsSource;
@@ -20,6 +19,7 @@ use crate::link::proto::fdm_link::FdmLinkConfig;
 use crate::record::gpx::{GpxHeader, GpxWriter, TrackPoint, UtcSeconds};
 use crate::session::sitl::{Said, Sitl, SitlConfig, SitlEnd, SitlError, SitlPorts, show_links};
 use crate::storage::Store;
+use crate::telemetry::Snapshot;
 
 /// Name of the track.
 const TRACK: &str = "sitl_track.gpx";
@@ -107,7 +107,7 @@ async fn fly(args: &SitlArgs, config: SitlConfig) -> Result<u8, AppError> {
         .await
         .map_err(|error: SitlError| AppError::environment(error.to_string()))?;
     let mut track = Track { wanted: args.gpx, writer: None };
-    let end = sitl.run(&mut print, &mut |firmware| track.record(firmware), stop).await;
+    let end = sitl.run(&mut print, &mut |vehicle| track.record(vehicle), stop).await;
     track.finish();
     Ok(match end {
         SitlEnd::Stopped => error::INTERRUPTED,
@@ -159,21 +159,18 @@ struct Track {
 }
 
 impl Track {
-    fn record(&mut self, firmware: &Firmware) {
-        let facts = firmware.msp_facts(None);
-        if !self.wanted || !facts.gps.fix {
-            return;
-        }
-        let (place, alt_amsl_m) = (facts.gps.position, facts.gps.alt_amsl_m);
+    fn record(&mut self, vehicle: &Snapshot) {
+        let Some(gps) = vehicle.craft.gps.filter(|_| self.wanted && vehicle.craft.gps_fix) else { return };
+        let (place, alt_amsl_m) = (gps.position, gps.alt_amsl_m);
         if self.writer.is_none() {
-            match begin(firmware, alt_amsl_m) {
+            match begin(vehicle, alt_amsl_m) {
                 Ok(writer) => self.writer = Some((writer, alt_amsl_m)),
                 Err(error) => return self.give_up(&error),
             }
         }
         let Some((writer, home_amsl_m)) = &mut self.writer else { return };
         let point = TrackPoint {
-            time: firmware.time(),
+            time: vehicle.time,
             lat_deg: place.lat_deg(),
             lon_deg: place.lon_deg(),
             alt_m: alt_amsl_m - *home_amsl_m,
@@ -198,10 +195,10 @@ impl Track {
     }
 }
 
-fn begin(firmware: &Firmware, home_amsl_m: f64) -> io::Result<GpxWriter<BufWriter<File>>> {
+fn begin(vehicle: &Snapshot, home_amsl_m: f64) -> io::Result<GpxWriter<BufWriter<File>>> {
     let now_s = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |elapsed| elapsed.as_secs());
     // Points count from the firmware's boot.
-    let boot = UtcSeconds(now_s.saturating_sub(firmware.time().0 / 1_000_000));
+    let boot = UtcSeconds(now_s.saturating_sub(vehicle.time.0 / 1_000_000));
     let file = BufWriter::new(File::create(TRACK)?);
-    GpxWriter::new(file, GpxHeader::sitl(home_amsl_m, boot), firmware.stored_plan())
+    GpxWriter::new(file, GpxHeader::sitl(home_amsl_m, boot), &vehicle.stored_plan.clone().unwrap_or_default())
 }

@@ -3,7 +3,7 @@
 use crate::geo::LatLon;
 use crate::plan::FlightPlan;
 use crate::signals::{RC_CHANNELS, RcSource, SimTime};
-use crate::telemetry::snapshot::{CraftView, EstimateView, ModeRange, SettingsView};
+use crate::telemetry::snapshot::{CraftView, EstimateView, GpsView, ModeRange, SettingsView};
 use crate::telemetry::{ArmingFlags, DisarmReason, FirmwareEvent, ModeFlags, NavTelemetry};
 
 use super::config::{Configuration, ModeCondition};
@@ -172,6 +172,16 @@ impl Firmware {
         self.navigation.active_plan()
     }
 
+    /// What the GPS said last.
+    pub(super) fn gps_view(&self) -> Option<GpsView> {
+        let solution = self.estimate().gps.solution?;
+        Some(GpsView {
+            position: solution.position,
+            alt_amsl_m: f64::from(solution.alt_amsl_cm) / 100.0,
+            ground_speed_mps: solution.vel_enu.x.hypot(solution.vel_enu.y),
+        })
+    }
+
     /// Modes, arming, receiver, battery.
     #[must_use]
     pub fn craft_view(&self) -> CraftView {
@@ -187,6 +197,7 @@ impl Firmware {
             modes: self.modes,
             arming_blocked_by: Some(self.arming_blocks()),
             gps_fix: self.gps_fix(),
+            gps: self.gps_view(),
             sats: gps.sats,
             hdop: Some(gps.hdop).filter(|&hdop| hdop > 0.0),
             home: self.home(),

@@ -19,7 +19,9 @@ pub fn text(kind: &SessionEvent) -> Option<String> {
     match kind {
         SessionEvent::Vehicle(event) => vehicle(event),
         SessionEvent::Endpoints(addresses) => Some(endpoints(addresses)),
-        SessionEvent::Notice(notice) => Some(sentence_end(notice)),
+        SessionEvent::Notice(notice) | SessionEvent::ArmingBlocked(notice) => Some(sentence_end(notice)),
+        SessionEvent::Simulator(remark) => Some(sentence_end(&remark.to_string())),
+        SessionEvent::FirstState { .. } | SessionEvent::FirstRc { .. } | SessionEvent::Restarted => None,
     }
 }
 

@@ -4,7 +4,8 @@ use std::net::SocketAddr;
 
 use tokio::sync::mpsc;
 
-use crate::signals::SimTime;
+use super::simulator::SimulatorRemark;
+use crate::signals::{RcFrame, SimTime};
 use crate::telemetry::{self, EventKind};
 use crate::vehicle::Vehicle;
 
@@ -24,8 +25,28 @@ pub enum SessionEvent {
     Vehicle(EventKind),
     /// A notice for the user, as a sentence.
     Notice(String),
+    /// Why a craft does not arm whose script holds the ARM switch on, as a sentence.
+    ArmingBlocked(String),
     /// Other programs can reach the vehicle from now on.
     Endpoints(EndpointAddresses),
+    /// About the external simulator that moves the craft.
+    Simulator(SimulatorRemark),
+    /// A state from an external simulator came in while none had been accepted yet.
+    FirstState {
+        /// The simulator's clock, s.
+        stamp_s: f64,
+        /// Who sent it.
+        from: SocketAddr,
+    },
+    /// The first RC frame from a script.
+    FirstRc {
+        /// The script's clock, s.
+        stamp_s: f64,
+        /// The frame.
+        frame: RcFrame,
+    },
+    /// The firmware started anew on what is stored, as a client of a link asked.
+    Restarted,
 }
 
 /// Where other programs reach the vehicle; `None` = that endpoint is closed.

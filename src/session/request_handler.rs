@@ -74,6 +74,11 @@ impl RequestHandler {
         }
     }
 
+    /// Whether a craft without mode conditions gets the usual ones at every start.
+    pub(super) fn gives_starter_modes(&self) -> bool {
+        self.starter_modes
+    }
+
     /// Handles a request at `now`.
     pub fn handle(
         &mut self,

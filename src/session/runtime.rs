@@ -103,6 +103,7 @@ pub fn start(mut config: SessionConfig) -> std::io::Result<Handle> {
         events: EventSender::new(event_tx),
         arming: ArmingWatch::default(),
         unanswered: BTreeMap::new(),
+        rc_received: false,
         changed: true,
         more_waits: false,
         quit: false,
@@ -129,6 +130,8 @@ struct Session {
     arming: ArmingWatch,
     /// Lines of the console that a remote flight controller has not answered yet.
     unanswered: BTreeMap<Ticket, (String, oneshot::Sender<CliOutput>)>,
+    /// A script has sent RC.
+    rc_received: bool,
     /// Something other than time changed what the view shows.
     changed: bool,
     /// Clients asked more than one round of the loop has time for.
@@ -175,7 +178,7 @@ impl Session {
                 (self.changed, moved) = (false, false);
                 let view_now = self.view();
                 if let Some(notice) = self.arming.check(&view_now.vehicle) {
-                    self.notice(notice);
+                    self.events.report(&mut self.vehicle, SessionEvent::ArmingBlocked(notice));
                 }
                 view.send_replace(view_now);
             }

@@ -1,14 +1,15 @@
 //! An external simulator that moves the craft: its packets are the time, its silence stops it.
 
+use std::fmt;
 use std::time::{Duration, Instant};
 
 use arrayvec::ArrayVec;
 
 use super::request_handler::RequestHandler;
 use crate::link::proto::fdm::Refusal;
-use crate::link::proto::fdm_link::Verdict;
+use crate::link::proto::fdm_link::{Notice, Verdict};
 use crate::link::{ExternalSimulator, ImpairedLink, LinkImpairment};
-use crate::session::event::EventSender;
+use crate::session::event::{EventSender, SessionEvent};
 use crate::sim::LinkFaults;
 use crate::telemetry::{EndpointStatus, LinkState};
 use crate::vehicle::Vehicle;
@@ -18,6 +19,39 @@ pub(super) const RC_REPEAT_US: u64 = 20_000;
 
 /// Kinds of refusals, each of which is told once.
 const REFUSALS: usize = 6;
+
+/// What a session tells about its external simulator.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SimulatorRemark {
+    /// Its first packet was accepted.
+    Speaks,
+    /// A packet was accepted after a silence.
+    SpeaksAgain {
+        /// Wall time without an accepted packet, s.
+        silence_s: f64,
+    },
+    /// It has stopped sending.
+    Silent,
+    /// Packets are refused for this reason; told once for each.
+    Refused(Refusal),
+    /// The link has adapted to what the packets show.
+    Adapted(Notice),
+}
+
+impl fmt::Display for SimulatorRemark {
+    /// As a sentence.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Speaks => f.write_str("The simulator speaks: the craft's time is its time now."),
+            Self::SpeaksAgain { silence_s } => {
+                write!(f, "The simulator speaks again after {silence_s:.1} s of silence.")
+            }
+            Self::Silent => f.write_str("The simulator is silent: time stands still until it speaks again."),
+            Self::Refused(refusal) => write!(f, "Packets of the simulator are refused: {refusal}."),
+            Self::Adapted(notice) => f.write_str(&sentence(&notice.to_string())),
+        }
+    }
+}
 
 /// The simulator of a session.
 #[derive(Debug)]
@@ -138,7 +172,7 @@ impl Simulator {
         }
         for notice in received.notices {
             self.changed = true;
-            events.notice(vehicle, sentence(&notice.to_string()));
+            report(SimulatorRemark::Adapted(notice), vehicle, events);
         }
         if let Some(pose) = received.pose {
             vehicle.see(pose);
@@ -161,7 +195,7 @@ impl Simulator {
         if self.state == LinkState::Flowing && self.link.state(now) == LinkState::Silent {
             self.state = LinkState::Silent;
             self.changed = true;
-            events.notice(vehicle, "The simulator is silent: time stands still until it speaks again.");
+            report(SimulatorRemark::Silent, vehicle, events);
         }
         ticks
     }
@@ -176,13 +210,10 @@ impl Simulator {
         let before = std::mem::replace(&mut self.state, LinkState::Flowing);
         self.changed |= before != LinkState::Flowing;
         match before {
-            LinkState::Waiting => {
-                events.notice(vehicle, "The simulator speaks: the craft's time is its time now.");
+            LinkState::Waiting => report(SimulatorRemark::Speaks, vehicle, events),
+            LinkState::Silent => {
+                report(SimulatorRemark::SpeaksAgain { silence_s: silence.as_secs_f64() }, vehicle, events);
             }
-            LinkState::Silent => events.notice(
-                vehicle,
-                format!("The simulator speaks again after {:.1} s of silence.", silence.as_secs_f64()),
-            ),
             LinkState::Flowing => {}
         }
     }
@@ -190,7 +221,7 @@ impl Simulator {
     fn tell_refusal(&mut self, refusal: Refusal, vehicle: &mut Vehicle, events: &EventSender) {
         if !self.told_refusals.contains(&refusal) && self.told_refusals.try_push(refusal).is_ok() {
             self.changed = true;
-            events.notice(vehicle, format!("Packets of the simulator are refused: {refusal}."));
+            report(SimulatorRemark::Refused(refusal), vehicle, events);
         }
     }
 }
@@ -201,7 +232,11 @@ fn impairment(faults: LinkFaults) -> LinkImpairment {
     LinkImpairment { stall, loss, late_ms, duplicated, jitter_ms }
 }
 
-/// A remark of the link as a sentence.
+fn report(remark: SimulatorRemark, vehicle: &mut Vehicle, events: &EventSender) {
+    events.report(vehicle, SessionEvent::Simulator(remark));
+}
+
+/// A notice of the link as a sentence.
 fn sentence(remark: &str) -> String {
     let mut letters = remark.chars();
     letters.next().map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))

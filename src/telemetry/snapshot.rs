@@ -113,6 +113,8 @@ pub struct CraftView {
     pub arming_blocked_by: Option<ArmingFlags>,
     /// A 3-D fix.
     pub gps_fix: bool,
+    /// What the GPS said last, when it has said anything; old once the fix is lost.
+    pub gps: Option<GpsView>,
     /// Satellites.
     pub sats: u8,
     /// Horizontal dilution of precision, when reported.
@@ -145,6 +147,17 @@ pub struct CraftView {
     pub commanded: bool,
     /// The mode conditions in force: what the RC panel draws on the AUX bars.
     pub mode_ranges: Vec<ModeRange>,
+}
+
+/// What the GPS said, unfiltered.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct GpsView {
+    /// Where.
+    pub position: LatLon,
+    /// Altitude above mean sea level, m.
+    pub alt_amsl_m: f64,
+    /// Speed over ground, m/s.
+    pub ground_speed_mps: f64,
 }
 
 impl CraftView {

@@ -32,7 +32,13 @@ impl Level {
     pub fn of(kind: &SessionEvent) -> Self {
         match kind {
             SessionEvent::Vehicle(event) => Self::of_vehicle(event),
-            SessionEvent::Endpoints(_) | SessionEvent::Notice(_) => Self::Info,
+            SessionEvent::Endpoints(_)
+            | SessionEvent::Notice(_)
+            | SessionEvent::ArmingBlocked(_)
+            | SessionEvent::Simulator(_)
+            | SessionEvent::FirstState { .. }
+            | SessionEvent::FirstRc { .. }
+            | SessionEvent::Restarted => Self::Info,
         }
     }
 

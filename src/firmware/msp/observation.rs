@@ -234,12 +234,13 @@ impl GpsReading {
         let gps = &firmware.estimate().gps;
         let solution = gps.solution.unwrap_or_default();
         let (east, north) = (solution.vel_enu.x, solution.vel_enu.y);
+        let view = firmware.gps_view().unwrap_or_default();
         Self {
             fix: firmware.gps_fix(),
             sats: gps.sats,
-            position: solution.position,
-            alt_amsl_m: f64::from(solution.alt_amsl_cm) / 100.0,
-            ground_speed_mps: east.hypot(north),
+            position: view.position,
+            alt_amsl_m: view.alt_amsl_m,
+            ground_speed_mps: view.ground_speed_mps,
             course_deg: east.atan2(north).to_degrees(),
             dop: gps.hdop,
             solution: gps.messages as u8,

@@ -78,7 +78,13 @@ impl<'a> Fields<'a> {
             SessionEvent::Endpoints(EndpointAddresses { ws, tcp, fdm, rc }) => {
                 ("doors", Self::Doors { ws: *ws, tcp: *tcp, fdm: *fdm, rc: *rc })
             }
-            SessionEvent::Notice(text) => ("notice", Self::Notice { text: text.into() }),
+            SessionEvent::Notice(text) | SessionEvent::ArmingBlocked(text) => {
+                ("notice", Self::Notice { text: text.into() })
+            }
+            SessionEvent::Simulator(remark) => ("notice", Self::Notice { text: remark.to_string().into() }),
+            SessionEvent::FirstState { .. } | SessionEvent::FirstRc { .. } | SessionEvent::Restarted => {
+                return None;
+            }
         })
     }
 

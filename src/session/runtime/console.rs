@@ -38,6 +38,8 @@ impl Session {
     /// Does what a command line asked the owner of the firmware to do; says whether the firmware restarted. A remote
     /// flight controller saves and restarts by itself.
     fn carry_out_actions(&mut self, reply: &CliReply) -> bool {
+        let starter_modes =
+            self.endpoints.as_ref().is_none_or(|endpoints| endpoints.handler.gives_starter_modes());
         let Some(firmware) = self.vehicle.embedded_mut() else { return false };
         let mut restarted = false;
         let mut notices = Vec::new();
@@ -45,7 +47,7 @@ impl Session {
             match action {
                 CliAction::Save => notices.extend(persistence::save(firmware, &mut self.store).err()),
                 CliAction::Restart { .. } => {
-                    notices.extend(persistence::restart(firmware, &mut self.store, true));
+                    notices.extend(persistence::restart(firmware, &mut self.store, starter_modes));
                     self.console = Interpreter::default();
                     restarted = true;
                 }

@@ -7,10 +7,14 @@ use std::time::{Duration, Instant};
 use super::{SLICE, Session};
 use crate::firmware::cli::Interpreter;
 use crate::link::Request;
+use crate::link::proto::fdm::Packet;
 use crate::session::SPEED_RANGE;
+use crate::session::event::{EventSender, SessionEvent};
 use crate::session::request_handler::Handled;
-use crate::session::simulator::RC_REPEAT_US;
+use crate::session::simulator::{RC_REPEAT_US, Simulator};
 use crate::signals::RcSource;
+use crate::telemetry::LinkState;
+use crate::vehicle::Vehicle;
 
 /// Most wall time that requests get in one round of the loop; what is left waits for the next.
 const REQUEST_TIME: Duration = Duration::from_millis(1);
@@ -31,6 +35,13 @@ impl Session {
             };
             // A simulator's packets change the view like time does, at its own rhythm.
             self.changed |= time_stands_still && !matches!(request, Request::Fdm { .. });
+            report_first_packets(
+                &request,
+                &mut self.rc_received,
+                self.simulator.as_ref(),
+                &mut self.vehicle,
+                &self.events,
+            );
             // A remote flight controller is reached by its own endpoints.
             let Some(firmware) = self.vehicle.embedded_mut() else { continue };
             let Handled { notices, restarted, fdm } =
@@ -40,6 +51,7 @@ impl Session {
             }
             if restarted {
                 self.console = Interpreter::default();
+                self.events.report(&mut self.vehicle, SessionEvent::Restarted);
             }
             if let (Some((datagram, at)), Some(simulator)) = (fdm, &mut self.simulator) {
                 let speed = self.pacer.achieved();
@@ -97,5 +109,30 @@ impl Session {
                 endpoints.handler.keep_rc_fresh(firmware, speed, Instant::now());
             }
         }
+    }
+}
+
+/// Reports the first RC of a script, and states of a simulator as long as none was accepted.
+fn report_first_packets(
+    request: &Request,
+    rc_received: &mut bool,
+    simulator: Option<&Simulator>,
+    vehicle: &mut Vehicle,
+    events: &EventSender,
+) {
+    match request {
+        Request::Rc { stamp_s, frame, .. } if !*rc_received => {
+            *rc_received = true;
+            events.report(vehicle, SessionEvent::FirstRc { stamp_s: *stamp_s, frame: *frame });
+        }
+        Request::Fdm { datagram, from, .. }
+            if simulator.is_some_and(|simulator| simulator.state() == LinkState::Waiting) =>
+        {
+            if let Ok(packet) = Packet::parse(datagram) {
+                let stamp_s = packet.stamp_s();
+                events.report(vehicle, SessionEvent::FirstState { stamp_s, from: *from });
+            }
+        }
+        _ => {}
     }
 }

@@ -66,11 +66,10 @@ pub(super) fn link_lines(
     ]
 }
 
-/// The first state datagram.
+/// The first state datagram: the simulator's clock, s, and who sent it.
 #[must_use]
-pub(super) fn first_fdm_line(datagram: &[u8], from: SocketAddr) -> Option<String> {
-    let packet = fdm::Packet::parse(datagram).ok()?;
-    Some(format!("[SITL] new fdm {} t:{:.6} from {}:{}", fdm::SIZE, packet.stamp_s(), from.ip(), from.port()))
+pub(super) fn first_fdm_line(stamp_s: f64, from: SocketAddr) -> String {
+    format!("[SITL] new fdm {} t:{stamp_s:.6} from {}:{}", fdm::SIZE, from.ip(), from.port())
 }
 
 /// The first RC datagram.

@@ -1,0 +1,83 @@
+//! Opens what a session is reached by: the doors, and the socket for the motors of an external simulator.
+
+use std::io;
+use std::net::{IpAddr, SocketAddr};
+
+use tokio::sync::{mpsc, watch};
+
+use super::request_handler::RequestHandler;
+use super::runtime::Endpoints;
+use crate::link::{Doors, DoorsConfig, ExternalSimulator, MotorPort, Request};
+use crate::telemetry::EndpointStatus;
+
+/// Requests that may wait for the session.
+const WAITING: usize = 1024;
+
+/// Where the motors of a craft go that an external simulator moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct MotorTargets {
+    /// The machine of the simulator.
+    pub ip: IpAddr,
+    /// Port for motor commands, 0…1.
+    pub motors: u16,
+    /// Port for motor pulses, µs.
+    pub raw: u16,
+}
+
+/// There is no socket for the motors.
+#[derive(Debug, thiserror::Error)]
+#[error("cannot send motors to {to}: {error}")]
+pub struct MotorsError {
+    /// Where they were to go.
+    to: SocketAddr,
+    /// What the system says.
+    error: io::Error,
+}
+
+/// Open doors that no session answers yet.
+#[derive(Debug)]
+pub struct Links {
+    /// The doors; some may have problems.
+    pub doors: Doors,
+    requests: mpsc::Receiver<Request>,
+    status: Vec<EndpointStatus>,
+}
+
+impl Links {
+    /// Opens the doors. One that cannot be opened is among their problems, the others work.
+    pub async fn open(config: &DoorsConfig) -> Self {
+        let (inbox, requests) = mpsc::channel(WAITING);
+        let (doors, status) = Doors::open(config, inbox).await;
+        Self { doors, requests, status }
+    }
+
+    /// The session's side of them, and where their state is to be published. `starter_modes` gives a craft without mode
+    /// conditions the usual ones at every start.
+    #[must_use]
+    pub fn endpoints(
+        self,
+        simulator: Option<ExternalSimulator>,
+        starter_modes: bool,
+    ) -> (Doors, Endpoints, watch::Sender<Vec<EndpointStatus>>) {
+        let handler = RequestHandler::new(self.doors.restart_bell(), starter_modes);
+        let (publish, status) = watch::channel(self.status);
+        (self.doors, Endpoints { requests: self.requests, handler, status, simulator }, publish)
+    }
+}
+
+impl MotorTargets {
+    /// Where motor commands go.
+    #[must_use]
+    pub fn motors(self) -> SocketAddr {
+        SocketAddr::new(self.ip, self.motors)
+    }
+
+    /// Opens the socket for them; sends nothing yet.
+    ///
+    /// # Errors
+    /// When there is no socket.
+    pub fn open(self) -> Result<MotorPort, MotorsError> {
+        let to = self.motors();
+        MotorPort::open(to, SocketAddr::new(self.ip, self.raw)).map_err(|error| MotorsError { to, error })
+    }
+}
