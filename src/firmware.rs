@@ -186,7 +186,7 @@ impl Firmware {
     fn on_arm(&mut self, assisted: bool) {
         let position = stages::trusted_position(self.setup.parameters(), self.sensing.estimate());
         self.sensing.on_arm(position);
-        self.navigation.release_holds();
+        self.navigation.reset_control();
         self.outbox.push(FirmwareEvent::Armed);
         if assisted {
             self.outbox.push(FirmwareEvent::Notice(FirmwareNotice::ArmAssisted));
@@ -203,7 +203,7 @@ impl Firmware {
     fn on_disarm(&mut self, reason: DisarmReason) {
         self.sensing.on_disarm();
         self.control.set_demand(Demand::default());
-        self.navigation.release_holds();
+        self.navigation.reset_control();
         self.outbox.push(FirmwareEvent::Disarmed(reason));
     }
 

@@ -9,7 +9,8 @@
 #[path = "autopilot_support/flight.rs"]
 mod flight;
 
-use betadeck::autopilot::{Navigator, Params};
+use betadeck::autopilot::Params;
+use betadeck::autopilot::control::FlightControllers;
 use betadeck::plan::WaypointType::{Hold, Land};
 use betadeck::telemetry::NavState;
 use flight::{Flight, guide, waypoint, worst};
@@ -19,7 +20,7 @@ use flight::{Flight, guide, waypoint, worst};
 enum Before {
     /// Held still for a while.
     Steady,
-    /// Held still, but this navigator has not seen it.
+    /// Held still, but these controllers have not seen it.
     Unseen,
     /// Climbing at 2 m/s.
     Climbing,
@@ -33,7 +34,7 @@ fn engage(flight: &mut Flight, before: Before) {
     flight.hover(5.0);
     match before {
         Before::Steady => {}
-        Before::Unseen => flight.nav = Navigator::new(),
+        Before::Unseen => flight.controllers = FlightControllers::default(),
         Before::Climbing => flight.plant.climb = 2.0,
         Before::Sinking => flight.plant.climb = -2.0,
         Before::Punching => {

@@ -9,13 +9,14 @@
 #[path = "autopilot_support/flight.rs"]
 mod flight;
 
+use betadeck::autopilot::Params;
 use betadeck::autopilot::control::{
-    AltitudeController, AltitudeTarget, LEAN_SLEW_RPS, THROTTLE_SLEW_US_PER_S, YAW_SLEW_DPS2, throttle_share,
+    AltitudeController, AltitudeTarget, FlightControllers, LEAN_SLEW_RPS, THROTTLE_SLEW_US_PER_S,
+    YAW_SLEW_DPS2, throttle_share,
 };
 use betadeck::autopilot::guidance::{L1Limits, l1};
 use betadeck::autopilot::machine::{GroundFacts, TouchdownFacts, TouchdownGuards};
 use betadeck::autopilot::rx_loss::{RxLossFacts, decide};
-use betadeck::autopilot::{Navigator, Params};
 use betadeck::plan::WaypointType::{Flyover, Hold, Land};
 use betadeck::plan::{HoldPattern, Waypoint};
 use betadeck::telemetry::{L1Mode, NavState, PlanSource};
@@ -125,7 +126,7 @@ fn effects() -> Vec<Effect> {
             // A craft that nobody has seen hover.
             let mut flight = Flight::new(with(name, value), &[hold(0.0, 20.0)], 20.0);
             flight.hover(5.0);
-            flight.nav = Navigator::new();
+            flight.controllers = FlightControllers::default();
             flight.engage();
             flight.run(1.5);
             flight.plant.alt

@@ -186,7 +186,7 @@ impl Run {
                 let _ = flight.nav.return_to_home(&flight.inputs, &flight.params, rescue);
             }
             Happening::EmergencyLand => {
-                let _ = flight.nav.emergency_land(&flight.inputs, &flight.params);
+                let _ = flight.nav.emergency_land(&flight.inputs);
             }
             Happening::Reset => {
                 if flight.inputs.armed && self.switch {

@@ -3,6 +3,7 @@
 mod altitude;
 mod bumpless;
 mod disturbance;
+mod flight_controllers;
 mod hover_throttle;
 mod position;
 mod yaw;
@@ -13,6 +14,7 @@ pub use altitude::{
 };
 pub use bumpless::BumplessTransfer;
 pub use disturbance::DisturbanceObserver;
+pub use flight_controllers::FlightControllers;
 pub use hover_throttle::{HOVER_MAX_US, HOVER_MIN_US, HoverMeasurement, HoverThrottleEstimator};
 pub use position::{
     LEAN_SLEW_RPS, PositionController, PositionLaw, PositionMeasurement, PositionTarget, earth_to_body,

@@ -1,8 +1,8 @@
 //! The navigator: keeps the active plan and the state, asks the machine what to do, and flies it.
 //!
 //! One update, in this order: facts (fix, plan, fence, distances, progress, hold and touchdown clocks) → at most one
-//! transition → target and aim of the state → position, altitude and yaw control → demands. While nothing is flown it
-//! only tracks the flight, so that wind and hover throttle are known when it takes over.
+//! transition → target and aim of the state → position, altitude and yaw control → demands. The altitude and position
+//! controllers are lent to it: it engages them when it takes over, and does not touch them while it flies nothing.
 
 mod climb;
 mod cursor;
@@ -23,7 +23,7 @@ mod transit;
 use arrayvec::ArrayVec;
 use nalgebra::Vector2;
 
-use super::control::{AltitudeController, PositionController, YawController};
+use super::control::{FlightControllers, YawController};
 use super::io::NavInputs;
 use super::params::Params;
 use crate::plan::FlightPlan;
@@ -63,8 +63,8 @@ pub struct Navigator {
     previous: Option<Vector2<f64>>,
     target_ne: Vector2<f64>,
     target_alt_m: f64,
-    altitude: AltitudeController,
-    position: PositionController,
+    /// The craft was taken over since the last update: the controllers are still to be engaged.
+    takes_over: bool,
     yaw: YawController,
     telemetry: NavTelemetry,
     events: ArrayVec<NavEvent, EVENT_CAPACITY>,
@@ -113,47 +113,55 @@ impl Navigator {
         &self.telemetry
     }
 
-    /// The hover throttle in use, µs.
-    #[must_use]
-    pub fn hover_us(&self) -> f64 {
-        self.altitude.hover_us()
-    }
-
     /// Takes the events since the last call, oldest first.
     pub fn drain_events(&mut self) -> arrayvec::Drain<'_, NavEvent, EVENT_CAPACITY> {
         self.events.drain(..)
     }
 
     /// One update (100 Hz): at most one transition, then the demands. `stored` is the plan in the craft's memory; only
-    /// its clearing matters here.
-    pub fn update(&mut self, inputs: &NavInputs, params: &Params, stored: &FlightPlan) -> NavOutput {
+    /// its clearing matters here. While nothing is flown, the `controllers` are somebody else's.
+    pub fn update(
+        &mut self,
+        inputs: &NavInputs,
+        params: &Params,
+        stored: &FlightPlan,
+        controllers: &mut FlightControllers,
+    ) -> NavOutput {
         let now = self.inputs.apply(inputs);
         self.follow_arming(&now);
         let seen = self.observe(&now, params);
         let undecided = if self.is_flying() {
             self.cursor.follow_clearing(stored);
+            self.engage_controllers(&now, params, controllers);
             self.prepare(&now, params, &seen);
-            let mut facts = self.facts(&now, params, &seen);
+            let mut facts = self.facts(&now, params, &seen, &controllers.altitude);
             facts.touchdown_held_us = self.descent.time_touchdown(&facts.touchdown, now.time);
             (!self.step(&facts, &now, params)).then_some((facts, seen))
         } else {
-            self.track(&now, params);
             self.check_fence_after_abort(&now, params, &seen);
             None
         };
         self.previous = Some(now.pos_ne);
         if !self.is_flying() {
-            self.report(&now, params, &seen, None);
+            self.report(&now, params, &seen, controllers, None);
             return NavOutput::default();
         }
-        // A transition leads to another leg.
+        // A transition leads to another leg, and after an abort it takes over the craft.
+        self.engage_controllers(&now, params, controllers);
         let (facts, seen) = undecided.unwrap_or_else(|| {
             let seen = self.observe(&now, params);
-            (self.facts(&now, params, &seen), seen)
+            (self.facts(&now, params, &seen, &controllers.altitude), seen)
         });
-        let flown = self.fly(&now, params, &seen);
-        self.report(&now, params, &seen, Some((&facts, flown)));
+        let flown = self.fly(&now, params, &seen, controllers);
+        self.report(&now, params, &seen, controllers, Some((&facts, flown)));
         flown.output
+    }
+
+    /// Engages the controllers once after taking over the craft.
+    fn engage_controllers(&mut self, now: &NavInputs, params: &Params, controllers: &mut FlightControllers) {
+        if std::mem::take(&mut self.takes_over) {
+            controllers.engage(now, params);
+        }
     }
 
     fn follow_arming(&mut self, now: &NavInputs) {

@@ -102,13 +102,8 @@ impl Orders {
     ///
     /// # Errors
     /// When the craft is not armed or has no fix or no altitude.
-    pub fn emergency_land(
-        &mut self,
-        navigator: &mut Navigator,
-        inputs: &NavInputs,
-        params: &Params,
-    ) -> Result<(), Refusal> {
-        navigator.emergency_land(inputs, params)?;
+    pub fn emergency_land(&mut self, navigator: &mut Navigator, inputs: &NavInputs) -> Result<(), Refusal> {
+        navigator.emergency_land(inputs)?;
         self.order = Some(Order::Land);
         self.by_rescue_switch = false;
         self.aborted = None;
@@ -219,7 +214,7 @@ impl Orders {
         }
         match order {
             Order::ReturnHome(rescue) => navigator.return_to_home(inputs, params, rescue),
-            Order::Land => navigator.emergency_land(inputs, params),
+            Order::Land => navigator.emergency_land(inputs),
         }
     }
 

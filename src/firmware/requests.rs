@@ -96,7 +96,7 @@ impl Firmware {
     /// # Errors
     /// As [`Firmware::return_to_home`].
     pub fn emergency_land(&mut self) -> Result<(), Refusal> {
-        let done = self.navigation.emergency_land(self.setup.parameters());
+        let done = self.navigation.emergency_land();
         self.answer(done)
     }
 

@@ -1,5 +1,6 @@
 //! The fence, before the flight and in it.
 
+use betadeck::autopilot::control::FlightControllers;
 use betadeck::autopilot::fence::pre_flight;
 use betadeck::autopilot::machine::{Facts, transition};
 use betadeck::autopilot::{Navigator, Params};
@@ -53,15 +54,15 @@ fn leaving_the_fence_returns_home() {
 fn a_plan_outside_the_fence_is_refused_once_with_its_distance() {
     let params = Params { max_distance_from_home: 100, ..guide() };
     let stored = plan(&[waypoint(Flyover, 150.0, 0.0, 20.0, 5.0)]);
-    let mut nav = Navigator::new();
+    let (mut nav, mut controllers) = (Navigator::new(), FlightControllers::default());
     for _ in 0..10 {
-        nav.update(&inputs(), &params, &stored);
+        nav.update(&inputs(), &params, &stored, &mut controllers);
         let refusal = nav.engage(&inputs(), &params, &stored).unwrap_err();
         assert!(matches!(refusal, Refusal::Geofence { wp: 0, distance_cm: 14_990..=15_010, limit_m: 100 }));
     }
     assert_eq!(nav.state(), NavState::Idle);
     assert_eq!(nav.drain_events().count(), 1);
-    nav.update(&inputs(), &params, &stored);
+    nav.update(&inputs(), &params, &stored, &mut controllers);
     assert!(nav.telemetry().refusal.is_some());
 }
 

@@ -1,5 +1,6 @@
 //! Legs: the climb before them, corners that were missed, modifiers, lines, the nose.
 
+use betadeck::autopilot::control::FlightControllers;
 use betadeck::autopilot::io::NavInputs;
 use betadeck::autopilot::params::YawMode;
 use betadeck::autopilot::{Navigator, Params};
@@ -141,10 +142,10 @@ fn legs_cross_the_antimeridian() {
     };
     let stored = plan(&[record(50.0), record(100.0)]);
     assert!(stored.waypoints[0].position.lon_e7 < 0);
-    let mut nav = Navigator::new();
+    let (mut nav, mut controllers) = (Navigator::new(), FlightControllers::default());
     let at = NavInputs { origin, home: Some(origin), ..inputs() };
     nav.engage(&at, &Params::default(), &stored).unwrap();
-    nav.update(&at, &Params::default(), &stored);
+    nav.update(&at, &Params::default(), &stored, &mut controllers);
     let telemetry = nav.telemetry();
     assert!((telemetry.distance_m.unwrap() - 50.0).abs() < 0.05);
     assert!((telemetry.bearing_rad.unwrap().to_degrees() - 90.0).abs() < 0.1);

@@ -17,6 +17,7 @@ mod states;
 mod vectors;
 mod windup;
 
+use betadeck::autopilot::control::FlightControllers;
 use betadeck::autopilot::io::NavInputs;
 use betadeck::autopilot::{Navigator, Params};
 use betadeck::plan::FlightPlan;
@@ -29,13 +30,13 @@ fn three() -> FlightPlan {
     plan(&[60.0, 120.0, 180.0].map(|north| waypoint(Flyover, north, 0.0, 20.0, 5.0)))
 }
 
-/// A navigator that flies `three` and stands before waypoint `index`.
-fn flying(index: u8, stored: &FlightPlan, params: &Params) -> (Navigator, NavInputs) {
-    let mut nav = Navigator::new();
+/// A navigator that flies `three` and stands before waypoint `index`, its inputs and its controllers.
+fn flying(index: u8, stored: &FlightPlan, params: &Params) -> (Navigator, NavInputs, FlightControllers) {
+    let (mut nav, mut controllers) = (Navigator::new(), FlightControllers::default());
     let mut at = inputs();
     nav.engage(&at, params, stored).unwrap();
     assert!(index == 0 || nav.set_current(index, &at, params, stored));
     at.time = SimTime(at.time.0 + 10_000);
-    nav.update(&at, params, stored);
-    (nav, at)
+    nav.update(&at, params, stored, &mut controllers);
+    (nav, at, controllers)
 }

@@ -63,7 +63,7 @@ fn commands_need_an_armed_craft_with_a_fix() {
     let mut nav = Navigator::new();
     let params = Params::default();
     let no_fix = NavInputs { fix: false, ..inputs() };
-    assert_eq!(nav.emergency_land(&no_fix, &params), Err(Refusal::NoFix));
+    assert_eq!(nav.emergency_land(&no_fix), Err(Refusal::NoFix));
     let disarmed = NavInputs { armed: false, ..inputs() };
     assert_eq!(nav.return_to_home(&disarmed, &params, None), Err(Refusal::NotArmed));
     assert_eq!(nav.state(), NavState::Idle);
@@ -95,7 +95,7 @@ fn an_order_during_the_climb_ends_the_climb() {
     flight.engage();
     flight.run(0.1);
     assert!(flight.nav.telemetry().climbing);
-    flight.nav.emergency_land(&flight.inputs, &flight.params).unwrap();
+    flight.nav.emergency_land(&flight.inputs).unwrap();
     flight.run(0.1);
     let climbs = flight.events.iter().filter_map(|(_, event)| match event {
         NavEvent::Climbing(on) => Some(*on),

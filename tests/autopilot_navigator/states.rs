@@ -66,9 +66,9 @@ fn a_plan_of_modifiers_completes_at_once() {
 fn disarming_forgets_the_index_and_a_touchdown_shows_until_the_next_arming() {
     let stored = three();
     let params = Params::default();
-    let (mut nav, mut at) = flying(2, &stored, &params);
+    let (mut nav, mut at, mut controllers) = flying(2, &stored, &params);
     at.armed = false;
-    nav.update(&at, &params, &stored);
+    nav.update(&at, &params, &stored, &mut controllers);
     assert_eq!(nav.state(), NavState::Idle);
     at.armed = true;
     nav.engage(&at, &params, &stored).unwrap();
@@ -101,17 +101,17 @@ fn complete_in_the_air_stays_parked() {
 fn clearing_the_stored_plan_in_flight_ends_the_mission_and_editing_does_not() {
     let stored = three();
     let params = Params::default();
-    let (mut nav, at) = flying(0, &stored, &params);
+    let (mut nav, at, mut controllers) = flying(0, &stored, &params);
     let edited = plan(&[waypoint(Hold, 1.0, 1.0, 1.0, 1.0)]);
-    nav.update(&at, &params, &edited);
+    nav.update(&at, &params, &edited, &mut controllers);
     assert_eq!(nav.active_plan(), &stored);
-    nav.update(&at, &params, &FlightPlan::default());
+    nav.update(&at, &params, &FlightPlan::default(), &mut controllers);
     assert_eq!(
         (nav.state(), nav.telemetry().reason),
         (NavState::Idle, Some(TransitionReason::GivenUp(AbortReason::NoPlan)))
     );
     let away = NavInputs { pos_ne: Vector2::new(50.0, 0.0), ..at };
     nav.return_to_home(&away, &params, None).unwrap();
-    nav.update(&away, &params, &FlightPlan::default());
+    nav.update(&away, &params, &FlightPlan::default(), &mut controllers);
     assert_eq!(nav.state(), NavState::Approaching, "an injected plan does not depend on the stored one");
 }

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use betadeck::autopilot::control::FlightControllers;
 use betadeck::autopilot::io::NavInputs;
 use betadeck::autopilot::{Navigator, Params};
 use betadeck::geo::offset_to_latlon;
@@ -44,13 +45,19 @@ fn check_expectation(nav: &Navigator, expect: &Value, case: &Value) {
 }
 
 /// Moves the craft onto its waypoint and over its plane, update by update, until it leaves APPROACHING for the next.
-fn pass(nav: &mut Navigator, at: &mut NavInputs, stored: &FlightPlan, params: &Params) {
+fn pass(
+    nav: &mut Navigator,
+    at: &mut NavInputs,
+    stored: &FlightPlan,
+    params: &Params,
+    controllers: &mut FlightControllers,
+) {
     let target = stored.waypoints[usize::from(nav.index())].position;
     let place = betadeck::geo::local_offset(HOME, target);
     for step in [Vector2::new(-1.0, 0.0), Vector2::new(0.5, 0.0), Vector2::new(0.5, 0.0)] {
         at.time = SimTime(at.time.0 + 10_000);
         at.pos_ne = place + step;
-        nav.update(at, params, stored);
+        nav.update(at, params, stored, controllers);
     }
 }
 
@@ -75,33 +82,33 @@ fn commands_of_the_vectors() {
                 let verdict = nav.reset(&at, &params, &stored);
                 let reason = verdict.err().map(reason_of);
                 assert_eq!(reason.as_deref(), expect["reason"].as_str(), "{case}");
-                nav.update(&at, &params, &stored);
+                nav.update(&at, &params, &stored, &mut FlightControllers::default());
                 check_expectation(&nav, expect, &case);
             }
             "advance" => {
                 let index = case["index"].as_u64().unwrap() as u8;
-                let (mut nav, mut at) = flying(index, &stored, &params);
-                pass(&mut nav, &mut at, &stored, &params);
+                let (mut nav, mut at, mut controllers) = flying(index, &stored, &params);
+                pass(&mut nav, &mut at, &stored, &params, &mut controllers);
                 check_expectation(&nav, expect, &case);
             }
             "emergency_land" => {
-                let (mut nav, mut at) = flying(1, &stored, &params);
+                let (mut nav, mut at, _) = flying(1, &stored, &params);
                 if case["state_before"] == "LANDING" {
-                    nav.emergency_land(&at, &params).unwrap();
+                    nav.emergency_land(&at).unwrap();
                     at.pos_ne = Vector2::new(30.0, 7.0);
                 }
-                nav.emergency_land(&at, &params).unwrap();
+                nav.emergency_land(&at).unwrap();
                 check_expectation(&nav, expect, &case);
                 let here = offset_to_latlon(HOME, at.pos_ne);
                 assert_eq!(nav.active_plan().waypoints[0].position, here);
                 assert_eq!(nav.active_plan().waypoints[0].kind, Land);
             }
             "return_to_home" => {
-                let (mut nav, mut at) = flying(1, &stored, &params);
+                let (mut nav, mut at, mut controllers) = flying(1, &stored, &params);
                 at.alt_m = 33.0;
                 at.pos_ne = Vector2::new(50.0, 50.0);
                 nav.return_to_home(&at, &params, None).unwrap();
-                nav.update(&at, &params, &stored);
+                nav.update(&at, &params, &stored, &mut controllers);
                 check_expectation(&nav, expect, &case);
                 let kinds: Vec<_> = nav.active_plan().waypoints.iter().map(|wp| wp.kind).collect();
                 assert_eq!(kinds, [Flyover, Land]);
@@ -111,13 +118,13 @@ fn commands_of_the_vectors() {
             }
             "resume" => {
                 let index = case["index"].as_u64().unwrap() as u8;
-                let mut nav = Navigator::new();
+                let (mut nav, mut controllers) = (Navigator::new(), FlightControllers::default());
                 let mut at = inputs();
                 if case["started"] == true {
-                    (nav, at) = flying(index, &stored, &params);
+                    (nav, at, controllers) = flying(index, &stored, &params);
                 }
                 if case["state_before"] == "COMPLETE" {
-                    pass(&mut nav, &mut at, &stored, &params);
+                    pass(&mut nav, &mut at, &stored, &params, &mut controllers);
                     assert_eq!(nav.state(), NavState::Complete);
                 }
                 nav.disengage();
@@ -131,7 +138,7 @@ fn commands_of_the_vectors() {
                 check_expectation(&nav, expect, &case);
             }
             "set_current" => {
-                let (mut nav, at) = flying(0, &stored, &params);
+                let (mut nav, at, _) = flying(0, &stored, &params);
                 if case["flying"] == false {
                     nav.disengage();
                 }

@@ -4,8 +4,8 @@
 #![allow(dead_code, reason = "each test file uses its own part")]
 
 use betadeck::autopilot::control::{
-    AltitudeController, AltitudeMeasurement, AltitudeTarget, PositionController, PositionMeasurement,
-    PositionTarget, earth_to_body, throttle_share,
+    AltitudeController, AltitudeMeasurement, AltitudeTarget, FlightControllers, PositionController,
+    PositionMeasurement, PositionTarget, earth_to_body, throttle_share,
 };
 use betadeck::autopilot::io::NavInputs;
 use betadeck::autopilot::{Navigator, Params};
@@ -140,6 +140,7 @@ pub(crate) struct Sample {
 pub(crate) struct Flight {
     pub(crate) plant: Plant,
     pub(crate) nav: Navigator,
+    pub(crate) controllers: FlightControllers,
     pub(crate) params: Params,
     pub(crate) plan: FlightPlan,
     pub(crate) inputs: NavInputs,
@@ -230,6 +231,7 @@ impl Flight {
         Self {
             plant: Plant::new(alt),
             nav: Navigator::new(),
+            controllers: FlightControllers::default(),
             params,
             plan: plan(waypoints),
             inputs: inputs(),
@@ -283,7 +285,9 @@ impl Flight {
                 altitude.engage(&vertical, &params);
                 position.engage(&horizontal);
             }
-            self.nav.update(&self.inputs, &self.params, &self.plan);
+            self.nav.update(&self.inputs, &self.params, &self.plan, &mut self.controllers);
+            self.controllers.track_altitude(&self.inputs, &self.params);
+            self.controllers.track_position(&self.inputs);
             let throttle = altitude.update(&vertical, AltitudeTarget::Altitude(height), &params, DT);
             let lean = position.update(&horizontal, &PositionTarget::stay(point, &params), &params, DT);
             let body = earth_to_body(lean, self.plant.heading);
@@ -307,7 +311,7 @@ impl Flight {
 
     pub(crate) fn tick(&mut self) {
         self.sense();
-        let out = self.nav.update(&self.inputs, &self.params, &self.plan);
+        let out = self.nav.update(&self.inputs, &self.params, &self.plan, &mut self.controllers);
         let t = self.t();
         for event in self.nav.drain_events() {
             if event == NavEvent::Disarm {

@@ -4,6 +4,7 @@
 #![allow(dead_code, reason = "each test file uses a part of it")]
 
 use betadeck::autopilot::Params;
+use betadeck::autopilot::control::FlightControllers;
 use betadeck::autopilot::io::NavInputs;
 use betadeck::firmware::config::MixerKind;
 use betadeck::firmware::control::hold::{HoldModes, HoldOutput, HoldTuning, Holds};
@@ -23,6 +24,7 @@ pub(crate) struct Rig {
     pub(crate) estimator: Estimator,
     pub(crate) controller: Controller,
     pub(crate) holds: Holds,
+    controllers: FlightControllers,
     pub(crate) hold_tuning: HoldTuning,
     pub(crate) params: Params,
     pub(crate) modes: HoldModes,
@@ -55,6 +57,7 @@ impl Rig {
             estimator: Estimator::new(EstimatorOptions::default(), EstimatorTuning::from_settings(settings)),
             controller: Controller::new(Tuning::from_settings(settings, MixerKind::QuadX, &[]), dt),
             holds: Holds::default(),
+            controllers: FlightControllers::default(),
             hold_tuning: HoldTuning::from_settings(settings),
             params,
             modes: HoldModes::NONE,
@@ -150,7 +153,14 @@ impl Rig {
         if due.navigation {
             let now = self.nav_inputs(frame.time);
             let stick = self.received.throttle_us;
-            self.hold = self.holds.update(self.modes, &now, stick, &self.params, &self.hold_tuning);
+            self.hold = self.holds.update(
+                self.modes,
+                &now,
+                stick,
+                &self.params,
+                &self.hold_tuning,
+                &mut self.controllers,
+            );
         }
         let mut input = self.received;
         (input.due, input.rc_frame) = (due, is_frame);

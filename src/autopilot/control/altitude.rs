@@ -2,6 +2,7 @@
 
 use super::bumpless::BumplessTransfer;
 use super::hover_throttle::{HoverMeasurement, HoverThrottleEstimator};
+use crate::autopilot::io::NavInputs;
 use crate::autopilot::params::Params;
 
 /// How fast the setpoint's speed may change, m/s².
@@ -32,6 +33,17 @@ pub struct AltitudeMeasurement {
     pub cos_tilt: f64,
     /// Throttle that drove the mixer in the previous cycle, µs.
     pub throttle_us: f64,
+}
+
+impl From<&NavInputs> for AltitudeMeasurement {
+    fn from(now: &NavInputs) -> Self {
+        Self {
+            altitude_m: now.alt_m,
+            climb_mps: now.climb_mps,
+            cos_tilt: now.cos_tilt,
+            throttle_us: now.throttle_us,
+        }
+    }
 }
 
 /// What the altitude controller is asked for.
@@ -88,7 +100,7 @@ pub fn throttle_share(throttle_us: f64, params: &Params) -> f64 {
     ((throttle_us - zero) / (2000.0 - zero)).clamp(0.0, 1.0)
 }
 
-/// One altitude controller for the autopilot, altitude hold and the failsafe descent.
+/// The altitude controller of the autopilot, altitude hold and the failsafe descent.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct AltitudeController {
     hover: HoverThrottleEstimator,

@@ -22,8 +22,12 @@ impl DisturbanceObserver {
         self.accel
     }
 
-    /// Takes the measured ground `velocity` (m/s) and the acceleration of the lean flown (m/s²).
+    /// Takes the measured ground `velocity` (m/s) and the acceleration of the lean flown (m/s²); what is not finite is
+    /// left out.
     pub fn update(&mut self, velocity: Vector2<f64>, lean_accel: Vector2<f64>, dt: f64) {
+        if !(velocity.sum() + lean_accel.sum() + dt).is_finite() {
+            return;
+        }
         let predicted = self.velocity.unwrap_or(velocity);
         let error = velocity - predicted;
         // A velocity that jumps is a new estimate, not a gust.

@@ -73,8 +73,11 @@ impl HoverThrottleEstimator {
         self.hover_us
     }
 
-    /// Takes one cycle, flown by anyone.
+    /// Takes one cycle, flown by anyone; one that is not finite is left out.
     pub fn update(&mut self, now: &HoverMeasurement, dt: f64) {
+        if !(now.throttle_us + now.climb_mps + now.altitude_m + now.cos_tilt + dt).is_finite() {
+            return;
+        }
         let Some(estimate) = self.estimate_us else {
             self.estimate_us = Some(now.throttle_us);
             self.throttle_filter = now.throttle_us;

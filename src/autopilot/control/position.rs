@@ -5,6 +5,7 @@ use nalgebra::Vector2;
 use super::bumpless::BumplessTransfer;
 use super::disturbance::DisturbanceObserver;
 use crate::autopilot::guidance::stop_speed_mps;
+use crate::autopilot::io::NavInputs;
 use crate::autopilot::params::Params;
 use crate::geo::GRAVITY;
 
@@ -55,6 +56,18 @@ pub struct PositionMeasurement {
     pub heading_rad: f64,
 }
 
+impl From<&NavInputs> for PositionMeasurement {
+    fn from(now: &NavInputs) -> Self {
+        Self {
+            position: now.pos_ne,
+            velocity: now.vel_ne,
+            accel: now.accel_ne,
+            lean_body: Vector2::new(now.pitch_rad, now.roll_rad),
+            heading_rad: now.heading_rad,
+        }
+    }
+}
+
 /// Which law flies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PositionLaw {
@@ -99,7 +112,7 @@ impl PositionTarget {
     }
 }
 
-/// One position controller for the autopilot and position hold.
+/// The position controller of the autopilot and position hold.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct PositionController {
     observer: DisturbanceObserver,

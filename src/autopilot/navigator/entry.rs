@@ -83,7 +83,7 @@ impl Navigator {
     fn resume(&mut self, inputs: &NavInputs, params: &Params, stored: &FlightPlan) {
         match self.cursor.resume_index(stored) {
             Some(index) => {
-                self.begin(inputs, params, stored);
+                self.begin(inputs, stored);
                 self.begin_first_leg(index, true, TransitionReason::Resume, inputs, params);
             }
             None => self.start(inputs, params, stored),
@@ -119,7 +119,7 @@ impl Navigator {
     }
 
     fn start(&mut self, inputs: &NavInputs, params: &Params, stored: &FlightPlan) {
-        self.begin(inputs, params, stored);
+        self.begin(inputs, stored);
         let from = self.cursor.begin_mission(stored);
         match self.cursor.positional_from(from) {
             Some(index) => self.begin_first_leg(index, false, TransitionReason::Reset, inputs, params),
@@ -132,17 +132,16 @@ impl Navigator {
     }
 
     /// Makes the stored plan the active one and takes over the craft.
-    fn begin(&mut self, inputs: &NavInputs, params: &Params, stored: &FlightPlan) {
+    fn begin(&mut self, inputs: &NavInputs, stored: &FlightPlan) {
         self.cursor.load(stored);
-        self.take_over(inputs, params);
+        self.take_over(inputs);
         self.announce_plan();
     }
 
-    /// Resets what belongs to one engagement; the controllers start where the craft is, unless they fly already.
-    fn take_over(&mut self, inputs: &NavInputs, params: &Params) {
+    /// Resets what belongs to one engagement; the next update engages the controllers, unless they fly already.
+    fn take_over(&mut self, inputs: &NavInputs) {
         if self.state == NavState::Idle {
-            self.altitude.engage(&super::fly::vertical(inputs), params);
-            self.position.engage(&super::fly::horizontal(inputs));
+            self.takes_over = true;
             self.yaw.reset();
         }
         self.finish_climb();
@@ -208,10 +207,10 @@ impl Navigator {
     ///
     /// # Errors
     /// When the craft is not armed or has no fix or no altitude.
-    pub fn emergency_land(&mut self, inputs: &NavInputs, params: &Params) -> Result<(), Refusal> {
+    pub fn emergency_land(&mut self, inputs: &NavInputs) -> Result<(), Refusal> {
         let inputs = &self.inputs.apply(inputs);
         self.check_command(inputs)?;
-        self.land_here(TransitionReason::Emergency, None, inputs, params);
+        self.land_here(TransitionReason::Emergency, None, inputs);
         Ok(())
     }
 
@@ -246,16 +245,10 @@ impl Navigator {
         engage::check_craft(&facts)
     }
 
-    pub(super) fn land_here(
-        &mut self,
-        reason: TransitionReason,
-        guard: Option<Guard>,
-        inputs: &NavInputs,
-        params: &Params,
-    ) {
+    pub(super) fn land_here(&mut self, reason: TransitionReason, guard: Option<Guard>, inputs: &NavInputs) {
         self.cursor
             .inject(PlanSource::Emergency, &[injected(WaypointType::Land, here(inputs), inputs.alt_m, 0.0)]);
-        self.take_over(inputs, params);
+        self.take_over(inputs);
         self.announce_plan();
         self.cursor.move_to(0);
         let here = here(inputs);
@@ -272,7 +265,7 @@ impl Navigator {
         params: &Params,
     ) {
         let Some(home) = inputs.home else {
-            self.land_here(reason, guard, inputs, params);
+            self.land_here(reason, guard, inputs);
             return;
         };
         let altitude = inputs
@@ -283,7 +276,7 @@ impl Navigator {
         let records =
             [WaypointType::Flyover, WaypointType::Land].map(|kind| injected(kind, home, altitude, speed));
         self.cursor.inject(PlanSource::Rth, &records);
-        self.take_over(inputs, params);
+        self.take_over(inputs);
         self.rescue = rescue;
         self.announce_plan();
         self.begin_first_leg_with_guard(0, false, reason, guard, inputs, params);

@@ -2,6 +2,7 @@
 
 use super::Navigator;
 use super::observed::Observed;
+use crate::autopilot::control::AltitudeController;
 use crate::autopilot::fence::FenceFacts;
 use crate::autopilot::guidance::{PlaneCrossing, plane_crossing, turn_radius_m};
 use crate::autopilot::io::NavInputs;
@@ -26,7 +27,13 @@ impl Navigator {
         self.descent.follow_altitude(now.alt_m);
     }
 
-    pub(super) fn facts(&self, now: &NavInputs, params: &Params, seen: &Observed) -> Facts {
+    pub(super) fn facts(
+        &self,
+        now: &NavInputs,
+        params: &Params,
+        seen: &Observed,
+        altitude: &AltitudeController,
+    ) -> Facts {
         let waypoint = self.cursor.current().unwrap_or_default();
         let plane = self.previous.map_or(PlaneCrossing::NoLeg, |previous| {
             plane_crossing(seen.start_ne, seen.waypoint_ne, previous, now.pos_ne)
@@ -55,8 +62,8 @@ impl Navigator {
             progress: self.progress.facts(self.progress_distance_m(now, seen), now.time),
             hold_elapsed_us: self.hold.elapsed_us(now.time),
             touchdown: TouchdownGuards::new(
-                &self.touchdown_facts(now, params, seen),
-                &self.ground_facts(now, params),
+                &touchdown_facts(now, params, seen, altitude),
+                &self.ground_facts(now, params, altitude),
             ),
             touchdown_held_us: self.descent.held_us(),
             detection_time_ds: params.landing_detection_time,
@@ -123,23 +130,28 @@ impl Navigator {
         }
     }
 
-    fn touchdown_facts(&self, now: &NavInputs, params: &Params, seen: &Observed) -> TouchdownFacts {
-        TouchdownFacts::new(
-            params,
-            self.altitude.reference_hover_us(params),
-            now.alt_m,
-            seen.ground_speed_mps,
-            self.altitude.throttle_us(),
-            now.climb_mps,
-        )
-    }
-
-    fn ground_facts(&self, now: &NavInputs, params: &Params) -> GroundFacts {
-        let pressing = now.alt_m - self.altitude.setpoint_m() - PRESSING_M;
+    fn ground_facts(&self, now: &NavInputs, params: &Params, altitude: &AltitudeController) -> GroundFacts {
+        let pressing = now.alt_m - altitude.setpoint_m() - PRESSING_M;
         GroundFacts {
             descent_m: self.descent.descended_m(now.alt_m).max(pressing),
-            below_hover_us: self.altitude.hover_us() - self.altitude.throttle_us(),
+            below_hover_us: altitude.hover_us() - altitude.throttle_us(),
             needed_us: (0.5 * f64::from(params.landing_throttle_threshold)).min(BELOW_HOVER_US),
         }
     }
+}
+
+fn touchdown_facts(
+    now: &NavInputs,
+    params: &Params,
+    seen: &Observed,
+    altitude: &AltitudeController,
+) -> TouchdownFacts {
+    TouchdownFacts::new(
+        params,
+        altitude.reference_hover_us(params),
+        now.alt_m,
+        seen.ground_speed_mps,
+        altitude.throttle_us(),
+        now.climb_mps,
+    )
 }

@@ -6,7 +6,8 @@ use super::Navigator;
 use super::observed::Observed;
 use super::steer::PathView;
 use crate::autopilot::control::{
-    AltitudeMeasurement, AltitudeTarget, PositionMeasurement, YawFacts, earth_to_body, throttle_share,
+    AltitudeMeasurement, AltitudeTarget, FlightControllers, PositionMeasurement, YawFacts, earth_to_body,
+    throttle_share,
 };
 use crate::autopilot::io::NavInputs;
 use crate::autopilot::params::Params;
@@ -25,27 +26,6 @@ pub(super) struct Flown {
     pub path: PathView,
 }
 
-/// The vertical part of the inputs.
-pub(super) fn vertical(now: &NavInputs) -> AltitudeMeasurement {
-    AltitudeMeasurement {
-        altitude_m: now.alt_m,
-        climb_mps: now.climb_mps,
-        cos_tilt: now.cos_tilt,
-        throttle_us: now.throttle_us,
-    }
-}
-
-/// The horizontal part of the inputs.
-pub(super) fn horizontal(now: &NavInputs) -> PositionMeasurement {
-    PositionMeasurement {
-        position: now.pos_ne,
-        velocity: now.vel_ne,
-        accel: now.accel_ne,
-        lean_body: Vector2::new(now.pitch_rad, now.roll_rad),
-        heading_rad: now.heading_rad,
-    }
-}
-
 /// Share of the full deflection beyond the deadband, −1…1, so that crossing it is no step.
 fn stick_share(stick: f64, params: &Params) -> f64 {
     let deadband = f64::from(params.stick_deadband);
@@ -54,33 +34,34 @@ fn stick_share(stick: f64, params: &Params) -> f64 {
 }
 
 impl Navigator {
-    /// Tracks a cycle that somebody else flies.
-    pub(super) fn track(&mut self, now: &NavInputs, params: &Params) {
-        self.altitude.track(&vertical(now), params, now.dt);
-        if now.fix {
-            self.position.track(&horizontal(now), now.dt);
-        }
-    }
-
     /// The demands of this update.
-    pub(super) fn fly(&mut self, now: &NavInputs, params: &Params, seen: &Observed) -> Flown {
+    pub(super) fn fly(
+        &mut self,
+        now: &NavInputs,
+        params: &Params,
+        seen: &Observed,
+        controllers: &mut FlightControllers,
+    ) -> Flown {
+        let FlightControllers { altitude: altitude_controller, position: position_controller } = controllers;
         let params = &self.with_rescue_climb(params);
         let (target, path) = self.horizontal_target(now, params, seen);
-        let altitude = self.altitude_target(now, params);
-        self.altitude.set_relief_us(self.descent.relief_us());
-        let throttle_us = self.altitude.update(&vertical(now), altitude, params, now.dt);
+        let altitude = self.altitude_target(now, params, altitude_controller.setpoint_m());
+        altitude_controller.set_relief_us(self.descent.relief_us());
+        let throttle_us =
+            altitude_controller.update(&AltitudeMeasurement::from(now), altitude, params, now.dt);
         self.target_alt_m = match altitude {
             AltitudeTarget::Altitude(altitude_m) => altitude_m,
             AltitudeTarget::Landing { setpoint_m, .. } => setpoint_m,
-            AltitudeTarget::Rate(_) => self.altitude.setpoint_m(),
+            AltitudeTarget::Rate(_) => altitude_controller.setpoint_m(),
         };
+        let horizontal = PositionMeasurement::from(now);
         let lean = if seen.stick_override {
-            self.position.track(&horizontal(now), now.dt);
+            position_controller.track(&horizontal, now.dt);
             Vector2::new(stick_share(now.stick_pitch, params), stick_share(now.stick_roll, params))
                 .cap_magnitude(1.0)
                 * params.max_lean_rad()
         } else {
-            let demand = self.position.update(&horizontal(now), &target, params, now.dt);
+            let demand = position_controller.update(&horizontal, &target, params, now.dt);
             earth_to_body(demand, now.heading_rad) * self.descent.lean_share()
         };
         let output = NavOutput {
@@ -104,9 +85,10 @@ impl Navigator {
         }
     }
 
-    fn altitude_target(&mut self, now: &NavInputs, params: &Params) -> AltitudeTarget {
+    /// `setpoint_m` is the altitude controller's now.
+    fn altitude_target(&mut self, now: &NavInputs, params: &Params, setpoint_m: f64) -> AltitudeTarget {
         match self.state {
-            NavState::Landing => self.descent.setpoint(now, params, self.altitude.setpoint_m()).map_or(
+            NavState::Landing => self.descent.setpoint(now, params, setpoint_m).map_or(
                 AltitudeTarget::Altitude(self.target_alt_m),
                 |path| AltitudeTarget::Landing { setpoint_m: path.altitude_m, rate_mps: path.climb_mps },
             ),

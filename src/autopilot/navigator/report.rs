@@ -5,6 +5,7 @@ use arrayvec::ArrayVec;
 use super::Navigator;
 use super::fly::Flown;
 use super::observed::Observed;
+use crate::autopilot::control::FlightControllers;
 use crate::autopilot::guidance::hold_remaining_ds;
 use crate::autopilot::io::NavInputs;
 use crate::autopilot::machine::{Facts, waiting_for};
@@ -21,6 +22,7 @@ impl Navigator {
         now: &NavInputs,
         params: &Params,
         seen: &Observed,
+        controllers: &FlightControllers,
         flown: Option<(&Facts, Flown)>,
     ) {
         let speed = seen.ground_speed_mps;
@@ -30,7 +32,7 @@ impl Navigator {
             home_distance_m,
             fence_margin_m: params.fence_m().zip(home_distance_m).map(|(limit, distance)| limit - distance),
             touchdown_held_s: self.descent.held_us().map(|held| held as f64 * 1e-6),
-            hover_us: self.altitude.hover_us(),
+            hover_us: controllers.altitude.hover_us(),
             ..NavTelemetry::default()
         };
         let guards = flown.map_or_else(ArrayVec::new, |(facts, _)| waiting_for(self.state, facts));
@@ -51,7 +53,7 @@ impl Navigator {
                 target_ne: Some(self.target_ne),
                 target_alt_m: Some(self.target_alt_m),
                 leg_start: on_leg.then_some(self.leg.start),
-                speed_setpoint_mps: Some(self.position.speed_setpoint_mps()),
+                speed_setpoint_mps: Some(controllers.position.speed_setpoint_mps()),
                 pattern_angle_rad: matches!(self.state, NavState::Orbiting | NavState::Figure8)
                     .then(|| self.hold.phase_rad()),
                 hold_remaining_ds: self.hold_remaining_ds(now),

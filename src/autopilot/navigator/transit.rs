@@ -20,7 +20,7 @@ impl Navigator {
         match outcome {
             Outcome::Abort(why) => self.abort(why, reason, guard),
             Outcome::Fence(action) => self.fence(action, reason, guard, &facts.fence, now, params),
-            Outcome::LandHere => self.land_here(reason, guard, now, params),
+            Outcome::LandHere => self.land_here(reason, guard, now),
             Outcome::Climbed => {
                 self.finish_climb();
                 self.leg.start = here(now);
@@ -111,7 +111,7 @@ impl Navigator {
             action,
         });
         match action {
-            FenceAction::Land => self.land_here(reason, guard, now, params),
+            FenceAction::Land => self.land_here(reason, guard, now),
             FenceAction::Rth => self.fly_home(reason, guard, None, now, params),
         }
     }
@@ -137,6 +137,7 @@ impl Navigator {
 
     pub(super) fn go_idle(&mut self, reason: TransitionReason, guard: Option<Guard>) {
         self.enter(NavState::Idle, reason, guard);
+        self.takes_over = false;
         self.cursor.unload();
         self.yaw_cap_dps = None;
         self.rescue = None;

@@ -1,9 +1,10 @@
-//! ALTHOLD, POS HOLD and the failsafe descent: the autopilot's controllers in the hands of the pilot.
+//! ALTHOLD, POS HOLD and the failsafe descent, flown with the autopilot's controllers.
 //!
-//! Runs a hundred times a second. While nobody holds, it watches the flight, so that wind and hover throttle are known
-//! when a hold takes over.
+//! Runs a hundred times a second while the navigator does not fly. A controller that no hold flies with tracks the
+//! flight, so that wind and hover throttle are known when a hold or the navigator takes over.
 
 use crate::autopilot::Params;
+use crate::autopilot::control::FlightControllers;
 use crate::autopilot::io::NavInputs;
 use crate::firmware::settings::Settings;
 
@@ -96,12 +97,12 @@ pub struct Holds {
 }
 
 impl Holds {
-    /// The craft was armed or disarmed: nothing is held.
-    pub fn reset(&mut self) {
+    /// Holds nothing: the navigator flies, or the craft was armed or disarmed.
+    pub fn release(&mut self) {
         *self = Self::default();
     }
 
-    /// One update. `throttle_stick_us` is the pilot's throttle; while the navigator flies, no mode is on.
+    /// One update of a craft that the navigator does not fly. `throttle_stick_us` is the pilot's throttle.
     pub fn update(
         &mut self,
         modes: HoldModes,
@@ -109,19 +110,22 @@ impl Holds {
         throttle_stick_us: f64,
         params: &Params,
         tuning: &HoldTuning,
+        controllers: &mut FlightControllers,
     ) -> HoldOutput {
         let (throttle, touchdown) = if now.altitude_valid && (modes.altitude || modes.descend) {
             let stick = (!modes.descend).then_some(throttle_stick_us);
-            let throttle = self.altitude.update(stick, now, params, tuning);
+            let throttle = self.altitude.update(stick, now, params, tuning, &mut controllers.altitude);
             (Some(throttle), self.altitude.has_touched_down())
         } else {
-            self.altitude.track(now, params);
+            self.altitude.release();
+            controllers.track_altitude(now, params);
             (None, false)
         };
         let lean = if modes.position && now.fix && tuning.uses_gps {
-            Some(self.position.update(now, params, tuning))
+            Some(self.position.update(now, params, tuning, &mut controllers.position))
         } else {
-            self.position.track(now);
+            self.position.release();
+            controllers.track_position(now);
             None
         };
         HoldOutput { lean, throttle, no_position: modes.position && lean.is_none(), touchdown }

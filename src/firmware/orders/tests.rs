@@ -2,6 +2,7 @@ use nalgebra::Vector2;
 use strum::IntoEnumIterator as _;
 
 use super::*;
+use crate::autopilot::control::FlightControllers;
 use crate::autopilot::params::RxLossPolicy;
 use crate::geo::LatLon;
 use crate::plan::{Waypoint, WaypointType};
@@ -62,6 +63,7 @@ const CALM: OrderFacts = OrderFacts {
 struct Flight {
     orders: Orders,
     navigator: Navigator,
+    controllers: FlightControllers,
     inputs: NavInputs,
     rescue: RescueConfig,
 }
@@ -69,7 +71,13 @@ struct Flight {
 impl Flight {
     fn new() -> Self {
         let rescue = RescueConfig { initial_climb_m: 10.0, ..RescueConfig::default() };
-        Self { orders: Orders::default(), navigator: Navigator::new(), inputs: hovering(), rescue }
+        Self {
+            orders: Orders::default(),
+            navigator: Navigator::new(),
+            controllers: FlightControllers::default(),
+            inputs: hovering(),
+            rescue,
+        }
     }
 
     fn update(&mut self, facts: OrderFacts) {
@@ -77,7 +85,7 @@ impl Flight {
         let rescue = self.rescue;
         self.inputs.time.0 += 10_000;
         self.orders.update(&mut self.navigator, &self.inputs, &params, &rescue, &plan(), &facts);
-        self.navigator.update(&self.inputs, &params, &plan());
+        self.navigator.update(&self.inputs, &params, &plan(), &mut self.controllers);
     }
 
     fn engaged() -> Self {
@@ -219,7 +227,7 @@ fn descent_of_the_failsafe_takes_the_mission_off() {
 fn disarming_forgets_commands() {
     let mut flight = Flight::new();
     flight.update(CALM);
-    flight.orders.emergency_land(&mut flight.navigator, &flight.inputs, &Params::default()).unwrap();
+    flight.orders.emergency_land(&mut flight.navigator, &flight.inputs).unwrap();
     flight.inputs.armed = false;
     flight.update(CALM);
     flight.inputs.armed = true;
@@ -244,7 +252,7 @@ fn failsafe_response_by_policy_and_procedure() {
             let idle = Flight::new();
             let approaching = Flight::engaged();
             let mut landing = Flight::engaged();
-            landing.orders.emergency_land(&mut landing.navigator, &landing.inputs, &params).unwrap();
+            landing.orders.emergency_land(&mut landing.navigator, &landing.inputs).unwrap();
             let got = [
                 failsafe_response(&idle.navigator, &params, procedure, true),
                 failsafe_response(&approaching.navigator, &params, procedure, true),

@@ -3,8 +3,9 @@
 use nalgebra::Vector2;
 
 use crate::autopilot::Navigator;
+use crate::autopilot::control::FlightControllers;
 use crate::autopilot::io::NavInputs;
-use crate::firmware::control::hold::{HoldModes, Holds};
+use crate::firmware::control::hold::{HoldModes, HoldOutput, Holds};
 use crate::firmware::estimate::Estimate;
 use crate::firmware::failsafe::{Failsafe, FailsafeAction, FailsafeFacts, Procedure, Response};
 use crate::firmware::modes::{ModeFacts, boxes};
@@ -47,6 +48,8 @@ pub(in crate::firmware) struct Navigation {
     orders: Orders,
     navigator: Navigator,
     holds: Holds,
+    /// Lent to the navigator or to the holds, whoever flies.
+    controllers: FlightControllers,
     inputs: NavInputs,
     /// The navigator's demands, while it flies.
     output: Option<NavOutput>,
@@ -63,6 +66,7 @@ impl Navigation {
             orders: Orders::default(),
             navigator: Navigator::new(),
             holds: Holds::default(),
+            controllers: FlightControllers::default(),
             inputs: unknown_craft(),
             output: None,
             updated_at: now,
@@ -174,7 +178,7 @@ impl Navigation {
                     self.orders.rescue_flight(&parameters.rescue, &self.inputs, RescueCause::Failsafe);
                 self.navigator.return_to_home(&self.inputs, nav, Some(rescue))
             }
-            Response::EmergencyLand => self.navigator.emergency_land(&self.inputs, nav),
+            Response::EmergencyLand => self.navigator.emergency_land(&self.inputs),
             Response::Procedure(Procedure::AutoLand) | Response::Continue | Response::KeepLanding => Ok(()),
         };
         if let Err(refusal) = started {
@@ -206,7 +210,7 @@ impl Navigation {
         };
         let (nav, rescue) = (&parameters.nav, &parameters.rescue);
         self.orders.update(&mut self.navigator, inputs, nav, rescue, stored, &facts);
-        let output = self.navigator.update(inputs, nav, stored);
+        let output = self.navigator.update(inputs, nav, stored, &mut self.controllers);
         self.output = self.navigator.is_flying().then_some(output);
         self.report_events(outbox)
     }
@@ -260,14 +264,18 @@ impl Navigation {
         throttle_stick_us: f64,
         outbox: &mut Outbox,
     ) -> Flown {
-        let free = self.output.is_none() && armed;
-        let hold = HoldModes {
-            altitude: free && modes.has(Mode::AltHold),
-            position: free && modes.has(Mode::PosHold),
-            descend: free && self.failsafe.auto_landing(),
+        let held = if self.output.is_some() {
+            self.holds.release();
+            HoldOutput::default()
+        } else {
+            let hold = HoldModes {
+                altitude: armed && modes.has(Mode::AltHold),
+                position: armed && modes.has(Mode::PosHold),
+                descend: armed && self.failsafe.auto_landing(),
+            };
+            let (nav, tuning) = (&parameters.nav, &parameters.hold);
+            self.holds.update(hold, &self.inputs, throttle_stick_us, nav, tuning, &mut self.controllers)
         };
-        let (nav, tuning) = (&parameters.nav, &parameters.hold);
-        let held = self.holds.update(hold, &self.inputs, throttle_stick_us, nav, tuning);
         if held.no_position && !self.no_position_reported {
             outbox.push(FirmwareEvent::Notice(FirmwareNotice::NoPosition));
         }
@@ -279,9 +287,13 @@ impl Navigation {
         Flown { demand, touchdown: held.touchdown }
     }
 
-    /// The craft was armed or disarmed: nothing is held.
-    pub(in crate::firmware) fn release_holds(&mut self) {
-        self.holds.reset();
+    /// The craft was armed or disarmed: nothing is held, and what the controllers tracked on the ground, which carries
+    /// the craft, is forgotten.
+    pub(in crate::firmware) fn reset_control(&mut self) {
+        self.holds.release();
+        if !self.navigator.is_flying() {
+            self.controllers = FlightControllers::default();
+        }
     }
 
     /// Flies home and lands, by command.
@@ -290,8 +302,8 @@ impl Navigation {
     }
 
     /// Lands here, by command.
-    pub(in crate::firmware) fn emergency_land(&mut self, parameters: &Parameters) -> Result<(), Refusal> {
-        self.orders.emergency_land(&mut self.navigator, &self.inputs, &parameters.nav)
+    pub(in crate::firmware) fn emergency_land(&mut self) -> Result<(), Refusal> {
+        self.orders.emergency_land(&mut self.navigator, &self.inputs)
     }
 
     /// Takes such a command back.

@@ -45,7 +45,6 @@ enum Phase {
 /// Altitude hold.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct AltitudeHold {
-    controller: AltitudeController,
     phase: Phase,
     /// The hold began on the ground, where the hover throttle cannot be learned; seconds in the air since.
     lifting_s: Option<f64>,
@@ -54,11 +53,9 @@ pub(super) struct AltitudeHold {
 }
 
 impl AltitudeHold {
-    /// Somebody else flies.
-    pub(super) fn track(&mut self, now: &NavInputs, params: &Params) {
-        self.phase = Phase::Off;
-        self.grounded_s = 0.0;
-        self.controller.track(&measurement(now), params, now.dt);
+    /// Holds nothing: the controller is engaged anew at the next update.
+    pub(super) fn release(&mut self) {
+        *self = Self::default();
     }
 
     /// Whether the descent has ended on the ground.
@@ -73,31 +70,38 @@ impl AltitudeHold {
         now: &NavInputs,
         params: &Params,
         tuning: &HoldTuning,
+        controller: &mut AltitudeController,
     ) -> f64 {
-        let measured = measurement(now);
+        let measured = AltitudeMeasurement::from(now);
         if self.phase == Phase::Off {
-            self.controller.engage(&measured, params);
+            controller.engage(&measured, params);
             self.lifting_s = (now.alt_m < AIRBORNE_M).then_some(0.0);
             let is_steady = now.climb_mps.abs() < STEADY_MPS;
             self.phase = if is_steady { Phase::Holding(now.alt_m) } else { stop(now) };
         }
-        self.learn_after_lift_off(now, &measured, params);
+        self.learn_after_lift_off(now, &measured, params, controller);
         let target = match stick_us {
-            Some(stick) => self.by_stick(stick, now, params, tuning),
-            None => self.descend(now, params),
+            Some(stick) => self.by_stick(stick, now, params, tuning, controller),
+            None => self.descend(now, params, controller),
         };
-        let throttle_us = self.controller.update(&measured, target, params, now.dt);
+        let throttle_us = controller.update(&measured, target, params, now.dt);
         throttle_share(throttle_us, params)
     }
 
     /// Takes over once more when the craft has flown for a moment: now its hover throttle is known.
-    fn learn_after_lift_off(&mut self, now: &NavInputs, measured: &AltitudeMeasurement, params: &Params) {
+    fn learn_after_lift_off(
+        &mut self,
+        now: &NavInputs,
+        measured: &AltitudeMeasurement,
+        params: &Params,
+        controller: &mut AltitudeController,
+    ) {
         let Some(seconds) = self.lifting_s else { return };
         let seconds = if now.alt_m > AIRBORNE_M { seconds + now.dt } else { 0.0 };
         self.lifting_s = Some(seconds);
         if seconds >= LIFTED_S {
             self.lifting_s = None;
-            self.controller.engage(measured, params);
+            controller.engage(measured, params);
         }
     }
 
@@ -107,8 +111,9 @@ impl AltitudeHold {
         now: &NavInputs,
         params: &Params,
         tuning: &HoldTuning,
+        controller: &AltitudeController,
     ) -> AltitudeTarget {
-        let hover = self.controller.reference_hover_us(params);
+        let hover = controller.reference_hover_us(params);
         let share = climb_share(stick_us, hover, tuning);
         let rate = share * params.climb_rate_mps();
         self.grounded_s = 0.0;
@@ -134,7 +139,12 @@ impl AltitudeHold {
         }
     }
 
-    fn descend(&mut self, now: &NavInputs, params: &Params) -> AltitudeTarget {
+    fn descend(
+        &mut self,
+        now: &NavInputs,
+        params: &Params,
+        controller: &AltitudeController,
+    ) -> AltitudeTarget {
         let rate = descent_rate_mps(now.alt_m, params);
         let before = match self.phase {
             Phase::Descending(setpoint) => setpoint,
@@ -143,7 +153,7 @@ impl AltitudeHold {
         let setpoint = (before - rate * now.dt).max(now.alt_m - DESCENT_LEASH_M.max(rate));
         self.phase = Phase::Descending(setpoint);
         // By the hover throttle in use: the configured one may be far off, and waiting for it would tip the craft over.
-        let light = self.controller.hover_us() - f64::from(params.landing_throttle_threshold);
+        let light = controller.hover_us() - f64::from(params.landing_throttle_threshold);
         let is_grounded = now.climb_mps > -GROUNDED_SHARE * rate
             && now.throttle_us < light
             && (!now.fix || now.vel_ne.norm() < GROUNDED_DRIFT_MPS);
@@ -204,15 +214,6 @@ pub(super) fn sink_stick_us(rate_mps: f64, params: &Params, tuning: &HoldTuning)
     (edge_us > tuning.low_us).then_some(edge_us - share * (edge_us - tuning.low_us))
 }
 
-fn measurement(now: &NavInputs) -> AltitudeMeasurement {
-    AltitudeMeasurement {
-        altitude_m: now.alt_m,
-        climb_mps: now.climb_mps,
-        cos_tilt: now.cos_tilt,
-        throttle_us: now.throttle_us,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -269,10 +270,10 @@ mod tests {
             stick_pitch: 0.0,
             stick_yaw: 0.0,
         };
-        let mut hold = AltitudeHold::default();
+        let (mut hold, mut controller) = (AltitudeHold::default(), AltitudeController::default());
         let mut updates = 0;
         while !hold.has_touched_down() && updates < 1000 {
-            hold.update(None, &now, &params, &tuning);
+            hold.update(None, &now, &params, &tuning, &mut controller);
             updates += 1;
         }
         f64::from(updates) * now.dt

@@ -16,26 +16,28 @@ const STOP_SHARE: f64 = 0.4;
 /// Position hold.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct PositionHold {
-    controller: PositionController,
     /// The point held, north and east, m; none while the pilot flies.
     point: Option<Vector2<f64>>,
     is_on: bool,
 }
 
 impl PositionHold {
-    /// Somebody else flies.
-    pub(super) fn track(&mut self, now: &NavInputs) {
-        (self.point, self.is_on) = (None, false);
-        if now.fix {
-            self.controller.track(&measurement(now), now.dt);
-        }
+    /// Holds nothing: the controller is engaged anew at the next update.
+    pub(super) fn release(&mut self) {
+        *self = Self::default();
     }
 
     /// The lean that keeps the place, or the one the pilot asks for.
-    pub(super) fn update(&mut self, now: &NavInputs, params: &Params, tuning: &HoldTuning) -> LeanDemand {
-        let measured = measurement(now);
+    pub(super) fn update(
+        &mut self,
+        now: &NavInputs,
+        params: &Params,
+        tuning: &HoldTuning,
+        controller: &mut PositionController,
+    ) -> LeanDemand {
+        let measured = PositionMeasurement::from(now);
         if !self.is_on {
-            self.controller.engage(&measured);
+            controller.engage(&measured);
             self.is_on = true;
         }
         let limit = params.max_lean_rad();
@@ -45,13 +47,13 @@ impl PositionHold {
         );
         if stick != Vector2::zeros() {
             self.point = None;
-            self.controller.track(&measured, now.dt);
+            controller.track(&measured, now.dt);
             let lean = stick.cap_magnitude(1.0) * limit;
             return LeanDemand { pitch_rad: lean.x, roll_rad: lean.y };
         }
         let point = *self.point.get_or_insert_with(|| stopping_point(now, params));
         let target = PositionTarget::stay(point, params);
-        let lean_ne = self.controller.update(&measured, &target, params, now.dt);
+        let lean_ne = controller.update(&measured, &target, params, now.dt);
         let body = earth_to_body(lean_ne, now.heading_rad);
         LeanDemand { pitch_rad: body.x, roll_rad: body.y }
     }
@@ -70,16 +72,6 @@ fn share(stick: f64, deadband: f64) -> f64 {
         return 0.0;
     }
     ((deflection - deadband) / (1.0 - deadband).max(0.01)).min(1.0).copysign(stick)
-}
-
-fn measurement(now: &NavInputs) -> PositionMeasurement {
-    PositionMeasurement {
-        position: now.pos_ne,
-        velocity: now.vel_ne,
-        accel: now.accel_ne,
-        lean_body: Vector2::new(now.pitch_rad, now.roll_rad),
-        heading_rad: now.heading_rad,
-    }
 }
 
 #[cfg(test)]
