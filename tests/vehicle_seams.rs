@@ -1,5 +1,6 @@
 //! The seams of a vehicle: a flight controller behind a mailbox flies the simulated world, and what it does not tell is
 //! unknown.
+#![allow(clippy::unwrap_used, reason = "a test may stop")]
 
 use std::collections::VecDeque;
 
