@@ -1,6 +1,7 @@
 //! How long a tick of the firmware takes at 1 kHz, the 100 Hz work included, and its estimation and control alone.
 //!
 //! One iteration is a second of flight (1000 ticks), so a reading of 250 µs means 0.25 µs a tick.
+#![allow(clippy::unwrap_used, reason = "a bench may stop")]
 
 use betadeck::firmware::cli::Interpreter;
 use betadeck::firmware::config::Configuration;

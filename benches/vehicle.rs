@@ -6,6 +6,7 @@
 //! the other one said in a recorded part of that mission.
 
 #![allow(
+    clippy::unwrap_used,
     clippy::disallowed_methods,
     clippy::print_stdout,
     reason = "a benchmark looks at the clock and prints"

@@ -37,7 +37,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (mut vehicle, _) = FlightSetup { world, ..FlightSetup::default() }.build()?;
     let mut console = Interpreter::default();
     for line in upload_lines(&file.plan, &file.settings) {
-        vehicle.embedded_mut().unwrap().run_cli(&mut console, &line);
+        vehicle.embedded_mut().ok_or("no embedded firmware")?.run_cli(&mut console, &line);
     }
     vehicle.start_pilot(10.0).map_err(|mode| format!("no switch for {mode}"))?;
 
