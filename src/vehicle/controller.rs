@@ -6,7 +6,6 @@ pub use remote::{FrameOut, RemoteController, RemoteTelemetry, Request};
 
 use crate::firmware::Firmware;
 use crate::firmware::cli::{BuildInfo, CliReply, Interpreter, StorageFacts};
-use crate::firmware::config::Configuration;
 use crate::firmware::msp::{Outcome, UtcTime};
 use crate::pilot::PilotFacts;
 use crate::plan::FlightPlan;
@@ -119,26 +118,6 @@ impl FlightController {
         }
     }
 
-    /// A command line session was opened on a serial link: no arming until reboot.
-    pub fn cli_opened(&mut self) {
-        if let Self::Embedded(firmware) = self {
-            firmware.cli_opened();
-        }
-    }
-
-    /// The session ended: motors that it turned stop.
-    pub fn cli_closed(&mut self) {
-        if let Self::Embedded(firmware) = self {
-            firmware.cli_closed();
-        }
-    }
-
-    /// The configuration in memory, to be stored here; a remote one stores its own.
-    #[must_use]
-    pub fn configuration(&self) -> Option<&Configuration> {
-        self.embedded().map(Firmware::configuration)
-    }
-
     /// What the commands of an embedded one tell about the stored configuration.
     pub fn set_storage_facts(&mut self, facts: StorageFacts) {
         if let Self::Embedded(firmware) = self {
@@ -150,14 +129,6 @@ impl FlightController {
     pub fn set_build(&mut self, build: BuildInfo) {
         if let Self::Embedded(firmware) = self {
             firmware.set_build(build);
-        }
-    }
-
-    /// Restarts; an embedded one with this configuration, a remote one with what it has stored.
-    pub fn restart(&mut self, configuration: Configuration) {
-        match self {
-            Self::Embedded(firmware) => firmware.restart(configuration),
-            Self::Remote(remote) => remote.restart(),
         }
     }
 
