@@ -103,10 +103,12 @@ pub struct GpsSample {
     pub vel_enu: Vector3<f64>,
     /// Horizontal dilution of precision; 0 = not reported.
     pub hdop: f64,
-    /// Horizontal accuracy estimate, m.
+    /// Horizontal accuracy estimate, m; 0 = not reported.
     pub horizontal_accuracy_m: f64,
-    /// Vertical accuracy estimate, m.
+    /// Vertical accuracy estimate, m; 0 = not reported.
     pub vertical_accuracy_m: f64,
+    /// Speed accuracy estimate, m/s; 0 = not reported.
+    pub speed_accuracy_mps: f64,
     /// Age of the solution when it was delivered, s: receivers stamp the instant their solution describes.
     pub latency_s: f64,
 }

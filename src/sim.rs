@@ -58,7 +58,7 @@ pub use fault::{
 pub use ground::{ContactAnchors, Ground, GroundContact, NO_ANCHORS};
 pub use plant::{Plant, ground_effect_factor};
 pub use random::Stream;
-pub use sensors::{SITL_DECLINATION_DEG, magnetic_field_enu};
+pub use sensors::{GpsGrade, SITL_DECLINATION_DEG, magnetic_field_enu};
 pub use switches::{AirDensity, SWITCHES, SwitchInfo, Switches, WindProfile};
 pub use truth::{BatteryTruth, Truth, attitude, level_attitude};
 pub use value_text::ParseError;

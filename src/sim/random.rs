@@ -36,6 +36,8 @@ pub enum Stream {
     RxJitter = 12,
     /// Packets that the faults of an external link drop, delay or repeat.
     Link = 13,
+    /// Multipath steps and masked satellites of the GPS among buildings.
+    GpsMultipath = 14,
 }
 
 impl Stream {

@@ -23,6 +23,7 @@ mod magnetometer;
 
 use barometer::Barometer;
 use gps::Gps;
+pub use gps::GpsGrade;
 use imu::Imu;
 use magnetometer::Magnetometer;
 pub use magnetometer::{SITL_DECLINATION_DEG, magnetic_field_enu};
@@ -65,7 +66,7 @@ impl Sensors {
             imu: Imu::new(config, step_s),
             barometer: Barometer::new(config.seed),
             magnetometer: Magnetometer::new(config.seed),
-            gps: Gps::new(config.seed),
+            gps: Gps::new(config.seed, config.switches.gps),
             battery: Normals::new(config.seed, Stream::Battery),
             local: LocalFrame::new(home.lat_deg, home.lon_deg, home.alt_amsl_m),
         }

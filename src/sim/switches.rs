@@ -2,6 +2,7 @@
 
 use super::command::in_range;
 use super::config::WorldError;
+use super::sensors::GpsGrade;
 use crate::did_you_mean;
 use crate::sim::value_text::{ParseError, number, on_off};
 
@@ -50,6 +51,8 @@ pub struct Switches {
     pub sensor_bias: bool,
     /// Declination of the magnetic field, degrees east.
     pub declination_deg: f64,
+    /// How well the GPS measures, with real noise.
+    pub gps: GpsGrade,
 }
 
 impl Default for Switches {
@@ -65,6 +68,7 @@ impl Default for Switches {
             vibration_mps2: 0.0,
             sensor_bias: true,
             declination_deg: super::sensors::SITL_DECLINATION_DEG,
+            gps: GpsGrade::Open,
         }
     }
 }
@@ -81,7 +85,7 @@ pub struct SwitchInfo {
 }
 
 /// All switches, for help and completion.
-pub const SWITCHES: [SwitchInfo; 10] = [
+pub const SWITCHES: [SwitchInfo; 11] = [
     SwitchInfo {
         name: "wind_profile",
         values: "log, flat",
@@ -112,6 +116,11 @@ pub const SWITCHES: [SwitchInfo; 10] = [
         help: "turn-on bias and drift of gyro, accelerometer and barometer",
     },
     SwitchInfo { name: "declination", values: "-180 to 180", help: "magnetic declination, degrees east" },
+    SwitchInfo {
+        name: "gps",
+        values: "rtk, open, consumer, urban",
+        help: "how well the GPS measures: centimetres, open sky, single band, among buildings",
+    },
 ];
 
 impl Switches {
@@ -176,6 +185,7 @@ impl Switches {
             }
             "vibration" => self.vibration_mps2 = range(0.0, 50.0)?,
             "sensor_bias" => self.sensor_bias = on_off(value)?,
+            "gps" => self.gps = value.parse().map_err(|_| unknown())?,
             "declination" => self.declination_deg = range(-180.0, 180.0)?,
             _ => return Err(unknown()),
         }
@@ -201,6 +211,7 @@ mod tests {
             "vibration=0.3",
             "sensor_bias=off",
             "declination=-9.5",
+            "gps=urban",
         ] {
             switches.set(text).unwrap();
         }
@@ -215,6 +226,7 @@ mod tests {
             vibration_mps2: 0.3,
             sensor_bias: false,
             declination_deg: -9.5,
+            gps: GpsGrade::Urban,
         };
         assert_eq!(switches, expected);
     }

@@ -2,8 +2,8 @@
 
 use crate::checks::{Checks, assert_met, greatest};
 use crate::rig::{Rig, SEEDS, Sample, world};
-use betadeck::sim::{Fault, WorldCommand};
-use betadeck::telemetry::{EventKind, FirmwareEvent, Mode, NavState};
+use betadeck::sim::{Fault, GpsGrade, Turbulence, WorldCommand};
+use betadeck::telemetry::{DisarmReason, EventKind, FirmwareEvent, Mode, NavState};
 
 const MISSION: &str = "
 waypoint insert 0 40.4640403 -79.5182000 2000 500 FLYOVER 0 ORBIT
@@ -78,5 +78,26 @@ fn glitch_does_not_upset_a_hold() {
         checks.at_most("back", rig.samples.last().unwrap().from(place), 1.5 + extra.h);
         checks.holds("state", rig.path().ends_with("HOLDING 0"));
         checks.verdict(&format!("glitch, seed {seed}"), &rig.story())
+    }));
+}
+
+#[test]
+fn landing_among_buildings_does_not_tip_over() {
+    const LAND: &str = "waypoint insert 0 40.4635000 -79.5182000 2000 0 LAND 0 ORBIT";
+    assert_met((1..=20).map(|seed| {
+        let mut world = world(seed).0;
+        world.switches.gps = GpsGrade::Urban;
+        // Seeds alternate between calm and a breeze with turbulence.
+        if seed % 2 == 0 {
+            world.wind = "5@200".parse().unwrap();
+            world.turbulence = Turbulence::Light;
+        }
+        let mut rig = Rig::new(world, LAND, 20.0);
+        rig.engaged().until(120.0, "disarm", |rig| rig.disarmed().is_some()).fly(2.0);
+        let mut checks = Checks::default();
+        checks.same("reason", rig.disarmed().unwrap().1, DisarmReason::Landing);
+        checks.holds("whole", !rig.vehicle.world().unwrap().truth().crashed);
+        checks.at_most("lean at rest", rig.samples.last().unwrap().lean(), 2.0);
+        checks.verdict(&format!("urban landing, seed {seed}"), &rig.story())
     }));
 }

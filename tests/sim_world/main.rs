@@ -3,6 +3,7 @@
 mod determinism;
 mod docs;
 mod faults;
+mod gps_grades;
 mod sensors;
 
 use betadeck::signals::MotorCommand;

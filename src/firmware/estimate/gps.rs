@@ -7,6 +7,35 @@ const FROZEN_SAMPLES: u8 = 3;
 /// Slower solutions (m/s) may repeat: the craft stands.
 const STANDING_MPS: f64 = 0.02;
 
+/// What a good solution reports: dilution of precision, accuracies of position (m) and speed (m/s).
+const GOOD_HDOP: f64 = 0.8;
+const GOOD_HORIZONTAL_M: f64 = 1.0;
+const GOOD_VERTICAL_M: f64 = 1.6;
+const GOOD_SPEED_MPS: f64 = 0.05;
+/// A solution counts as at most so many times worse than a good one.
+const WORST: f64 = 20.0;
+
+/// How many times larger than those of a good solution the errors are that a solution reports, 1…20.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Dilution {
+    pub horizontal: f64,
+    pub vertical: f64,
+    pub speed: f64,
+}
+
+impl Dilution {
+    /// By the worse of dilution of precision and accuracy; what is not reported (0) does not count.
+    pub(super) fn of(sample: &GpsSample) -> Self {
+        let geometry = (sample.hdop / GOOD_HDOP).max(1.0);
+        let worse = |reported: f64, good: f64| geometry.max(reported / good).min(WORST);
+        Self {
+            horizontal: worse(sample.horizontal_accuracy_m, GOOD_HORIZONTAL_M),
+            vertical: worse(sample.vertical_accuracy_m, GOOD_VERTICAL_M),
+            speed: worse(sample.speed_accuracy_mps, GOOD_SPEED_MPS),
+        }
+    }
+}
+
 /// State of the GPS receiver.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct GpsStatus {
@@ -106,6 +135,18 @@ mod tests {
             assert_eq!(gps.status.fix, fix);
             assert_eq!(gps.status.frozen, !fix);
         }
+    }
+
+    #[test]
+    fn a_solution_counts_by_what_it_reports() {
+        let good = GpsSample { horizontal_accuracy_m: 0.5, hdop: 0.8, ..solution(0.0) };
+        assert_eq!(Dilution::of(&good), Dilution { horizontal: 1.0, vertical: 1.0, speed: 1.0 });
+        let poor = GpsSample { horizontal_accuracy_m: 6.0, speed_accuracy_mps: 0.3, hdop: 1.6, ..good };
+        let dilution = Dilution::of(&poor);
+        assert_eq!((dilution.horizontal, dilution.vertical), (6.0, 2.0));
+        assert!((dilution.speed - 6.0).abs() < 1e-12);
+        let absurd = GpsSample { hdop: 99.0, ..good };
+        assert_eq!(Dilution::of(&absurd), Dilution { horizontal: 20.0, vertical: 20.0, speed: 20.0 });
     }
 
     #[test]

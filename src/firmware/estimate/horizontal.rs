@@ -2,6 +2,7 @@
 
 use nalgebra::Vector2;
 
+use super::gps::Dilution;
 use super::history::Axis;
 use super::kalman::{Gain, KalmanCovariance, ProcessNoise};
 use crate::geo::{LatLon, local_offset};
@@ -13,10 +14,9 @@ const STEP_S: f64 = 0.01;
 const ACCEL_NOISE: f64 = 4e-4;
 /// Walk of its slow error, tilt and accelerometer together, (m/s³)²/Hz.
 const DRIFT_NOISE: f64 = 2.5e-3;
-/// Standard deviations of a good solution, m and m/s, and the dilution of precision it has.
+/// Standard deviations of a good solution, m and m/s.
 const POSITION_SIGMA: f64 = 0.3;
 const VELOCITY_SIGMA: f64 = 0.07;
-const GOOD_HDOP: f64 = 0.8;
 /// An innovation is suspicious beyond this many standard deviations and this size (m, m/s).
 const GATE_SIGMAS: f64 = 5.0;
 const POSITION_GATE: f64 = 2.0;
@@ -126,10 +126,10 @@ impl Horizontal {
             self.restart(position, velocity, age_s);
             return;
         }
-        let dilution = if sample.hdop > 0.0 { (sample.hdop / GOOD_HDOP).clamp(1.0, 20.0) } else { 1.0 };
+        let dilution = Dilution::of(sample);
         let age = (age_s / STEP_S).round().max(0.0) as usize;
         let mut covariance = self.covariance;
-        let by_velocity = covariance.measure_velocity((VELOCITY_SIGMA * dilution).powi(2));
+        let by_velocity = covariance.measure_velocity((VELOCITY_SIGMA * dilution.speed).powi(2));
         let (p, v) = self.past(age);
         let velocity_error = velocity - v;
         if exceeds(velocity_error, &by_velocity, VELOCITY_GATE) {
@@ -140,7 +140,7 @@ impl Horizontal {
         }
         self.correct(&by_velocity, velocity_error, age);
         let before = covariance;
-        let by_position = covariance.measure_position((POSITION_SIGMA * dilution).powi(2));
+        let by_position = covariance.measure_position((POSITION_SIGMA * dilution.horizontal).powi(2));
         let position_error = position - p;
         if exceeds(position_error, &by_position, POSITION_GATE) {
             // An honest velocity with a displaced position: after a while it is the place that has changed.

@@ -1,5 +1,6 @@
 //! Altitude and climb rate: dead reckoning by the accelerometer, held by barometer and GPS.
 
+use super::gps::Dilution;
 use super::history::Axis;
 use super::kalman::{KalmanCovariance, ProcessNoise};
 use crate::signals::GpsSample;
@@ -130,7 +131,7 @@ impl Vertical {
         let age = (age_s / STEP_S).round().max(0.0) as usize;
         let altitude = f64::from(sample.alt_amsl_cm) * 0.01;
         let has_baro = self.since_baro_s <= VALID_S;
-        let dilution = if sample.hdop > 0.0 { (sample.hdop / 0.8).clamp(1.0, 20.0) } else { 1.0 };
+        let dilution = Dilution::of(sample);
         let expected = self.axis.past(age).0;
         let zero = self.gps_zero.get_or_insert(altitude - expected);
         if has_baro && parked {
@@ -138,12 +139,12 @@ impl Vertical {
         }
         let zero = *zero;
         self.since_gps_s = 0.0;
-        let gain = self.covariance.measure_velocity((CLIMB_SIGMA * dilution).powi(2));
+        let gain = self.covariance.measure_velocity((CLIMB_SIGMA * dilution.speed).powi(2));
         let error = sample.vel_enu.z - self.axis.past(age).1;
         self.axis.correct(&gain, error.clamp(-5.0, 5.0), age, STEP_S);
         let sigma =
             if has_baro && source == AltitudeSource::Both { GPS_BESIDE_SIGMA } else { GPS_ALONE_SIGMA };
-        let gain = self.covariance.measure_position((sigma * dilution).powi(2));
+        let gain = self.covariance.measure_position((sigma * dilution.vertical).powi(2));
         let error = altitude - zero - self.axis.past(age).0;
         self.axis.correct(&gain, error, age, STEP_S);
     }

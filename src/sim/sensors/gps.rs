@@ -10,17 +10,19 @@ use crate::sim::fault::GpsFaults;
 use crate::sim::random::{GaussMarkov, Normals, Stream};
 use crate::sim::truth::Truth;
 
+mod grade;
+mod multipath;
+
+pub use grade::GpsGrade;
+use grade::GradeErrors;
+use multipath::Multipath;
+
 /// Slow ticks in a second.
 const TICKS_PER_S: u64 = 100;
 /// Age of a solution, slow ticks: 100 ms.
 const LATENCY_TICKS: usize = 10;
-/// White position error and wandering one (standard deviation, m; time constant, s), horizontally.
-const POSITION_WHITE_M: f64 = 0.03;
-const POSITION_WANDER: (f64, f64) = (0.25, 60.0);
-/// Vertical position errors over horizontal ones.
+/// Vertical position errors and reported accuracies over horizontal ones.
 const VERTICAL_FACTOR: f64 = 1.6;
-/// White velocity errors, m/s.
-const VELOCITY_MPS: Vector3<f64> = Vector3::new(0.05, 0.05, 0.08);
 /// Acquisition: first satellites, first fix, full constellation, s after boot; all times ± 20 % together.
 const FIRST_SATS_S: f64 = 1.5;
 const FIRST_FIX_S: f64 = 3.0;
@@ -28,17 +30,12 @@ const FULL_S: f64 = 4.5;
 const ACQUISITION_SPREAD: f64 = 0.2;
 /// A fix returns this long after the end of a loss, s.
 const REACQUISITION_S: f64 = 1.5;
-/// Satellites and HDOP: searching, at the first fix, with the full constellation.
+/// Satellites while searching and at the first fix, and HDOP there.
 const SEARCH_SATS: u8 = 4;
 const FIX_SATS: u8 = 7;
-const FULL_SATS: u8 = 12;
 const FIX_HDOP: f64 = 2.5;
-const FULL_HDOP: f64 = 0.8;
 /// Errors at the first fix over errors with the full constellation.
 const FIX_ERROR_FACTOR: f64 = 3.0;
-/// Accuracies reported with the full constellation, m.
-const HORIZONTAL_ACCURACY_M: f64 = 1.0;
-const VERTICAL_ACCURACY_M: f64 = 1.6;
 /// Default rate, Hz.
 const DEFAULT_RATE_HZ: u8 = 10;
 
@@ -53,10 +50,14 @@ struct Sky {
 
 impl Sky {
     const BLIND: Self = Self { fix: false, sats: 0, hdop: 99.0, error_factor: 1.0 };
-    const FULL: Self = Self { fix: true, sats: FULL_SATS, hdop: FULL_HDOP, error_factor: 1.0 };
+
+    /// All satellites of a grade.
+    fn full(grade: &GradeErrors) -> Self {
+        Self { fix: true, sats: grade.sats, hdop: grade.hdop, error_factor: 1.0 }
+    }
 
     /// Acquisition `t` nominal seconds after boot.
-    fn acquiring(t: f64) -> Self {
+    fn acquiring(t: f64, grade: &GradeErrors) -> Self {
         if t < FIRST_SATS_S {
             Self::BLIND
         } else if t < FIRST_FIX_S {
@@ -65,8 +66,8 @@ impl Sky {
             let grown = ((t - FIRST_FIX_S) / (FULL_S - FIRST_FIX_S)).min(1.0);
             Self {
                 fix: true,
-                sats: FIX_SATS + (grown * f64::from(FULL_SATS - FIX_SATS)) as u8,
-                hdop: FIX_HDOP + grown * (FULL_HDOP - FIX_HDOP),
+                sats: FIX_SATS + (grown * f64::from(grade.sats - FIX_SATS)) as u8,
+                hdop: FIX_HDOP + grown * (grade.hdop - FIX_HDOP),
                 error_factor: FIX_ERROR_FACTOR + grown * (1.0 - FIX_ERROR_FACTOR),
             }
         }
@@ -81,7 +82,9 @@ type Moment = (Vector3<f64>, Vector3<f64>);
 pub(in crate::sim) struct Gps {
     /// Solutions a second.
     rate_hz: u8,
+    grade: GpsGrade,
     normals: Normals,
+    multipath: Multipath,
     wander: Vector3<f64>,
     wander_process: GaussMarkov,
     /// Duration of this receiver's acquisition over the nominal one.
@@ -94,15 +97,16 @@ pub(in crate::sim) struct Gps {
 }
 
 impl Gps {
-    pub(crate) fn new(seed: u64) -> Self {
+    pub(crate) fn new(seed: u64, grade: GpsGrade) -> Self {
         let mut normals = Normals::new(seed, Stream::Gps);
-        let (sigma, tau_s) = POSITION_WANDER;
         let spread = 1.0 - ACQUISITION_SPREAD..1.0 + ACQUISITION_SPREAD;
         Self {
             rate_hz: DEFAULT_RATE_HZ,
-            wander: normals.next3() * sigma,
+            grade,
+            wander: normals.next3() * grade.errors().wander_sigma_m,
             normals,
-            wander_process: GaussMarkov::stationary(sigma, tau_s, 1.0 / f64::from(DEFAULT_RATE_HZ)),
+            multipath: Multipath::new(seed),
+            wander_process: wander_process(grade, DEFAULT_RATE_HZ),
             acquisition_scale: Stream::GpsAcquisition.rng(seed).random_range(spread),
             past: [(Vector3::zeros(), Vector3::zeros()); LATENCY_TICKS + 1],
             lost_until_s: None,
@@ -112,9 +116,15 @@ impl Gps {
 
     /// Sets the number of solutions a second, 1…20.
     pub(crate) fn set_rate(&mut self, rate_hz: u8) {
-        let (sigma, tau_s) = POSITION_WANDER;
         self.rate_hz = rate_hz;
-        self.wander_process = GaussMarkov::stationary(sigma, tau_s, 1.0 / f64::from(rate_hz));
+        self.wander_process = wander_process(self.grade, rate_hz);
+    }
+
+    /// Changes the grade; the wandering error goes on from where it is in its distribution.
+    pub(crate) fn set_grade(&mut self, grade: GpsGrade) {
+        self.wander *= grade.errors().wander_sigma_m / self.grade.errors().wander_sigma_m;
+        self.grade = grade;
+        self.wander_process = wander_process(grade, self.rate_hz);
     }
 
     /// Forgets the past: the craft has always been here.
@@ -159,10 +169,11 @@ impl Gps {
         faults: &GpsFaults,
         noise: Noise,
     ) -> GpsSample {
+        let grade = self.grade.errors();
         let sky = self.sky(tick as f64 / TICKS_PER_S as f64, faults.loss, noise);
         if noise == Noise::Real {
             // Drawn without a fix too, so that a loss leaves the later errors as they are.
-            let (position, velocity) = self.errors();
+            let (position, velocity) = self.errors(&grade);
             let factor = sky.error_factor * faults.noise_factor;
             pos += position * factor;
             vel += velocity * factor;
@@ -178,19 +189,26 @@ impl Gps {
             alt_amsl_cm: (alt_m * 100.0).round() as i32,
             vel_enu: vel,
             hdop: sky.hdop,
-            horizontal_accuracy_m: HORIZONTAL_ACCURACY_M * sky.error_factor,
-            vertical_accuracy_m: VERTICAL_ACCURACY_M * sky.error_factor,
+            horizontal_accuracy_m: grade.horizontal_accuracy_m * sky.error_factor,
+            vertical_accuracy_m: grade.horizontal_accuracy_m * VERTICAL_FACTOR * sky.error_factor,
+            speed_accuracy_mps: grade.velocity_white_mps[0] * sky.error_factor,
             latency_s: 0.0,
         }
     }
 
     /// Errors of position (m) and velocity (m/s) with the full constellation.
-    fn errors(&mut self) -> (Vector3<f64>, Vector3<f64>) {
+    fn errors(&mut self, grade: &GradeErrors) -> (Vector3<f64>, Vector3<f64>) {
         let normal = self.normals.next3();
         self.wander = self.wander.zip_map(&normal, |value, normal| self.wander_process.next(value, normal));
-        let mut position = self.wander + self.normals.next3() * POSITION_WHITE_M;
+        let mut position = self.wander + self.normals.next3() * grade.position_white_m;
         position.z *= VERTICAL_FACTOR;
-        (position, self.normals.next3().component_mul(&VELOCITY_MPS))
+        if grade.is_urban {
+            self.multipath.advance(1.0 / f64::from(self.rate_hz));
+            position += self.multipath.shift_enu();
+        }
+        let [horizontal, vertical] = grade.velocity_white_mps;
+        let velocity = self.normals.next3().component_mul(&Vector3::new(horizontal, horizontal, vertical));
+        (position, velocity)
     }
 
     fn sky(&mut self, now_s: f64, loss: bool, noise: Noise) -> Sky {
@@ -198,14 +216,24 @@ impl Gps {
             self.lost_until_s = Some(now_s + 1.0 / f64::from(self.rate_hz));
             return Sky::BLIND;
         }
+        let grade = self.grade.errors();
         match noise {
-            Noise::None if now_s >= FIRST_FIX_S => Sky::FULL,
+            Noise::None if now_s >= FIRST_FIX_S => Sky::full(&GpsGrade::Open.errors()),
             Noise::None => Sky::BLIND,
             // The epsilon keeps a return of 1.5 s from becoming 1.6 s by rounding.
             Noise::Real if self.lost_until_s.is_some_and(|end| now_s - end < REACQUISITION_S - 1e-6) => {
                 Sky { sats: SEARCH_SATS, ..Sky::BLIND }
             }
-            Noise::Real => Sky::acquiring(now_s / self.acquisition_scale),
+            Noise::Real => {
+                let sky = Sky::acquiring(now_s / self.acquisition_scale, &grade);
+                let sats = if grade.is_urban { self.multipath.sats_in_view(sky.sats) } else { sky.sats };
+                Sky { sats, ..sky }
+            }
         }
     }
+}
+
+fn wander_process(grade: GpsGrade, rate_hz: u8) -> GaussMarkov {
+    let errors = grade.errors();
+    GaussMarkov::stationary(errors.wander_sigma_m, errors.wander_tau_s, 1.0 / f64::from(rate_hz))
 }

@@ -39,6 +39,7 @@ impl World {
             WorldCommand::SetSwitch(switch) => {
                 self.switches.set(&switch)?;
                 self.set_ground_effect();
+                self.sensors.gps.set_grade(self.switches.gps);
             }
             WorldCommand::SetGpsRate(rate) => self.sensors.gps.set_rate(rate),
             WorldCommand::FaultOn(fault, for_s) => {
