@@ -20,7 +20,7 @@ use betadeck::firmware::cli::Interpreter;
 use betadeck::flight::{Flight, FlightOptions, FlightResult, FlightSetup};
 use betadeck::plan::builtin::{BuiltinPlan, DEMO};
 use betadeck::plan::upload_lines;
-use betadeck::signals::{MotorCommand, RcFrame, RcSource, SensorFrame, SimTime};
+use betadeck::signals::{MotorCommand, RcFrame, RcSource, SensorFrame};
 use betadeck::sim::{Turbulence, World, WorldConfig};
 use betadeck::vehicle::Vehicle;
 
@@ -61,7 +61,7 @@ fn vehicle(rate_hz: u32) -> Vehicle {
 
 /// Simulated and wall seconds from the engagement to the end of the demo mission.
 fn mission(rate_hz: u32) -> (f64, f64) {
-    let options = FlightOptions { takeoff_m: 10.0, timeout: SimTime::from_secs_f64(1800.0), samples_hz: 0.0 };
+    let options = FlightOptions::default();
     let mut flight = Flight::new(vehicle(rate_hz), &options).expect("the starter modes have the switches");
     while flight.engaged_at().is_none() {
         assert!(flight.tick(|_| {}).is_none(), "the mission never engaged");

@@ -5,14 +5,24 @@
 
 mod judge;
 pub mod setup;
+mod truth_check;
+mod verdict;
+mod waiting;
 
-pub use judge::{FlightResult, Judge, JudgeFacts, Verdict};
+pub use judge::{Judge, JudgeFacts};
 pub use setup::FlightSetup;
+pub use verdict::{FlightResult, Verdict};
+
+use nalgebra::Vector2;
+use truth_check::{CraftTruth, TruthCheck, agreement};
 
 pub use crate::pilot::StickInput;
 use crate::plan::{FlightPlan, WaypointType};
 use crate::signals::SimTime;
-use crate::telemetry::{Event, EventKind, Mode, NavTelemetry, PlanSource};
+use crate::sim::World;
+use crate::telemetry::{
+    Event, EventKind, FirmwareEvent, FlightTruth, Mode, NavEvent, NavTelemetry, PlanSource,
+};
 use crate::vehicle::Vehicle;
 
 /// How a flight is flown.
@@ -24,6 +34,15 @@ pub struct FlightOptions {
     pub timeout: SimTime,
     /// Samples a simulated second; 0 = none.
     pub samples_hz: f64,
+    /// How far beyond a waypoint's own radius, and beside its altitude, truth may be, m.
+    pub tolerance_m: f64,
+}
+
+impl Default for FlightOptions {
+    /// What `fly` does unless told otherwise.
+    fn default() -> Self {
+        Self { takeoff_m: 10.0, timeout: SimTime::from_secs_f64(1800.0), samples_hz: 0.0, tolerance_m: 10.0 }
+    }
 }
 
 /// A flight under way.
@@ -34,6 +53,12 @@ pub struct Flight {
     sample_every_us: Option<u64>,
     touched_down: bool,
     ends_in_land: bool,
+    takeoff_m: f64,
+    truth_check: TruthCheck,
+    /// What the navigator said in this tick.
+    nav_events: Vec<NavEvent>,
+    /// True altitude of the place where the craft was armed, m above the boot place.
+    armed_alt_m: f64,
 }
 
 /// What a flight reports.
@@ -50,6 +75,8 @@ pub enum Report<'a> {
 pub struct FlightEnd {
     /// What became of it.
     pub verdict: Verdict,
+    /// What really happened.
+    pub truth: FlightTruth,
     /// Simulated seconds from the engagement (or boot, if there was none) to the end.
     pub flown_s: f64,
     /// When it ended.
@@ -72,6 +99,10 @@ impl Flight {
             sample_every_us,
             touched_down: false,
             ends_in_land,
+            takeoff_m: options.takeoff_m,
+            truth_check: TruthCheck::new(options.tolerance_m),
+            nav_events: Vec::with_capacity(8),
+            armed_alt_m: 0.0,
         })
     }
 
@@ -90,11 +121,16 @@ impl Flight {
     /// Flies one tick; a value ends the flight.
     pub fn tick(&mut self, mut report: impl FnMut(Report)) -> Option<FlightEnd> {
         self.vehicle.tick();
-        let touched_down = &mut self.touched_down;
+        let (touched_down, nav_events) = (&mut self.touched_down, &mut self.nav_events);
+        let mut was_armed = false;
         self.vehicle.drain_events(|event| {
-            match event.kind {
+            match &event.kind {
                 EventKind::Touchdown { .. } => *touched_down = true,
-                EventKind::Firmware(crate::telemetry::FirmwareEvent::Armed) => *touched_down = false,
+                EventKind::Firmware(FirmwareEvent::Armed) => {
+                    *touched_down = false;
+                    was_armed = true;
+                }
+                EventKind::Firmware(FirmwareEvent::Nav(event)) => nav_events.push(event.clone()),
                 EventKind::Boot { .. }
                 | EventKind::Firmware(_)
                 | EventKind::Fault { .. }
@@ -104,6 +140,10 @@ impl Flight {
             }
             report(Report::Event(event));
         });
+        if was_armed {
+            self.armed_alt_m = self.true_alt_m();
+        }
+        self.check_truth();
         let now = self.vehicle.time();
         if let Some(every) = self.sample_every_us
             && now.0 / every != (now.0 - self.vehicle.step_us()) / every
@@ -111,8 +151,78 @@ impl Flight {
             report(Report::Sample(&self.vehicle));
         }
         let verdict = self.judge.look(&self.facts())?;
-        let from = self.judge.engaged_at().unwrap_or_default();
-        Some(FlightEnd { verdict, flown_s: now.seconds_since(from), time: now })
+        Some(self.end(verdict))
+    }
+
+    /// Ends the flight here and now, as its user asks.
+    #[must_use]
+    pub fn interrupt(&self, reason: &str) -> FlightEnd {
+        self.end(Verdict::new(FlightResult::Interrupted, reason))
+    }
+
+    /// The end of the flight by the verdict on what the firmware says, compared with the truth.
+    fn end(&self, mut verdict: Verdict) -> FlightEnd {
+        let truth = match self.craft_truth() {
+            Some(craft) => self.truth_check.truth(&craft, self.battery_used_pct()),
+            None => FlightTruth::default(),
+        };
+        match verdict.result {
+            FlightResult::Complete => match self.truth_check.worst_miss(&truth) {
+                Some(miss) => {
+                    verdict = Verdict::new(
+                        FlightResult::Missed,
+                        format!("the autopilot says complete, but {miss}"),
+                    );
+                }
+                None => verdict.reason = agreement(&truth).unwrap_or(verdict.reason),
+            },
+            FlightResult::Timeout if self.judge.engaged_at().is_none() => {
+                if let Some(waiting) = waiting::sentence(&self.vehicle, self.takeoff_m) {
+                    verdict.reason = format!("{}: {waiting}", verdict.reason);
+                }
+            }
+            _ => {}
+        }
+        let time = self.vehicle.time();
+        let flown_s = time.seconds_since(self.judge.engaged_at().unwrap_or_default());
+        FlightEnd { verdict, truth, flown_s, time }
+    }
+
+    /// Follows the waypoints with the truth, where a simulated world tells it.
+    fn check_truth(&mut self) {
+        let Some(craft) = self.craft_truth() else { return };
+        if !self.nav_events.is_empty() {
+            let settings = self.vehicle.controller().settings_view().unwrap_or_default();
+            let Some(frame) = self.vehicle.local_frame() else { return };
+            for event in self.nav_events.drain(..) {
+                self.truth_check.follow(&event, &craft, &settings, frame);
+            }
+        }
+        self.truth_check.look(&craft);
+    }
+
+    fn craft_truth(&self) -> Option<CraftTruth> {
+        let truth = self.vehicle.world()?.truth();
+        let nav = self.vehicle.controller().nav();
+        Some(CraftTruth {
+            time: self.vehicle.time(),
+            ne: Vector2::new(truth.pos_enu.y, truth.pos_enu.x),
+            alt_m: self.true_alt_m() - self.armed_alt_m,
+            speed_mps: truth.vel_enu.xy().norm(),
+            stick_override: nav.is_some_and(|nav| nav.stick_override),
+            climbing: nav.is_some_and(|nav| nav.climbing),
+        })
+    }
+
+    /// True altitude above the boot place, m.
+    fn true_alt_m(&self) -> f64 {
+        let above = |world: &World| world.truth().pos_enu.z - world.airframe().standing_height_m();
+        self.vehicle.world().map_or(0.0, above)
+    }
+
+    fn battery_used_pct(&self) -> Option<f64> {
+        let battery = self.vehicle.world()?.truth().battery;
+        Some(100.0 * battery.drawn_mah / battery.capacity_mah)
     }
 
     fn facts(&self) -> JudgeFacts {
@@ -126,6 +236,8 @@ impl Flight {
             armed: controller.is_armed(),
             last_disarm: controller.last_disarm(),
             state: nav.state,
+            entered_for: nav.reason,
+            alt_m: self.true_alt_m(),
             wp: nav.wp,
             source: nav.source,
             refusal: nav.refusal,

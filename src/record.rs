@@ -7,6 +7,7 @@ pub mod gpx;
 pub mod json;
 mod number;
 pub mod sentence;
+pub mod truth;
 
 pub use end::End;
 pub use gpx::{GpxHeader, GpxWriter, TrackPoint, UtcSeconds};

@@ -10,8 +10,8 @@ use betadeck::session::{EndpointAddresses, Event, SessionEvent};
 use betadeck::signals::SimTime;
 use betadeck::telemetry::{
     AbortReason, CrashCause, DisarmReason, EventKind, FailsafeProcedure, FaultKind, FaultValue, FenceAction,
-    FirmwareEvent, FirmwareNotice, Guard, GuardName, GuardOp, ModeFlags, NavEvent, NavState, PlanSource,
-    Refusal, RxLossPolicy, Snapshot, TransitionReason, VehicleNotice,
+    FirmwareEvent, FirmwareNotice, FlightTruth, Guard, GuardName, GuardOp, ModeFlags, NavEvent, NavState,
+    PlanSource, Refusal, RxLossPolicy, Snapshot, TransitionReason, VehicleNotice, WaypointTruth,
 };
 
 /// One event of each kind.
@@ -63,6 +63,27 @@ fn one_of_each() -> Vec<SessionEvent> {
     let session =
         [SessionEvent::Endpoints(EndpointAddresses::default()), SessionEvent::Notice("a notice".to_owned())];
     firmware.chain(vehicle).map(SessionEvent::Vehicle).chain(session).collect()
+}
+
+/// The end of a flight with one waypoint.
+fn an_end() -> End {
+    let waypoint = WaypointTruth {
+        source: PlanSource::Stored,
+        wp: 0,
+        kind: WaypointType::Hold,
+        miss_m: 1.0,
+        alt_error_m: Some(-0.5),
+        hold_max_m: Some(1.0),
+        radius_m: 2.0,
+        at: SimTime(1),
+    };
+    End {
+        result: "complete".to_owned(),
+        reason: "it is".to_owned(),
+        truth: FlightTruth { waypoints: vec![waypoint], parked: None, battery_used_pct: Some(3.0) },
+        flown_s: 1.0,
+        wall_s: 1.0,
+    }
 }
 
 /// The name on the page. A new kind of event stops the build here: it needs a row there and one above.
@@ -149,7 +170,7 @@ fn every_event_is_on_the_page_with_its_fields() {
             seen.insert(event);
         }
     }
-    let end = End { result: "complete".to_owned(), reason: "it is".to_owned(), flown_s: 1.0, wall_s: 1.0 };
+    let end = an_end();
     check(&json::end_line(SimTime(1), &end), "end", &row("end")[1]);
     let listed: BTreeSet<&str> = rows.iter().map(|row| row[0][0].as_str()).collect();
     assert_eq!(listed, seen, "the page has events that do not exist");
@@ -158,11 +179,13 @@ fn every_event_is_on_the_page_with_its_fields() {
 #[test]
 fn the_nested_objects_are_as_the_page_says() {
     let rows = rows("events");
-    for kind in one_of_each() {
-        let Some(event @ ("plan" | "state")) = name(&kind) else { continue };
-        let line = json::event_line(&Event { time: SimTime(1), kind }).expect("a line");
+    let events = one_of_each().into_iter().filter_map(|kind| {
+        let event = name(&kind).filter(|event| ["plan", "state"].contains(event))?;
+        Some((event, json::event_line(&Event { time: SimTime(1), kind }).expect("a line")))
+    });
+    for (event, line) in events.chain([("end", json::end_line(SimTime(1), &an_end()))]) {
         let value: serde_json::Value = serde_json::from_str(&line).expect("an object");
-        let nested = if event == "plan" { &value["waypoints"][0] } else { &value["guard"] };
+        let nested = if event == "state" { &value["guard"] } else { &value["waypoints"][0] };
         let told = &rows.iter().find(|row| row[0] == [event]).expect("the row")[2];
         let keys: Vec<&String> = nested.as_object().expect("an object").keys().collect();
         assert!(!keys.is_empty() && keys.iter().all(|key| told.contains(key)), "{keys:?} in {told:?}");

@@ -11,7 +11,7 @@ use super::error::{self, AppError};
 use super::setup;
 use crate::args::FlyArgs;
 use crate::flight::setup::{BootLines, PhysicsSource};
-use crate::flight::{Flight, FlightEnd, FlightOptions, FlightResult, Verdict};
+use crate::flight::{Flight, FlightEnd, FlightOptions, FlightResult};
 use crate::plan::format::PlanFile;
 use crate::plan::review::Finding;
 use crate::plan::validate::check_plan;
@@ -45,6 +45,7 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, AppError> {
         takeoff_m: args.takeoff_m(),
         timeout: SimTime::from_secs_f64(args.timeout_s()),
         samples_hz: args.samples.unwrap_or(0.0),
+        tolerance_m: args.tolerance_m(),
     };
     let flight = Flight::new(vehicle, &options).map_err(|mode| {
         AppError::input(format!(
@@ -59,6 +60,7 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, AppError> {
     let end_record = End {
         result: end.verdict.result.to_string(),
         reason: end.verdict.reason,
+        truth: end.truth,
         flown_s: end.flown_s,
         wall_s: wall.as_secs_f64(),
     };
@@ -77,7 +79,8 @@ fn refuse_unflyable(plan: &PlanFile) -> Result<(), AppError> {
 fn exit_code(result: FlightResult) -> u8 {
     match result {
         FlightResult::Complete => 0,
-        FlightResult::Landed
+        FlightResult::Missed
+        | FlightResult::Landed
         | FlightResult::Refused
         | FlightResult::Aborted
         | FlightResult::Disarmed
@@ -127,11 +130,7 @@ fn fly(mut flight: Flight, speed: f64, output: &mut Output) -> Result<(FlightEnd
             }
         }
         if interrupted.load(Ordering::Relaxed) {
-            let verdict =
-                Verdict { result: FlightResult::Interrupted, reason: "stopped by a signal".to_owned() };
-            let time = flight.vehicle().time();
-            let flown_s = time.seconds_since(flight.engaged_at().unwrap_or_default());
-            return Ok((FlightEnd { verdict, flown_s, time }, engaged.unwrap_or(started).elapsed()));
+            return Ok((flight.interrupt("stopped by a signal"), engaged.unwrap_or(started).elapsed()));
         }
         if due < SLICE {
             // Somebody may be watching.

@@ -33,6 +33,12 @@ pub struct FlyArgs {
     #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = value::takeoff, help_heading = "Flight")]
     pub takeoff: Option<f64>,
 
+    /// How far beyond its own radius a waypoint may truly be missed, and beside its altitude, m [default: 10]
+    ///
+    /// More makes the result `missed`: whatever the firmware believes, the truth decides.
+    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = value::tolerance, help_heading = "Flight")]
+    pub tolerance: Option<f64>,
+
     /// Gives up after this many simulated seconds since boot [default: 1800]
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = value::timeout, help_heading = "Flight")]
     pub timeout: Option<f64>,
@@ -78,6 +84,12 @@ impl FlyArgs {
     #[must_use]
     pub fn takeoff_m(&self) -> f64 {
         self.takeoff.unwrap_or(10.0)
+    }
+
+    /// How far truth may be off beyond a waypoint's own radius, m.
+    #[must_use]
+    pub fn tolerance_m(&self) -> f64 {
+        self.tolerance.unwrap_or(10.0)
     }
 
     /// Simulated seconds after boot at which the flight is given up.

@@ -11,7 +11,7 @@ Each option can also be set in the configuration file (wind = \"5@270\") and in 
 pub(super) const FLY: &str = "\
 T is in simulated seconds from the moment the autopilot engages; boot+T counts from boot.
 
-Exit codes: 0 the mission completed, 1 it did not, 2 wrong usage or input, 3 file or port trouble,
+Exit codes: 0 the mission truly completed, 1 it did not, 2 wrong usage or input, 3 file or port trouble,
 4 internal error, 130 interrupted.
 
 Each option can also be set in the configuration file (wind = \"5@270\") and in the environment

@@ -50,7 +50,7 @@ fn without_a_command_the_terminal_opens() {
 #[test]
 fn fly_reads_every_option() {
     let fly = fly(
-        "betadeck fly square --json - --samples 10 --gpx t.gpx --timeout 60 --takeoff 0 --rx-loss-at 14 \
+        "betadeck fly square --json - --samples 10 --gpx t.gpx --timeout 60 --takeoff 0 --tolerance 2.5 --rx-loss-at 14 \
          --gps-loss-at boot+20,6 --fault motor@10,,2:0.8 --fault gps-loss@1 --stick pitch=2000@30,2 \
          --set ap_max_angle=25 --set gps_sbas_mode=AUTO --settings diff.txt --seed 9 --rate 4000 --speed 2 --noise none \
          --wind 5@270 --gust 2 --turbulence light --world battery_sag=on --airframe five-inch \
@@ -62,6 +62,7 @@ fn fly_reads_every_option() {
     assert!(
         (fly.speed() - 2.0).abs() < 1e-9
             && fly.takeoff_m().abs() < 1e-9
+            && (fly.tolerance_m() - 2.5).abs() < 1e-9
             && (fly.timeout_s() - 60.0).abs() < 1e-9
     );
     assert_eq!(fly.flight.home.unwrap().to_string(), "-40.0000000,-79.0000000,300");
@@ -75,6 +76,7 @@ fn defaults_of_fly() {
     assert_eq!(fly.plan, PlanArg::Stdin(None));
     assert!(fly.speed().is_infinite());
     assert!((fly.takeoff_m() - 10.0).abs() < 1e-9 && (fly.timeout_s() - 1800.0).abs() < 1e-9);
+    assert!((fly.tolerance_m() - 10.0).abs() < 1e-9);
 }
 
 #[test]
@@ -133,13 +135,13 @@ fn convert_knows_its_formats() {
 fn the_command_line_wins_over_environment_over_file() {
     let layers = layers(
         &[("BETADECK_SEED", "2"), ("BETADECK_RX_LOSS_AT", "14"), ("HOME", "/"), ("BETADECK_WIND", "")],
-        "seed = 3\nwind = \"5@270\"\nrate = 2000\ntakeoff = 12.5\nset = [\"ap_max_angle=11\", \"ap_max_angle=12\"]\narm_assist = true\n",
+        "seed = 3\nwind = \"5@270\"\nrate = 2000\ntakeoff = 12.5\ntolerance = 3\nset = [\"ap_max_angle=11\", \"ap_max_angle=12\"]\narm_assist = true\n",
     );
     let fly = fly_over("betadeck fly square --rate 500", &layers);
     assert_eq!(fly.flight.seed, Some(2));
     assert_eq!(fly.flight.rate, Some(500));
     assert_eq!(fly.flight.wind.unwrap().to_string(), "5@270");
-    assert!((fly.takeoff_m() - 12.5).abs() < 1e-9);
+    assert!((fly.takeoff_m() - 12.5).abs() < 1e-9 && (fly.tolerance_m() - 3.0).abs() < 1e-9);
     assert_eq!(fly.set, ["ap_max_angle = 11", "ap_max_angle = 12"]);
     assert!(fly.rx_loss_at.is_some() && fly.flight.arm_assist == Some(OnOff::On));
     assert_eq!(fly_over("betadeck fly square --set ap_max_angle=13", &layers).set, ["ap_max_angle = 13"]);

@@ -167,6 +167,11 @@ pub(super) fn takeoff(text: &str) -> Result<f64, String> {
     bounded(text, 0.0, 500.0, "m")
 }
 
+/// Metres that truth may be off.
+pub(super) fn tolerance(text: &str) -> Result<f64, String> {
+    bounded(text, 0.0, 100_000.0, "m")
+}
+
 /// A heading, degrees.
 pub(super) fn heading(text: &str) -> Result<f64, String> {
     bounded(text, -360.0, 360.0, "degrees")

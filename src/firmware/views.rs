@@ -249,6 +249,7 @@ impl Firmware {
             fence_m: nav.fence_m(),
             max_angle_deg: f64::from(nav.max_angle),
             max_velocity_mps: nav.max_velocity_mps(),
+            climb_mps: nav.climb_rate_mps(),
             hover_stick_us: self.hover_stick_us(),
             raised_stick_us: self.raised_stick_us(),
             sink_stick_us: self.sink_stick_us(),

@@ -1,7 +1,8 @@
 //! Decides when a headless flight is over and what became of it.
 
+use super::verdict::{FlightResult, Verdict};
 use crate::signals::SimTime;
-use crate::telemetry::{DisarmReason, NavState, PlanSource, Refusal};
+use crate::telemetry::{AbortReason, DisarmReason, NavState, PlanSource, Refusal, TransitionReason};
 
 /// Seconds a completed mission without a LAND is watched, still parked.
 const PARKED_S: f64 = 5.0;
@@ -11,39 +12,8 @@ const AFTERMATH_S: f64 = 1.0;
 const REFUSED_S: f64 = 10.0;
 /// Seconds the machine may stay IDLE after an engagement.
 const IDLE_S: f64 = 30.0;
-
-/// How a flight ended; `Display` gives the word of the `end` event.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display)]
-#[strum(serialize_all = "lowercase")]
-pub enum FlightResult {
-    /// The mission reached COMPLETE, landed and disarmed where the plan ends in LAND.
-    Complete,
-    /// Landed by an emergency landing or a return home, not by the plan.
-    Landed,
-    /// The autopilot refused to engage.
-    Refused,
-    /// The mission was given up and stayed IDLE.
-    Aborted,
-    /// Disarmed by something else.
-    Disarmed,
-    /// Crashed.
-    Crashed,
-    /// Not over in time.
-    Timeout,
-    /// The simulation left the range where its numbers mean something.
-    Diverged,
-    /// Stopped by the user.
-    Interrupted,
-}
-
-/// The verdict.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Verdict {
-    /// How the flight ended.
-    pub result: FlightResult,
-    /// Why, as a sentence.
-    pub reason: String,
-}
+/// What a landing without a fix must come down in that time to be one that goes on, m.
+const COMING_DOWN_M: f64 = 1.0;
 
 /// What the judge looks at, once a tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,6 +28,10 @@ pub struct JudgeFacts {
     pub last_disarm: Option<DisarmReason>,
     /// State of the machine.
     pub state: NavState,
+    /// Why it was entered.
+    pub entered_for: Option<TransitionReason>,
+    /// True altitude above home, m.
+    pub alt_m: f64,
     /// Current waypoint.
     pub wp: u8,
     /// Origin of the active plan.
@@ -84,7 +58,11 @@ pub struct Judge {
     completed_source: PlanSource,
     over_at: Option<SimTime>,
     refused: Option<(Refusal, SimTime)>,
-    idle_since: Option<SimTime>,
+    /// Since when the machine is IDLE, and the altitude then, m.
+    idle_since: Option<(SimTime, f64)>,
+    state: NavState,
+    /// The fix was lost in a landing, which goes on without it.
+    lands_without_fix: bool,
 }
 
 impl Judge {
@@ -100,6 +78,8 @@ impl Judge {
             over_at: None,
             refused: None,
             idle_since: None,
+            state: NavState::Idle,
+            lands_without_fix: false,
         }
     }
 
@@ -130,11 +110,25 @@ impl Judge {
         } else if facts.armed {
             self.complete_at = None;
         }
+        self.note_state(facts);
         self.judge_ground(facts)
             .or_else(|| self.judge_complete(facts))
             .or_else(|| self.judge_refusal(facts))
             .or_else(|| self.judge_idle(facts))
             .or_else(|| (now >= self.timeout).then(|| self.timeout_verdict(facts)))
+    }
+
+    fn note_state(&mut self, facts: &JudgeFacts) {
+        if facts.state != self.state {
+            let fix_lost = facts.entered_for == Some(TransitionReason::GivenUp(AbortReason::GpsLost));
+            match facts.state {
+                NavState::Idle => self.lands_without_fix = self.state == NavState::Landing && fix_lost,
+                // What the firmware says of a touchdown without a fix.
+                NavState::Complete => {}
+                _ => self.lands_without_fix = false,
+            }
+            self.state = facts.state;
+        }
     }
 
     /// Disarmed or crashed.
@@ -152,6 +146,9 @@ impl Judge {
         }
         if facts.crashed {
             return verdict(FlightResult::Crashed, "the craft crashed");
+        }
+        if landed && self.lands_without_fix {
+            return verdict(FlightResult::Landed, "landed without a GPS fix");
         }
         if landed {
             return match (self.complete_at, self.completed_source) {
@@ -213,12 +210,16 @@ impl Judge {
             self.idle_since = None;
             return None;
         }
-        let since = *self.idle_since.get_or_insert(facts.time);
+        let (mut since, from_m) = *self.idle_since.get_or_insert((facts.time, facts.alt_m));
+        if self.lands_without_fix && facts.alt_m <= from_m - COMING_DOWN_M {
+            since = facts.time;
+            self.idle_since = Some((since, facts.alt_m));
+        }
         (facts.time.seconds_since(since) >= IDLE_S).then(|| {
             let why = facts
                 .refusal
                 .map_or_else(|| "no reason given".to_owned(), |refusal| refusal.sentence().into_owned());
-            Verdict { result: FlightResult::Aborted, reason: format!("mission given up: {why}") }
+            Verdict::new(FlightResult::Aborted, format!("mission given up: {why}"))
         })
     }
 
@@ -236,7 +237,7 @@ impl Judge {
 }
 
 fn verdict(result: FlightResult, reason: &str) -> Option<Verdict> {
-    Some(Verdict { result, reason: reason.to_owned() })
+    Some(Verdict::new(result, reason))
 }
 
 #[cfg(test)]
@@ -250,6 +251,8 @@ mod tests {
             armed: true,
             last_disarm: None,
             state: NavState::Approaching,
+            entered_for: None,
+            alt_m: 10.0,
             wp: 1,
             source: PlanSource::Stored,
             refusal: None,
@@ -307,6 +310,49 @@ mod tests {
             judge.look(&refused(25.0, Refusal::NoPlan)).map(|v| v.result),
             Some(FlightResult::Refused)
         );
+    }
+
+    #[test]
+    fn a_landing_that_goes_on_without_a_fix_is_waited_for() {
+        let mut judge = judge();
+        assert_eq!(judge.look(&JudgeFacts { state: NavState::Landing, ..facts(20.0) }), None);
+        let lost = |s, alt_m| JudgeFacts {
+            state: NavState::Idle,
+            engaged: false,
+            entered_for: Some(TransitionReason::GivenUp(AbortReason::GpsLost)),
+            alt_m,
+            ..facts(s)
+        };
+        for (s, alt_m) in [(21.0, 20.0), (45.0, 8.0), (70.0, 1.0)] {
+            assert_eq!(judge.look(&lost(s, alt_m)), None, "{s}");
+        }
+        let mut stuck = judge.clone();
+        assert_eq!(stuck.look(&lost(99.9, 0.5)), None);
+        let down = JudgeFacts {
+            armed: false,
+            last_disarm: Some(DisarmReason::Landing),
+            touched_down: true,
+            ..lost(80.0, 0.0)
+        };
+        let verdict = judge.look(&down).unwrap();
+        assert_eq!(
+            (verdict.result, verdict.reason.as_str()),
+            (FlightResult::Landed, "landed without a GPS fix")
+        );
+    }
+
+    #[test]
+    fn a_craft_that_hovers_without_a_fix_is_given_up() {
+        let mut judge = judge();
+        assert_eq!(judge.look(&JudgeFacts { state: NavState::Landing, ..facts(20.0) }), None);
+        let lost = |s| JudgeFacts {
+            state: NavState::Idle,
+            engaged: false,
+            entered_for: Some(TransitionReason::GivenUp(AbortReason::GpsLost)),
+            ..facts(s)
+        };
+        assert_eq!(judge.look(&lost(21.0)), None);
+        assert_eq!(judge.look(&lost(51.0)).map(|v| v.result), Some(FlightResult::Aborted));
     }
 
     #[test]

@@ -1,13 +1,17 @@
 //! How a flight ended, for the last event and the last lines of a headless flight.
 
+use crate::telemetry::FlightTruth;
+
 /// The end of a flight.
 #[derive(Debug, Clone, PartialEq)]
 pub struct End {
-    /// What became of it, in a word: `complete`, `landed`, `refused`, `aborted`, `disarmed`, `crashed`, `timeout`,
+    /// What became of it, in a word: `complete`, `missed`, `landed`, `refused`, `aborted`, `disarmed`, `crashed`, `timeout`,
     /// `diverged`, `interrupted`.
     pub result: String,
     /// Why, as a sentence; may be empty.
     pub reason: String,
+    /// What really happened.
+    pub truth: FlightTruth,
     /// Simulated seconds from engagement (or boot, if there was none) to the end.
     pub flown_s: f64,
     /// Seconds of wall time that took.
@@ -46,6 +50,7 @@ mod tests {
         let end = End {
             result: "complete".to_owned(),
             reason: "landed and disarmed".to_owned(),
+            truth: FlightTruth::default(),
             flown_s: 312.4,
             wall_s: 0.21,
         };

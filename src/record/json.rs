@@ -6,6 +6,7 @@
 
 mod event;
 mod sample;
+mod truth;
 
 use serde::Serialize;
 
@@ -35,6 +36,8 @@ pub fn end_line(time: SimTime, end: &End) -> String {
     struct Fields<'a> {
         result: &'a str,
         reason: &'a str,
+        #[serde(flatten)]
+        truth: truth::Fields,
         flown_s: Milli,
         wall_s: Milli,
         speed_ratio: Decimals<1>,
@@ -42,6 +45,7 @@ pub fn end_line(time: SimTime, end: &End) -> String {
     let fields = Fields {
         result: &end.result,
         reason: &end.reason,
+        truth: truth::Fields::of(&end.truth),
         flown_s: Decimals(end.flown_s),
         wall_s: Decimals(end.wall_s),
         speed_ratio: Decimals(end.speed_ratio()),
@@ -66,18 +70,21 @@ fn line(time: SimTime, event: &str, fields: &impl Serialize) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::telemetry::FlightTruth;
 
     #[test]
     fn the_end_has_its_keys_in_order() {
         let end = End {
             result: "timeout".to_owned(),
             reason: "1800 s are over".to_owned(),
+            truth: FlightTruth { battery_used_pct: Some(4.25), ..FlightTruth::default() },
             flown_s: 12.3456,
             wall_s: 0.5,
         };
         assert_eq!(
             end_line(SimTime(20_000_000), &end),
-            "{\"t\":20.0,\"event\":\"end\",\"result\":\"timeout\",\"reason\":\"1800 s are over\",\"flown_s\":12.346,\
+            "{\"t\":20.0,\"event\":\"end\",\"result\":\"timeout\",\"reason\":\"1800 s are over\",\
+             \"battery_used_pct\":4.25,\"waypoints\":[],\"parked_m\":null,\"parked_mps\":null,\"flown_s\":12.346,\
              \"wall_s\":0.5,\"speed_ratio\":24.7}"
         );
     }

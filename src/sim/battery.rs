@@ -88,10 +88,16 @@ impl Battery {
         Self { spec, voltage_v, current_a, drawn_mah: 0.0, drawn_wh: 0.0 }
     }
 
+    /// What the full pack held, mA·h.
+    #[must_use]
+    pub(super) fn capacity_mah(&self) -> f64 {
+        self.spec.capacity_ah * 1000.0
+    }
+
     /// Charge left, 0…1.
     #[must_use]
     pub(super) fn charge_left(&self) -> f64 {
-        (1.0 - self.drawn_mah / (self.spec.capacity_ah * 1000.0)).max(0.0)
+        (1.0 - self.drawn_mah / self.capacity_mah()).max(0.0)
     }
 
     /// Terminal over nominal voltage: the scale of the rotor speeds where sag acts on them.

@@ -48,6 +48,8 @@ pub struct BatteryTruth {
     pub drawn_mah: f64,
     /// Energy drawn since the start, W·h.
     pub drawn_wh: f64,
+    /// What a full pack holds, mA·h.
+    pub capacity_mah: f64,
 }
 
 impl Truth {

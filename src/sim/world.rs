@@ -171,6 +171,7 @@ impl World {
             current_a: self.battery.current_a,
             drawn_mah: self.battery.drawn_mah,
             drawn_wh: self.battery.drawn_wh,
+            capacity_mah: self.battery.capacity_mah(),
         };
         truth.on_ground = self.contact.any_leg;
         truth.crashed = self.crashed;

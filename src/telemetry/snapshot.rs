@@ -206,6 +206,8 @@ pub struct SettingsView {
     pub max_angle_deg: f64,
     /// `ap_max_velocity`, m/s.
     pub max_velocity_mps: f64,
+    /// `alt_hold_climb_rate`, m/s.
+    pub climb_mps: f64,
     /// Where the throttle stick rests in ALTHOLD, µs.
     pub hover_stick_us: u16,
     /// The throttle stick from which the throttle counts as raised, µs.

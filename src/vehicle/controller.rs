@@ -270,7 +270,9 @@ impl FlightController {
         }
     }
 
-    pub(super) fn settings_view(&self) -> Option<SettingsView> {
+    /// The settings that displays and checks need, as far as they are known.
+    #[must_use]
+    pub fn settings_view(&self) -> Option<SettingsView> {
         match self {
             Self::Embedded(firmware) => Some(firmware.settings_view()),
             Self::Remote(remote) => remote.telemetry().settings,

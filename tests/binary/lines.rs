@@ -108,7 +108,9 @@ fn fields(event: &str) -> &'static str {
              state:state wp:num? wp_type:word? dist_m:num? bearing:num? xte_m:num? l1_mode:l1 target_n:num? \
              target_e:num? target_alt:num? hold_remaining_ds:num wind_n:num wind_e:num"
         }
-        "end" => "result:result reason:text flown_s:num wall_s:num speed_ratio:num",
+        "end" => {
+            "result:result reason:text battery_used_pct:num waypoints:list parked_m:num? parked_mps:num? flown_s:num wall_s:num speed_ratio:num"
+        }
         _ => panic!("{event} is not a documented event"),
     }
 }
@@ -135,8 +137,13 @@ fn check(pairs: &[(String, Value)], fields: &str, text: &str) {
     if let Some((_, Value::Array(waypoints))) = pairs.iter().find(|(name, _)| name == "waypoints") {
         for waypoint in waypoints {
             let map = waypoint.as_object().expect("a waypoint");
-            assert_eq!(map.len(), 4, "{text}");
-            assert!(["type", "lat", "lon", "alt"].iter().all(|key| map.contains_key(*key)), "{text}");
+            let keys: &[&str] = if names.contains(&"result") {
+                &["wp", "type", "miss_m", "miss_alt_m", "hold_max_m", "at", "source"]
+            } else {
+                &["type", "lat", "lon", "alt"]
+            };
+            assert_eq!(map.len(), keys.len(), "{text}");
+            assert!(keys.iter().all(|key| map.contains_key(*key)), "{text}");
         }
     }
 }
@@ -171,6 +178,7 @@ fn is(value: &Value, kind: &str) -> bool {
         "l1" => one_of(&["TRACK", "DIRECT", "OFF"]),
         "result" => one_of(&[
             "complete",
+            "missed",
             "landed",
             "refused",
             "aborted",

@@ -15,3 +15,4 @@ mod signals;
 mod support;
 #[cfg(unix)]
 mod terminal;
+mod verdict;

@@ -219,6 +219,7 @@ pub(crate) fn view(flight: &SimpleFlight) -> SessionView {
         fence_m: Some(500.0),
         max_angle_deg: 25.0,
         max_velocity_mps: 5.0,
+        climb_mps: 5.0,
         hover_stick_us: 1500,
         raised_stick_us: 1300,
         sink_stick_us: Some(1410),

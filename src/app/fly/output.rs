@@ -8,7 +8,7 @@ use crate::app::error::{self, AppError};
 use crate::args::{FlyArgs, OutputFile, PlanArg};
 use crate::flight::Report;
 use crate::plan::format::PlanFile;
-use crate::record::{End, GpxHeader, GpxWriter, TrackPoint, UtcSeconds, json, sentence};
+use crate::record::{End, GpxHeader, GpxWriter, TrackPoint, UtcSeconds, json, sentence, truth};
 use crate::session::Event;
 use crate::signals::SimTime;
 use crate::vehicle::Vehicle;
@@ -105,6 +105,10 @@ impl Output {
     pub(super) fn finish(mut self, time: SimTime, end: &End) -> Result<(), AppError> {
         if self.json {
             self.line(&json::end_line(time, end))?;
+        } else {
+            for line in truth::lines(time, &end.truth) {
+                self.line(&line)?;
+            }
         }
         self.flush()?;
         if let Some(gpx) = self.gpx.take() {

@@ -1,0 +1,149 @@
+//! Whether the truth agrees with a mission that the firmware calls complete.
+
+use crate::plan::WaypointType;
+use crate::telemetry::{FlightTruth, ParkedTruth, PlanSource, WaypointTruth};
+
+/// A miss beyond what is allowed.
+struct Miss {
+    /// By how much, m.
+    excess_m: f64,
+    sentence: String,
+}
+
+/// The worst miss of the stored plan, as half a sentence; `None` when all are within their own radius and the tolerance,
+/// vertically within the tolerance.
+pub(super) fn worst_miss(truth: &FlightTruth, tolerance_m: f64) -> Option<String> {
+    let stored = truth.waypoints.iter().filter(|waypoint| waypoint.source == PlanSource::Stored);
+    stored
+        .flat_map(|waypoint| waypoint_misses(waypoint, tolerance_m))
+        .chain(truth.parked.iter().flat_map(|parked| parked_misses(parked, tolerance_m)))
+        .flatten()
+        .max_by(|a, b| a.excess_m.total_cmp(&b.excess_m))
+        .map(|miss| miss.sentence)
+}
+
+/// What is said of a mission that the truth agrees with: where the craft is now.
+pub(super) fn agreement(truth: &FlightTruth) -> Option<String> {
+    if let Some(ParkedTruth { distance_m: Some(distance_m), .. }) = truth.parked {
+        return Some(format!("mission complete, parked {distance_m:.1} m from its place"));
+    }
+    let last = truth.waypoints.last().filter(|last| last.kind == WaypointType::Land)?;
+    Some(format!("mission complete, landed {:.1} m from its place and disarmed", last.miss_m))
+}
+
+fn waypoint_misses(waypoint: &WaypointTruth, tolerance_m: f64) -> [Option<Miss>; 3] {
+    let WaypointTruth { wp, kind, miss_m, alt_error_m, hold_max_m, radius_m, .. } = *waypoint;
+    let name = format!("waypoint {wp} ({kind})");
+    let told = match kind {
+        WaypointType::Land => format!("the craft touched down {miss_m:.1} m from {name}"),
+        WaypointType::Hold => format!("{name} was not held, the craft was up to {miss_m:.1} m off"),
+        WaypointType::Takeoff => format!("the craft was {miss_m:.1} m off in {name}"),
+        WaypointType::Flyby if radius_m <= 0.0 => {
+            format!("{name} was missed, the craft turned {miss_m:.1} m outside its turn radius")
+        }
+        _ => format!("{name} was missed, the craft passed {miss_m:.1} m from it"),
+    };
+    let waited = hold_max_m.filter(|_| kind == WaypointType::Land).and_then(|waited_m| {
+        let told = format!("the craft was up to {waited_m:.1} m off while it waited at {name}");
+        miss(waited_m, radius_m + tolerance_m, &told)
+    });
+    let vertical = alt_error_m.and_then(|error_m| {
+        let told = match kind {
+            WaypointType::Hold => format!("{name} was not held, the craft was up to {}", too(error_m)),
+            _ => format!("{name} was missed, the craft passed {}", too(error_m)),
+        };
+        miss(error_m.abs(), tolerance_m, &told)
+    });
+    [miss(miss_m, radius_m + tolerance_m, &told), waited, vertical]
+}
+
+fn parked_misses(parked: &ParkedTruth, tolerance_m: f64) -> [Option<Miss>; 2] {
+    let ParkedTruth { wp, kind, distance_m, alt_error_m, speed_mps, radius_m } = *parked;
+    let name = format!("the craft parked at waypoint {wp} ({kind})");
+    let away = distance_m.and_then(|distance_m| {
+        let told = format!("{name} was {distance_m:.1} m off at the end, moving at {speed_mps:.1} m/s");
+        miss(distance_m, radius_m + tolerance_m, &told)
+    });
+    let vertical =
+        miss(alt_error_m.abs(), tolerance_m, &format!("{name} was {} at the end", too(alt_error_m)));
+    [away, vertical]
+}
+
+fn miss(value_m: f64, allowed_m: f64, told: &str) -> Option<Miss> {
+    let excess_m = value_m - allowed_m;
+    (excess_m > 0.0).then(|| Miss { excess_m, sentence: format!("{told}; {allowed_m:.1} m are allowed") })
+}
+
+/// `19.7 m too low`.
+fn too(error_m: f64) -> String {
+    format!("{:.1} m too {}", error_m.abs(), if error_m < 0.0 { "low" } else { "high" })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::signals::SimTime;
+
+    fn flown(kind: WaypointType, miss_m: f64, alt_error_m: Option<f64>) -> WaypointTruth {
+        WaypointTruth {
+            source: PlanSource::Stored,
+            wp: 2,
+            kind,
+            miss_m,
+            alt_error_m,
+            hold_max_m: None,
+            radius_m: 5.0,
+            at: SimTime::ZERO,
+        }
+    }
+
+    fn worst(waypoints: &[WaypointTruth]) -> Option<String> {
+        let truth = FlightTruth { waypoints: waypoints.to_vec(), ..FlightTruth::default() };
+        worst_miss(&truth, 10.0)
+    }
+
+    #[test]
+    fn the_radius_and_the_tolerance_are_allowed() {
+        assert_eq!(worst(&[flown(WaypointType::Flyover, 14.9, Some(-9.9))]), None);
+        let beside = worst(&[flown(WaypointType::Flyover, 15.2, Some(0.0))]);
+        assert_eq!(
+            beside.as_deref(),
+            Some("waypoint 2 (FLYOVER) was missed, the craft passed 15.2 m from it; 15.0 m are allowed")
+        );
+        let below = worst(&[flown(WaypointType::Hold, 0.0, Some(-19.7))]);
+        assert_eq!(
+            below.as_deref(),
+            Some("waypoint 2 (HOLD) was not held, the craft was up to 19.7 m too low; 10.0 m are allowed")
+        );
+    }
+
+    #[test]
+    fn the_worst_one_is_named() {
+        let far = flown(WaypointType::Land, 819.2, None);
+        let told = worst(&[flown(WaypointType::Flyover, 16.0, None), far]).unwrap();
+        assert_eq!(told, "the craft touched down 819.2 m from waypoint 2 (LAND); 15.0 m are allowed");
+        let injected = WaypointTruth { source: PlanSource::Rth, ..far };
+        assert_eq!(worst(&[injected]), None, "a plan of the firmware is not the user's");
+    }
+
+    #[test]
+    fn a_parked_craft_is_looked_at() {
+        let parked = ParkedTruth {
+            wp: 0,
+            kind: WaypointType::Hold,
+            distance_m: Some(174.0),
+            alt_error_m: 0.1,
+            speed_mps: 7.0,
+            radius_m: 2.0,
+        };
+        let truth = FlightTruth { parked: Some(parked), ..FlightTruth::default() };
+        assert_eq!(
+            worst_miss(&truth, 10.0).as_deref(),
+            Some(
+                "the craft parked at waypoint 0 (HOLD) was 174.0 m off at the end, moving at 7.0 m/s; 12.0 m are \
+                 allowed"
+            )
+        );
+        assert_eq!(worst_miss(&truth, 200.0), None);
+    }
+}

@@ -1,0 +1,43 @@
+//! What a craft that never engaged was waiting for.
+
+use crate::telemetry::NavTelemetry;
+use crate::vehicle::Vehicle;
+
+/// Mean motor output from which the motors give all they have.
+const FULL_OUTPUT: f64 = 0.95;
+
+/// What the craft waits for before its mission, as half a sentence; `None` when nothing is known to be missing.
+pub(super) fn sentence(vehicle: &Vehicle, takeoff_m: f64) -> Option<String> {
+    let controller = vehicle.controller();
+    if !controller.is_armed() {
+        return arming(vehicle);
+    }
+    let climbs = vehicle.transmitter().pilot_doing() == Some("climbing");
+    if climbs && let Some(firmware) = vehicle.embedded() {
+        return Some(climb(firmware.altitude_m(), takeoff_m, &controller.motors().0));
+    }
+    let refusal = controller.nav().and_then(|nav: &NavTelemetry| nav.refusal)?;
+    Some(refusal.sentence().trim_end_matches('.').to_owned())
+}
+
+/// What keeps it from arming.
+fn arming(vehicle: &Vehicle) -> Option<String> {
+    let firmware = vehicle.embedded()?;
+    if !firmware.gps_fix() {
+        return Some("it waits for a GPS fix".to_owned());
+    }
+    let flags = firmware.arming_flags();
+    let causes = if flags.causes().is_empty() { flags } else { flags.causes() };
+    let told: Vec<String> = causes.iter().map(|flag| format!("{flag} ({})", flag.hint())).collect();
+    (!told.is_empty()).then(|| format!("arming is blocked by {}", told.join(", ")))
+}
+
+/// A climb that does not reach its altitude.
+fn climb(alt_m: f64, takeoff_m: f64, motors: &[f64; 4]) -> String {
+    let mean = motors.iter().sum::<f64>() / 4.0;
+    let why = if mean >= FULL_OUTPUT { ", the thrust does not suffice" } else { "" };
+    format!(
+        "the climb stopped at {alt_m:.1} m of {takeoff_m:.1} m with the motors at {:.0} %{why}",
+        100.0 * mean
+    )
+}
