@@ -174,11 +174,11 @@ fn virtual_sticks_give_way_to_udp_unless_they_take_over() {
     script.channels[0] = 1700;
     bench.firmware.receive_rc(&script, RcSource::Udp);
     bench.run(1.05);
-    assert_eq!(bench.firmware.craft_view().channels[0], 1700);
+    assert_eq!(bench.firmware.craft_view().channels.unwrap()[0], 1700);
     assert_eq!(bench.firmware.craft_view().rc_source, Some(RcSource::Udp));
     bench.firmware.take_over_sticks(true);
     bench.run(1.1);
-    assert_eq!(bench.firmware.craft_view().channels[0], 1500);
+    assert_eq!(bench.firmware.craft_view().channels.unwrap()[0], 1500);
 }
 
 #[test]
@@ -186,7 +186,7 @@ fn view_lists_channels_in_wire_order() {
     let mut bench = Bench::new();
     bench.sticks.channels[..4].copy_from_slice(&[1100, 1200, 1300, 1400]);
     bench.run(0.1);
-    assert_eq!(bench.firmware.craft_view().channels[..4], [1100, 1200, 1300, 1400]);
+    assert_eq!(bench.firmware.craft_view().channels.unwrap()[..4], [1100, 1200, 1300, 1400]);
 }
 
 #[test]

@@ -213,7 +213,7 @@ async fn until_a_simulator_speaks_the_firmware_lives_and_nothing_is_made_up() {
     let view = rig.picture(|view| view.vehicle.time.0 > 50_000).await;
     assert_eq!(view.simulator, Some(LinkState::Waiting));
     assert_eq!(
-        (view.vehicle.truth, view.vehicle.estimate.n, view.vehicle.craft.gps_fix),
+        (view.vehicle.truth, view.vehicle.estimate.n, view.vehicle.craft.has_fix()),
         (None, None, false)
     );
     assert_eq!(view.vehicle.world.airframe, "external");
@@ -247,7 +247,7 @@ async fn the_simulators_stamps_are_the_time_and_its_state_the_truth() {
     assert!((truth.heading_deg - 90.0).abs() < 1e-6 && (truth.pitch_deg - 5.0).abs() < 1e-6);
     assert!((truth.roll_deg + 3.0).abs() < 1e-6 && (truth.vn - 10.0).abs() < 1e-6 && !truth.on_ground);
     assert!((view.vehicle.estimate.pitch_deg.unwrap() - 5.0).abs() < 0.1, "the firmware believes it");
-    assert!(view.vehicle.craft.gps_fix && view.vehicle.craft.sats == 12);
+    assert!(view.vehicle.craft.has_fix() && view.vehicle.craft.sats == Some(12));
     let flying = SimulatorStats { link: LinkState::Flowing, dialect: Some("sitl-gz"), refused: 0, old: 0 };
     assert_eq!(stats(&view), flying);
 }
@@ -314,7 +314,7 @@ async fn a_restarted_simulator_finds_a_disarmed_craft_and_resting_sticks() {
     for _ in 0..100 {
         rig.state(10, 0.0, 0.0).await;
     }
-    rig.picture(|view| view.vehicle.craft.armed).await;
+    rig.picture(|view| view.vehicle.craft.is_armed()).await;
 
     // Its time falls; for half a second that is taken for a late packet.
     rig.stamp_ms = 0;
@@ -322,7 +322,7 @@ async fn a_restarted_simulator_finds_a_disarmed_craft_and_resting_sticks() {
         rig.state(10, 0.0, 0.0).await;
     }
     rig.hear("The simulator was restarted: disarmed.").await;
-    let view = rig.picture(|view| !view.vehicle.craft.armed).await;
+    let view = rig.picture(|view| !view.vehicle.craft.is_armed()).await;
     assert_eq!(view.sticks, betadeck::signals::RcFrame::SAFE);
 }
 
@@ -453,7 +453,7 @@ async fn faults_begin_at_the_firmwares_time_and_end_after_theirs() {
         }
     }
     let view = rig.session.view.borrow().clone();
-    assert!(!view.vehicle.craft.gps_fix, "no solution for more than 2.5 s");
+    assert!(!view.vehicle.craft.has_fix(), "no solution for more than 2.5 s");
     let active: Vec<_> = view.vehicle.world.faults.iter().map(|fault| <&str>::from(fault.kind)).collect();
     assert_eq!(active, ["fdm-jitter", "gps-loss"]);
     for _ in 0..200 {
@@ -464,7 +464,7 @@ async fn faults_begin_at_the_firmwares_time_and_end_after_theirs() {
     assert_eq!(rig.hear_fault("gps-loss", false).await, 105_000);
     let ended = rig.hear_fault("fdm-jitter", false).await;
     assert!((104_900..=105_000).contains(&ended), "{ended}");
-    rig.picture(|view| view.vehicle.craft.gps_fix && view.vehicle.world.faults.is_empty()).await;
+    rig.picture(|view| view.vehicle.craft.has_fix() && view.vehicle.world.faults.is_empty()).await;
 }
 
 #[tokio::test]

@@ -127,7 +127,7 @@ fn one_key_commands() {
     assert!(press(&mut state, 'H').is_empty(), "nothing to bring home while disarmed");
     fixture::approach(&mut state);
     assert!(matches!(press(&mut state, 'H').last(), Some(Effect::Send(Command::ReturnHome))));
-    std::sync::Arc::make_mut(&mut state.view.vehicle).craft.commanded = true;
+    std::sync::Arc::make_mut(&mut state.view.vehicle).craft.commanded = Some(true);
     assert!(matches!(press(&mut state, 'H')[..], [Effect::Send(Command::CancelReturn)]));
 }
 

@@ -231,7 +231,7 @@ fn a_long_advice_leaves_the_machine_on_an_80x24_screen() {
     let mut state = fixture::state((80, 24), fixture::colour());
     let mut view = state.view.clone();
     let vehicle = std::sync::Arc::make_mut(&mut view.vehicle);
-    vehicle.craft.gps_fix = true;
+    vehicle.craft.gps_fix = Some(true);
     vehicle.craft.arming_blocked_by = Some(std::iter::once(ArmingFlag::MotorProtocol).collect());
     update(&mut state, Msg::View(view));
     let screen = text(&state);

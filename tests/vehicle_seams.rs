@@ -186,6 +186,20 @@ fn what_the_flight_controller_does_not_tell_is_shown_as_unknown() {
 }
 
 #[test]
+fn a_silent_flight_controller_is_shown_as_unknown_and_not_as_disarmed() {
+    let vehicle = Vehicle::with_remote_controller(WorldConfig::default()).unwrap();
+    let screen = screen(vehicle.snapshot());
+    for unknown in
+        [" ○ — ", "⌖ —   — sats", " — V ", "The flight controller does not tell", "— on the craft?"]
+    {
+        assert!(screen.contains(unknown), "{unknown}:\n{screen}");
+    }
+    for claim in ["ARMED", "No GPS", "Arming is blocked", "not on the craft", "Ready"] {
+        assert!(!screen.contains(claim), "{claim}:\n{screen}");
+    }
+}
+
+#[test]
 fn unknown_wind_is_unknown_and_not_calm() {
     let mut vehicle = Vehicle::with_external_physics(VehicleConfig {
         world: WorldConfig::default(),

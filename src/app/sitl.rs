@@ -160,7 +160,7 @@ struct Track {
 
 impl Track {
     fn record(&mut self, vehicle: &Snapshot) {
-        let Some(gps) = vehicle.craft.gps.filter(|_| self.wanted && vehicle.craft.gps_fix) else { return };
+        let Some(gps) = vehicle.craft.gps.filter(|_| self.wanted && vehicle.craft.has_fix()) else { return };
         let (place, alt_amsl_m) = (gps.position, gps.alt_amsl_m);
         if self.writer.is_none() {
             match begin(vehicle, alt_amsl_m) {

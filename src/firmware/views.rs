@@ -193,27 +193,27 @@ impl Firmware {
         wire_order[3] = inner[channels::YAW];
         let source: Option<RcSource> = self.receiver().sources().in_charge();
         CraftView {
-            armed: self.safety.armed(),
-            modes: self.modes,
+            armed: Some(self.safety.armed()),
+            modes: Some(self.modes),
             arming_blocked_by: Some(self.arming_blocks()),
-            gps_fix: self.gps_fix(),
+            gps_fix: Some(self.gps_fix()),
             gps: self.gps_view(),
-            sats: gps.sats,
+            sats: Some(gps.sats),
             hdop: Some(gps.hdop).filter(|&hdop| hdop > 0.0),
             home: self.home(),
             battery_v: battery.map(|sample| sample.voltage_v),
             battery_a: battery.map(|sample| sample.current_a),
             battery_mah: battery.map(|sample| sample.drawn_mah),
-            battery_cells: self.battery().cells(),
+            battery_cells: Some(self.battery().cells()).filter(|&cells| cells > 0),
             throttle_us: Some(self.control.state().throttle_us),
             motors: self.control.state().motors.0,
-            channels: wire_order,
+            channels: Some(wire_order),
             rc_source: source,
             rc_age_s: self.receiver().last_frame().map(|last| self.now.seconds_since(last)),
             rc_link: Some(self.receiver().signal()),
-            failsafe_stage: self.navigation.failsafe().stage(),
-            commanded: self.navigation.is_commanded(),
-            mode_ranges: self.mode_ranges(),
+            failsafe_stage: Some(self.navigation.failsafe().stage()),
+            commanded: Some(self.navigation.is_commanded()),
+            mode_ranges: Some(self.mode_ranges()),
         }
     }
 

@@ -1,7 +1,7 @@
 //! Says why a script that holds the ARM switch on does not arm: it cannot see what blocks arming.
 
 use crate::signals::{RcSource, SimTime};
-use crate::telemetry::{ArmingFlag, Mode, Snapshot, switch};
+use crate::telemetry::{ArmingFlag, Mode, Snapshot};
 
 /// How long the switch is on before the user is told, s.
 const TELL_AFTER_S: f64 = 1.0;
@@ -25,12 +25,12 @@ impl ArmingWatch {
     pub(super) fn check(&mut self, vehicle: &Snapshot) -> Option<String> {
         let craft = &vehicle.craft;
         let from_outside = matches!(craft.rc_source, Some(RcSource::Udp | RcSource::Msp));
-        if !from_outside || !switch::is_on(Mode::Arm, &craft.mode_ranges, &craft.channels) {
+        if !from_outside || !craft.is_switched_on(Mode::Arm) {
             self.request = None;
             return None;
         }
         let request = self.request.get_or_insert(Request { since: vehicle.time, done: false });
-        request.done |= craft.armed;
+        request.done |= craft.is_armed();
         if request.done || vehicle.time.seconds_since(request.since) < TELL_AFTER_S {
             return None;
         }
@@ -53,15 +53,10 @@ mod tests {
     fn vehicle(seconds: f64, flags: &[ArmingFlag]) -> Snapshot {
         let mut vehicle = Snapshot { time: SimTime::from_secs_f64(seconds), ..Snapshot::default() };
         let craft = &mut vehicle.craft;
-        craft.mode_ranges = std::iter::once(ModeRange {
-            mode_box: Mode::Arm.into(),
-            channel: 4,
-            start_us: 1700,
-            end_us: 2100,
-        })
-        .collect();
+        let arm = ModeRange { mode_box: Mode::Arm.into(), channel: 4, start_us: 1700, end_us: 2100 };
+        craft.mode_ranges = Some(vec![arm]);
         craft.rc_source = Some(RcSource::Udp);
-        craft.channels[4] = 2000;
+        craft.channels.get_or_insert_default()[4] = 2000;
         craft.arming_blocked_by = Some(flags.iter().copied().collect());
         vehicle
     }
@@ -78,7 +73,7 @@ mod tests {
         assert!(!told.contains("ARM_SWITCH"), "{told}");
         assert_eq!(watch.check(&blocked(20.0)), None);
         let mut off = blocked(21.0);
-        off.craft.channels[4] = 1000;
+        off.craft.channels.get_or_insert_default()[4] = 1000;
         assert_eq!(watch.check(&off), None);
         assert_eq!(watch.check(&blocked(22.0)), None);
         assert!(watch.check(&blocked(23.0)).is_some());
@@ -88,7 +83,7 @@ mod tests {
     fn the_switch_that_stays_on_after_a_flight_is_no_news() {
         let mut watch = ArmingWatch::default();
         let mut flying = vehicle(10.0, &[]);
-        flying.craft.armed = true;
+        flying.craft.armed = Some(true);
         assert_eq!(watch.check(&flying), None);
         assert_eq!(watch.check(&vehicle(99.0, &[ArmingFlag::Throttle, ArmingFlag::ArmSwitch])), None);
     }

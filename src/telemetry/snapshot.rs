@@ -7,7 +7,7 @@ use nalgebra::Vector2;
 use crate::geo::LatLon;
 use crate::plan::FlightPlan;
 use crate::signals::{RC_CHANNELS, RcSource, SimTime};
-use crate::telemetry::{ArmingFlags, FaultKind, FaultValue, ModeBox, ModeFlags, NavTelemetry};
+use crate::telemetry::{ArmingFlags, FaultKind, FaultValue, Mode, ModeBox, ModeFlags, NavTelemetry, switch};
 
 /// The whole picture.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -102,21 +102,21 @@ pub struct EstimateView {
     pub pitch_demand_deg: Option<f64>,
 }
 
-/// Modes, arming, receiver, battery.
+/// Modes, arming, receiver, battery; `None` is what a remote flight controller does not tell.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct CraftView {
     /// Armed.
-    pub armed: bool,
+    pub armed: Option<bool>,
     /// Active modes.
-    pub modes: ModeFlags,
-    /// The arming-disable flags that are set, when known; none while armed.
+    pub modes: Option<ModeFlags>,
+    /// The arming-disable flags that are set; none while armed.
     pub arming_blocked_by: Option<ArmingFlags>,
     /// A 3-D fix.
-    pub gps_fix: bool,
+    pub gps_fix: Option<bool>,
     /// What the GPS said last, when it has said anything; old once the fix is lost.
     pub gps: Option<GpsView>,
     /// Satellites.
-    pub sats: u8,
+    pub sats: Option<u8>,
     /// Horizontal dilution of precision, when reported.
     pub hdop: Option<f64>,
     /// Home position, when known.
@@ -127,26 +127,26 @@ pub struct CraftView {
     pub battery_a: Option<f64>,
     /// Charge drawn, mAh.
     pub battery_mah: Option<f64>,
-    /// Cells of the battery.
-    pub battery_cells: u8,
-    /// Throttle that drives the mixer, RC µs, when known.
+    /// Cells of the battery, once counted.
+    pub battery_cells: Option<u8>,
+    /// Throttle that drives the mixer, RC µs.
     pub throttle_us: Option<f64>,
-    /// Motor outputs M1…M4 as commanded by the firmware, 0…1.
+    /// Motor outputs M1…M4 in force, 0…1.
     pub motors: [f64; 4],
     /// Channel values the firmware uses, µs (substituted while the link is lost).
-    pub channels: [u16; RC_CHANNELS],
+    pub channels: Option<[u16; RC_CHANNELS]>,
     /// Who drives the channels; `None` before the first frame.
     pub rc_source: Option<RcSource>,
     /// Age of the newest frame, s.
     pub rc_age_s: Option<f64>,
-    /// Whether the receiver link is up, when known.
+    /// Whether the receiver link is up.
     pub rc_link: Option<bool>,
     /// Failsafe stage: 0 none, 1 guard time, 2 procedure.
-    pub failsafe_stage: u8,
+    pub failsafe_stage: Option<u8>,
     /// A command, not a switch, has the craft fly home or land.
-    pub commanded: bool,
+    pub commanded: Option<bool>,
     /// The mode conditions in force: what the RC panel draws on the AUX bars.
-    pub mode_ranges: Vec<ModeRange>,
+    pub mode_ranges: Option<Vec<ModeRange>>,
 }
 
 /// What the GPS said, unfiltered.
@@ -161,6 +161,42 @@ pub struct GpsView {
 }
 
 impl CraftView {
+    /// Whether the craft is known to be armed.
+    #[must_use]
+    pub fn is_armed(&self) -> bool {
+        self.armed == Some(true)
+    }
+
+    /// Whether a mode is known to be active.
+    #[must_use]
+    pub fn is_active(&self, mode: Mode) -> bool {
+        self.modes.is_some_and(|modes| modes.has(mode))
+    }
+
+    /// Whether there is known to be a fix.
+    #[must_use]
+    pub fn has_fix(&self) -> bool {
+        self.gps_fix == Some(true)
+    }
+
+    /// Whether the craft is known to fly home or land by a command.
+    #[must_use]
+    pub fn is_commanded(&self) -> bool {
+        self.commanded == Some(true)
+    }
+
+    /// The mode conditions that are known.
+    #[must_use]
+    pub fn mode_ranges(&self) -> &[ModeRange] {
+        self.mode_ranges.as_deref().unwrap_or_default()
+    }
+
+    /// Whether the switch of a mode is known to be on, as the flight controller sees its channel.
+    #[must_use]
+    pub fn is_switched_on(&self, mode: Mode) -> bool {
+        self.channels.is_some_and(|channels| switch::is_on(mode, self.mode_ranges(), &channels))
+    }
+
     /// The arming-disable flags that are known to be set.
     #[must_use]
     pub fn arming_flags(&self) -> ArmingFlags {

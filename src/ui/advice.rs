@@ -94,8 +94,15 @@ pub fn now(state: &AppState) -> Option<Advice> {
     if state.view.rc_cut {
         return advice(Level::Fault, "The RC link is cut.", "x restores it");
     }
-    if craft.armed {
-        if craft.failsafe_stage > 0 {
+    let Some(armed) = craft.armed else {
+        return advice(
+            Level::Warn,
+            "The flight controller does not tell whether it is armed.",
+            "wait for it to speak",
+        );
+    };
+    if armed {
+        if craft.failsafe_stage.is_some_and(|stage| stage > 0) {
             return advice(Level::Fault, "Failsafe: the RC link is lost.", "send RC frames again");
         }
         if let Some(refusal) = vehicle.nav.as_ref().and_then(|nav| nav.refusal).filter(|_| switched_on) {
@@ -117,13 +124,13 @@ pub fn now(state: &AppState) -> Option<Advice> {
         return advice(Level::Good, "Mission complete.", fix);
     }
     if let Some(doing) = state.view.pilot {
-        if let Some(flag) = most_useful(craft.arming_flags()).filter(|_| craft.gps_fix) {
+        if let Some(flag) = most_useful(craft.arming_flags()).filter(|_| craft.has_fix()) {
             let what = format!("The pilot waits, arming is blocked: {flag}.");
             return advice(Level::Info, what, arming_hint(flag));
         }
         return advice(Level::Info, format!("The pilot prepares: {doing}."), "F stops it");
     }
-    if !craft.gps_fix {
+    if craft.gps_fix == Some(false) {
         return advice(Level::Warn, "No GPS fix yet.", "wait for satellites; F waits by itself");
     }
     if let Some(flag) = most_useful(craft.arming_flags()) {
@@ -152,7 +159,7 @@ fn by_hand(state: &AppState) -> Option<Advice> {
         (false, _) if transmitter::is_sinking(state) => {
             ("Coming down.", "t stops that; on the ground a disarms")
         }
-        (false, ThrottleMove::Sink(_)) if craft.modes.has(Mode::PosHold) => {
+        (false, ThrottleMove::Sink(_)) if craft.is_active(Mode::PosHold) => {
             ("Holds its place.", "g engages, t comes down, H flies home")
         }
         (false, ThrottleMove::Sink(_)) => ("Holds its height.", "g engages, t comes down"),

@@ -76,9 +76,9 @@ fn hint_actions(state: &AppState) -> Vec<(&'static [Action], &'static str)> {
         hints.push((&[Action::Fly], "stop pilot"));
     }
     let engaged = state.view.vehicle.is_engaged();
-    if craft.armed {
+    if craft.is_armed() {
         let autopilot = if engaged { "autopilot off" } else { "autopilot" };
-        let home = if craft.commanded { "stop return" } else { "home" };
+        let home = if craft.is_commanded() { "stop return" } else { "home" };
         let rc = if state.view.rc_cut { "restore RC" } else { "cut RC" };
         if engaged {
             hints.extend([
@@ -111,7 +111,7 @@ fn hint_actions(state: &AppState) -> Vec<(&'static [Action], &'static str)> {
         (&[Action::Pause] as &[_], if state.view.paused { "go on" } else { "pause" }),
         (&[Action::Slower, Action::Faster], "speed"),
     ]);
-    if craft.armed && engaged {
+    if craft.is_armed() && engaged {
         // Last: in the air nobody should press it by mistake.
         hints.push((&[Action::Arm], "disarm"));
     }

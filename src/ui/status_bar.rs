@@ -46,12 +46,13 @@ pub(super) fn sides(buffer: &mut Buffer, area: Rect, left: &[Span<'static>], rig
 fn craft(state: &AppState) -> Vec<Span<'static>> {
     let theme = &state.theme;
     let craft = &state.view.vehicle.craft;
-    let mut spans = vec![if craft.armed {
-        span(theme, Role::Fault, " ● ARMED ")
-    } else {
-        span(theme, Role::Ok, " ○ DISARMED ")
+    let mut spans = vec![match craft.armed {
+        Some(true) => span(theme, Role::Fault, " ● ARMED "),
+        Some(false) => span(theme, Role::Ok, " ○ DISARMED "),
+        None => span(theme, Role::Dim, " ○ — "),
     }];
-    let mut modes: Vec<Mode> = craft.modes.iter().filter(|mode| *mode != Mode::Arm).collect();
+    let mut modes: Vec<Mode> =
+        craft.modes.unwrap_or_default().iter().filter(|mode| *mode != Mode::Arm).collect();
     modes.sort_by_key(|mode| match mode {
         Mode::Failsafe => 0,
         Mode::Autopilot => 1,
@@ -75,9 +76,14 @@ fn craft(state: &AppState) -> Vec<Span<'static>> {
 fn sensors(state: &AppState) -> Vec<Span<'static>> {
     let theme = &state.theme;
     let craft = &state.view.vehicle.craft;
-    let (fix, role) = if craft.gps_fix { ("3D", Role::Ok) } else { ("no", Role::Warn) };
+    let (fix, role) = match craft.gps_fix {
+        Some(true) => ("3D", Role::Ok),
+        Some(false) => ("no", Role::Warn),
+        None => ("—", Role::Dim),
+    };
+    let sats = craft.sats.map_or_else(|| "—".to_owned(), |sats| sats.to_string());
     let mut spans =
-        vec![span(theme, role, format!("⌖ {fix} {:>2} sats", craft.sats)), span(theme, Role::Text, "  ")];
+        vec![span(theme, role, format!("⌖ {fix:<2} {sats:>2} sats")), span(theme, Role::Text, "  ")];
     let (bar, role) = battery_bar(craft.battery_v, craft.battery_cells);
     spans.push(span(theme, role, format!("{bar} {} V", fixed(craft.battery_v, 4, 1))));
     spans.push(span(theme, Role::Text, "  "));
@@ -86,9 +92,9 @@ fn sensors(state: &AppState) -> Vec<Span<'static>> {
     spans
 }
 
-fn battery_bar(volts: Option<f64>, cells: u8) -> (String, Role) {
+fn battery_bar(volts: Option<f64>, cells: Option<u8>) -> (String, Role) {
     let Some(volts) = volts.filter(|v| v.is_finite()) else { return ("▯".repeat(BAR), Role::Dim) };
-    let cells = if cells > 0 { f64::from(cells) } else { (volts / CELL_V.1).ceil().max(1.0) };
+    let cells = cells.map_or_else(|| (volts / CELL_V.1).ceil().max(1.0), f64::from);
     let share = ((volts / cells - CELL_V.0) / (CELL_V.1 - CELL_V.0)).clamp(0.0, 1.0);
     let full = (share * BAR as f64).round() as usize;
     let role = match full {

@@ -53,7 +53,10 @@ pub(super) fn frame(state: &AppState) -> RcFrame {
 /// # Errors
 /// A sentence when no channel is assigned to it.
 pub(super) fn switch(state: &AppState, mode: Mode) -> Result<Switch, String> {
-    Switch::of(mode, &state.view.vehicle.craft.mode_ranges).ok_or_else(|| {
+    let Some(ranges) = &state.view.vehicle.craft.mode_ranges else {
+        return Err(format!("The flight controller does not tell which switch turns {mode} on."));
+    };
+    Switch::of(mode, ranges).ok_or_else(|| {
         let line = if mode == Mode::Arm { "aux 0 0 0 1700 2100" } else { "aux 1 56 1 1700 2100" };
         format!("No switch is assigned to {mode}: `{line}` in the CLI (5) does it.")
     })
@@ -62,13 +65,12 @@ pub(super) fn switch(state: &AppState, mode: Mode) -> Result<Switch, String> {
 /// Whether the switch of a mode is on, as the craft sees it.
 #[must_use]
 pub(super) fn switch_is_on(state: &AppState, mode: Mode) -> bool {
-    let craft = &state.view.vehicle.craft;
-    switch::is_on(mode, &craft.mode_ranges, &craft.channels)
+    state.view.vehicle.craft.is_switched_on(mode)
 }
 
 /// Whether the switch of a mode is on in this frame.
 fn is_on(state: &AppState, frame: &RcFrame, mode: Mode) -> bool {
-    switch::is_on(mode, &state.view.vehicle.craft.mode_ranges, &frame.channels)
+    switch::is_on(mode, state.view.vehicle.craft.mode_ranges(), &frame.channels)
 }
 
 /// The switch of a hold mode, unless its channel also arms, engages or is a stick.
@@ -78,7 +80,7 @@ fn hold_switch(state: &AppState, mode: Mode) -> Option<Switch> {
         usize::from(range.channel) == switch.channel
             && matches!(range.mode_box, ModeBox::Arm | ModeBox::Autopilot)
     };
-    let free = switch.channel > 3 && !state.view.vehicle.craft.mode_ranges.iter().any(is_reserved);
+    let free = switch.channel > 3 && !state.view.vehicle.craft.mode_ranges().iter().any(is_reserved);
     free.then_some(switch)
 }
 
@@ -114,7 +116,7 @@ pub(super) fn is_standing(state: &AppState) -> bool {
 
 /// Whether the craft flies, armed.
 fn is_airborne(state: &AppState) -> bool {
-    state.view.vehicle.craft.armed && !is_standing(state)
+    state.view.vehicle.craft.is_armed() && !is_standing(state)
 }
 
 /// Whether the throttle stick of a frame counts as raised.
@@ -157,7 +159,7 @@ pub(super) fn throttle_move(state: &AppState) -> ThrottleMove {
 pub(super) fn can_arm(state: &AppState) -> Result<(), String> {
     let switch = switch(state, Mode::Arm)?;
     let craft = &state.view.vehicle.craft;
-    if craft.armed || frame(state).channels[switch.channel] == switch.on_us {
+    if craft.is_armed() || frame(state).channels[switch.channel] == switch.on_us {
         return Ok(());
     }
     // The others only say "switch off, then on again", which is what the key does.
@@ -172,7 +174,7 @@ pub(super) fn can_arm(state: &AppState) -> Result<(), String> {
 pub(super) fn toggle_arm(state: &mut AppState) -> Vec<Effect> {
     let Ok(switch) = switch(state, Mode::Arm) else { return Vec::new() };
     let mut next = frame(state);
-    let on = state.view.vehicle.craft.armed || next.channels[switch.channel] == switch.on_us;
+    let on = state.view.vehicle.craft.is_armed() || next.channels[switch.channel] == switch.on_us;
     next.channels[switch.channel] = if on { switch.off_us } else { switch.on_us };
     if on {
         next.channels[THROTTLE] = LOW_US;
@@ -187,13 +189,13 @@ pub(super) fn toggle_autopilot(state: &mut AppState) -> Vec<Effect> {
     let Ok(switch) = switch(state, Mode::Autopilot) else { return Vec::new() };
     let mut next = frame(state);
     let on = next.channels[switch.channel] == switch.on_us;
-    if state.view.vehicle.craft.commanded && !on {
+    if state.view.vehicle.craft.is_commanded() && !on {
         return vec![Effect::Send(Command::CancelReturn)];
     }
     next.channels[switch.channel] = if on { switch.off_us } else { switch.on_us };
     if on && !is_raised(state, &next) && !is_airborne(state) {
         set_hold_modes(state, &mut next, false);
-    } else if !on && (state.view.vehicle.craft.armed || is_raised(state, &next)) {
+    } else if !on && (state.view.vehicle.craft.is_armed() || is_raised(state, &next)) {
         prepare_hold(state, &mut next);
     }
     send(state, next)
@@ -202,7 +204,7 @@ pub(super) fn toggle_autopilot(state: &mut AppState) -> Vec<Effect> {
 /// Sends the craft home, or takes that back. The hold modes go on, which take over when it is taken back; the scripted
 /// pilot has them on.
 pub(super) fn toggle_return(state: &mut AppState) -> Vec<Effect> {
-    if state.view.vehicle.craft.commanded {
+    if state.view.vehicle.craft.is_commanded() {
         return vec![Effect::Send(Command::CancelReturn)];
     }
     let before = frame(state);

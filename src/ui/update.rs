@@ -76,7 +76,7 @@ fn take_view(state: &mut AppState, view: SessionView) {
     if let Some(place) = map_point::craft(&state.view) {
         let engaged = state.view.vehicle.is_engaged();
         let time_s = state.view.vehicle.time.as_secs_f64();
-        if !state.view.vehicle.craft.armed {
+        if state.view.vehicle.craft.armed == Some(false) {
             state.track.disarmed_at(place.n, place.e);
         }
         state.track.push(TrackPoint { n: place.n, e: place.e, time_s, engaged });
@@ -192,7 +192,7 @@ fn act(state: &mut AppState, action: Action) -> Vec<Effect> {
             }
             Vec::new()
         }
-        Action::Quit if state.view.vehicle.craft.armed => {
+        Action::Quit if state.view.vehicle.craft.is_armed() => {
             state.layers.push(Layer::Quit);
             Vec::new()
         }

@@ -203,21 +203,27 @@ impl FlightController {
         }
     }
 
-    /// Whether the craft is armed, as far as is known.
+    /// Whether the craft is armed; `None` when a remote one does not tell.
     #[must_use]
-    pub fn is_armed(&self) -> bool {
+    pub fn armed(&self) -> Option<bool> {
         match self {
-            Self::Embedded(firmware) => firmware.is_armed(),
+            Self::Embedded(firmware) => Some(firmware.is_armed()),
             Self::Remote(remote) => remote.telemetry().craft.armed,
         }
     }
 
-    /// The active modes, as far as is known.
+    /// Whether the craft is known to be armed.
+    #[must_use]
+    pub fn is_armed(&self) -> bool {
+        self.armed() == Some(true)
+    }
+
+    /// The modes that are known to be active.
     #[must_use]
     pub fn modes(&self) -> ModeFlags {
         match self {
             Self::Embedded(firmware) => firmware.modes(),
-            Self::Remote(remote) => remote.telemetry().craft.modes,
+            Self::Remote(remote) => remote.telemetry().craft.modes.unwrap_or_default(),
         }
     }
 
@@ -282,7 +288,7 @@ impl FlightController {
     pub(super) fn mode_ranges(&self) -> Vec<ModeRange> {
         match self {
             Self::Embedded(firmware) => firmware.mode_ranges(),
-            Self::Remote(remote) => remote.telemetry().craft.mode_ranges.clone(),
+            Self::Remote(remote) => remote.telemetry().craft.mode_ranges().to_vec(),
         }
     }
 

@@ -65,7 +65,7 @@ pub(crate) fn happen(run: &mut Run, rng: &mut ChaCha8Rng) -> String {
         80..84 => {
             run.vehicle.embedded_mut().unwrap().cancel_command();
             let view = run.vehicle.embedded().unwrap().craft_view();
-            assert!(!view.commanded, "a command that was taken back stays");
+            assert!(!view.is_commanded(), "a command that was taken back stays");
             "undo".to_owned()
         }
         84..86 => {

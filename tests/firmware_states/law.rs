@@ -206,7 +206,7 @@ impl Law {
     }
 
     fn judge_failsafe(&mut self, firmware: &Firmware) {
-        let stage = firmware.craft_view().failsafe_stage;
+        let stage = firmware.craft_view().failsafe_stage.unwrap();
         let armed = firmware.is_armed();
         assert!((self.stage, stage) != (2, 1), "from a procedure back to guard time");
         if self.stage == 2 && stage == 0 {

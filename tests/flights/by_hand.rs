@@ -43,14 +43,14 @@ fn a_return_home_that_is_taken_back_leaves_the_craft_held() {
     rig.vehicle.embedded_mut().unwrap().return_to_home().unwrap();
     rig.fly(1.0);
     assert!(
-        rig.vehicle.snapshot().craft.commanded
+        rig.vehicle.snapshot().craft.is_commanded()
             && rig.vehicle.embedded().unwrap().modes().has(Mode::Autopilot)
     );
     rig.vehicle.embedded_mut().unwrap().cancel_command();
     rig.fly(1.0);
     let snapshot = rig.vehicle.snapshot();
-    assert_eq!((snapshot.craft.commanded, snapshot.nav.unwrap().state), (false, NavState::Idle));
-    assert!(snapshot.craft.modes.has(Mode::PosHold) && !snapshot.craft.modes.has(Mode::Autopilot));
+    assert_eq!((snapshot.craft.is_commanded(), snapshot.nav.unwrap().state), (false, NavState::Idle));
+    assert!(snapshot.craft.is_active(Mode::PosHold) && !snapshot.craft.is_active(Mode::Autopilot));
     let height = rig.vehicle.embedded().unwrap().altitude_m();
     let from = rig.samples.len();
     rig.fly(10.0);

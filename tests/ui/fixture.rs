@@ -153,7 +153,7 @@ pub(crate) fn view(flight: &SimpleFlight) -> SessionView {
     estimate.heading_deg = Some(flight.heading_deg);
 
     let craft = &mut snapshot.craft;
-    craft.armed = flight.armed;
+    craft.armed = Some(flight.armed);
     let mut modes = ModeFlags::NONE;
     for (mode, on) in [
         (Mode::Arm, flight.armed),
@@ -164,30 +164,32 @@ pub(crate) fn view(flight: &SimpleFlight) -> SessionView {
     ] {
         modes.set(mode, on);
     }
-    craft.modes = modes;
-    craft.gps_fix = flight.fix;
-    craft.sats = if flight.fix { 12 } else { 3 };
+    craft.modes = Some(modes);
+    craft.gps_fix = Some(flight.fix);
+    craft.sats = Some(if flight.fix { 12 } else { 3 });
     craft.home = flight.fix.then_some(HOME);
     craft.battery_v = Some(11.4);
-    craft.battery_cells = 3;
+    craft.battery_cells = Some(3);
     craft.rc_source = Some(RcSource::Sticks);
     craft.rc_age_s = Some(0.02);
     craft.rc_link = Some(true);
     craft.throttle_us = Some(if flight.armed { 1500.0 } else { 1000.0 });
-    craft.channels = RcFrame::SAFE.channels;
+    let mut channels = RcFrame::SAFE.channels;
     if flight.armed {
-        craft.channels[2] = 1500;
-        craft.channels[4] = 1900;
-        craft.channels[5] = if engaged { 1900 } else { 1000 };
-        craft.channels[6] = 1900;
+        channels[2] = 1500;
+        channels[4] = 1900;
+        channels[5] = if engaged { 1900 } else { 1000 };
+        channels[6] = 1900;
     }
+    craft.channels = Some(channels);
     if !flight.fix {
         craft.arming_blocked_by.get_or_insert_default().set(ArmingFlag::BootGrace, true);
     }
-    craft.mode_ranges =
+    craft.mode_ranges = Some(
         [(Mode::Arm, 4), (Mode::Autopilot, 5), (Mode::Angle, 6), (Mode::AltHold, 6), (Mode::PosHold, 6)]
             .map(|(mode, channel)| ModeRange { mode_box: mode.into(), channel, start_us: 1700, end_us: 2100 })
-            .to_vec();
+            .to_vec(),
+    );
 
     let nav = snapshot.nav.get_or_insert_default();
     nav.state = flight.state;

@@ -233,7 +233,7 @@ fn print_event(event: &Event, print: &mut impl FnMut(Said)) {
 fn print_flight(vehicle: &Snapshot, print: &mut impl FnMut(Said)) {
     let t_ms = vehicle.time.0 / 1000;
     let (craft, estimate) = (&vehicle.craft, &vehicle.estimate);
-    if !craft.armed && !craft.arming_flags().is_empty() {
+    if craft.armed == Some(false) && !craft.arming_flags().is_empty() {
         print(Said::Out(lines::blocked_line(t_ms, craft.arming_flags())));
     }
     let gps = craft.gps.unwrap_or_default();

@@ -27,7 +27,7 @@ pub fn enabled(state: &AppState, action: Action) -> Result<(), String> {
         Action::Throttle if state.view.vehicle.is_engaged() => {
             Err("The autopilot has the throttle: `g` switches it off.".to_owned())
         }
-        Action::ReturnHome if !craft.armed => {
+        Action::ReturnHome if craft.armed == Some(false) => {
             Err("Nothing to bring home: the craft is disarmed. `F` flies the plan.".to_owned())
         }
         Action::ReturnHome if craft.home.is_none() => {
@@ -39,7 +39,7 @@ pub fn enabled(state: &AppState, action: Action) -> Result<(), String> {
         Action::Fly if state.view.pilot.is_none() && is_wrecked(state) => {
             Err("The craft crashed and cannot fly: `R` puts it back home.".to_owned())
         }
-        Action::Fly if state.view.pilot.is_none() && craft.armed => {
+        Action::Fly if state.view.pilot.is_none() && craft.is_armed() => {
             Err("The craft is armed already: `g` engages the autopilot, or disarm with `a` first.".to_owned())
         }
         _ => Ok(()),

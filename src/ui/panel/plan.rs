@@ -22,7 +22,11 @@ pub(crate) fn title(state: &AppState) -> String {
     if state.plan.plan.waypoints.is_empty() {
         return name.to_owned();
     }
-    let where_it_is = if state.plan_is_on_craft() { "✓ on the craft" } else { "● not on the craft" };
+    let where_it_is = match &state.view.vehicle.stored_plan {
+        Some(stored) if *stored == state.plan.plan => "✓ on the craft",
+        Some(_) => "● not on the craft",
+        None => "— on the craft?",
+    };
     format!("{name} — {} {where_it_is}", state.plan.name)
 }
 

@@ -98,7 +98,7 @@ fn column_of(bar: Rect, us: u16) -> u16 {
 /// The ranges on a channel.
 fn ranges(craft: &CraftView, channel: usize) -> impl Iterator<Item = &ModeRange> {
     craft
-        .mode_ranges
+        .mode_ranges()
         .iter()
         .filter(move |range| usize::from(range.channel) == channel && range.start_us < range.end_us)
 }
@@ -127,7 +127,7 @@ pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     let craft = &state.view.vehicle.craft;
     let focused = state.focus == Pane::Rc;
     for (channel, place) in grid(area, state.channel) {
-        let us = craft.channels.get(channel).copied().unwrap_or_default();
+        let us = craft.channels.and_then(|channels| channels.get(channel).copied()).unwrap_or_default();
         let known = us > 0;
         let selected = focused && channel == state.channel;
         let value = if known { format!("{us:>4}") } else { "   —".to_owned() };

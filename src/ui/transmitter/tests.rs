@@ -9,15 +9,13 @@ const SINK_US: u16 = 1194;
 fn state(ranges: &[(Mode, u8, u16, u16)]) -> AppState {
     let mut view = SessionView::default();
     let vehicle = std::sync::Arc::make_mut(&mut view.vehicle);
-    vehicle.craft.mode_ranges = ranges
-        .iter()
-        .map(|&(mode, channel, start_us, end_us)| ModeRange {
-            mode_box: mode.into(),
-            channel,
-            start_us,
-            end_us,
-        })
-        .collect();
+    let range = |&(mode, channel, start_us, end_us): &(Mode, u8, u16, u16)| ModeRange {
+        mode_box: mode.into(),
+        channel,
+        start_us,
+        end_us,
+    };
+    vehicle.craft.mode_ranges = Some(ranges.iter().map(range).collect());
     let settings = vehicle.settings.get_or_insert_default();
     settings.hover_stick_us = 1500;
     settings.raised_stick_us = 1300;
@@ -77,7 +75,7 @@ fn the_throttle_brings_the_hold_modes_and_takes_them_back_on_the_ground() {
 fn switching_the_autopilot_off_in_the_air_leaves_the_craft_held() {
     let mut state = state(&HOLDS);
     let vehicle = std::sync::Arc::make_mut(&mut state.view.vehicle);
-    vehicle.craft.armed = true;
+    vehicle.craft.armed = Some(true);
     vehicle.estimate.alt = Some(20.0);
     for (keys, autopilot) in [("g on", true), ("g off", false)] {
         let frame = sticks(&toggle_autopilot(&mut state));
@@ -90,7 +88,7 @@ fn switching_the_autopilot_off_in_the_air_leaves_the_craft_held() {
 fn flying() -> AppState {
     let mut state = state(&HOLDS);
     let vehicle = std::sync::Arc::make_mut(&mut state.view.vehicle);
-    vehicle.craft.armed = true;
+    vehicle.craft.armed = Some(true);
     vehicle.estimate.alt = Some(20.0);
     state
 }
@@ -112,7 +110,7 @@ fn in_the_air_the_throttle_key_holds_then_sinks_and_never_drops_the_craft() {
 #[test]
 fn without_altitude_hold_the_throttle_key_knows_up_and_low_only() {
     let mut state = flying();
-    std::sync::Arc::make_mut(&mut state.view.vehicle).craft.mode_ranges.truncate(3);
+    std::sync::Arc::make_mut(&mut state.view.vehicle).craft.mode_ranges.as_mut().unwrap().truncate(3);
     assert_eq!(sticks(&move_throttle(&mut state)).channels[THROTTLE], 1500);
     assert_eq!(sticks(&move_throttle(&mut state)).channels[THROTTLE], 1000);
 }
@@ -144,7 +142,7 @@ fn a_return_home_is_taken_back_by_its_own_key_and_by_that_of_the_autopilot() {
     let effects = toggle_return(&mut state);
     assert!(matches!(effects.last(), Some(Effect::Send(Command::ReturnHome))), "{effects:?}");
     assert!(is_on(&state, &frame(&state), Mode::PosHold), "who gets the craft back must find it held");
-    std::sync::Arc::make_mut(&mut state.view.vehicle).craft.commanded = true;
+    std::sync::Arc::make_mut(&mut state.view.vehicle).craft.commanded = Some(true);
     for key in [toggle_return, toggle_autopilot] {
         let effects = key(&mut state);
         assert!(matches!(effects[..], [Effect::Send(Command::CancelReturn)]), "{effects:?}");
@@ -166,7 +164,7 @@ fn arming_is_refused_with_the_cause_but_disarming_never() {
     vehicle.craft.arming_blocked_by.get_or_insert_default().set(ArmingFlag::ArmSwitch, true);
     let sentence = can_arm(&state).expect_err("blocked");
     assert!(sentence.contains("BOOTGRACE"), "{sentence}");
-    std::sync::Arc::make_mut(&mut state.view.vehicle).craft.armed = true;
+    std::sync::Arc::make_mut(&mut state.view.vehicle).craft.armed = Some(true);
     assert_eq!(can_arm(&state), Ok(()));
     assert_eq!(sticks(&toggle_arm(&mut state)).channels[4], 1000);
 }

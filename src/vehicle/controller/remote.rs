@@ -183,10 +183,10 @@ impl RemoteController {
         let RemoteTelemetry { estimate, craft, settings, .. } = &self.telemetry;
         PilotFacts {
             time,
-            fix: craft.gps_fix,
+            fix: craft.has_fix(),
             arming_blocked: craft.arming_blocked_by.as_ref().is_none_or(|flags| !flags.is_empty()),
-            armed: craft.armed,
-            engaged: craft.modes.has(Mode::Autopilot),
+            armed: craft.is_armed(),
+            engaged: craft.is_active(Mode::Autopilot),
             alt_m: estimate.alt.unwrap_or_default(),
             climb_mps: estimate.climb_mps.unwrap_or_default(),
             hover_stick_us: settings.map_or(MID_US, |settings| settings.hover_stick_us),
