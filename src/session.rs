@@ -3,6 +3,7 @@
 mod arming;
 pub mod command;
 mod event;
+mod late_answers;
 mod links;
 mod pacer;
 mod persistence;
@@ -16,6 +17,7 @@ pub use command::{Command, SessionView};
 pub use event::{EndpointAddresses, Event, SessionEvent};
 pub use links::{Links, MotorTargets, MotorsError};
 pub use pacer::{Pacer, SPEED_RANGE};
+pub use persistence::Persistence;
 pub use request_handler::{Handled, RequestHandler};
 pub use runtime::{Endpoints, Handle, SessionConfig, start};
 pub use simulator::SimulatorRemark;

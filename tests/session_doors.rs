@@ -42,10 +42,11 @@ async fn rig() -> Rig {
         configuration,
         live: true,
     };
-    let handler = RequestHandler::new(doors.restart_bell(), true);
+    let handler = RequestHandler::new(doors.restart_bell());
     let session = start(SessionConfig {
         vehicle: Vehicle::new(config).unwrap(),
         store: Store::in_memory(),
+        starter_modes: true,
         speed: 1.0,
         takeoff_m: 10.0,
         endpoints: Some(Endpoints { requests: inbox, handler, status: views, simulator: None }),

@@ -14,10 +14,11 @@ use betadeck::firmware::config::Configuration;
 use betadeck::firmware::{Firmware, FirmwareOptions};
 use betadeck::link::proto::command_line::{LineReply, LineSource};
 use betadeck::link::{ClientId, Doors, DoorsConfig, Request};
-use betadeck::session::{Handled, RequestHandler};
+use betadeck::session::{Handled, Persistence, RequestHandler};
 use betadeck::signals::{MotorCommand, RcFrame, RcSource, SensorFrame, SimTime};
 use betadeck::storage::Store;
 use betadeck::telemetry::{ArmingFlag, FirmwareEvent};
+use betadeck::vehicle::FlightController;
 use tokio::sync::{mpsc, oneshot};
 
 const TICK: Duration = Duration::from_millis(1);
@@ -26,8 +27,8 @@ const LOOK: u64 = 20;
 
 /// A firmware on a bench behind a request handler, with a wall clock of its own.
 struct Bench {
-    firmware: Firmware,
-    store: Store,
+    controller: FlightController,
+    persistence: Persistence,
     handler: RequestHandler,
     ticks: u64,
     wall: Instant,
@@ -44,12 +45,12 @@ impl Bench {
         let mut configuration = Configuration::default();
         configuration.starter_modes();
         Self {
-            firmware: Firmware::new(
+            controller: FlightController::Embedded(Box::new(Firmware::new(
                 configuration,
                 FirmwareOptions { arm_assist: true, ..FirmwareOptions::default() },
-            ),
-            store: Store::in_memory(),
-            handler: RequestHandler::new(doors.restart_bell(), true),
+            ))),
+            persistence: Persistence::new(Store::in_memory(), true),
+            handler: RequestHandler::new(doors.restart_bell()),
             ticks: 0,
             wall: Instant::now(),
             owed: 0.0,
@@ -58,14 +59,22 @@ impl Bench {
         }
     }
 
+    fn firmware(&self) -> &Firmware {
+        self.controller.embedded().unwrap()
+    }
+
+    fn firmware_mut(&mut self) -> &mut Firmware {
+        self.controller.embedded_mut().unwrap()
+    }
+
     fn tick(&mut self, speed: f64) {
         if self.ticks.is_multiple_of(LOOK) {
-            self.handler.keep_rc_fresh(&mut self.firmware, speed, self.wall);
+            self.handler.keep_rc_fresh(&mut self.controller, speed, self.wall);
         }
         let sensors = SensorFrame { time: SimTime(self.ticks * 1000), ..SensorFrame::default() };
-        self.motors = self.firmware.step(&sensors);
+        self.motors = self.firmware_mut().step(&sensors);
         self.ticks += 1;
-        while let Some(event) = self.firmware.take_event() {
+        while let Some(event) = self.firmware_mut().take_event() {
             match event {
                 FirmwareEvent::RxLoss => self.lost = true,
                 FirmwareEvent::RxRecovered => self.lost = false,
@@ -85,7 +94,7 @@ impl Bench {
     }
 
     fn handle(&mut self, request: Request) -> Handled {
-        self.handler.handle(request, &mut self.firmware, &mut self.store, self.wall)
+        self.handler.handle(request, &mut self.controller, &mut self.persistence, self.wall)
     }
 
     fn receive_udp(&mut self, frame: RcFrame) {
@@ -116,7 +125,7 @@ impl Bench {
     }
 
     fn arming_is_blocked_by_cli(&self) -> bool {
-        self.firmware.arming_flags().has(ArmingFlag::Cli)
+        self.firmware().arming_flags().has(ArmingFlag::Cli)
     }
 
     fn second_motor(&mut self) -> f64 {
@@ -167,7 +176,7 @@ async fn a_script_is_not_lost_while_time_stands_still() {
     }
     // Paused for a minute: no tick, no look.
     bench.wall += Duration::from_secs(60);
-    assert!(!bench.lost && bench.firmware.receiver().signal());
+    assert!(!bench.lost && bench.firmware().receiver().signal());
 }
 
 #[tokio::test]
@@ -184,7 +193,7 @@ async fn the_script_stays_in_charge_beside_a_client_that_speaks_msp_however_fast
         }
         bench.pass(50.0);
         if ms > 100 {
-            assert_eq!(bench.firmware.receiver().sources().in_charge(), Some(RcSource::Udp), "{ms} ms");
+            assert_eq!(bench.firmware().receiver().sources().in_charge(), Some(RcSource::Udp), "{ms} ms");
         }
     }
 }
@@ -242,7 +251,7 @@ async fn an_armed_craft_is_not_restarted() {
     let mut frame = RcFrame::SAFE;
     bench.enter(1, true);
     // The craft put back home: the command line is open, but blocks nothing.
-    bench.firmware.restart_in_place();
+    bench.firmware_mut().restart_in_place();
     for ms in 0..7000_u32 {
         frame.channels[4] = if ms > 6500 { 2000 } else { 1000 };
         if ms.is_multiple_of(20) {
@@ -250,12 +259,12 @@ async fn an_armed_craft_is_not_restarted() {
         }
         bench.pass(1.0);
     }
-    assert!(bench.firmware.is_armed(), "{:?}", bench.firmware.arming_flags());
+    assert!(bench.firmware().is_armed(), "{:?}", bench.firmware().arming_flags());
     assert!(!bench.handle(Request::Restart { client: ClientId(1) }).restarted);
     assert_eq!(bench.ask(2, 68, &[]), None);
     assert_eq!(bench.ask(2, 208, &[]), Some(vec![0]));
     assert!(!bench.enter(3, true) && !bench.enter(3, false));
-    assert!(bench.firmware.is_armed());
+    assert!(bench.firmware().is_armed());
 }
 
 #[tokio::test]
@@ -263,7 +272,7 @@ async fn what_cannot_be_saved_is_told_in_a_sentence() {
     let directory = tempfile::tempdir().unwrap();
     let folder = directory.path().join("state");
     let mut bench = Bench::new().await;
-    bench.store = Store::open(&folder, false).unwrap();
+    bench.persistence = Persistence::new(Store::open(&folder, false).unwrap(), true);
     // A file where the directory was.
     if folder.exists() {
         std::fs::remove_dir_all(&folder).unwrap();

@@ -90,13 +90,18 @@ async fn rig_with(faults: &[&str]) -> Rig {
         live: true,
     })
     .unwrap();
-    let handler = RequestHandler::new(doors.restart_bell(), true);
+    let handler = RequestHandler::new(doors.restart_bell());
     let endpoints = Some(Endpoints { requests: inbox, handler, status: views, simulator: Some(simulator) });
-    let store = Store::in_memory();
-    let first_events = Vec::new();
-    let session =
-        start(SessionConfig { vehicle, store, speed: 1.0, takeoff_m: 10.0, endpoints, first_events })
-            .unwrap();
+    let session = start(SessionConfig {
+        vehicle,
+        store: Store::in_memory(),
+        starter_modes: true,
+        speed: 1.0,
+        takeoff_m: 10.0,
+        endpoints,
+        first_events: Vec::new(),
+    })
+    .unwrap();
     Rig {
         session,
         requests,

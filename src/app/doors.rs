@@ -74,7 +74,7 @@ pub(super) async fn open(
         true => Some(simulator(args, physics, flight, addresses.fdm, &mut notices)?),
         false => None,
     };
-    let (doors, endpoints, view_tx) = links.endpoints(simulator, true);
+    let (doors, endpoints, view_tx) = links.endpoints(simulator);
     let stop = CancellationToken::new();
     let keeper = tokio::spawn(keep(doors, view_tx, stop.clone()));
     Ok(Some(Opened { doors: OpenDoors { stop, keeper }, endpoints, addresses, notices }))

@@ -50,6 +50,7 @@ pub(super) fn run(args: &ServeArgs) -> Result<u8, AppError> {
         let session = session::start(SessionConfig {
             vehicle,
             store,
+            starter_modes: true,
             speed,
             takeoff_m: TAKEOFF_M,
             endpoints,

@@ -51,15 +51,13 @@ impl Links {
         Self { doors, requests, status }
     }
 
-    /// The session's side of them, and where their state is to be published. `starter_modes` gives a craft without mode
-    /// conditions the usual ones at every start.
+    /// The session's side of them, and where their state is to be published.
     #[must_use]
     pub fn endpoints(
         self,
         simulator: Option<ExternalSimulator>,
-        starter_modes: bool,
     ) -> (Doors, Endpoints, watch::Sender<Vec<EndpointStatus>>) {
-        let handler = RequestHandler::new(self.doors.restart_bell(), starter_modes);
+        let handler = RequestHandler::new(self.doors.restart_bell());
         let (publish, status) = watch::channel(self.status);
         (self.doors, Endpoints { requests: self.requests, handler, status, simulator }, publish)
     }

@@ -1,18 +1,19 @@
-//! Answers the requests of the links from a firmware and its store, between two steps.
+//! Passes the requests of the links on to the flight controller between two steps, and the answers back. A remote flight
+//! controller answers later, by ticket.
 
 use std::collections::BTreeMap;
 use std::time::{Duration, Instant};
 
 use tokio::sync::oneshot;
 
-use super::persistence;
-use crate::firmware::Firmware;
+use super::late_answers::{LateAnswers, NO_ANSWER};
+use super::persistence::Persistence;
 use crate::firmware::cli::{CliAction, CliReply, Interpreter, Mode, complete};
-use crate::firmware::msp::{MspAction, UtcTime};
+use crate::firmware::msp::{MspAction, Outcome, UtcTime};
 use crate::link::proto::command_line::{AfterLine, Completion, LineReply, LineSource};
 use crate::link::{ClientId, Request, RestartBell};
 use crate::signals::{RcFrame, RcSource};
-use crate::storage::Store;
+use crate::vehicle::{Answer, FlightController, LateAnswer, Ticket};
 
 /// A frame from a script counts as fresh for this long of wall time.
 const RC_FRESH: Duration = Duration::from_millis(150);
@@ -22,9 +23,9 @@ const RC_FRESH: Duration = Duration::from_millis(150);
 pub struct Handled {
     /// Sentences for the user.
     pub notices: Vec<String>,
-    /// The firmware started anew.
+    /// The flight controller restarts.
     pub restarted: bool,
-    /// A datagram from a simulator, which is not for the firmware, and when it came.
+    /// A datagram from a simulator, which is not for the flight controller, and when it came.
     pub fdm: Option<(Vec<u8>, Instant)>,
 }
 
@@ -43,11 +44,20 @@ struct CliSession {
     interactive: bool,
 }
 
+/// A client that awaits the answer of a remote flight controller.
+#[derive(Debug)]
+enum Recipient {
+    /// Of an MSP message.
+    Message(oneshot::Sender<Option<Vec<u8>>>),
+    /// Of a line of the command line.
+    Line(oneshot::Sender<LineReply>),
+}
+
 /// Handles the requests of the links.
 #[derive(Debug)]
 pub struct RequestHandler {
     bell: RestartBell,
-    starter_modes: bool,
+    late_answers: LateAnswers<Recipient>,
     clock: Option<(UtcTime, Instant)>,
     udp: Option<ReceivedRc>,
     msp: Option<ReceivedRc>,
@@ -58,13 +68,12 @@ pub struct RequestHandler {
 }
 
 impl RequestHandler {
-    /// A handler that rings `bell` when the firmware starts anew. `starter_modes` gives a craft without mode conditions
-    /// the usual ones at every start.
+    /// A handler that rings `bell` when the flight controller restarts.
     #[must_use]
-    pub fn new(bell: RestartBell, starter_modes: bool) -> Self {
+    pub fn new(bell: RestartBell) -> Self {
         Self {
             bell,
-            starter_modes,
+            late_answers: LateAnswers::default(),
             clock: None,
             udp: None,
             msp: None,
@@ -74,63 +83,60 @@ impl RequestHandler {
         }
     }
 
-    /// Whether a craft without mode conditions gets the usual ones at every start.
-    pub(super) fn gives_starter_modes(&self) -> bool {
-        self.starter_modes
-    }
-
     /// Handles a request at `now`.
     pub fn handle(
         &mut self,
         request: Request,
-        firmware: &mut Firmware,
-        store: &mut Store,
+        controller: &mut FlightController,
+        persistence: &mut Persistence,
         now: Instant,
     ) -> Handled {
         let mut handled = Handled::default();
         match request {
             Request::Msp { code, payload, reply, .. } => {
-                let outcome = firmware.run_msp(code, &payload, self.clock_at(now));
-                if outcome.action == Some(MspAction::Save)
-                    && let Err(notice) = persistence::save(firmware, store)
-                {
-                    handled.notices.push(notice);
-                    answer(reply, None);
-                    return handled;
+                match controller.run_msp(code, &payload, self.clock_at(now)) {
+                    Answer::Now(outcome) => {
+                        let payload =
+                            self.act_on_message(outcome, controller, persistence, now, &mut handled);
+                        answer(reply, payload);
+                    }
+                    Answer::Later(ticket) => {
+                        self.late_answers.expect(ticket, Recipient::Message(reply), now);
+                    }
                 }
-                // Links are closed before the answer goes out: who comes back after it is a new client.
-                self.act_on_message(outcome.action, firmware, store, now, &mut handled);
-                answer(reply, outcome.reply);
             }
             Request::EnterCli { client, interactive, reply } => {
-                let admitted = !firmware.is_armed();
+                let admitted = !controller.is_armed();
                 if admitted {
-                    self.enter_cli(client, interactive, firmware);
+                    self.enter_cli(client, interactive, controller);
                 }
                 answer(reply, admitted);
             }
             Request::Cli { client, line, source, reply } => {
-                let said = self.run_line(client, source, &line, firmware);
-                let restart = self.act_on_line(client, &said, firmware, store, &mut handled);
-                if let Some(close_links) = restart {
-                    self.restart(close_links, firmware, store, &mut handled);
+                match self.run_line(client, source, &line, controller) {
+                    Answer::Now(said) => {
+                        self.act_on_line(client, &said, controller, persistence, &mut handled);
+                        answer(reply, said.into());
+                    }
+                    Answer::Later(ticket) => {
+                        self.late_answers.expect(ticket, Recipient::Line(reply), now);
+                    }
                 }
-                answer(reply, said.into());
             }
             Request::Complete { line, reply } => answer(reply, completion(&line)),
             Request::LeftCli { client } => {
                 self.cli_sessions.remove(&client);
                 // Motors that somebody else turns go on.
                 if self.bench.take_if(|bench| *bench == client).is_some() {
-                    firmware.cli_closed();
+                    controller.cli_closed();
                 }
             }
             // The command line was opened before the craft was armed; it does not fall from the sky for that.
-            Request::Restart { .. } if firmware.is_armed() => {}
-            Request::Restart { .. } => self.restart(true, firmware, store, &mut handled),
+            Request::Restart { .. } if controller.armed() != Some(false) => {}
+            Request::Restart { .. } => self.restart(true, controller, persistence, &mut handled),
             Request::Rc { frame, at, .. } => {
                 self.udp = Some(ReceivedRc { frame, at });
-                firmware.receive_rc(&frame, RcSource::Udp);
+                controller.receive_rc(&frame, RcSource::Udp);
             }
             Request::Fdm { datagram, at, .. } => handled.fdm = Some((datagram, at)),
             Request::Notice(text) => handled.notices.push(text),
@@ -138,11 +144,34 @@ impl RequestHandler {
         handled
     }
 
-    fn enter_cli(&mut self, client: ClientId, interactive: bool, firmware: &mut Firmware) {
+    /// Hands an answer that came late to the client that awaits it.
+    pub fn deliver(&mut self, ticket: Ticket, late: LateAnswer) {
+        match (self.late_answers.take(ticket), late) {
+            (Some(Recipient::Message(reply)), LateAnswer::Msp(payload)) => answer(reply, payload),
+            (Some(Recipient::Line(reply)), LateAnswer::Cli(said)) => answer(reply, said.into()),
+            // The answer to a request that was given up, or to another one.
+            _ => {}
+        }
+    }
+
+    /// Refuses the requests whose answers are overdue.
+    pub fn give_up_overdue(&mut self, now: Instant) {
+        for recipient in self.late_answers.take_overdue(now) {
+            match recipient {
+                Recipient::Message(reply) => answer(reply, None),
+                Recipient::Line(reply) => {
+                    let text = format!("###ERROR: {}###", NO_ANSWER.to_uppercase());
+                    answer(reply, LineReply { text, refused: true, ..LineReply::default() });
+                }
+            }
+        }
+    }
+
+    fn enter_cli(&mut self, client: ClientId, interactive: bool, controller: &mut FlightController) {
         let mode = if interactive { Mode::Interactive } else { Mode::Framed };
         self.cli_sessions.insert(client, CliSession { interpreter: Interpreter::new(mode), interactive });
         if interactive {
-            firmware.cli_opened();
+            controller.cli_opened();
         }
     }
 
@@ -153,32 +182,40 @@ impl RequestHandler {
         client: ClientId,
         source: LineSource,
         line: &str,
-        firmware: &mut Firmware,
-    ) -> CliReply {
+        controller: &mut FlightController,
+    ) -> Answer<CliReply> {
         let (mode, session) = match source {
             LineSource::Prompt => (Mode::Interactive, self.cli_sessions.get_mut(&client)),
             LineSource::Framed => (Mode::Framed, self.cli_sessions.get_mut(&client)),
             LineSource::Message => (Mode::Message, None),
         };
         match session {
-            Some(session) => firmware.run_cli(&mut session.interpreter, line),
-            None => firmware.run_cli(&mut Interpreter::new(mode), line),
+            Some(session) => controller.run_cli(&mut session.interpreter, line),
+            None => controller.run_cli(&mut Interpreter::new(mode), line),
         }
     }
 
+    /// Does what a message asks for; gives the payload of the reply. Links are closed before the reply goes out: who comes
+    /// back after it is a new client.
     fn act_on_message(
         &mut self,
-        action: Option<MspAction>,
-        firmware: &mut Firmware,
-        store: &mut Store,
+        outcome: Outcome,
+        controller: &mut FlightController,
+        persistence: &mut Persistence,
         now: Instant,
         handled: &mut Handled,
-    ) {
-        match action {
-            Some(MspAction::Reboot) => self.restart(true, firmware, store, handled),
+    ) -> Option<Vec<u8>> {
+        match outcome.action {
+            Some(MspAction::Save) => {
+                if let Err(notice) = persistence.save(controller) {
+                    handled.notices.push(notice);
+                    return None;
+                }
+            }
+            Some(MspAction::Reboot) => self.restart(true, controller, persistence, handled),
             Some(MspAction::SaveAndReboot) => {
-                handled.notices.extend(persistence::save(firmware, store).err());
-                self.restart(true, firmware, store, handled);
+                handled.notices.extend(persistence.save(controller).err());
+                self.restart(true, controller, persistence, handled);
             }
             Some(MspAction::SetClock { unix_s, millis }) => {
                 self.clock = Some((UtcTime { unix_s, millis }, now));
@@ -189,8 +226,7 @@ impl RequestHandler {
             }
             // The firmware itself has carried these out.
             Some(
-                MspAction::Save
-                | MspAction::RawGps { .. }
+                MspAction::RawGps { .. }
                 | MspAction::MotorTest(_)
                 | MspAction::CalibrateAcc
                 | MspAction::CalibrateMag
@@ -199,21 +235,22 @@ impl RequestHandler {
             )
             | None => {}
         }
+        outcome.reply
     }
 
-    /// Does what a line asks for; a restart is left to the caller: whether it closes the links.
+    /// Does what a line asks for, a restart last.
     fn act_on_line(
         &mut self,
         client: ClientId,
         said: &CliReply,
-        firmware: &mut Firmware,
-        store: &mut Store,
+        controller: &mut FlightController,
+        persistence: &mut Persistence,
         handled: &mut Handled,
-    ) -> Option<bool> {
+    ) {
         let mut restart = None;
         for action in &said.actions {
             match *action {
-                CliAction::Save => handled.notices.extend(persistence::save(firmware, store).err()),
+                CliAction::Save => handled.notices.extend(persistence.save(controller).err()),
                 CliAction::Restart { close_links } => restart = Some(close_links),
                 CliAction::PlanChanged if !self.told_plan => {
                     self.told_plan = true;
@@ -223,47 +260,49 @@ impl RequestHandler {
                 CliAction::PlanChanged | CliAction::Leave => {}
             }
         }
-        restart
+        if let Some(close_links) = restart {
+            self.restart(close_links, controller, persistence, handled);
+        }
     }
 
     fn restart(
         &mut self,
         close_links: bool,
-        firmware: &mut Firmware,
-        store: &mut Store,
+        controller: &mut FlightController,
+        persistence: &mut Persistence,
         handled: &mut Handled,
     ) {
-        handled.notices.extend(persistence::restart(firmware, store, self.starter_modes));
+        handled.notices.extend(persistence.restart(controller));
         handled.restarted = true;
-        self.after_restart(close_links, firmware);
+        self.after_restart(close_links, controller);
     }
 
-    /// Brings the clients' sessions up to date after the firmware started anew: closes the links, or, where they are kept,
+    /// Brings the clients' sessions up to date after a restart of the flight controller: closes the links, or, where they are kept,
     /// lets those who are at a command line block arming as before.
-    pub fn after_restart(&mut self, close_links: bool, firmware: &mut Firmware) {
+    pub fn after_restart(&mut self, close_links: bool, controller: &mut FlightController) {
         (self.udp, self.msp, self.bench) = (None, None, None);
         if close_links {
             self.cli_sessions.clear();
             self.bell.ring();
         } else if self.cli_sessions.values().any(|session| session.interactive) {
-            firmware.cli_opened();
+            controller.cli_opened();
         }
     }
 
     /// Keeps RC from sockets alive while simulated time runs `speed` times faster than the wall clock: a script sends
-    /// 50 frames of wall time a second, and the firmware would miss it. To be called about every 20 ms of simulated
+    /// 50 frames of wall time a second, and the flight controller would miss it. To be called about every 20 ms of simulated
     /// time.
-    pub fn keep_rc_fresh(&self, firmware: &mut Firmware, speed: f64, now: Instant) {
+    pub fn keep_rc_fresh(&self, controller: &mut FlightController, speed: f64, now: Instant) {
         if speed <= 1.0 {
             return;
         }
-        // The firmware itself notices a loss after as much simulated time.
+        // The receiver itself notices a loss after as much simulated time.
         let patience = RC_FRESH.mul_f64(1.0 - 1.0 / speed);
         for (source, heard) in [(RcSource::Udp, self.udp), (RcSource::Msp, self.msp)] {
             if let Some(ReceivedRc { frame, at }) = heard
                 && now.saturating_duration_since(at) < patience
             {
-                firmware.receive_rc(&frame, source);
+                controller.receive_rc(&frame, source);
             }
         }
     }

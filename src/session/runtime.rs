@@ -1,26 +1,28 @@
 //! The thread that owns the vehicle: takes commands and requests, runs the due ticks, publishes views and events.
 //!
 //! `commands` carries out what the user interface asks, `console` its command line, `requests` what comes over the links;
-//! `publishing` makes the view.
+//! `late` hands on what a remote flight controller answers; `publishing` makes the view.
 #![allow(clippy::disallowed_methods, reason = "this is where wall time meets simulated time")]
 
 mod commands;
 mod console;
+mod late;
 mod publishing;
 mod requests;
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::task::{Context, Wake, Waker};
 use std::thread::Thread;
 use std::time::{Duration, Instant};
 
-use tokio::sync::{mpsc, oneshot, watch};
+use tokio::sync::{mpsc, watch};
 
 use super::arming::ArmingWatch;
-use super::command::{CliOutput, Command, SessionView};
+use super::command::{Command, SessionView};
 use super::event::{Event, EventSender, SessionEvent};
+use super::late_answers::LateAnswers;
 use super::pacer::Pacer;
+use super::persistence::Persistence;
 use super::request_handler::RequestHandler;
 use super::simulator::Simulator;
 use crate::firmware::cli::Interpreter;
@@ -28,7 +30,8 @@ use crate::link::{ExternalSimulator, ImpairedLink, Request};
 use crate::sim::Stream;
 use crate::storage::Store;
 use crate::telemetry::{EndpointStatus, LinkState};
-use crate::vehicle::{Ticket, Vehicle};
+use crate::vehicle::Vehicle;
+use late::Recipient;
 
 /// Interval of published views.
 const VIEW_INTERVAL: Duration = Duration::from_millis(16);
@@ -59,6 +62,8 @@ pub struct SessionConfig {
     pub vehicle: Vehicle,
     /// Where `save` goes.
     pub store: Store,
+    /// A craft without mode conditions gets the starter modes at every restart.
+    pub starter_modes: bool,
     /// Times real time at the start; infinite = as fast as possible.
     pub speed: f64,
     /// Altitude to which the scripted pilot climbs, m.
@@ -95,14 +100,14 @@ pub fn start(mut config: SessionConfig) -> std::io::Result<Handle> {
         pacer: Pacer::new(config.vehicle.step_us(), config.speed),
         console: Interpreter::default(),
         vehicle: config.vehicle,
-        store: config.store,
+        persistence: Persistence::new(config.store, config.starter_modes),
         takeoff_m: config.takeoff_m,
         simulator: simulator.map(|link| Simulator::new(link, incoming, Instant::now())),
         endpoints: config.endpoints,
         commands: command_rx,
         events: EventSender::new(event_tx),
         arming: ArmingWatch::default(),
-        unanswered: BTreeMap::new(),
+        late_answers: LateAnswers::default(),
         rc_received: false,
         changed: true,
         more_waits: false,
@@ -119,7 +124,7 @@ pub fn start(mut config: SessionConfig) -> std::io::Result<Handle> {
 
 struct Session {
     vehicle: Vehicle,
-    store: Store,
+    persistence: Persistence,
     pacer: Pacer,
     console: Interpreter,
     takeoff_m: f64,
@@ -128,8 +133,8 @@ struct Session {
     commands: mpsc::Receiver<Command>,
     events: EventSender,
     arming: ArmingWatch,
-    /// Lines of the console that a remote flight controller has not answered yet.
-    unanswered: BTreeMap<Ticket, (String, oneshot::Sender<CliOutput>)>,
+    /// What the user interface asked of a remote flight controller.
+    late_answers: LateAnswers<Recipient>,
     /// A script has sent RC.
     rc_received: bool,
     /// Something other than time changed what the view shows.
@@ -158,7 +163,7 @@ impl Session {
         self.flush_events();
         while !self.quit {
             self.take_commands(start.elapsed(), &mut context);
-            self.take_late_answers();
+            self.take_late_answers(Instant::now());
             let flown = self.handle_requests(&mut context);
             let now = start.elapsed();
             let due = if self.follows_wall_clock() { self.pacer.due(now, SLICE) } else { 0 };

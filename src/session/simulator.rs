@@ -148,10 +148,8 @@ impl Simulator {
         let received = self.link.receive(datagram, at, |sensors, ticks| {
             let mut frame = *sensors;
             for _ in 0..ticks {
-                if vehicle.time().0.is_multiple_of(RC_REPEAT_US)
-                    && let Some(firmware) = vehicle.embedded_mut()
-                {
-                    handler.keep_rc_fresh(firmware, speed, at);
+                if vehicle.time().0.is_multiple_of(RC_REPEAT_US) {
+                    handler.keep_rc_fresh(vehicle.controller_mut(), speed, at);
                 }
                 vehicle.tick_on(&frame);
                 // Held inputs; a sample is new only once.
@@ -166,9 +164,7 @@ impl Simulator {
         self.tell_return(at, vehicle, events);
         if received.verdict == (Verdict::Resync { restarted: true }) {
             vehicle.reset_craft();
-            if let Some(firmware) = vehicle.embedded_mut() {
-                handler.after_restart(false, firmware);
-            }
+            handler.after_restart(false, vehicle.controller_mut());
         }
         for notice in received.notices {
             self.changed = true;

@@ -1,26 +1,111 @@
 //! Uploads a plan as a ground station does: through the command line.
 
-use crate::firmware::cli::Interpreter;
+use crate::firmware::cli::{CliReply, Interpreter};
 use crate::plan::{FlightPlan, upload_lines};
-use crate::vehicle::{Answer, FlightController};
+use crate::vehicle::{Answer, FlightController, Ticket};
 
-/// Stores `settings` and `plan` in the craft.
+/// Stores `settings` and `plan` in an embedded flight controller.
 ///
 /// # Errors
-/// The sentence of the first refusal; what came before it stays. A remote flight controller takes no plan this way.
+/// The sentence of the first refusal; what came before it stays. A remote flight controller answers too late for this.
 pub fn upload(
     controller: &mut FlightController,
     plan: &FlightPlan,
     settings: &[String],
 ) -> Result<(), String> {
-    let mut interpreter = Interpreter::default();
-    for line in upload_lines(plan, settings) {
-        let Answer::Now(reply) = controller.run_cli(&mut interpreter, &line) else {
-            return Err("a remote flight controller takes no plan from here".to_owned());
-        };
-        if reply.failed {
-            return Err(format!("the craft refused `{line}`: {}", reply.text.trim()));
+    match Upload::new(plan, settings).send_lines(controller) {
+        Progress::Done(result) => result,
+        Progress::Waiting(_) => Err("a remote flight controller takes a plan in a session only".to_owned()),
+    }
+}
+
+/// An upload under way.
+#[derive(Debug)]
+pub(super) struct Upload {
+    /// The lines that were not sent yet.
+    lines: std::vec::IntoIter<String>,
+    /// The line that was sent last.
+    sent: String,
+    interpreter: Interpreter,
+}
+
+/// How far an upload is.
+#[derive(Debug)]
+pub(super) enum Progress {
+    /// Through, or refused with this sentence; what came before the refusal stays.
+    Done(Result<(), String>),
+    /// It goes on with the answer to the last line, which comes with this ticket.
+    Waiting(Ticket),
+}
+
+impl Upload {
+    pub(super) fn new(plan: &FlightPlan, settings: &[String]) -> Self {
+        let lines: Vec<String> = upload_lines(plan, settings).collect();
+        Self { lines: lines.into_iter(), sent: String::new(), interpreter: Interpreter::default() }
+    }
+
+    /// Sends lines until one is refused or its answer comes later.
+    pub(super) fn send_lines(&mut self, controller: &mut FlightController) -> Progress {
+        while let Some(line) = self.lines.next() {
+            self.sent = line;
+            match controller.run_cli(&mut self.interpreter, &self.sent) {
+                Answer::Now(reply) if reply.failed => return self.refused(&reply),
+                Answer::Now(_) => {}
+                Answer::Later(ticket) => return Progress::Waiting(ticket),
+            }
+        }
+        Progress::Done(Ok(()))
+    }
+
+    /// Takes the answer to the last line and goes on.
+    pub(super) fn take_answer(&mut self, reply: &CliReply, controller: &mut FlightController) -> Progress {
+        if reply.failed { self.refused(reply) } else { self.send_lines(controller) }
+    }
+
+    fn refused(&self, reply: &CliReply) -> Progress {
+        Progress::Done(Err(format!("the craft refused `{}`: {}", self.sent, reply.text.trim())))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::Waypoint;
+    use crate::vehicle::Request;
+
+    /// What the remote flight controller was asked since.
+    fn asked(controller: &mut FlightController) -> Vec<String> {
+        let mailbox = controller.remote_mut().unwrap();
+        std::iter::from_fn(|| mailbox.take_request())
+            .map(|(_, request)| match request {
+                Request::Cli(line) => line,
+                other => panic!("{other:?}"),
+            })
+            .collect()
+    }
+
+    #[test]
+    fn a_remote_flight_controller_gets_each_line_after_the_answer_to_the_one_before() {
+        let plan =
+            FlightPlan { waypoints: std::iter::once(Waypoint::default()).collect(), ..FlightPlan::default() };
+        let lines = ["set ap_max_angle = 33", "waypoint clear", "waypoint insert"];
+        let (taken, refused) = (CliReply::default(), CliReply { failed: true, ..CliReply::default() });
+        for answers in [[&taken, &taken, &taken], [&taken, &refused, &taken]] {
+            let mut controller = FlightController::Remote(Box::default());
+            let mut upload = Upload::new(&plan, &["ap_max_angle = 33".to_owned()]);
+            let mut progress = upload.send_lines(&mut controller);
+            for (line, answer) in std::iter::zip(lines, answers) {
+                assert!(matches!(progress, Progress::Waiting(_)), "{progress:?}");
+                let asked = asked(&mut controller);
+                assert!(asked.len() == 1 && asked[0].starts_with(line), "{asked:?}");
+                progress = upload.take_answer(answer, &mut controller);
+                if answer.failed {
+                    break;
+                }
+            }
+            let Progress::Done(result) = progress else { panic!("{progress:?}") };
+            assert_eq!(result.is_ok(), !answers[1].failed, "{result:?}");
+            assert!(asked(&mut controller).is_empty());
         }
     }
-    Ok(())
 }

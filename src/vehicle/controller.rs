@@ -6,6 +6,7 @@ pub use remote::{FrameOut, RemoteController, RemoteTelemetry, Request};
 
 use crate::firmware::Firmware;
 use crate::firmware::cli::{BuildInfo, CliReply, Interpreter, StorageFacts};
+use crate::firmware::config::Configuration;
 use crate::firmware::msp::{Outcome, UtcTime};
 use crate::pilot::PilotFacts;
 use crate::plan::FlightPlan;
@@ -29,10 +30,10 @@ pub enum Answer<T> {
 /// An answer that came later.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LateAnswer {
-    /// To a CLI line.
+    /// To a CLI line; the reply's actions have been carried out where it runs.
     Cli(CliReply),
-    /// To an MSP message.
-    Msp(Outcome),
+    /// To an MSP message: the payload of the reply; `None` when the message is unknown or refused.
+    Msp(Option<Vec<u8>>),
 }
 
 /// What flies the craft. A clone goes on identically.
@@ -91,8 +92,8 @@ impl FlightController {
         }
     }
 
-    /// Runs a CLI line; `session` is the state of an embedded one's command line. Storing and restarting are left to the
-    /// owner: the reply says so.
+    /// Runs a CLI line; `session` is the state of an embedded one's command line. Storing and restarting an embedded one
+    /// are left to its owner: the reply says so.
     pub fn run_cli(&mut self, session: &mut Interpreter, line: &str) -> Answer<CliReply> {
         match self {
             Self::Embedded(firmware) => Answer::Now(firmware.run_cli(session, line)),
@@ -100,7 +101,8 @@ impl FlightController {
         }
     }
 
-    /// Answers an MSP message. `clock` is the time of day, when somebody set it.
+    /// Answers an MSP message. `clock` is the time of day, when somebody set it. Storing and restarting an embedded one are
+    /// left to its owner: the outcome says so.
     pub fn run_msp(&mut self, code: u16, payload: &[u8], clock: Option<UtcTime>) -> Answer<Outcome> {
         match self {
             Self::Embedded(firmware) => Answer::Now(firmware.run_msp(code, payload, clock)),
@@ -115,6 +117,34 @@ impl FlightController {
         match self {
             Self::Embedded(_) => None,
             Self::Remote(remote) => remote.take_answer(),
+        }
+    }
+
+    /// A person opened the command line: an embedded one does not arm until it restarts. A remote one has its own rule.
+    pub fn cli_opened(&mut self) {
+        if let Self::Embedded(firmware) = self {
+            firmware.cli_opened();
+        }
+    }
+
+    /// The command line was left: motors that it turned stop. A remote one has its own rule.
+    pub fn cli_closed(&mut self) {
+        if let Self::Embedded(firmware) = self {
+            firmware.cli_closed();
+        }
+    }
+
+    /// The configuration in the memory of an embedded one, for its owner to store; a remote one stores its own.
+    #[must_use]
+    pub fn configuration(&self) -> Option<&Configuration> {
+        self.embedded().map(Firmware::configuration)
+    }
+
+    /// Restarts: an embedded one on the configuration that `stored` gives, a remote one on what it has stored itself.
+    pub fn restart(&mut self, stored: impl FnOnce() -> Configuration) {
+        match self {
+            Self::Embedded(firmware) => firmware.restart(stored()),
+            Self::Remote(remote) => remote.restart(),
         }
     }
 

@@ -1,11 +1,12 @@
 //! Carries out the commands of the user interface.
+#![allow(clippy::disallowed_methods, reason = "a late answer is awaited in wall time")]
 
 use std::task::{Context, Poll};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use super::Session;
 use crate::session::command::{Command, PLACE_IS_EXTERNAL, TIME_IS_EXTERNAL};
-use crate::session::upload::upload;
+use crate::session::upload::Upload;
 use crate::sim::WorldCommand;
 use crate::telemetry::LinkState;
 
@@ -51,8 +52,9 @@ impl Session {
             }
             Command::Cli { line, reply } => self.run_cli(line, reply),
             Command::Upload { plan, settings, reply } => {
-                let result = upload(self.vehicle.controller_mut(), &plan, &settings);
-                drop(reply.send(result));
+                let mut upload = Upload::new(&plan, &settings);
+                let progress = upload.send_lines(self.vehicle.controller_mut());
+                self.report_upload(upload, progress, reply, Instant::now());
             }
             Command::Pilot(on) => self.set_pilot(on),
             Command::ReturnHome => {
@@ -82,8 +84,8 @@ impl Session {
             }
             None => self.vehicle.reset_craft(),
         }
-        if let (Some(endpoints), Some(firmware)) = (&mut self.endpoints, self.vehicle.embedded_mut()) {
-            endpoints.handler.after_restart(false, firmware);
+        if let Some(endpoints) = &mut self.endpoints {
+            endpoints.handler.after_restart(false, self.vehicle.controller_mut());
         }
     }
 

@@ -1,53 +1,40 @@
 //! The command line of the user interface.
+#![allow(clippy::disallowed_methods, reason = "a late answer is awaited in wall time")]
+
+use std::time::Instant;
 
 use tokio::sync::oneshot;
 
 use super::Session;
+use super::late::Recipient;
 use crate::firmware::cli::{CliAction, CliReply, Interpreter, advice};
 use crate::session::command::CliOutput;
-use crate::session::persistence;
-use crate::vehicle::{Answer, LateAnswer};
+use crate::vehicle::Answer;
 
 impl Session {
     /// Runs a line; the answer of a remote flight controller comes later.
     pub(super) fn run_cli(&mut self, line: String, reply: oneshot::Sender<CliOutput>) {
         match self.vehicle.controller_mut().run_cli(&mut self.console, &line) {
-            Answer::Now(answer) => self.answer_cli(&line, answer, reply),
+            Answer::Now(answer) => {
+                let restarted = self.carry_out_actions(&answer);
+                drop(reply.send(output(&line, answer, restarted)));
+            }
             Answer::Later(ticket) => {
-                self.unanswered.insert(ticket, (line, reply));
+                self.late_answers.expect(ticket, Recipient::Line { line, reply }, Instant::now());
             }
         }
     }
 
-    /// Passes on what a remote flight controller has answered since.
-    pub(super) fn take_late_answers(&mut self) {
-        while let Some((ticket, answer)) = self.vehicle.controller_mut().take_answer() {
-            if let (Some((line, reply)), LateAnswer::Cli(answer)) = (self.unanswered.remove(&ticket), answer)
-            {
-                self.answer_cli(&line, answer, reply);
-            }
-        }
-    }
-
-    fn answer_cli(&mut self, line: &str, answer: CliReply, reply: oneshot::Sender<CliOutput>) {
-        let restarted = self.carry_out_actions(&answer);
-        let advice = advice(line, &answer);
-        drop(reply.send(CliOutput { text: answer.text, advice, restarted }));
-    }
-
-    /// Does what a command line asked the owner of the firmware to do; says whether the firmware restarted. A remote
-    /// flight controller saves and restarts by itself.
+    /// Does what a line asked the owner of an embedded flight controller to do; says whether that restarted.
     fn carry_out_actions(&mut self, reply: &CliReply) -> bool {
-        let starter_modes =
-            self.endpoints.as_ref().is_none_or(|endpoints| endpoints.handler.gives_starter_modes());
-        let Some(firmware) = self.vehicle.embedded_mut() else { return false };
+        let controller = self.vehicle.controller_mut();
         let mut restarted = false;
         let mut notices = Vec::new();
         for action in &reply.actions {
             match action {
-                CliAction::Save => notices.extend(persistence::save(firmware, &mut self.store).err()),
+                CliAction::Save => notices.extend(self.persistence.save(controller).err()),
                 CliAction::Restart { .. } => {
-                    notices.extend(persistence::restart(firmware, &mut self.store, starter_modes));
+                    notices.extend(self.persistence.restart(controller));
                     self.console = Interpreter::default();
                     restarted = true;
                 }
@@ -56,9 +43,15 @@ impl Session {
             }
         }
         if restarted && let Some(endpoints) = &mut self.endpoints {
-            endpoints.handler.after_restart(true, firmware);
+            endpoints.handler.after_restart(true, controller);
         }
         notices.into_iter().for_each(|notice| self.notice(notice));
         restarted
     }
+}
+
+/// What the console shows of an answer.
+pub(super) fn output(line: &str, answer: CliReply, restarted: bool) -> CliOutput {
+    let advice = advice(line, &answer);
+    CliOutput { text: answer.text, advice, restarted }
 }

@@ -42,10 +42,9 @@ impl Session {
                 &mut self.vehicle,
                 &self.events,
             );
-            // A remote flight controller is reached by its own endpoints.
-            let Some(firmware) = self.vehicle.embedded_mut() else { continue };
+            let controller = self.vehicle.controller_mut();
             let Handled { notices, restarted, fdm } =
-                endpoints.handler.handle(request, firmware, &mut self.store, Instant::now());
+                endpoints.handler.handle(request, controller, &mut self.persistence, Instant::now());
             for notice in notices {
                 self.events.notice(&mut self.vehicle, notice);
             }
@@ -105,9 +104,7 @@ impl Session {
             && self.vehicle.time().0.is_multiple_of(RC_REPEAT_US)
         {
             let speed = self.pacer.speed().min(*SPEED_RANGE.end());
-            if let Some(firmware) = self.vehicle.embedded_mut() {
-                endpoints.handler.keep_rc_fresh(firmware, speed, Instant::now());
-            }
+            endpoints.handler.keep_rc_fresh(self.vehicle.controller_mut(), speed, Instant::now());
         }
     }
 }

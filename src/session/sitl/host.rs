@@ -115,10 +115,11 @@ impl Sitl {
         let vehicle = boot(&config, &mut store, print)?;
         let simulator = ExternalSimulator::start(config.fdm, config.motor_order, motors, Instant::now());
         // Nobody looks at the state of the doors but `tell_clients`, which asks them.
-        let (doors, endpoints, _) = links.endpoints(Some(simulator), false);
+        let (doors, endpoints, _) = links.endpoints(Some(simulator));
         let session = start(SessionConfig {
             vehicle,
             store,
+            starter_modes: false,
             speed: 1.0,
             takeoff_m: 0.0,
             endpoints: Some(endpoints),

@@ -2,86 +2,28 @@
 //! unknown.
 #![allow(clippy::unwrap_used, reason = "a test may stop")]
 
-use std::collections::VecDeque;
-
+use betadeck::firmware::FirmwareOptions;
 use betadeck::firmware::cli::Interpreter;
 use betadeck::firmware::config::Configuration;
-use betadeck::firmware::{Firmware, FirmwareOptions};
 use betadeck::record::json;
 use betadeck::session::SessionView;
-use betadeck::signals::MotorCommand;
 use betadeck::sim::{WorldCommand, WorldConfig};
 use betadeck::telemetry::Snapshot;
-use betadeck::telemetry::snapshot::EstimateView;
 use betadeck::ui::{AppState, Msg, draw, update};
-use betadeck::vehicle::{
-    Answer, FrameOut, LateAnswer, RemoteController, RemoteTelemetry, Request, Ticket, Vehicle, VehicleConfig,
-};
+use betadeck::vehicle::{Answer, FrameOut, LateAnswer, Vehicle, VehicleConfig};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 
-#[path = "ui/fixture.rs"]
+mod clients;
+#[path = "../ui/fixture.rs"]
 mod fixture;
+mod stand_in;
 
-/// Ticks until a motor command or an answer of the stand-in arrives.
-const DELAY: usize = 4;
+use stand_in::{DELAY, StandIn};
+
 const THROTTLE: usize = 2;
 const ARM: usize = 4;
 const LEVELLED: usize = 6;
-
-/// A flight controller at the far end of a slow wire, which tells only its attitude.
-#[derive(Debug, Clone)]
-struct StandIn {
-    firmware: Firmware,
-    console: Interpreter,
-    motors: VecDeque<MotorCommand>,
-    answers: VecDeque<(usize, Ticket, LateAnswer)>,
-    ticks: usize,
-}
-
-impl StandIn {
-    fn new() -> Self {
-        let mut configuration = Configuration::default();
-        configuration.starter_modes();
-        Self {
-            firmware: Firmware::new(configuration, FirmwareOptions::default()),
-            console: Interpreter::default(),
-            motors: VecDeque::new(),
-            answers: VecDeque::new(),
-            ticks: 0,
-        }
-    }
-
-    /// Takes out what waits in the mailbox and delivers what is due.
-    fn exchange(&mut self, mailbox: &mut RemoteController) {
-        self.ticks += 1;
-        while let Some(frame) = mailbox.take_frame() {
-            match frame {
-                FrameOut::Rc(frame, source) => self.firmware.receive_rc(&frame, source),
-                FrameOut::Sensors(frame) => self.motors.push_back(self.firmware.step(&frame)),
-            }
-        }
-        while self.motors.len() > DELAY {
-            mailbox.deliver_motors(self.motors.pop_front().unwrap());
-        }
-        while let Some((ticket, request)) = mailbox.take_request() {
-            let answer = match request {
-                Request::Cli(line) => LateAnswer::Cli(self.firmware.run_cli(&mut self.console, &line)),
-                Request::Msp { code, payload } => {
-                    LateAnswer::Msp(self.firmware.run_msp(code, &payload, None))
-                }
-                Request::Restart | Request::ReturnHome | Request::CancelReturn => continue,
-            };
-            self.answers.push_back((self.ticks + DELAY, ticket, answer));
-        }
-        while let Some((_, ticket, answer)) = self.answers.pop_front_if(|(due, ..)| *due <= self.ticks) {
-            mailbox.deliver_answer(ticket, answer);
-        }
-        let EstimateView { roll_deg, pitch_deg, heading_deg, .. } = self.firmware.estimate_view();
-        let estimate = EstimateView { roll_deg, pitch_deg, heading_deg, ..EstimateView::default() };
-        mailbox.deliver_telemetry(RemoteTelemetry { estimate, ..RemoteTelemetry::default() });
-    }
-}
 
 /// A craft in the simulated world with the stand-in as its flight controller.
 #[derive(Debug, Clone)]

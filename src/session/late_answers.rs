@@ -1,0 +1,41 @@
+//! Requests to a remote flight controller whose answers are still to come.
+
+use std::collections::BTreeMap;
+use std::time::{Duration, Instant};
+
+use crate::vehicle::Ticket;
+
+/// How long an answer is awaited, wall time. A flight controller that stores its configuration is silent for a second.
+const PATIENCE: Duration = Duration::from_secs(5);
+
+/// What is said in place of an answer that did not come.
+pub(super) const NO_ANSWER: &str = "the flight controller does not answer";
+
+/// Who awaits which answer.
+#[derive(Debug)]
+pub(super) struct LateAnswers<R>(BTreeMap<Ticket, (Instant, R)>);
+
+impl<R> Default for LateAnswers<R> {
+    fn default() -> Self {
+        Self(BTreeMap::new())
+    }
+}
+
+impl<R> LateAnswers<R> {
+    /// `recipient` awaits the answer with this ticket from `now` on.
+    pub(super) fn expect(&mut self, ticket: Ticket, recipient: R, now: Instant) {
+        self.0.insert(ticket, (now, recipient));
+    }
+
+    /// Who awaits this answer, which has come.
+    pub(super) fn take(&mut self, ticket: Ticket) -> Option<R> {
+        self.0.remove(&ticket).map(|(_, recipient)| recipient)
+    }
+
+    /// Those who have waited for too long.
+    pub(super) fn take_overdue(&mut self, now: Instant) -> Vec<R> {
+        let overdue =
+            |_: &Ticket, (asked, _): &mut (Instant, R)| now.saturating_duration_since(*asked) >= PATIENCE;
+        self.0.extract_if(.., overdue).map(|(_, (_, recipient))| recipient).collect()
+    }
+}

@@ -1,0 +1,86 @@
+//! Hands on what a remote flight controller answers later than it was asked.
+
+use std::time::Instant;
+
+use tokio::sync::oneshot;
+
+use super::Session;
+use super::console::output;
+use crate::firmware::cli::CliAction;
+use crate::session::command::CliOutput;
+use crate::session::late_answers::NO_ANSWER;
+use crate::session::upload::{Progress, Upload};
+use crate::vehicle::LateAnswer;
+
+/// What of the user interface awaits an answer.
+#[derive(Debug)]
+pub(super) enum Recipient {
+    /// The console.
+    Line {
+        /// The line that was run.
+        line: String,
+        /// Gets its output.
+        reply: oneshot::Sender<CliOutput>,
+    },
+    /// An upload, which goes on with the answer.
+    Upload {
+        /// What is left of it.
+        upload: Upload,
+        /// Gets its result.
+        reply: oneshot::Sender<Result<(), String>>,
+    },
+}
+
+impl Session {
+    /// Hands on what has been answered since, and gives up what is overdue.
+    pub(super) fn take_late_answers(&mut self, now: Instant) {
+        while let Some((ticket, answer)) = self.vehicle.controller_mut().take_answer() {
+            self.changed = true;
+            match (self.late_answers.take(ticket), answer) {
+                (Some(Recipient::Line { line, reply }), LateAnswer::Cli(said)) => {
+                    // It has stored and restarted by itself.
+                    let restarted =
+                        said.actions.iter().any(|action| matches!(action, CliAction::Restart { .. }));
+                    drop(reply.send(output(&line, said, restarted)));
+                }
+                (Some(Recipient::Upload { mut upload, reply }), LateAnswer::Cli(said)) => {
+                    let progress = upload.take_answer(&said, self.vehicle.controller_mut());
+                    self.report_upload(upload, progress, reply, now);
+                }
+                (_, answer) => {
+                    if let Some(endpoints) = &mut self.endpoints {
+                        endpoints.handler.deliver(ticket, answer);
+                    }
+                }
+            }
+        }
+        for recipient in self.late_answers.take_overdue(now) {
+            match recipient {
+                Recipient::Line { reply, .. } => {
+                    let text = format!("###ERROR: {}###", NO_ANSWER.to_uppercase());
+                    drop(reply.send(CliOutput { text, ..CliOutput::default() }));
+                }
+                Recipient::Upload { reply, .. } => drop(reply.send(Err(NO_ANSWER.to_owned()))),
+            }
+        }
+        if let Some(endpoints) = &mut self.endpoints {
+            endpoints.handler.give_up_overdue(now);
+        }
+    }
+
+    /// Reports the result of an upload, once there is one.
+    pub(super) fn report_upload(
+        &mut self,
+        upload: Upload,
+        progress: Progress,
+        reply: oneshot::Sender<Result<(), String>>,
+        now: Instant,
+    ) {
+        match progress {
+            Progress::Done(result) => drop(reply.send(result)),
+            Progress::Waiting(ticket) => {
+                self.late_answers.expect(ticket, Recipient::Upload { upload, reply }, now);
+            }
+        }
+    }
+}

@@ -1,0 +1,172 @@
+//! Clients of the links speak with a remote flight controller: what they ask reaches it, and its answers reach them.
+
+#![allow(clippy::disallowed_methods, reason = "the request handler is given its time")]
+
+use std::net::SocketAddr;
+use std::time::{Duration, Instant};
+
+use betadeck::link::proto::command_line::{LineReply, LineSource};
+use betadeck::link::{ClientId, Doors, DoorsConfig, Request};
+use betadeck::plan::{FlightPlan, Waypoint};
+use betadeck::session::{Command, Handled, Persistence, RequestHandler, SessionConfig, start, upload};
+use betadeck::signals::RcFrame;
+use betadeck::storage::Store;
+use tokio::sync::{mpsc, oneshot};
+
+use super::*;
+
+const CLIENT: ClientId = ClientId(1);
+/// MSP_API_VERSION.
+const API_VERSION: u16 = 1;
+
+/// The rig with a request handler of the links beside it.
+struct Links {
+    rig: Rig,
+    handler: RequestHandler,
+    persistence: Persistence,
+    now: Instant,
+}
+
+impl Links {
+    async fn new() -> Self {
+        let closed = DoorsConfig { tcp_port: None, ws_port: None, rc_port: None, ..DoorsConfig::default() };
+        let (doors, _) = Doors::open(&closed, mpsc::channel(1).0).await;
+        Self {
+            rig: Rig::new(),
+            handler: RequestHandler::new(doors.restart_bell()),
+            persistence: Persistence::new(Store::in_memory(), true),
+            now: Instant::now(),
+        }
+    }
+
+    fn handle(&mut self, request: Request) -> Handled {
+        let controller = self.rig.vehicle.controller_mut();
+        self.handler.handle(request, controller, &mut self.persistence, self.now)
+    }
+
+    fn message(&mut self, code: u16) -> oneshot::Receiver<Option<Vec<u8>>> {
+        let (reply, answer) = oneshot::channel();
+        self.handle(Request::Msp { client: CLIENT, code, payload: Vec::new(), reply });
+        answer
+    }
+
+    fn line(&mut self, line: &str) -> oneshot::Receiver<LineReply> {
+        let (reply, answer) = oneshot::channel();
+        let (line, source) = (line.to_owned(), LineSource::Prompt);
+        self.handle(Request::Cli { client: CLIENT, line, source, reply });
+        answer
+    }
+
+    /// Lets the stand-in answer, and hands its answers on.
+    fn exchange(&mut self) {
+        self.rig.run(0.001 * (DELAY + 2) as f64);
+        while let Some((ticket, answer)) = self.rig.vehicle.controller_mut().take_answer() {
+            self.handler.deliver(ticket, answer);
+        }
+    }
+}
+
+#[tokio::test]
+async fn a_client_speaks_with_the_remote_flight_controller() {
+    let mut links = Links::new().await;
+    let mut version = links.message(API_VERSION);
+    let mut setting = links.line("get ap_max_angle");
+    let mut nonsense = links.line("nonsense");
+    let mut unknown = links.message(9999);
+    assert!(version.try_recv().is_err() && setting.try_recv().is_err(), "not yet");
+    links.exchange();
+    let expected = links.rig.stand_in.firmware.run_msp(API_VERSION, &[], None).reply;
+    assert!(expected.is_some() && version.try_recv().unwrap() == expected);
+    let said = setting.try_recv().unwrap();
+    assert!(said.text.contains("ap_max_angle = ") && !said.refused, "{said:?}");
+    assert!(nonsense.try_recv().unwrap().refused);
+    assert_eq!(unknown.try_recv().unwrap(), None);
+}
+
+#[tokio::test]
+async fn what_a_client_sets_is_set_there_and_stored_there() {
+    let mut links = Links::new().await;
+    let (reply, mut admitted) = oneshot::channel();
+    links.handle(Request::EnterCli { client: CLIENT, interactive: true, reply });
+    assert!(admitted.try_recv().unwrap(), "it is not known to be armed");
+    let mut set = links.line("set ap_max_angle = 33");
+    let mut save = links.line("save");
+    links.exchange();
+    assert!(!set.try_recv().unwrap().refused && !save.try_recv().unwrap().refused);
+    assert_eq!(links.rig.stand_in.firmware.parameters().nav.max_angle, 33);
+    assert_eq!(links.rig.stand_in.restarts, 0, "it restarts by itself, nobody asks it to");
+}
+
+#[tokio::test]
+async fn a_client_of_a_silent_flight_controller_is_told_so() {
+    let mut links = Links::new().await;
+    let mut version = links.message(API_VERSION);
+    let mut line = links.line("status");
+    links.now += Duration::from_secs(4);
+    links.handler.give_up_overdue(links.now);
+    assert!(version.try_recv().is_err() && line.try_recv().is_err(), "it may still answer");
+    links.now += Duration::from_secs(2);
+    links.handler.give_up_overdue(links.now);
+    assert_eq!(version.try_recv().unwrap(), None);
+    let said = line.try_recv().unwrap();
+    assert_eq!(said.text, "###ERROR: THE FLIGHT CONTROLLER DOES NOT ANSWER###");
+    assert!(said.refused);
+    // What comes after all is for nobody.
+    links.exchange();
+}
+
+#[tokio::test]
+async fn a_craft_that_may_be_armed_is_not_restarted_by_a_client_that_leaves() {
+    let mut links = Links::new().await;
+    assert!(!links.handle(Request::Restart { client: CLIENT }).restarted);
+    links.exchange();
+    assert_eq!(links.rig.stand_in.restarts, 0);
+}
+
+#[tokio::test]
+async fn scripts_and_simulators_are_heard_beside_a_remote_flight_controller() {
+    let mut links = Links::new().await;
+    let from: SocketAddr = "127.0.0.1:9".parse().unwrap();
+    let at = links.now;
+    let handled = links.handle(Request::Fdm { datagram: vec![1, 2, 3], from, at });
+    assert_eq!(handled.fdm, Some((vec![1, 2, 3], at)));
+    let mut frame = RcFrame::SAFE;
+    frame.channels[0] = 1600;
+    links.handle(Request::Rc { stamp_s: 0.0, frame, from, at });
+    links.exchange();
+    let roll = links.rig.stand_in.firmware.craft_view().channels.unwrap()[0];
+    assert_eq!(roll, 1600);
+}
+
+fn plan() -> FlightPlan {
+    let mut plan = FlightPlan::default();
+    plan.waypoints.push(Waypoint { alt_cm: 2000, ..Waypoint::default() });
+    plan
+}
+
+#[test]
+fn a_flight_without_a_session_cannot_upload_to_a_remote_flight_controller() {
+    let mut rig = Rig::new();
+    let refused = upload(rig.vehicle.controller_mut(), &plan(), &[]).unwrap_err();
+    assert_eq!(refused, "a remote flight controller takes a plan in a session only");
+}
+
+#[tokio::test]
+async fn an_upload_to_a_silent_flight_controller_fails_in_a_sentence() {
+    let session = start(SessionConfig {
+        vehicle: Vehicle::with_remote_controller(WorldConfig::default()).unwrap(),
+        store: Store::in_memory(),
+        starter_modes: true,
+        speed: 1.0,
+        takeoff_m: 10.0,
+        endpoints: None,
+        first_events: Vec::new(),
+    })
+    .unwrap();
+    let (reply, uploaded) = oneshot::channel();
+    let settings = vec!["ap_max_angle = 33".to_owned()];
+    let plan = Box::new(plan());
+    session.commands.send(Command::Upload { plan, settings, reply }).await.unwrap();
+    assert_eq!(uploaded.await.unwrap(), Err("the flight controller does not answer".to_owned()));
+    session.commands.send(Command::Quit).await.unwrap();
+}

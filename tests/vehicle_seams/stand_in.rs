@@ -1,0 +1,74 @@
+//! A stand-in for a remote flight controller, which answers after a while.
+
+use std::collections::VecDeque;
+
+use betadeck::firmware::cli::Interpreter;
+use betadeck::firmware::config::Configuration;
+use betadeck::firmware::{Firmware, FirmwareOptions};
+use betadeck::signals::MotorCommand;
+use betadeck::telemetry::snapshot::EstimateView;
+use betadeck::vehicle::{FrameOut, LateAnswer, RemoteController, RemoteTelemetry, Request, Ticket};
+
+/// Ticks until a motor command or an answer of the stand-in arrives.
+pub(super) const DELAY: usize = 4;
+
+/// A flight controller at the far end of a slow wire, which tells only its attitude.
+#[derive(Debug, Clone)]
+pub(super) struct StandIn {
+    pub(super) firmware: Firmware,
+    /// How often it was asked to restart.
+    pub(super) restarts: usize,
+    console: Interpreter,
+    motors: VecDeque<MotorCommand>,
+    answers: VecDeque<(usize, Ticket, LateAnswer)>,
+    ticks: usize,
+}
+
+impl StandIn {
+    pub(super) fn new() -> Self {
+        let mut configuration = Configuration::default();
+        configuration.starter_modes();
+        Self {
+            firmware: Firmware::new(configuration, FirmwareOptions::default()),
+            restarts: 0,
+            console: Interpreter::default(),
+            motors: VecDeque::new(),
+            answers: VecDeque::new(),
+            ticks: 0,
+        }
+    }
+
+    /// Takes out what waits in the mailbox and delivers what is due.
+    pub(super) fn exchange(&mut self, mailbox: &mut RemoteController) {
+        self.ticks += 1;
+        while let Some(frame) = mailbox.take_frame() {
+            match frame {
+                FrameOut::Rc(frame, source) => self.firmware.receive_rc(&frame, source),
+                FrameOut::Sensors(frame) => self.motors.push_back(self.firmware.step(&frame)),
+            }
+        }
+        while self.motors.len() > DELAY {
+            mailbox.deliver_motors(self.motors.pop_front().unwrap());
+        }
+        while let Some((ticket, request)) = mailbox.take_request() {
+            let answer = match request {
+                Request::Cli(line) => LateAnswer::Cli(self.firmware.run_cli(&mut self.console, &line)),
+                Request::Msp { code, payload } => {
+                    LateAnswer::Msp(self.firmware.run_msp(code, &payload, None).reply)
+                }
+                Request::Restart => {
+                    self.restarts += 1;
+                    continue;
+                }
+                Request::ReturnHome | Request::CancelReturn => continue,
+            };
+            self.answers.push_back((self.ticks + DELAY, ticket, answer));
+        }
+        while let Some((_, ticket, answer)) = self.answers.pop_front_if(|(due, ..)| *due <= self.ticks) {
+            mailbox.deliver_answer(ticket, answer);
+        }
+        let EstimateView { roll_deg, pitch_deg, heading_deg, .. } = self.firmware.estimate_view();
+        let estimate = EstimateView { roll_deg, pitch_deg, heading_deg, ..EstimateView::default() };
+        mailbox.deliver_telemetry(RemoteTelemetry { estimate, ..RemoteTelemetry::default() });
+    }
+}
