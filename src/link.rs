@@ -1,4 +1,4 @@
-//! The doors: how configurators, scripts, simulators and command lines reach the vehicle.
+//! The links: how configurators, scripts, simulators and command lines reach the vehicle.
 //!
 //! [`proto`] holds the protocols as pure state machines over bytes: they are told the time and never wait. Everything
 //! else here moves bytes between sockets and those machines and turns what arrives into [`Request`]s to the session.
@@ -12,19 +12,19 @@
 //! ```
 
 mod client;
-mod doors;
 mod endpoint_stats;
 mod external;
 mod impairment;
 mod listener;
+mod listeners;
 mod origin;
 pub mod proto;
 mod request;
 mod transport;
 mod udp;
 
-pub use doors::{DoorError, DoorKind, Doors, DoorsConfig, RestartBell};
 pub use external::ExternalSimulator;
 pub use impairment::{ImpairedLink, LinkImpairment};
+pub use listeners::{ListenConfig, ListenError, Listeners, RestartBell};
 pub use request::{ClientId, Request};
 pub use udp::{MotorPort, Sent};

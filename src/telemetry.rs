@@ -21,7 +21,9 @@ pub mod switch;
 mod transition;
 
 pub use arming_flag::{ArmingFlag, ArmingFlags};
-pub use endpoint::{ClientStats, EndpointState, EndpointStatus, PacketStats, SimulatorStats};
+pub use endpoint::{
+    ClientStats, EndpointKind, EndpointState, EndpointStatus, PacketStats, SimulatorStats, Transport,
+};
 pub use event::{CrashCause, DivergeCause, Event, EventKind, VehicleNotice};
 pub use failsafe::{FailsafeProcedure, RxLossPolicy};
 pub use fault::{FaultKind, FaultValue};

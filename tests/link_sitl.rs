@@ -7,15 +7,16 @@ use std::time::Duration;
 
 use betadeck::firmware::cli::BuildInfo;
 use betadeck::firmware::{AttitudeSource, FirmwareOptions};
+use betadeck::link::ListenConfig;
 use betadeck::link::proto::fdm::{State, pressure_pa};
 use betadeck::link::proto::fdm_link::FdmLinkConfig;
 use betadeck::link::proto::{rc, servo};
-use betadeck::link::{DoorKind, DoorsConfig};
 use betadeck::session::sitl::{Said, Sitl, SitlConfig, SitlEnd, SitlError, SitlPorts};
 use betadeck::signals::RcFrame;
 use betadeck::signals::fdm::Dialect;
 use betadeck::signals::fdm::MotorOrder;
 use betadeck::storage::Store;
+use betadeck::telemetry::EndpointKind;
 use nalgebra::{UnitQuaternion, Vector3};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::{TcpStream, UdpSocket};
@@ -53,7 +54,7 @@ impl Rig {
     async fn new(exit_on_reboot: bool) -> Self {
         let (motors, raw) = (socket().await, socket().await);
         let config = SitlConfig {
-            doors: DoorsConfig { tcp_port: Some(0), ws_port: Some(0), ..DoorsConfig::default() },
+            doors: ListenConfig { tcp_port: Some(0), ws_port: Some(0), ..ListenConfig::default() },
             motors_ip: IpAddr::V4(Ipv4Addr::LOCALHOST),
             ports: SitlPorts {
                 raw: raw.local_addr().unwrap().port(),
@@ -78,7 +79,7 @@ impl Rig {
             .unwrap_or_else(|error| panic!("{error}"));
         let address = |door| sitl.address(door).unwrap();
         let (fdm_door, rc_door, tcp_door) =
-            (address(DoorKind::Fdm), address(DoorKind::Rc), address(DoorKind::Tcp));
+            (address(EndpointKind::Fdm), address(EndpointKind::Rc), address(EndpointKind::Tcp));
         let (stop, stopped) = oneshot::channel::<()>();
         let task = tokio::spawn(async move {
             sitl.run(&mut print, &mut |_| {}, async {
@@ -221,7 +222,7 @@ async fn a_port_in_use_ends_it_with_the_way_out() {
     let taken = socket().await;
     let port = taken.local_addr().unwrap().port();
     let config = SitlConfig {
-        doors: DoorsConfig { tcp_port: Some(0), ws_port: None, ..DoorsConfig::default() },
+        doors: ListenConfig { tcp_port: Some(0), ws_port: None, ..ListenConfig::default() },
         motors_ip: IpAddr::V4(Ipv4Addr::LOCALHOST),
         ports: SitlPorts { raw: 9, motors: 9, fdm: port, rc: 0 },
         firmware: FirmwareOptions::default(),

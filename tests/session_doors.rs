@@ -8,11 +8,11 @@ use std::time::Duration;
 use betadeck::firmware::FirmwareOptions;
 use betadeck::firmware::config::Configuration;
 use betadeck::link::proto::command_line::LineSource;
-use betadeck::link::{ClientId, DoorKind, Doors, DoorsConfig, Request};
+use betadeck::link::{ClientId, ListenConfig, Listeners, Request};
 use betadeck::session::{Command, Endpoints, Handle, RequestHandler, SessionConfig, SessionView, start};
 use betadeck::sim::WorldConfig;
 use betadeck::storage::Store;
-use betadeck::telemetry::ArmingFlag;
+use betadeck::telemetry::{ArmingFlag, EndpointKind};
 use betadeck::vehicle::{Vehicle, VehicleConfig};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
@@ -25,14 +25,15 @@ const PATIENCE: Duration = Duration::from_secs(120);
 struct Rig {
     session: Handle,
     requests: mpsc::Sender<Request>,
-    doors: Doors,
+    doors: Listeners,
     _views: watch::Sender<Vec<betadeck::telemetry::EndpointStatus>>,
 }
 
 async fn rig() -> Rig {
     let (requests, inbox) = mpsc::channel(256);
-    let only_tcp = DoorsConfig { tcp_port: Some(0), ws_port: None, rc_port: None, ..DoorsConfig::default() };
-    let (doors, first) = Doors::open(&only_tcp, requests.clone()).await;
+    let only_tcp =
+        ListenConfig { tcp_port: Some(0), ws_port: None, rc_port: None, ..ListenConfig::default() };
+    let (doors, first) = Listeners::open(&only_tcp, requests.clone()).await;
     let (views_tx, views) = watch::channel(first);
     let mut configuration = Configuration::default();
     configuration.starter_modes();
@@ -72,7 +73,7 @@ impl Rig {
 
     /// A person at the command line over TCP.
     async fn person(&self) -> TcpStream {
-        let mut stream = TcpStream::connect(self.doors.address(DoorKind::Tcp).unwrap()).await.unwrap();
+        let mut stream = TcpStream::connect(self.doors.address(EndpointKind::Tcp).unwrap()).await.unwrap();
         stream.write_all(b"#").await.unwrap();
         let mut greeting = Vec::new();
         while !greeting.ends_with(b"# ") {

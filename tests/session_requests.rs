@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use betadeck::firmware::config::Configuration;
 use betadeck::firmware::{Firmware, FirmwareOptions};
 use betadeck::link::proto::command_line::{LineReply, LineSource};
-use betadeck::link::{ClientId, Doors, DoorsConfig, Request};
+use betadeck::link::{ClientId, ListenConfig, Listeners, Request};
 use betadeck::session::{Handled, Persistence, RequestHandler};
 use betadeck::signals::{MotorCommand, RcFrame, RcSource, SensorFrame, SimTime};
 use betadeck::storage::Store;
@@ -40,8 +40,8 @@ struct Bench {
 
 impl Bench {
     async fn new() -> Self {
-        let closed = DoorsConfig { tcp_port: None, ws_port: None, rc_port: None, ..DoorsConfig::default() };
-        let (doors, _) = Doors::open(&closed, mpsc::channel(1).0).await;
+        let closed = ListenConfig { tcp_port: None, ws_port: None, rc_port: None, ..ListenConfig::default() };
+        let (doors, _) = Listeners::open(&closed, mpsc::channel(1).0).await;
         let mut configuration = Configuration::default();
         configuration.starter_modes();
         Self {

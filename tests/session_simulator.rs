@@ -9,7 +9,7 @@ use betadeck::firmware::config::Configuration;
 use betadeck::firmware::{AttitudeSource, FirmwareOptions};
 use betadeck::link::proto::fdm::{State, mirrored, pressure_pa};
 use betadeck::link::proto::fdm_link::FdmLinkConfig;
-use betadeck::link::{ClientId, Doors, DoorsConfig, ExternalSimulator, MotorPort, Request};
+use betadeck::link::{ClientId, ExternalSimulator, ListenConfig, Listeners, MotorPort, Request};
 use betadeck::session::command::{PLACE_IS_EXTERNAL, TIME_IS_EXTERNAL};
 use betadeck::session::{
     Command, Endpoints, Event, Handle, RequestHandler, SessionConfig, SessionEvent, SessionView, start,
@@ -18,7 +18,7 @@ use betadeck::signals::fdm::{Dialect, MotorOrder};
 use betadeck::sim::{WorldConfig, attitude};
 use betadeck::storage::Store;
 use betadeck::telemetry::{
-    EndpointState, EndpointStatus, EventKind, FirmwareEvent, LinkState, SimulatorStats,
+    EndpointKind, EndpointState, EndpointStatus, EventKind, FirmwareEvent, LinkState, SimulatorStats,
 };
 use betadeck::vehicle::{Vehicle, VehicleConfig};
 use nalgebra::Vector3;
@@ -46,13 +46,13 @@ struct Rig {
     at: Instant,
     /// North of the start and above it, m, in the newest state.
     place: (f64, f64),
-    _doors: Doors,
+    _doors: Listeners,
     _views: watch::Sender<Vec<EndpointStatus>>,
 }
 
 /// What the link to the simulator has seen.
 fn stats(view: &SessionView) -> SimulatorStats {
-    let motors = view.endpoints.iter().find(|endpoint| endpoint.name == "udp motors").unwrap();
+    let motors = view.endpoints.iter().find(|endpoint| endpoint.kind == EndpointKind::Motors).unwrap();
     let EndpointState::Simulator(stats) = motors.state else { panic!("{motors:?}") };
     stats
 }
@@ -66,14 +66,14 @@ async fn rig_with(faults: &[&str]) -> Rig {
     let motors = UdpSocket::bind("127.0.0.1:0").unwrap();
     motors.set_read_timeout(Some(PATIENCE)).unwrap();
     let (requests, inbox) = mpsc::channel(256);
-    let closed = DoorsConfig {
+    let closed = ListenConfig {
         tcp_port: None,
         ws_port: None,
         rc_port: None,
         fdm_port: None,
-        ..DoorsConfig::default()
+        ..ListenConfig::default()
     };
-    let (doors, first) = Doors::open(&closed, requests.clone()).await;
+    let (doors, first) = Listeners::open(&closed, requests.clone()).await;
     let (views_tx, views) = watch::channel(first);
     let port = MotorPort::open(motors.local_addr().unwrap(), motors.local_addr().unwrap()).unwrap();
     let config = FdmLinkConfig::default();
@@ -223,7 +223,7 @@ async fn until_a_simulator_speaks_the_firmware_lives_and_nothing_is_made_up() {
     );
     assert_eq!(view.vehicle.world.airframe, "external");
     assert_eq!(stats(&view).link, LinkState::Waiting);
-    let motors = view.endpoints.iter().find(|endpoint| endpoint.name == "udp motors").unwrap();
+    let motors = view.endpoints.iter().find(|endpoint| endpoint.kind == EndpointKind::Motors).unwrap();
     assert_eq!(motors.address, rig.motors.local_addr().unwrap().to_string());
 
     let (reply, answer) = oneshot::channel();

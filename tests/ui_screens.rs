@@ -1,7 +1,7 @@
 //! What the user interface shows: whole screens, and that no size and no picture breaks it.
 
 use betadeck::session::command::CliOutput;
-use betadeck::telemetry::{ArmingFlag, NavState};
+use betadeck::telemetry::{ArmingFlag, EndpointKind, NavState};
 use betadeck::ui::{AppState, Level, Msg, Pane, Theme, draw, update};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use ratatui::Terminal;
@@ -138,7 +138,7 @@ fn a_busy_door_is_marked_and_named_where_there_is_room() {
     for (width, shown) in [(80, "✗rc "), (120, "✗rc busy ")] {
         let mut state = fixture::state((width, 40), fixture::colour());
         let door = betadeck::telemetry::EndpointStatus {
-            name: "udp rc",
+            kind: EndpointKind::Rc,
             address: String::new(),
             state: betadeck::telemetry::EndpointState::Busy,
         };

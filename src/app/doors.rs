@@ -10,8 +10,9 @@ use tokio_util::sync::CancellationToken;
 use super::AppError;
 use crate::args::{DoorArgs, FlightArgs, PhysicsArgs};
 use crate::link::proto::fdm_link::FdmLinkConfig;
-use crate::link::{DoorKind, Doors, DoorsConfig, ExternalSimulator};
+use crate::link::{ExternalSimulator, ListenConfig, Listeners};
 use crate::session::{EndpointAddresses, Endpoints, Links, MotorTargets};
+use crate::telemetry::EndpointKind;
 
 /// Rhythm in which the state of the doors is published.
 const VIEW: Duration = Duration::from_millis(250);
@@ -50,7 +51,7 @@ pub(super) async fn open(
         return Ok(None);
     }
     let wanted = |port: u16| (!args.no_ports).then_some(port);
-    let config = DoorsConfig {
+    let config = ListenConfig {
         listen: args.listen,
         tcp_port: wanted(args.tcp_port()),
         ws_port: wanted(args.ws_port()),
@@ -65,10 +66,10 @@ pub(super) async fn open(
         notices.push(format!("The doors listen on {address}: everybody on that network can fly this craft."));
     }
     let addresses = EndpointAddresses {
-        ws: doors.address(DoorKind::WebSocket),
-        tcp: doors.address(DoorKind::Tcp),
-        fdm: doors.address(DoorKind::Fdm),
-        rc: doors.address(DoorKind::Rc),
+        ws: doors.address(EndpointKind::WebSocket),
+        tcp: doors.address(EndpointKind::Tcp),
+        fdm: doors.address(EndpointKind::Fdm),
+        rc: doors.address(EndpointKind::Rc),
     };
     let simulator = match physics.is_external() {
         true => Some(simulator(args, physics, flight, addresses.fdm, &mut notices)?),
@@ -108,7 +109,7 @@ fn simulator(
 
 /// Publishes the state of the doors when it changes, until it is told to close them.
 async fn keep(
-    doors: Doors,
+    doors: Listeners,
     views: watch::Sender<Vec<crate::telemetry::EndpointStatus>>,
     stop: CancellationToken,
 ) {
@@ -116,7 +117,7 @@ async fn keep(
         tokio::select! {
             () = stop.cancelled() => break,
             () = tokio::time::sleep(VIEW) => {
-                let now = doors.views();
+                let now = doors.status();
                 views.send_if_modified(|shown| {
                     let changed = *shown != now;
                     *shown = now;
@@ -151,7 +152,7 @@ mod tests {
         let external = PhysicsArgs { physics: Some(Physics::External), ..PhysicsArgs::default() };
         let opened = open(&doors, &external, &flight).await.unwrap().unwrap();
         let views = opened.endpoints.status.borrow().clone();
-        assert_eq!(views.iter().map(|door| door.name).collect::<Vec<_>>(), ["udp fdm"]);
+        assert_eq!(views.iter().map(|door| door.kind.to_string()).collect::<Vec<_>>(), ["udp fdm"]);
         assert!(opened.endpoints.simulator.is_some());
         assert!(
             opened.notices.iter().any(|notice| notice.contains(&views[0].address)),

@@ -14,7 +14,7 @@ use crate::args::{OnOff, SitlArgs};
 use crate::firmware::cli::{ApplyReport, CliContext, CliFacts, Interpreter, Mode, provision};
 use crate::flight::FlightSetup;
 use crate::flight::setup::PhysicsSource;
-use crate::link::DoorsConfig;
+use crate::link::ListenConfig;
 use crate::link::proto::fdm_link::FdmLinkConfig;
 use crate::record::gpx::{GpxHeader, GpxWriter, TrackPoint, UtcSeconds};
 use crate::session::sitl::{Said, Sitl, SitlConfig, SitlEnd, SitlError, SitlPorts, show_links};
@@ -55,12 +55,12 @@ pub(super) fn run(args: &SitlArgs) -> Result<u8, AppError> {
 fn config(args: &SitlArgs) -> SitlConfig {
     let (doors, ports) = (&args.doors, args.doors.udp_ports());
     SitlConfig {
-        doors: DoorsConfig {
+        doors: ListenConfig {
             listen: doors.listen,
             tcp_port: (!doors.no_ports).then_some(doors.tcp_port()),
             ws_port: (!doors.no_ports).then_some(doors.ws_port()),
             allow_origin: doors.allow_origin.clone(),
-            ..DoorsConfig::default()
+            ..ListenConfig::default()
         },
         motors_ip: args.ip.unwrap_or(IpAddr::V4(Ipv4Addr::LOCALHOST)),
         ports: SitlPorts { raw: ports.raw, motors: ports.motors, fdm: ports.fdm, rc: ports.rc },

@@ -7,7 +7,7 @@ use super::proto::servo;
 use super::udp::{MotorPort, Sent};
 use crate::signals::fdm::MotorOrder;
 use crate::signals::{MotorCommand, SensorFrame};
-use crate::telemetry::{EndpointState, EndpointStatus, LinkState, SimulatorStats};
+use crate::telemetry::{EndpointKind, EndpointState, EndpointStatus, LinkState, SimulatorStats};
 
 /// Drives a firmware by the packets of a simulator.
 #[derive(Debug)]
@@ -88,7 +88,7 @@ impl ExternalSimulator {
     pub fn status(&self, now: Instant) -> EndpointStatus {
         let Counters { senseless, old, .. } = self.link.counters();
         EndpointStatus {
-            name: "udp motors",
+            kind: EndpointKind::Motors,
             address: self.port.address().map_or_else(String::new, |address| address.to_string()),
             state: EndpointState::Simulator(SimulatorStats {
                 link: self.state(now),

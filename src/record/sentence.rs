@@ -3,8 +3,8 @@
 use crate::plan::{FlightPlan, WaypointType};
 use crate::session::{EndpointAddresses, Event, SessionEvent};
 use crate::telemetry::{
-    AbortReason, DisarmReason, EventKind, FaultValue, FenceAction, FirmwareEvent, Guard, GuardUnit, NavEvent,
-    NavState, PlanSource, Refusal, TransitionReason,
+    AbortReason, DisarmReason, EndpointKind, EventKind, FaultValue, FenceAction, FirmwareEvent, Guard,
+    GuardUnit, NavEvent, NavState, PlanSource, Refusal, TransitionReason,
 };
 
 /// `  12.4 s  Armed.`; `None` for the few events that only matter inside the craft.
@@ -47,8 +47,13 @@ fn vehicle(kind: &EventKind) -> Option<String> {
 
 fn endpoints(addresses: &EndpointAddresses) -> String {
     let EndpointAddresses { ws, tcp, fdm, rc } = addresses;
-    let named = [("ws", ws), ("tcp", tcp), ("udp fdm", fdm), ("udp rc", rc)];
-    let open = named.iter().filter_map(|(name, address)| address.map(|address| format!("{name} {address}")));
+    let all = [
+        (EndpointKind::WebSocket, ws),
+        (EndpointKind::Tcp, tcp),
+        (EndpointKind::Fdm, fdm),
+        (EndpointKind::Rc, rc),
+    ];
+    let open = all.iter().filter_map(|(kind, address)| address.map(|address| format!("{kind} {address}")));
     let open: Vec<_> = open.collect();
     if open.is_empty() { "No door is open.".to_owned() } else { format!("Doors open: {}.", open.join(", ")) }
 }

@@ -7,7 +7,7 @@ use tokio::sync::{mpsc, watch};
 
 use super::request_handler::RequestHandler;
 use super::runtime::Endpoints;
-use crate::link::{Doors, DoorsConfig, ExternalSimulator, MotorPort, Request};
+use crate::link::{ExternalSimulator, ListenConfig, Listeners, MotorPort, Request};
 use crate::telemetry::EndpointStatus;
 
 /// Requests that may wait for the session.
@@ -38,16 +38,16 @@ pub struct MotorsError {
 #[derive(Debug)]
 pub struct Links {
     /// The doors; some may have problems.
-    pub doors: Doors,
+    pub doors: Listeners,
     requests: mpsc::Receiver<Request>,
     status: Vec<EndpointStatus>,
 }
 
 impl Links {
     /// Opens the doors. One that cannot be opened is among their problems, the others work.
-    pub async fn open(config: &DoorsConfig) -> Self {
+    pub async fn open(config: &ListenConfig) -> Self {
         let (inbox, requests) = mpsc::channel(WAITING);
-        let (doors, status) = Doors::open(config, inbox).await;
+        let (doors, status) = Listeners::open(config, inbox).await;
         Self { doors, requests, status }
     }
 
@@ -56,7 +56,7 @@ impl Links {
     pub fn endpoints(
         self,
         simulator: Option<ExternalSimulator>,
-    ) -> (Doors, Endpoints, watch::Sender<Vec<EndpointStatus>>) {
+    ) -> (Listeners, Endpoints, watch::Sender<Vec<EndpointStatus>>) {
         let handler = RequestHandler::new(self.doors.restart_bell());
         let (publish, status) = watch::channel(self.status);
         (self.doors, Endpoints { requests: self.requests, handler, status, simulator }, publish)

@@ -86,8 +86,7 @@ mod tests {
 
     #[test]
     fn a_remote_flight_controller_gets_each_line_after_the_answer_to_the_one_before() {
-        let plan =
-            FlightPlan { waypoints: std::iter::once(Waypoint::default()).collect(), ..FlightPlan::default() };
+        let plan = FlightPlan { waypoints: std::iter::once(Waypoint::default()).collect() };
         let lines = ["set ap_max_angle = 33", "waypoint clear", "waypoint insert"];
         let (taken, refused) = (CliReply::default(), CliReply { failed: true, ..CliReply::default() });
         for answers in [[&taken, &taken, &taken], [&taken, &refused, &taken]] {

@@ -2,11 +2,64 @@
 
 use super::LinkState;
 
+/// What an endpoint is for. `Display` gives its name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display)]
+pub enum EndpointKind {
+    /// MSP and command line over a websocket.
+    #[strum(to_string = "ws")]
+    WebSocket,
+    /// MSP and command line over TCP.
+    #[strum(to_string = "tcp")]
+    Tcp,
+    /// States from a simulator.
+    #[strum(to_string = "udp fdm")]
+    Fdm,
+    /// RC from scripts.
+    #[strum(to_string = "udp rc")]
+    Rc,
+    /// Motor commands to a simulator.
+    #[strum(to_string = "udp motors")]
+    Motors,
+}
+
+impl EndpointKind {
+    /// The protocol below it.
+    #[must_use]
+    pub fn transport(self) -> Transport {
+        match self {
+            Self::WebSocket | Self::Tcp => Transport::Tcp,
+            Self::Fdm | Self::Rc | Self::Motors => Transport::Udp,
+        }
+    }
+
+    /// Its name without the transport, where there is little room.
+    #[must_use]
+    pub fn short_name(self) -> &'static str {
+        match self {
+            Self::WebSocket => "ws",
+            Self::Tcp => "tcp",
+            Self::Fdm => "fdm",
+            Self::Rc => "rc",
+            Self::Motors => "motors",
+        }
+    }
+}
+
+/// The protocol below an endpoint.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::Display)]
+#[strum(serialize_all = "UPPERCASE")]
+pub enum Transport {
+    /// A stream.
+    Tcp,
+    /// Datagrams.
+    Udp,
+}
+
 /// One endpoint.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct EndpointStatus {
-    /// `ws`, `tcp`, `udp fdm`, `udp rc`, `udp motors`.
-    pub name: &'static str,
+    /// What it is for.
+    pub kind: EndpointKind,
     /// Address it listens on or sends to.
     pub address: String,
     /// How it is doing.

@@ -157,7 +157,7 @@ fn doors(state: &AppState, width: u16) -> Vec<Span<'static>> {
     let theme = &state.theme;
     let mut spans = Vec::new();
     for endpoint in &state.view.endpoints {
-        let name = endpoint.name.strip_prefix("udp ").unwrap_or(endpoint.name);
+        let name = endpoint.kind.short_name();
         let (text, role) = match fault(&endpoint.state) {
             Some(fault) if width >= WIDE => (format!("✗{name} {fault}"), Role::Fault),
             Some(_) => (format!("✗{name}"), Role::Fault),
@@ -184,18 +184,18 @@ fn fault(state: &EndpointState) -> Option<&'static str> {
 mod tests {
     use super::*;
     use crate::session::SessionView;
-    use crate::telemetry::{ClientStats, EndpointStatus, PacketStats, SimulatorStats};
+    use crate::telemetry::{ClientStats, EndpointKind, EndpointStatus, PacketStats, SimulatorStats};
     use crate::ui::status_bar;
 
-    fn endpoint((name, state): (&'static str, EndpointState)) -> EndpointStatus {
-        EndpointStatus { name, address: String::new(), state }
+    fn endpoint((kind, state): (EndpointKind, EndpointState)) -> EndpointStatus {
+        EndpointStatus { kind, address: String::new(), state }
     }
 
     #[test]
     fn an_endpoint_whose_client_left_is_not_shown_as_connected() {
         let shown = |clients| {
             let stats = ClientStats { clients, received_bytes: 6, sent_bytes: 9, ..ClientStats::default() };
-            let endpoints = vec![endpoint(("tcp", EndpointState::Clients(stats)))];
+            let endpoints = vec![endpoint((EndpointKind::Tcp, EndpointState::Clients(stats)))];
             let state = AppState::bare((120, 40), SessionView { endpoints, ..SessionView::default() });
             doors(&state, 120).iter().map(|span| span.content.to_string()).collect::<String>()
         };
@@ -205,9 +205,9 @@ mod tests {
     /// The clock's line and the hint line while a simulator outside is in this state.
     fn lines(simulator: LinkState, rate_hz: u32) -> String {
         let states = [
-            ("udp fdm", EndpointState::Packets(PacketStats { rate_hz, ..PacketStats::default() })),
+            (EndpointKind::Fdm, EndpointState::Packets(PacketStats { rate_hz, ..PacketStats::default() })),
             (
-                "udp motors",
+                EndpointKind::Motors,
                 EndpointState::Simulator(SimulatorStats {
                     link: simulator,
                     dialect: None,

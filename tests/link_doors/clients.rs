@@ -3,9 +3,9 @@
 use std::time::{Duration, Instant};
 
 use betadeck::firmware::msp::HomeReading;
-use betadeck::link::{DoorKind, Doors, DoorsConfig, Request};
-use betadeck::telemetry::Mode;
+use betadeck::link::{ListenConfig, Listeners, Request};
 use betadeck::telemetry::{ClientStats, EndpointState};
+use betadeck::telemetry::{EndpointKind, Mode};
 use futures_util::SinkExt;
 use tokio::io::AsyncWriteExt;
 use tokio::net::TcpStream;
@@ -212,12 +212,12 @@ async fn the_command_line_in_messages_pages_through_its_output() {
 
 #[tokio::test]
 async fn web_pages_of_strangers_are_turned_away_with_a_notice() {
-    let mut house = House::open(DoorsConfig {
+    let mut house = House::open(ListenConfig {
         tcp_port: None,
         ws_port: Some(0),
         rc_port: None,
         allow_origin: vec!["https://my.page".to_owned()],
-        ..DoorsConfig::default()
+        ..ListenConfig::default()
     })
     .await;
     for origin in
@@ -252,7 +252,7 @@ async fn a_door_that_is_full_turns_the_next_away_with_a_notice() {
     assert!(house.others.try_recv().is_err(), "told once");
     house.websocket().await.assert_speaks_msp().await;
     drop(clients.pop());
-    while house.doors.clients(DoorKind::Tcp) >= 32 {
+    while house.doors.clients(EndpointKind::Tcp) >= 32 {
         tokio::task::yield_now().await;
     }
     house.tcp().await.assert_speaks_msp().await;
@@ -272,7 +272,7 @@ async fn one_client_of_bad_manners_does_not_hold_up_the_others() {
     // One that connects and says nothing, one that never finishes its handshake, one that never reads its answers,
     // one that sends more than a message may hold.
     let _silent = house.tcp().await;
-    let mut half = TcpStream::connect(house.address(DoorKind::WebSocket)).await.unwrap();
+    let mut half = TcpStream::connect(house.address(EndpointKind::WebSocket)).await.unwrap();
     half.write_all(b"GET / HTTP/1.1\r\nHost: x\r\n").await.unwrap();
     let mut deaf = house.tcp().await;
     deaf.enter_cli().await;
@@ -295,13 +295,13 @@ async fn a_busy_port_is_named_with_the_way_out() {
     let taken_udp = std::net::UdpSocket::bind("127.0.0.1:0").unwrap();
     let port = taken.local_addr().unwrap().port();
     let (requests, _inbox) = mpsc::channel(1);
-    let config = DoorsConfig {
+    let config = ListenConfig {
         tcp_port: Some(port),
         ws_port: Some(0),
         rc_port: Some(taken_udp.local_addr().unwrap().port()),
-        ..DoorsConfig::default()
+        ..ListenConfig::default()
     };
-    let (doors, views) = Doors::open(&config, requests).await;
+    let (doors, views) = Listeners::open(&config, requests).await;
     let problems: Vec<String> = doors.problems().map(ToString::to_string).collect();
     assert_eq!(
         problems[0],
@@ -311,10 +311,17 @@ async fn a_busy_port_is_named_with_the_way_out() {
         )
     );
     assert!(problems[1].contains("--udp-ports"), "{problems:?}");
-    let states: Vec<_> = views.iter().map(|view| (view.name, view.state)).collect();
+    let states: Vec<_> = views.iter().map(|view| (view.kind, view.state)).collect();
     let listening = EndpointState::Clients(ClientStats::default());
-    assert_eq!(states, [("ws", listening), ("tcp", EndpointState::Busy), ("udp rc", EndpointState::Busy)]);
-    assert!(doors.address(DoorKind::WebSocket).unwrap().ip().is_loopback());
+    assert_eq!(
+        states,
+        [
+            (EndpointKind::WebSocket, listening),
+            (EndpointKind::Tcp, EndpointState::Busy),
+            (EndpointKind::Rc, EndpointState::Busy)
+        ]
+    );
+    assert!(doors.address(EndpointKind::WebSocket).unwrap().ip().is_loopback());
     doors.close().await;
 }
 
@@ -323,7 +330,7 @@ async fn doors_show_who_is_there() {
     let house = House::usual().await;
     let mut client = house.tcp().await;
     client.assert_speaks_msp().await;
-    let view = house.doors.views().into_iter().find(|view| view.name == "tcp").unwrap();
+    let view = house.doors.status().into_iter().find(|view| view.kind == EndpointKind::Tcp).unwrap();
     let stats = ClientStats {
         clients: 1,
         last_message: Some(1),
@@ -339,7 +346,7 @@ async fn doors_show_who_is_there() {
 #[tokio::test]
 async fn the_websocket_listens_on_both_loopback_addresses() {
     let house = House::usual().await;
-    let port = house.address(DoorKind::WebSocket).port();
+    let port = house.address(EndpointKind::WebSocket).port();
     // A machine without IPv6 has nothing to test here.
     if std::net::TcpListener::bind("[::1]:0").is_ok() {
         assert!(TcpStream::connect(("::1", port)).await.is_ok());

@@ -9,9 +9,9 @@ use betadeck::firmware::config::{Configuration, ModeCondition};
 use betadeck::firmware::msp::{GpsReading, MspAction, MspFacts, handle};
 use betadeck::geo::LatLon;
 use betadeck::link::proto::command_line::{Completion, LineSource};
-use betadeck::link::{DoorKind, Doors, DoorsConfig, Request, RestartBell};
+use betadeck::link::{ListenConfig, Listeners, Request, RestartBell};
 use betadeck::plan::{HoldPattern, Waypoint, WaypointType};
-use betadeck::telemetry::{EndpointState, EndpointStatus};
+use betadeck::telemetry::{EndpointKind, EndpointState, EndpointStatus};
 use futures_util::{SinkExt, StreamExt};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
@@ -149,15 +149,15 @@ pub(crate) async fn answer_requests(
 
 /// Open doors with a craft behind them.
 pub(crate) struct House {
-    pub(crate) doors: Doors,
+    pub(crate) doors: Listeners,
     pub(crate) craft: Shared,
     pub(crate) others: mpsc::Receiver<Request>,
 }
 
 impl House {
-    pub(crate) async fn open(config: DoorsConfig) -> Self {
+    pub(crate) async fn open(config: ListenConfig) -> Self {
         let (requests, inbox) = mpsc::channel(64);
-        let (doors, views) = Doors::open(&config, requests).await;
+        let (doors, views) = Listeners::open(&config, requests).await;
         let closed =
             |view: &EndpointStatus| matches!(view.state, EndpointState::Busy | EndpointState::Closed);
         assert!(!views.iter().any(closed), "{views:?}");
@@ -168,22 +168,22 @@ impl House {
     }
 
     pub(crate) async fn usual() -> Self {
-        Self::open(DoorsConfig {
+        Self::open(ListenConfig {
             tcp_port: Some(0),
             ws_port: Some(0),
             rc_port: Some(0),
             fdm_port: Some(0),
-            ..DoorsConfig::default()
+            ..ListenConfig::default()
         })
         .await
     }
 
-    pub(crate) fn address(&self, kind: DoorKind) -> SocketAddr {
+    pub(crate) fn address(&self, kind: EndpointKind) -> SocketAddr {
         self.doors.address(kind).unwrap()
     }
 
     pub(crate) async fn tcp(&self) -> Client {
-        Client::Tcp(TcpStream::connect(self.address(DoorKind::Tcp)).await.unwrap())
+        Client::Tcp(TcpStream::connect(self.address(EndpointKind::Tcp)).await.unwrap())
     }
 
     pub(crate) async fn websocket(&self) -> Client {
@@ -198,7 +198,7 @@ impl House {
         origin: Option<&str>,
         protocol: Option<&str>,
     ) -> Result<(WebSocketStream<TcpStream>, Option<String>), Error> {
-        let address = self.address(DoorKind::WebSocket);
+        let address = self.address(EndpointKind::WebSocket);
         let mut request = format!("ws://{address}/").into_client_request().unwrap();
         if let Some(origin) = origin {
             request.headers_mut().insert("Origin", HeaderValue::from_str(origin).unwrap());

@@ -4,10 +4,10 @@ use std::time::{Duration, Instant};
 
 use betadeck::link::proto::fdm_link::FdmLinkConfig;
 use betadeck::link::proto::{rc, servo};
-use betadeck::link::{DoorKind, ExternalSimulator, MotorPort, Request, Sent};
+use betadeck::link::{ExternalSimulator, MotorPort, Request, Sent};
 use betadeck::signals::fdm::MotorOrder;
 use betadeck::signals::{MotorCommand, RcFrame};
-use betadeck::telemetry::{EndpointState, LinkState};
+use betadeck::telemetry::{EndpointKind, EndpointState, LinkState, Transport};
 use tokio::net::UdpSocket;
 
 use super::house::{House, PATIENCE, hex, unhex};
@@ -16,7 +16,7 @@ use super::house::{House, PATIENCE, hex, unhex};
 async fn rc_and_states_arrive_and_other_sizes_are_counted() {
     let mut house = House::usual().await;
     let script = UdpSocket::bind("127.0.0.1:0").await.unwrap();
-    let rc_door = house.address(DoorKind::Rc);
+    let rc_door = house.address(EndpointKind::Rc);
     let mut frame = RcFrame::SAFE;
     frame.channels[4] = 2000;
     script.send_to(&[0; 39], rc_door).await.unwrap();
@@ -28,11 +28,11 @@ async fn rc_and_states_arrive_and_other_sizes_are_counted() {
     };
     assert_eq!((stamp_s, received, from), (1.5, frame, script.local_addr().unwrap()));
 
-    script.send_to(&[0; 143], house.address(DoorKind::Fdm)).await.unwrap();
-    script.send_to(&[1; 296], house.address(DoorKind::Fdm)).await.unwrap();
+    script.send_to(&[0; 143], house.address(EndpointKind::Fdm)).await.unwrap();
+    script.send_to(&[1; 296], house.address(EndpointKind::Fdm)).await.unwrap();
     let Some(Request::Fdm { datagram, .. }) = house.others.recv().await else { panic!("no state") };
     assert_eq!(datagram.len(), 296);
-    for view in house.doors.views().iter().filter(|view| view.name.starts_with("udp")) {
+    for view in house.doors.status().iter().filter(|view| view.kind.transport() == Transport::Udp) {
         let EndpointState::Packets(stats) = view.state else { panic!("{view:?}") };
         assert_eq!((stats.packets, stats.wrong_size), (1, 1), "{view:?}");
     }
@@ -54,7 +54,7 @@ async fn worked_rc_and_state_packets_arrive_as_they_were_sent() {
     let wire = worked();
     for case in wire["rc"].as_array().unwrap() {
         let bytes = bytes_of(case);
-        sender.send_to(&bytes, house.address(DoorKind::Rc)).await.unwrap();
+        sender.send_to(&bytes, house.address(EndpointKind::Rc)).await.unwrap();
         let Some(Request::Rc { stamp_s, frame, .. }) = house.others.recv().await else { panic!("no RC") };
         assert_eq!(rc::encode(stamp_s, &frame).to_vec(), bytes, "{}", case["id"]);
         let channels: Vec<u64> = frame.channels.iter().map(|pulse| u64::from(*pulse)).collect();
@@ -63,7 +63,7 @@ async fn worked_rc_and_state_packets_arrive_as_they_were_sent() {
     for case in wire["fdm"].as_array().unwrap() {
         for dialect in ["sitl_gz", "gz_plugin_first18", "legacy"] {
             let bytes = bytes_of(&case[dialect]);
-            sender.send_to(&bytes, house.address(DoorKind::Fdm)).await.unwrap();
+            sender.send_to(&bytes, house.address(EndpointKind::Fdm)).await.unwrap();
             let Some(Request::Fdm { datagram, .. }) = house.others.recv().await else { panic!("no state") };
             assert_eq!(datagram, bytes, "{} {dialect}", case["id"]);
         }
@@ -78,8 +78,8 @@ async fn every_size_of_the_table_is_judged_at_its_door() {
     let wire = worked();
     for rule in wire["size_rules"].as_array().unwrap() {
         let (kind, case) = match rule["port"].as_u64().unwrap() {
-            9003 => (DoorKind::Fdm, &wire["fdm"][0]["sitl_gz"]),
-            9004 => (DoorKind::Rc, &wire["rc"][0]),
+            9003 => (EndpointKind::Fdm, &wire["fdm"][0]["sitl_gz"]),
+            9004 => (EndpointKind::Rc, &wire["rc"][0]),
             // Motors: nothing comes in there.
             _ => continue,
         };
@@ -182,5 +182,5 @@ async fn a_simulator_is_answered_packet_by_packet() {
     assert_eq!(servo::decode(&buffer[..16]), Some([0.2, 0.3, 0.4, 0.1]));
     servo_socket.set_nonblocking(true).unwrap();
     assert!(servo_socket.recv(&mut buffer).is_err(), "one answer a packet");
-    assert_eq!(simulator.status(start).name, "udp motors");
+    assert_eq!(simulator.status(start).kind, EndpointKind::Motors);
 }

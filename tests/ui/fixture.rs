@@ -10,8 +10,9 @@ use betadeck::session::{Event, SessionEvent, SessionView};
 use betadeck::signals::{RcFrame, RcSource, SimTime};
 use betadeck::telemetry::snapshot::{ModeRange, SettingsView, TruthView};
 use betadeck::telemetry::{
-    ArmingFlag, ClientStats, DisarmReason, EndpointState, EndpointStatus, EventKind, FirmwareEvent, Guard,
-    GuardName, GuardOp, L1Mode, Mode, ModeFlags, NavEvent, NavState, PacketStats, Snapshot, TransitionReason,
+    ArmingFlag, ClientStats, DisarmReason, EndpointKind, EndpointState, EndpointStatus, EventKind,
+    FirmwareEvent, Guard, GuardName, GuardOp, L1Mode, Mode, ModeFlags, NavEvent, NavState, PacketStats,
+    Snapshot, TransitionReason,
 };
 use betadeck::ui::theme::{Charset, Palette};
 use betadeck::ui::{AppState, CliHelp, Msg, OpenPlan, Theme, UiConfig, update};
@@ -226,7 +227,7 @@ pub(crate) fn view(flight: &SimpleFlight) -> SessionView {
         raised_stick_us: 1300,
         sink_stick_us: Some(1410),
     });
-    let endpoint = |name, state| EndpointStatus { name, address: String::new(), state };
+    let endpoint = |kind, state| EndpointStatus { kind, address: String::new(), state };
     let clients = |clients| EndpointState::Clients(ClientStats { clients, ..ClientStats::default() });
     SessionView {
         vehicle: std::sync::Arc::new(snapshot),
@@ -234,9 +235,9 @@ pub(crate) fn view(flight: &SimpleFlight) -> SessionView {
         speed_achieved: 1.0,
         sticks: RcFrame::SAFE,
         endpoints: vec![
-            endpoint("ws", clients(1)),
-            endpoint("tcp", clients(0)),
-            endpoint("udp", EndpointState::Packets(PacketStats::default())),
+            endpoint(EndpointKind::WebSocket, clients(1)),
+            endpoint(EndpointKind::Tcp, clients(0)),
+            endpoint(EndpointKind::Rc, EndpointState::Packets(PacketStats::default())),
         ],
         ..SessionView::default()
     }

@@ -6,7 +6,7 @@ use std::net::SocketAddr;
 use std::time::{Duration, Instant};
 
 use betadeck::link::proto::command_line::{LineReply, LineSource};
-use betadeck::link::{ClientId, Doors, DoorsConfig, Request};
+use betadeck::link::{ClientId, ListenConfig, Listeners, Request};
 use betadeck::plan::{FlightPlan, Waypoint};
 use betadeck::session::{Command, Handled, Persistence, RequestHandler, SessionConfig, start, upload};
 use betadeck::signals::RcFrame;
@@ -29,8 +29,8 @@ struct Links {
 
 impl Links {
     async fn new() -> Self {
-        let closed = DoorsConfig { tcp_port: None, ws_port: None, rc_port: None, ..DoorsConfig::default() };
-        let (doors, _) = Doors::open(&closed, mpsc::channel(1).0).await;
+        let closed = ListenConfig { tcp_port: None, ws_port: None, rc_port: None, ..ListenConfig::default() };
+        let (doors, _) = Listeners::open(&closed, mpsc::channel(1).0).await;
         Self {
             rig: Rig::new(),
             handler: RequestHandler::new(doors.restart_bell()),

@@ -11,13 +11,13 @@ use super::lines::{self, FlightLine, OpenResult, SitlPorts};
 use crate::firmware::FirmwareOptions;
 use crate::firmware::cli::BuildInfo;
 use crate::link::proto::fdm_link::FdmLinkConfig;
-use crate::link::{DoorKind, Doors, DoorsConfig, ExternalSimulator, MotorPort};
+use crate::link::{ExternalSimulator, ListenConfig, Listeners, MotorPort};
 use crate::session::links::{Links, MotorTargets, MotorsError};
 use crate::session::{Command, Event, Handle, SessionConfig, SessionEvent, SimulatorRemark, start};
 use crate::signals::fdm::MotorOrder;
 use crate::sim::{WorldConfig, WorldError};
 use crate::storage::Store;
-use crate::telemetry::{LinkState, Snapshot};
+use crate::telemetry::{EndpointKind, LinkState, Snapshot};
 use crate::vehicle::{Vehicle, VehicleConfig};
 
 /// Rhythm in which clients of the serial port are counted.
@@ -29,7 +29,7 @@ const SECOND: Duration = Duration::from_secs(1);
 #[derive(Debug, Clone, PartialEq)]
 pub struct SitlConfig {
     /// The doors; their UDP ports are those of `ports`.
-    pub doors: DoorsConfig,
+    pub doors: ListenConfig,
     /// Where motors are sent.
     pub motors_ip: IpAddr,
     /// The UDP ports.
@@ -84,7 +84,7 @@ pub enum SitlError {
 /// A running drop-in.
 pub struct Sitl {
     session: Handle,
-    doors: Doors,
+    doors: Listeners,
     exit_on_reboot: bool,
     /// Clients of the serial port that were told.
     clients: u32,
@@ -106,10 +106,10 @@ impl Sitl {
         if !problems.is_empty() {
             return Err(SitlError::Doors(problems.join("\n")));
         }
-        if let Some(address) = links.doors.address(DoorKind::Tcp) {
+        if let Some(address) = links.doors.address(EndpointKind::Tcp) {
             print(Said::Err(format!("bind port {} for UART1", address.port())));
         }
-        if let Some(address) = links.doors.address(DoorKind::WebSocket) {
+        if let Some(address) = links.doors.address(EndpointKind::WebSocket) {
             print(Said::Err(format!("[SITL] websocket for the Betaflight App: ws://{address}")));
         }
         let vehicle = boot(&config, &mut store, print)?;
@@ -130,7 +130,7 @@ impl Sitl {
 
     /// Where a door listens.
     #[must_use]
-    pub fn address(&self, door: DoorKind) -> Option<SocketAddr> {
+    pub fn address(&self, door: EndpointKind) -> Option<SocketAddr> {
         self.doors.address(door)
     }
 
@@ -185,7 +185,7 @@ impl Sitl {
 
     /// Clients of the serial port come and go.
     fn tell_clients(&mut self, print: &mut impl FnMut(Said)) {
-        let clients = self.doors.clients(DoorKind::Tcp);
+        let clients = self.doors.clients(EndpointKind::Tcp);
         while self.clients < clients {
             print(Said::Err(format!("New connection on UART1, {}", self.clients)));
             self.clients += 1;
@@ -260,7 +260,7 @@ async fn open_links(
 ) -> (Links, Result<MotorPort, MotorsError>) {
     let (ip, ports) = (config.motors_ip.to_string(), config.ports);
     print(Said::Out(lines::output_line(&ip, ports)));
-    let wanted = DoorsConfig { rc_port: Some(ports.rc), fdm_port: Some(ports.fdm), ..config.doors.clone() };
+    let wanted = ListenConfig { rc_port: Some(ports.rc), fdm_port: Some(ports.fdm), ..config.doors.clone() };
     let links = Links::open(&wanted).await;
     let motors = MotorTargets { ip: config.motors_ip, motors: ports.motors, raw: ports.raw }.open();
     let motors_opened = if motors.is_ok() { OpenResult::Done } else { OpenResult::NoSocket };
@@ -270,9 +270,13 @@ async fn open_links(
     };
     // A port that the system chose is known only now.
     let chosen = |door, wanted| links.doors.address(door).map_or(wanted, |address| address.port());
-    let ports =
-        SitlPorts { fdm: chosen(DoorKind::Fdm, ports.fdm), rc: chosen(DoorKind::Rc, ports.rc), ..ports };
-    let told = lines::link_lines(&ip, ports, motors_opened, opened(DoorKind::Fdm), opened(DoorKind::Rc));
+    let ports = SitlPorts {
+        fdm: chosen(EndpointKind::Fdm, ports.fdm),
+        rc: chosen(EndpointKind::Rc, ports.rc),
+        ..ports
+    };
+    let told =
+        lines::link_lines(&ip, ports, motors_opened, opened(EndpointKind::Fdm), opened(EndpointKind::Rc));
     told.into_iter().for_each(|line| print(Said::Out(line)));
     (links, motors)
 }

@@ -1,0 +1,283 @@
+//! The listeners, at which other programs reach the vehicle: opens them, shows their state, closes them.
+
+#![allow(clippy::disallowed_methods, reason = "the state of a listener shows the age of its newest packet")]
+
+use std::io;
+use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use tokio::net::{TcpListener, UdpSocket};
+use tokio::sync::{mpsc, watch};
+use tokio_util::sync::CancellationToken;
+use tokio_util::task::TaskTracker;
+
+use super::client::Reception;
+use super::endpoint_stats::EndpointStats;
+use super::listener::{self, Kind};
+use super::request::Request;
+use super::udp::{self, Datagrams};
+use crate::telemetry::{EndpointKind, EndpointState, EndpointStatus};
+
+/// How long the listeners may take to close.
+const CLOSING: Duration = Duration::from_secs(1);
+
+/// What to listen for, and where. Port 0 lets the system choose; `None` leaves an endpoint closed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ListenConfig {
+    /// Address to listen on; `None` = 127.0.0.1, for TCP and websocket ::1 as well.
+    pub listen: Option<IpAddr>,
+    /// MSP and command line over TCP.
+    pub tcp_port: Option<u16>,
+    /// MSP and command line over a websocket.
+    pub ws_port: Option<u16>,
+    /// RC from scripts, UDP.
+    pub rc_port: Option<u16>,
+    /// States from a simulator, UDP.
+    pub fdm_port: Option<u16>,
+    /// Web pages that are served besides the usual ones.
+    pub allow_origin: Vec<String>,
+}
+
+impl Default for ListenConfig {
+    /// The usual endpoints of a craft whose physics is embedded.
+    fn default() -> Self {
+        Self {
+            listen: None,
+            tcp_port: Some(5761),
+            ws_port: Some(6761),
+            rc_port: Some(9004),
+            fdm_port: None,
+            allow_origin: Vec::new(),
+        }
+    }
+}
+
+/// The option that moves an endpoint.
+fn option(kind: EndpointKind) -> &'static str {
+    match kind {
+        EndpointKind::WebSocket => "--ws-port",
+        EndpointKind::Tcp => "--tcp-port",
+        EndpointKind::Fdm | EndpointKind::Rc | EndpointKind::Motors => "--udp-ports",
+    }
+}
+
+/// Why an endpoint is closed.
+#[derive(Debug, thiserror::Error)]
+pub enum ListenError {
+    /// Something else has the port.
+    #[error(
+        "{} port {port} is in use: stop the program that has it, or choose another with {} (0 = any free one)",
+        .kind.transport(), option(*.kind)
+    )]
+    Busy {
+        /// What it is for.
+        kind: EndpointKind,
+        /// The port.
+        port: u16,
+    },
+    /// The system refused for another reason.
+    #[error("cannot listen on {address} ({}): {error}; see --listen and {}", .kind.transport(), option(*.kind))]
+    Refused {
+        /// What it is for.
+        kind: EndpointKind,
+        /// Where it was to listen.
+        address: SocketAddr,
+        /// What the system says.
+        error: io::Error,
+    },
+}
+
+/// One endpoint that listens, or should.
+#[derive(Debug)]
+struct Listener {
+    kind: EndpointKind,
+    /// Where it listens, or why it does not.
+    place: Result<SocketAddr, ListenError>,
+    stats: Arc<EndpointStats>,
+}
+
+/// All listeners.
+#[derive(Debug)]
+pub struct Listeners {
+    all: Vec<Listener>,
+    shutdown: CancellationToken,
+    tasks: TaskTracker,
+    restarts: watch::Sender<u64>,
+}
+
+impl Listeners {
+    /// Opens the endpoints. One that cannot be opened says why in its status; the others work.
+    pub async fn open(config: &ListenConfig, requests: mpsc::Sender<Request>) -> (Self, Vec<EndpointStatus>) {
+        let (restarts, restarted) = watch::channel(0);
+        let mut listeners =
+            Self { all: Vec::new(), shutdown: CancellationToken::new(), tasks: TaskTracker::new(), restarts };
+        let reception = Reception { requests, shutdown: listeners.shutdown.clone(), restarts: restarted };
+        if let Some(port) = config.ws_port {
+            let kind =
+                Kind::WebSocket { allow_origin: config.allow_origin.clone().into(), told: Arc::default() };
+            listeners.open_stream(EndpointKind::WebSocket, config.listen, port, &kind, &reception).await;
+        }
+        if let Some(port) = config.tcp_port {
+            listeners.open_stream(EndpointKind::Tcp, config.listen, port, &Kind::Tcp, &reception).await;
+        }
+        if let Some(port) = config.fdm_port {
+            listeners
+                .open_datagrams(EndpointKind::Fdm, config.listen, port, Datagrams::Fdm, &reception)
+                .await;
+        }
+        if let Some(port) = config.rc_port {
+            listeners.open_datagrams(EndpointKind::Rc, config.listen, port, Datagrams::Rc, &reception).await;
+        }
+        let status = listeners.status();
+        (listeners, status)
+    }
+
+    async fn open_stream(
+        &mut self,
+        kind: EndpointKind,
+        listen: Option<IpAddr>,
+        port: u16,
+        server: &Kind,
+        reception: &Reception,
+    ) {
+        let stats = Arc::new(EndpointStats::new(Instant::now()));
+        let address = SocketAddr::new(listen.unwrap_or(IpAddr::V4(Ipv4Addr::LOCALHOST)), port);
+        let place = match bind_tcp(kind, address).await {
+            Ok((listener, place)) => {
+                self.spawn_listener(listener, server, reception, &stats);
+                if listen.is_none() {
+                    // A machine without IPv6 has no such address.
+                    let six = SocketAddr::new(IpAddr::V6(Ipv6Addr::LOCALHOST), place.port());
+                    if let Ok((listener, _)) = bind_tcp(kind, six).await {
+                        self.spawn_listener(listener, server, reception, &stats);
+                    }
+                }
+                Ok(place)
+            }
+            Err(error) => Err(error),
+        };
+        self.all.push(Listener { kind, place, stats });
+    }
+
+    fn spawn_listener(
+        &self,
+        listener: TcpListener,
+        server: &Kind,
+        reception: &Reception,
+        stats: &Arc<EndpointStats>,
+    ) {
+        let (tasks, stats) = (self.tasks.clone(), Arc::clone(stats));
+        self.tasks.spawn(listener::listen(listener, server.clone(), reception.clone(), stats, tasks));
+    }
+
+    async fn open_datagrams(
+        &mut self,
+        kind: EndpointKind,
+        listen: Option<IpAddr>,
+        port: u16,
+        datagrams: Datagrams,
+        reception: &Reception,
+    ) {
+        let stats = Arc::new(EndpointStats::new(Instant::now()));
+        let address = SocketAddr::new(listen.unwrap_or(IpAddr::V4(Ipv4Addr::LOCALHOST)), port);
+        let bound = UdpSocket::bind(address).await.and_then(|socket| Ok((socket.local_addr()?, socket)));
+        let place = match bound {
+            Ok((place, socket)) => {
+                self.tasks.spawn(udp::receive(socket, datagrams, reception.clone(), Arc::clone(&stats)));
+                Ok(place)
+            }
+            Err(error) => Err(explain(kind, address, error)),
+        };
+        self.all.push(Listener { kind, place, stats });
+    }
+
+    /// How each is doing.
+    #[must_use]
+    pub fn status(&self) -> Vec<EndpointStatus> {
+        let now = Instant::now();
+        self.all.iter().map(|listener| listener.status(now)).collect()
+    }
+
+    /// Why endpoints are closed, as sentences.
+    pub fn problems(&self) -> impl Iterator<Item = &ListenError> {
+        self.all.iter().filter_map(|listener| listener.place.as_ref().err())
+    }
+
+    /// Where an endpoint listens.
+    #[must_use]
+    pub fn address(&self, kind: EndpointKind) -> Option<SocketAddr> {
+        let listener = self.all.iter().find(|listener| listener.kind == kind)?;
+        listener.place.as_ref().ok().copied()
+    }
+
+    /// How many clients an endpoint has.
+    #[must_use]
+    pub fn clients(&self, kind: EndpointKind) -> u32 {
+        self.all.iter().find(|listener| listener.kind == kind).map_or(0, |listener| listener.stats.clients())
+    }
+
+    /// The bell that a restart of the firmware rings.
+    #[must_use]
+    pub fn restart_bell(&self) -> RestartBell {
+        RestartBell(self.restarts.clone())
+    }
+
+    /// Closes all endpoints and waits for their clients to be told.
+    pub async fn close(self) {
+        self.shutdown.cancel();
+        self.tasks.close();
+        let _late_ones_are_dropped = tokio::time::timeout(CLOSING, self.tasks.wait()).await;
+    }
+}
+
+impl Drop for Listeners {
+    fn drop(&mut self) {
+        self.shutdown.cancel();
+    }
+}
+
+/// Closes the links of all clients, as a restart of the firmware does; they may come back at once.
+#[derive(Debug, Clone)]
+pub struct RestartBell(watch::Sender<u64>);
+
+impl RestartBell {
+    /// The firmware started anew.
+    pub fn ring(&self) {
+        self.0.send_modify(|restarts| *restarts += 1);
+    }
+}
+
+impl Listener {
+    fn status(&self, now: Instant) -> EndpointStatus {
+        let (address, state) = match &self.place {
+            Ok(place) => {
+                let state = match self.kind {
+                    EndpointKind::WebSocket | EndpointKind::Tcp => {
+                        EndpointState::Clients(self.stats.client_stats())
+                    }
+                    EndpointKind::Fdm | EndpointKind::Rc | EndpointKind::Motors => {
+                        EndpointState::Packets(self.stats.packet_stats(now))
+                    }
+                };
+                (place.to_string(), state)
+            }
+            Err(ListenError::Busy { port, .. }) => (port.to_string(), EndpointState::Busy),
+            Err(ListenError::Refused { address, .. }) => (address.to_string(), EndpointState::Closed),
+        };
+        EndpointStatus { kind: self.kind, address, state }
+    }
+}
+
+async fn bind_tcp(kind: EndpointKind, address: SocketAddr) -> Result<(TcpListener, SocketAddr), ListenError> {
+    let bound = TcpListener::bind(address).await.and_then(|listener| Ok((listener.local_addr()?, listener)));
+    bound.map(|(place, listener)| (listener, place)).map_err(|error| explain(kind, address, error))
+}
+
+fn explain(kind: EndpointKind, address: SocketAddr, error: io::Error) -> ListenError {
+    if error.kind() == io::ErrorKind::AddrInUse {
+        ListenError::Busy { kind, port: address.port() }
+    } else {
+        ListenError::Refused { kind, address, error }
+    }
+}
