@@ -10,6 +10,7 @@
 use std::net::SocketAddr;
 use std::time::{Duration, Instant};
 
+use betadeck::firmware::cli::Interpreter;
 use betadeck::firmware::config::Configuration;
 use betadeck::firmware::{Firmware, FirmwareOptions};
 use betadeck::link::proto::command_line::{LineReply, LineSource};
@@ -39,17 +40,22 @@ struct Bench {
 }
 
 impl Bench {
+    /// On starter modes that nobody has stored.
     async fn new() -> Self {
-        let closed = ListenConfig { tcp_port: None, ws_port: None, rc_port: None, ..ListenConfig::default() };
-        let (doors, _) = Listeners::open(&closed, mpsc::channel(1).0).await;
         let mut configuration = Configuration::default();
         configuration.starter_modes();
+        Self::with(configuration).await
+    }
+
+    /// On this configuration, which nobody has stored.
+    async fn with(configuration: Configuration) -> Self {
+        let closed = ListenConfig { tcp_port: None, ws_port: None, rc_port: None, ..ListenConfig::default() };
+        let (doors, _) = Listeners::open(&closed, mpsc::channel(1).0).await;
+        let options = FirmwareOptions { arm_assist: true, ..FirmwareOptions::default() };
+        let controller = FlightController::Embedded(Box::new(Firmware::new(configuration, options)));
         Self {
-            controller: FlightController::Embedded(Box::new(Firmware::new(
-                configuration,
-                FirmwareOptions { arm_assist: true, ..FirmwareOptions::default() },
-            ))),
-            persistence: Persistence::new(Store::in_memory(), true),
+            persistence: Persistence::new(Store::in_memory(), &controller, true),
+            controller,
             handler: RequestHandler::new(doors.restart_bell()),
             ticks: 0,
             wall: Instant::now(),
@@ -272,7 +278,7 @@ async fn what_cannot_be_saved_is_told_in_a_sentence() {
     let directory = tempfile::tempdir().unwrap();
     let folder = directory.path().join("state");
     let mut bench = Bench::new().await;
-    bench.persistence = Persistence::new(Store::open(&folder, false).unwrap(), true);
+    bench.persistence = Persistence::new(Store::open(&folder, false).unwrap(), &bench.controller, true);
     // A file where the directory was.
     if folder.exists() {
         std::fs::remove_dir_all(&folder).unwrap();
@@ -300,4 +306,52 @@ async fn a_batch_lasts_over_the_lines_of_one_client_and_of_no_other() {
     bench.leave(1);
     assert!(bench.enter(1, true));
     assert_eq!(bench.line(1, LineSource::Prompt, "batch end").text, other.text);
+}
+
+/// The modes that channels switch, in their order.
+fn modes(bench: &Bench) -> Vec<&'static str> {
+    bench.firmware().mode_ranges().iter().map(|range| range.mode_box.into()).collect()
+}
+
+/// A bench whose craft was given ARM on AUX4 and a lean angle, as `--settings` does, and a client at its command line.
+async fn bench_with_given_settings() -> Bench {
+    let mut firmware = Firmware::new(Configuration::default(), FirmwareOptions::default());
+    for line in ["aux 0 0 3 1700 2100 0 0", "set ap_max_angle = 33"] {
+        assert!(!firmware.run_cli(&mut Interpreter::default(), line).failed, "{line}");
+    }
+    let mut bench = Bench::with(firmware.configuration().clone()).await;
+    assert!(bench.enter(1, true));
+    bench
+}
+
+#[tokio::test]
+async fn modes_given_at_boot_are_not_replaced_by_starter_modes_at_a_restart() {
+    let mut bench = bench_with_given_settings().await;
+    bench.line(1, LineSource::Prompt, "set ap_max_angle = 44");
+    bench.line(1, LineSource::Prompt, "exit");
+    assert_eq!(modes(&bench), ["ARM"]);
+    assert_eq!(
+        bench.firmware().parameters().nav.max_angle,
+        33,
+        "what was typed is lost, what was given is not"
+    );
+}
+
+#[tokio::test]
+async fn what_is_saved_wins_over_what_was_given_at_boot() {
+    let mut bench = bench_with_given_settings().await;
+    bench.line(1, LineSource::Prompt, "set ap_max_angle = 44");
+    bench.line(1, LineSource::Prompt, "save");
+    assert_eq!((modes(&bench), bench.firmware().parameters().nav.max_angle), (vec!["ARM"], 44));
+    assert!(bench.enter(2, true));
+    bench.line(2, LineSource::Prompt, "defaults");
+    assert_eq!(
+        modes(&bench),
+        ["ARM", "AUTOPILOT", "ANGLE", "ALTHOLD", "POS HOLD"],
+        "nothing is stored nor given"
+    );
+    assert_eq!(
+        bench.firmware().parameters().nav.max_angle,
+        Configuration::default().settings.number("ap_max_angle") as u8
+    );
 }

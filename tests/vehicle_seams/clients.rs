@@ -31,10 +31,11 @@ impl Links {
     async fn new() -> Self {
         let closed = ListenConfig { tcp_port: None, ws_port: None, rc_port: None, ..ListenConfig::default() };
         let (doors, _) = Listeners::open(&closed, mpsc::channel(1).0).await;
+        let rig = Rig::new();
         Self {
-            rig: Rig::new(),
             handler: RequestHandler::new(doors.restart_bell()),
-            persistence: Persistence::new(Store::in_memory(), true),
+            persistence: Persistence::new(Store::in_memory(), rig.vehicle.controller(), true),
+            rig,
             now: Instant::now(),
         }
     }
