@@ -59,6 +59,7 @@ pub struct Flight {
     nav_events: Vec<NavEvent>,
     /// True altitude of the place where the craft was armed, m above the boot place.
     armed_alt_m: f64,
+    battery_empty_at: Option<SimTime>,
 }
 
 /// What a flight reports.
@@ -103,6 +104,7 @@ impl Flight {
             truth_check: TruthCheck::new(options.tolerance_m),
             nav_events: Vec::with_capacity(8),
             armed_alt_m: 0.0,
+            battery_empty_at: None,
         })
     }
 
@@ -122,6 +124,7 @@ impl Flight {
     pub fn tick(&mut self, mut report: impl FnMut(Report)) -> Option<FlightEnd> {
         self.vehicle.tick();
         let (touched_down, nav_events) = (&mut self.touched_down, &mut self.nav_events);
+        let battery_empty_at = &mut self.battery_empty_at;
         let mut was_armed = false;
         self.vehicle.drain_events(|event| {
             match &event.kind {
@@ -131,6 +134,7 @@ impl Flight {
                     was_armed = true;
                 }
                 EventKind::Firmware(FirmwareEvent::Nav(event)) => nav_events.push(event.clone()),
+                EventKind::BatteryEmpty { .. } => *battery_empty_at = Some(event.time),
                 EventKind::Boot { .. }
                 | EventKind::Firmware(_)
                 | EventKind::Fault { .. }
@@ -183,6 +187,9 @@ impl Flight {
             }
             _ => {}
         }
+        if let Some(remark) = self.battery_remark() {
+            verdict.reason = format!("{}; {remark}", verdict.reason);
+        }
         let time = self.vehicle.time();
         let flown_s = time.seconds_since(self.judge.engaged_at().unwrap_or_default());
         FlightEnd { verdict, truth, flown_s, time }
@@ -225,6 +232,14 @@ impl Flight {
         Some(100.0 * battery.drawn_mah / battery.capacity_mah)
     }
 
+    /// What the verdict adds when the flight took more charge than the battery has.
+    fn battery_remark(&self) -> Option<String> {
+        let at = self.battery_empty_at?.as_secs_f64();
+        let acts = self.vehicle.world().is_some_and(|world| world.status().switches.battery_sag);
+        let pack = if acts { "the battery was" } else { "a real battery would have been" };
+        Some(format!("{pack} empty {at:.1} s after boot"))
+    }
+
     fn facts(&self) -> JudgeFacts {
         let controller = self.vehicle.controller();
         let unknown = NavTelemetry::default();
@@ -252,4 +267,37 @@ impl Flight {
 /// Whether the last positional waypoint that is flown is a LAND (nothing behind a LAND is flown).
 fn ends_in_land(plan: &FlightPlan) -> bool {
     plan.waypoints.iter().any(|waypoint| waypoint.kind == WaypointType::Land)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::builtin::BuiltinPlan;
+
+    /// The end of a flight of the built-in `land` with a tenth of an ampere hour.
+    fn with_a_small_battery(battery_sag: bool) -> FlightEnd {
+        let plan = BuiltinPlan::find("land").unwrap().read().unwrap();
+        let mut setup = FlightSetup { plan: plan.clone(), ..FlightSetup::default() };
+        setup.world.switches.battery_capacity_ah = Some(0.06);
+        setup.world.switches.battery_sag = battery_sag;
+        let (mut vehicle, _) = setup.build().unwrap();
+        vehicle.embedded_mut().unwrap().set_plan(&plan.plan).unwrap();
+        let options = FlightOptions { takeoff_m: 10.0, timeout: SimTime(600_000_000), samples_hz: 0.0 };
+        let mut flight = Flight::new(vehicle, &options).unwrap();
+        loop {
+            if let Some(end) = flight.tick(|_| {}) {
+                return end;
+            }
+        }
+    }
+
+    #[test]
+    fn the_verdict_says_when_the_battery_was_empty() {
+        let real = with_a_small_battery(true).verdict;
+        assert_eq!(real.result, FlightResult::Crashed);
+        assert!(real.reason.contains("; the battery was empty "), "{}", real.reason);
+        let ideal = with_a_small_battery(false).verdict;
+        assert_eq!(ideal.result, FlightResult::Complete);
+        assert!(ideal.reason.contains("; a real battery would have been empty "), "{}", ideal.reason);
+    }
 }

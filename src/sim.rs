@@ -27,6 +27,7 @@ mod battery;
 mod body;
 mod command;
 mod config;
+mod endurance;
 mod event;
 mod fault;
 mod ground;

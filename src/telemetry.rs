@@ -3,6 +3,7 @@
 //! Plain data without behaviour of its own, made by the core and read by session, record, link and ui alike.
 
 mod arming_flag;
+mod battery_alarm;
 mod endpoint;
 pub mod event;
 mod failsafe;
@@ -21,6 +22,7 @@ pub mod switch;
 mod transition;
 
 pub use arming_flag::{ArmingFlag, ArmingFlags};
+pub use battery_alarm::BatteryAlarm;
 pub use endpoint::{
     ClientStats, EndpointKind, EndpointState, EndpointStatus, PacketStats, SimulatorStats, Transport,
 };

@@ -326,6 +326,7 @@ impl Vehicle {
                 WorldEventKind::Fault { fault, on } => {
                     EventKind::Fault { kind: fault.kind(), on, value: fault.value() }
                 }
+                WorldEventKind::BatteryEmpty { cell_v } => EventKind::BatteryEmpty { cell_v },
                 WorldEventKind::Diverged { cause } => EventKind::Notice(VehicleNotice::Diverged(cause)),
             };
             self.events.push(Event { time: event.time, kind });

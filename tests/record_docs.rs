@@ -9,7 +9,7 @@ use betadeck::record::{End, json};
 use betadeck::session::{EndpointAddresses, Event, SessionEvent};
 use betadeck::signals::SimTime;
 use betadeck::telemetry::{
-    AbortReason, CrashCause, DisarmReason, EventKind, FailsafeProcedure, FaultKind, FaultValue, FenceAction,
+    AbortReason, BatteryAlarm, CrashCause, DisarmReason, EventKind, FailsafeProcedure, FaultKind, FaultValue, FenceAction,
     FirmwareEvent, FirmwareNotice, FlightTruth, Guard, GuardName, GuardOp, ModeFlags, NavEvent, NavState,
     PlanSource, Refusal, RxLossPolicy, Snapshot, TransitionReason, VehicleNotice, WaypointTruth,
 };
@@ -45,7 +45,8 @@ fn one_of_each() -> Vec<SessionEvent> {
         FirmwareEvent::RxLoss,
         FirmwareEvent::RxRecovered,
         FirmwareEvent::Failsafe { policy: RxLossPolicy::Land, stage: 2, procedure: FailsafeProcedure::Land },
-        FirmwareEvent::Notice(FirmwareNotice::BatteryLow),
+        FirmwareEvent::Battery { state: BatteryAlarm::Warning, cell_v: 3.49 },
+        FirmwareEvent::Notice(FirmwareNotice::ArmAssisted),
     ];
     let firmware = firmware.into_iter().chain(nav.map(FirmwareEvent::Nav)).map(EventKind::Firmware);
     let vehicle = [
@@ -58,6 +59,7 @@ fn one_of_each() -> Vec<SessionEvent> {
         EventKind::Contact { impact_mps: 0.5 },
         EventKind::Touchdown { impact_mps: 0.5, peak_mps2: 20.0 },
         EventKind::Crash { cause: CrashCause::HullContact },
+        EventKind::BatteryEmpty { cell_v: 2.9 },
         EventKind::Notice(VehicleNotice::BackHome),
     ];
     let session =
@@ -105,6 +107,7 @@ fn vehicle_name(kind: &EventKind) -> Option<&'static str> {
         EventKind::Contact { .. } => "contact",
         EventKind::Touchdown { .. } => "touchdown",
         EventKind::Crash { .. } => "crash",
+        EventKind::BatteryEmpty { .. } => "battery",
         EventKind::Notice(_) => "notice",
         EventKind::Firmware(event) => match event {
             FirmwareEvent::GpsFix { .. } => "gps_fix",
@@ -115,6 +118,7 @@ fn vehicle_name(kind: &EventKind) -> Option<&'static str> {
             FirmwareEvent::RxLoss => "rx_loss",
             FirmwareEvent::RxRecovered => "rx_recovered",
             FirmwareEvent::Failsafe { .. } => "failsafe",
+            FirmwareEvent::Battery { .. } => "battery",
             FirmwareEvent::Notice(_) => "notice",
             FirmwareEvent::Nav(event) => match event {
                 NavEvent::Plan { .. } => "plan",

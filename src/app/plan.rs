@@ -8,19 +8,24 @@ use crate::geo::LatLon;
 use crate::plan::estimate::Assumptions;
 use crate::plan::format;
 use crate::plan::review::{Finding, review};
+use crate::sim::density_ratio;
 
 /// Prints the plan; a plan that the craft would refuse is invalid input.
 pub(super) fn show(plan: &PlanArg) -> Result<u8, AppError> {
     let file = setup::read_plan(plan)?;
     let setup = FlightSetup { plan: file.clone(), ..FlightSetup::default() };
     let (home, notice) = setup.boot_home();
+    let density = density_ratio(home.alt_amsl_m);
+    let assumptions = Assumptions {
+        endurance_s: Some(setup.world.airframe.hover_endurance_s(density)),
+        ..Assumptions::from_settings(&file.settings)
+    };
     let home = LatLon::from_degrees(home.lat_deg, home.lon_deg);
-    let mut text = format::table(&file, home);
+    let mut text = format::table(&file, home, &assumptions);
     if let Some(notice) = notice {
         text.push_str(&format!("{notice}\n"));
     }
     error::write_stdout(text.as_bytes())?;
-    let refused =
-        review(&file.plan, home, &Assumptions::from_settings(&file.settings)).iter().any(Finding::is_refusal);
+    let refused = review(&file.plan, home, &assumptions).iter().any(Finding::is_refusal);
     Ok(if refused { error::USAGE } else { 0 })
 }

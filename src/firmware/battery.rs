@@ -79,7 +79,7 @@ impl Battery {
         if self.smooth_v < PRESENT_V {
             return BatteryState::NotPresent;
         }
-        let cell_v = self.smooth_v / f64::from(self.cells.max(1));
+        let cell_v = self.cell_v();
         let below = |limit: f64, already: bool| cell_v < limit + if already { HYSTERESIS_V } else { 0.0 };
         let critical = self.state == BatteryState::Critical;
         if below(config.min_cell_v, critical) {
@@ -101,6 +101,12 @@ impl Battery {
     #[must_use]
     pub fn cells(&self) -> u8 {
         self.cells
+    }
+
+    /// Smoothed voltage a cell, V.
+    #[must_use]
+    pub fn cell_v(&self) -> f64 {
+        self.smooth_v / f64::from(self.cells.max(1))
     }
 
     /// Charge state.

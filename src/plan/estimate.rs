@@ -24,12 +24,21 @@ pub struct Assumptions {
     pub fence_m: Option<f64>,
     /// Height above home at which the mission begins, m.
     pub start_alt_m: f64,
+    /// How long a full battery keeps the craft hovering, s; `None` = unknown.
+    pub endurance_s: Option<f64>,
 }
 
 impl Default for Assumptions {
     /// The firmware's defaults, after the scripted pilot's climb.
     fn default() -> Self {
-        Self { max_velocity_mps: 10.0, climb_mps: 5.0, landing_mps: 0.5, fence_m: None, start_alt_m: 10.0 }
+        Self {
+            max_velocity_mps: 10.0,
+            climb_mps: 5.0,
+            landing_mps: 0.5,
+            fence_m: None,
+            start_alt_m: 10.0,
+            endurance_s: None,
+        }
     }
 }
 

@@ -4,7 +4,7 @@ use std::fmt;
 
 use crate::geo::{LatLon, distance_bearing};
 
-use super::estimate::Assumptions;
+use super::estimate::{Assumptions, estimate};
 use super::validate::{PlanFault, check_plan};
 use super::{FlightPlan, Waypoint, WaypointType};
 
@@ -47,6 +47,13 @@ pub enum Finding {
     },
     /// The mission ends in the air.
     StaysInTheAir,
+    /// The battery is empty before the mission ends.
+    OutlastsBattery {
+        /// How long the mission takes at least, s.
+        time_s: f64,
+        /// How long the battery lasts in a hover, s.
+        endurance_s: f64,
+    },
 }
 
 impl Finding {
@@ -85,6 +92,12 @@ impl fmt::Display for Finding {
             Self::StaysInTheAir => {
                 f.write_str("the plan does not end in LAND: the craft stays in the air at its end")
             }
+            Self::OutlastsBattery { time_s, endurance_s } => write!(
+                f,
+                "the plan takes at least {:.0} min; hovering empties the battery in {:.0} min",
+                (time_s / 60.0).ceil(),
+                (endurance_s / 60.0).floor()
+            ),
         }
     }
 }
@@ -125,6 +138,12 @@ pub fn review(plan: &FlightPlan, home: LatLon, assumptions: &Assumptions) -> Vec
     }
     if !waypoints.iter().any(|waypoint| waypoint.kind == WaypointType::Land) {
         findings.push(Finding::StaysInTheAir);
+    }
+    let time_s = estimate(plan, home, assumptions).time_s;
+    if let (Some(time_s), Some(endurance_s)) = (time_s, assumptions.endurance_s)
+        && time_s > endurance_s
+    {
+        findings.push(Finding::OutlastsBattery { time_s, endurance_s });
     }
     findings
 }
@@ -175,6 +194,24 @@ mod tests {
             ["refused: waypoint 0 is 150 m from home, the fence (ap_max_distance_from_home) is 100 m"]
         );
         assert!(Finding::OutsideFence { index: 0, distance_m: 2.0, limit_m: 1.0 }.is_refusal());
+    }
+
+    #[test]
+    fn a_plan_longer_than_the_battery_lasts_is_named() {
+        let mut plan = FlightPlan::default();
+        for duration_ds in [18_000, 600] {
+            let kind = if duration_ds == 600 { WaypointType::Land } else { WaypointType::Hold };
+            plan.waypoints.push(Waypoint { position: HOME, duration_ds, kind, ..Waypoint::default() });
+        }
+        let findings = |endurance_s| {
+            let assumptions = Assumptions { endurance_s, ..Assumptions::default() };
+            review(&plan, HOME, &assumptions).iter().map(ToString::to_string).collect::<Vec<_>>()
+        };
+        assert_eq!(
+            findings(Some(1799.0)),
+            ["the plan takes at least 32 min; hovering empties the battery in 29 min"]
+        );
+        assert!(findings(Some(1900.0)).is_empty() && findings(None).is_empty());
     }
 
     #[test]

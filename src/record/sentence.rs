@@ -3,7 +3,7 @@
 use crate::plan::{FlightPlan, WaypointType};
 use crate::session::{EndpointAddresses, Event, SessionEvent};
 use crate::telemetry::{
-    AbortReason, DisarmReason, EndpointKind, EventKind, FaultValue, FenceAction, FirmwareEvent, Guard,
+    AbortReason, BatteryAlarm, DisarmReason, EndpointKind, EventKind, FaultValue, FenceAction, FirmwareEvent, Guard,
     GuardUnit, NavEvent, NavState, PlanSource, Refusal, TransitionReason,
 };
 
@@ -41,8 +41,17 @@ fn vehicle(kind: &EventKind) -> Option<String> {
             format!("Touchdown: came down at {impact_mps:.2} m/s, peak {peak_mps2:.1} m/s².")
         }
         EventKind::Crash { cause } => format!("Crashed: {cause}."),
+        EventKind::BatteryEmpty { cell_v } => battery(BatteryAlarm::Empty, *cell_v),
         EventKind::Notice(notice) => notice.to_string(),
     })
+}
+
+fn battery(state: BatteryAlarm, cell_v: f64) -> String {
+    match state {
+        BatteryAlarm::Warning => format!("Battery low, {cell_v:.2} V a cell: land soon."),
+        BatteryAlarm::Critical => format!("Battery critical, {cell_v:.2} V a cell: land now."),
+        BatteryAlarm::Empty => format!("Battery empty, {cell_v:.2} V a cell: all of its charge is drawn."),
+    }
 }
 
 fn endpoints(addresses: &EndpointAddresses) -> String {
@@ -74,6 +83,7 @@ fn firmware(event: &FirmwareEvent) -> Option<String> {
             format!("Failsafe stage {stage}: procedure {procedure}, policy {policy}.")
         }
         FirmwareEvent::Nav(event) => return nav(event),
+        FirmwareEvent::Battery { state, cell_v } => battery(*state, *cell_v),
         FirmwareEvent::Notice(notice) => notice.to_string(),
     })
 }
@@ -255,7 +265,8 @@ mod tests {
         for event in [
             FirmwareEvent::GpsFix { sats: 12 },
             FirmwareEvent::Disarmed(DisarmReason::Landing),
-            FirmwareEvent::Notice(FirmwareNotice::BatteryLow),
+            FirmwareEvent::Battery { state: BatteryAlarm::Warning, cell_v: 3.49 },
+            FirmwareEvent::Notice(FirmwareNotice::ArmAssisted),
             FirmwareEvent::Mode(crate::telemetry::ModeFlags::NONE),
             FirmwareEvent::Nav(NavEvent::Geofence {
                 distance_m: 100.4,

@@ -5,11 +5,13 @@ use super::airframe::{Airframe, ROTORS};
 /// Share of the electrical power that reaches the propeller shafts.
 const DRIVE_EFFICIENCY: f64 = 0.75;
 /// What the electronics draw, W.
-const BASE_LOAD_W: f64 = 5.0;
+pub(super) const BASE_LOAD_W: f64 = 5.0;
 /// Open-circuit voltage of a full cell, of one with 10 % left, and of an empty one, V.
 const CELL_V: [f64; 3] = [4.2, 3.5, 3.0];
 /// Charge left where the steep end of the discharge curve begins.
 const KNEE: f64 = 0.1;
+/// How fast the voltage of an empty cell falls with the charge that is drawn beyond its capacity, V per capacity.
+const BEYOND_EMPTY_V: f64 = 50.0;
 
 /// The battery of an airframe.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,13 +27,15 @@ pub struct BatterySpec {
 }
 
 impl BatterySpec {
-    /// Open-circuit voltage with `left` (0…1) of the charge left, V.
+    /// Open-circuit voltage with `left` of the charge left (1 full, 0 empty, negative beyond), V.
     #[must_use]
     pub fn open_circuit_v(&self, left: f64) -> f64 {
         let [full, knee, empty] = CELL_V;
-        let left = left.clamp(0.0, 1.0);
+        let left = left.min(1.0);
         let cell = if left >= KNEE {
             knee + (full - knee) * (left - KNEE) / (1.0 - KNEE)
+        } else if left < 0.0 {
+            (empty + BEYOND_EMPTY_V * left).max(0.0)
         } else {
             empty + (knee - empty) * left / KNEE
         };
@@ -39,9 +43,12 @@ impl BatterySpec {
     }
 
     /// Terminal voltage (V) and current (A) under a constant-power load; a load beyond the greatest power the pack
-    /// can give is cut to that.
+    /// can give is cut to that. A dead pack gives nothing.
     #[must_use]
     pub fn under_load(&self, open_circuit_v: f64, load_w: f64) -> (f64, f64) {
+        if open_circuit_v <= 0.0 {
+            return (0.0, 0.0);
+        }
         let load = load_w.min(open_circuit_v * open_circuit_v / (4.0 * self.resistance_ohm));
         let root = (open_circuit_v * open_circuit_v - 4.0 * self.resistance_ohm * load).max(0.0).sqrt();
         let voltage = 0.5 * (open_circuit_v + root);
@@ -94,10 +101,16 @@ impl Battery {
         self.spec.capacity_ah * 1000.0
     }
 
-    /// Charge left, 0…1.
+    /// Charge left: 1 full, 0 empty, negative when more than the capacity was drawn.
     #[must_use]
     pub(super) fn charge_left(&self) -> f64 {
-        (1.0 - self.drawn_mah / self.capacity_mah()).max(0.0)
+        1.0 - self.drawn_mah / self.capacity_mah()
+    }
+
+    /// Terminal voltage a cell, V.
+    #[must_use]
+    pub(super) fn cell_v(&self) -> f64 {
+        self.voltage_v / f64::from(self.spec.cells)
     }
 
     /// Terminal over nominal voltage: the scale of the rotor speeds where sag acts on them.
@@ -106,11 +119,12 @@ impl Battery {
         self.voltage_v / self.spec.nominal_v
     }
 
-    /// Draws `motor_w` and the base load for `dt` seconds.
-    pub(super) fn draw(&mut self, motor_w: f64, faults: BatteryFaults, dt: f64) {
+    /// Draws `motor_w` and the base load for `dt` seconds. A pack that `runs_out` dies when it is empty, another one keeps
+    /// the voltage of an empty one.
+    pub(super) fn draw(&mut self, motor_w: f64, faults: BatteryFaults, runs_out: bool, dt: f64) {
+        let left = if runs_out { self.charge_left() } else { self.charge_left().max(0.0) };
         let alive = f64::from(self.spec.cells.saturating_sub(faults.dead_cells)) / f64::from(self.spec.cells);
-        // A pack always keeps a rest of voltage: the load equations need a positive one.
-        let open = (self.spec.open_circuit_v(self.charge_left()) * alive + faults.offset_v).max(1.0);
+        let open = (self.spec.open_circuit_v(left) * alive + faults.offset_v).max(0.0);
         (self.voltage_v, self.current_a) = self.spec.under_load(open, motor_w + BASE_LOAD_W);
         self.drawn_mah += self.current_a * dt / 3.6;
         self.drawn_wh += self.voltage_v * self.current_a * dt / 3600.0;
@@ -131,6 +145,26 @@ mod tests {
     }
 
     #[test]
+    fn beyond_its_capacity_a_cell_loses_half_a_volt_a_percent() {
+        let spec = Airframe::iris().battery;
+        assert!((spec.open_circuit_v(-0.02) - 6.0).abs() < 1e-12);
+        assert_eq!(spec.open_circuit_v(-0.5), 0.0);
+        assert_eq!(spec.under_load(0.0, 40.0), (0.0, 0.0));
+    }
+
+    #[test]
+    fn only_a_pack_that_runs_out_dies() {
+        for (runs_out, least_v, most_v) in [(true, 0.0, 0.0), (false, 8.0, 9.0)] {
+            let mut battery = Battery::full(Airframe::iris().battery);
+            for _ in 0..800 {
+                battery.draw(40.0, BatteryFaults::default(), runs_out, 10.0);
+            }
+            assert!((least_v..=most_v).contains(&battery.voltage_v), "{}", battery.voltage_v);
+            assert!(battery.charge_left() < 0.0);
+        }
+    }
+
+    #[test]
     fn a_load_beyond_the_pack_is_cut_to_half_the_voltage() {
         let spec = Airframe::iris().battery;
         let (voltage, current) = spec.under_load(12.0, 1e9);
@@ -142,7 +176,7 @@ mod tests {
     fn an_hour_at_one_ampere_is_one_ampere_hour() {
         let mut battery = Battery::full(Airframe::iris().battery);
         for _ in 0..360 {
-            battery.draw(12.0 - BASE_LOAD_W, BatteryFaults::default(), 10.0);
+            battery.draw(12.0 - BASE_LOAD_W, BatteryFaults::default(), false, 10.0);
         }
         assert!((battery.drawn_wh - 12.0).abs() < 1e-9);
         assert!((battery.drawn_mah - 1000.0).abs() < 60.0);

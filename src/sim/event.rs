@@ -41,6 +41,11 @@ pub enum WorldEventKind {
         /// Whether it began.
         on: bool,
     },
+    /// All of the battery's charge is drawn.
+    BatteryEmpty {
+        /// Voltage a cell under load, V.
+        cell_v: f64,
+    },
     /// The integration failed; the world stands still from here on.
     Diverged {
         /// How.

@@ -138,7 +138,12 @@ impl World {
         self.air.tick(self.time, self.body.pos_enu.z, self.body.vel_enu, &self.switches);
         let load = self.plant.efficiency().map(|efficiency| efficiency * self.air_now.density_ratio);
         let power = motor_power_w(&self.airframe, &self.rotors, &load);
-        self.battery.draw(power, self.effects.battery, AIR_TICK_US as f64 * 1e-6);
+        let was_charged = self.battery.charge_left() > 0.0;
+        let runs_out = self.switches.battery_sag;
+        self.battery.draw(power, self.effects.battery, runs_out, AIR_TICK_US as f64 * 1e-6);
+        if was_charged && self.battery.charge_left() <= 0.0 {
+            self.emit(WorldEventKind::BatteryEmpty { cell_v: self.battery.cell_v() });
+        }
     }
 
     fn refresh_loads(&mut self) {

@@ -54,6 +54,11 @@ pub enum EventKind {
         /// What went wrong.
         cause: CrashCause,
     },
+    /// All of the battery's charge is drawn: a real pack is empty now, whether it acts on the rotors or not.
+    BatteryEmpty {
+        /// Voltage a cell, V.
+        cell_v: f64,
+    },
     /// Something else that the user should know.
     Notice(VehicleNotice),
 }

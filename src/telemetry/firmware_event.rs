@@ -1,5 +1,6 @@
 //! What the flight controller reports as having happened.
 
+use super::battery_alarm::BatteryAlarm;
 use super::failsafe::{FailsafeProcedure, RxLossPolicy};
 use super::firmware_notice::FirmwareNotice;
 use super::mode::ModeFlags;
@@ -70,6 +71,13 @@ pub enum FirmwareEvent {
     },
     /// The navigator.
     Nav(NavEvent),
+    /// The battery runs low; nothing is done about it but telling.
+    Battery {
+        /// How low.
+        state: BatteryAlarm,
+        /// Voltage a cell, V.
+        cell_v: f64,
+    },
     /// Something the pilot should read.
     Notice(FirmwareNotice),
 }

@@ -38,12 +38,6 @@ pub enum FirmwareNotice {
     /// Position hold is asked for without a position.
     #[strum(to_string = "POS HOLD has no position: the craft is only levelled.")]
     NoPosition,
-    /// The battery is below its warning voltage.
-    #[strum(to_string = "Battery low: land soon.")]
-    BatteryLow,
-    /// The battery is below its lowest voltage.
-    #[strum(to_string = "Battery critical: land now.")]
-    BatteryCritical,
     /// The inertial sensors hang.
     #[strum(to_string = "The inertial sensors repeat one sample: they hang.")]
     ImuFrozen,

@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use crate::session::SessionEvent;
 use crate::signals::SimTime;
-use crate::telemetry::{DisarmReason, EventKind, FirmwareEvent, NavEvent, NavState};
+use crate::telemetry::{BatteryAlarm, DisarmReason, EventKind, FirmwareEvent, NavEvent, NavState};
 
 use super::theme::Role;
 
@@ -53,7 +53,7 @@ impl Level {
                     Self::Good
                 }
             }
-            EventKind::Crash { .. } => Self::Fault,
+            EventKind::Crash { .. } | EventKind::BatteryEmpty { .. } => Self::Fault,
             EventKind::Firmware(event) => Self::of_firmware(event),
         }
     }
@@ -68,6 +68,8 @@ impl Level {
             | FirmwareEvent::Notice(_) => Self::Info,
             FirmwareEvent::Disarmed(_) | FirmwareEvent::Failsafe { .. } => Self::Fault,
             FirmwareEvent::GpsLost { .. } | FirmwareEvent::RxLoss => Self::Warn,
+            FirmwareEvent::Battery { state: BatteryAlarm::Warning, .. } => Self::Warn,
+            FirmwareEvent::Battery { .. } => Self::Fault,
             FirmwareEvent::Nav(event) => match event {
                 NavEvent::State { to: NavState::Complete, .. } => Self::Good,
                 NavEvent::State { .. } => Self::Step,

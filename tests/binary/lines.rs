@@ -101,6 +101,7 @@ fn fields(event: &str) -> &'static str {
         "contact" => "impact_mps:num",
         "touchdown" => "impact_mps:num peak_mps2:num",
         "crash" => "cause:text",
+        "battery" => "state:word cell_v:num",
         "notice" => "text:text",
         "sample" => {
             "lat:num lon:num alt:num n:num e:num vn:num ve:num vu:num roll:num pitch:num heading:num est_n:num? \

@@ -163,6 +163,7 @@ impl Law {
             FirmwareEvent::Failsafe { .. }
             | FirmwareEvent::GpsFix { .. }
             | FirmwareEvent::GpsLost { .. }
+            | FirmwareEvent::Battery { .. }
             | FirmwareEvent::Mode(_)
             | FirmwareEvent::RxLoss
             | FirmwareEvent::RxRecovered

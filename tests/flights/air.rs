@@ -3,7 +3,7 @@
 use crate::checks::{Checks, assert_met, greatest, mean};
 use crate::rig::{Rig, Sample, world};
 use betadeck::sim::{Fault, Wind, WorldCommand};
-use betadeck::telemetry::{DisarmReason, EventKind, FirmwareEvent, FirmwareNotice, NavEvent, NavState};
+use betadeck::telemetry::{BatteryAlarm, DisarmReason, EventKind, FirmwareEvent, NavEvent, NavState};
 
 const HOLD: &str = "waypoint insert 0 40.4635901 -79.5182000 2000 500 HOLD 0 NONE";
 
@@ -196,11 +196,42 @@ fn sagging_battery_is_made_up_for() {
     rig.engaged().until_state(60.0, NavState::Holding).fly(10.0);
     let start = rig.t();
     let is_warning = |kind: &EventKind| {
-        matches!(kind, EventKind::Firmware(FirmwareEvent::Notice(FirmwareNotice::BatteryLow)))
+        matches!(kind, EventKind::Firmware(FirmwareEvent::Battery { state: BatteryAlarm::Warning, .. }))
     };
     rig.until(400.0, "a warning", |rig| rig.event_at(is_warning).is_some());
     let alt = greatest(rig.span(start, 1e9).map(|s| (s.alt - 20.0).abs()));
     assert!(alt <= 0.7, "{alt}");
     let (first, last) = (rig.at(start), rig.samples.last().unwrap());
     assert!(last.throttle_us > first.throttle_us, "throttle rises as the voltage falls");
+}
+
+#[test]
+fn flat_battery_ends_the_flight() {
+    let mut world = world(1).0;
+    world.switches.battery_sag = true;
+    world.switches.battery_capacity_ah = Some(0.1);
+    let mut rig = Rig::new(world, HOLD, 20.0);
+    rig.until(300.0, "the end", |rig| rig.vehicle.world().unwrap().truth().crashed);
+    let alarms: Vec<BatteryAlarm> = rig
+        .events
+        .iter()
+        .filter_map(|event| match event.kind {
+            EventKind::Firmware(FirmwareEvent::Battery { state, .. }) => Some(state),
+            EventKind::BatteryEmpty { .. } => Some(BatteryAlarm::Empty),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(alarms, [BatteryAlarm::Warning, BatteryAlarm::Critical, BatteryAlarm::Empty], "{}", rig.story());
+}
+
+#[test]
+fn battery_alarms_change_nothing_in_the_mission() {
+    let mut with = world(0).0;
+    with.switches.battery_capacity_ah = Some(0.1);
+    let path = |world| {
+        let mut rig = Rig::new(world, HOLD, 20.0);
+        rig.fly(180.0);
+        (rig.path(), rig.vehicle.world().unwrap().truth().pos_enu)
+    };
+    assert_eq!(path(with), path(world(0).0));
 }

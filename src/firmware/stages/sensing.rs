@@ -9,7 +9,7 @@ use crate::firmware::outbox::Outbox;
 use crate::firmware::parameters::Parameters;
 use crate::geo::LatLon;
 use crate::signals::{BatterySample, SensorFrame, SimTime};
-use crate::telemetry::{FirmwareEvent, FirmwareNotice};
+use crate::telemetry::{BatteryAlarm, FirmwareEvent, FirmwareNotice};
 
 /// What the sensors tell of the craft.
 #[derive(Debug, Clone)]
@@ -62,15 +62,12 @@ impl Sensing {
     }
 
     fn update_battery(&mut self, sample: BatterySample, parameters: &Parameters, outbox: &mut Outbox) {
-        match self.battery.receive(&parameters.battery, sample) {
-            Some(BatteryState::Warning) => {
-                outbox.push(FirmwareEvent::Notice(FirmwareNotice::BatteryLow));
-            }
-            Some(BatteryState::Critical) => {
-                outbox.push(FirmwareEvent::Notice(FirmwareNotice::BatteryCritical));
-            }
-            Some(BatteryState::Init | BatteryState::NotPresent | BatteryState::Ok) | None => {}
-        }
+        let state = match self.battery.receive(&parameters.battery, sample) {
+            Some(BatteryState::Warning) => BatteryAlarm::Warning,
+            Some(BatteryState::Critical) => BatteryAlarm::Critical,
+            Some(BatteryState::Init | BatteryState::NotPresent | BatteryState::Ok) | None => return,
+        };
+        outbox.push(FirmwareEvent::Battery { state, cell_v: self.battery.cell_v() });
     }
 
     /// Reports inertial sensors that begin to hang.

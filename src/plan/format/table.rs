@@ -15,9 +15,8 @@ const LEFT: [usize; 1] = [1];
 
 /// The plan with distances, times and findings, for a flight that starts above `home`.
 #[must_use]
-pub fn table(file: &PlanFile, home: LatLon) -> String {
-    let assumptions = Assumptions::from_settings(&file.settings);
-    let estimate = estimate(&file.plan, home, &assumptions);
+pub fn table(file: &PlanFile, home: LatLon, assumptions: &Assumptions) -> String {
+    let estimate = estimate(&file.plan, home, assumptions);
     let mut text = file.name.clone();
     if !file.description.is_empty() {
         text.push_str(&format!(": {}", file.description));
@@ -34,7 +33,7 @@ pub fn table(file: &PlanFile, home: LatLon) -> String {
     let rows: Vec<[String; 10]> = rows.map(|(index, (waypoint, leg))| row(index, waypoint, leg)).collect();
     push_rows(&rows, &mut text);
     text.push_str(&format!("\n{}\n", total(&estimate)));
-    for finding in review(&file.plan, home, &assumptions) {
+    for finding in review(&file.plan, home, assumptions) {
         text.push_str(&format!("{finding}\n"));
     }
     for note in &file.notes {
@@ -117,8 +116,12 @@ fn clock(seconds: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::{Assumptions, LatLon, PlanFile};
     use crate::plan::builtin::BuiltinPlan;
+
+    fn table(file: &PlanFile, home: LatLon) -> String {
+        super::table(file, home, &Assumptions::from_settings(&file.settings))
+    }
 
     #[test]
     fn a_plan_as_a_table() {

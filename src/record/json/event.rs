@@ -8,7 +8,7 @@ use serde::Serialize;
 use super::super::number::{Decimals, Milli};
 use crate::plan::{FlightPlan, WaypointType};
 use crate::session::{EndpointAddresses, SessionEvent};
-use crate::telemetry::{EventKind, FaultValue, FirmwareEvent, Guard, NavEvent, PlanSource, Refusal};
+use crate::telemetry::{BatteryAlarm, EventKind, FaultValue, FirmwareEvent, Guard, NavEvent, PlanSource, Refusal};
 
 /// A number of degrees with the resolution of plans: 1e-7.
 type Degrees = Decimals<7>;
@@ -32,6 +32,7 @@ pub(super) enum Fields<'a> {
     Contact { impact_mps: Milli },
     Touchdown { impact_mps: Milli, peak_mps2: Milli },
     Crash { cause: String },
+    Battery { state: String, cell_v: Milli },
     Doors { ws: Option<SocketAddr>, tcp: Option<SocketAddr>, fdm: Option<SocketAddr>, rc: Option<SocketAddr> },
     Notice { text: Cow<'a, str> },
 }
@@ -107,6 +108,7 @@ impl<'a> Fields<'a> {
                 ("touchdown", Self::Touchdown { impact_mps, peak_mps2 })
             }
             EventKind::Crash { cause } => ("crash", Self::Crash { cause: cause.to_string() }),
+            EventKind::BatteryEmpty { cell_v } => Self::of_battery(BatteryAlarm::Empty, *cell_v),
             EventKind::Notice(notice) => ("notice", Self::Notice { text: notice.to_string().into() }),
         })
     }
@@ -129,10 +131,15 @@ impl<'a> Fields<'a> {
                 ("failsafe", Self::Failsafe { policy, stage: *stage, procedure })
             }
             FirmwareEvent::Nav(event) => return Self::of_nav(event),
+            FirmwareEvent::Battery { state, cell_v } => Self::of_battery(*state, *cell_v),
             FirmwareEvent::Notice(notice) => {
                 ("notice", Self::Notice { text: <&'static str>::from(notice).into() })
             }
         })
+    }
+
+    fn of_battery(state: BatteryAlarm, cell_v: f64) -> (&'static str, Self) {
+        ("battery", Self::Battery { state: state.to_string(), cell_v: Decimals(cell_v) })
     }
 
     fn of_nav(event: &'a NavEvent) -> Option<(&'static str, Self)> {
@@ -266,6 +273,14 @@ mod tests {
         assert_eq!(
             line(EventKind::Touchdown { impact_mps: 0.47, peak_mps2: 43.123_456 }),
             r#"{"t":12.34,"event":"touchdown","impact_mps":0.47,"peak_mps2":43.123}"#
+        );
+        assert_eq!(
+            firmware(FirmwareEvent::Battery { state: BatteryAlarm::Critical, cell_v: 3.2987 }),
+            r#"{"t":12.34,"event":"battery","state":"CRITICAL","cell_v":3.299}"#
+        );
+        assert_eq!(
+            line(EventKind::BatteryEmpty { cell_v: 2.9 }),
+            r#"{"t":12.34,"event":"battery","state":"EMPTY","cell_v":2.9}"#
         );
         let places = EndpointAddresses {
             ws: "127.0.0.1:6761".parse().ok(),

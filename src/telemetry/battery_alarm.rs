@@ -1,0 +1,13 @@
+//! What is told of a battery that runs low.
+
+/// How far a battery is discharged; `Display` is the name in events.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display)]
+#[strum(serialize_all = "UPPERCASE")]
+pub enum BatteryAlarm {
+    /// Below `vbat_warning_cell_voltage`.
+    Warning,
+    /// Below `vbat_min_cell_voltage`.
+    Critical,
+    /// All of its charge is drawn.
+    Empty,
+}
