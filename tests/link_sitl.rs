@@ -209,6 +209,31 @@ async fn a_save_restarts_the_firmware_and_keeps_what_was_saved() {
 }
 
 #[tokio::test(flavor = "multi_thread", worker_threads = 2)]
+async fn bad_packets_are_shown_by_status_and_at_the_end() {
+    let mut rig = Rig::new(false).await;
+    receive(&rig.motors).await;
+    rig.step().await;
+    rig.sender.send_to(&[0; 40], rig.fdm_door).await.unwrap();
+    rig.sender.send_to(&[0; 7], rig.rc_door).await.unwrap();
+    // Its quaternion is no rotation.
+    rig.sender.send_to(&[0; 144], rig.fdm_door).await.unwrap();
+    let mut person = rig.client().await;
+    let mut answer = String::new();
+    let begun = tokio::time::Instant::now();
+    while !answer.contains("\r\nBad packets: 3 (2 of a wrong size, 1 senseless)\r\n") {
+        assert!(begun.elapsed() < PATIENCE, "{answer}");
+        tokio::time::sleep(Duration::from_millis(100)).await;
+        person.write_all(b"\x02status\n\x03").await.unwrap();
+        answer = String::from_utf8(read_until(&mut person, b"\x03").await).unwrap();
+    }
+    drop(rig.stop.take());
+    assert_eq!(tokio::time::timeout(PATIENCE, &mut rig.task).await.unwrap().unwrap(), SitlEnd::Stopped);
+    let lines = rig.lines();
+    let end = "[SITL] Bad packets: 3 (2 of a wrong size, 1 senseless).";
+    assert!(lines.iter().any(|line| line == end), "{lines:?}");
+}
+
+#[tokio::test(flavor = "multi_thread", worker_threads = 2)]
 async fn it_can_end_at_a_restart() {
     let rig = Rig::new(true).await;
     let mut client = rig.client().await;

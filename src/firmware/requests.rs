@@ -1,7 +1,7 @@
 //! What the owner of the firmware can ask of it: command line, plans, return home, restart.
 
 use crate::signals::{RcFrame, RcSource};
-use crate::telemetry::{DisarmReason, FirmwareEvent, NavEvent, Refusal};
+use crate::telemetry::{BadPackets, DisarmReason, FirmwareEvent, NavEvent, Refusal};
 
 use super::Firmware;
 use super::cli::{BuildInfo, CliAction, CliContext, CliFacts, CliReply, Interpreter, StorageFacts};
@@ -55,6 +55,11 @@ impl Firmware {
     /// What the commands tell about the stored configuration.
     pub fn set_storage_facts(&mut self, facts: StorageFacts) {
         self.setup.set_storage(facts);
+    }
+
+    /// What the commands tell of useless packets from scripts and simulators.
+    pub fn set_bad_packets(&mut self, bad_packets: BadPackets) {
+        self.setup.set_bad_packets(bad_packets);
     }
 
     /// Version and build that the firmware announces.

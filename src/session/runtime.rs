@@ -29,7 +29,7 @@ use crate::firmware::cli::Interpreter;
 use crate::link::{ExternalSimulator, ImpairedLink, Request};
 use crate::sim::Stream;
 use crate::storage::Store;
-use crate::telemetry::{EndpointStatus, LinkState};
+use crate::telemetry::{BadPackets, EndpointStatus, LinkState};
 use crate::vehicle::Vehicle;
 use late::Recipient;
 
@@ -183,6 +183,7 @@ impl Session {
                 published = after;
                 (self.changed, moved) = (false, false);
                 let view_now = self.view();
+                self.vehicle.controller_mut().set_bad_packets(BadPackets::of(&view_now.endpoints));
                 if let Some(notice) = self.arming.check(&view_now.vehicle) {
                     self.events.report(&mut self.vehicle, SessionEvent::ArmingBlocked(notice));
                 }

@@ -215,8 +215,9 @@ impl Simulator {
     }
 
     fn tell_refusal(&mut self, refusal: Refusal, vehicle: &mut Vehicle, events: &EventSender) {
+        // The count of bad packets has changed.
+        self.changed = true;
         if !self.told_refusals.contains(&refusal) && self.told_refusals.try_push(refusal).is_ok() {
-            self.changed = true;
             report(SimulatorRemark::Refused(refusal), vehicle, events);
         }
     }

@@ -93,7 +93,9 @@ impl Air {
 
     /// Advances to the air tick at `now`, for a craft at a height above ground (m) with a velocity (ENU, m/s).
     pub(super) fn tick(&mut self, now: SimTime, height_m: f64, vel_enu: Vector3<f64>, switches: &Switches) {
-        let airspeed = (vel_enu - self.from).norm();
+        // Through the mean air: turbulence does not carry itself along.
+        let mean = self.ramp.at(now) * profile(switches.wind_profile, height_m);
+        let airspeed = (vel_enu - mean).norm();
         self.from = self.to;
         self.gusts.advance(now, self.settled_wind(), switches.gust_rise_s);
         self.turbulence.advance(height_m, airspeed, AIR_TICK_S);
@@ -184,6 +186,21 @@ mod tests {
         assert!((seen[98] - 5.98).abs() < 0.05, "half way after a second: {}", seen[98]);
         assert!((seen[299] - 8.0).abs() < 1e-12);
         assert!(seen.windows(2).all(|pair| pair[1] >= pair[0]));
+    }
+
+    #[test]
+    fn turbulence_in_calm_air_does_not_hurry_itself_along() {
+        let gust_of_a_hover = |turbulence_scale| {
+            let switches = Switches { turbulence_scale, ..Switches::default() };
+            let config = WorldConfig { turbulence: Turbulence::Severe, switches, ..WorldConfig::default() };
+            let mut air = Air::new(&config, 20.0);
+            for tick in 1..=2000 {
+                air.tick(SimTime(tick * AIR_TICK_US), 20.0, Vector3::zeros(), &config.switches);
+            }
+            air.sample(SimTime(2000 * AIR_TICK_US)).wind_enu
+        };
+        // Flown through at the same speed, air four times as rough is the same air, four times.
+        assert!((gust_of_a_hover(4.0) - 4.0 * gust_of_a_hover(1.0)).norm() < 1e-9);
     }
 
     #[test]

@@ -136,3 +136,37 @@ impl EndpointState {
         }
     }
 }
+
+/// Datagrams of scripts and simulators that were of no use.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct BadPackets {
+    /// Of a size that means nothing.
+    pub wrong_size: u64,
+    /// Long enough, but with numbers that cannot be.
+    pub senseless: u64,
+}
+
+impl BadPackets {
+    /// What all endpoints have seen.
+    #[must_use]
+    pub fn of(endpoints: &[EndpointStatus]) -> Self {
+        endpoints.iter().fold(Self::default(), |sum, endpoint| match endpoint.state {
+            EndpointState::Packets(stats) => Self { wrong_size: sum.wrong_size + stats.wrong_size, ..sum },
+            EndpointState::Simulator(stats) => Self { senseless: sum.senseless + stats.refused, ..sum },
+            EndpointState::Busy | EndpointState::Closed | EndpointState::Clients(_) => sum,
+        })
+    }
+
+    /// Whether there was none.
+    #[must_use]
+    pub fn is_none(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+impl std::fmt::Display for BadPackets {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { wrong_size, senseless } = self;
+        write!(f, "{} ({wrong_size} of a wrong size, {senseless} senseless)", wrong_size + senseless)
+    }
+}

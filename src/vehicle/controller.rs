@@ -12,7 +12,7 @@ use crate::pilot::PilotFacts;
 use crate::plan::FlightPlan;
 use crate::signals::{MotorCommand, RcFrame, RcSource, SensorFrame, SimTime};
 use crate::telemetry::snapshot::{CraftView, EstimateView, ModeRange, SettingsView};
-use crate::telemetry::{DisarmReason, FirmwareEvent, Mode, ModeFlags, NavTelemetry, Refusal};
+use crate::telemetry::{BadPackets, DisarmReason, FirmwareEvent, Mode, ModeFlags, NavTelemetry, Refusal};
 
 /// Identifies a request to a remote flight controller until its answer comes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -152,6 +152,13 @@ impl FlightController {
     pub fn set_storage_facts(&mut self, facts: StorageFacts) {
         if let Self::Embedded(firmware) = self {
             firmware.set_storage_facts(facts);
+        }
+    }
+
+    /// What the commands of an embedded one tell of useless packets from scripts and simulators.
+    pub fn set_bad_packets(&mut self, bad_packets: BadPackets) {
+        if let Self::Embedded(firmware) = self {
+            firmware.set_bad_packets(bad_packets);
         }
     }
 

@@ -221,7 +221,12 @@ fn flat_battery_ends_the_flight() {
             _ => None,
         })
         .collect();
-    assert_eq!(alarms, [BatteryAlarm::Warning, BatteryAlarm::Critical, BatteryAlarm::Empty], "{}", rig.story());
+    assert_eq!(
+        alarms,
+        [BatteryAlarm::Warning, BatteryAlarm::Critical, BatteryAlarm::Empty],
+        "{}",
+        rig.story()
+    );
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use crate::firmware::Firmware;
 use crate::geo::LatLon;
 use crate::plan::FlightPlan;
-use crate::telemetry::{ArmingFlags, NavTelemetry};
+use crate::telemetry::{ArmingFlags, BadPackets, NavTelemetry};
 
 /// Housekeeping rate, Hz.
 const SYSTEM_HZ: u32 = 10;
@@ -27,6 +27,8 @@ pub struct CliFacts {
     pub gps: GpsFacts,
     /// The battery.
     pub battery: BatteryFacts,
+    /// What scripts and simulators sent in vain.
+    pub bad_packets: BadPackets,
     /// Loop rates.
     pub loops: LoopFacts,
     /// One row a task, in order of their numbers.
@@ -57,6 +59,7 @@ impl CliFacts {
                 cells: firmware.battery().cells(),
                 state: firmware.battery().state().into(),
             },
+            bad_packets: firmware.setup.bad_packets(),
             loops: LoopFacts {
                 cpu_load_percent: 0,
                 cycle_time_us: 1_000_000 / firmware.setup.options().rate_hz.max(1),

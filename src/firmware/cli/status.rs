@@ -71,6 +71,9 @@ pub(super) fn status(session: &mut Session<'_>, _rest: &str) {
         "Voltage: {:.2}V ({}S battery - {})",
         battery.voltage_v, battery.cells, battery.state
     ));
+    if !facts.bad_packets.is_none() {
+        session.line(format_args!("Bad packets: {}", facts.bad_packets));
+    }
     session.raw("Arming disable flags:");
     for flag in facts.arming_blocks.iter() {
         session.raw(format_args!(" {flag}"));

@@ -7,7 +7,7 @@ use crate::firmware::estimate::NotTurned;
 use crate::firmware::outbox::Outbox;
 use crate::firmware::parameters::{BootChoices, Parameters};
 use crate::firmware::settings::Value;
-use crate::telemetry::{FirmwareEvent, FirmwareNotice};
+use crate::telemetry::{BadPackets, FirmwareEvent, FirmwareNotice};
 
 /// The configuration in memory, what was chosen from it at boot, and the parameters in force.
 #[derive(Debug, Clone)]
@@ -15,6 +15,7 @@ pub(in crate::firmware) struct Setup {
     options: FirmwareOptions,
     build: BuildInfo,
     storage: StorageFacts,
+    bad_packets: BadPackets,
     configuration: Configuration,
     boot: BootChoices,
     parameters: Parameters,
@@ -35,15 +36,21 @@ impl Setup {
             outbox.push(FirmwareEvent::Notice(FirmwareNotice::MixerNotFlown));
         }
         let (build, storage) = (BuildInfo::default(), StorageFacts::default());
-        let setup = Self { options, build, storage, configuration, boot, parameters };
+        let bad_packets = BadPackets::default();
+        let setup = Self { options, build, storage, bad_packets, configuration, boot, parameters };
         setup.report_lost_gps(had_gps, outbox);
         setup
     }
 
-    /// What `configuration` boots into on this craft: build and storage stay.
+    /// What `configuration` boots into on this craft: build, storage and links stay.
     pub(in crate::firmware) fn restarted(&self, configuration: Configuration, outbox: &mut Outbox) -> Self {
         let fresh = Self::new(configuration, self.options, outbox);
-        Self { build: self.build.clone(), storage: self.storage.clone(), ..fresh }
+        Self {
+            build: self.build.clone(),
+            storage: self.storage.clone(),
+            bad_packets: self.bad_packets,
+            ..fresh
+        }
     }
 
     /// How the firmware is built and helped.
@@ -69,6 +76,16 @@ impl Setup {
     /// Sets what [`Setup::storage`] tells.
     pub(in crate::firmware) fn set_storage(&mut self, storage: StorageFacts) {
         self.storage = storage;
+    }
+
+    /// What scripts and simulators sent in vain.
+    pub(in crate::firmware) fn bad_packets(&self) -> BadPackets {
+        self.bad_packets
+    }
+
+    /// Sets what [`Setup::bad_packets`] tells.
+    pub(in crate::firmware) fn set_bad_packets(&mut self, bad_packets: BadPackets) {
+        self.bad_packets = bad_packets;
     }
 
     /// The configuration in memory.

@@ -2,7 +2,7 @@
 //! unasked. The caller moves the bytes, owns the firmware and tells the time.
 //!
 //! ```text
-//!            datagram ─▶ receive() ─┬─ refused, old          dropped, no answer
+//!            datagram ─▶ receive() ─┬─ refused, old, double  dropped, no answer
 //!                                   ├─ resync (> 0.5 s gap)  time base taken, data unused, servo packet only
 //!                                   └─ state                 sensors + ticks to run, then servo and raw packet
 //!   silence, refused ─▶ poll() ───── repeat the last servo packet ("kick"), since a simulator that lost one packet
@@ -72,6 +72,8 @@ pub enum Verdict {
         /// Its stamp is earlier than before: the simulator was started anew, and the firmware disarms.
         restarted: bool,
     },
+    /// The same as the one before, stamp and all.
+    Duplicate,
     /// The craft's state.
     State,
 }
@@ -146,6 +148,8 @@ pub struct Counters {
     pub senseless: u64,
     /// From before the newest.
     pub old: u64,
+    /// The same as the one before.
+    pub duplicates: u64,
     /// Used as a time base only.
     pub resyncs: u64,
     /// Servo packets sent unasked.
@@ -163,6 +167,8 @@ pub struct FdmLink {
     mirror: MirrorTest,
     sensors: Sensors,
     counters: Counters,
+    /// The packet that was taken last.
+    newest: Option<Packet>,
 }
 
 impl FdmLink {
@@ -179,6 +185,7 @@ impl FdmLink {
             mirror: MirrorTest::default(),
             sensors: Sensors::default(),
             counters: Counters::default(),
+            newest: None,
         }
     }
 
@@ -197,6 +204,7 @@ impl FdmLink {
         };
         self.kicks.heard(now_us);
         if self.clock.gap_us(now_us) > RESYNC_AFTER_US {
+            self.newest = Some(packet);
             return self.resync(packet.stamp_s(), now_us);
         }
         if self.clock.is_old(packet.stamp_s()) {
@@ -226,6 +234,14 @@ impl FdmLink {
         let mut received = Received::only(Verdict::State);
         let was_wall_clock = self.clock.is_wall_clock();
         let ticks = self.clock.advance(packet.stamp_s(), now_us);
+        // A simulator that reads one answer a step would keep the second one for ever. One whose clock stands still
+        // repeats itself while nothing moves, and lives by the answers.
+        if self.newest.replace(*packet).is_some_and(|newest| newest.is_same(packet))
+            && !self.clock.is_wall_clock()
+        {
+            self.counters.duplicates += 1;
+            return Received::only(Verdict::Duplicate);
+        }
         if self.clock.is_wall_clock() && !was_wall_clock {
             received.notices.push(Notice::WallClock);
         }
@@ -299,5 +315,52 @@ impl FdmLink {
     #[must_use]
     pub fn counters(&self) -> Counters {
         self.counters
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::link::proto::fdm::FIELDS;
+
+    /// A craft at rest at a stamp, heading by the last field.
+    fn datagram(stamp_s: f64, field_1: f64) -> Vec<u8> {
+        let mut fields = [0.0; FIELDS];
+        (fields[0], fields[1], fields[6], fields[10]) = (stamp_s, field_1, -9.8, 1.0);
+        Packet { fields, size: 144 }.to_bytes().to_vec()
+    }
+
+    /// A link that has taken a hundred packets, the newest with stamp 0.099.
+    fn flowing() -> FdmLink {
+        let mut link = FdmLink::new(FdmLinkConfig::default(), 0);
+        for ms in 0..100_u32 {
+            link.receive(&datagram(f64::from(ms) * 1e-3, 0.0), u64::from(ms) * 1000);
+        }
+        link
+    }
+
+    #[test]
+    fn a_doubled_packet_is_answered_once() {
+        let mut link = flowing();
+        let first = link.receive(&datagram(0.1, 0.0), 100_000);
+        assert_eq!((first.verdict, first.answer), (Verdict::State, Answer::Both));
+        let second = link.receive(&datagram(0.1, 0.0), 100_100);
+        assert_eq!((second.verdict, second.answer, second.ticks), (Verdict::Duplicate, Answer::Nothing, 0));
+        let other = link.receive(&datagram(0.1, 0.01), 100_200);
+        assert_eq!(
+            (other.verdict, other.answer),
+            (Verdict::State, Answer::Both),
+            "the same stamp, other bytes"
+        );
+        assert_eq!(link.counters().duplicates, 1);
+    }
+
+    #[test]
+    fn duplicates_count_towards_the_wall_clock_and_are_answered_by_it() {
+        let mut link = flowing();
+        let answers: Vec<Answer> =
+            (1..=30).map(|ms| link.receive(&datagram(0.099, 0.0), 99_000 + ms * 1000).answer).collect();
+        assert_eq!(answers[..19], [Answer::Nothing; 19]);
+        assert_eq!(answers[19..], [Answer::Both; 11]);
     }
 }

@@ -8,7 +8,9 @@ use serde::Serialize;
 use super::super::number::{Decimals, Milli};
 use crate::plan::{FlightPlan, WaypointType};
 use crate::session::{EndpointAddresses, SessionEvent};
-use crate::telemetry::{BatteryAlarm, EventKind, FaultValue, FirmwareEvent, Guard, NavEvent, PlanSource, Refusal};
+use crate::telemetry::{
+    BatteryAlarm, EventKind, FaultValue, FirmwareEvent, Guard, NavEvent, PlanSource, Refusal,
+};
 
 /// A number of degrees with the resolution of plans: 1e-7.
 type Degrees = Decimals<7>;

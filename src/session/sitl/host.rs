@@ -5,6 +5,7 @@
 use std::net::{IpAddr, SocketAddr};
 use std::time::{Duration, Instant};
 
+use tokio::sync::watch;
 use tokio::time::{MissedTickBehavior, interval};
 
 use super::lines::{self, FlightLine, OpenResult, SitlPorts};
@@ -17,7 +18,7 @@ use crate::session::{Command, Event, Handle, SessionConfig, SessionEvent, Simula
 use crate::signals::fdm::MotorOrder;
 use crate::sim::{WorldConfig, WorldError};
 use crate::storage::Store;
-use crate::telemetry::{EndpointKind, LinkState, Snapshot};
+use crate::telemetry::{BadPackets, EndpointKind, EndpointStatus, LinkState, Snapshot};
 use crate::vehicle::{Vehicle, VehicleConfig};
 
 /// Rhythm in which clients of the serial port are counted.
@@ -85,6 +86,8 @@ pub enum SitlError {
 pub struct Sitl {
     session: Handle,
     doors: Listeners,
+    /// Where the state of the doors is published to the session.
+    publish: watch::Sender<Vec<EndpointStatus>>,
     exit_on_reboot: bool,
     /// Clients of the serial port that were told.
     clients: u32,
@@ -114,8 +117,7 @@ impl Sitl {
         }
         let vehicle = boot(&config, &mut store, print)?;
         let simulator = ExternalSimulator::start(config.fdm, config.motor_order, motors, Instant::now());
-        // Nobody looks at the state of the doors but `tell_clients`, which asks them.
-        let (doors, endpoints, _) = links.endpoints(Some(simulator));
+        let (doors, endpoints, publish) = links.endpoints(Some(simulator));
         let session = start(SessionConfig {
             vehicle,
             store,
@@ -125,7 +127,7 @@ impl Sitl {
             endpoints: Some(endpoints),
             first_events: Vec::new(),
         })?;
-        Ok(Self { session, doors, exit_on_reboot: config.exit_on_reboot, clients: 0 })
+        Ok(Self { session, doors, publish, exit_on_reboot: config.exit_on_reboot, clients: 0 })
     }
 
     /// Where a door listens.
@@ -164,13 +166,19 @@ impl Sitl {
             let now = Instant::now();
             if now >= next_line {
                 next_line = now + SECOND;
+                self.publish.send_replace(self.doors.views());
                 self.tell_flight(print, each_second);
             }
         };
-        let Handle { commands, thread, .. } = self.session;
+        let Handle { commands, thread, view, .. } = self.session;
         drop(commands.send(Command::Quit).await);
         // The session has nothing left to say.
         drop(thread.join());
+        let senseless = BadPackets::of(&view.borrow().endpoints).senseless;
+        let bad = BadPackets { senseless, ..BadPackets::of(&self.doors.views()) };
+        if !bad.is_none() {
+            print(Said::Err(format!("[SITL] Bad packets: {bad}.")));
+        }
         self.doors.close().await;
         end
     }

@@ -52,12 +52,12 @@ impl DrydenScales {
 }
 
 impl DrydenScales {
-    /// The longitudinal filter `u' = a·u + b·n` at an airspeed (m/s) and tick (s): `a = exp(−VΔt/L)`,
-    /// `b = σ√(1 − a²)`.
+    /// The longitudinal filter of unit variance, `u' = a·u + b·n`, at an airspeed (m/s) and tick (s): `a = exp(−VΔt/L)`,
+    /// `b = √(1 − a²)`.
     #[must_use]
     pub fn longitudinal_filter(&self, airspeed_mps: f64, dt: f64) -> (f64, f64) {
         let keep = decay(airspeed_mps * dt, self.length_uv_m);
-        (keep, self.sigma_uv_mps * unit_drive(keep))
+        (keep, unit_drive(keep))
     }
 }
 
@@ -124,7 +124,7 @@ impl TurbulenceFilter {
         }
     }
 
-    /// One tick of `dt` seconds at a height above ground (m) and airspeed (m/s).
+    /// One tick of `dt` seconds at a height above ground (m) and speed through the mean air (m/s).
     pub(crate) fn advance(&mut self, height_m: f64, airspeed_mps: f64, dt: f64) {
         let ramp = LEVEL_RAMP_KT_PER_S * dt;
         self.strength_kt += (self.level.wind_at_20ft_kt() - self.strength_kt).clamp(-ramp, ramp);
@@ -133,15 +133,15 @@ impl TurbulenceFilter {
             return;
         }
         self.scales = DrydenScales::at(height_m, self.strength_kt);
-        let way = airspeed_mps.max(LEAST_AIRSPEED_MPS) * dt;
-        let keep_uv = decay(way, self.scales.length_uv_m);
-        let keep_w = decay(way, self.scales.length_w_m);
+        let airspeed_mps = airspeed_mps.max(LEAST_AIRSPEED_MPS);
+        let (keep_uv, drive_u) = self.scales.longitudinal_filter(airspeed_mps, dt);
+        let keep_w = decay(airspeed_mps * dt, self.scales.length_w_m);
         let normals = &mut self.normals;
         let (u, v, w) = self.filters.get_or_insert_with(|| {
             (normals.next(), SecondOrder::settled(normals), SecondOrder::settled(normals))
         });
         let normal = normals.next3();
-        *u = keep_uv * *u + unit_drive(keep_uv) * normal.x;
+        *u = keep_uv * *u + drive_u * normal.x;
         v.advance(keep_uv, normal.y);
         w.advance(keep_w, normal.z);
     }
