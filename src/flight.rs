@@ -274,15 +274,20 @@ mod tests {
     use super::*;
     use crate::plan::builtin::BuiltinPlan;
 
-    /// The end of a flight of the built-in `land` with a tenth of an ampere hour.
+    /// The end of a flight of the built-in `land` with a battery that lasts for half a minute.
     fn with_a_small_battery(battery_sag: bool) -> FlightEnd {
         let plan = BuiltinPlan::find("land").unwrap().read().unwrap();
         let mut setup = FlightSetup { plan: plan.clone(), ..FlightSetup::default() };
-        setup.world.switches.battery_capacity_ah = Some(0.06);
+        setup.world.switches.battery_capacity_ah = Some(0.035);
         setup.world.switches.battery_sag = battery_sag;
-        let (mut vehicle, _) = setup.build().unwrap();
-        vehicle.embedded_mut().unwrap().set_plan(&plan.plan).unwrap();
-        let options = FlightOptions { takeoff_m: 10.0, timeout: SimTime(600_000_000), samples_hz: 0.0 };
+        setup.stored.plan = plan.plan;
+        let (vehicle, _) = setup.build().unwrap();
+        let options = FlightOptions {
+            takeoff_m: 10.0,
+            timeout: SimTime(600_000_000),
+            samples_hz: 0.0,
+            tolerance_m: 10.0,
+        };
         let mut flight = Flight::new(vehicle, &options).unwrap();
         loop {
             if let Some(end) = flight.tick(|_| {}) {

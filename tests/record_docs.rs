@@ -9,9 +9,9 @@ use betadeck::record::{End, json};
 use betadeck::session::{EndpointAddresses, Event, SessionEvent};
 use betadeck::signals::SimTime;
 use betadeck::telemetry::{
-    AbortReason, BatteryAlarm, CrashCause, DisarmReason, EventKind, FailsafeProcedure, FaultKind, FaultValue, FenceAction,
-    FirmwareEvent, FirmwareNotice, FlightTruth, Guard, GuardName, GuardOp, ModeFlags, NavEvent, NavState,
-    PlanSource, Refusal, RxLossPolicy, Snapshot, TransitionReason, VehicleNotice, WaypointTruth,
+    AbortReason, BatteryAlarm, CrashCause, DisarmReason, EventKind, FailsafeProcedure, FaultKind, FaultValue,
+    FenceAction, FirmwareEvent, FirmwareNotice, FlightTruth, Guard, GuardName, GuardOp, ModeFlags, NavEvent,
+    NavState, PlanSource, Refusal, RxLossPolicy, Snapshot, TransitionReason, VehicleNotice, WaypointTruth,
 };
 
 /// One event of each kind.

@@ -37,7 +37,9 @@ impl Plant {
                     WorldEventKind::Crash { cause } => self.crash = Some(cause.to_string()),
                     WorldEventKind::Contact { impact_mps } => self.impact_mps = impact_mps,
                     WorldEventKind::Diverged { cause } => self.crash = Some(cause.to_string()),
-                    WorldEventKind::Touchdown { .. } | WorldEventKind::Fault { .. } => {}
+                    WorldEventKind::Touchdown { .. }
+                    | WorldEventKind::BatteryEmpty { .. }
+                    | WorldEventKind::Fault { .. } => {}
                 }
             }
         }

@@ -167,7 +167,7 @@ pub struct FdmLink {
     mirror: MirrorTest,
     sensors: Sensors,
     counters: Counters,
-    /// The packet that was taken last.
+    /// The state that was taken last.
     newest: Option<Packet>,
 }
 
@@ -204,7 +204,8 @@ impl FdmLink {
         };
         self.kicks.heard(now_us);
         if self.clock.gap_us(now_us) > RESYNC_AFTER_US {
-            self.newest = Some(packet);
+            // Its data is not used, so the same again is news.
+            self.newest = None;
             return self.resync(packet.stamp_s(), now_us);
         }
         if self.clock.is_old(packet.stamp_s()) {
