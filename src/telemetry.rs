@@ -24,7 +24,8 @@ mod transition;
 pub use arming_flag::{ArmingFlag, ArmingFlags};
 pub use battery_alarm::BatteryAlarm;
 pub use endpoint::{
-    BadPackets, ClientStats, EndpointKind, EndpointState, EndpointStatus, PacketStats, SimulatorStats, Transport,
+    BadPackets, ClientStats, EndpointKind, EndpointState, EndpointStatus, PacketStats, SimulatorStats,
+    Transport,
 };
 pub use event::{CrashCause, DivergeCause, Event, EventKind, VehicleNotice};
 pub use failsafe::{FailsafeProcedure, RxLossPolicy};

@@ -3,8 +3,8 @@
 use crate::plan::{FlightPlan, WaypointType};
 use crate::session::{EndpointAddresses, Event, SessionEvent};
 use crate::telemetry::{
-    AbortReason, BatteryAlarm, DisarmReason, EndpointKind, EventKind, FaultValue, FenceAction, FirmwareEvent, Guard,
-    GuardUnit, NavEvent, NavState, PlanSource, Refusal, TransitionReason,
+    AbortReason, BatteryAlarm, DisarmReason, EndpointKind, EventKind, FaultValue, FenceAction, FirmwareEvent,
+    Guard, GuardUnit, NavEvent, NavState, PlanSource, Refusal, TransitionReason,
 };
 
 /// `  12.4 s  Armed.`; `None` for the few events that only matter inside the craft.

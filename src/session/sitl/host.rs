@@ -166,7 +166,7 @@ impl Sitl {
             let now = Instant::now();
             if now >= next_line {
                 next_line = now + SECOND;
-                self.publish.send_replace(self.doors.views());
+                self.publish.send_replace(self.doors.status());
                 self.tell_flight(print, each_second);
             }
         };
@@ -175,7 +175,7 @@ impl Sitl {
         // The session has nothing left to say.
         drop(thread.join());
         let senseless = BadPackets::of(&view.borrow().endpoints).senseless;
-        let bad = BadPackets { senseless, ..BadPackets::of(&self.doors.views()) };
+        let bad = BadPackets { senseless, ..BadPackets::of(&self.doors.status()) };
         if !bad.is_none() {
             print(Said::Err(format!("[SITL] Bad packets: {bad}.")));
         }
