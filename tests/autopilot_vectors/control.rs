@@ -46,7 +46,7 @@ fn yaw() {
         };
         let mode = YawMode::iter().find(|mode| mode.to_string() == text(&case, "mode")).unwrap();
         let trusted = num(&case, "ground_speed_cms") >= num(&case, "min_forward_velocity_cms");
-        let desired = desired_heading(mode, &facts, trusted);
+        let desired = desired_heading(mode, &facts, trusted, None);
         assert_eq!(desired.is_some(), !case["desired_deg"].is_null(), "{case}");
         let cap = num(&case, "yaw_rate_cap_dps");
         let limit = if cap > 0.0 { cap } else { f64::INFINITY }.min(num(&case, "max_yaw_rate_dps"));

@@ -25,3 +25,4 @@ mod rig;
 mod rx_loss;
 mod script;
 mod square;
+mod yaw;

@@ -32,14 +32,20 @@ pub struct YawFacts {
     pub acceptance_radius_m: f64,
 }
 
-/// Heading to steer for, rad, or `None` to hold; `course_trusted` = the craft is fast enough for a course.
+/// Heading to steer for, rad, or `None` for no turning; `course_trusted` = the craft is fast enough for a course,
+/// `captured_rad` = the heading that FIXED holds. DAMPENER is for wings; a multirotor flies it as FIXED.
 #[must_use]
-pub fn desired_heading(mode: YawMode, facts: &YawFacts, course_trusted: bool) -> Option<f64> {
+pub fn desired_heading(
+    mode: YawMode,
+    facts: &YawFacts,
+    course_trusted: bool,
+    captured_rad: Option<f64>,
+) -> Option<f64> {
     match mode {
         YawMode::Velocity => course_trusted.then_some(facts.course_rad),
         YawMode::Bearing => (facts.distance_m >= facts.acceptance_radius_m).then_some(facts.bearing_rad),
         YawMode::Hybrid => Some(if course_trusted { hybrid(facts) } else { facts.bearing_rad }),
-        YawMode::Fixed | YawMode::Dampener => None,
+        YawMode::Fixed | YawMode::Dampener => captured_rad,
     }
 }
 
@@ -61,10 +67,12 @@ pub fn yaw_rate_dps(desired_rad: f64, facts: &YawFacts, ramp: f64, max_dps: f64,
     ((p - d) * ramp).clamp(-max_dps, max_dps)
 }
 
-/// Yaw control with its memory: whether the course is trusted, and the fade-in.
+/// Yaw control with its memory: whether the course is trusted, the captured heading, and the fade-in.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct YawController {
     course_trusted: bool,
+    /// Heading at the first update since the last reset, rad.
+    captured_rad: Option<f64>,
     ramp: f64,
     params: Option<Params>,
     transfer: BumplessTransfer,
@@ -72,7 +80,7 @@ pub struct YawController {
 }
 
 impl YawController {
-    /// Starts anew: the next control fades in.
+    /// Starts anew, at engagement and while the pilot turns: the next control captures the heading and fades in.
     pub fn reset(&mut self) {
         *self = Self::default();
     }
@@ -83,7 +91,9 @@ impl YawController {
         let threshold = if self.course_trusted { RELEASE * minimum } else { minimum };
         self.course_trusted = facts.ground_speed_mps >= threshold;
         let max_dps = cap_dps.unwrap_or(f64::INFINITY).min(f64::from(params.max_yaw_rate));
-        let rate = if let Some(desired) = desired_heading(params.yaw_mode, facts, self.course_trusted) {
+        let captured = *self.captured_rad.get_or_insert(facts.heading_rad);
+        let desired = desired_heading(params.yaw_mode, facts, self.course_trusted, Some(captured));
+        let rate = if let Some(desired) = desired {
             self.ramp = (self.ramp + dt / RAMP_S).min(1.0);
             yaw_rate_dps(desired, facts, self.ramp, max_dps, params)
         } else {

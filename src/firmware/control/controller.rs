@@ -233,6 +233,7 @@ impl Controller {
                 flown: [estimate.roll_rad.to_degrees(), estimate.pitch_rad.to_degrees()],
                 yaw_dps: setpoint[2],
                 earth_reference: if input.lean.is_some() { 1.0 } else { self.tuning.level.earth_reference },
+                keeps_heading: input.lean.is_some(),
             };
             let dt = self.since_level_s;
             self.since_level_s = 0.0;
@@ -252,7 +253,7 @@ impl Controller {
             setpoint[axis] += share * (level[axis] - setpoint[axis]);
         }
         if !is_horizon {
-            setpoint[2] *= self.level.yaw_share();
+            setpoint[2] = self.level.yaw_dps(setpoint[2]);
         }
         [!is_horizon, !is_horizon && !by_rate, false]
     }

@@ -14,6 +14,8 @@ const LEAD_POLES: f64 = 2.0;
 const LEAD_LIMIT_DPS: f64 = 600.0;
 /// Slower yaw (°/s) is not coupled: it would cost trigonometry for nothing.
 const COUPLED_YAW_DPS: f64 = 0.01;
+/// Farther rolled (°), a pitch rate is not made up for by yaw: near the vertical there is no heading.
+const COUPLED_ROLL_DEG: f64 = 75.0;
 
 /// What the angle loop is told.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,6 +28,8 @@ pub(super) struct LevelDemand {
     pub yaw_dps: f64,
     /// Share of the yaw that turns about the vertical of the earth, 0…1.
     pub earth_reference: f64,
+    /// The yaw rate is that of the heading: changing the lean must not turn it.
+    pub keeps_heading: bool,
 }
 
 /// The leading angle: a critically damped second order.
@@ -50,6 +54,8 @@ pub(super) struct Level {
     filters: [Pt3; 2],
     wanted: [f64; 2],
     yaw_share: f64,
+    /// Yaw rate that keeps the heading while the lean changes, °/s.
+    yaw_coupling_dps: f64,
     is_on: bool,
 }
 
@@ -77,6 +83,7 @@ impl Level {
             let error = wrap_deg(wanted - demand.flown[axis] - tuning.trim_deg[axis]);
             self.wanted[axis] = tuning.p * error + tuning.feedforward * lead.rate;
         }
+        self.yaw_coupling_dps = if demand.keeps_heading { keep_heading(demand, gyro[1]) } else { 0.0 };
         self.yaw_share = 1.0;
         if demand.yaw_dps.abs() > COUPLED_YAW_DPS {
             self.couple(demand);
@@ -98,10 +105,18 @@ impl Level {
         [roll.apply(self.wanted[0], derived.level_rate), pitch.apply(self.wanted[1], derived.level_rate)]
     }
 
-    /// Factor of the yaw setpoint: the part of a turn about the vertical that is a turn about the craft's own axis.
-    pub(super) fn yaw_share(&self) -> f64 {
-        self.yaw_share
+    /// The craft's own yaw rate (°/s) for a demanded one about the vertical: a leaning craft yaws less, and against
+    /// what pitching turns its nose.
+    pub(super) fn yaw_dps(&self, demanded_dps: f64) -> f64 {
+        demanded_dps * self.yaw_share + self.yaw_coupling_dps
     }
+}
+
+/// Yaw rate (°/s) that keeps the heading of a rolled craft while it pitches at `pitch_dps`, beyond what the demanded turn
+/// about the vertical needs: pitching about a tilted wing axis turns the nose sideways.
+fn keep_heading(demand: &LevelDemand, pitch_dps: f64) -> f64 {
+    let roll = demand.flown[0].clamp(-COUPLED_ROLL_DEG, COUPLED_ROLL_DEG).to_radians();
+    (pitch_dps + demand.yaw_dps * roll.sin()) * roll.tan()
 }
 
 /// An angle folded into ±180°.
@@ -141,7 +156,13 @@ mod tests {
     use super::*;
 
     fn demand(target: f64, flown: f64) -> LevelDemand {
-        LevelDemand { target: [target, 0.0], flown: [flown, 0.0], yaw_dps: 0.0, earth_reference: 1.0 }
+        LevelDemand {
+            target: [target, 0.0],
+            flown: [flown, 0.0],
+            yaw_dps: 0.0,
+            earth_reference: 1.0,
+            keeps_heading: false,
+        }
     }
 
     #[test]
@@ -169,11 +190,33 @@ mod tests {
         let tuning = LevelTuning { feedforward: 0.0, ..Tuning::default().level };
         let mut level = Level::default();
         // Nose down 30° and turning clockwise at 90°/s: the craft must roll right at 45°/s to keep its angles.
-        let turning =
-            LevelDemand { target: [0.0, 30.0], flown: [0.0, 30.0], yaw_dps: 90.0, earth_reference: 1.0 };
+        let turning = LevelDemand {
+            target: [0.0, 30.0],
+            flown: [0.0, 30.0],
+            yaw_dps: 90.0,
+            earth_reference: 1.0,
+            keeps_heading: false,
+        };
         level.update(&turning, &[0.0; 3], &tuning, 0.002);
         assert!((level.wanted[0] - 45.0).abs() < 1e-9);
-        assert!((level.yaw_share() - 30_f64.to_radians().cos()).abs() < 1e-12);
+        assert!((level.yaw_dps(90.0) / 90.0 - 30_f64.to_radians().cos()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn pitching_while_rolled_does_not_turn_the_heading() {
+        let tuning = Tuning::default().level;
+        let mut level = Level::default();
+        let rolled = LevelDemand {
+            target: [45.0, 0.0],
+            flown: [45.0, 0.0],
+            yaw_dps: 0.0,
+            earth_reference: 1.0,
+            keeps_heading: true,
+        };
+        level.update(&rolled, &[0.0, 20.0, 0.0], &tuning, 0.002);
+        assert!((level.yaw_dps(0.0) - 20.0).abs() < 1e-9, "as fast as it pitches at 45 degrees");
+        level.update(&LevelDemand { keeps_heading: false, ..rolled }, &[0.0, 20.0, 0.0], &tuning, 0.002);
+        assert_eq!(level.yaw_dps(0.0), 0.0, "the pilot's yaw stick is the craft's own rate");
     }
 
     #[test]
