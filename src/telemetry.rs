@@ -4,6 +4,7 @@
 
 mod arming_flag;
 mod battery_alarm;
+mod cannot_hold;
 mod endpoint;
 pub mod event;
 mod failsafe;
@@ -23,6 +24,7 @@ mod transition;
 
 pub use arming_flag::{ArmingFlag, ArmingFlags};
 pub use battery_alarm::BatteryAlarm;
+pub use cannot_hold::{CannotHold, HoldLimit};
 pub use endpoint::{
     BadPackets, ClientStats, EndpointKind, EndpointState, EndpointStatus, PacketStats, SimulatorStats,
     Transport,

@@ -343,6 +343,7 @@ impl Vehicle {
             NavEvent::State { .. }
             | NavEvent::Climbing(_)
             | NavEvent::Geofence { .. }
+            | NavEvent::CannotHold { .. }
             | NavEvent::Refused(_)
             | NavEvent::Disarm => {}
         }

@@ -9,9 +9,10 @@ use betadeck::record::{End, json};
 use betadeck::session::{EndpointAddresses, Event, SessionEvent};
 use betadeck::signals::SimTime;
 use betadeck::telemetry::{
-    AbortReason, BatteryAlarm, CrashCause, DisarmReason, EventKind, FailsafeProcedure, FaultKind, FaultValue,
-    FenceAction, FirmwareEvent, FirmwareNotice, FlightTruth, Guard, GuardName, GuardOp, ModeFlags, NavEvent,
-    NavState, PlanSource, Refusal, RxLossPolicy, Snapshot, TransitionReason, VehicleNotice, WaypointTruth,
+    AbortReason, BatteryAlarm, CannotHold, CrashCause, DisarmReason, EventKind, FailsafeProcedure, FaultKind,
+    FaultValue, FenceAction, FirmwareEvent, FirmwareNotice, FlightTruth, Guard, GuardName, GuardOp,
+    ModeFlags, NavEvent, NavState, PlanSource, Refusal, RxLossPolicy, Snapshot, TransitionReason,
+    VehicleNotice, WaypointTruth,
 };
 
 /// One event of each kind.
@@ -33,6 +34,7 @@ fn one_of_each() -> Vec<SessionEvent> {
         },
         NavEvent::Climbing(true),
         NavEvent::Geofence { distance_m: 101.0, limit_m: 100.0, action: FenceAction::Rth },
+        NavEvent::CannotHold { on: true, deviation: CannotHold::default() },
         NavEvent::Refused(Refusal::Aborted(AbortReason::Flyaway)),
         NavEvent::Disarm,
     ];
@@ -125,6 +127,7 @@ fn vehicle_name(kind: &EventKind) -> Option<&'static str> {
                 NavEvent::State { .. } => "state",
                 NavEvent::Climbing(_) => "climbing",
                 NavEvent::Geofence { .. } => "geofence",
+                NavEvent::CannotHold { .. } => "cannot_hold",
                 NavEvent::Refused(_) => "engage_refused",
                 NavEvent::Disarm => return None,
             },

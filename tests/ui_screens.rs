@@ -1,7 +1,7 @@
 //! What the user interface shows: whole screens, and that no size and no picture breaks it.
 
 use betadeck::session::command::CliOutput;
-use betadeck::telemetry::{ArmingFlag, EndpointKind, NavState};
+use betadeck::telemetry::{ArmingFlag, CannotHold, EndpointKind, HoldLimit, NavState};
 use betadeck::ui::{AppState, Level, Msg, Pane, Theme, draw, update};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use ratatui::Terminal;
@@ -223,6 +223,20 @@ fn landing_80x24_shows_the_whole_machine_and_every_guard() {
     for guard in ["altitude", "speed", "throttle", "sink", "below hover", "time"] {
         assert!(words.contains(guard), "{guard} missing\n{words}");
     }
+    insta::assert_snapshot!(screen(&state));
+}
+
+#[test]
+fn a_craft_that_cannot_hold_says_so_on_an_80x24_screen() {
+    let mut state = fixture::state((80, 24), fixture::colour());
+    fixture::orbit(&mut state);
+    state.focus = Pane::State;
+    state.slots.visit(Pane::State);
+    let mut view = state.view.clone();
+    let vehicle = std::sync::Arc::make_mut(&mut view.vehicle);
+    let nav = vehicle.nav.as_mut().unwrap();
+    nav.cannot_hold = Some(CannotHold { distance_m: 23.4, vertical_m: -0.2, limit: HoldLimit::Lean });
+    update(&mut state, Msg::View(view));
     insta::assert_snapshot!(screen(&state));
 }
 

@@ -17,6 +17,7 @@ mod leg;
 mod observed;
 mod progress;
 mod report;
+mod station;
 mod steer;
 mod transit;
 
@@ -36,6 +37,7 @@ use hold::Hold;
 use inputs::InputFilter;
 use leg::Leg;
 use progress::ProgressMonitor;
+use station::StationMonitor;
 
 pub use entry::Rescue;
 
@@ -55,6 +57,7 @@ pub struct Navigator {
     climb: Climb,
     progress: ProgressMonitor,
     hold: Hold,
+    station: StationMonitor,
     descent: Descent,
     rescue: Option<Rescue>,
     /// Yaw rate cap of a YAW_RATE waypoint, deg/s.
@@ -133,7 +136,7 @@ impl Navigator {
         let undecided = if self.is_flying() {
             self.cursor.follow_clearing(stored);
             self.engage_controllers(&now, params, controllers);
-            self.prepare(&now, params, &seen);
+            self.prepare(&now, params, &seen, controllers.position.speed_setpoint_mps());
             let mut facts = self.facts(&now, params, &seen, &controllers.altitude);
             facts.touchdown_held_us = self.descent.time_touchdown(&facts.touchdown, now.time);
             (!self.step(&facts, &now, params)).then_some((facts, seen))
@@ -143,6 +146,7 @@ impl Navigator {
         };
         self.previous = Some(now.pos_ne);
         if !self.is_flying() {
+            self.watch_station(&now, params, &seen, controllers);
             self.report(&now, params, &seen, controllers, None);
             return NavOutput::default();
         }
@@ -153,6 +157,7 @@ impl Navigator {
             (self.facts(&now, params, &seen, &controllers.altitude), seen)
         });
         let flown = self.fly(&now, params, &seen, controllers);
+        self.watch_station(&now, params, &seen, controllers);
         self.report(&now, params, &seen, controllers, Some((&facts, flown)));
         flown.output
     }

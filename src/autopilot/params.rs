@@ -188,7 +188,7 @@ parameters! {
         "Throttle movement beyond which the pilot climbs, µs.";
     /// Where the nose points.
     "ap_yaw_mode" yaw_mode: YawMode = YawMode::Velocity, 0..=4, Live,
-        "Where the nose points: along the path, at the waypoint, both, or where it pointed at engagement (FIXED, DAMPENER).";
+        "Where the nose points: along the path, at the waypoint, both, or as at engagement (FIXED, DAMPENER).";
     /// Heading error gain, 0.01 per s.
     "ap_yaw_p" yaw_p: u16 = 50, 0..=500, Live,
         "Yaw rate for heading error, 0.01 per s.";

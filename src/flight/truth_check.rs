@@ -81,7 +81,11 @@ impl TruthCheck {
                 let leg = Run::leg(target, *settings, self.tolerance_m);
                 self.enter(*to, *reason, guard.as_ref(), leg, craft, settings);
             }
-            NavEvent::Climbing(_) | NavEvent::Geofence { .. } | NavEvent::Refused(_) | NavEvent::Disarm => {}
+            NavEvent::Climbing(_)
+            | NavEvent::Geofence { .. }
+            | NavEvent::CannotHold { .. }
+            | NavEvent::Refused(_)
+            | NavEvent::Disarm => {}
         }
     }
 

@@ -3,8 +3,8 @@
 use crate::plan::{FlightPlan, WaypointType};
 use crate::session::{EndpointAddresses, Event, SessionEvent};
 use crate::telemetry::{
-    AbortReason, BatteryAlarm, DisarmReason, EndpointKind, EventKind, FaultValue, FenceAction, FirmwareEvent,
-    Guard, GuardUnit, NavEvent, NavState, PlanSource, Refusal, TransitionReason,
+    AbortReason, BatteryAlarm, CannotHold, DisarmReason, EndpointKind, EventKind, FaultValue, FenceAction,
+    FirmwareEvent, Guard, GuardUnit, HoldLimit, NavEvent, NavState, PlanSource, Refusal, TransitionReason,
 };
 
 /// `  12.4 s  Armed.`; `None` for the few events that only matter inside the craft.
@@ -106,9 +106,25 @@ fn nav(event: &NavEvent) -> Option<String> {
             };
             format!("Geofence: {distance_m:.1} m from home, the fence is {limit_m:.0} m: {what}.")
         }
+        NavEvent::CannotHold { on: true, deviation } => {
+            let binds = match deviation.limit {
+                HoldLimit::Lean => "; the lean is at its limit",
+                HoldLimit::Throttle => "; the throttle is at its limit",
+                HoldLimit::None => "",
+            };
+            format!("Cannot hold: {}{binds}.", off(deviation))
+        }
+        NavEvent::CannotHold { on: false, deviation } => format!("Holds again, {}.", off(deviation)),
         NavEvent::Refused(reason) => format!("The autopilot does not engage. {}", reason.sentence()),
         NavEvent::Disarm => return None,
     })
+}
+
+/// `23.4 m from the target, 0.2 m above its altitude`.
+fn off(deviation: &CannotHold) -> String {
+    let CannotHold { distance_m, vertical_m, .. } = deviation;
+    let side = if *vertical_m < 0.0 { "below" } else { "above" };
+    format!("{distance_m:.1} m from the target, {:.1} m {side} its altitude", vertical_m.abs())
 }
 
 /// The cause of a transition in plain language.
@@ -237,6 +253,22 @@ mod tests {
         assert_eq!(
             state(NavState::Idle, None, TransitionReason::GivenUp(AbortReason::GpsLost)),
             "APPROACHING → IDLE: the GPS fix is lost."
+        );
+    }
+
+    #[test]
+    fn a_craft_that_cannot_hold_says_how_far_off_it_is_and_why() {
+        let say = |on, vertical_m, limit| {
+            let deviation = CannotHold { distance_m: 23.42, vertical_m, limit };
+            say(FirmwareEvent::Nav(NavEvent::CannotHold { on, deviation }))
+        };
+        assert_eq!(
+            say(true, -0.2, HoldLimit::Lean),
+            "Cannot hold: 23.4 m from the target, 0.2 m below its altitude; the lean is at its limit."
+        );
+        assert_eq!(
+            say(false, 0.1, HoldLimit::None),
+            "Holds again, 23.4 m from the target, 0.1 m above its altitude."
         );
     }
 

@@ -4,6 +4,7 @@
 
 use nalgebra::Vector2;
 
+use super::cannot_hold::CannotHold;
 use super::guard::Guard;
 use super::refusal::Refusal;
 use super::transition::TransitionReason;
@@ -156,6 +157,13 @@ pub enum NavEvent {
         /// What is done about it.
         action: FenceAction,
     },
+    /// The craft cannot stay where it should (`on`), or can again.
+    CannotHold {
+        /// Whether it began.
+        on: bool,
+        /// How far off the craft is.
+        deviation: CannotHold,
+    },
     /// The switch is on and the autopilot does not engage; sent once per cause.
     Refused(Refusal),
     /// The navigator saw the touchdown: disarm now, reason LANDING.
@@ -225,6 +233,8 @@ pub struct NavTelemetry {
     pub stick_override: bool,
     /// Yaw is flown by the pilot's stick.
     pub yaw_override: bool,
+    /// The craft cannot stay where it should.
+    pub cannot_hold: Option<CannotHold>,
     /// Time the touchdown conditions have held, s.
     pub touchdown_held_s: Option<f64>,
     /// Hover throttle in use, µs.

@@ -1,7 +1,7 @@
 //! What stands in the way of flying, and what to do about it: one sentence and one way out.
 
 use crate::plan::FlightPlan;
-use crate::telemetry::{ArmingFlag, ArmingFlags, LinkState, Mode, NavState, Refusal};
+use crate::telemetry::{ArmingFlag, ArmingFlags, CannotHold, HoldLimit, LinkState, Mode, NavState, Refusal};
 
 use super::app_state::AppState;
 use super::event_log::Level;
@@ -88,7 +88,7 @@ pub fn now(state: &AppState) -> Option<Advice> {
         }
     }
     if vehicle.is_engaged() {
-        return None;
+        return vehicle.nav.as_ref().and_then(|nav| nav.cannot_hold).and_then(off_station);
     }
     let switched_on = transmitter::switch_is_on(state, Mode::Autopilot);
     if state.view.rc_cut {
@@ -148,6 +148,19 @@ pub fn now(state: &AppState) -> Option<Advice> {
         return advice(Level::Warn, "AUTOPILOT is on while disarmed.", "g switches it off, then a arms");
     }
     advice(Level::Good, "Ready.", "F flies the plan; by hand: a, t, g")
+}
+
+/// A craft that is blown off its place, or cannot keep its altitude.
+fn off_station(deviation: CannotHold) -> Option<Advice> {
+    let CannotHold { distance_m, vertical_m, limit } = deviation;
+    let side = if vertical_m < 0.0 { "low" } else { "high" };
+    let what = format!("Cannot hold: {distance_m:.0} m off, {:.0} m too {side}.", vertical_m.abs());
+    let fix = match limit {
+        HoldLimit::Lean => "the lean is at its limit: raise ap_max_angle, or land",
+        HoldLimit::Throttle => "the throttle is at its limit: land",
+        HoldLimit::None => "no limit binds: sticks take over; check sensors and gains",
+    };
+    advice(Level::Warn, what, fix)
 }
 
 /// An armed craft on the sticks: where it is, and the keys that lead on from there.

@@ -73,7 +73,8 @@ impl Level {
             FirmwareEvent::Nav(event) => match event {
                 NavEvent::State { to: NavState::Complete, .. } => Self::Good,
                 NavEvent::State { .. } => Self::Step,
-                NavEvent::Refused(_) | NavEvent::Geofence { .. } => Self::Warn,
+                NavEvent::CannotHold { on: false, .. } => Self::Good,
+                NavEvent::Refused(_) | NavEvent::Geofence { .. } | NavEvent::CannotHold { .. } => Self::Warn,
                 NavEvent::Plan { .. } | NavEvent::Climbing(_) | NavEvent::Disarm => Self::Info,
             },
         }

@@ -11,6 +11,7 @@ mod flight;
 mod landing;
 mod legs;
 mod losses;
+mod monitors;
 mod orders;
 mod pilot;
 mod states;

@@ -160,6 +160,12 @@ impl PositionController {
         self.track(now, 0.0);
     }
 
+    /// Whether the demand is cut at the greatest lean.
+    #[must_use]
+    pub fn is_saturated(&self) -> bool {
+        self.saturated
+    }
+
     /// Speed setpoint, m/s.
     #[must_use]
     pub fn speed_setpoint_mps(&self) -> f64 {

@@ -10,6 +10,9 @@ use crate::autopilot::params::Params;
 use crate::geo::wrap_pi;
 use crate::telemetry::L1Mode;
 
+/// Steepest angle at which a line is met, rad.
+const STEEPEST_CUT_IN: f64 = FRAC_PI_6;
+
 /// Settings of the law.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct L1Limits {
@@ -96,7 +99,7 @@ pub fn l1(
     let relative = position - start;
     let along_m = unit.dot(&relative);
     let xte_m = unit.perp(&relative);
-    let effective_lookahead_m = lookahead_m.max(xte_m.abs() / FRAC_PI_6.tan());
+    let effective_lookahead_m = lookahead_m.max(xte_m.abs() / STEEPEST_CUT_IN.tan());
     let reanchor = xte_m.abs() > limits.max_cross_track_m;
     let carrot = (along_m + effective_lookahead_m).clamp(0.0, length_m);
     let pinned = reanchor || carrot >= length_m;
@@ -139,6 +142,8 @@ pub struct CornerArc {
     pub bearing_rad: f64,
     /// Turn rate with its sense, rad/s, clockwise positive.
     rate_rps: f64,
+    /// What may still be turned, rad.
+    left_rad: f64,
 }
 
 impl CornerArc {
@@ -149,18 +154,30 @@ impl CornerArc {
         let change = wrap_pi(leg_bearing_rad - course_rad);
         // A hair above 20°, so that a corner of exactly 20° does not arc by rounding.
         let wanted = turn_rate_rps > 0.0 && change.abs() > 20_f64.to_radians() + 1e-9;
-        wanted.then(|| Self { bearing_rad: course_rad, rate_rps: turn_rate_rps.copysign(change) })
+        wanted.then(|| Self {
+            bearing_rad: course_rad,
+            rate_rps: turn_rate_rps.copysign(change),
+            left_rad: change.abs() + STEEPEST_CUT_IN,
+        })
+    }
+
+    /// Turn rate, rad/s.
+    #[must_use]
+    pub fn turn_rate_rps(&self) -> f64 {
+        self.rate_rps.abs()
     }
 
     /// Turns for `dt` seconds towards `normal_bearing_rad`, the bearing of the aim on the line; `false` when the arc
-    /// is over: within 5° of it or past it.
+    /// is over: within 5° of it or past it, or turned by the corner and the steepest cut-in to the line. A waypoint inside
+    /// the circle would otherwise be circled for ever.
     #[must_use]
     pub fn advance(&mut self, dt: f64, normal_bearing_rad: f64) -> bool {
         let left_before = wrap_pi(normal_bearing_rad - self.bearing_rad);
         self.bearing_rad = (self.bearing_rad + self.rate_rps * dt).rem_euclid(TAU);
         let left = wrap_pi(normal_bearing_rad - self.bearing_rad);
         let passed = left * left_before < 0.0 && left.abs() < FRAC_PI_2;
-        left.abs() > 5_f64.to_radians() && !passed
+        self.left_rad -= (self.rate_rps * dt).abs();
+        left.abs() > 5_f64.to_radians() && !passed && self.left_rad > 0.0
     }
 }
 

@@ -2,9 +2,10 @@
 
 use super::Navigator;
 use super::observed::Observed;
+use super::progress::LegTurn;
 use crate::autopilot::control::AltitudeController;
 use crate::autopilot::fence::FenceFacts;
-use crate::autopilot::guidance::{PlaneCrossing, plane_crossing, turn_radius_m};
+use crate::autopilot::guidance::{CornerArc, PlaneCrossing, plane_crossing, turn_radius_m};
 use crate::autopilot::io::NavInputs;
 use crate::autopilot::machine::{
     ApproachFacts, Facts, GroundFacts, TouchdownFacts, TouchdownGuards, WaypointFacts,
@@ -20,10 +21,16 @@ const BELOW_HOVER_US: f64 = 50.0;
 
 impl Navigator {
     /// Clocks and overlays that run before the decision.
-    pub(super) fn prepare(&mut self, now: &NavInputs, params: &Params, seen: &Observed) {
+    pub(super) fn prepare(
+        &mut self,
+        now: &NavInputs,
+        params: &Params,
+        seen: &Observed,
+        speed_setpoint_mps: f64,
+    ) {
         self.move_pattern(now, params);
         self.begin_climb(now, params, seen);
-        self.watch_progress(now, seen);
+        self.watch_progress(now, params, seen, speed_setpoint_mps);
         self.descent.follow_altitude(now.alt_m);
     }
 
@@ -120,13 +127,18 @@ impl Navigator {
     }
 
     /// The monitors run on a leg, and begin anew whenever the craft was not free to make progress.
-    fn watch_progress(&mut self, now: &NavInputs, seen: &Observed) {
+    fn watch_progress(&mut self, now: &NavInputs, params: &Params, seen: &Observed, speed_setpoint_mps: f64) {
         let unwatched = self.rescue.is_some_and(|rescue| !rescue.is_watched);
         let free = self.state == NavState::Approaching && !seen.stick_override && !self.climb.is_on();
         if !free || unwatched {
             self.progress.pause();
         } else {
-            self.progress.update(self.progress_distance_m(now, seen), now.time);
+            let turn = LegTurn {
+                speed_mps: seen.ground_speed_mps.max(speed_setpoint_mps),
+                max_lean_rad: params.max_lean_rad(),
+                arc_rps: self.leg.arc.as_ref().map(CornerArc::turn_rate_rps),
+            };
+            self.progress.update(self.progress_distance_m(now, seen), &turn, now.time);
         }
     }
 

@@ -1,6 +1,7 @@
 //! The progress monitors: a craft that gets no nearer, or flies away.
 
-use crate::autopilot::machine::ProgressFacts;
+use crate::autopilot::machine::{ProgressFacts, STALL_S};
+use crate::geo::GRAVITY;
 use crate::signals::SimTime;
 
 /// How much nearer counts as progress, m.
@@ -10,13 +11,75 @@ const FLYAWAY_SHARE: f64 = 0.25;
 const FLYAWAY_LEAST_M: f64 = 20.0;
 const FLYAWAY_MOST_M: f64 = 100.0;
 
-/// Distances of this leg.
+/// The turn that a leg begins with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct LegTurn {
+    /// Ground speed, or the speed setpoint while that is greater, m/s: it has to come down first.
+    pub speed_mps: f64,
+    /// Greatest lean, rad.
+    pub max_lean_rad: f64,
+    /// Turn rate of the corner arc, rad/s, while one is flown.
+    pub arc_rps: Option<f64>,
+}
+
+impl LegTurn {
+    /// How far the craft may be carried away from the waypoint before it has turned, m: the way it needs to stop, and
+    /// the diameter of the arc.
+    fn overshoot_m(&self) -> f64 {
+        let stop = self.speed_mps.powi(2) / (2.0 * GRAVITY * self.max_lean_rad.tan().max(0.1));
+        stop + self.arc_rps.map_or(0.0, |rate| 2.0 * self.speed_mps / rate)
+    }
+}
+
+/// Distances of this leg, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Progress {
-    best_m: f64,
+    began: SimTime,
     leg_m: f64,
-    improved_m: f64,
-    improved_at: SimTime,
+    best_m: f64,
+    /// Where progress was last seen, and when.
+    mark_m: f64,
+    marked_at: SimTime,
+    /// What the turn explains.
+    overshoot_m: f64,
+    on_arc: bool,
+}
+
+impl Progress {
+    fn begin(distance_m: f64, turn: &LegTurn, time: SimTime) -> Self {
+        Self {
+            began: time,
+            leg_m: distance_m,
+            best_m: distance_m,
+            mark_m: distance_m,
+            marked_at: time,
+            overshoot_m: turn.overshoot_m(),
+            on_arc: turn.arc_rps.is_some(),
+        }
+    }
+
+    /// The turn is not over: the arc is still flown, or the craft has not come nearer yet.
+    fn is_turning(&self, time: SimTime) -> bool {
+        let has_improved = self.best_m <= self.leg_m - PROGRESS_M;
+        self.on_arc || !has_improved && time.seconds_since(self.began) <= STALL_S
+    }
+
+    fn update(&mut self, distance_m: f64, turn: &LegTurn, time: SimTime) {
+        self.best_m = self.best_m.min(distance_m);
+        if self.on_arc {
+            // It speeds up on the arc.
+            self.overshoot_m = self.overshoot_m.max(turn.overshoot_m());
+            self.marked_at = time;
+        }
+        if self.is_turning(time) {
+            // Coming back from where the turn carried it is progress, too.
+            self.mark_m = self.mark_m.max(distance_m);
+        }
+        if distance_m <= self.mark_m - PROGRESS_M {
+            self.mark_m = distance_m;
+            self.marked_at = time;
+        }
+    }
 }
 
 /// The monitors with their memory of a leg.
@@ -24,33 +87,29 @@ struct Progress {
 pub(super) struct ProgressMonitor(Option<Progress>);
 
 impl ProgressMonitor {
-    /// The craft is not free to make progress: the monitors begin anew.
+    /// The craft is not free to make progress, or has another task: the monitors begin anew.
     pub(super) fn pause(&mut self) {
         self.0 = None;
     }
 
-    /// Takes the distance to the waypoint, m.
-    pub(super) fn update(&mut self, distance_m: f64, time: SimTime) {
-        let progress = self.0.get_or_insert(Progress {
-            best_m: distance_m,
-            leg_m: distance_m,
-            improved_m: distance_m,
-            improved_at: time,
-        });
-        progress.best_m = progress.best_m.min(distance_m);
-        if distance_m <= progress.improved_m - PROGRESS_M {
-            progress.improved_m = distance_m;
-            progress.improved_at = time;
+    /// Takes the distance to the waypoint, m. On an arc no progress is asked for; the leg is measured from its end.
+    pub(super) fn update(&mut self, distance_m: f64, turn: &LegTurn, time: SimTime) {
+        if self.0.is_some_and(|progress| progress.on_arc && turn.arc_rps.is_none()) {
+            self.0 = None;
         }
+        self.0.get_or_insert_with(|| Progress::begin(distance_m, turn, time)).update(distance_m, turn, time);
     }
 
     /// What the machine decides on; `None` while paused.
     pub(super) fn facts(&self, distance_m: f64, time: SimTime) -> Option<ProgressFacts> {
-        self.0.map(|progress| ProgressFacts {
-            no_progress_s: time.seconds_since(progress.improved_at),
-            distance_m,
-            flyaway_m: progress.best_m
-                + (FLYAWAY_SHARE * progress.leg_m).clamp(FLYAWAY_LEAST_M, FLYAWAY_MOST_M),
+        self.0.map(|progress| {
+            let margin = (FLYAWAY_SHARE * progress.leg_m).clamp(FLYAWAY_LEAST_M, FLYAWAY_MOST_M);
+            let turn = if progress.is_turning(time) { progress.overshoot_m } else { 0.0 };
+            ProgressFacts {
+                no_progress_s: time.seconds_since(progress.marked_at),
+                distance_m,
+                flyaway_m: progress.best_m + margin + turn,
+            }
         })
     }
 }

@@ -59,6 +59,7 @@ impl Navigator {
                 hold_remaining_ds: self.hold_remaining_ds(now),
                 eta_s: (on_leg && speed >= ETA_MIN_MPS).then(|| seen.distance_m / speed),
                 stick_override: seen.stick_override,
+                cannot_hold: self.station.told(),
                 yaw_override: output.yaw_rate_rps.is_none(),
                 guards,
                 output,

@@ -98,6 +98,7 @@ impl Navigator {
         let passes = matches!(self.cursor.kind(), WaypointType::Flyover | WaypointType::Flyby);
         target.pass_through = passes && !seen.is_last && !self.leg.missed && !seen.is_co_located;
         if !params.l1_enable || self.cursor.positional_count() < 2 {
+            self.leg.arc = None;
             return PathView::default();
         }
         let result = l1(seen.start_ne, target.target, now.pos_ne, now.vel_ne, &L1Limits::from_params(params));
@@ -127,7 +128,8 @@ impl Navigator {
         now.pos_ne + Vector2::new(cos, sin) * result.lookahead_m
     }
 
-    fn pattern_radius_m(&self, params: &Params) -> f64 {
+    /// Radius of the circles of the pattern, m.
+    pub(super) fn pattern_radius_m(&self, params: &Params) -> f64 {
         if self.state == NavState::Figure8 {
             f64::from(params.hold_figure8_width) / 200.0
         } else {

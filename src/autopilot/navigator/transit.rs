@@ -25,7 +25,11 @@ impl Navigator {
                 self.finish_climb();
                 self.leg.start = here(now);
             }
-            Outcome::Missed => self.leg.missed = true,
+            Outcome::Missed => {
+                self.leg.missed = true;
+                // It turns back, which is another leg to the monitors.
+                self.progress.pause();
+            }
             Outcome::Arrive => self.enter(NavState::Arrived, reason, guard),
             Outcome::Hold => {
                 self.hold.begin(now.time);

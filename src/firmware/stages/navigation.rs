@@ -227,6 +227,7 @@ impl Navigation {
                 | NavEvent::Plan { .. }
                 | NavEvent::Climbing(_)
                 | NavEvent::Geofence { .. }
+                | NavEvent::CannotHold { .. }
                 | NavEvent::Refused(_) => {}
             }
             outbox.push(FirmwareEvent::Nav(event));

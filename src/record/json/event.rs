@@ -29,6 +29,7 @@ pub(super) enum Fields<'a> {
     State(Box<State>),
     On { on: bool },
     Geofence { distance_m: Milli, limit_m: Milli, action: &'a str },
+    CannotHold { on: bool, distance_m: Milli, vertical_m: Milli, limit: &'a str },
     Failsafe { policy: Option<&'a str>, stage: u8, procedure: Option<&'a str> },
     Fault { name: &'static str, on: bool, value: Option<String> },
     Contact { impact_mps: Milli },
@@ -166,6 +167,12 @@ impl<'a> Fields<'a> {
                 let (distance_m, limit_m) = (Decimals(*distance_m), Decimals(*limit_m));
                 ("geofence", Self::Geofence { distance_m, limit_m, action: action.into() })
             }
+            NavEvent::CannotHold { on, deviation } => {
+                let (distance_m, vertical_m) =
+                    (Decimals(deviation.distance_m), Decimals(deviation.vertical_m));
+                let limit = deviation.limit.into();
+                ("cannot_hold", Self::CannotHold { on: *on, distance_m, vertical_m, limit })
+            }
             NavEvent::Refused(refusal) => ("engage_refused", Self::of_refusal(*refusal)),
             // The disarm that follows is the event.
             NavEvent::Disarm => return None,
@@ -221,8 +228,8 @@ mod tests {
     use crate::session::Event;
     use crate::signals::SimTime;
     use crate::telemetry::{
-        AbortReason, DisarmReason, FailsafeProcedure, FaultKind, GuardName, GuardOp, Mode, ModeFlags,
-        NavState, RxLossPolicy, TransitionReason,
+        AbortReason, CannotHold, DisarmReason, FailsafeProcedure, FaultKind, GuardName, GuardOp, HoldLimit,
+        Mode, ModeFlags, NavState, RxLossPolicy, TransitionReason,
     };
 
     fn session_line(kind: SessionEvent) -> String {
@@ -283,6 +290,11 @@ mod tests {
         assert_eq!(
             line(EventKind::BatteryEmpty { cell_v: 2.9 }),
             r#"{"t":12.34,"event":"battery","state":"EMPTY","cell_v":2.9}"#
+        );
+        let deviation = CannotHold { distance_m: 23.4, vertical_m: -0.25, limit: HoldLimit::Lean };
+        assert_eq!(
+            firmware(FirmwareEvent::Nav(NavEvent::CannotHold { on: true, deviation })),
+            r#"{"t":12.34,"event":"cannot_hold","on":true,"distance_m":23.4,"vertical_m":-0.25,"limit":"lean"}"#
         );
         let places = EndpointAddresses {
             ws: "127.0.0.1:6761".parse().ok(),

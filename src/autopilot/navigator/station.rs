@@ -1,0 +1,172 @@
+//! The station monitor: a craft that is off the place it should keep, and does not come closer.
+
+use super::Navigator;
+use super::observed::Observed;
+use crate::autopilot::control::FlightControllers;
+use crate::autopilot::io::NavInputs;
+use crate::autopilot::params::Params;
+use crate::telemetry::{CannotHold, HoldLimit, NavEvent, NavState};
+
+/// Hold radii that a craft may be off beyond its pattern.
+const HOLD_RADII: f64 = 2.0;
+/// Height that it may be off, m.
+const VERTICAL_M: f64 = 3.0;
+/// Two periods of this length are compared to see whether it comes closer, s.
+const PERIOD_S: f64 = 5.0;
+/// How much closer on average it must be in the later one, m.
+const CLOSER_M: f64 = 0.5;
+/// How near to its greatest the throttle binds, µs.
+const THROTTLE_BINDS_US: f64 = 1.0;
+
+/// What an update shows of the station.
+#[derive(Debug, Clone, Copy)]
+struct Station {
+    /// Horizontal distance from the target, m.
+    distance_m: f64,
+    /// How far the craft may be from it, m.
+    radius_m: f64,
+    /// Height above the setpoint, m.
+    vertical_m: f64,
+    /// The lean demand is cut at its limit.
+    lean_binds: bool,
+    /// The throttle demand is cut at its limit.
+    throttle_binds: bool,
+}
+
+impl Station {
+    fn is_off(&self) -> bool {
+        self.distance_m > self.radius_m || self.vertical_m.abs() > VERTICAL_M
+    }
+
+    /// How far it is out of its bounds, m.
+    fn excess_m(&self) -> f64 {
+        (self.distance_m - self.radius_m).max(0.0) + (self.vertical_m.abs() - VERTICAL_M).max(0.0)
+    }
+}
+
+/// Integrals over a period off station.
+#[derive(Debug, Clone, Copy, Default)]
+struct Period {
+    time_s: f64,
+    excess_ms: f64,
+    lean_s: f64,
+    throttle_s: f64,
+}
+
+impl Period {
+    fn add(&mut self, station: &Station, dt: f64) {
+        self.time_s += dt;
+        self.excess_ms += station.excess_m() * dt;
+        self.lean_s += if station.lean_binds { dt } else { 0.0 };
+        self.throttle_s += if station.throttle_binds { dt } else { 0.0 };
+    }
+
+    fn mean_excess_m(&self) -> f64 {
+        self.excess_ms / self.time_s.max(f64::MIN_POSITIVE)
+    }
+
+    /// What bound for most of the period; for a craft that is too low the throttle counts first.
+    fn limit(&self, station: &Station) -> HoldLimit {
+        let most = |time_s: f64| time_s > 0.5 * self.time_s;
+        let too_low = station.vertical_m < -VERTICAL_M;
+        match (most(self.lean_s), most(self.throttle_s)) {
+            (_, true) if too_low => HoldLimit::Throttle,
+            (true, _) => HoldLimit::Lean,
+            (false, true) => HoldLimit::Throttle,
+            (false, false) => HoldLimit::None,
+        }
+    }
+}
+
+/// The monitor with its memory since the craft left its station.
+#[derive(Debug, Clone, Default)]
+pub(super) struct StationMonitor {
+    period: Period,
+    /// Mean excess of the period before, m.
+    before_m: Option<f64>,
+    told: Option<CannotHold>,
+}
+
+impl StationMonitor {
+    /// What was told and still holds.
+    pub(super) fn told(&self) -> Option<CannotHold> {
+        self.told
+    }
+
+    /// Takes an update; gives what is to be told now.
+    fn update(&mut self, station: &Station, dt: f64) -> Option<NavEvent> {
+        let deviation =
+            |limit| CannotHold { distance_m: station.distance_m, vertical_m: station.vertical_m, limit };
+        if !station.is_off() {
+            let limit = self.told.map(|told| told.limit);
+            *self = Self::default();
+            return limit.map(|limit| NavEvent::CannotHold { on: false, deviation: deviation(limit) });
+        }
+        if let Some(told) = &mut self.told {
+            *told = deviation(told.limit);
+        }
+        self.period.add(station, dt);
+        if self.period.time_s < PERIOD_S {
+            return None;
+        }
+        let period = std::mem::take(&mut self.period);
+        let mean_m = period.mean_excess_m();
+        if let Some(told) = &mut self.told {
+            told.limit = period.limit(station);
+            return None;
+        }
+        let before_m = self.before_m.replace(mean_m)?;
+        if mean_m < before_m - CLOSER_M {
+            return None;
+        }
+        let deviation = deviation(period.limit(station));
+        self.told = Some(deviation);
+        Some(NavEvent::CannotHold { on: true, deviation })
+    }
+
+    /// Nothing is kept any more, or somebody else flies.
+    fn leave(&mut self) -> Option<NavEvent> {
+        let told = std::mem::take(self).told;
+        told.map(|deviation| NavEvent::CannotHold { on: false, deviation })
+    }
+}
+
+impl Navigator {
+    /// Tells of a craft that cannot keep its place; `seen` is what the demands of this update were made from.
+    pub(super) fn watch_station(
+        &mut self,
+        now: &NavInputs,
+        params: &Params,
+        seen: &Observed,
+        controllers: &FlightControllers,
+    ) {
+        let pattern_m = match self.state {
+            NavState::Holding | NavState::Landing | NavState::Complete => Some(0.0),
+            NavState::Orbiting | NavState::Figure8 => Some(self.pattern_radius_m(params)),
+            NavState::Idle | NavState::Approaching | NavState::Arrived => None,
+        };
+        let kept = pattern_m.filter(|_| self.is_flying() && !seen.stick_override && !self.descent.stands());
+        let event = match kept {
+            None => self.station.leave(),
+            Some(pattern_m) => {
+                let mut setpoint_m = controllers.altitude.setpoint_m();
+                if self.state == NavState::Landing {
+                    // The path of a landing goes on below the ground.
+                    setpoint_m = setpoint_m.max(self.leg.altitude_m.min(0.0));
+                }
+                let station = Station {
+                    distance_m: (self.target_ne - now.pos_ne).norm(),
+                    radius_m: pattern_m + HOLD_RADII * params.hold_radius_m(),
+                    vertical_m: now.alt_m - setpoint_m,
+                    lean_binds: controllers.position.is_saturated(),
+                    throttle_binds: controllers.altitude.throttle_us()
+                        >= f64::from(params.throttle_max) - THROTTLE_BINDS_US,
+                };
+                self.station.update(&station, now.dt)
+            }
+        };
+        if let Some(event) = event {
+            self.push(event);
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! A craft that cannot stay where it should says so, and says when it can again.
+
+use betadeck::sim::WorldCommand;
+use betadeck::telemetry::{CannotHold, EventKind, FirmwareEvent, HoldLimit, NavEvent, NavState};
+
+use crate::rig::{Rig, world};
+
+const HOLD: &str = "waypoint insert 0 40.4635901 -79.5182000 2000 500 HOLD 0 NONE";
+
+fn holding(seed: u64, lines: &str) -> Rig {
+    let mut rig = Rig::new(world(seed).0, &format!("{lines}\nset ap_max_distance_from_home = 0"), 20.0);
+    rig.engaged().until_state(60.0, NavState::Holding).fly(10.0);
+    rig
+}
+
+/// What was told, in order, with the time since engagement.
+fn told(rig: &Rig) -> Vec<(bool, CannotHold)> {
+    rig.events
+        .iter()
+        .filter_map(|event| match &event.kind {
+            EventKind::Firmware(FirmwareEvent::Nav(NavEvent::CannotHold { on, deviation })) => {
+                Some((*on, *deviation))
+            }
+            _ => None,
+        })
+        .collect()
+}
+
+fn shown(rig: &Rig) -> Option<CannotHold> {
+    rig.vehicle.embedded().unwrap().nav().cannot_hold
+}
+
+fn wind(rig: &mut Rig, wind: &str) {
+    rig.vehicle.change_world(WorldCommand::SetWind(wind.parse().unwrap())).unwrap();
+}
+
+#[test]
+fn a_craft_blown_off_its_hold_says_so() {
+    for seed in [0, 1] {
+        let mut rig = holding(seed, HOLD);
+        wind(&mut rig, "17@0");
+        rig.until(25.0, "it is told", |rig| !told(rig).is_empty());
+        let (on, deviation) = told(&rig)[0];
+        assert!(on && deviation.distance_m > 4.0, "{deviation:?}");
+        assert_eq!(deviation.limit, HoldLimit::Lean);
+        rig.fly(5.0);
+        assert!(shown(&rig).unwrap().distance_m > deviation.distance_m + 5.0, "the picture keeps up");
+        wind(&mut rig, "calm");
+        rig.until(60.0, "it holds again", |rig| told(rig).len() == 2);
+        assert!(!told(&rig)[1].0);
+        assert_eq!(shown(&rig), None);
+        assert_eq!(rig.samples.last().unwrap().state, NavState::Holding, "nothing ends the mission");
+        rig.fly(30.0);
+        assert_eq!(told(&rig).len(), 2, "{}", rig.story());
+    }
+}
+
+#[test]
+fn a_craft_that_sinks_from_its_hold_says_so() {
+    let mut rig = holding(0, HOLD);
+    rig.cli("set ap_throttle_max = 1480");
+    rig.until(30.0, "it is told", |rig| !told(rig).is_empty());
+    let (_, deviation) = told(&rig)[0];
+    assert!(deviation.vertical_m < -3.0, "{deviation:?}");
+    assert_eq!(deviation.limit, HoldLimit::Throttle);
+    rig.cli("set ap_throttle_max = 1900");
+    rig.until(60.0, "it holds again", |rig| told(rig).len() == 2);
+}
+
+#[test]
+fn a_landing_that_is_blown_away_says_so() {
+    let land = "waypoint insert 0 40.4635000 -79.5182000 3000 500 LAND 0 NONE";
+    let mut rig = Rig::new(world(0).0, &format!("{land}\nset ap_max_distance_from_home = 0"), 30.0);
+    rig.engaged().until_state(60.0, NavState::Landing).fly(5.0);
+    wind(&mut rig, "17@0");
+    rig.until(25.0, "it is told", |rig| !told(rig).is_empty());
+}
+
+#[test]
+fn what_holds_says_nothing() {
+    let air = |rig: &mut Rig| wind(rig, "8@225");
+    for pattern in ["NONE", "ORBIT", "FIGURE8"] {
+        let lines = format!(
+            "waypoint insert 0 40.4635901 -79.5182000 2000 500 HOLD 300 {pattern}
+             waypoint insert 1 40.4640390 -79.5182000 4000 0 FLYOVER 0 NONE
+             waypoint insert 2 40.4635000 -79.5182000 2000 0 LAND 0 NONE"
+        );
+        let mut rig = holding(1, &lines);
+        air(&mut rig);
+        rig.until(300.0, "the landing", |rig| rig.disarmed().is_some());
+        assert!(told(&rig).is_empty(), "{pattern}: {}", rig.story());
+    }
+}
