@@ -3,6 +3,7 @@
 mod arming;
 pub mod command;
 mod event;
+mod hazards;
 mod late_answers;
 mod links;
 mod pacer;
@@ -15,6 +16,7 @@ mod upload;
 
 pub use command::{Command, SessionView};
 pub use event::{EndpointAddresses, Event, SessionEvent};
+pub use hazards::hazards;
 pub use links::{Links, MotorTargets, MotorsError};
 pub use pacer::{Pacer, SPEED_RANGE};
 pub use persistence::Persistence;

@@ -16,7 +16,7 @@ use crate::plan::format::PlanFile;
 use crate::plan::review::Finding;
 use crate::plan::validate::check_plan;
 use crate::record::End;
-use crate::session::{Event, Pacer, upload};
+use crate::session::{Event, Pacer, hazards, upload};
 use crate::signals::SimTime;
 use crate::storage::Store;
 use output::Output;
@@ -38,6 +38,7 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, AppError> {
     let mut vehicle = setup::build(setup, &mut notices)?;
     // A plan that the craft refuses is invalid input.
     upload(vehicle.controller_mut(), &plan.plan, &[]).map_err(AppError::input)?;
+    notices.extend(hazards(vehicle.controller()));
     let mut first_events: Vec<Event> = Vec::new();
     vehicle.drain_events(|event| first_events.push(event.into()));
     first_events.extend(notices.into_iter().map(|notice| Event::notice(vehicle.time(), notice)));

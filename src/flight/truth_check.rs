@@ -198,3 +198,6 @@ fn place(frame: &LocalFrame, position: LatLon) -> Vector2<f64> {
     let enu = frame.to_enu(position.lat_deg(), position.lon_deg(), frame.alt_amsl_m);
     Vector2::new(enu.y, enu.x)
 }
+
+#[cfg(test)]
+mod tests;

@@ -34,6 +34,8 @@ fn arming(vehicle: &Vehicle) -> Option<String> {
 
 /// A climb that does not reach its altitude.
 fn climb(alt_m: f64, takeoff_m: f64, motors: &[f64; 4]) -> String {
+    // Never `-0.0` of a craft that stands.
+    let alt_m = alt_m.max(0.0) + 0.0;
     let mean = motors.iter().sum::<f64>() / 4.0;
     let why = if mean >= FULL_OUTPUT { ", the thrust does not suffice" } else { "" };
     format!(

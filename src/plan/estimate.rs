@@ -26,6 +26,33 @@ pub struct Assumptions {
     pub start_alt_m: f64,
     /// How long a full battery keeps the craft hovering, s; `None` = unknown.
     pub endurance_s: Option<f64>,
+    /// What a touchdown asks of the throttle.
+    pub touchdown_throttle: TouchdownThrottle,
+}
+
+/// The throttle condition of a touchdown: below `ap_hover_throttle` less `ap_landing_throttle_threshold`; µs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TouchdownThrottle {
+    /// `ap_hover_throttle`; 0 = captured in flight.
+    pub hover_us: f64,
+    /// `ap_landing_throttle_threshold`.
+    pub threshold_us: f64,
+    /// `ap_throttle_min`: the autopilot commands no less.
+    pub min_us: f64,
+}
+
+impl TouchdownThrottle {
+    /// Whether the autopilot never commands so little.
+    #[must_use]
+    pub fn is_never_met(&self) -> bool {
+        self.hover_us > 0.0 && self.hover_us - self.threshold_us <= self.min_us
+    }
+}
+
+impl Default for TouchdownThrottle {
+    fn default() -> Self {
+        Self { hover_us: 1275.0, threshold_us: 100.0, min_us: 1100.0 }
+    }
 }
 
 impl Default for Assumptions {
@@ -38,11 +65,23 @@ impl Default for Assumptions {
             fence_m: None,
             start_alt_m: 10.0,
             endurance_s: None,
+            touchdown_throttle: TouchdownThrottle::default(),
         }
     }
 }
 
 impl Assumptions {
+    /// The settings that change them.
+    pub const SETTINGS: [&str; 7] = [
+        "ap_max_velocity",
+        "alt_hold_climb_rate",
+        "ap_landing_descent_rate",
+        "ap_max_distance_from_home",
+        "ap_hover_throttle",
+        "ap_landing_throttle_threshold",
+        "ap_throttle_min",
+    ];
+
     /// The defaults, changed by the lines `name = value` of a plan file.
     #[must_use]
     pub fn from_settings(lines: &[String]) -> Self {
@@ -55,6 +94,9 @@ impl Assumptions {
                 "alt_hold_climb_rate" if value > 0.0 => assumptions.climb_mps = value / 10.0,
                 "ap_landing_descent_rate" => assumptions.landing_mps = value / 100.0,
                 "ap_max_distance_from_home" => assumptions.fence_m = (value > 0.0).then_some(value),
+                "ap_hover_throttle" => assumptions.touchdown_throttle.hover_us = value,
+                "ap_landing_throttle_threshold" => assumptions.touchdown_throttle.threshold_us = value,
+                "ap_throttle_min" => assumptions.touchdown_throttle.min_us = value,
                 _ => {}
             }
         }
@@ -280,5 +322,12 @@ mod tests {
             (assumptions.max_velocity_mps - 5.0).abs() < 1e-9 && (assumptions.landing_mps - 1.0).abs() < 1e-9
         );
         assert_eq!(assumptions.fence_m, Some(300.0));
+        for name in Assumptions::SETTINGS {
+            assert_ne!(
+                Assumptions::from_settings(&[format!("{name} = 999")]),
+                Assumptions::default(),
+                "{name}"
+            );
+        }
     }
 }

@@ -4,7 +4,7 @@ use std::fmt;
 
 use crate::geo::{LatLon, distance_bearing};
 
-use super::estimate::{Assumptions, estimate};
+use super::estimate::{Assumptions, TouchdownThrottle, estimate};
 use super::validate::{PlanFault, check_plan};
 use super::{FlightPlan, Waypoint, WaypointType};
 
@@ -54,6 +54,15 @@ pub enum Finding {
         /// How long the battery lasts in a hover, s.
         endurance_s: f64,
     },
+    /// The leg is flown below the place where the craft is armed.
+    BelowGround {
+        /// The waypoint.
+        index: usize,
+        /// Altitude of its leg above home, m.
+        alt_m: f64,
+    },
+    /// The throttle condition of a touchdown can never be met.
+    NoTouchdownThrottle(TouchdownThrottle),
 }
 
 impl Finding {
@@ -61,6 +70,12 @@ impl Finding {
     #[must_use]
     pub fn is_refusal(&self) -> bool {
         matches!(self, Self::Fault(_) | Self::OutsideFence { .. })
+    }
+
+    /// Whether flying the plan may hurt the craft: its pilot should hear of it before it flies.
+    #[must_use]
+    pub fn is_hazard(&self) -> bool {
+        matches!(self, Self::BelowGround { .. } | Self::NoTouchdownThrottle(_))
     }
 }
 
@@ -97,6 +112,16 @@ impl fmt::Display for Finding {
                 "the plan takes at least {:.0} min; hovering empties the battery in {:.0} min",
                 (time_s / 60.0).ceil(),
                 (endurance_s / 60.0).floor()
+            ),
+            Self::BelowGround { index, alt_m } => write!(
+                f,
+                "waypoint {index} is {:.1} m below home: where the ground is level, the craft hits it",
+                -alt_m
+            ),
+            Self::NoTouchdownThrottle(TouchdownThrottle { hover_us, threshold_us, min_us }) => write!(
+                f,
+                "ap_landing_throttle_threshold = {threshold_us} can never be met, for ap_hover_throttle ({hover_us}) less \
+                 it is not above ap_throttle_min ({min_us}): a touchdown is found late or not at all"
             ),
         }
     }
@@ -145,7 +170,26 @@ pub fn review(plan: &FlightPlan, home: LatLon, assumptions: &Assumptions) -> Vec
     {
         findings.push(Finding::OutlastsBattery { time_s, endurance_s });
     }
+    findings.extend(below_ground(waypoints));
+    if assumptions.touchdown_throttle.is_never_met() {
+        findings.push(Finding::NoTouchdownThrottle(assumptions.touchdown_throttle));
+    }
     findings
+}
+
+/// The legs that are flown below home.
+fn below_ground(waypoints: &[Waypoint]) -> impl Iterator<Item = Finding> {
+    let mut alt_change_cm = None;
+    waypoints.iter().enumerate().filter_map(move |(index, waypoint)| {
+        if waypoint.kind == WaypointType::AltChange {
+            alt_change_cm = Some(waypoint.alt_cm);
+        }
+        if !waypoint.kind.is_positional() {
+            return None;
+        }
+        let alt_m = f64::from(alt_change_cm.take().unwrap_or(waypoint.alt_cm)) / 100.0;
+        (alt_m < 0.0).then_some(Finding::BelowGround { index, alt_m })
+    })
 }
 
 fn ends_the_mission(waypoint: &Waypoint) -> bool {
@@ -212,6 +256,51 @@ mod tests {
             ["the plan takes at least 32 min; hovering empties the battery in 29 min"]
         );
         assert!(findings(Some(1900.0)).is_empty() && findings(None).is_empty());
+    }
+
+    #[test]
+    fn a_waypoint_below_the_ground_is_named() {
+        let at = |kind, alt_cm| Waypoint { position: HOME, kind, alt_cm, ..Waypoint::default() };
+        let mut plan = FlightPlan::default();
+        plan.waypoints.extend([
+            at(WaypointType::Flyover, -500),
+            at(WaypointType::AltChange, -1),
+            at(WaypointType::Flyover, 2000),
+            at(WaypointType::AltChange, 100),
+            at(WaypointType::Land, -700),
+        ]);
+        let found: Vec<_> = review(&plan, HOME, &Assumptions::default());
+        let hazards: Vec<_> =
+            found.iter().filter(|finding| finding.is_hazard()).map(ToString::to_string).collect();
+        assert_eq!(
+            hazards,
+            [
+                "waypoint 0 is 5.0 m below home: where the ground is level, the craft hits it",
+                "waypoint 2 is 0.0 m below home: where the ground is level, the craft hits it",
+            ]
+        );
+    }
+
+    #[test]
+    fn a_touchdown_throttle_that_never_comes_is_named() {
+        let mut plan = FlightPlan::default();
+        plan.waypoints.push(Waypoint { position: HOME, kind: WaypointType::Land, ..Waypoint::default() });
+        let say = |lines: &[&str]| -> Vec<String> {
+            let lines: Vec<String> = lines.iter().map(|&line| line.to_owned()).collect();
+            review(&plan, HOME, &Assumptions::from_settings(&lines)).iter().map(ToString::to_string).collect()
+        };
+        assert_eq!(
+            say(&["ap_landing_throttle_threshold = 175"]),
+            [
+                "ap_landing_throttle_threshold = 175 can never be met, for ap_hover_throttle (1275) less it is not above \
+                 ap_throttle_min (1100): a touchdown is found late or not at all"
+            ]
+        );
+        assert!(say(&["ap_landing_throttle_threshold = 174"]).is_empty());
+        assert_eq!(say(&["ap_throttle_min = 1200"]).len(), 1);
+        assert!(say(&["ap_throttle_min = 1200", "ap_hover_throttle = 1500"]).is_empty());
+        let captured = ["ap_landing_throttle_threshold = 500", "ap_hover_throttle = 0"];
+        assert!(say(&captured).is_empty(), "it is captured in flight");
     }
 
     #[test]

@@ -135,3 +135,42 @@ fn what_really_happened_is_told_in_sentences_too() {
     assert!(truths[2].ends_with(" % of the battery used."), "{truths:?}");
     assert!(ran.err.contains("complete: mission complete, parked 0."), "{}", ran.err);
 }
+
+#[test]
+fn a_craft_that_never_arms_or_climbs_says_what_it_waited_for() {
+    let reason = |arguments: &[&str]| {
+        let flown = fly(HOLD, &[&["--timeout", "60"], arguments].concat()).ends(1, "timeout");
+        flown.first("end").text("reason").to_owned()
+    };
+    let fix = reason(&["--gps-loss-at", "boot+0"]);
+    assert!(fix.contains("the craft never armed: it waits for a GPS fix"), "{fix}");
+    let blocked = reason(&["--stick", "throttle=1500@boot+0"]);
+    assert!(blocked.contains("arming is blocked by THROTTLE (lower the throttle)"), "{blocked}");
+    let heavy = reason(&["--fault", "payload@boot+0,,3"]);
+    assert!(heavy.contains("the climb stopped at ") && heavy.contains("m of 10.0 m"), "{heavy}");
+}
+
+#[test]
+fn a_waypoint_below_the_ground_and_an_impossible_touchdown_are_warned_of() {
+    let deep = "waypoint insert 0 40.4640000 -79.5182000 -500 0 FLYOVER 0 NONE\n\
+                waypoint insert 1 40.4635000 -79.5182000 2000 0 LAND 0 NONE\n";
+    let sandbox = Sandbox::new();
+    sandbox.write("deep.txt", deep);
+    let shown = sandbox.run(&["plan", "show", "deep.txt"]).exits(0);
+    assert!(shown.out.contains("waypoint 0 is 5.0 m below home"), "{}", shown.out);
+
+    let text = std::fs::read_to_string(crate::support::plan("land.toml")).expect("the plan");
+    sandbox.write(
+        "land.toml",
+        &text.replacen("settings = [", "settings = [\"ap_landing_throttle_threshold = 450\", ", 1),
+    );
+    let shown = sandbox.run(&["plan", "show", "land.toml"]).exits(0);
+    assert!(shown.out.contains("ap_landing_throttle_threshold = 450 can never be met"), "{}", shown.out);
+
+    let set = "ap_landing_throttle_threshold=450";
+    let flown = fly(LAND, &["--set", set, "--takeoff", "5", "--timeout", "30"]);
+    let warned = flown.all("notice").any(|line| {
+        line.text("text").starts_with("Beware: ap_landing_throttle_threshold = 450 can never be met")
+    });
+    assert!(warned, "{:?}", flown.all("notice").collect::<Vec<_>>());
+}

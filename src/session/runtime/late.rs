@@ -8,6 +8,7 @@ use super::Session;
 use super::console::output;
 use crate::firmware::cli::CliAction;
 use crate::session::command::CliOutput;
+use crate::session::hazards;
 use crate::session::late_answers::NO_ANSWER;
 use crate::session::upload::{Progress, Upload};
 use crate::vehicle::LateAnswer;
@@ -77,7 +78,14 @@ impl Session {
         now: Instant,
     ) {
         match progress {
-            Progress::Done(result) => drop(reply.send(result)),
+            Progress::Done(result) => {
+                if result.is_ok() {
+                    for hazard in hazards(self.vehicle.controller()) {
+                        self.notice(hazard);
+                    }
+                }
+                drop(reply.send(result));
+            }
             Progress::Waiting(ticket) => {
                 self.late_answers.expect(ticket, Recipient::Upload { upload, reply }, now);
             }
