@@ -210,6 +210,7 @@ impl Firmware {
     /// The hundred-a-second part: failsafe, navigator, touchdown, modes, holds.
     fn update_navigation(&mut self) {
         self.keep_calibrations();
+        self.sensing.watch_heading(&mut self.outbox);
         self.sensing.watch_fix(self.now, self.setup.parameters(), &mut self.outbox);
         let throttle_us = self.control.state().throttle_us;
         let dt = self.navigation.observe(self.now, &self.sensing, &self.safety, &self.rc, throttle_us);

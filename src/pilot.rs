@@ -2,7 +2,8 @@
 //!
 //! Wait for the fix and for no arming-disable flag, arm with the throttle low, raise it, switch ANGLE, ALTHOLD and
 //! POS HOLD on, climb, hover, switch the AUTOPILOT on, and from then on hold the sticks still. Its own switches stay
-//! on, so that a craft whose autopilot refuses hovers on.
+//! on, so that a craft whose autopilot refuses hovers on. When the heading is unknown the pitch stick is held forward for
+//! five seconds, so that the GPS shows it.
 //!
 //! It sees what a pilot sees (the OSD), and touches nothing but the sixteen channels.
 
@@ -27,6 +28,13 @@ const FRAME_S: f64 = 0.02;
 const THROTTLE: usize = 2;
 /// Throttle stick at the bottom, µs.
 const LOW_US: f64 = 1000.0;
+/// How long the pitch stick is held forward to find an unknown heading, s.
+const AHEAD_S: f64 = 5.0;
+/// Least height above home for that, m.
+const AHEAD_ALT_M: f64 = 5.0;
+/// Channel index of pitch, and its stick in the middle, µs.
+const PITCH: usize = 1;
+const MID_US: u16 = 1500;
 /// The highest stick the pilot uses to climb, µs.
 const CLIMB_STICK_MAX_US: f64 = 1900.0;
 
@@ -43,6 +51,10 @@ pub struct PilotFacts {
     pub armed: bool,
     /// The autopilot flies.
     pub engaged: bool,
+    /// The heading is known.
+    pub heading_known: bool,
+    /// The pitch stick that leans the craft forward by 15° in ANGLE, µs.
+    pub forward_stick_us: u16,
     /// Altitude above home, m.
     pub alt_m: f64,
     /// Climb rate, m/s.
@@ -69,6 +81,7 @@ enum Phase {
     Climbing { stick_us: f64 },
     Hovering { since: SimTime },
     Engaging,
+    FlyingAhead { since: SimTime },
     Engaged,
     Done,
 }
@@ -116,6 +129,7 @@ impl Pilot {
             Phase::Climbing { .. } => "climbing",
             Phase::Hovering { .. } => "hovering",
             Phase::Engaging => "engaging",
+            Phase::FlyingAhead { .. } => "finding the heading",
             Phase::Engaged => "watching",
             Phase::Done => "done",
         }
@@ -137,10 +151,14 @@ impl Pilot {
                 LOW_US + part * (facts.takeoff_stick_us() - LOW_US)
             }
             Phase::Climbing { stick_us } => stick_us,
-            Phase::Hovering { .. } | Phase::Engaging => f64::from(facts.hover_stick_us),
+            Phase::Hovering { .. } | Phase::Engaging | Phase::FlyingAhead { .. } => {
+                f64::from(facts.hover_stick_us)
+            }
             Phase::Engaged => 1500.0,
         };
         self.frame.channels[THROTTLE] = throttle.round() as u16;
+        self.frame.channels[PITCH] =
+            if matches!(self.phase, Phase::FlyingAhead { .. }) { facts.forward_stick_us } else { MID_US };
         self.frame
     }
 
@@ -172,6 +190,10 @@ impl Pilot {
                     for switch in self.switches.levelling.into_iter().flatten() {
                         self.switch_on(switch);
                     }
+                    if !facts.heading_known {
+                        // It will have to fly ahead before the autopilot engages.
+                        self.takeoff_m = self.takeoff_m.max(AHEAD_ALT_M);
+                    }
                     self.phase = if self.takeoff_m > 0.0 {
                         Phase::Climbing { stick_us: facts.takeoff_stick_us() }
                     } else {
@@ -197,6 +219,15 @@ impl Pilot {
             Phase::Engaging => {
                 if facts.engaged {
                     self.phase = Phase::Engaged;
+                } else if !facts.heading_known {
+                    self.phase = Phase::FlyingAhead { since: facts.time };
+                }
+            }
+            Phase::FlyingAhead { since } => {
+                if facts.engaged {
+                    self.phase = Phase::Engaged;
+                } else if facts.time.seconds_since(since) >= AHEAD_S {
+                    self.phase = Phase::Engaging;
                 }
             }
             Phase::Engaged | Phase::Done => {}
@@ -240,6 +271,8 @@ mod tests {
             arming_blocked: false,
             armed: false,
             engaged: false,
+            heading_known: true,
+            forward_stick_us: 1625,
             alt_m: 0.0,
             climb_mps: 0.0,
             hover_stick_us: 1500,
@@ -261,6 +294,29 @@ mod tests {
         let frame = pilot.fly(&facts(1.0));
         assert_eq!(frame.channels[4], 1900);
         assert_eq!(frame.channels[THROTTLE], 1000);
+    }
+
+    #[test]
+    fn flies_ahead_when_the_heading_is_unknown() {
+        let mut pilot = Pilot::new(0.0, &ranges()).unwrap();
+        pilot.fly(&facts(0.0));
+        let at = |seconds, heading_known| PilotFacts {
+            armed: true,
+            alt_m: if seconds > 2.0 { 5.0 } else { 0.0 },
+            heading_known,
+            ..facts(seconds)
+        };
+        pilot.fly(&at(1.0, false));
+        assert_eq!(pilot.fly(&at(2.0, false)).channels[5], 1000, "climbs before it engages");
+        pilot.fly(&at(4.0, false));
+        assert_eq!(pilot.doing(), "hovering");
+        assert_eq!(pilot.fly(&at(9.1, false)).channels[5], 1900);
+        assert_eq!(pilot.fly(&at(9.2, false)).channels[PITCH], 1625);
+        assert_eq!(pilot.doing(), "finding the heading");
+        assert_eq!(pilot.fly(&at(14.1, true)).channels[PITCH], 1625);
+        assert_eq!(pilot.fly(&at(14.2, true)).channels[PITCH], 1500);
+        pilot.fly(&PilotFacts { engaged: true, ..at(14.3, true) });
+        assert_eq!(pilot.doing(), "watching");
     }
 
     #[test]

@@ -18,6 +18,8 @@ pub struct EngageFacts {
     pub fix: bool,
     /// Whether the altitude estimate is valid.
     pub altitude_valid: bool,
+    /// Whether the heading is known.
+    pub heading_valid: bool,
     /// Whether the plan can be flown.
     pub plan: Result<(), PlanFault>,
     /// Whether the fence allows the plan; only looked at when the plan can be flown.
@@ -73,6 +75,9 @@ pub fn check_craft(facts: &EngageFacts) -> Result<(), Refusal> {
     }
     if !facts.altitude_valid {
         return Err(Refusal::NoAltitude);
+    }
+    if !facts.heading_valid {
+        return Err(Refusal::NoHeading);
     }
     Ok(())
 }

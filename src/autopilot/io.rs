@@ -21,6 +21,8 @@ pub struct NavInputs {
     pub fix: bool,
     /// Whether the altitude estimate is valid.
     pub altitude_valid: bool,
+    /// Whether the heading is known.
+    pub heading_valid: bool,
     /// Whether the throttle has been above 25 % since arming.
     pub throttle_raised: bool,
     /// Whether stage 2 of the receiver failsafe is active.

@@ -7,7 +7,7 @@
 //!                                          │           │
 //! GPS (delayed, 10 Hz) ──► horizontal filter: position, velocity, acceleration error ─► navigator
 //! barometer, GPS ────────► vertical filter:   altitude, climb rate, acceleration error
-//! magnetometer, GPS ─────► heading
+//! magnetometer, GPS ─────► heading: by the magnetometer while it agrees with the course over ground, else by the course
 //! ```
 //!
 //! **Axes and signs of the whole firmware.** Roll is positive to the right, pitch is positive nose *down*, yaw is
@@ -30,6 +30,7 @@ use crate::geo::{LatLon, offset_to_latlon};
 
 mod attitude;
 mod calibration;
+mod compass;
 mod estimator;
 mod gps;
 mod heading;
@@ -37,6 +38,7 @@ mod history;
 mod horizontal;
 mod kalman;
 mod schedule;
+mod straight;
 mod tuning;
 mod vertical;
 
@@ -75,6 +77,8 @@ pub struct Estimate {
     pub attitude_valid: bool,
     /// Whether the heading is known.
     pub heading_valid: bool,
+    /// By how much the magnetometer is off the course over ground, rad, while it is doubted for that.
+    pub heading_doubt_rad: Option<f64>,
     /// Roll, rad, right positive.
     pub roll_rad: f64,
     /// Pitch, rad, nose **down** positive.
@@ -122,6 +126,7 @@ impl Default for Estimate {
             attitude: UnitQuaternion::from_axis_angle(&Vector3::z_axis(), std::f64::consts::FRAC_PI_2),
             attitude_valid: false,
             heading_valid: false,
+            heading_doubt_rad: None,
             roll_rad: 0.0,
             pitch_rad: 0.0,
             heading_rad: 0.0,

@@ -15,6 +15,8 @@ use super::{Firmware, battery};
 
 /// How far above the threshold a raised throttle stick is put, µs.
 const RAISED_MARGIN_US: f64 = 12.5;
+/// A lean that makes way quickly, degrees.
+const AHEAD_LEAN_DEG: f64 = 15.0;
 /// A sink rate that no landing gear minds, m/s.
 const GENTLE_SINK_MPS: f64 = 1.0;
 
@@ -121,6 +123,13 @@ impl Firmware {
             0 => self.parameters().hold.mid_us as u16,
             us => us.clamp(1100, 1900),
         }
+    }
+
+    /// The pitch stick that leans the craft forward by 15° in ANGLE, µs.
+    #[must_use]
+    pub fn forward_stick_us(&self) -> u16 {
+        let share = AHEAD_LEAN_DEG / self.parameters().control.level.limit_deg.max(AHEAD_LEAN_DEG);
+        (1500.0 + 500.0 * share).round() as u16
     }
 
     /// The throttle stick from which the throttle counts as raised, with a margin for what the radio link rounds, µs.

@@ -83,6 +83,13 @@ fn firmware(event: &FirmwareEvent) -> Option<String> {
             format!("Failsafe stage {stage}: procedure {procedure}, policy {policy}.")
         }
         FirmwareEvent::Nav(event) => return nav(event),
+        FirmwareEvent::HeadingDoubt { on: true, error_deg } => {
+            format!(
+                "The compass is {:.0}° off the GPS course: doubted, the course is taken.",
+                error_deg.abs()
+            )
+        }
+        FirmwareEvent::HeadingDoubt { on: false, .. } => "The compass agrees with the GPS course.".to_owned(),
         FirmwareEvent::Battery { state, cell_v } => battery(*state, *cell_v),
         FirmwareEvent::Notice(notice) => notice.to_string(),
     })

@@ -78,6 +78,13 @@ pub enum FirmwareEvent {
         /// Voltage a cell, V.
         cell_v: f64,
     },
+    /// The magnetometer disagrees with the course over ground, or agrees again.
+    HeadingDoubt {
+        /// Whether it is doubted, and the course taken instead.
+        on: bool,
+        /// Magnetic heading less the heading by the course, degrees.
+        error_deg: f64,
+    },
     /// Something the pilot should read.
     Notice(FirmwareNotice),
 }

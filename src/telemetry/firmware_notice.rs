@@ -38,6 +38,9 @@ pub enum FirmwareNotice {
     /// Position hold is asked for without a position.
     #[strum(to_string = "POS HOLD has no position: the craft is only levelled.")]
     NoPosition,
+    /// Position hold is asked for without a heading.
+    #[strum(to_string = "POS HOLD has no heading: the craft is only levelled.")]
+    NoHeading,
     /// The inertial sensors hang.
     #[strum(to_string = "The inertial sensors repeat one sample: they hang.")]
     ImuFrozen,

@@ -15,6 +15,8 @@ pub enum Refusal {
     NoFix,
     /// No altitude estimate.
     NoAltitude,
+    /// The heading is unknown.
+    NoHeading,
     /// The stored plan is empty.
     NoPlan,
     /// The stored plan is damaged.
@@ -61,6 +63,7 @@ impl Refusal {
             Self::Throttle => "Raise the throttle once after arming.".into(),
             Self::NoFix => "No GPS fix: wait for satellites.".into(),
             Self::NoAltitude => "No altitude estimate.".into(),
+            Self::NoHeading => "Heading unknown: fly straight faster than 3 m/s for 3 s.".into(),
             Self::NoPlan => "No waypoints: upload a plan.".into(),
             Self::PlanCorrupt => "The stored plan is damaged: upload it again.".into(),
             Self::BadWaypoint(wp) => format!(

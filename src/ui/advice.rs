@@ -188,6 +188,7 @@ fn way_out(refusal: Refusal) -> &'static str {
         Refusal::NotArmed => "a arms, then g again",
         Refusal::Throttle => "t raises it",
         Refusal::NoFix => "wait for satellites",
+        Refusal::NoHeading => "fly straight ahead by hand for a few seconds",
         Refusal::NoAltitude => "wait for the barometer or GPS",
         Refusal::NoPlan => "U uploads the plan",
         Refusal::PlanCorrupt => "U uploads the plan anew",

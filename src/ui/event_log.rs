@@ -68,7 +68,9 @@ impl Level {
             | FirmwareEvent::Notice(_) => Self::Info,
             FirmwareEvent::Disarmed(_) | FirmwareEvent::Failsafe { .. } => Self::Fault,
             FirmwareEvent::GpsLost { .. } | FirmwareEvent::RxLoss => Self::Warn,
-            FirmwareEvent::Battery { state: BatteryAlarm::Warning, .. } => Self::Warn,
+            FirmwareEvent::HeadingDoubt { on: false, .. } => Self::Good,
+            FirmwareEvent::Battery { state: BatteryAlarm::Warning, .. }
+            | FirmwareEvent::HeadingDoubt { on: true, .. } => Self::Warn,
             FirmwareEvent::Battery { .. } => Self::Fault,
             FirmwareEvent::Nav(event) => match event {
                 NavEvent::State { to: NavState::Complete, .. } => Self::Good,

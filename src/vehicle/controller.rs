@@ -338,6 +338,8 @@ impl FlightController {
                 arming_blocked: !fw.arming_flags().is_empty(),
                 armed: fw.is_armed(),
                 engaged: fw.modes().has(Mode::Autopilot),
+                heading_known: fw.estimate().heading_valid,
+                forward_stick_us: fw.forward_stick_us(),
                 alt_m: fw.altitude_m(),
                 climb_mps: fw.climb_mps(),
                 hover_stick_us: fw.hover_stick_us(),

@@ -158,6 +158,7 @@ pub(crate) fn inputs() -> NavInputs {
         armed: true,
         fix: true,
         altitude_valid: true,
+        heading_valid: true,
         throttle_raised: true,
         failsafe: false,
         home: Some(HOME),

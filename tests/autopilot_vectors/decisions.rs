@@ -90,6 +90,7 @@ fn engagement() {
             throttle_raised: flag(&case, "throttle_raised"),
             fix: flag(&case, "fix"),
             altitude_valid: flag(&case, "altitude_ok"),
+            heading_valid: case["heading_ok"].as_bool().unwrap_or(true),
             plan: check_records(num(&case, "count") as usize, records.take(40)),
             fence: pre_flight(limit_m, flag(&case, "home"), kinds),
             failsafe: flag(&case, "failsafe"),

@@ -101,6 +101,7 @@ fn fields(event: &str) -> &'static str {
         "contact" => "impact_mps:num",
         "touchdown" => "impact_mps:num peak_mps2:num",
         "crash" => "cause:text",
+        "heading_doubt" => "on:flag error_deg:num",
         "battery" => "state:word cell_v:num",
         "notice" => "text:text",
         "sample" => {

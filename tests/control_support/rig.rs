@@ -183,6 +183,7 @@ impl Rig {
             armed: self.received.armed,
             fix: estimate.gps.fix && estimate.position_valid,
             altitude_valid: estimate.altitude_valid,
+            heading_valid: estimate.heading_valid,
             throttle_raised: true,
             failsafe: false,
             home: estimate.origin,

@@ -164,6 +164,7 @@ impl Law {
             | FirmwareEvent::GpsFix { .. }
             | FirmwareEvent::GpsLost { .. }
             | FirmwareEvent::Battery { .. }
+            | FirmwareEvent::HeadingDoubt { .. }
             | FirmwareEvent::Mode(_)
             | FirmwareEvent::RxLoss
             | FirmwareEvent::RxRecovered

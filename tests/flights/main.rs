@@ -10,6 +10,7 @@
 mod air;
 mod by_hand;
 mod checks;
+mod compass;
 mod corners;
 mod geofence;
 mod gps;

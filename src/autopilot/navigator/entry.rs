@@ -63,6 +63,7 @@ impl Navigator {
             throttle_raised: inputs.throttle_raised,
             fix: inputs.fix,
             altitude_valid: inputs.altitude_valid,
+            heading_valid: inputs.heading_valid,
             plan,
             fence,
             failsafe: inputs.failsafe,
@@ -101,6 +102,7 @@ impl Navigator {
             armed: true,
             throttle_raised: true,
             altitude_valid: true,
+            heading_valid: true,
             failsafe: false,
             aborted: None,
             ..self.engage_facts(inputs, params, stored)
@@ -237,6 +239,7 @@ impl Navigator {
             throttle_raised: inputs.throttle_raised || self.is_flying(),
             fix: inputs.fix,
             altitude_valid: inputs.altitude_valid,
+            heading_valid: inputs.heading_valid,
             plan: Ok(()),
             fence: Ok(()),
             failsafe: false,

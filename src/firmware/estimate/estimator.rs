@@ -1,18 +1,20 @@
 //! The estimator: sensor frames in, one [`Estimate`] out.
 
-use nalgebra::{Rotation3, Vector2, Vector3};
+use nalgebra::{Vector2, Vector3};
 
 use super::attitude::{Attitude, VerticalGains, missing_in_steady_motion};
 use super::calibration::{AccCalibration, GyroCalibration, MagCalibration, NotTurned};
+use super::compass::{CompassCheck, CompassVerdict};
 use super::gps::GpsMonitor;
 use super::heading::{CourseComparison, MagTrust, magnetic_error};
 use super::horizontal::Horizontal;
 use super::schedule::Schedule;
+use super::straight::StraightFlight;
 use super::tuning::{AttitudeSource, EstimatorOptions, EstimatorTuning};
 use super::vertical::{AltitudeSource, Vertical, pressure_altitude_m};
 use super::{DueTasks, Estimate, Rates};
 use crate::firmware::filter::{Pt1, Pt2, pt1_gain};
-use crate::geo::{GRAVITY, LatLon};
+use crate::geo::{GRAVITY, LatLon, wrap_pi};
 use crate::signals::{GpsSample, SensorFrame, SimTime};
 
 /// Nominal step of the slow part, s.
@@ -24,15 +26,13 @@ const RATE_LIMIT: f64 = 60.0;
 const FORCE_LIMIT: f64 = 500.0;
 /// The tilt follows the accelerometer so much faster on the ground.
 const PARKED_FACTOR: f64 = 10.0;
-/// And so much slower in the air after the GPS was lost: the tilt is true then, but a craft that coasts to a stop feels
-/// its drag as a tilt.
+/// And so much slower in the air after the GPS was lost or before the heading is known: the tilt is true then, but a craft
+/// that coasts to a stop feels its drag as a tilt, and one that speeds up feels nothing.
 const ORPHANED_FACTOR: f64 = 0.2;
 /// While the horizontal filter says how the craft moves the correction is better informed: it works so much faster,
 /// and an integral (critically damped: a quarter of the square of the gain) finds a gyro offset in flight.
 const AIDED_FACTOR: f64 = 2.0;
 const AIDED_INTEGRAL: f64 = 0.25;
-/// Without a magnetometer for this long the heading is taken from the simulator once, as a crew would set it.
-const MAG_WAIT_S: f64 = 0.5;
 /// The magnetometer counts as present for this long after a sample, s.
 const MAG_VALID_S: f64 = 1.0;
 /// The same inertial sample for this long is a frozen sensor, s.
@@ -69,11 +69,18 @@ pub struct Estimator {
     pending_gps: Option<(GpsSample, SimTime)>,
     pending_pressure: Option<f64>,
     pending_mag: Option<Vector3<f64>>,
+    /// Since the magnetometer last corrected the heading, and since its newest sample, s.
     since_mag_s: f64,
+    since_mag_sample_s: f64,
     gps: GpsMonitor,
     horizontal: Horizontal,
     vertical: Vertical,
     course: CourseComparison,
+    compass: CompassCheck,
+    straight: StraightFlight,
+    /// How far the estimated heading was clockwise of the magnetometer's newest sample, rad.
+    mag_error: f64,
+    solution_at: SimTime,
     shown_alt: Pt2,
     shown_climb: Pt2,
 }
@@ -111,10 +118,15 @@ impl Estimator {
             pending_pressure: None,
             pending_mag: None,
             since_mag_s: 0.0,
+            since_mag_sample_s: f64::INFINITY,
             gps: GpsMonitor::default(),
             horizontal,
             vertical: Vertical::new(),
             course: CourseComparison::new(),
+            compass: CompassCheck::default(),
+            straight: StraightFlight::default(),
+            mag_error: 0.0,
+            solution_at: SimTime::ZERO,
             shown_alt: Pt2::default(),
             shown_climb: Pt2::default(),
         }
@@ -137,6 +149,7 @@ impl Estimator {
     pub fn on_arm(&mut self, home: Option<LatLon>) {
         self.armed = true;
         self.was_aided = false;
+        self.compass.reset();
         self.vertical.zero();
         self.shown_alt.reset(0.0);
         if let Some(origin) = home.or_else(|| self.estimate.place()) {
@@ -280,13 +293,15 @@ impl Estimator {
             }
         }
         let felt = Vector2::new(force.y, force.x);
-        self.horizontal.predict(felt, dt);
+        // What is felt has no direction over ground while the heading is unknown.
+        let known = if self.estimate.heading_valid { felt } else { Vector2::zeros() };
+        self.horizontal.predict(known, dt);
         self.vertical.predict(force.z - GRAVITY, dt);
         self.course.predict(felt, dt);
         self.fuse_gps(now);
         self.fuse_baro();
         if self.options.attitude == AttitudeSource::Estimated || frame.truth_attitude.is_none() {
-            self.fuse_mag(frame, dt);
+            self.fuse_mag(dt);
             self.correct_tilt(&force, dt);
         }
         self.estimate.heading_rad = self.attitude.heading();
@@ -304,8 +319,8 @@ impl Estimator {
             let age = latency + now.seconds_since(arrived);
             let velocity = Vector2::new(sample.vel_enu.y, sample.vel_enu.x);
             let turn = self.course.compare(velocity, (age / SLOW_S).round() as usize);
-            if self.armed && turn != 0.0 && !self.has_mag() {
-                self.turn_heading(turn);
+            if self.armed {
+                self.fuse_course(velocity, turn, arrived);
             }
             self.horizontal.fuse(&sample, age);
             if self.tuning.altitude_source != AltitudeSource::BaroOnly {
@@ -316,6 +331,42 @@ impl Estimator {
         if !self.gps.status.fix {
             self.course.clear();
         }
+    }
+
+    /// What a solution's velocity (north, east) says about the heading; `turn` is what the comparison of accelerations
+    /// corrects, anticlockwise, rad.
+    fn fuse_course(&mut self, velocity: Vector2<f64>, turn: f64, arrived: SimTime) {
+        let dt = arrived.seconds_since(std::mem::replace(&mut self.solution_at, arrived)).min(1.0);
+        if !self.estimate.heading_valid {
+            let course = self.straight.update(velocity, self.tuning.min_forward_mps, dt);
+            if let Some(course) = course {
+                // Where accelerations tell nothing the craft is taken to fly nose first.
+                let nose_first = || wrap_pi(self.attitude.heading() - course);
+                self.take_heading(self.course.heading_error().unwrap_or_else(nose_first));
+                self.estimate.heading_valid = true;
+            }
+            return;
+        }
+        // A suspected magnetometer corrects nothing: the heading is that of the course by then.
+        let held = || self.compass.is_suspected().then_some(0.0);
+        if self.tuning.has_mag
+            && self.since_mag_sample_s < MAG_VALID_S
+            && let Some(error) = self.course.heading_error().or_else(held)
+            && self.compass.update(wrap_pi(error - self.mag_error), dt) == Some(CompassVerdict::Doubted)
+        {
+            self.take_heading(error);
+            return;
+        }
+        if turn != 0.0 && !self.has_mag() {
+            self.turn_heading(turn);
+        }
+    }
+
+    /// The estimated heading is this far clockwise of the true one, rad: turns it there at once.
+    fn take_heading(&mut self, error: f64) {
+        self.turn_heading(error);
+        self.course.clear();
+        self.horizontal.forget_accel_error();
     }
 
     fn fuse_baro(&mut self) {
@@ -331,8 +382,9 @@ impl Estimator {
         self.tuning.has_mag && self.since_mag_s < MAG_VALID_S
     }
 
-    fn fuse_mag(&mut self, frame: &SensorFrame, dt: f64) {
+    fn fuse_mag(&mut self, dt: f64) {
         self.since_mag_s += dt;
+        self.since_mag_sample_s += dt;
         let declination = match self.tuning.declination_deg {
             0.0 => self.options.declination_deg,
             set => set,
@@ -341,9 +393,14 @@ impl Estimator {
         if let Some(mag) = sample.map(|mag| mag - self.tuning.mag_offset_flu)
             && let Some(error) = magnetic_error(&self.attitude.matrix, &mag, declination.to_radians())
         {
+            self.since_mag_sample_s = 0.0;
+            self.mag_error = error;
             if !self.estimate.heading_valid {
-                self.turn_heading(error);
+                self.take_heading(error);
                 self.estimate.heading_valid = true;
+            }
+            if self.armed && !self.compass.may_correct() {
+                return;
             }
             let trust = match (self.armed, self.tuning.trust_mag) {
                 (false, _) => MagTrust::Parked,
@@ -355,13 +412,6 @@ impl Estimator {
                 self.since_mag_s = 0.0;
                 self.turn_heading(correction);
             }
-        } else if !self.estimate.heading_valid
-            && self.since_mag_s > MAG_WAIT_S
-            && let Some(truth) = frame.truth_attitude
-        {
-            let error = self.attitude.heading() - heading_of(&truth.to_rotation_matrix());
-            self.turn_heading(error);
-            self.estimate.heading_valid = true;
         }
     }
 
@@ -369,6 +419,7 @@ impl Estimator {
     fn turn_heading(&mut self, angle: f64) {
         if angle.is_finite() {
             self.attitude.turn_world(&Vector3::new(0.0, 0.0, angle));
+            self.course.turn(angle);
         }
     }
 
@@ -379,7 +430,8 @@ impl Estimator {
             self.force_filter[1].apply(force.y, gain),
             self.force_filter[2].apply(force.z, gain),
         );
-        let is_aided = self.armed && self.horizontal.is_settled();
+        let heading_valid = self.estimate.heading_valid;
+        let is_aided = self.armed && heading_valid && self.horizontal.is_settled();
         self.was_aided |= is_aided;
         let (missing, gains) = if is_aided {
             let missing = self.horizontal.accel_error();
@@ -389,8 +441,8 @@ impl Estimator {
         } else {
             let factor = match (self.armed, self.was_aided) {
                 (false, _) => PARKED_FACTOR,
-                (true, false) => 1.0,
-                (true, true) => ORPHANED_FACTOR,
+                (true, false) if heading_valid => 1.0,
+                (true, _) => ORPHANED_FACTOR,
             };
             let gains = VerticalGains { kp: self.tuning.kp * factor, ki: self.tuning.ki };
             let Some(missing) = missing_in_steady_motion(&filtered) else { return };
@@ -417,12 +469,7 @@ impl Estimator {
         estimate.alt_m = self.vertical.altitude();
         estimate.climb_mps = self.vertical.climb();
         estimate.gps = self.gps.status;
+        estimate.heading_doubt_rad = self.compass.doubt();
         estimate.calibrating = !self.gyro.done || self.acc.is_some() || self.mag.is_some();
     }
-}
-
-/// Heading of an attitude, rad clockwise from north.
-fn heading_of(matrix: &Rotation3<f64>) -> f64 {
-    let m = matrix.matrix();
-    m[(0, 0)].atan2(m[(1, 0)])
 }

@@ -19,6 +19,12 @@ const LEAST_CHANGE: f64 = 1.0;
 const FULL_CHANGE: f64 = 3.0;
 /// Share of the disagreement that one comparison corrects.
 const SHARE: f64 = 0.05;
+/// Changes of velocity from which on comparisons are evidence, m/s, and what is left of it after the next one: 5 s.
+const EVIDENT_CHANGE: f64 = 0.5;
+const EVIDENCE_KEPT: f64 = 0.98;
+/// Evidence that is enough, (m/s)², and how much of it must speak for the same angle.
+const ENOUGH: f64 = 5.0;
+const COHERENT: f64 = 0.8;
 
 /// How far the estimated heading is clockwise of the true one by a magnetometer sample (body axes), rad; `None` when
 /// the field points straight up or down.
@@ -66,12 +72,23 @@ pub(super) struct CourseComparison {
     window: [(Vector2<f64>, Vector2<f64>); WINDOW],
     filled: usize,
     next: usize,
+    /// Velocity changes felt, turned by those seen: a sum of (scalar product, felt to the right of seen), and of sizes.
+    evidence: Vector2<f64>,
+    evidence_size: f64,
 }
 
 impl CourseComparison {
     pub(super) fn new() -> Self {
         let zero = Vector2::zeros();
-        Self { inertial: [zero; DEPTH], newest: 0, window: [(zero, zero); WINDOW], filled: 0, next: 0 }
+        Self {
+            inertial: [zero; DEPTH],
+            newest: 0,
+            window: [(zero, zero); WINDOW],
+            filled: 0,
+            next: 0,
+            evidence: zero,
+            evidence_size: 0.0,
+        }
     }
 
     /// One step of inertial acceleration (north, east), m/s².
@@ -84,6 +101,21 @@ impl CourseComparison {
     /// A gap in the solutions: start over.
     pub(super) fn clear(&mut self) {
         self.filled = 0;
+        (self.evidence, self.evidence_size) = (Vector2::zeros(), 0.0);
+    }
+
+    /// The heading was turned anticlockwise by `angle`, rad: what was felt lies that much further left.
+    pub(super) fn turn(&mut self, angle: f64) {
+        let (sin, cos) = angle.sin_cos();
+        let (x, y) = (self.evidence.x, self.evidence.y);
+        self.evidence = Vector2::new(x * cos + y * sin, y * cos - x * sin);
+    }
+
+    /// How far the estimated heading is clockwise of the true one by the last seconds, rad, when they say enough.
+    pub(super) fn heading_error(&self) -> Option<f64> {
+        let size = self.evidence_size;
+        let is_sure = size > ENOUGH && self.evidence.norm() > COHERENT * size;
+        is_sure.then(|| self.evidence.y.atan2(self.evidence.x))
     }
 
     /// A solution's velocity (north, east) of `age` steps ago; returns the correction of the heading,
@@ -99,6 +131,13 @@ impl CourseComparison {
         }
         let (seen, felt) = (velocity - then, inertial - inertial_then);
         let size = seen.norm().min(felt.norm());
+        self.evidence *= EVIDENCE_KEPT;
+        self.evidence_size *= EVIDENCE_KEPT;
+        if size >= EVIDENT_CHANGE {
+            // (North, east): positive when what was felt lies to the right.
+            self.evidence += Vector2::new(felt.dot(&seen), seen.perp(&felt));
+            self.evidence_size += felt.norm() * seen.norm();
+        }
         if size < LEAST_CHANGE {
             return 0.0;
         }
@@ -139,5 +178,27 @@ mod tests {
             }
         }
         assert!(heading_error.abs() < 0.04, "{heading_error}");
+    }
+
+    #[test]
+    fn the_evidence_names_the_error_and_follows_a_turn() {
+        let mut comparison = CourseComparison::new();
+        assert_eq!(comparison.heading_error(), None);
+        let mut velocity = Vector2::zeros();
+        for step in 0..500 {
+            let accel = Vector2::new(0.0, 2.0);
+            let (sin, cos) = f64::sin_cos(1.0);
+            comparison
+                .predict(Vector2::new(accel.x * cos - accel.y * sin, accel.x * sin + accel.y * cos), 0.01);
+            velocity += accel * 0.01;
+            if step % 10 == 0 {
+                comparison.compare(velocity, 0);
+            }
+        }
+        assert!(comparison.heading_error().is_some_and(|error| (error - 1.0).abs() < 0.05));
+        comparison.turn(0.7);
+        assert!(comparison.heading_error().is_some_and(|error| (error - 0.3).abs() < 0.05));
+        comparison.clear();
+        assert_eq!(comparison.heading_error(), None);
     }
 }

@@ -83,6 +83,12 @@ impl Horizontal {
         self.east.accel_error -= accel.y;
     }
 
+    /// Says that the acceleration error so far was one of the heading, which is known now.
+    pub(super) fn forget_accel_error(&mut self) {
+        (self.north.accel_error, self.east.accel_error) = (0.0, 0.0);
+        self.covariance = KalmanCovariance::new(POSITION_SIGMA, VELOCITY_SIGMA, 0.3);
+    }
+
     /// Whether position and velocity mean something.
     pub(super) fn is_valid(&self) -> bool {
         self.origin.is_some() && self.since_solution_s <= VALID_S

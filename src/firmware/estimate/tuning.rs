@@ -63,6 +63,8 @@ pub struct EstimatorTuning {
     pub has_mag: bool,
     /// Whether it is trusted in flight.
     pub trust_mag: bool,
+    /// Ground speed from which on a straight flight shows the heading, m/s.
+    pub min_forward_mps: f64,
     /// Declination set by the user, degrees east; 0 = that of the place.
     pub declination_deg: f64,
     /// Solutions a second expected of the receiver.
@@ -101,6 +103,7 @@ impl EstimatorTuning {
             attitude_us: 1000 * settings.number("imu_process_denom").clamp(1, 4).unsigned_abs(),
             has_mag: settings.text("mag_hardware") != "NONE",
             trust_mag: settings.flag("trust_mag"),
+            min_forward_mps: number("ap_min_forward_velocity") * 0.01,
             declination_deg: number("mag_declination") * 0.1,
             gps_rate_hz: number("gps_update_rate_hz").max(1.0),
             altitude_source: match settings.text("altitude_source") {

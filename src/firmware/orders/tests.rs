@@ -19,6 +19,7 @@ fn hovering() -> NavInputs {
         armed: true,
         fix: true,
         altitude_valid: true,
+        heading_valid: true,
         throttle_raised: true,
         home: Some(HOME),
         origin: HOME,

@@ -54,8 +54,8 @@ pub(in crate::firmware) struct Navigation {
     /// The navigator's demands, while it flies.
     output: Option<NavOutput>,
     updated_at: SimTime,
-    /// It was reported that position hold has no position.
-    no_position_reported: bool,
+    /// Why position hold only levels the craft, as it was reported.
+    only_levelled: Option<FirmwareNotice>,
 }
 
 impl Navigation {
@@ -70,7 +70,7 @@ impl Navigation {
             inputs: unknown_craft(),
             output: None,
             updated_at: now,
-            no_position_reported: false,
+            only_levelled: None,
         }
     }
 
@@ -94,6 +94,7 @@ impl Navigation {
             armed: safety.armed(),
             fix: sensing.fix() && estimate.position_valid,
             altitude_valid: estimate.altitude_valid,
+            heading_valid: estimate.heading_valid,
             throttle_raised: safety.raised(),
             failsafe: self.failsafe.active(),
             home: safety.home(),
@@ -271,16 +272,22 @@ impl Navigation {
         } else {
             let hold = HoldModes {
                 altitude: armed && modes.has(Mode::AltHold),
-                position: armed && modes.has(Mode::PosHold),
+                position: armed && modes.has(Mode::PosHold) && self.inputs.heading_valid,
                 descend: armed && self.failsafe.auto_landing(),
             };
             let (nav, tuning) = (&parameters.nav, &parameters.hold);
             self.holds.update(hold, &self.inputs, throttle_stick_us, nav, tuning, &mut self.controllers)
         };
-        if held.no_position && !self.no_position_reported {
-            outbox.push(FirmwareEvent::Notice(FirmwareNotice::NoPosition));
+        let no_heading = armed && modes.has(Mode::PosHold) && !self.inputs.heading_valid;
+        let only_levelled = match (no_heading, held.no_position) {
+            (true, _) => Some(FirmwareNotice::NoHeading),
+            (false, true) => Some(FirmwareNotice::NoPosition),
+            (false, false) => None,
+        };
+        if let Some(notice) = only_levelled.filter(|_| only_levelled != self.only_levelled) {
+            outbox.push(FirmwareEvent::Notice(notice));
         }
-        self.no_position_reported = held.no_position;
+        self.only_levelled = only_levelled;
         let demand = match self.output {
             Some(output) => Demand::from(output),
             None => Demand { lean: held.lean, throttle: held.throttle, ..Demand::default() },
@@ -341,6 +348,7 @@ fn unknown_craft() -> NavInputs {
         armed: false,
         fix: false,
         altitude_valid: false,
+        heading_valid: false,
         throttle_raised: false,
         failsafe: false,
         home: None,

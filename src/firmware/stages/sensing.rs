@@ -21,6 +21,8 @@ pub(in crate::firmware) struct Sensing {
     mag_flu: Vector3<f64>,
     fix: bool,
     fix_since: SimTime,
+    /// The magnetometer was reported as doubted.
+    heading_doubted: bool,
 }
 
 impl Sensing {
@@ -38,6 +40,7 @@ impl Sensing {
             mag_flu: Vector3::zeros(),
             fix: false,
             fix_since: SimTime::ZERO,
+            heading_doubted: false,
         }
     }
 
@@ -77,6 +80,16 @@ impl Sensing {
             outbox.push(FirmwareEvent::Notice(FirmwareNotice::ImuFrozen));
         }
         self.imu_frozen = frozen;
+    }
+
+    /// Reports a magnetometer that is doubted or believed again.
+    pub(in crate::firmware) fn watch_heading(&mut self, outbox: &mut Outbox) {
+        let doubt = self.estimate().heading_doubt_rad;
+        if doubt.is_some() != self.heading_doubted {
+            self.heading_doubted = doubt.is_some();
+            let error_deg = doubt.unwrap_or_default().to_degrees();
+            outbox.push(FirmwareEvent::HeadingDoubt { on: self.heading_doubted, error_deg });
+        }
     }
 
     /// Reports a fix that comes or goes.

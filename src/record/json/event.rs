@@ -35,6 +35,7 @@ pub(super) enum Fields<'a> {
     Contact { impact_mps: Milli },
     Touchdown { impact_mps: Milli, peak_mps2: Milli },
     Crash { cause: String },
+    HeadingDoubt { on: bool, error_deg: Milli },
     Battery { state: String, cell_v: Milli },
     Doors { ws: Option<SocketAddr>, tcp: Option<SocketAddr>, fdm: Option<SocketAddr>, rc: Option<SocketAddr> },
     Notice { text: Cow<'a, str> },
@@ -134,6 +135,9 @@ impl<'a> Fields<'a> {
                 ("failsafe", Self::Failsafe { policy, stage: *stage, procedure })
             }
             FirmwareEvent::Nav(event) => return Self::of_nav(event),
+            FirmwareEvent::HeadingDoubt { on, error_deg } => {
+                ("heading_doubt", Self::HeadingDoubt { on: *on, error_deg: Decimals(*error_deg) })
+            }
             FirmwareEvent::Battery { state, cell_v } => Self::of_battery(*state, *cell_v),
             FirmwareEvent::Notice(notice) => {
                 ("notice", Self::Notice { text: <&'static str>::from(notice).into() })
@@ -197,6 +201,7 @@ impl<'a> Fields<'a> {
             | Refusal::Throttle
             | Refusal::NoFix
             | Refusal::NoAltitude
+            | Refusal::NoHeading
             | Refusal::NoPlan
             | Refusal::PlanCorrupt
             | Refusal::NoHome

@@ -187,6 +187,9 @@ impl RemoteController {
             arming_blocked: craft.arming_blocked_by.as_ref().is_none_or(|flags| !flags.is_empty()),
             armed: craft.is_armed(),
             engaged: craft.is_active(Mode::Autopilot),
+            // A remote one does not tell about its heading: it has to be content.
+            heading_known: true,
+            forward_stick_us: MID_US,
             alt_m: estimate.alt.unwrap_or_default(),
             climb_mps: estimate.climb_mps.unwrap_or_default(),
             hover_stick_us: settings.map_or(MID_US, |settings| settings.hover_stick_us),

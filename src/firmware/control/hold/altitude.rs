@@ -251,6 +251,7 @@ mod tests {
             armed: true,
             fix,
             altitude_valid: true,
+            heading_valid: true,
             throttle_raised: true,
             failsafe: true,
             home: None,
