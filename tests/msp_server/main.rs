@@ -1,0 +1,69 @@
+//! The MSP server against exchanges captured from the real executable, and what the messages do.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+mod captured;
+mod commands;
+mod reading;
+mod table;
+mod writing;
+
+use betadeck::firmware::cli::BuildInfo;
+use betadeck::firmware::config::{Configuration, ModeCondition};
+use betadeck::firmware::msp::{GpsReading, MspFacts, handle};
+use betadeck::geo::LatLon;
+
+fn unhex(text: &str) -> Vec<u8> {
+    (0..text.len() / 2).map(|i| u8::from_str_radix(&text[2 * i..2 * i + 2], 16).unwrap()).collect()
+}
+
+fn hex(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// The craft of the captured exchanges.
+fn craft() -> Configuration {
+    let mut configuration = Configuration::default();
+    configuration.settings.set_text("craft_name", "SITLQUAD").unwrap();
+    configuration.settings.set_number("small_angle", 180).unwrap();
+    for (slot, box_id) in [0, 56, 1, 46].into_iter().enumerate() {
+        configuration.modes[slot] = ModeCondition {
+            box_id,
+            aux_channel: slot as u8,
+            start_us: 1700,
+            end_us: 2100,
+            ..ModeCondition::default()
+        };
+    }
+    configuration
+}
+
+/// What that craft sensed.
+fn facts() -> MspFacts {
+    let mut channels = [1500; 16];
+    channels[3..10].fill(1000);
+    MspFacts {
+        build: BuildInfo {
+            version: "2026.12.0-alpha".to_owned(),
+            api: "1.49".to_owned(),
+            date: "Nov 21 2026".to_owned(),
+            time: "02:51:34".to_owned(),
+            revision: "301d01a".to_owned(),
+        },
+        cycle_time_us: 939,
+        heading_deg: 358.0,
+        gps: GpsReading {
+            fix: true,
+            sats: 12,
+            position: LatLon::new(-275_000_000, 1_530_000_000),
+            alt_amsl_m: 30.0,
+            ..GpsReading::default()
+        },
+        channels,
+        ..MspFacts::default()
+    }
+}
+
+fn ask(configuration: &mut Configuration, code: u16, request: &[u8]) -> Option<Vec<u8>> {
+    handle(code, request, configuration, &facts()).reply
+}
