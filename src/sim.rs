@@ -53,8 +53,8 @@ pub use command::{COMMAND_WORDS, CommandWord, WorldCommand};
 pub use config::{Home, Noise, STEP_RATES_HZ, Turbulence, Wind, WorldConfig, WorldError, step_us};
 pub use event::{WorldEvent, WorldEventKind};
 pub use fault::{
-    ActiveFault, BatteryFault, Direction, FAULTS, Fault, FaultInfo, FaultKey, FaultLink, FaultStart,
-    LinkFaults, MAX_FAULTS, MotorNumber, ScheduledFault,
+    BatteryFault, Direction, FAULTS, Fault, FaultInfo, FaultKey, FaultLink, FaultStart, LinkFaults,
+    MAX_FAULTS, MotorNumber, ScheduledFault,
 };
 pub use ground::{ContactAnchors, Ground, GroundContact, NO_ANCHORS};
 pub use plant::{Plant, ground_effect_factor};

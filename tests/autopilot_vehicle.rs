@@ -176,7 +176,7 @@ fn fly(case: Case, points: &[Point], takeoff_m: f64, limit_s: f64, done: fn(&Sam
             pos: Vector2::new(truth.pos_enu.y, truth.pos_enu.x),
             alt: truth.pos_enu.z - ground,
             speed: truth.vel_enu.xy().norm(),
-            lean_deg: truth.lean_deg(),
+            lean_deg: (truth.attitude * Vector3::z()).z.min(1.0).acos().to_degrees(),
             armed: vehicle.embedded().unwrap().is_armed(),
             on_ground: truth.on_ground,
         };

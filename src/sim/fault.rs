@@ -20,7 +20,8 @@ pub(super) use effects::GpsFaults;
 pub use effects::LinkFaults;
 pub(super) use parse::MAX_TIME_S;
 pub use parse::{FAULTS, FaultInfo};
-pub use schedule::{ActiveFault, MAX_FAULTS};
+pub(in crate::sim) use schedule::ActiveFault;
+pub use schedule::MAX_FAULTS;
 pub(super) use schedule::{FaultChange, FaultSchedule};
 
 /// A motor by its number, 1…4.

@@ -73,12 +73,6 @@ impl Truth {
         let nose = self.attitude * Vector3::x();
         nose.z.clamp(-1.0, 1.0).asin().to_degrees()
     }
-
-    /// Angle between the craft's and the world's up axis, degrees.
-    #[must_use]
-    pub fn lean_deg(&self) -> f64 {
-        (self.attitude * Vector3::z()).z.clamp(-1.0, 1.0).acos().to_degrees()
-    }
 }
 
 /// The attitude of a level craft with the given heading (degrees clockwise from north), body FLU → ENU.

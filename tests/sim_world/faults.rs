@@ -211,7 +211,7 @@ fn receiver_and_link_faults_are_told_to_their_owners() {
     assert!(link.stall);
     assert_eq!((link.loss, link.late_ms, link.duplicated, link.jitter_ms), (0.1, 20.0, 0.2, 5.0));
     world.apply(WorldCommand::ClearFaults).expect("cleared");
-    assert!(!world.rx_lost() && !world.link_faults().stall && world.active_faults().is_empty());
+    assert!(!world.rx_lost() && !world.link_faults().stall && world.status().faults.is_empty());
 }
 
 #[test]
@@ -221,9 +221,9 @@ fn a_fault_is_taken_off_by_name() {
     put_on(&mut world, "motor=4:0.5", None);
     world.apply(WorldCommand::FaultOff(fault("motor=2:1").key())).expect("off");
     run(&mut world, 0.01, hover);
-    assert_eq!(world.active_faults().len(), 1);
-    assert_eq!(world.active_faults()[0].fault, fault("motor=4:0.5"));
+    assert_eq!(world.status().faults.len(), 1);
+    assert_eq!(world.status().faults[0].0, fault("motor=4:0.5"));
     put_on(&mut world, "motor=1:0.5", None);
     world.apply(WorldCommand::parse("end=motor").expect("a command")).expect("off");
-    assert!(world.active_faults().is_empty());
+    assert!(world.status().faults.is_empty());
 }

@@ -4,7 +4,7 @@ use crate::geo::LocalFrame;
 use crate::signals::{SensorFrame, SimTime};
 use crate::sim::airframe::Airframe;
 use crate::sim::event::WorldEvent;
-use crate::sim::fault::{ActiveFault, LinkFaults};
+use crate::sim::fault::LinkFaults;
 use crate::sim::truth::Truth;
 
 use super::World;
@@ -84,11 +84,5 @@ impl World {
     #[must_use]
     pub fn link_faults(&self) -> LinkFaults {
         self.effects.link
-    }
-
-    /// The active faults.
-    #[must_use]
-    pub fn active_faults(&self) -> &[ActiveFault] {
-        self.faults.active()
     }
 }

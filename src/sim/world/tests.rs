@@ -239,7 +239,8 @@ fn time_passes_without_motion_and_faults_of_the_link_end_ahead_of_it() {
         world.pass();
     }
     assert_eq!((world.time().0, world.truth().pos_enu), (200_000, place));
-    let active = |world: &World| world.active_faults().iter().map(|on| on.fault.name()).collect::<Vec<_>>();
+    let active =
+        |world: &World| world.status().faults.iter().map(|(fault, _)| fault.name()).collect::<Vec<_>>();
     assert_eq!(active(&world), ["gps-loss", "fdm-loss", "stall"]);
     world.end_link_faults(899_999);
     assert_eq!(active(&world).len(), 3);
