@@ -21,6 +21,7 @@ mod refusal;
 pub mod snapshot;
 pub mod switch;
 mod transition;
+mod turbulence;
 
 pub use arming_flag::{ArmingFlag, ArmingFlags};
 pub use battery_alarm::BatteryAlarm;
@@ -43,3 +44,4 @@ pub use nav::{FenceAction, L1Mode, NavEvent, NavOutput, NavState, NavTelemetry, 
 pub use refusal::{AbortReason, Refusal};
 pub use snapshot::Snapshot;
 pub use transition::TransitionReason;
+pub use turbulence::Turbulence;

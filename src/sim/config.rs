@@ -7,6 +7,7 @@ use super::fault::{FaultLink, ScheduledFault};
 use super::switches::Switches;
 use super::value_text::ParseError;
 use crate::did_you_mean;
+pub use crate::telemetry::Turbulence;
 
 mod error;
 mod home;
@@ -102,34 +103,6 @@ impl Noise {
     }
 }
 
-/// Level of turbulence; the wind at 20 ft that MIL-F-8785C gives each is 15, 30 and 45 kt.
-#[derive(
-    Debug,
-    Clone,
-    Copy,
-    PartialEq,
-    Eq,
-    Default,
-    Hash,
-    strum::Display,
-    strum::EnumString,
-    strum::VariantNames,
-    strum::EnumIter,
-    strum::IntoStaticStr,
-)]
-#[strum(serialize_all = "lowercase")]
-pub enum Turbulence {
-    /// Smooth air.
-    #[default]
-    None,
-    /// Light.
-    Light,
-    /// Moderate.
-    Moderate,
-    /// Severe.
-    Severe,
-}
-
 impl Turbulence {
     /// The level with this name.
     ///
@@ -139,7 +112,7 @@ impl Turbulence {
         text.parse().map_err(|_| one_of("turbulence", text, Self::VARIANTS))
     }
 
-    /// Wind at 20 ft that stands for the level, kt.
+    /// Wind at 20 ft that stands for the level, kt: MIL-F-8785C gives 15, 30 and 45 kt.
     #[must_use]
     pub fn wind_at_20ft_kt(self) -> f64 {
         match self {

@@ -7,7 +7,9 @@ use nalgebra::Vector2;
 use crate::geo::LatLon;
 use crate::plan::FlightPlan;
 use crate::signals::{RC_CHANNELS, RcSource, SimTime};
-use crate::telemetry::{ArmingFlags, FaultKind, FaultValue, Mode, ModeBox, ModeFlags, NavTelemetry, switch};
+use crate::telemetry::{
+    ArmingFlags, FaultKind, FaultValue, Mode, ModeBox, ModeFlags, NavTelemetry, Turbulence, switch,
+};
 
 /// The whole picture.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -261,8 +263,8 @@ pub struct WorldView {
     pub wind: Option<WindView>,
     /// Gust amplitude, m/s.
     pub gust_mps: f64,
-    /// Turbulence level: `none`, `light`, `moderate`, `severe`.
-    pub turbulence: &'static str,
+    /// Turbulence level.
+    pub turbulence: Turbulence,
     /// Sensor noise on.
     pub noise: bool,
     /// Active faults.

@@ -147,7 +147,6 @@ impl Physics {
         let view = WorldView {
             airframe: self.airframe().to_owned(),
             faults: status.faults.iter().map(view).collect(),
-            turbulence: "none",
             ..WorldView::default()
         };
         if self.world().is_none() {
@@ -156,7 +155,7 @@ impl Physics {
         WorldView {
             wind: Some(WindView { speed_mps: status.wind.speed_mps, from_deg: status.wind.from_deg }),
             gust_mps: status.gust_mps,
-            turbulence: status.turbulence.into(),
+            turbulence: status.turbulence,
             noise: status.noise == Noise::Real,
             ..view
         }

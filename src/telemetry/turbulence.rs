@@ -1,0 +1,29 @@
+//! How rough the air is.
+
+/// Level of turbulence after MIL-F-8785C; `Display` is its name on the command line.
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    Default,
+    Hash,
+    strum::Display,
+    strum::EnumString,
+    strum::VariantNames,
+    strum::EnumIter,
+    strum::IntoStaticStr,
+)]
+#[strum(serialize_all = "lowercase")]
+pub enum Turbulence {
+    /// Smooth air.
+    #[default]
+    None,
+    /// Light.
+    Light,
+    /// Moderate.
+    Moderate,
+    /// Severe.
+    Severe,
+}
