@@ -355,3 +355,18 @@ async fn what_is_saved_wins_over_what_was_given_at_boot() {
         Configuration::default().settings.number("ap_max_angle") as u8
     );
 }
+
+#[tokio::test]
+async fn a_restart_that_gives_the_starter_modes_says_so() {
+    let mut bench = bench_with_given_settings().await;
+    let restart = |bench: &mut Bench, line: &str| {
+        let (reply, _answer) = oneshot::channel();
+        let line = line.to_owned();
+        bench.handle(Request::Cli { client: ClientId(1), line, source: LineSource::Prompt, reply }).notices
+    };
+    assert_eq!(restart(&mut bench, "exit"), [""; 0], "ARM was given");
+    assert!(bench.enter(1, true));
+    assert_eq!(restart(&mut bench, "defaults"), [Configuration::STARTER_MODES_NOTICE]);
+    assert!(bench.enter(1, true));
+    assert_eq!(restart(&mut bench, "save"), [""; 0], "they are stored now");
+}

@@ -103,6 +103,10 @@ impl Configuration {
         *self = Self { settings, ..Self::default() };
     }
 
+    /// What the user is told of a craft that got the starter modes.
+    pub const STARTER_MODES_NOTICE: &str = "The craft had no modes: ARM is on AUX1, AUTOPILOT on AUX2, ANGLE, ALTHOLD \
+         and POS HOLD on AUX3, each above 1700 µs; the CLI command save keeps them.";
+
     /// Gives a craft without any mode condition the modes a pilot of the simulator needs: ARM on AUX1, AUTOPILOT on
     /// AUX2; ANGLE, ALTHOLD and POS HOLD on AUX3, each above 1700 µs. Says whether it changed anything.
     pub fn starter_modes(&mut self) -> bool {

@@ -38,21 +38,21 @@ impl Persistence {
         saved.map_err(|error| format!("Not saved: {error}."))
     }
 
-    /// Restarts the flight controller on what was saved last, or what it booted with. Gives what is wrong with the stored
-    /// configuration, as sentences.
+    /// Restarts the flight controller on what was saved last, or what it booted with. Gives sentences for the user: what
+    /// is wrong with the stored configuration, and that the craft got the starter modes.
     pub(super) fn restart(&mut self, controller: &mut FlightController) -> Vec<String> {
-        let mut findings = Vec::new();
+        let mut notices = Vec::new();
         controller.restart(|| {
             let loaded = self.store.load();
-            findings = loaded.findings;
+            notices = loaded.findings;
             let mut configuration =
                 self.at_boot.as_deref().map_or(loaded.configuration, Configuration::clone);
-            if self.starter_modes {
-                configuration.starter_modes();
+            if self.starter_modes && configuration.starter_modes() {
+                notices.push(Configuration::STARTER_MODES_NOTICE.to_owned());
             }
             configuration
         });
         controller.set_storage_facts(self.store.facts());
-        findings
+        notices
     }
 }

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use crate::firmware::config::Configuration;
 use crate::geo::LatLon;
 
 /// Something that was decided for the user, or that is probably a mistake; `Display` is the sentence.
@@ -30,10 +31,7 @@ pub enum SetupNotice {
 impl fmt::Display for SetupNotice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::StarterModes => f.write_str(
-                "The craft had no modes: ARM is on AUX1, AUTOPILOT on AUX2, ANGLE, ALTHOLD and POS HOLD on AUX3, each \
-                 above 1700 µs; the CLI command save keeps them.",
-            ),
+            Self::StarterModes => f.write_str(Configuration::STARTER_MODES_NOTICE),
             Self::HomeAtFirstWaypoint { first, distance_m } => write!(
                 f,
                 "The plan is {:.0} km from the default home: the craft starts at its first waypoint, {first} (--home \
