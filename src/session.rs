@@ -22,5 +22,5 @@ pub use pacer::{Pacer, SPEED_RANGE};
 pub use persistence::Persistence;
 pub use request_handler::{Handled, RequestHandler};
 pub use runtime::{Endpoints, Handle, SessionConfig, start};
-pub use simulator::SimulatorRemark;
+pub use simulator::SimulatorNotice;
 pub use upload::upload;

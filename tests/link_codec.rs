@@ -5,7 +5,7 @@
 use std::time::Duration;
 
 use betadeck::link::proto::command_line::{Completion, LineReply};
-use betadeck::link::proto::fdm::{self, Gravity, Packet, Refusal, State};
+use betadeck::link::proto::fdm::{self, Gravity, Packet, PacketError, State};
 use betadeck::link::proto::line_editor::MAX_LINE;
 use betadeck::link::proto::msp::{Decoder, Dropped, Form, Frame, Kind};
 use betadeck::link::proto::serial_session::{Ask, SerialSession};
@@ -209,7 +209,7 @@ proptest! {
     #[test]
     fn datagrams_of_noise_do_no_harm(bytes in prop::collection::vec(any::<u8>(), 0..1500)) {
         let accepted = Packet::parse(&bytes);
-        prop_assert!(bytes.len() >= fdm::SIZE || accepted == Err(Refusal::TooShort));
+        prop_assert!(bytes.len() >= fdm::SIZE || accepted == Err(PacketError::TooShort));
         if let Ok(packet) = accepted {
             for dialect in [Dialect::SitlGz, Dialect::GzPlugin, Dialect::Legacy] {
                 assert_sane(&dialect.decode(&packet, dialect.usual_gravity()));
@@ -278,14 +278,14 @@ fn the_decoder_finds_the_good_frame_behind_every_stored_damage() {
 #[test]
 fn stored_state_datagrams_are_judged_as_named() {
     let refused = [
-        ("fast-rate.bin", Refusal::Rate),
-        ("hard-hit.bin", Refusal::Acceleration),
-        ("huge-altitude.bin", Refusal::OutOfThisWorld),
-        ("huge-velocity.bin", Refusal::OutOfThisWorld),
-        ("inf-rate.bin", Refusal::NotFinite),
-        ("nan-stamp.bin", Refusal::NotFinite),
-        ("short.bin", Refusal::TooShort),
-        ("zero-quaternion.bin", Refusal::Quaternion),
+        ("fast-rate.bin", PacketError::Rate),
+        ("hard-hit.bin", PacketError::Acceleration),
+        ("huge-altitude.bin", PacketError::OutOfThisWorld),
+        ("huge-velocity.bin", PacketError::OutOfThisWorld),
+        ("inf-rate.bin", PacketError::NotFinite),
+        ("nan-stamp.bin", PacketError::NotFinite),
+        ("short.bin", PacketError::TooShort),
+        ("zero-quaternion.bin", PacketError::Quaternion),
     ];
     for (name, bytes) in corpus("fdm") {
         let expected = refused.iter().find(|(file, _)| *file == name).map(|(_, why)| *why);

@@ -1,8 +1,8 @@
-//! The firmware's side of an external simulator: the conversation of [`FdmLink`] over a [`MotorPort`].
+//! The firmware's side of an external simulator: [`FdmLink`] replies to its packets over a [`MotorPort`].
 
 use std::time::{Duration, Instant};
 
-use super::proto::fdm_link::{Answer, Counters, FdmLink, FdmLinkConfig, Received};
+use super::proto::fdm_link::{Counters, FdmLink, FdmLinkConfig, Received, Reply};
 use super::proto::servo;
 use super::udp::{MotorPort, Sent};
 use crate::signals::fdm::MotorOrder;
@@ -20,7 +20,7 @@ pub struct ExternalSimulator {
 }
 
 impl ExternalSimulator {
-    /// A link that starts now: says so to the simulator with motors at rest.
+    /// A link that starts now, with a first packet of motors at rest.
     #[must_use]
     pub fn start(config: FdmLinkConfig, order: MotorOrder, port: MotorPort, now: Instant) -> Self {
         let mut simulator = Self {
@@ -47,10 +47,10 @@ impl ExternalSimulator {
         if let Some(sensors) = &received.sensors {
             self.pulses_us = servo::pulses_us(&run(sensors, received.ticks));
         }
-        match received.answer {
-            Answer::Nothing => {}
-            Answer::Servo => self.send_servo(),
-            Answer::Both => {
+        match received.reply {
+            Reply::Nothing => {}
+            Reply::Servo => self.send_servo(),
+            Reply::Both => {
                 self.send_servo();
                 self.port.send_raw(self.pulses_us);
             }

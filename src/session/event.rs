@@ -4,7 +4,7 @@ use std::net::SocketAddr;
 
 use tokio::sync::mpsc;
 
-use super::simulator::SimulatorRemark;
+use super::simulator::SimulatorNotice;
 use crate::signals::{RcFrame, SimTime};
 use crate::telemetry::{self, EventKind};
 use crate::vehicle::Vehicle;
@@ -30,7 +30,7 @@ pub enum SessionEvent {
     /// Other programs can reach the vehicle from now on.
     Endpoints(EndpointAddresses),
     /// About the external simulator that moves the craft.
-    Simulator(SimulatorRemark),
+    Simulator(SimulatorNotice),
     /// A state from an external simulator came in while none had been accepted yet.
     FirstState {
         /// The simulator's clock, s.

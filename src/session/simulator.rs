@@ -6,8 +6,8 @@ use std::time::{Duration, Instant};
 use arrayvec::ArrayVec;
 
 use super::request_handler::RequestHandler;
-use crate::link::proto::fdm::Refusal;
-use crate::link::proto::fdm_link::{Notice, Verdict};
+use crate::link::proto::fdm::PacketError;
+use crate::link::proto::fdm_link::{FdmNotice, PacketKind};
 use crate::link::{ExternalSimulator, ImpairedLink, LinkImpairment};
 use crate::session::event::{EventSender, SessionEvent};
 use crate::sim::LinkFaults;
@@ -22,28 +22,28 @@ const REFUSALS: usize = 6;
 
 /// What a session tells about its external simulator.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum SimulatorRemark {
+pub enum SimulatorNotice {
     /// Its first packet was accepted.
-    Speaks,
+    Connected,
     /// A packet was accepted after a silence.
-    SpeaksAgain {
+    Resumed {
         /// Wall time without an accepted packet, s.
         silence_s: f64,
     },
     /// It has stopped sending.
     Silent,
     /// Packets are refused for this reason; told once for each.
-    Refused(Refusal),
+    Refused(PacketError),
     /// The link has adapted to what the packets show.
-    Adapted(Notice),
+    Adapted(FdmNotice),
 }
 
-impl fmt::Display for SimulatorRemark {
+impl fmt::Display for SimulatorNotice {
     /// As a sentence.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Speaks => f.write_str("The simulator speaks: the craft's time is its time now."),
-            Self::SpeaksAgain { silence_s } => {
+            Self::Connected => f.write_str("The simulator speaks: the craft's time is its time now."),
+            Self::Resumed { silence_s } => {
                 write!(f, "The simulator speaks again after {silence_s:.1} s of silence.")
             }
             Self::Silent => f.write_str("The simulator is silent: time stands still until it speaks again."),
@@ -63,7 +63,7 @@ pub(super) struct Simulator {
     state: LinkState,
     /// When it spoke last.
     received_at: Instant,
-    told_refusals: ArrayVec<Refusal, REFUSALS>,
+    told_refusals: ArrayVec<PacketError, REFUSALS>,
     /// Something happened that the view should show at once.
     changed: bool,
 }
@@ -157,18 +157,18 @@ impl Simulator {
             }
             vehicle.controller().motors()
         });
-        if let Verdict::Refused(refusal) = received.verdict {
+        if let PacketKind::Refused(refusal) = received.kind {
             self.tell_refusal(refusal, vehicle, events);
             return 0;
         }
         self.tell_return(at, vehicle, events);
-        if received.verdict == (Verdict::Resync { restarted: true }) {
+        if received.kind == (PacketKind::Resync { restarted: true }) {
             vehicle.reset_craft();
             handler.after_restart(false, vehicle.controller_mut());
         }
         for notice in received.notices {
             self.changed = true;
-            report(SimulatorRemark::Adapted(notice), vehicle, events);
+            report(SimulatorNotice::Adapted(notice), vehicle, events);
         }
         if let Some(pose) = received.pose {
             vehicle.see(pose);
@@ -191,7 +191,7 @@ impl Simulator {
         if self.state == LinkState::Flowing && self.link.state(now) == LinkState::Silent {
             self.state = LinkState::Silent;
             self.changed = true;
-            report(SimulatorRemark::Silent, vehicle, events);
+            report(SimulatorNotice::Silent, vehicle, events);
         }
         ticks
     }
@@ -206,19 +206,19 @@ impl Simulator {
         let before = std::mem::replace(&mut self.state, LinkState::Flowing);
         self.changed |= before != LinkState::Flowing;
         match before {
-            LinkState::Waiting => report(SimulatorRemark::Speaks, vehicle, events),
+            LinkState::Waiting => report(SimulatorNotice::Connected, vehicle, events),
             LinkState::Silent => {
-                report(SimulatorRemark::SpeaksAgain { silence_s: silence.as_secs_f64() }, vehicle, events);
+                report(SimulatorNotice::Resumed { silence_s: silence.as_secs_f64() }, vehicle, events);
             }
             LinkState::Flowing => {}
         }
     }
 
-    fn tell_refusal(&mut self, refusal: Refusal, vehicle: &mut Vehicle, events: &EventSender) {
+    fn tell_refusal(&mut self, refusal: PacketError, vehicle: &mut Vehicle, events: &EventSender) {
         // The count of bad packets has changed.
         self.changed = true;
         if !self.told_refusals.contains(&refusal) && self.told_refusals.try_push(refusal).is_ok() {
-            report(SimulatorRemark::Refused(refusal), vehicle, events);
+            report(SimulatorNotice::Refused(refusal), vehicle, events);
         }
     }
 }
@@ -229,12 +229,12 @@ fn impairment(faults: LinkFaults) -> LinkImpairment {
     LinkImpairment { stall, loss, late_ms, duplicated, jitter_ms }
 }
 
-fn report(remark: SimulatorRemark, vehicle: &mut Vehicle, events: &EventSender) {
-    events.report(vehicle, SessionEvent::Simulator(remark));
+fn report(notice: SimulatorNotice, vehicle: &mut Vehicle, events: &EventSender) {
+    events.report(vehicle, SessionEvent::Simulator(notice));
 }
 
 /// A notice of the link as a sentence.
-fn sentence(remark: &str) -> String {
-    let mut letters = remark.chars();
+fn sentence(notice: &str) -> String {
+    let mut letters = notice.chars();
     letters.next().map_or_else(String::new, |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
 }

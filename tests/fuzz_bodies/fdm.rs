@@ -1,9 +1,9 @@
-//! Datagrams of a simulator: the bytes once as one datagram, and once cut into a conversation.
+//! Datagrams of a simulator: the bytes once as one datagram, and once cut into an exchange.
 
 use betadeck::firmware::config::Configuration;
 use betadeck::firmware::{Firmware, FirmwareOptions};
-use betadeck::link::proto::fdm::{self, Gravity, Packet, Refusal, State};
-use betadeck::link::proto::fdm_link::{Answer, FdmLink, FdmLinkConfig, Verdict};
+use betadeck::link::proto::fdm::{self, Gravity, Packet, PacketError, State};
+use betadeck::link::proto::fdm_link::{FdmLink, FdmLinkConfig, PacketKind, Reply};
 use betadeck::signals::SensorFrame;
 use betadeck::signals::fdm::Dialect;
 use betadeck::telemetry::LinkState;
@@ -22,7 +22,7 @@ const DIALECTS: [Dialect; 3] = [Dialect::SitlGz, Dialect::GzPlugin, Dialect::Leg
 /// Reads one datagram, and flies on many.
 pub fn run(data: &[u8]) {
     one_datagram(data);
-    conversation(data);
+    exchange(data);
 }
 
 fn one_datagram(data: &[u8]) {
@@ -37,7 +37,7 @@ fn one_datagram(data: &[u8]) {
                 assert_encodes(dialect, &dialect.decode(&packet, dialect.usual_gravity()));
             }
         }
-        Err(refusal) => assert_eq!(refusal == Refusal::TooShort, data.len() < fdm::SIZE),
+        Err(refusal) => assert_eq!(refusal == PacketError::TooShort, data.len() < fdm::SIZE),
     }
 }
 
@@ -57,7 +57,7 @@ fn assert_encodes(dialect: Dialect, state: &State) {
 }
 
 /// Each datagram's first byte, which hardly changes its stamp, says how long the simulator waited before it.
-fn conversation(data: &[u8]) {
+fn exchange(data: &[u8]) {
     let mut link = FdmLink::new(FdmLinkConfig::default(), 0);
     let mut firmware = Firmware::new(Configuration::default(), FirmwareOptions::default());
     let mut now_us = 0;
@@ -71,11 +71,11 @@ fn conversation(data: &[u8]) {
         count += 1;
         let received = link.receive(datagram, now_us);
         assert!(received.ticks <= MOST_TICKS, "{} ticks", received.ticks);
-        assert_eq!(received.sensors.is_some(), received.verdict == Verdict::State);
-        if let Verdict::Refused(_) | Verdict::Old = received.verdict {
-            assert_eq!((received.ticks, received.answer), (0, Answer::Nothing));
+        assert_eq!(received.sensors.is_some(), received.kind == PacketKind::State);
+        if let PacketKind::Refused(_) | PacketKind::Old = received.kind {
+            assert_eq!((received.ticks, received.reply), (0, Reply::Nothing));
         }
-        if !matches!(received.verdict, Verdict::Refused(_)) {
+        if !matches!(received.kind, PacketKind::Refused(_)) {
             assert_eq!(link.state(now_us), LinkState::Flowing);
         }
         if let Some(sensors) = received.sensors {

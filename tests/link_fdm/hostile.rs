@@ -1,7 +1,7 @@
 //! Datagrams that are not packets of a simulator.
 
 use betadeck::link::proto::fdm::Packet;
-use betadeck::link::proto::fdm_link::Verdict;
+use betadeck::link::proto::fdm_link::PacketKind;
 use nalgebra::Vector3;
 
 use super::{SeededChance, default_flow, packet};
@@ -37,7 +37,7 @@ fn a_hundred_thousand_datagrams_of_noise_leave_no_trace() {
 fn stored_packets_are_parsed_alike_by_link_and_codec() {
     let (mut link, now) = default_flow(10);
     let short = link.receive(&packet(1.0)[..143], now);
-    assert!(matches!(short.verdict, Verdict::Refused(_)));
+    assert!(matches!(short.kind, PacketKind::Refused(_)));
     assert!(Packet::parse(&packet(1.0)).is_ok());
     assert_eq!(link.counters().wrong_size, 1);
 }

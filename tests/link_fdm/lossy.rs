@@ -3,7 +3,7 @@
 
 use std::collections::VecDeque;
 
-use betadeck::link::proto::fdm_link::{Answer, FdmLink, FdmLinkConfig, Received};
+use betadeck::link::proto::fdm_link::{FdmLink, FdmLinkConfig, Received, Reply};
 use betadeck::telemetry::LinkState;
 
 use super::{MS, SeededChance, packet};
@@ -120,8 +120,8 @@ impl LossyLink {
             self.steps_since_loss = 0;
             return;
         }
-        let Received { answer, .. } = self.link.receive(state, self.now);
-        if answer != Answer::Nothing {
+        let Received { reply, .. } = self.link.receive(state, self.now);
+        if reply != Reply::Nothing {
             self.send_servo();
         }
         if self.steps_since_loss > 20 {

@@ -3,7 +3,7 @@
 use betadeck::firmware::config::Configuration;
 use betadeck::firmware::{AttitudeSource, Firmware, FirmwareOptions};
 use betadeck::link::proto::fdm::GZ_PLUGIN_SIZE;
-use betadeck::link::proto::fdm_link::{FdmLink, FdmLinkConfig, Notice};
+use betadeck::link::proto::fdm_link::{FdmLink, FdmLinkConfig, FdmNotice};
 use betadeck::signals::SimTime;
 use betadeck::signals::fdm::{Dialect, Mirror};
 use betadeck::telemetry::FirmwareEvent;
@@ -92,7 +92,7 @@ fn sensors_sample_at_their_own_rates() {
 }
 
 /// Flies north at 5 m/s for three seconds; positions are mirrored on the wire when `mirrored`.
-fn fly_north(config: FdmLinkConfig, dialect: Dialect, mirrored: bool) -> (Vec<Notice>, f64) {
+fn fly_north(config: FdmLinkConfig, dialect: Dialect, mirrored: bool) -> (Vec<FdmNotice>, f64) {
     let (mut link, start) = flowing(config, dialect, 300);
     let mut notices = Vec::new();
     let mut lat = 0.0;
@@ -121,7 +121,7 @@ fn mirrored_positions_are_turned_back() {
 #[test]
 fn positions_that_are_not_mirrored_are_noticed() {
     let (notices, lat) = fly_north(FdmLinkConfig::default(), Dialect::GzPlugin, false);
-    assert_eq!(notices, [Notice::NotMirrored]);
+    assert_eq!(notices, [FdmNotice::NotMirrored]);
     assert!(lat > 40.4635 + 0.0001);
     let forced = FdmLinkConfig { mirror: Mirror::On, ..FdmLinkConfig::default() };
     let (notices, lat) = fly_north(forced, Dialect::GzPlugin, false);
@@ -145,7 +145,7 @@ fn gravity_is_found_in_the_acceleration_at_rest() {
         notices.extend(received.notices);
         force = received.sensors.unwrap().specific_force_flu.z;
     }
-    assert_eq!(notices, [Notice::GravityIncluded]);
+    assert_eq!(notices, [FdmNotice::GravityIncluded]);
     assert!((force - betadeck::geo::GRAVITY).abs() < 1e-9);
 }
 
@@ -158,7 +158,7 @@ fn an_acceleration_that_makes_no_sense_is_told_once() {
         packet.fields[6] = -5.0;
         notices.extend(link.receive(&packet.to_bytes(), ms * MS).notices);
     }
-    assert_eq!(notices, [Notice::GravityUnclear]);
+    assert_eq!(notices, [FdmNotice::GravityUnclear]);
 }
 
 #[test]

@@ -40,7 +40,7 @@ const QUATERNION_NORM: std::ops::RangeInclusive<f64> = 0.9..=1.1;
 
 /// Why a datagram was refused.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display)]
-pub enum Refusal {
+pub enum PacketError {
     /// Fewer than [`SIZE`] bytes.
     #[strum(to_string = "too short")]
     TooShort,
@@ -72,27 +72,27 @@ pub struct Packet {
 
 impl Packet {
     /// The numbers of a datagram, checked for sense. The pressure is not: some senders leave it uninitialised.
-    pub fn parse(datagram: &[u8]) -> Result<Self, Refusal> {
+    pub fn parse(datagram: &[u8]) -> Result<Self, PacketError> {
         let mut fields = [0.0; FIELDS];
-        let bytes = datagram.get(..SIZE).ok_or(Refusal::TooShort)?;
+        let bytes = datagram.get(..SIZE).ok_or(PacketError::TooShort)?;
         for (field, bytes) in fields.iter_mut().zip(bytes.as_chunks::<8>().0) {
             *field = f64::from_le_bytes(*bytes);
         }
         let packet = Self { fields, size: datagram.len() };
         if fields[..FIELDS - 1].iter().any(|field| !field.is_finite()) {
-            return Err(Refusal::NotFinite);
+            return Err(PacketError::NotFinite);
         }
         if !QUATERNION_NORM.contains(&norm(&fields[7..11])) {
-            return Err(Refusal::Quaternion);
+            return Err(PacketError::Quaternion);
         }
         if norm(&fields[1..4]) > MAX_RATE {
-            return Err(Refusal::Rate);
+            return Err(PacketError::Rate);
         }
         if norm(&fields[4..7]) > MAX_ACCELERATION {
-            return Err(Refusal::Acceleration);
+            return Err(PacketError::Acceleration);
         }
         if norm(&fields[11..14]) > MAX_VELOCITY || fields[16].abs() > MAX_ALTITUDE {
-            return Err(Refusal::OutOfThisWorld);
+            return Err(PacketError::OutOfThisWorld);
         }
         Ok(packet)
     }

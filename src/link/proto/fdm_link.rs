@@ -1,4 +1,4 @@
-//! The conversation with an external simulator: what to make of each state datagram, when to answer, and when to speak
+//! The packet exchange with an external simulator: what each state datagram is, when to reply, and when to send
 //! unasked. The caller moves the bytes, owns the firmware and tells the time.
 //!
 //! ```text
@@ -13,26 +13,26 @@
 //! simulator may run at any speed, and its pause pauses the flight.
 
 mod clock;
+mod conventions;
 mod kicks;
-mod sensors;
-mod surroundings;
+mod virtual_sensors;
 
-use super::fdm::{Packet, Refusal};
+use super::fdm::{Packet, PacketError};
 use crate::signals::fdm::{Dialect, Mirror};
 use crate::signals::{Pose, SensorFrame};
 use crate::telemetry::LinkState;
 use clock::StampClock;
+use conventions::{GravityTest, MirrorTest};
 use kicks::Kicks;
-use sensors::Sensors;
-use surroundings::{GravityTest, MirrorTest};
+use virtual_sensors::VirtualSensors;
 
 /// A pause after which the next packet only sets the time base, µs.
 const RESYNC_AFTER_US: u64 = 500_000;
 
-/// Silence after which the simulator counts as gone, µs.
+/// Silence after which the link counts as lost, µs.
 const SILENT_AFTER_US: u64 = 1_000_000;
 
-/// How to speak with the simulator.
+/// How to read and answer the packets of the simulator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FdmLinkConfig {
     /// The simulator's dialect; `None` = found out from its packets.
@@ -51,7 +51,7 @@ impl Default for FdmLinkConfig {
 
 /// What to send back.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Answer {
+pub enum Reply {
     /// Nothing.
     Nothing,
     /// The last servo packet again, no raw packet.
@@ -62,9 +62,9 @@ pub enum Answer {
 
 /// What a datagram was.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Verdict {
+pub enum PacketKind {
     /// Unreadable.
-    Refused(Refusal),
+    Refused(PacketError),
     /// From before the newest packet.
     Old,
     /// The first after a pause: the time base, nothing else.
@@ -80,7 +80,7 @@ pub enum Verdict {
 
 /// Something to tell the user, once.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display)]
-pub enum Notice {
+pub enum FdmNotice {
     /// The packets show whether gravity is in the acceleration, and it is not as usual.
     #[strum(
         to_string = "the simulator's acceleration contains gravity, unlike that of the public plugin: adapted"
@@ -111,27 +111,27 @@ pub enum Notice {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Received {
     /// What it was.
-    pub verdict: Verdict,
-    /// The sensors to run the firmware on, for [`Verdict::State`]; their time is the caller's to set.
+    pub kind: PacketKind,
+    /// The sensors to run the firmware on, for [`PacketKind::State`]; their time is the caller's to set.
     pub sensors: Option<Box<SensorFrame>>,
-    /// Where the craft is, for [`Verdict::State`], mirroring undone.
+    /// Where the craft is, for [`PacketKind::State`], mirroring undone.
     pub pose: Option<Pose>,
     /// Ticks by which the firmware advances, before the answer.
     pub ticks: u32,
     /// What to send, after the ticks.
-    pub answer: Answer,
+    pub reply: Reply,
     /// What to tell the user.
-    pub notices: arrayvec::ArrayVec<Notice, 4>,
+    pub notices: arrayvec::ArrayVec<FdmNotice, 4>,
 }
 
 impl Received {
-    fn only(verdict: Verdict) -> Self {
+    fn only(kind: PacketKind) -> Self {
         Self {
-            verdict,
+            kind,
             sensors: None,
             pose: None,
             ticks: 0,
-            answer: Answer::Nothing,
+            reply: Reply::Nothing,
             notices: arrayvec::ArrayVec::new(),
         }
     }
@@ -156,7 +156,7 @@ pub struct Counters {
     pub kicks: u64,
 }
 
-/// The conversation with one simulator.
+/// The packet exchange with one simulator.
 #[derive(Debug, Clone)]
 pub struct FdmLink {
     config: FdmLinkConfig,
@@ -165,7 +165,7 @@ pub struct FdmLink {
     dialect: Option<Dialect>,
     gravity: GravityTest,
     mirror: MirrorTest,
-    sensors: Sensors,
+    sensors: VirtualSensors,
     counters: Counters,
     /// The state that was taken last.
     newest: Option<Packet>,
@@ -183,7 +183,7 @@ impl FdmLink {
             dialect: config.dialect,
             gravity: GravityTest::default(),
             mirror: MirrorTest::default(),
-            sensors: Sensors::default(),
+            sensors: VirtualSensors::default(),
             counters: Counters::default(),
             newest: None,
         }
@@ -196,10 +196,10 @@ impl FdmLink {
             Ok(packet) => packet,
             Err(refusal) => {
                 match refusal {
-                    Refusal::TooShort => self.counters.wrong_size += 1,
+                    PacketError::TooShort => self.counters.wrong_size += 1,
                     _ => self.counters.senseless += 1,
                 }
-                return Received::only(Verdict::Refused(refusal));
+                return Received::only(PacketKind::Refused(refusal));
             }
         };
         self.kicks.heard(now_us);
@@ -210,7 +210,7 @@ impl FdmLink {
         }
         if self.clock.is_old(packet.stamp_s()) {
             self.counters.old += 1;
-            return Received::only(Verdict::Old);
+            return Received::only(PacketKind::Old);
         }
         self.state_packet(&packet, now_us)
     }
@@ -219,32 +219,32 @@ impl FdmLink {
         self.counters.resyncs += 1;
         let restarted = self.clock.is_old(stamp_s);
         self.clock.take(stamp_s, now_us);
-        let mut received = Received::only(Verdict::Resync { restarted });
+        let mut received = Received::only(PacketKind::Resync { restarted });
         // A resync is always answered, as the reference does: answers to make up for are withheld later.
-        received.answer = Answer::Servo;
+        received.reply = Reply::Servo;
         if restarted {
             self.dialect = self.config.dialect;
             self.gravity = GravityTest::default();
             self.mirror = MirrorTest::default();
-            received.notices.push(Notice::Restarted);
+            received.notices.push(FdmNotice::Restarted);
         }
         received
     }
 
     fn state_packet(&mut self, packet: &Packet, now_us: u64) -> Received {
-        let mut received = Received::only(Verdict::State);
+        let mut received = Received::only(PacketKind::State);
         let was_wall_clock = self.clock.is_wall_clock();
         let ticks = self.clock.advance(packet.stamp_s(), now_us);
         // A simulator that reads one answer a step would keep the second one for ever. One whose clock stands still
-        // repeats itself while nothing moves, and lives by the answers.
+        // repeats itself while nothing moves, and waits for the replies.
         if self.newest.replace(*packet).is_some_and(|newest| newest.is_same(packet))
             && !self.clock.is_wall_clock()
         {
             self.counters.duplicates += 1;
-            return Received::only(Verdict::Duplicate);
+            return Received::only(PacketKind::Duplicate);
         }
         if self.clock.is_wall_clock() && !was_wall_clock {
-            received.notices.push(Notice::WallClock);
+            received.notices.push(FdmNotice::WallClock);
         }
         let elapsed_us = u64::from(ticks) * self.config.tick_us;
 
@@ -274,7 +274,7 @@ impl FdmLink {
         });
         received.sensors = Some(Box::new(self.sensors.frame(&state, position.is_some(), elapsed_us)));
         received.ticks = ticks;
-        received.answer = if self.kicks.withhold() { Answer::Nothing } else { Answer::Both };
+        received.reply = if self.kicks.withhold() { Reply::Nothing } else { Reply::Both };
         received
     }
 
@@ -344,13 +344,13 @@ mod tests {
     fn a_doubled_packet_is_answered_once() {
         let mut link = flowing();
         let first = link.receive(&datagram(0.1, 0.0), 100_000);
-        assert_eq!((first.verdict, first.answer), (Verdict::State, Answer::Both));
+        assert_eq!((first.kind, first.reply), (PacketKind::State, Reply::Both));
         let second = link.receive(&datagram(0.1, 0.0), 100_100);
-        assert_eq!((second.verdict, second.answer, second.ticks), (Verdict::Duplicate, Answer::Nothing, 0));
+        assert_eq!((second.kind, second.reply, second.ticks), (PacketKind::Duplicate, Reply::Nothing, 0));
         let other = link.receive(&datagram(0.1, 0.01), 100_200);
         assert_eq!(
-            (other.verdict, other.answer),
-            (Verdict::State, Answer::Both),
+            (other.kind, other.reply),
+            (PacketKind::State, Reply::Both),
             "the same stamp, other bytes"
         );
         assert_eq!(link.counters().duplicates, 1);
@@ -359,9 +359,9 @@ mod tests {
     #[test]
     fn duplicates_count_towards_the_wall_clock_and_are_answered_by_it() {
         let mut link = flowing();
-        let answers: Vec<Answer> =
-            (1..=30).map(|ms| link.receive(&datagram(0.099, 0.0), 99_000 + ms * 1000).answer).collect();
-        assert_eq!(answers[..19], [Answer::Nothing; 19]);
-        assert_eq!(answers[19..], [Answer::Both; 11]);
+        let answers: Vec<Reply> =
+            (1..=30).map(|ms| link.receive(&datagram(0.099, 0.0), 99_000 + ms * 1000).reply).collect();
+        assert_eq!(answers[..19], [Reply::Nothing; 19]);
+        assert_eq!(answers[19..], [Reply::Both; 11]);
     }
 }

@@ -14,7 +14,7 @@ use crate::firmware::cli::BuildInfo;
 use crate::link::proto::fdm_link::FdmLinkConfig;
 use crate::link::{ExternalSimulator, ListenConfig, Listeners, MotorPort};
 use crate::session::links::{Links, MotorTargets, MotorsError};
-use crate::session::{Command, Event, Handle, SessionConfig, SessionEvent, SimulatorRemark, start};
+use crate::session::{Command, Event, Handle, SessionConfig, SessionEvent, SimulatorNotice, start};
 use crate::signals::fdm::MotorOrder;
 use crate::sim::{WorldConfig, WorldError};
 use crate::storage::Store;
@@ -231,7 +231,7 @@ fn print_event(event: &Event, print: &mut impl FnMut(Said)) {
         SessionEvent::FirstRc { stamp_s, frame } => print(Said::Out(lines::first_rc_line(*stamp_s, frame))),
         SessionEvent::Restarted => print(Said::Out(lines::RESET_LINE.to_owned())),
         SessionEvent::Notice(notice) => print(Said::Err(notice.clone())),
-        SessionEvent::Simulator(SimulatorRemark::Adapted(notice)) => print(Said::Err(notice.to_string())),
+        SessionEvent::Simulator(SimulatorNotice::Adapted(notice)) => print(Said::Err(notice.to_string())),
         SessionEvent::Simulator(_)
         | SessionEvent::Vehicle(_)
         | SessionEvent::ArmingBlocked(_)

@@ -1,11 +1,11 @@
-//! When to send a servo packet unasked, and how many answers that costs later.
+//! When to send a servo packet unasked, and how many replies are withheld for it later.
 //!
 //! The simulator reads one servo packet a step and waits when there is none. So a lost packet must be replaced, and a
-//! packet too many stays in its socket for ever and makes every command one step older. The accounts: packets sent
-//! unasked during a silence, less the one that ended it, are answers withheld afterwards.
+//! packet too many stays in its socket for ever and makes every command one step older. As many replies are
+//! withheld afterwards as packets were sent unasked during a silence, less the one that ended it.
 
-/// Between kicks while nobody is there, µs.
-const KNOCK_US: u64 = 500_000;
+/// From one kick to the next until the first packet, and while the simulator refuses them, µs.
+const WAITING_US: u64 = 500_000;
 /// Silence before the first kick, µs.
 const FIRST_US: u64 = 100_000;
 /// From one kick to the next, µs: twice more quickly, since a kick can be lost too; after a second of silence; then
@@ -26,7 +26,7 @@ pub(super) struct Kicks {
     arrived: u32,
     /// Whether an answer of ours lies in the simulator's socket, from before this silence.
     has_answer: bool,
-    nobody_there: bool,
+    unreachable: bool,
     surplus: u32,
 }
 
@@ -38,7 +38,7 @@ impl Kicks {
             kicked_at_us: now_us,
             arrived: 0,
             has_answer: true,
-            nobody_there: false,
+            unreachable: false,
             surplus: 0,
         }
     }
@@ -50,11 +50,11 @@ impl Kicks {
     /// When the next kick is due.
     pub(super) fn due_us(&self) -> u64 {
         match (self.heard_at_us, self.arrived) {
-            (Some(heard), 0) if !self.nobody_there => heard + FIRST_US,
-            (Some(_), kicks) if !self.nobody_there => {
+            (Some(heard), 0) if !self.unreachable => heard + FIRST_US,
+            (Some(_), kicks) if !self.unreachable => {
                 self.kicked_at_us + NEXT_US.get(kicks as usize - 1).copied().unwrap_or(LATER_US)
             }
-            _ => self.kicked_at_us + KNOCK_US,
+            _ => self.kicked_at_us + WAITING_US,
         }
     }
 
@@ -67,13 +67,13 @@ impl Kicks {
         self.arrived += 1;
         self.surplus = 0;
         // Until the contrary is reported.
-        self.nobody_there = false;
+        self.unreachable = false;
         true
     }
 
     /// The newest servo packet did not arrive.
     pub(super) fn refused(&mut self) {
-        self.nobody_there = true;
+        self.unreachable = true;
         if self.arrived > 0 {
             self.arrived -= 1;
         } else {
@@ -91,7 +91,7 @@ impl Kicks {
         self.heard_at_us = Some(now_us);
         self.arrived = 0;
         self.has_answer = true;
-        self.nobody_there = false;
+        self.unreachable = false;
     }
 
     /// Whether this answer is one too many.
@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn knocks_twice_a_second_before_anybody_spoke() {
+    fn kicks_twice_a_second_until_the_first_packet() {
         let mut kicks = Kicks::new(0);
         assert_eq!(kicks_until(&mut kicks, 0, 2100), [500, 1000, 1500, 2000]);
     }
@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn knocks_again_when_nobody_is_there() {
+    fn kicks_twice_a_second_again_when_nobody_listens() {
         let mut kicks = Kicks::new(0);
         kicks.heard(0);
         assert!(kicks.poll(100_000));

@@ -40,13 +40,13 @@ impl Sampler {
 
 /// The virtual sensors.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Sensors {
+pub(super) struct VirtualSensors {
     baro: Sampler,
     mag: Sampler,
     gps: Sampler,
 }
 
-impl Sensors {
+impl VirtualSensors {
     /// The sensors' frame of a state, `elapsed_us` of firmware time after the one before.
     pub(super) fn frame(&mut self, state: &State, has_position: bool, elapsed_us: u64) -> SensorFrame {
         let baro = self.baro.is_due(elapsed_us, BARO_US, true);

@@ -1,9 +1,9 @@
-//! Two things that the packets of a simulator do not say but show: whether gravity is in the acceleration, and whether
-//! positions are mirrored.
+//! Two conventions that the packets of a simulator do not state but show: whether gravity is in the acceleration, and
+//! whether positions are mirrored.
 
 use nalgebra::{Vector2, Vector3};
 
-use super::Notice;
+use super::FdmNotice;
 use crate::geo::LocalFrame;
 use crate::link::proto::fdm::{Gravity, Packet, State, mirrored};
 use crate::signals::fdm::Dialect;
@@ -34,7 +34,7 @@ impl GravityTest {
     }
 
     /// Looks at one packet.
-    pub(super) fn watch(&mut self, packet: &Packet, dialect: Dialect, elapsed_us: u64) -> Option<Notice> {
+    pub(super) fn watch(&mut self, packet: &Packet, dialect: Dialect, elapsed_us: u64) -> Option<FdmNotice> {
         if self.found.is_some() || self.warned {
             return None;
         }
@@ -56,12 +56,12 @@ impl GravityTest {
             Gravity::Included
         } else {
             self.warned = true;
-            return Some(Notice::GravityUnclear);
+            return Some(FdmNotice::GravityUnclear);
         };
         self.found = Some(found);
         match (found, dialect.usual_gravity()) {
-            (Gravity::Missing, Gravity::Included) => Some(Notice::GravityMissing),
-            (Gravity::Included, Gravity::Missing) => Some(Notice::GravityIncluded),
+            (Gravity::Missing, Gravity::Included) => Some(FdmNotice::GravityMissing),
+            (Gravity::Included, Gravity::Missing) => Some(FdmNotice::GravityIncluded),
             _ => None,
         }
     }
@@ -119,7 +119,7 @@ impl MirrorTest {
         place: Option<(f64, f64)>,
         vel_enu: Vector3<f64>,
         elapsed_us: u64,
-    ) -> Option<Notice> {
+    ) -> Option<FdmNotice> {
         if self.confirmed || self.refuted {
             return None;
         }
@@ -140,7 +140,7 @@ impl MirrorTest {
         self.leg = None;
         self.confirmed = cosine > CLEAR;
         self.refuted = cosine < -CLEAR;
-        self.refuted.then_some(Notice::NotMirrored)
+        self.refuted.then_some(FdmNotice::NotMirrored)
     }
 }
 
