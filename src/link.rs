@@ -12,6 +12,7 @@
 //! ```
 
 mod client;
+mod client_stream;
 mod endpoint_stats;
 mod external;
 mod impairment;
@@ -20,11 +21,10 @@ mod listeners;
 mod origin;
 pub mod proto;
 mod request;
-mod transport;
 mod udp;
 
 pub use external::ExternalSimulator;
 pub use impairment::{ImpairedLink, LinkImpairment};
-pub use listeners::{ListenConfig, ListenError, Listeners, RestartBell};
+pub use listeners::{ListenConfig, ListenError, Listeners, RestartSignal};
 pub use request::{ClientId, Request};
 pub use udp::{MotorPort, Sent};

@@ -17,7 +17,7 @@ use betadeck::firmware::storage::{MAX_IMAGE, decode, encode};
 use betadeck::link::proto::command_line::{Completion, LineReply};
 use betadeck::link::proto::line_editor::LineEditor;
 use betadeck::link::proto::msp::{Decoder, MAX_REPLY, MAX_REQUEST};
-use betadeck::link::proto::serial_session::{Ask, OUTPUT_MAX, SerialSession};
+use betadeck::link::proto::serial_session::{OUTPUT_MAX, SerialRequest, SerialSession};
 use betadeck::plan::MAX_WAYPOINTS;
 use betadeck::plan::format::{Format, parse, report};
 use betadeck::sim::Airframe;
@@ -201,16 +201,16 @@ fn stream(bytes: &[u8], reply: &LineReply) -> Taken {
             session.push(chunk);
             while let Some(ask) = session.next(now) {
                 match ask {
-                    Ask::Request(frame) => session.reply(&frame, Some(vec![0; MAX_REQUEST])),
-                    Ask::EnterCli { .. } => session.admit(true, now),
-                    Ask::Line { .. } => assert!(!session.answer(reply)),
-                    Ask::Complete { line } => {
+                    SerialRequest::Msp(frame) => session.reply(&frame, Some(vec![0; MAX_REQUEST])),
+                    SerialRequest::EnterCli { .. } => session.admit(true, now),
+                    SerialRequest::Line { .. } => assert!(!session.answer(reply)),
+                    SerialRequest::Complete { line } => {
                         let found = complete(&line);
                         let tail = found.tail(&line).to_owned();
                         session.complete(Completion { tail, words: found.candidates });
                     }
-                    Ask::Flush => drop(session.take_output()),
-                    Ask::Restart | Ask::LeftCli => {}
+                    SerialRequest::Flush => drop(session.take_output()),
+                    SerialRequest::Restart | SerialRequest::LeftCli => {}
                 }
             }
             drop(session.take_output());

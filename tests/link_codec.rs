@@ -8,7 +8,7 @@ use betadeck::link::proto::command_line::{Completion, LineReply};
 use betadeck::link::proto::fdm::{self, Gravity, Packet, PacketError, State};
 use betadeck::link::proto::line_editor::MAX_LINE;
 use betadeck::link::proto::msp::{Decoder, Dropped, Form, Frame, Kind};
-use betadeck::link::proto::serial_session::{Ask, SerialSession};
+use betadeck::link::proto::serial_session::{SerialRequest, SerialSession};
 use betadeck::link::proto::{rc, servo};
 use betadeck::signals::RcFrame;
 use betadeck::signals::fdm::Dialect;
@@ -176,15 +176,15 @@ proptest! {
             let mut sent = 0;
             while let Some(ask) = session.next(now) {
                 match &ask {
-                    Ask::Request(frame) => session.reply(frame, None),
-                    Ask::Flush => sent += session.take_output().len(),
-                    Ask::EnterCli { .. } => session.admit(true, now),
-                    Ask::Line { line, .. } => {
+                    SerialRequest::Msp(frame) => session.reply(frame, None),
+                    SerialRequest::Flush => sent += session.take_output().len(),
+                    SerialRequest::EnterCli { .. } => session.admit(true, now),
+                    SerialRequest::Line { line, .. } => {
                         prop_assert!(line.len() <= MAX_LINE);
                         let _stays = session.answer(&LineReply::default());
                     }
-                    Ask::Complete { .. } => session.complete(Completion::default()),
-                    Ask::Restart | Ask::LeftCli => {}
+                    SerialRequest::Complete { .. } => session.complete(Completion::default()),
+                    SerialRequest::Restart | SerialRequest::LeftCli => {}
                 }
             }
             // Echo and error frames of what has come, no more.
@@ -222,7 +222,7 @@ proptest! {
 }
 
 /// Everything that a client's stream asks for when nobody is armed and every line is answered with "ok".
-fn found_in(pieces: &[&[u8]]) -> (Vec<Ask>, Vec<u8>) {
+fn found_in(pieces: &[&[u8]]) -> (Vec<SerialRequest>, Vec<u8>) {
     let mut session = SerialSession::default();
     let mut all = Vec::new();
     let now = Duration::from_secs(1);
@@ -230,14 +230,14 @@ fn found_in(pieces: &[&[u8]]) -> (Vec<Ask>, Vec<u8>) {
         session.push(piece);
         while let Some(ask) = session.next(now) {
             match &ask {
-                Ask::Request(frame) => session.reply(frame, Some(Vec::new())),
-                Ask::EnterCli { .. } => session.admit(true, now),
-                Ask::Line { .. } => {
+                SerialRequest::Msp(frame) => session.reply(frame, Some(Vec::new())),
+                SerialRequest::EnterCli { .. } => session.admit(true, now),
+                SerialRequest::Line { .. } => {
                     let reply = LineReply { text: "ok\r\n".to_owned(), ..LineReply::default() };
                     assert!(!session.answer(&reply));
                 }
-                Ask::Complete { .. } => session.complete(Completion::default()),
-                Ask::Flush | Ask::Restart | Ask::LeftCli => {}
+                SerialRequest::Complete { .. } => session.complete(Completion::default()),
+                SerialRequest::Flush | SerialRequest::Restart | SerialRequest::LeftCli => {}
             }
             all.push(ask);
         }

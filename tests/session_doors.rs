@@ -43,7 +43,7 @@ async fn rig() -> Rig {
         configuration,
         live: true,
     };
-    let handler = RequestHandler::new(doors.restart_bell());
+    let handler = RequestHandler::new(doors.restart_signal());
     let session = start(SessionConfig {
         vehicle: Vehicle::new(config).unwrap(),
         store: Store::in_memory(),

@@ -56,7 +56,7 @@ impl Bench {
         Self {
             persistence: Persistence::new(Store::in_memory(), &controller, true),
             controller,
-            handler: RequestHandler::new(doors.restart_bell()),
+            handler: RequestHandler::new(doors.restart_signal()),
             ticks: 0,
             wall: Instant::now(),
             owed: 0.0,

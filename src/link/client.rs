@@ -1,4 +1,4 @@
-//! One client of the TCP or the websocket door: moves bytes between its transport and its serial session, and asks the
+//! One client of the TCP or the websocket door: moves bytes between its stream and its serial session, and asks the
 //! session.
 
 #![allow(clippy::disallowed_methods, reason = "the doors wait for people and programs")]
@@ -10,22 +10,22 @@ use std::time::{Duration, Instant};
 use tokio::sync::{mpsc, oneshot, watch};
 use tokio_util::sync::CancellationToken;
 
+use super::client_stream::ClientStream;
 use super::endpoint_stats::EndpointStats;
 use super::proto::command_line::LineSource;
-use super::proto::serial_session::{Ask, SerialSession};
+use super::proto::serial_session::{SerialRequest, SerialSession};
 use super::request::{ClientId, Request};
-use super::transport::Transport;
 
 /// A client that neither sends nor gets anything for this long is closed.
-const IDLE: Duration = Duration::from_secs(120);
+const IDLE_TIMEOUT: Duration = Duration::from_secs(120);
 /// A client that does not take what it asked for within this time is closed.
-const SLOW: Duration = Duration::from_secs(10);
-/// How long a goodbye may take.
-const GOODBYE: Duration = Duration::from_secs(1);
+const WRITE_TIMEOUT: Duration = Duration::from_secs(10);
+/// How long closing may take.
+const CLOSE_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// What every client of the doors shares.
 #[derive(Debug, Clone)]
-pub(super) struct Reception {
+pub(super) struct SharedChannels {
     pub(super) requests: mpsc::Sender<Request>,
     pub(super) shutdown: CancellationToken,
     /// Changes when the firmware started anew.
@@ -49,8 +49,8 @@ impl From<io::Error> for Stop {
 /// One client being served.
 pub(super) struct Client {
     id: ClientId,
-    transport: Transport,
-    reception: Reception,
+    stream: ClientStream,
+    channels: SharedChannels,
     stats: Arc<EndpointStats>,
     session: SerialSession,
     arrived: Instant,
@@ -59,28 +59,28 @@ pub(super) struct Client {
 impl Client {
     pub(super) fn new(
         id: ClientId,
-        transport: Transport,
-        mut reception: Reception,
+        stream: ClientStream,
+        mut channels: SharedChannels,
         stats: Arc<EndpointStats>,
     ) -> Self {
         // A restart before the client came does not concern it.
-        reception.restarts.mark_unchanged();
-        Self { id, transport, reception, stats, session: SerialSession::default(), arrived: Instant::now() }
+        channels.restarts.mark_unchanged();
+        Self { id, stream, channels, stats, session: SerialSession::default(), arrived: Instant::now() }
     }
 
     /// Serves the client until it goes, the firmware restarts or the doors close.
     pub(super) async fn serve(mut self) {
-        if let Stop::Failed = self.talk().await {
+        if let Stop::Failed = self.exchange().await {
             self.stats.error();
         }
         if self.session.is_in_cli() {
-            let _gone = self.reception.requests.send(Request::LeftCli { client: self.id }).await;
+            let _gone = self.channels.requests.send(Request::LeftCli { client: self.id }).await;
         }
-        let _gone = tokio::time::timeout(GOODBYE, self.transport.close()).await;
+        let _gone = tokio::time::timeout(CLOSE_TIMEOUT, self.stream.close()).await;
     }
 
-    /// Talks until something ends it.
-    async fn talk(&mut self) -> Stop {
+    /// Reads and answers until something ends it.
+    async fn exchange(&mut self) -> Stop {
         loop {
             let answered = self.answer_all().await;
             // What was answered before the end still goes out.
@@ -89,16 +89,16 @@ impl Client {
                 return stop;
             }
             let due = self.session.due();
-            let wait = due.map_or(IDLE, |due| due.saturating_sub(self.arrived.elapsed()));
+            let wait = due.map_or(IDLE_TIMEOUT, |due| due.saturating_sub(self.arrived.elapsed()));
             tokio::select! {
-                () = self.reception.shutdown.cancelled() => return Stop::Ended,
-                _ = self.reception.restarts.changed() => return Stop::Ended,
+                () = self.channels.shutdown.cancelled() => return Stop::Ended,
+                _ = self.channels.restarts.changed() => return Stop::Ended,
                 () = tokio::time::sleep(wait) => {
                     if due.is_none() {
                         return Stop::Ended;
                     }
                 }
-                bytes = self.transport.read() => match bytes {
+                bytes = self.stream.read() => match bytes {
                     Ok(Some(bytes)) => {
                         self.stats.received(bytes.len());
                         self.session.push(&bytes);
@@ -113,30 +113,31 @@ impl Client {
     /// Answers everything that the bytes so far ask for.
     async fn answer_all(&mut self) -> Result<(), Stop> {
         let before = self.session.dropped();
-        while let Some(ask) = self.session.next(self.arrived.elapsed()) {
-            match ask {
-                Ask::Request(frame) => {
+        while let Some(request) = self.session.next(self.arrived.elapsed()) {
+            match request {
+                SerialRequest::Msp(frame) => {
                     self.stats.asked(frame.code);
                     let (code, payload, client) = (frame.code, frame.payload.clone(), self.id);
-                    let payload = self.ask(|reply| Request::Msp { client, code, payload, reply }).await?;
+                    let payload = self.request(|reply| Request::Msp { client, code, payload, reply }).await?;
                     self.session.reply(&frame, payload);
                 }
-                Ask::EnterCli { interactive } => {
+                SerialRequest::EnterCli { interactive } => {
                     let client = self.id;
-                    let admitted = self.ask(|reply| Request::EnterCli { client, interactive, reply }).await?;
+                    let admitted =
+                        self.request(|reply| Request::EnterCli { client, interactive, reply }).await?;
                     self.session.admit(admitted, self.arrived.elapsed());
                 }
-                Ask::Line { line, source } => self.run(line, source).await?,
-                Ask::Complete { line } => {
-                    let completion = self.ask(|reply| Request::Complete { line, reply }).await?;
+                SerialRequest::Line { line, source } => self.run(line, source).await?,
+                SerialRequest::Complete { line } => {
+                    let completion = self.request(|reply| Request::Complete { line, reply }).await?;
                     self.session.complete(completion);
                 }
-                Ask::Flush => self.flush().await?,
-                Ask::Restart => {
-                    self.tell(Request::Restart { client: self.id }).await?;
+                SerialRequest::Flush => self.flush().await?,
+                SerialRequest::Restart => {
+                    self.send(Request::Restart { client: self.id }).await?;
                     return Err(Stop::Ended);
                 }
-                Ask::LeftCli => self.tell(Request::LeftCli { client: self.id }).await?,
+                SerialRequest::LeftCli => self.send(Request::LeftCli { client: self.id }).await?,
             }
         }
         if self.session.dropped() != before {
@@ -147,23 +148,23 @@ impl Client {
 
     async fn run(&mut self, line: String, source: LineSource) -> Result<(), Stop> {
         let client = self.id;
-        let answer = self.ask(|reply| Request::Cli { client, line, source, reply }).await?;
+        let answer = self.request(|reply| Request::Cli { client, line, source, reply }).await?;
         if self.session.answer(&answer) { Err(Stop::Ended) } else { Ok(()) }
     }
 
-    async fn ask<T>(&self, request: impl FnOnce(oneshot::Sender<T>) -> Request) -> Result<T, Stop> {
+    async fn request<T>(&self, request: impl FnOnce(oneshot::Sender<T>) -> Request) -> Result<T, Stop> {
         let (reply, answer) = oneshot::channel();
-        self.tell(request(reply)).await?;
+        self.send(request(reply)).await?;
         tokio::select! {
             // An answer that is there is delivered, even when the doors close.
             biased;
             answer = answer => answer.map_err(|_| Stop::Ended),
-            () = self.reception.shutdown.cancelled() => Err(Stop::Ended),
+            () = self.channels.shutdown.cancelled() => Err(Stop::Ended),
         }
     }
 
-    async fn tell(&self, request: Request) -> Result<(), Stop> {
-        self.reception.requests.send(request).await.map_err(|_| Stop::Ended)
+    async fn send(&self, request: Request) -> Result<(), Stop> {
+        self.channels.requests.send(request).await.map_err(|_| Stop::Ended)
     }
 
     async fn flush(&mut self) -> Result<(), Stop> {
@@ -172,6 +173,8 @@ impl Client {
             return Ok(());
         }
         self.stats.sent(output.len());
-        Ok(tokio::time::timeout(SLOW, self.transport.write(output)).await.map_err(io::Error::from)??)
+        Ok(tokio::time::timeout(WRITE_TIMEOUT, self.stream.write(output))
+            .await
+            .map_err(io::Error::from)??)
     }
 }

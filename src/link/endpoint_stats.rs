@@ -48,11 +48,11 @@ impl EndpointStats {
     }
 
     /// Counts a client that came; how many there are now.
-    pub(super) fn client_came(&self) -> u32 {
+    pub(super) fn client_connected(&self) -> u32 {
         self.clients.fetch_add(1, Relaxed) + 1
     }
 
-    pub(super) fn client_left(&self) {
+    pub(super) fn client_disconnected(&self) {
         self.clients.fetch_sub(1, Relaxed);
     }
 

@@ -1,7 +1,7 @@
 //! What goes wrong on the way from a simulator: packets that are lost, late, doubled or out of order.
 //!
 //! The caller tells when a packet was sent and what is wrong then, and takes out what has arrived by now. With the same
-//! seed the same packets meet the same fate.
+//! seed the same packets are impaired alike.
 
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
@@ -10,7 +10,7 @@ use rand::RngExt as _;
 use rand_chacha::ChaCha8Rng;
 
 /// Most packets that are on the way together; what is sent beyond them is lost, as in a socket that is full.
-const MAX_UNDERWAY: usize = 16_384;
+const MAX_IN_FLIGHT: usize = 16_384;
 
 /// What goes wrong on the way.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -32,20 +32,20 @@ pub struct LinkImpairment {
 pub struct ImpairedLink {
     rng: ChaCha8Rng,
     /// In the order of arrival.
-    underway: VecDeque<Packet>,
+    in_flight: VecDeque<DelayedPacket>,
 }
 
 #[derive(Debug, Clone)]
-struct Packet {
+struct DelayedPacket {
     arrives: Instant,
     datagram: Vec<u8>,
 }
 
 impl ImpairedLink {
-    /// A link on which nothing is underway; `rng` decides the fate of packets.
+    /// A link on which nothing is in_flight; `rng` decides the fate of packets.
     #[must_use]
     pub fn new(rng: ChaCha8Rng) -> Self {
-        Self { rng, underway: VecDeque::new() }
+        Self { rng, in_flight: VecDeque::new() }
     }
 
     /// Sends a packet on its way at `at`, through these impairments.
@@ -70,20 +70,20 @@ impl ImpairedLink {
 
     /// The next packet that has arrived by `now`, and when.
     pub fn arrived(&mut self, now: Instant) -> Option<(Vec<u8>, Instant)> {
-        let packet = self.underway.pop_front_if(|packet| packet.arrives <= now)?;
+        let packet = self.in_flight.pop_front_if(|packet| packet.arrives <= now)?;
         Some((packet.datagram, packet.arrives))
     }
 
     /// When the next packet arrives, when any is on its way.
     #[must_use]
     pub fn due(&self) -> Option<Instant> {
-        self.underway.front().map(|packet| packet.arrives)
+        self.in_flight.front().map(|packet| packet.arrives)
     }
 
     fn put(&mut self, datagram: Vec<u8>, arrives: Instant) {
-        if self.underway.len() < MAX_UNDERWAY {
-            let place = self.underway.partition_point(|packet| packet.arrives <= arrives);
-            self.underway.insert(place, Packet { arrives, datagram });
+        if self.in_flight.len() < MAX_IN_FLIGHT {
+            let place = self.in_flight.partition_point(|packet| packet.arrives <= arrives);
+            self.in_flight.insert(place, DelayedPacket { arrives, datagram });
         }
     }
 }
@@ -184,11 +184,11 @@ mod tests {
     #[test]
     fn the_way_holds_no_more_than_a_socket_does() {
         let (mut way, now) = (link(1), Instant::now());
-        for _ in 0..MAX_UNDERWAY + 5 {
+        for _ in 0..MAX_IN_FLIGHT + 5 {
             way.send(vec![0], now, &LinkImpairment { late_ms: 1.0, ..NONE });
         }
         let later = now + Duration::from_secs(1);
-        assert_eq!(std::iter::from_fn(|| way.arrived(later)).count(), MAX_UNDERWAY);
+        assert_eq!(std::iter::from_fn(|| way.arrived(later)).count(), MAX_IN_FLIGHT);
     }
 
     proptest! {

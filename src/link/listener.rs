@@ -1,4 +1,4 @@
-//! The TCP and the websocket door: listens, lets clients in, turns strangers' web pages away.
+//! The TCP and the websocket door: listens, lets clients in, refuses web pages of foreign origins.
 
 #![allow(clippy::disallowed_methods, reason = "the doors wait for people and programs")]
 
@@ -13,43 +13,43 @@ use tokio_tungstenite::tungstenite::http::{HeaderValue, StatusCode, header};
 use tokio_tungstenite::tungstenite::protocol::WebSocketConfig;
 use tokio_util::task::TaskTracker;
 
-use super::client::{Client, Reception};
+use super::client::{Client, SharedChannels};
+use super::client_stream::ClientStream;
 use super::endpoint_stats::EndpointStats;
 use super::origin;
 use super::request::{ClientId, Request};
-use super::transport::Transport;
 
 /// Most clients of one door.
 const CLIENTS_MAX: u32 = 32;
 /// How long a websocket handshake may take.
-const HANDSHAKE: Duration = Duration::from_secs(10);
+const HANDSHAKE_TIMEOUT: Duration = Duration::from_secs(10);
 /// Pause after a client could not be accepted (too many open files).
 const ACCEPT_PAUSE: Duration = Duration::from_millis(100);
 /// Largest websocket message.
 const MESSAGE_MAX: usize = 64 * 1024;
 /// The sub-protocol of the Betaflight App.
 const BINARY: &str = "binary";
-/// Most origins that are remembered as told.
-const TOLD_MAX: usize = 64;
+/// Most origins that are remembered as reported.
+const REMEMBERED_MAX: usize = 64;
 /// Most characters of an origin in a notice.
 const ORIGIN_SHOWN: usize = 100;
 
 /// Numbers for clients, shared by all doors.
 static NEXT_CLIENT: AtomicU64 = AtomicU64::new(1);
 
-/// What a door speaks.
+/// The protocol below the serial session.
 #[derive(Debug, Clone)]
-pub(super) enum Kind {
+pub(super) enum ListenerKind {
     Tcp,
     WebSocket {
         /// Origins that are served besides the usual ones.
         allow_origin: Arc<[String]>,
-        /// Origins whose refusal was told already.
-        told: Arc<Mutex<BTreeSet<String>>>,
+        /// Origins whose refusal was reported already.
+        reported: Arc<Mutex<BTreeSet<String>>>,
     },
 }
 
-impl Kind {
+impl ListenerKind {
     fn name(&self) -> &'static str {
         match self {
             Self::Tcp => "TCP",
@@ -61,15 +61,15 @@ impl Kind {
 /// Lets clients in until the doors close.
 pub(super) async fn listen(
     listener: TcpListener,
-    kind: Kind,
-    reception: Reception,
+    kind: ListenerKind,
+    channels: SharedChannels,
     stats: Arc<EndpointStats>,
     tasks: TaskTracker,
 ) {
-    let mut told_full = false;
+    let mut reported_full = false;
     loop {
         let stream = tokio::select! {
-            () = reception.shutdown.cancelled() => return,
+            () = channels.shutdown.cancelled() => return,
             accepted = listener.accept() => match accepted {
                 Ok((stream, _)) => stream,
                 Err(_) => {
@@ -79,38 +79,40 @@ pub(super) async fn listen(
                 }
             },
         };
-        if stats.client_came() > CLIENTS_MAX {
-            stats.client_left();
+        if stats.client_connected() > CLIENTS_MAX {
+            stats.client_disconnected();
             stats.error();
-            if !std::mem::replace(&mut told_full, true) {
+            if !std::mem::replace(&mut reported_full, true) {
                 let notice = format!(
                     "The {} door serves {CLIENTS_MAX} clients at once: another one was turned away.",
                     kind.name()
                 );
                 // When nobody has time to listen, it is seen in the door's count of errors.
-                drop(reception.requests.try_send(Request::Notice(notice)));
+                drop(channels.requests.try_send(Request::Notice(notice)));
             }
             continue;
         }
-        let (kind, reception, stats) = (kind.clone(), reception.clone(), Arc::clone(&stats));
+        let (kind, channels, stats) = (kind.clone(), channels.clone(), Arc::clone(&stats));
         tasks.spawn(async move {
             // An interactive line is small packets both ways.
             let _only_slower = stream.set_nodelay(true);
-            match admit(stream, &kind, &reception).await {
-                Some(transport) => {
+            match admit(stream, &kind, &channels).await {
+                Some(stream) => {
                     let id = ClientId(NEXT_CLIENT.fetch_add(1, Relaxed));
-                    Client::new(id, transport, reception, Arc::clone(&stats)).serve().await;
+                    Client::new(id, stream, channels, Arc::clone(&stats)).serve().await;
                 }
                 None => stats.error(),
             }
-            stats.client_left();
+            stats.client_disconnected();
         });
     }
 }
 
-/// The client's transport, once it may come in.
-async fn admit(stream: TcpStream, kind: &Kind, reception: &Reception) -> Option<Transport> {
-    let Kind::WebSocket { allow_origin, told } = kind else { return Some(Transport::Tcp(stream)) };
+/// The client's stream, once it is admitted.
+async fn admit(stream: TcpStream, kind: &ListenerKind, channels: &SharedChannels) -> Option<ClientStream> {
+    let ListenerKind::WebSocket { allow_origin, reported } = kind else {
+        return Some(ClientStream::Tcp(stream));
+    };
     let mut refused = None;
     #[expect(clippy::result_large_err, reason = "the type of the handshake's callback is given")]
     let callback = |request: &Handshake, response: Response| {
@@ -125,19 +127,19 @@ async fn admit(stream: TcpStream, kind: &Kind, reception: &Reception) -> Option<
         WebSocketConfig::default().max_message_size(Some(MESSAGE_MAX)).max_frame_size(Some(MESSAGE_MAX));
     let handshake = tokio_tungstenite::accept_hdr_async_with_config(stream, callback, Some(config));
     let accepted = tokio::select! {
-        () = reception.shutdown.cancelled() => return None,
-        accepted = tokio::time::timeout(HANDSHAKE, handshake) => accepted.ok()?,
+        () = channels.shutdown.cancelled() => return None,
+        accepted = tokio::time::timeout(HANDSHAKE_TIMEOUT, handshake) => accepted.ok()?,
     };
     if let Some(origin) = refused
-        && is_news(told, &origin)
+        && is_first_refusal(reported, &origin)
     {
         let notice = format!(
             "A web page of {origin} tried to reach the craft through the websocket and was refused: start with \
              --allow-origin {origin} to serve it."
         );
-        let _session_gone = reception.requests.send(Request::Notice(notice)).await;
+        let _session_gone = channels.requests.send(Request::Notice(notice)).await;
     }
-    accepted.ok().map(|socket| Transport::WebSocket(Box::new(socket)))
+    accepted.ok().map(|socket| ClientStream::WebSocket(Box::new(socket)))
 }
 
 /// Chooses the sub-protocol when it is offered: browsers fail a handshake that ignores what they asked for.
@@ -163,8 +165,8 @@ fn shown(origin: &str) -> String {
     origin.chars().filter(char::is_ascii_graphic).take(ORIGIN_SHOWN).collect()
 }
 
-/// Whether a refusal was not told before; a page that tries again and again is told once.
-fn is_news(told: &Mutex<BTreeSet<String>>, origin: &str) -> bool {
-    let mut told = told.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-    told.len() < TOLD_MAX && told.insert(origin.to_owned())
+/// Whether a refusal was not reported before; a page that tries again and again is reported once.
+fn is_first_refusal(reported: &Mutex<BTreeSet<String>>, origin: &str) -> bool {
+    let mut reported = reported.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    reported.len() < REMEMBERED_MAX && reported.insert(origin.to_owned())
 }

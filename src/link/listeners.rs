@@ -12,9 +12,9 @@ use tokio::sync::{mpsc, watch};
 use tokio_util::sync::CancellationToken;
 use tokio_util::task::TaskTracker;
 
-use super::client::Reception;
+use super::client::SharedChannels;
 use super::endpoint_stats::EndpointStats;
-use super::listener::{self, Kind};
+use super::listener::{self, ListenerKind};
 use super::request::Request;
 use super::udp::{self, Datagrams};
 use crate::telemetry::{EndpointKind, EndpointState, EndpointStatus};
@@ -112,22 +112,24 @@ impl Listeners {
         let (restarts, restarted) = watch::channel(0);
         let mut listeners =
             Self { all: Vec::new(), shutdown: CancellationToken::new(), tasks: TaskTracker::new(), restarts };
-        let reception = Reception { requests, shutdown: listeners.shutdown.clone(), restarts: restarted };
+        let channels = SharedChannels { requests, shutdown: listeners.shutdown.clone(), restarts: restarted };
         if let Some(port) = config.ws_port {
-            let kind =
-                Kind::WebSocket { allow_origin: config.allow_origin.clone().into(), told: Arc::default() };
-            listeners.open_stream(EndpointKind::WebSocket, config.listen, port, &kind, &reception).await;
+            let kind = ListenerKind::WebSocket {
+                allow_origin: config.allow_origin.clone().into(),
+                reported: Arc::default(),
+            };
+            listeners.open_stream(EndpointKind::WebSocket, config.listen, port, &kind, &channels).await;
         }
         if let Some(port) = config.tcp_port {
-            listeners.open_stream(EndpointKind::Tcp, config.listen, port, &Kind::Tcp, &reception).await;
-        }
-        if let Some(port) = config.fdm_port {
             listeners
-                .open_datagrams(EndpointKind::Fdm, config.listen, port, Datagrams::Fdm, &reception)
+                .open_stream(EndpointKind::Tcp, config.listen, port, &ListenerKind::Tcp, &channels)
                 .await;
         }
+        if let Some(port) = config.fdm_port {
+            listeners.open_datagrams(EndpointKind::Fdm, config.listen, port, Datagrams::Fdm, &channels).await;
+        }
         if let Some(port) = config.rc_port {
-            listeners.open_datagrams(EndpointKind::Rc, config.listen, port, Datagrams::Rc, &reception).await;
+            listeners.open_datagrams(EndpointKind::Rc, config.listen, port, Datagrams::Rc, &channels).await;
         }
         let status = listeners.status();
         (listeners, status)
@@ -138,19 +140,19 @@ impl Listeners {
         kind: EndpointKind,
         listen: Option<IpAddr>,
         port: u16,
-        server: &Kind,
-        reception: &Reception,
+        server: &ListenerKind,
+        channels: &SharedChannels,
     ) {
         let stats = Arc::new(EndpointStats::new(Instant::now()));
         let address = SocketAddr::new(listen.unwrap_or(IpAddr::V4(Ipv4Addr::LOCALHOST)), port);
         let place = match bind_tcp(kind, address).await {
             Ok((listener, place)) => {
-                self.spawn_listener(listener, server, reception, &stats);
+                self.spawn_listener(listener, server, channels, &stats);
                 if listen.is_none() {
                     // A machine without IPv6 has no such address.
                     let six = SocketAddr::new(IpAddr::V6(Ipv6Addr::LOCALHOST), place.port());
                     if let Ok((listener, _)) = bind_tcp(kind, six).await {
-                        self.spawn_listener(listener, server, reception, &stats);
+                        self.spawn_listener(listener, server, channels, &stats);
                     }
                 }
                 Ok(place)
@@ -163,12 +165,12 @@ impl Listeners {
     fn spawn_listener(
         &self,
         listener: TcpListener,
-        server: &Kind,
-        reception: &Reception,
+        server: &ListenerKind,
+        channels: &SharedChannels,
         stats: &Arc<EndpointStats>,
     ) {
         let (tasks, stats) = (self.tasks.clone(), Arc::clone(stats));
-        self.tasks.spawn(listener::listen(listener, server.clone(), reception.clone(), stats, tasks));
+        self.tasks.spawn(listener::listen(listener, server.clone(), channels.clone(), stats, tasks));
     }
 
     async fn open_datagrams(
@@ -177,14 +179,14 @@ impl Listeners {
         listen: Option<IpAddr>,
         port: u16,
         datagrams: Datagrams,
-        reception: &Reception,
+        channels: &SharedChannels,
     ) {
         let stats = Arc::new(EndpointStats::new(Instant::now()));
         let address = SocketAddr::new(listen.unwrap_or(IpAddr::V4(Ipv4Addr::LOCALHOST)), port);
         let bound = UdpSocket::bind(address).await.and_then(|socket| Ok((socket.local_addr()?, socket)));
         let place = match bound {
             Ok((place, socket)) => {
-                self.tasks.spawn(udp::receive(socket, datagrams, reception.clone(), Arc::clone(&stats)));
+                self.tasks.spawn(udp::receive(socket, datagrams, channels.clone(), Arc::clone(&stats)));
                 Ok(place)
             }
             Err(error) => Err(explain(kind, address, error)),
@@ -217,10 +219,10 @@ impl Listeners {
         self.all.iter().find(|listener| listener.kind == kind).map_or(0, |listener| listener.stats.clients())
     }
 
-    /// The bell that a restart of the firmware rings.
+    /// The signal that a restart of the firmware sends.
     #[must_use]
-    pub fn restart_bell(&self) -> RestartBell {
-        RestartBell(self.restarts.clone())
+    pub fn restart_signal(&self) -> RestartSignal {
+        RestartSignal(self.restarts.clone())
     }
 
     /// Closes all endpoints and waits for their clients to be told.
@@ -239,11 +241,11 @@ impl Drop for Listeners {
 
 /// Closes the links of all clients, as a restart of the firmware does; they may come back at once.
 #[derive(Debug, Clone)]
-pub struct RestartBell(watch::Sender<u64>);
+pub struct RestartSignal(watch::Sender<u64>);
 
-impl RestartBell {
+impl RestartSignal {
     /// The firmware started anew.
-    pub fn ring(&self) {
+    pub fn send(&self) {
         self.0.send_modify(|restarts| *restarts += 1);
     }
 }

@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use tokio::net::UdpSocket;
 
-use super::client::Reception;
+use super::client::SharedChannels;
 use super::endpoint_stats::EndpointStats;
 use super::proto::{fdm, rc, servo};
 use super::request::Request;
@@ -22,19 +22,19 @@ pub(super) enum Datagrams {
 /// More than any datagram that is looked at.
 const BUFFER: usize = 2048;
 
-/// Hands datagrams to the session until the doors close. The session is never waited for: what comes while its inbox is
+/// Passes datagrams to the session until the doors close. The session is never waited for: what comes while its queue is
 /// full is dropped and counted as an error.
 #[allow(clippy::disallowed_methods, reason = "the age of RC counts in wall time from its arrival")]
 pub(super) async fn receive(
     socket: UdpSocket,
     datagrams: Datagrams,
-    reception: Reception,
+    channels: SharedChannels,
     stats: Arc<EndpointStats>,
 ) {
     let mut buffer = [0; BUFFER];
     loop {
         let received = tokio::select! {
-            () = reception.shutdown.cancelled() => return,
+            () = channels.shutdown.cancelled() => return,
             received = socket.recv_from(&mut buffer) => received,
         };
         let Ok((size, from)) = received else {
@@ -57,7 +57,7 @@ pub(super) async fn receive(
         match request {
             Some(request) => {
                 stats.packet(at);
-                if reception.requests.try_send(request).is_err() {
+                if channels.requests.try_send(request).is_err() {
                     stats.error();
                 }
             }

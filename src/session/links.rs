@@ -57,7 +57,7 @@ impl Links {
         self,
         simulator: Option<ExternalSimulator>,
     ) -> (Listeners, Endpoints, watch::Sender<Vec<EndpointStatus>>) {
-        let handler = RequestHandler::new(self.doors.restart_bell());
+        let handler = RequestHandler::new(self.doors.restart_signal());
         let (publish, status) = watch::channel(self.status);
         (self.doors, Endpoints { requests: self.requests, handler, status, simulator }, publish)
     }

@@ -11,7 +11,7 @@ use super::persistence::Persistence;
 use crate::firmware::cli::{CliAction, CliReply, Interpreter, Mode, complete};
 use crate::firmware::msp::{MspAction, Outcome, UtcTime};
 use crate::link::proto::command_line::{AfterLine, Completion, LineReply, LineSource};
-use crate::link::{ClientId, Request, RestartBell};
+use crate::link::{ClientId, Request, RestartSignal};
 use crate::signals::{RcFrame, RcSource};
 use crate::vehicle::{Answer, FlightController, LateAnswer, Ticket};
 
@@ -56,7 +56,7 @@ enum Recipient {
 /// Handles the requests of the links.
 #[derive(Debug)]
 pub struct RequestHandler {
-    bell: RestartBell,
+    restart_signal: RestartSignal,
     late_answers: LateAnswers<Recipient>,
     clock: Option<(UtcTime, Instant)>,
     udp: Option<ReceivedRc>,
@@ -68,11 +68,11 @@ pub struct RequestHandler {
 }
 
 impl RequestHandler {
-    /// A handler that rings `bell` when the flight controller restarts.
+    /// A handler that sends `restart_signal` when the flight controller restarts.
     #[must_use]
-    pub fn new(bell: RestartBell) -> Self {
+    pub fn new(restart_signal: RestartSignal) -> Self {
         Self {
-            bell,
+            restart_signal,
             late_answers: LateAnswers::default(),
             clock: None,
             udp: None,
@@ -283,7 +283,7 @@ impl RequestHandler {
         (self.udp, self.msp, self.bench) = (None, None, None);
         if close_links {
             self.cli_sessions.clear();
-            self.bell.ring();
+            self.restart_signal.send();
         } else if self.cli_sessions.values().any(|session| session.interactive) {
             controller.cli_opened();
         }

@@ -8,7 +8,7 @@ use betadeck::firmware::config::Configuration;
 use betadeck::firmware::{Firmware, FirmwareOptions};
 use betadeck::link::proto::command_line::{Completion, LineSource};
 use betadeck::link::proto::msp::{Decoder, Dropped, Form, Frame, Kind, MAX_REPLY, MAX_REQUEST};
-use betadeck::link::proto::serial_session::{Ask, SerialSession};
+use betadeck::link::proto::serial_session::{SerialRequest, SerialSession};
 
 use super::craft;
 
@@ -32,7 +32,7 @@ pub fn run(data: &[u8]) {
 /// Everything that was asked and answered.
 #[derive(Debug, PartialEq, Default)]
 struct Talk {
-    asks: Vec<Ask>,
+    asks: Vec<SerialRequest>,
     output: Vec<u8>,
     dropped: Dropped,
     configuration: Configuration,
@@ -94,7 +94,7 @@ impl Client {
         while let Some(ask) = self.session.next(self.now) {
             self.answer(&ask);
             // When to send is the only thing that depends on the pieces.
-            if ask != Ask::Flush {
+            if ask != SerialRequest::Flush {
                 self.talk.asks.push(ask);
             }
             let output = self.session.take_output();
@@ -108,14 +108,14 @@ impl Client {
         self.talk.output.extend(output);
     }
 
-    fn answer(&mut self, ask: &Ask) {
+    fn answer(&mut self, ask: &SerialRequest) {
         match ask {
-            Ask::Request(frame) => {
+            SerialRequest::Msp(frame) => {
                 assert!(frame.payload.len() <= MAX_REQUEST && frame.kind == Kind::Request);
                 let reply = self.firmware.run_msp(frame.code, &frame.payload, None).reply;
                 self.session.reply(frame, reply);
             }
-            Ask::EnterCli { interactive } => {
+            SerialRequest::EnterCli { interactive } => {
                 let admitted = !self.firmware.is_armed();
                 if *interactive {
                     self.firmware.cli_opened();
@@ -125,24 +125,24 @@ impl Client {
                 self.interpreter =
                     Interpreter::new(if *interactive { Mode::Interactive } else { Mode::Framed });
             }
-            Ask::Line { line, source } => {
+            SerialRequest::Line { line, source } => {
                 let mut own = Interpreter::new(Mode::Message);
                 let interpreter =
                     if *source == LineSource::Message { &mut own } else { &mut self.interpreter };
                 let reply = self.firmware.run_cli(interpreter, line);
                 self.closed = self.session.answer(&reply.into());
             }
-            Ask::Complete { line } => {
+            SerialRequest::Complete { line } => {
                 let found = complete(line);
                 let tail = found.tail(line).to_owned();
                 self.session.complete(Completion { tail, words: found.candidates });
             }
-            Ask::Restart => {
+            SerialRequest::Restart => {
                 self.firmware.restart_in_place();
                 self.closed = true;
             }
-            Ask::LeftCli => self.firmware.cli_closed(),
-            Ask::Flush => {}
+            SerialRequest::LeftCli => self.firmware.cli_closed(),
+            SerialRequest::Flush => {}
         }
     }
 

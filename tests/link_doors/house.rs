@@ -9,7 +9,7 @@ use betadeck::firmware::config::{Configuration, ModeCondition};
 use betadeck::firmware::msp::{GpsReading, MspAction, MspFacts, handle};
 use betadeck::geo::LatLon;
 use betadeck::link::proto::command_line::{Completion, LineSource};
-use betadeck::link::{ListenConfig, Listeners, Request, RestartBell};
+use betadeck::link::{ListenConfig, Listeners, Request, RestartSignal};
 use betadeck::plan::{HoldPattern, Waypoint, WaypointType};
 use betadeck::telemetry::{EndpointKind, EndpointState, EndpointStatus};
 use futures_util::{SinkExt, StreamExt};
@@ -99,7 +99,7 @@ pub(crate) fn captured_craft() -> Craft {
 pub(crate) async fn answer_requests(
     craft: Shared,
     mut requests: mpsc::Receiver<Request>,
-    bell: RestartBell,
+    restart_signal: RestartSignal,
     others: mpsc::Sender<Request>,
 ) {
     while let Some(request) = requests.recv().await {
@@ -142,7 +142,7 @@ pub(crate) async fn answer_requests(
             }
         }
         if restart {
-            bell.ring();
+            restart_signal.send();
         }
     }
 }
@@ -163,7 +163,7 @@ impl House {
         assert!(!views.iter().any(closed), "{views:?}");
         let craft = Arc::new(Mutex::new(captured_craft()));
         let (others_in, others) = mpsc::channel(256);
-        tokio::spawn(answer_requests(Arc::clone(&craft), inbox, doors.restart_bell(), others_in));
+        tokio::spawn(answer_requests(Arc::clone(&craft), inbox, doors.restart_signal(), others_in));
         Self { doors, craft, others }
     }
 

@@ -85,7 +85,7 @@ pub(crate) async fn rig_with(faults: &[&str]) -> Rig {
         live: true,
     })
     .unwrap();
-    let handler = RequestHandler::new(doors.restart_bell());
+    let handler = RequestHandler::new(doors.restart_signal());
     let endpoints = Some(Endpoints { requests: inbox, handler, status: views, simulator: Some(simulator) });
     let session = start(SessionConfig {
         vehicle,

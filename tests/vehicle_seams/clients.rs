@@ -33,7 +33,7 @@ impl Links {
         let (doors, _) = Listeners::open(&closed, mpsc::channel(1).0).await;
         let rig = Rig::new();
         Self {
-            handler: RequestHandler::new(doors.restart_bell()),
+            handler: RequestHandler::new(doors.restart_signal()),
             persistence: Persistence::new(Store::in_memory(), rig.vehicle.controller(), true),
             rig,
             now: Instant::now(),

@@ -1,7 +1,7 @@
 //! The serial session of one client: MSP frames, and the command line between them, with and without framing.
 //!
 //! ```text
-//! bytes ─▶ push() ─▶ next() ─┬─ Request ────▶ reply()
+//! bytes ─▶ push() ─▶ next() ─┬─ Msp ────────▶ reply()
 //!                            ├─ EnterCli ───▶ admit()        answers go to the output, in the order of
 //!                            ├─ Line ───────▶ answer()       the questions: at most one is open at a time
 //!                            ├─ Complete ───▶ complete()
@@ -26,11 +26,11 @@ const STX: u8 = 0x02;
 /// Output that is sent before more is asked for, bytes.
 pub const OUTPUT_MAX: usize = 64 * 1024;
 
-/// What the stream wants.
+/// What the client asks of the owner of the stream.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Ask {
-    /// Answer a request; tell [`SerialSession::reply`].
-    Request(Frame),
+pub enum SerialRequest {
+    /// Answer an MSP message; tell [`SerialSession::reply`].
+    Msp(Frame),
     /// May the command line open? Not while armed; tell [`SerialSession::admit`].
     EnterCli {
         /// For a person, which blocks arming until the next restart; else for one batch of lines.
@@ -71,7 +71,7 @@ pub struct SerialSession {
 }
 
 impl Default for SerialSession {
-    /// A fresh client speaks MSP.
+    /// A new client starts with MSP.
     fn default() -> Self {
         Self {
             decoder: Decoder::server(),
@@ -93,12 +93,12 @@ impl SerialSession {
         self.input.extend_from_slice(bytes);
     }
 
-    /// What the stream wants next; `None` when more bytes or more time are needed. `now` counts from the client's
+    /// What the client asks next; `None` when more bytes or more time are needed. `now` counts from the client's
     /// arrival.
-    pub fn next(&mut self, now: Duration) -> Option<Ask> {
+    pub fn next(&mut self, now: Duration) -> Option<SerialRequest> {
         loop {
             if self.output.len() > OUTPUT_MAX {
-                return Some(Ask::Flush);
+                return Some(SerialRequest::Flush);
             }
             if let Some(line) = self.line.take() {
                 let source = if self.editor.mode() == LinkMode::Interactive {
@@ -106,19 +106,19 @@ impl SerialSession {
                 } else {
                     LineSource::Framed
                 };
-                return Some(Ask::Line { line, source });
+                return Some(SerialRequest::Line { line, source });
             }
             if self.restart {
                 self.restart = false;
-                return Some(Ask::Restart);
+                return Some(SerialRequest::Restart);
             }
             let in_cli = matches!(self.editor.mode(), LinkMode::Interactive | LinkMode::Framed { .. });
             if self.in_cli && !in_cli {
                 self.in_cli = false;
-                return Some(Ask::LeftCli);
+                return Some(SerialRequest::LeftCli);
             }
             if self.due().is_some_and(|due| now >= due) {
-                return Some(Ask::EnterCli { interactive: true });
+                return Some(SerialRequest::EnterCli { interactive: true });
             }
             let Some(&byte) = self.input.get(self.taken) else {
                 self.input.clear();
@@ -126,16 +126,16 @@ impl SerialSession {
                 return None;
             };
             if byte == STX && self.editor.mode() == LinkMode::Msp && self.decoder.is_between_frames() {
-                return Some(Ask::EnterCli { interactive: false });
+                return Some(SerialRequest::EnterCli { interactive: false });
             }
             self.taken += 1;
-            if let Some(ask) = self.take(byte, now) {
-                return Some(ask);
+            if let Some(request) = self.take(byte, now) {
+                return Some(request);
             }
         }
     }
 
-    fn take(&mut self, byte: u8, now: Duration) -> Option<Ask> {
+    fn take(&mut self, byte: u8, now: Duration) -> Option<SerialRequest> {
         let for_msp = if self.editor.mode() == LinkMode::Msp && !self.decoder.is_between_frames() {
             true
         } else {
@@ -144,7 +144,7 @@ impl SerialSession {
             self.line = output.line;
             self.restart = output.restart;
             if output.completes {
-                return Some(Ask::Complete { line: self.editor.line().to_owned() });
+                return Some(SerialRequest::Complete { line: self.editor.line().to_owned() });
             }
             output.for_msp
         };
@@ -153,12 +153,12 @@ impl SerialSession {
         }
         let frame = self.decoder.push(byte)?;
         match self.message.take(&frame) {
-            Some(Ok(line)) => Some(Ask::Line { line, source: LineSource::Message }),
+            Some(Ok(line)) => Some(SerialRequest::Line { line, source: LineSource::Message }),
             Some(Err(payload)) => {
                 frame.answer(payload).encode(&mut self.output);
                 None
             }
-            None => Some(Ask::Request(frame)),
+            None => Some(SerialRequest::Msp(frame)),
         }
     }
 

@@ -1,4 +1,4 @@
-//! A client's bytes, over TCP or a websocket.
+//! The byte stream of a client, over TCP or a websocket.
 
 use std::io;
 
@@ -13,13 +13,13 @@ const CHUNK: usize = 4096;
 
 /// A connected client.
 #[derive(Debug)]
-pub(super) enum Transport {
+pub(super) enum ClientStream {
     Tcp(TcpStream),
     /// Boxed, for it is large.
     WebSocket(Box<WebSocketStream<TcpStream>>),
 }
 
-impl Transport {
+impl ClientStream {
     /// The next bytes; `None` when the client is gone. Nothing is lost when the wait is given up.
     pub(super) async fn read(&mut self) -> io::Result<Option<Bytes>> {
         match self {
@@ -47,11 +47,11 @@ impl Transport {
         }
     }
 
-    /// Says goodbye.
+    /// Closes the stream.
     pub(super) async fn close(&mut self) -> io::Result<()> {
         match self {
             Self::Tcp(stream) => stream.shutdown().await,
-            // The sink's close, which also sends the answer to a client that said goodbye first.
+            // The sink's close, which also sends the answer to a client that closed first.
             Self::WebSocket(socket) => SinkExt::close(socket.as_mut()).await.or_else(ended),
         }
     }
