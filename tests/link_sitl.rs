@@ -11,7 +11,7 @@ use betadeck::link::ListenConfig;
 use betadeck::link::proto::fdm::{State, pressure_pa};
 use betadeck::link::proto::fdm_link::FdmLinkConfig;
 use betadeck::link::proto::{rc, servo};
-use betadeck::session::sitl::{Said, Sitl, SitlConfig, SitlEnd, SitlError, SitlPorts};
+use betadeck::session::sitl::{OutputLine, Sitl, SitlConfig, SitlEnd, SitlError, SitlPorts};
 use betadeck::signals::RcFrame;
 use betadeck::signals::fdm::Dialect;
 use betadeck::signals::fdm::MotorOrder;
@@ -34,7 +34,7 @@ struct Rig {
     motors: UdpSocket,
     raw: UdpSocket,
     sender: UdpSocket,
-    said: mpsc::UnboundedReceiver<Said>,
+    said: mpsc::UnboundedReceiver<OutputLine>,
     stop: Option<oneshot::Sender<()>>,
     task: JoinHandle<SitlEnd>,
     stamp_ms: u64,
@@ -129,7 +129,7 @@ impl Rig {
     fn lines(&mut self) -> Vec<String> {
         std::iter::from_fn(|| self.said.try_recv().ok())
             .map(|said| match said {
-                Said::Out(line) | Said::Err(line) => line,
+                OutputLine::Out(line) | OutputLine::Err(line) => line,
             })
             .collect()
     }
@@ -260,5 +260,5 @@ async fn a_port_in_use_ends_it_with_the_way_out() {
     let opened = Sitl::open(config, Store::in_memory(), &mut |said| lines.push(said)).await;
     let Err(error @ SitlError::Doors(_)) = opened.map(drop) else { panic!("it runs without its ports") };
     assert!(error.to_string().contains(&format!("UDP port {port} is in use")), "{error}");
-    assert!(lines.contains(&Said::Out(format!("[SITL] start UDP server @{port}...-1"))), "{lines:?}");
+    assert!(lines.contains(&OutputLine::Out(format!("[SITL] start UDP server @{port}...-1"))), "{lines:?}");
 }

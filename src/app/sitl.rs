@@ -17,7 +17,7 @@ use crate::flight::setup::PhysicsSource;
 use crate::link::ListenConfig;
 use crate::link::proto::fdm_link::FdmLinkConfig;
 use crate::record::gpx::{GpxHeader, GpxWriter, TrackPoint, UtcSeconds};
-use crate::session::sitl::{Said, Sitl, SitlConfig, SitlEnd, SitlError, SitlPorts, show_links};
+use crate::session::sitl::{OutputLine, Sitl, SitlConfig, SitlEnd, SitlError, SitlPorts, show_links};
 use crate::storage::Store;
 use crate::telemetry::Snapshot;
 
@@ -41,7 +41,7 @@ pub(super) fn run(args: &SitlArgs) -> Result<u8, AppError> {
                 };
                 AppError { code: error::FAILED, message: format!("[SITL] {message}") }
             })?;
-            say(Said::Out(format!(
+            say(OutputLine::Out(format!(
                 "[SITL] Config file: {} (will load, save to EEPROM, and exit)",
                 file.display()
             )));
@@ -88,14 +88,14 @@ fn open_store(args: &SitlArgs) -> Result<Store, AppError> {
 }
 
 #[expect(clippy::print_stdout, clippy::print_stderr, reason = "scripts wait for these lines")]
-fn say(said: Said) {
+fn say(said: OutputLine) {
     match said {
-        Said::Out(line) => {
+        OutputLine::Out(line) => {
             println!("{line}");
             // A reader that went away is told by nothing else.
             drop(io::stdout().flush());
         }
-        Said::Err(line) => eprintln!("{line}"),
+        OutputLine::Err(line) => eprintln!("{line}"),
     }
 }
 
@@ -119,23 +119,23 @@ async fn fly(args: &SitlArgs, config: SitlConfig) -> Result<u8, AppError> {
 fn apply(args: &SitlArgs, file: &Path, text: &str) -> Result<u8, AppError> {
     let mut store = open_store(args)?;
     let loaded = store.load();
-    loaded.findings.into_iter().for_each(|finding| say(Said::Err(finding)));
+    loaded.findings.into_iter().for_each(|finding| say(OutputLine::Err(finding)));
     let mut configuration = loaded.configuration;
-    say(Said::Out(format!("[CONFIG] Processing config file: {}", file.display())));
+    say(OutputLine::Out(format!("[CONFIG] Processing config file: {}", file.display())));
     let facts = CliFacts { storage: store.facts(), ..CliFacts::default() };
     let mut context = CliContext { configuration: &mut configuration, facts: &facts };
     let mut interpreter = Interpreter::new(Mode::File).lenient(args.lenient);
     let mut session = String::new();
     let report = provision(text, &mut interpreter, &mut context, |text| session += text);
     error::write_stdout(session.as_bytes())?;
-    say(Said::Out(String::new()));
+    say(OutputLine::Out(String::new()));
     tell_failures(&report);
     if report.batch_failed {
-        say(Said::Out("[CONFIG] prepareSave failed".to_owned()));
+        say(OutputLine::Out("[CONFIG] prepareSave failed".to_owned()));
         return Ok(error::FAILED);
     }
     store.save(&configuration).map_err(|error| AppError::environment(error.to_string()))?;
-    say(Said::Out("[CONFIG] Config file processed, EEPROM saved".to_owned()));
+    say(OutputLine::Out("[CONFIG] Config file processed, EEPROM saved".to_owned()));
     Ok(if args.strict && !report.failed.is_empty() { error::FAILED } else { 0 })
 }
 
@@ -144,7 +144,7 @@ fn tell_failures(report: &ApplyReport) {
         return;
     }
     let numbers: Vec<String> = report.failed.iter().map(|failed| failed.number.to_string()).collect();
-    say(Said::Err(format!(
+    say(OutputLine::Err(format!(
         "[CONFIG] {} of {} lines failed: {}",
         report.failed.len(),
         report.commands,
@@ -182,14 +182,14 @@ impl Track {
 
     fn give_up(&mut self, error: &io::Error) {
         self.wanted = false;
-        say(Said::Err(format!("cannot write {TRACK}: {error}; the track ends here")));
+        say(OutputLine::Err(format!("cannot write {TRACK}: {error}; the track ends here")));
     }
 
     fn finish(self) {
         if let Some((writer, _)) = self.writer {
             match writer.finish() {
-                Ok(_) => say(Said::Out(format!("[SITL] GPS track written to {TRACK}"))),
-                Err(error) => say(Said::Err(format!("cannot write {TRACK}: {error}"))),
+                Ok(_) => say(OutputLine::Out(format!("[SITL] GPS track written to {TRACK}"))),
+                Err(error) => say(OutputLine::Err(format!("cannot write {TRACK}: {error}"))),
             }
         }
     }

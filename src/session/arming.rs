@@ -4,17 +4,17 @@ use crate::signals::{RcSource, SimTime};
 use crate::telemetry::{ArmingFlag, Mode, Snapshot};
 
 /// How long the switch is on before the user is told, s.
-const TELL_AFTER_S: f64 = 1.0;
+const REPORT_AFTER_S: f64 = 1.0;
 
 /// Looks at the ARM switch of RC that comes over a link.
 #[derive(Debug, Default)]
 pub(super) struct ArmingWatch {
-    request: Option<Request>,
+    request: Option<ArmRequest>,
 }
 
 /// The switch is on.
 #[derive(Debug)]
-struct Request {
+struct ArmRequest {
     since: SimTime,
     /// It has armed, or it was told why not.
     done: bool,
@@ -29,9 +29,9 @@ impl ArmingWatch {
             self.request = None;
             return None;
         }
-        let request = self.request.get_or_insert(Request { since: vehicle.time, done: false });
+        let request = self.request.get_or_insert(ArmRequest { since: vehicle.time, done: false });
         request.done |= craft.is_armed();
-        if request.done || vehicle.time.seconds_since(request.since) < TELL_AFTER_S {
+        if request.done || vehicle.time.seconds_since(request.since) < REPORT_AFTER_S {
             return None;
         }
         let with_hint = |flag: ArmingFlag| format!("{flag} ({})", flag.hint());
@@ -89,7 +89,7 @@ mod tests {
     }
 
     #[test]
-    fn own_sticks_have_the_screen() {
+    fn own_sticks_need_no_notice() {
         let mut watch = ArmingWatch::default();
         for seconds in [10.0, 20.0] {
             let mut own = vehicle(seconds, &[ArmingFlag::Throttle]);

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use crate::vehicle::Ticket;
 
 /// How long an answer is awaited, wall time. A flight controller that stores its configuration is silent for a second.
-const PATIENCE: Duration = Duration::from_secs(5);
+const ANSWER_TIMEOUT: Duration = Duration::from_secs(5);
 
 /// What is said in place of an answer that did not come.
 pub(super) const NO_ANSWER: &str = "the flight controller does not answer";
@@ -34,8 +34,9 @@ impl<R> LateAnswers<R> {
 
     /// Those who have waited for too long.
     pub(super) fn take_overdue(&mut self, now: Instant) -> Vec<R> {
-        let overdue =
-            |_: &Ticket, (asked, _): &mut (Instant, R)| now.saturating_duration_since(*asked) >= PATIENCE;
+        let overdue = |_: &Ticket, (asked, _): &mut (Instant, R)| {
+            now.saturating_duration_since(*asked) >= ANSWER_TIMEOUT
+        };
         self.0.extract_if(.., overdue).map(|(_, (_, recipient))| recipient).collect()
     }
 }

@@ -46,7 +46,7 @@ struct CliSession {
 
 /// A client that awaits the answer of a remote flight controller.
 #[derive(Debug)]
-enum Recipient {
+enum WaitingClient {
     /// Of an MSP message.
     Message(oneshot::Sender<Option<Vec<u8>>>),
     /// Of a line of the command line.
@@ -57,14 +57,14 @@ enum Recipient {
 #[derive(Debug)]
 pub struct RequestHandler {
     restart_signal: RestartSignal,
-    late_answers: LateAnswers<Recipient>,
+    late_answers: LateAnswers<WaitingClient>,
     clock: Option<(UtcTime, Instant)>,
     udp: Option<ReceivedRc>,
     msp: Option<ReceivedRc>,
     cli_sessions: BTreeMap<ClientId, CliSession>,
     /// The client whose command line turned motors on the bench last.
     bench: Option<ClientId>,
-    told_plan: bool,
+    told_altitude_units: bool,
 }
 
 impl RequestHandler {
@@ -79,7 +79,7 @@ impl RequestHandler {
             msp: None,
             cli_sessions: BTreeMap::new(),
             bench: None,
-            told_plan: false,
+            told_altitude_units: false,
         }
     }
 
@@ -101,7 +101,7 @@ impl RequestHandler {
                         answer(reply, payload);
                     }
                     Answer::Later(ticket) => {
-                        self.late_answers.expect(ticket, Recipient::Message(reply), now);
+                        self.late_answers.expect(ticket, WaitingClient::Message(reply), now);
                     }
                 }
             }
@@ -119,7 +119,7 @@ impl RequestHandler {
                         answer(reply, said.into());
                     }
                     Answer::Later(ticket) => {
-                        self.late_answers.expect(ticket, Recipient::Line(reply), now);
+                        self.late_answers.expect(ticket, WaitingClient::Line(reply), now);
                     }
                 }
             }
@@ -131,7 +131,7 @@ impl RequestHandler {
                     controller.cli_closed();
                 }
             }
-            // The command line was opened before the craft was armed; it does not fall from the sky for that.
+            // The command line was opened before the craft was armed; a restart in flight would make it fall.
             Request::Restart { .. } if controller.armed() != Some(false) => {}
             Request::Restart { .. } => self.restart(true, controller, persistence, &mut handled),
             Request::Rc { frame, at, .. } => {
@@ -144,11 +144,11 @@ impl RequestHandler {
         handled
     }
 
-    /// Hands an answer that came late to the client that awaits it.
+    /// Passes a late answer on to the client that awaits it.
     pub fn deliver(&mut self, ticket: Ticket, late: LateAnswer) {
         match (self.late_answers.take(ticket), late) {
-            (Some(Recipient::Message(reply)), LateAnswer::Msp(payload)) => answer(reply, payload),
-            (Some(Recipient::Line(reply)), LateAnswer::Cli(said)) => answer(reply, said.into()),
+            (Some(WaitingClient::Message(reply)), LateAnswer::Msp(payload)) => answer(reply, payload),
+            (Some(WaitingClient::Line(reply)), LateAnswer::Cli(said)) => answer(reply, said.into()),
             // The answer to a request that was given up, or to another one.
             _ => {}
         }
@@ -158,8 +158,8 @@ impl RequestHandler {
     pub fn give_up_overdue(&mut self, now: Instant) {
         for recipient in self.late_answers.take_overdue(now) {
             match recipient {
-                Recipient::Message(reply) => answer(reply, None),
-                Recipient::Line(reply) => {
+                WaitingClient::Message(reply) => answer(reply, None),
+                WaitingClient::Line(reply) => {
                     let text = format!("###ERROR: {}###", NO_ANSWER.to_uppercase());
                     answer(reply, LineReply { text, refused: true, ..LineReply::default() });
                 }
@@ -252,8 +252,8 @@ impl RequestHandler {
             match *action {
                 CliAction::Save => handled.notices.extend(persistence.save(controller).err()),
                 CliAction::Restart { close_links } => restart = Some(close_links),
-                CliAction::PlanChanged if !self.told_plan => {
-                    self.told_plan = true;
+                CliAction::PlanChanged if !self.told_altitude_units => {
+                    self.told_altitude_units = true;
                     handled.notices.push("Waypoint altitudes count from home, in centimetres.".to_owned());
                 }
                 CliAction::MotorTest { .. } => self.bench = Some(client),
@@ -297,10 +297,10 @@ impl RequestHandler {
             return;
         }
         // The receiver itself notices a loss after as much simulated time.
-        let patience = RC_FRESH.mul_f64(1.0 - 1.0 / speed);
+        let still_fresh = RC_FRESH.mul_f64(1.0 - 1.0 / speed);
         for (source, heard) in [(RcSource::Udp, self.udp), (RcSource::Msp, self.msp)] {
             if let Some(ReceivedRc { frame, at }) = heard
-                && now.saturating_duration_since(at) < patience
+                && now.saturating_duration_since(at) < still_fresh
             {
                 controller.receive_rc(&frame, source);
             }

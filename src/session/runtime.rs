@@ -1,7 +1,7 @@
 //! The thread that owns the vehicle: takes commands and requests, runs the due ticks, publishes views and events.
 //!
 //! `commands` carries out what the user interface asks, `console` its command line, `requests` what comes over the links;
-//! `late` hands on what a remote flight controller answers; `publishing` makes the view.
+//! `late` passes on what a remote flight controller answers; `publishing` makes the view.
 #![allow(clippy::disallowed_methods, reason = "this is where wall time meets simulated time")]
 
 mod commands;
@@ -31,7 +31,7 @@ use crate::sim::Stream;
 use crate::storage::Store;
 use crate::telemetry::{BadPackets, EndpointStatus, LinkState};
 use crate::vehicle::Vehicle;
-use late::Recipient;
+use late::WaitingInterface;
 
 /// Interval of published views.
 const VIEW_INTERVAL: Duration = Duration::from_millis(16);
@@ -135,7 +135,7 @@ struct Session {
     events: EventSender,
     arming: ArmingWatch,
     /// What the user interface asked of a remote flight controller.
-    late_answers: LateAnswers<Recipient>,
+    late_answers: LateAnswers<WaitingInterface>,
     /// A script has sent RC.
     rc_received: bool,
     /// Something other than time changed what the view shows.
@@ -197,7 +197,7 @@ impl Session {
         }
     }
 
-    /// Until an external simulator speaks, and without one, time passes as on the wall.
+    /// Until an external simulator speaks, and without one, time passes with the wall clock.
     fn follows_wall_clock(&self) -> bool {
         self.simulator.as_ref().is_none_or(|simulator| simulator.state() == LinkState::Waiting)
     }

@@ -23,7 +23,7 @@ const REFUSALS: usize = 6;
 /// What a session tells about its external simulator.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SimulatorNotice {
-    /// Its first packet was accepted.
+    /// The first packet was accepted.
     Connected,
     /// A packet was accepted after a silence.
     Resumed {
@@ -63,7 +63,7 @@ pub(super) struct Simulator {
     state: LinkState,
     /// When it spoke last.
     received_at: Instant,
-    told_refusals: ArrayVec<PacketError, REFUSALS>,
+    reported_refusals: ArrayVec<PacketError, REFUSALS>,
     /// Something happened that the view should show at once.
     changed: bool,
 }
@@ -75,12 +75,12 @@ impl Simulator {
             incoming,
             state: LinkState::Waiting,
             received_at: now,
-            told_refusals: ArrayVec::new(),
+            reported_refusals: ArrayVec::new(),
             changed: false,
         }
     }
 
-    /// Whether it speaks, as the user was told.
+    /// The state of the link that was reported last.
     pub(super) fn state(&self) -> LinkState {
         self.state
     }
@@ -158,10 +158,10 @@ impl Simulator {
             vehicle.controller().motors()
         });
         if let PacketKind::Refused(refusal) = received.kind {
-            self.tell_refusal(refusal, vehicle, events);
+            self.report_refusal(refusal, vehicle, events);
             return 0;
         }
-        self.tell_return(at, vehicle, events);
+        self.report_return(at, vehicle, events);
         if received.kind == (PacketKind::Resync { restarted: true }) {
             vehicle.reset_craft();
             handler.after_restart(false, vehicle.controller_mut());
@@ -201,7 +201,7 @@ impl Simulator {
         std::mem::take(&mut self.changed)
     }
 
-    fn tell_return(&mut self, at: Instant, vehicle: &mut Vehicle, events: &EventSender) {
+    fn report_return(&mut self, at: Instant, vehicle: &mut Vehicle, events: &EventSender) {
         let silence = at.saturating_duration_since(std::mem::replace(&mut self.received_at, at));
         let before = std::mem::replace(&mut self.state, LinkState::Flowing);
         self.changed |= before != LinkState::Flowing;
@@ -214,10 +214,10 @@ impl Simulator {
         }
     }
 
-    fn tell_refusal(&mut self, refusal: PacketError, vehicle: &mut Vehicle, events: &EventSender) {
+    fn report_refusal(&mut self, refusal: PacketError, vehicle: &mut Vehicle, events: &EventSender) {
         // The count of bad packets has changed.
         self.changed = true;
-        if !self.told_refusals.contains(&refusal) && self.told_refusals.try_push(refusal).is_ok() {
+        if !self.reported_refusals.contains(&refusal) && self.reported_refusals.try_push(refusal).is_ok() {
             report(SimulatorNotice::Refused(refusal), vehicle, events);
         }
     }

@@ -5,5 +5,5 @@
 mod host;
 mod lines;
 
-pub use host::{Said, Sitl, SitlConfig, SitlEnd, SitlError, show_links};
+pub use host::{OutputLine, Sitl, SitlConfig, SitlEnd, SitlError, show_links};
 pub use lines::SitlPorts;

@@ -14,8 +14,10 @@ pub fn upload(
     settings: &[String],
 ) -> Result<(), String> {
     match Upload::new(plan, settings).send_lines(controller) {
-        Progress::Done(result) => result,
-        Progress::Waiting(_) => Err("a remote flight controller takes a plan in a session only".to_owned()),
+        UploadProgress::Done(result) => result,
+        UploadProgress::Waiting(_) => {
+            Err("a remote flight controller takes a plan in a session only".to_owned())
+        }
     }
 }
 
@@ -31,7 +33,7 @@ pub(super) struct Upload {
 
 /// How far an upload is.
 #[derive(Debug)]
-pub(super) enum Progress {
+pub(super) enum UploadProgress {
     /// Through, or refused with this sentence; what came before the refusal stays.
     Done(Result<(), String>),
     /// It goes on with the answer to the last line, which comes with this ticket.
@@ -45,25 +47,29 @@ impl Upload {
     }
 
     /// Sends lines until one is refused or its answer comes later.
-    pub(super) fn send_lines(&mut self, controller: &mut FlightController) -> Progress {
+    pub(super) fn send_lines(&mut self, controller: &mut FlightController) -> UploadProgress {
         while let Some(line) = self.lines.next() {
             self.sent = line;
             match controller.run_cli(&mut self.interpreter, &self.sent) {
                 Answer::Now(reply) if reply.failed => return self.refused(&reply),
                 Answer::Now(_) => {}
-                Answer::Later(ticket) => return Progress::Waiting(ticket),
+                Answer::Later(ticket) => return UploadProgress::Waiting(ticket),
             }
         }
-        Progress::Done(Ok(()))
+        UploadProgress::Done(Ok(()))
     }
 
     /// Takes the answer to the last line and goes on.
-    pub(super) fn take_answer(&mut self, reply: &CliReply, controller: &mut FlightController) -> Progress {
+    pub(super) fn take_answer(
+        &mut self,
+        reply: &CliReply,
+        controller: &mut FlightController,
+    ) -> UploadProgress {
         if reply.failed { self.refused(reply) } else { self.send_lines(controller) }
     }
 
-    fn refused(&self, reply: &CliReply) -> Progress {
-        Progress::Done(Err(format!("the craft refused `{}`: {}", self.sent, reply.text.trim())))
+    fn refused(&self, reply: &CliReply) -> UploadProgress {
+        UploadProgress::Done(Err(format!("the craft refused `{}`: {}", self.sent, reply.text.trim())))
     }
 }
 
@@ -94,7 +100,7 @@ mod tests {
             let mut upload = Upload::new(&plan, &["ap_max_angle = 33".to_owned()]);
             let mut progress = upload.send_lines(&mut controller);
             for (line, answer) in std::iter::zip(lines, answers) {
-                assert!(matches!(progress, Progress::Waiting(_)), "{progress:?}");
+                assert!(matches!(progress, UploadProgress::Waiting(_)), "{progress:?}");
                 let asked = asked(&mut controller);
                 assert!(asked.len() == 1 && asked[0].starts_with(line), "{asked:?}");
                 progress = upload.take_answer(answer, &mut controller);
@@ -102,7 +108,7 @@ mod tests {
                     break;
                 }
             }
-            let Progress::Done(result) = progress else { panic!("{progress:?}") };
+            let UploadProgress::Done(result) = progress else { panic!("{progress:?}") };
             assert_eq!(result.is_ok(), !answers[1].failed, "{result:?}");
             assert!(asked(&mut controller).is_empty());
         }

@@ -6,7 +6,7 @@ use std::time::Instant;
 use tokio::sync::oneshot;
 
 use super::Session;
-use super::late::Recipient;
+use super::late::WaitingInterface;
 use crate::firmware::cli::{CliAction, CliReply, Interpreter, advice};
 use crate::session::command::CliOutput;
 use crate::vehicle::Answer;
@@ -20,7 +20,7 @@ impl Session {
                 drop(reply.send(output(&line, answer, restarted)));
             }
             Answer::Later(ticket) => {
-                self.late_answers.expect(ticket, Recipient::Line { line, reply }, Instant::now());
+                self.late_answers.expect(ticket, WaitingInterface::Line { line, reply }, Instant::now());
             }
         }
     }

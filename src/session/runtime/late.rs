@@ -1,4 +1,4 @@
-//! Hands on what a remote flight controller answers later than it was asked.
+//! Passes on what a remote flight controller answers later than it was asked.
 
 use std::time::Instant;
 
@@ -10,12 +10,12 @@ use crate::firmware::cli::CliAction;
 use crate::session::command::CliOutput;
 use crate::session::hazards;
 use crate::session::late_answers::NO_ANSWER;
-use crate::session::upload::{Progress, Upload};
+use crate::session::upload::{Upload, UploadProgress};
 use crate::vehicle::LateAnswer;
 
-/// What of the user interface awaits an answer.
+/// A part of the user interface that awaits the answer of a remote flight controller.
 #[derive(Debug)]
-pub(super) enum Recipient {
+pub(super) enum WaitingInterface {
     /// The console.
     Line {
         /// The line that was run.
@@ -33,18 +33,18 @@ pub(super) enum Recipient {
 }
 
 impl Session {
-    /// Hands on what has been answered since, and gives up what is overdue.
+    /// Passes on what has been answered since, and gives up what is overdue.
     pub(super) fn take_late_answers(&mut self, now: Instant) {
         while let Some((ticket, answer)) = self.vehicle.controller_mut().take_answer() {
             self.changed = true;
             match (self.late_answers.take(ticket), answer) {
-                (Some(Recipient::Line { line, reply }), LateAnswer::Cli(said)) => {
+                (Some(WaitingInterface::Line { line, reply }), LateAnswer::Cli(said)) => {
                     // It has stored and restarted by itself.
                     let restarted =
                         said.actions.iter().any(|action| matches!(action, CliAction::Restart { .. }));
                     drop(reply.send(output(&line, said, restarted)));
                 }
-                (Some(Recipient::Upload { mut upload, reply }), LateAnswer::Cli(said)) => {
+                (Some(WaitingInterface::Upload { mut upload, reply }), LateAnswer::Cli(said)) => {
                     let progress = upload.take_answer(&said, self.vehicle.controller_mut());
                     self.report_upload(upload, progress, reply, now);
                 }
@@ -57,11 +57,11 @@ impl Session {
         }
         for recipient in self.late_answers.take_overdue(now) {
             match recipient {
-                Recipient::Line { reply, .. } => {
+                WaitingInterface::Line { reply, .. } => {
                     let text = format!("###ERROR: {}###", NO_ANSWER.to_uppercase());
                     drop(reply.send(CliOutput { text, ..CliOutput::default() }));
                 }
-                Recipient::Upload { reply, .. } => drop(reply.send(Err(NO_ANSWER.to_owned()))),
+                WaitingInterface::Upload { reply, .. } => drop(reply.send(Err(NO_ANSWER.to_owned()))),
             }
         }
         if let Some(endpoints) = &mut self.endpoints {
@@ -73,12 +73,12 @@ impl Session {
     pub(super) fn report_upload(
         &mut self,
         upload: Upload,
-        progress: Progress,
+        progress: UploadProgress,
         reply: oneshot::Sender<Result<(), String>>,
         now: Instant,
     ) {
         match progress {
-            Progress::Done(result) => {
+            UploadProgress::Done(result) => {
                 if result.is_ok() {
                     for hazard in hazards(self.vehicle.controller()) {
                         self.notice(hazard);
@@ -86,8 +86,8 @@ impl Session {
                 }
                 drop(reply.send(result));
             }
-            Progress::Waiting(ticket) => {
-                self.late_answers.expect(ticket, Recipient::Upload { upload, reply }, now);
+            UploadProgress::Waiting(ticket) => {
+                self.late_answers.expect(ticket, WaitingInterface::Upload { upload, reply }, now);
             }
         }
     }

@@ -1,6 +1,6 @@
 //! Runs a session whose craft an external simulator moves, and prints what the SITL executable prints.
 
-#![allow(clippy::disallowed_methods, reason = "the drop-in lives by the wall clock, as the executable does")]
+#![allow(clippy::disallowed_methods, reason = "the drop-in runs in real time, as the executable does")]
 
 use std::net::{IpAddr, SocketAddr};
 use std::time::{Duration, Instant};
@@ -21,10 +21,10 @@ use crate::storage::Store;
 use crate::telemetry::{BadPackets, EndpointKind, EndpointStatus, LinkState, Snapshot};
 use crate::vehicle::{Vehicle, VehicleConfig};
 
-/// Rhythm in which clients of the serial port are counted.
-const CLIENTS: Duration = Duration::from_millis(5);
+/// Interval at which clients of the serial port are counted.
+const CLIENT_INTERVAL: Duration = Duration::from_millis(5);
 /// Interval of the lines about the flight.
-const SECOND: Duration = Duration::from_secs(1);
+const FLIGHT_INTERVAL: Duration = Duration::from_secs(1);
 
 /// How to run.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,7 +49,7 @@ pub struct SitlConfig {
 
 /// A line for the user.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Said {
+pub enum OutputLine {
     /// On standard output.
     Out(String),
     /// On standard error.
@@ -101,7 +101,7 @@ impl Sitl {
     pub async fn open(
         config: SitlConfig,
         mut store: Store,
-        print: &mut impl FnMut(Said),
+        print: &mut impl FnMut(OutputLine),
     ) -> Result<Self, SitlError> {
         let (links, motors) = open_links(&config, print).await;
         let motors = motors?;
@@ -110,10 +110,10 @@ impl Sitl {
             return Err(SitlError::Doors(problems.join("\n")));
         }
         if let Some(address) = links.doors.address(EndpointKind::Tcp) {
-            print(Said::Err(format!("bind port {} for UART1", address.port())));
+            print(OutputLine::Err(format!("bind port {} for UART1", address.port())));
         }
         if let Some(address) = links.doors.address(EndpointKind::WebSocket) {
-            print(Said::Err(format!("[SITL] websocket for the Betaflight App: ws://{address}")));
+            print(OutputLine::Err(format!("[SITL] websocket for the Betaflight App: ws://{address}")));
         }
         let vehicle = boot(&config, &mut store, print)?;
         let simulator = ExternalSimulator::start(config.fdm, config.motor_order, motors, Instant::now());
@@ -140,14 +140,14 @@ impl Sitl {
     /// a second while a simulator flies it.
     pub async fn run(
         mut self,
-        print: &mut impl FnMut(Said),
+        print: &mut impl FnMut(OutputLine),
         each_second: &mut impl FnMut(&Snapshot),
         stop: impl Future<Output = ()>,
     ) -> SitlEnd {
         tokio::pin!(stop);
-        let mut next_line = Instant::now() + SECOND;
-        let mut look = interval(CLIENTS);
-        look.set_missed_tick_behavior(MissedTickBehavior::Delay);
+        let mut next_line = Instant::now() + FLIGHT_INTERVAL;
+        let mut count_clients = interval(CLIENT_INTERVAL);
+        count_clients.set_missed_tick_behavior(MissedTickBehavior::Delay);
         let end = loop {
             tokio::select! {
                 biased;
@@ -160,14 +160,14 @@ impl Sitl {
                         break SitlEnd::Rebooted;
                     }
                 }
-                _ = look.tick() => {}
+                _ = count_clients.tick() => {}
             }
-            self.tell_clients(print);
+            self.print_clients(print);
             let now = Instant::now();
             if now >= next_line {
-                next_line = now + SECOND;
+                next_line = now + FLIGHT_INTERVAL;
                 self.publish.send_replace(self.doors.status());
-                self.tell_flight(print, each_second);
+                self.report_flight(print, each_second);
             }
         };
         let Handle { commands, thread, view, .. } = self.session;
@@ -177,13 +177,13 @@ impl Sitl {
         let senseless = BadPackets::of(&view.borrow().endpoints).senseless;
         let bad = BadPackets { senseless, ..BadPackets::of(&self.doors.status()) };
         if !bad.is_none() {
-            print(Said::Err(format!("[SITL] Bad packets: {bad}.")));
+            print(OutputLine::Err(format!("[SITL] Bad packets: {bad}.")));
         }
         self.doors.close().await;
         end
     }
 
-    fn tell_flight(&self, print: &mut impl FnMut(Said), each_second: &mut impl FnMut(&Snapshot)) {
+    fn report_flight(&self, print: &mut impl FnMut(OutputLine), each_second: &mut impl FnMut(&Snapshot)) {
         let view = self.session.view.borrow().clone();
         if view.simulator == Some(LinkState::Flowing) {
             print_flight(&view.vehicle, print);
@@ -192,24 +192,28 @@ impl Sitl {
     }
 
     /// Clients of the serial port come and go.
-    fn tell_clients(&mut self, print: &mut impl FnMut(Said)) {
+    fn print_clients(&mut self, print: &mut impl FnMut(OutputLine)) {
         let clients = self.doors.clients(EndpointKind::Tcp);
         while self.clients < clients {
-            print(Said::Err(format!("New connection on UART1, {}", self.clients)));
+            print(OutputLine::Err(format!("New connection on UART1, {}", self.clients)));
             self.clients += 1;
-            print(Said::Err(format!("[NEW]UART1: {},1", self.clients)));
+            print(OutputLine::Err(format!("[NEW]UART1: {},1", self.clients)));
         }
         while self.clients > clients {
             self.clients -= 1;
-            print(Said::Err(format!("[CLS]UART1: 1,{}", self.clients)));
+            print(OutputLine::Err(format!("[CLS]UART1: 1,{}", self.clients)));
         }
     }
 }
 
-/// The firmware on what is stored, with a simulator outside and no sticks of its own.
-fn boot(config: &SitlConfig, store: &mut Store, print: &mut impl FnMut(Said)) -> Result<Vehicle, WorldError> {
+/// The firmware on what is stored, with an external simulator and no sticks of its own.
+fn boot(
+    config: &SitlConfig,
+    store: &mut Store,
+    print: &mut impl FnMut(OutputLine),
+) -> Result<Vehicle, WorldError> {
     let loaded = store.load();
-    loaded.findings.into_iter().for_each(|finding| print(Said::Err(finding)));
+    loaded.findings.into_iter().for_each(|finding| print(OutputLine::Err(finding)));
     let mut vehicle = Vehicle::with_external_physics(VehicleConfig {
         world: WorldConfig::default(),
         firmware: config.firmware,
@@ -223,15 +227,19 @@ fn boot(config: &SitlConfig, store: &mut Store, print: &mut impl FnMut(Said)) ->
 }
 
 /// The line about an event, when the executable has one.
-fn print_event(event: &Event, print: &mut impl FnMut(Said)) {
+fn print_event(event: &Event, print: &mut impl FnMut(OutputLine)) {
     match &event.kind {
         SessionEvent::FirstState { stamp_s, from } => {
-            print(Said::Out(lines::first_fdm_line(*stamp_s, *from)));
+            print(OutputLine::Out(lines::first_fdm_line(*stamp_s, *from)));
         }
-        SessionEvent::FirstRc { stamp_s, frame } => print(Said::Out(lines::first_rc_line(*stamp_s, frame))),
-        SessionEvent::Restarted => print(Said::Out(lines::RESET_LINE.to_owned())),
-        SessionEvent::Notice(notice) => print(Said::Err(notice.clone())),
-        SessionEvent::Simulator(SimulatorNotice::Adapted(notice)) => print(Said::Err(notice.to_string())),
+        SessionEvent::FirstRc { stamp_s, frame } => {
+            print(OutputLine::Out(lines::first_rc_line(*stamp_s, frame)));
+        }
+        SessionEvent::Restarted => print(OutputLine::Out(lines::RESET_LINE.to_owned())),
+        SessionEvent::Notice(notice) => print(OutputLine::Err(notice.clone())),
+        SessionEvent::Simulator(SimulatorNotice::Adapted(notice)) => {
+            print(OutputLine::Err(notice.to_string()));
+        }
         SessionEvent::Simulator(_)
         | SessionEvent::Vehicle(_)
         | SessionEvent::ArmingBlocked(_)
@@ -239,11 +247,11 @@ fn print_event(event: &Event, print: &mut impl FnMut(Said)) {
     }
 }
 
-fn print_flight(vehicle: &Snapshot, print: &mut impl FnMut(Said)) {
+fn print_flight(vehicle: &Snapshot, print: &mut impl FnMut(OutputLine)) {
     let t_ms = vehicle.time.0 / 1000;
     let (craft, estimate) = (&vehicle.craft, &vehicle.estimate);
     if craft.armed == Some(false) && !craft.arming_flags().is_empty() {
-        print(Said::Out(lines::blocked_line(t_ms, craft.arming_flags())));
+        print(OutputLine::Out(lines::blocked_line(t_ms, craft.arming_flags())));
     }
     let gps = craft.gps.unwrap_or_default();
     let degrees = |angle: Option<f64>| angle.unwrap_or_default();
@@ -258,16 +266,16 @@ fn print_flight(vehicle: &Snapshot, print: &mut impl FnMut(Said)) {
             degrees(estimate.heading_deg),
         ],
     };
-    print(Said::Out(line.to_string()));
+    print(OutputLine::Out(line.to_string()));
 }
 
 /// Opens the links and tells how that went.
 async fn open_links(
     config: &SitlConfig,
-    print: &mut impl FnMut(Said),
+    print: &mut impl FnMut(OutputLine),
 ) -> (Links, Result<MotorPort, MotorsError>) {
     let (ip, ports) = (config.motors_ip.to_string(), config.ports);
-    print(Said::Out(lines::output_line(&ip, ports)));
+    print(OutputLine::Out(lines::output_line(&ip, ports)));
     let wanted = ListenConfig { rc_port: Some(ports.rc), fdm_port: Some(ports.fdm), ..config.doors.clone() };
     let links = Links::open(&wanted).await;
     let motors = MotorTargets { ip: config.motors_ip, motors: ports.motors, raw: ports.raw }.open();
@@ -285,13 +293,13 @@ async fn open_links(
     };
     let told =
         lines::link_lines(&ip, ports, motors_opened, opened(EndpointKind::Fdm), opened(EndpointKind::Rc));
-    told.into_iter().for_each(|line| print(Said::Out(line)));
+    told.into_iter().for_each(|line| print(OutputLine::Out(line)));
     (links, motors)
 }
 
 /// Opens the links, tells how that went, and closes them again: what the executable does before it reads a
 /// configuration file.
-pub async fn show_links(config: &SitlConfig, print: &mut impl FnMut(Said)) {
+pub async fn show_links(config: &SitlConfig, print: &mut impl FnMut(OutputLine)) {
     let (links, _motors) = open_links(config, print).await;
     links.doors.close().await;
 }
