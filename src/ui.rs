@@ -17,7 +17,6 @@
 //! the simulator or sockets.
 
 pub mod action;
-pub mod advice;
 mod app_state;
 mod ascii;
 mod console;
@@ -34,6 +33,7 @@ mod pane;
 mod panel;
 mod run;
 mod status_bar;
+pub mod status_message;
 mod terminal;
 mod text_wrap;
 pub mod theme;

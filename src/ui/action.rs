@@ -137,7 +137,7 @@ pub fn spec_of(action: Action) -> Option<&'static Spec> {
 }
 
 impl Context {
-    /// Whether keys of this context are heard while `focus` has the focus. In a text field letters are text.
+    /// Whether keys of this context apply while `focus` has the focus. In a text field letters are text.
     #[must_use]
     pub fn applies(self, focus: Pane) -> bool {
         match self {

@@ -62,8 +62,8 @@ pub struct Notice {
 pub struct Transition {
     /// Simulated time.
     pub time: SimTime,
-    /// When it was heard, wall clock.
-    pub heard: Duration,
+    /// When the interface received it, wall clock.
+    pub received: Duration,
     /// State left.
     pub from: NavState,
     /// State entered.
@@ -102,7 +102,7 @@ pub struct AppState {
     pub plan: OpenPlan,
     /// Columns and rows of the terminal.
     pub size: (u16, u16),
-    /// The panel that hears keys.
+    /// The panel that gets the keys.
     pub focus: Pane,
     /// The focused panel fills the screen.
     pub zoomed: bool,
@@ -196,7 +196,7 @@ impl AppState {
     }
 
     /// Takes an event in.
-    pub fn hear(&mut self, event: &Event) {
+    pub fn take_event(&mut self, event: &Event) {
         let text = (self.sentence)(event);
         let level = Level::of(&event.kind);
         if !text.is_empty() {
@@ -220,7 +220,7 @@ impl AppState {
                 }
                 self.transitions.push_back(Transition {
                     time,
-                    heard: self.now,
+                    received: self.now,
                     from: *from,
                     to: *to,
                     wp: *wp,

@@ -1,4 +1,4 @@
-//! The line at the bottom: what the keys do here and now, the way out, and the doors.
+//! The line at the bottom: what the keys do here and now, help and quit, and the doors.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -20,11 +20,11 @@ use super::transmitter::ThrottleMove;
 /// Width from which a door says what is wrong with it.
 const WIDE: u16 = 120;
 
-/// Draws the hint line: keys at the left; at the right the way out and the doors.
+/// Draws the hint line: keys at the left; at the right help, quit and the doors.
 pub(super) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     let mut right: Vec<Span<'static>> =
-        way_out(state).iter().flat_map(|(keys, label)| hint(theme, keys, label)).collect();
+        permanent_hints(state).iter().flat_map(|(keys, label)| hint(theme, keys, label)).collect();
     right.extend(doors(state, area.width));
     let room = usize::from(area.width).saturating_sub(Line::from(right.clone()).width());
     let mut spans: Vec<Span<'static>> = Vec::new();
@@ -132,8 +132,8 @@ fn throttle_label(state: &AppState) -> &'static str {
     }
 }
 
-/// The keys that are never left out: the way to all others, and the way out.
-fn way_out(state: &AppState) -> Vec<(String, &'static str)> {
+/// The keys that are never left out: help and quit.
+fn permanent_hints(state: &AppState) -> Vec<(String, &'static str)> {
     if state.focus == Pane::Cli {
         return vec![("Esc".to_owned(), "leave")];
     }

@@ -121,8 +121,8 @@ impl Keymap {
         let own = |context: &Context| matches!(context, Context::In(_) | Context::Lists);
         // Function keys are never text.
         let function = matches!(key.code, KeyCode::F(_));
-        let heard = |context: Context| context.applies(focus) || (function && context == Context::Global);
-        let mut hits = self.bindings.iter().filter(|(context, k, _)| *k == key && heard(*context));
+        let applies = |context: Context| context.applies(focus) || (function && context == Context::Global);
+        let mut hits = self.bindings.iter().filter(|(context, k, _)| *k == key && applies(*context));
         let first = hits.next()?;
         let best = if own(&first.0) { first } else { hits.find(|hit| own(&hit.0)).unwrap_or(first) };
         Some(best.2)

@@ -1,4 +1,4 @@
-//! What the user interface hears, and what it asks for.
+//! The messages that the user interface gets, and the effects that it asks for.
 
 use std::time::Duration;
 

@@ -42,7 +42,7 @@ impl Pane {
     }
 }
 
-/// What lies over the panels; the last one hears keys first.
+/// What lies over the panels; the last one gets keys first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Layer {
     /// The keys, scrolled down by this many lines.

@@ -96,7 +96,7 @@ pub async fn run(
             },
             Some(msg) = replies.recv() => Wake::Msg(msg),
             () = sleep(frame_at.saturating_duration_since(Instant::now())) => Wake::Time,
-            heard = link.events.recv_many(&mut events, BATCH) => match heard {
+            received = link.events.recv_many(&mut events, BATCH) => match received {
                 0 => Wake::End(Ending::SessionEnded),
                 _ => Wake::Flight(Msg::Clock(started.elapsed())),
             },
@@ -116,8 +116,8 @@ pub async fn run(
             Wake::Msg(msg) => (Some(msg), KEY_FRAME),
             Wake::Flight(msg) => (Some(msg), FLIGHT_FRAME),
         };
-        let heard = events.drain(..).map(Msg::Event);
-        for msg in heard.chain(msg).collect::<Vec<_>>() {
+        let received = events.drain(..).map(Msg::Event);
+        for msg in received.chain(msg).collect::<Vec<_>>() {
             for effect in update(&mut state, msg) {
                 if matches!(effect, Effect::Quit) {
                     link.commands.try_send(Command::Quit).ok();

@@ -19,7 +19,7 @@ use super::app_state::AppState;
 use super::draw::draw;
 
 /// Whether the terminal is ours at the moment; the panic hook of any thread must know.
-static BORROWED: AtomicBool = AtomicBool::new(false);
+static TAKEN_OVER: AtomicBool = AtomicBool::new(false);
 static HOOK: Once = Once::new();
 
 /// The terminal while it is ours; dropping it gives it back.
@@ -37,16 +37,16 @@ impl Tui {
         HOOK.call_once(|| {
             let before = std::panic::take_hook();
             std::panic::set_hook(Box::new(move |info| {
-                give_back();
+                restore();
                 before(info);
             }));
         });
         // The theme decides about colours; the library's own reading of NO_COLOR would wipe bold and reverse, too.
         style::force_color_output(true);
-        match take(mouse).and_then(|()| Terminal::new(CrosstermBackend::new(stdout()))) {
+        match take_over(mouse).and_then(|()| Terminal::new(CrosstermBackend::new(stdout()))) {
             Ok(terminal) => Ok(Self { terminal, mouse }),
             Err(error) => {
-                give_back();
+                restore();
                 Err(error)
             }
         }
@@ -57,10 +57,10 @@ impl Tui {
     /// # Errors
     /// Whatever the terminal says.
     pub fn suspend(&mut self) -> io::Result<()> {
-        give_back();
+        restore();
         #[cfg(unix)]
         rustix::process::kill_process(rustix::process::getpid(), rustix::process::Signal::TSTP)?;
-        take(self.mouse)?;
+        take_over(self.mouse)?;
         self.terminal.clear()
     }
 
@@ -82,21 +82,21 @@ impl Tui {
 
 impl Drop for Tui {
     fn drop(&mut self) {
-        give_back();
+        restore();
     }
 }
 
 /// Raw mode, alternate screen, bracketed paste, mouse if wanted.
-fn take(mouse: bool) -> io::Result<()> {
+fn take_over(mouse: bool) -> io::Result<()> {
     enable_raw_mode()?;
-    BORROWED.store(true, Ordering::SeqCst);
+    TAKEN_OVER.store(true, Ordering::SeqCst);
     execute!(stdout(), EnterAlternateScreen, EnableBracketedPaste)?;
     if mouse { execute!(stdout(), EnableMouseCapture) } else { Ok(()) }
 }
 
-/// Gives the terminal back, once.
-fn give_back() {
-    if !BORROWED.swap(false, Ordering::SeqCst) {
+/// Restores the terminal, once.
+fn restore() {
+    if !TAKEN_OVER.swap(false, Ordering::SeqCst) {
         return;
     }
     // Each on its own: when one fails the others still help.

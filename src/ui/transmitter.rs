@@ -9,11 +9,11 @@ use crate::telemetry::snapshot::SettingsView;
 use crate::telemetry::switch::Switch;
 use crate::telemetry::{Mode, ModeBox, switch};
 
-use super::advice;
 use super::app_state::AppState;
 use super::event_log::Level;
 use super::formatting::within;
 use super::message::Effect;
+use super::status_message;
 
 /// Channel of the throttle.
 const THROTTLE: usize = 2;
@@ -163,9 +163,9 @@ pub(super) fn can_arm(state: &AppState) -> Result<(), String> {
         return Ok(());
     }
     // The others only say "switch off, then on again", which is what the key does.
-    match advice::most_useful(craft.arming_flags().causes()) {
+    match status_message::most_useful_flag(craft.arming_flags().causes()) {
         None => Ok(()),
-        Some(flag) => Err(format!("Cannot arm, {flag}: {}.", advice::arming_hint(flag))),
+        Some(flag) => Err(format!("Cannot arm, {flag}: {}.", status_message::arming_hint(flag))),
     }
 }
 

@@ -50,7 +50,7 @@ pub fn update(state: &mut AppState, msg: Msg) -> Vec<Effect> {
             Vec::new()
         }
         Msg::Event(event) => {
-            state.hear(&event);
+            state.take_event(&event);
             Vec::new()
         }
         Msg::CliReply(output) => {

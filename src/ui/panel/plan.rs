@@ -3,9 +3,8 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-use crate::geo::Degrees7;
-use crate::plan::{HoldPattern, Waypoint, WaypointType};
-use crate::ui::advice::waypoint_problem;
+use crate::geo::{Degrees7, LatLon, distance_bearing};
+use crate::plan::{FlightPlan, HoldPattern, Waypoint, WaypointType};
 use crate::ui::app_state::AppState;
 use crate::ui::pane::Pane;
 use crate::ui::theme::Role;
@@ -36,6 +35,21 @@ fn problems(state: &AppState) -> Vec<String> {
     let vehicle = &state.view.vehicle;
     let fence = vehicle.craft.home.zip(vehicle.settings.and_then(|settings| settings.fence_m));
     (0..plan.waypoints.len()).filter_map(|index| waypoint_problem(plan, index, fence)).collect()
+}
+
+/// What is wrong with a waypoint of a plan, or worth knowing.
+fn waypoint_problem(plan: &FlightPlan, index: usize, fence: Option<(LatLon, f64)>) -> Option<String> {
+    let wp = plan.waypoints.get(index)?;
+    if !wp.kind.is_positional() {
+        return None;
+    }
+    if !wp.position.is_on_globe() {
+        return Some(format!("WP{index}: latitude or longitude is not on the globe."));
+    }
+    let (home, limit_m) = fence?;
+    let (distance_m, _) = distance_bearing(home, wp.position);
+    (distance_m > limit_m)
+        .then(|| format!("WP{index} is {distance_m:.0} m from home, the fence is {limit_m:.0} m."))
 }
 
 /// Rows of waypoints: what the head and the problems leave.

@@ -1,4 +1,4 @@
-//! 3 State: what stands in the way, the state machine, the guards of the active state, the last transitions.
+//! 3 State: the status message, the state machine, the guards of the active state, the last transitions.
 
 use std::time::Duration;
 
@@ -7,10 +7,10 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 use crate::telemetry::{Guard, GuardName};
-use crate::ui::advice;
 use crate::ui::app_state::AppState;
 use crate::ui::formatting::{clock, cut, fixed, signed, within};
 use crate::ui::pane::Pane;
+use crate::ui::status_message;
 use crate::ui::theme::{Role, Theme};
 
 use super::state_diagram::{COMPACT, Diagram, FULL, LOW};
@@ -42,7 +42,7 @@ pub(crate) fn title(state: &AppState) -> String {
 /// Draws the inside.
 pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     let diagram = diagram(area);
-    let mut top = draw_advice(state, area, diagram, buffer);
+    let mut top = draw_status_message(state, area, diagram, buffer);
     top += draw_machine(state, below(area, top), diagram, buffer);
     top += draw_guards(state, below(area, top), buffer);
     draw_transitions(state, below(area, top), buffer);
@@ -60,15 +60,16 @@ fn below(area: Rect, rows: u16) -> Rect {
     Rect { y: area.y + rows, height: area.height - rows, ..area }
 }
 
-/// What the user should know; gives the rows used.
-fn draw_advice(state: &AppState, area: Rect, diagram: &Diagram, buffer: &mut Buffer) -> u16 {
+/// The status message; gives the rows used.
+fn draw_status_message(state: &AppState, area: Rect, diagram: &Diagram, buffer: &mut Buffer) -> u16 {
     let theme = &state.theme;
-    let Some(advice) = advice::now(state) else { return 0 };
+    let Some(message) = status_message::current(state) else { return 0 };
     let width = usize::from(area.width.saturating_sub(2));
     let mut used = 0;
-    for (glyph, text, role) in
-        [(advice.level.glyph(), &advice.what, advice.level.role()), ("→", &advice.fix, Role::Title)]
-    {
+    for (glyph, text, role) in [
+        (message.level.glyph(), &message.condition, message.level.role()),
+        ("→", &message.action, Role::Title),
+    ] {
         for (at, text) in wrapped(text, width).iter().enumerate() {
             let mark = if at == 0 { glyph } else { " " };
             row(buffer, area, used, theme, role, &format!("{mark} {text}"));
@@ -85,7 +86,7 @@ fn draw_machine(state: &AppState, area: Rect, diagram: &Diagram, buffer: &mut Bu
         row(buffer, area, 0, &state.theme, Role::Dim, " — the firmware does not tell its state");
         return 1.min(area.height);
     };
-    let last = state.transitions.back().filter(|last| within(state.now, last.heard, LIT_FOR));
+    let last = state.transitions.back().filter(|last| within(state.now, last.received, LIT_FOR));
     let left = (area.width.saturating_sub(diagram.width)) / 2;
     let place = Rect { x: area.x + left, width: area.width - left, ..area };
     diagram.draw(&state.theme, nav.state, last.map(|last| (last.from, last.to)), place, buffer);

@@ -1,6 +1,5 @@
-//! What stands in the way of flying, and what to do about it: one sentence and one way out.
+//! The message on top of the State panel: what keeps the craft from flying, or how it flies, and what to do now.
 
-use crate::plan::FlightPlan;
 use crate::telemetry::{ArmingFlag, ArmingFlags, CannotHold, HoldLimit, LinkState, Mode, NavState, Refusal};
 
 use super::app_state::AppState;
@@ -8,24 +7,24 @@ use super::event_log::Level;
 use super::transmitter;
 use super::transmitter::ThrottleMove;
 
-/// A sentence and the way out.
+/// The state of the craft as a sentence, and what to do.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Advice {
+pub struct StatusMessage {
     /// How serious.
     pub level: Level,
-    /// What is.
-    pub what: String,
+    /// What keeps the craft from flying, or how it flies.
+    pub condition: String,
     /// What to do.
-    pub fix: String,
+    pub action: String,
 }
 
-fn advice(level: Level, what: impl Into<String>, fix: impl Into<String>) -> Option<Advice> {
-    Some(Advice { level, what: what.into(), fix: fix.into() })
+fn message(level: Level, condition: impl Into<String>, action: impl Into<String>) -> Option<StatusMessage> {
+    Some(StatusMessage { level, condition: condition.into(), action: action.into() })
 }
 
-/// The arming-disable flag that tells the user most; those that only say "again" come last.
+/// The arming-disable flag that tells the user most; those that only repeat a cause come last.
 #[must_use]
-pub fn most_useful(flags: ArmingFlags) -> Option<ArmingFlag> {
+pub fn most_useful_flag(flags: ArmingFlags) -> Option<ArmingFlag> {
     let rank = |flag: &ArmingFlag| match flag {
         ArmingFlag::Cli => 0,
         ArmingFlag::RxLoss => 1,
@@ -58,29 +57,29 @@ pub fn arming_hint(flag: ArmingFlag) -> String {
 
 /// What the user should know and do now; `None` while the mission flies.
 #[must_use]
-pub fn now(state: &AppState) -> Option<Advice> {
+pub fn current(state: &AppState) -> Option<StatusMessage> {
     let vehicle = &state.view.vehicle;
     let craft = &vehicle.craft;
     match state.view.simulator {
         Some(LinkState::Silent) => {
-            return advice(
+            return message(
                 Level::Fault,
                 "The simulator is silent: time stands still.",
                 "let it go on, or start it again",
             );
         }
         Some(LinkState::Waiting) => {
-            let fix = "start it; its states come to the door udp fdm";
-            return advice(Level::Warn, "No simulator yet.", fix);
+            let action = "start it; its states come to the door udp fdm";
+            return message(Level::Warn, "No simulator yet.", action);
         }
         Some(LinkState::Flowing) | None => {}
     }
     if let Some(truth) = &vehicle.truth {
         if truth.crashed {
-            return advice(Level::Fault, "The craft crashed.", "R puts it back home");
+            return message(Level::Fault, "The craft crashed.", "R puts it back home");
         }
         if truth.diverged {
-            return advice(
+            return message(
                 Level::Fault,
                 "The simulation left the range where it means something.",
                 "R resets",
@@ -88,14 +87,14 @@ pub fn now(state: &AppState) -> Option<Advice> {
         }
     }
     if vehicle.is_engaged() {
-        return vehicle.nav.as_ref().and_then(|nav| nav.cannot_hold).and_then(off_station);
+        return vehicle.nav.as_ref().and_then(|nav| nav.cannot_hold).and_then(cannot_hold_message);
     }
     let switched_on = transmitter::switch_is_on(state, Mode::Autopilot);
     if state.view.rc_cut {
-        return advice(Level::Fault, "The RC link is cut.", "x restores it");
+        return message(Level::Fault, "The RC link is cut.", "x restores it");
     }
     let Some(armed) = craft.armed else {
-        return advice(
+        return message(
             Level::Warn,
             "The flight controller does not tell whether it is armed.",
             "wait for it to speak",
@@ -103,70 +102,70 @@ pub fn now(state: &AppState) -> Option<Advice> {
     };
     if armed {
         if craft.failsafe_stage.is_some_and(|stage| stage > 0) {
-            return advice(Level::Fault, "Failsafe: the RC link is lost.", "send RC frames again");
+            return message(Level::Fault, "Failsafe: the RC link is lost.", "send RC frames again");
         }
         if let Some(refusal) = vehicle.nav.as_ref().and_then(|nav| nav.refusal).filter(|_| switched_on) {
-            let what = format!("AUTOPILOT refused: {}", refusal.sentence());
-            return advice(Level::Fault, what, way_out(refusal));
+            let condition = format!("AUTOPILOT refused: {}", refusal.sentence());
+            return message(Level::Fault, condition, action_after(refusal));
         }
         if let Some(doing) = state.view.pilot {
-            return advice(Level::Info, format!("The pilot flies: {doing}."), "F stops it");
+            return message(Level::Info, format!("The pilot flies: {doing}."), "F stops it");
         }
         return by_hand(state);
     }
     let outside = state.view.simulator.is_some();
     if vehicle.truth.as_ref().is_some_and(|truth| !truth.on_ground && truth.alt > 1.0) {
-        let fix = if outside { "reset the simulator's world" } else { "R puts the craft back home" };
-        return advice(Level::Fault, "Disarmed in the air.", fix);
+        let action = if outside { "reset the simulator's world" } else { "R puts the craft back home" };
+        return message(Level::Fault, "Disarmed in the air.", action);
     }
     if vehicle.nav.as_ref().is_some_and(|nav| nav.state == NavState::Complete) {
-        let fix = if outside { "F flies again" } else { "R puts the craft back home, F flies again" };
-        return advice(Level::Good, "Mission complete.", fix);
+        let action = if outside { "F flies again" } else { "R puts the craft back home, F flies again" };
+        return message(Level::Good, "Mission complete.", action);
     }
     if let Some(doing) = state.view.pilot {
-        if let Some(flag) = most_useful(craft.arming_flags()).filter(|_| craft.has_fix()) {
-            let what = format!("The pilot waits, arming is blocked: {flag}.");
-            return advice(Level::Info, what, arming_hint(flag));
+        if let Some(flag) = most_useful_flag(craft.arming_flags()).filter(|_| craft.has_fix()) {
+            let condition = format!("The pilot waits, arming is blocked: {flag}.");
+            return message(Level::Info, condition, arming_hint(flag));
         }
-        return advice(Level::Info, format!("The pilot prepares: {doing}."), "F stops it");
+        return message(Level::Info, format!("The pilot prepares: {doing}."), "F stops it");
     }
     if craft.gps_fix == Some(false) {
-        return advice(Level::Warn, "No GPS fix yet.", "wait for satellites; F waits by itself");
+        return message(Level::Warn, "No GPS fix yet.", "wait for satellites; F waits by itself");
     }
-    if let Some(flag) = most_useful(craft.arming_flags()) {
-        return advice(Level::Warn, format!("Arming is blocked: {flag}."), arming_hint(flag));
+    if let Some(flag) = most_useful_flag(craft.arming_flags()) {
+        return message(Level::Warn, format!("Arming is blocked: {flag}."), arming_hint(flag));
     }
     if vehicle.stored_plan.as_ref().is_some_and(|plan| plan.waypoints.is_empty()) {
-        let fix = if state.plan.plan.waypoints.is_empty() {
+        let action = if state.plan.plan.waypoints.is_empty() {
             "`waypoint insert …` in the CLI (5) adds one".to_owned()
         } else {
             format!("U uploads {}; F does it and flies", state.plan.name)
         };
-        return advice(Level::Warn, "The craft has no plan.", fix);
+        return message(Level::Warn, "The craft has no plan.", action);
     }
     if switched_on {
-        return advice(Level::Warn, "AUTOPILOT is on while disarmed.", "g switches it off, then a arms");
+        return message(Level::Warn, "AUTOPILOT is on while disarmed.", "g switches it off, then a arms");
     }
-    advice(Level::Good, "Ready.", "F flies the plan; by hand: a, t, g")
+    message(Level::Good, "Ready.", "F flies the plan; by hand: a, t, g")
 }
 
 /// A craft that is blown off its place, or cannot keep its altitude.
-fn off_station(deviation: CannotHold) -> Option<Advice> {
+fn cannot_hold_message(deviation: CannotHold) -> Option<StatusMessage> {
     let CannotHold { distance_m, vertical_m, limit } = deviation;
     let side = if vertical_m < 0.0 { "low" } else { "high" };
-    let what = format!("Cannot hold: {distance_m:.0} m off, {:.0} m too {side}.", vertical_m.abs());
-    let fix = match limit {
+    let condition = format!("Cannot hold: {distance_m:.0} m off, {:.0} m too {side}.", vertical_m.abs());
+    let action = match limit {
         HoldLimit::Lean => "the lean is at its limit: raise ap_max_angle, or land",
         HoldLimit::Throttle => "the throttle is at its limit: land",
         HoldLimit::None => "no limit binds: sticks take over; check sensors and gains",
     };
-    advice(Level::Warn, what, fix)
+    message(Level::Warn, condition, action)
 }
 
 /// An armed craft on the sticks: where it is, and the keys that lead on from there.
-fn by_hand(state: &AppState) -> Option<Advice> {
+fn by_hand(state: &AppState) -> Option<StatusMessage> {
     let craft = &state.view.vehicle.craft;
-    let (what, fix) = match (transmitter::is_standing(state), transmitter::throttle_move(state)) {
+    let (condition, action) = match (transmitter::is_standing(state), transmitter::throttle_move(state)) {
         (true, ThrottleMove::Low) => ("Armed, on the ground.", "g takes off; t low, then a disarms"),
         (true, _) => ("Armed, throttle low.", "t raises it and holds, then g engages"),
         (false, _) if transmitter::is_sinking(state) => {
@@ -179,11 +178,11 @@ fn by_hand(state: &AppState) -> Option<Advice> {
         (false, ThrottleMove::Hover) => ("Flown by hand.", "t holds the place, g engages"),
         (false, ThrottleMove::Low) => ("Flown by hand.", "g engages the autopilot"),
     };
-    advice(Level::Info, what, fix)
+    message(Level::Info, condition, action)
 }
 
-/// The way out of a refusal with the keys of the screen.
-fn way_out(refusal: Refusal) -> &'static str {
+/// What to do after a refusal, with the keys of the screen.
+fn action_after(refusal: Refusal) -> &'static str {
     match refusal {
         Refusal::NotArmed => "a arms, then g again",
         Refusal::Throttle => "t raises it",
@@ -200,26 +199,6 @@ fn way_out(refusal: Refusal) -> &'static str {
     }
 }
 
-/// What is wrong with a waypoint of a plan, or worth knowing.
-#[must_use]
-pub fn waypoint_problem(
-    plan: &FlightPlan,
-    index: usize,
-    fence: Option<(crate::geo::LatLon, f64)>,
-) -> Option<String> {
-    let wp = plan.waypoints.get(index)?;
-    if !wp.kind.is_positional() {
-        return None;
-    }
-    if !wp.position.is_on_globe() {
-        return Some(format!("WP{index}: latitude or longitude is not on the globe."));
-    }
-    let (home, limit_m) = fence?;
-    let (distance_m, _) = crate::geo::distance_bearing(home, wp.position);
-    (distance_m > limit_m)
-        .then(|| format!("WP{index} is {distance_m:.0} m from home, the fence is {limit_m:.0} m."))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -227,7 +206,7 @@ mod tests {
     #[test]
     fn the_cause_comes_before_the_latch() {
         use ArmingFlag::{ArmSwitch, Cli, NotDisarmed, Paralyze, Throttle};
-        let first = |flags: &[ArmingFlag]| most_useful(flags.iter().copied().collect());
+        let first = |flags: &[ArmingFlag]| most_useful_flag(flags.iter().copied().collect());
         assert_eq!(first(&[NotDisarmed, Throttle, Cli, ArmSwitch]), Some(Cli));
         assert_eq!(first(&[ArmSwitch, Paralyze]), Some(Paralyze));
         assert_eq!(first(&[ArmSwitch]), Some(ArmSwitch));
