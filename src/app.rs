@@ -9,8 +9,8 @@ mod layers;
 mod plan;
 mod serve;
 mod setup;
-mod signals;
 mod sitl;
+mod stop_signal;
 mod tui;
 
 use std::ffi::OsString;
@@ -37,8 +37,8 @@ fn outcome(arguments: Vec<OsString>) -> u8 {
             Err(broken) if reads_layers(cli.command.as_ref()) => Err(broken),
             _ => dispatch(cli),
         },
-        Err(error) if is_sitl && let Some(complaint) = args::sitl_complaint(&error) => {
-            Err(AppError { code: error::FAILED, message: complaint })
+        Err(error) if is_sitl && let Some(usage_error) = args::sitl_usage_error(&error) => {
+            Err(AppError { code: error::FAILED, message: usage_error })
         }
         Err(error) => {
             // clap prints help on standard output and errors on standard error, coloured where that is wanted.

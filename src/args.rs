@@ -22,14 +22,14 @@ use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 use crate::did_you_mean;
 
 pub use convert::ConvertArgs;
-pub use doors::{DoorArgs, ServeArgs, SitlArgs, UdpPorts, sitl_complaint};
+pub use doors::{DoorArgs, ServeArgs, SitlArgs, UdpPorts, sitl_usage_error};
 pub use flight::FlightArgs;
 pub use fly::FlyArgs;
 pub use generate::{completions, man_page};
 pub use layers::{ENVIRONMENT_PREFIX, Layers};
-pub use physics::{FdmDialect, Physics, PhysicsArgs, SimulatorArgs};
+pub use physics::{FdmDialect, PhysicsArgs, PhysicsChoice, SimulatorArgs};
 pub use plan_arg::{PlanArg, PlanArgError};
-pub use value::{Attitude, OnOff, OutputFile, Speed};
+pub use value::{AttitudeChoice, OnOff, OutputFile, Speed};
 
 /// Flies the Betaflight waypoint autopilot in a simulated quadcopter
 ///
@@ -176,7 +176,7 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>, layers: &Layers) -> 
         )
         | None => Ok(()),
     };
-    combination.map_err(|problem| complaint(ErrorKind::ValueValidation, &problem))?;
+    combination.map_err(|problem| usage_error(ErrorKind::ValueValidation, &problem))?;
     layers::apply(layers, arguments, &matches, &mut command)
 }
 
@@ -204,7 +204,7 @@ pub fn layer_problems(layers: &Layers) -> Vec<String> {
 }
 
 /// A problem in one sentence: it stands in no option, so no usage line helps.
-fn complaint(kind: ErrorKind, problem: &str) -> clap::Error {
+fn usage_error(kind: ErrorKind, problem: &str) -> clap::Error {
     clap::Error::raw(kind, format!("{problem}\n"))
 }
 

@@ -10,4 +10,4 @@ pub mod sentence;
 pub mod truth;
 
 pub use end::End;
-pub use gpx::{GpxHeader, GpxWriter, TrackPoint, UtcSeconds};
+pub use gpx::{GpxHeader, GpxPoint, GpxWriter, UtcSeconds};

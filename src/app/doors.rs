@@ -141,7 +141,7 @@ impl OpenDoors {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::args::{Physics, UdpPorts};
+    use crate::args::{PhysicsChoice, UdpPorts};
 
     #[tokio::test]
     async fn without_ports_only_those_of_an_external_simulator_are_open() {
@@ -149,7 +149,7 @@ mod tests {
         let doors = DoorArgs { no_ports: true, udp_ports: Some(ports), ..DoorArgs::default() };
         let flight = FlightArgs::default();
         assert!(open(&doors, &PhysicsArgs::default(), &flight).await.unwrap().is_none());
-        let external = PhysicsArgs { physics: Some(Physics::External), ..PhysicsArgs::default() };
+        let external = PhysicsArgs { physics: Some(PhysicsChoice::External), ..PhysicsArgs::default() };
         let opened = open(&doors, &external, &flight).await.unwrap().unwrap();
         let views = opened.endpoints.status.borrow().clone();
         assert_eq!(views.iter().map(|door| door.kind.to_string()).collect::<Vec<_>>(), ["udp fdm"]);

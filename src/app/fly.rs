@@ -150,7 +150,7 @@ fn interrupt_flag() -> Result<Arc<AtomicBool>, AppError> {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(deaf)?;
     let stop = {
         let _inside = runtime.enter();
-        super::signals::stop().map_err(deaf)?
+        super::stop_signal::stop().map_err(deaf)?
     };
     std::thread::Builder::new()
         .name("signals".to_owned())
@@ -158,7 +158,7 @@ fn interrupt_flag() -> Result<Arc<AtomicBool>, AppError> {
             runtime.block_on(stop);
             raised.store(true, Ordering::Relaxed);
             runtime.block_on(async {
-                if let Ok(again) = super::signals::stop() {
+                if let Ok(again) = super::stop_signal::stop() {
                     again.await;
                     std::process::exit(i32::from(error::INTERRUPTED));
                 }

@@ -5,7 +5,7 @@ use std::io::{BufWriter, Write};
 
 use super::error::{self, AppError};
 use super::setup;
-use super::{doors, signals};
+use super::{doors, stop_signal};
 use crate::args::{OutputFile, ServeArgs, Speed};
 use crate::plan::format::PlanFile;
 use crate::record::{json, sentence};
@@ -33,7 +33,7 @@ pub(super) fn run(args: &ServeArgs) -> Result<u8, AppError> {
         .build()
         .map_err(|error| AppError::environment(format!("cannot start: {error}")))?;
     runtime.block_on(async {
-        let stop = signals::stop()
+        let stop = stop_signal::stop()
             .map_err(|error| AppError::environment(format!("cannot listen for signals: {error}")))?;
         let opened = doors::open(&args.doors, &args.physics, &args.flight).await?;
         let mut first_events = Vec::new();

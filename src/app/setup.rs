@@ -4,7 +4,7 @@ use std::io::Read as _;
 use std::path::Path;
 
 use super::AppError;
-use crate::args::{Attitude, DoorArgs, FlightArgs, OnOff, PhysicsArgs, PlanArg};
+use crate::args::{AttitudeChoice, DoorArgs, FlightArgs, OnOff, PhysicsArgs, PlanArg};
 use crate::firmware::AttitudeSource;
 use crate::firmware::cli::BuildInfo;
 use crate::firmware::config::Configuration;
@@ -125,10 +125,10 @@ fn embedded_world(args: &FlightArgs) -> Result<WorldConfig, AppError> {
 }
 
 /// The option as the firmware has it.
-pub(super) fn attitude_source(attitude: Attitude) -> AttitudeSource {
+pub(super) fn attitude_source(attitude: AttitudeChoice) -> AttitudeSource {
     match attitude {
-        Attitude::Truth => AttitudeSource::Truth,
-        Attitude::Estimated => AttitudeSource::Estimated,
+        AttitudeChoice::Truth => AttitudeSource::Truth,
+        AttitudeChoice::Estimated => AttitudeSource::Estimated,
     }
 }
 

@@ -9,14 +9,14 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use super::error::{self, AppError};
 use super::setup::{attitude_source, read_file};
-use super::signals;
+use super::stop_signal;
 use crate::args::{OnOff, SitlArgs};
 use crate::firmware::cli::{ApplyReport, CliContext, CliFacts, Interpreter, Mode, provision};
 use crate::flight::FlightSetup;
 use crate::flight::setup::PhysicsSource;
 use crate::link::ListenConfig;
 use crate::link::proto::fdm_link::FdmLinkConfig;
-use crate::record::gpx::{GpxHeader, GpxWriter, TrackPoint, UtcSeconds};
+use crate::record::gpx::{GpxHeader, GpxPoint, GpxWriter, UtcSeconds};
 use crate::session::sitl::{OutputLine, Sitl, SitlConfig, SitlEnd, SitlError, SitlPorts, show_links};
 use crate::storage::Store;
 use crate::telemetry::Snapshot;
@@ -101,7 +101,7 @@ fn say(said: OutputLine) {
 
 async fn fly(args: &SitlArgs, config: SitlConfig) -> Result<u8, AppError> {
     let mut print = say;
-    let stop = signals::stop()
+    let stop = stop_signal::stop()
         .map_err(|error| AppError::environment(format!("cannot listen for signals: {error}")))?;
     let sitl = Sitl::open(config, open_store(args)?, &mut print)
         .await
@@ -169,7 +169,7 @@ impl Track {
             }
         }
         let Some((writer, home_amsl_m)) = &mut self.writer else { return };
-        let point = TrackPoint {
+        let point = GpxPoint {
             time: vehicle.time,
             lat_deg: place.lat_deg(),
             lon_deg: place.lon_deg(),

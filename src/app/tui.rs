@@ -6,7 +6,7 @@ use std::io::IsTerminal as _;
 use super::doors;
 use super::error::{self, AppError};
 use super::setup;
-use super::signals;
+use super::stop_signal;
 use crate::args::{PlanArg, Speed, TuiArgs};
 use crate::firmware::cli;
 use crate::plan::builtin::{BuiltinPlan, DEMO};
@@ -78,7 +78,7 @@ pub(super) fn run(args: &TuiArgs) -> Result<u8, AppError> {
         .map_err(|error| AppError::environment(format!("cannot start a thread: {error}")))?;
         let link = SessionLink { commands: session.commands, view: session.view, events: session.events };
         // Before the first frame: whoever sees it may already send one.
-        let stop = signals::stop().map_err(problem)?;
+        let stop = stop_signal::stop().map_err(problem)?;
         let tui = Tui::enter(config.mouse).map_err(problem)?;
         let ending = ui::run(tui, link, config, stop).await.map_err(problem);
         // The session ends with its last sender; its thread has nothing left to say.

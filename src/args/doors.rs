@@ -8,7 +8,7 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 
 use super::FlightArgs;
 use super::physics::{PhysicsArgs, SimulatorArgs};
-use super::value::{Attitude, OnOff, OutputFile};
+use super::value::{AttitudeChoice, OnOff, OutputFile};
 
 /// Where the doors are; port 0 = the system chooses.
 #[derive(Debug, Clone, Default, PartialEq, Eq, clap::Args)]
@@ -162,7 +162,7 @@ pub struct SitlArgs {
 
     /// Where the attitude comes from: the simulator's packet (truth), or the firmware's estimator [default: truth]
     #[arg(long, value_enum, help_heading = "Firmware")]
-    pub attitude: Option<Attitude>,
+    pub attitude: Option<AttitudeChoice>,
 
     /// Where eeprom.bin lives [default: the working directory]
     #[arg(long, value_name = "DIR")]
@@ -176,7 +176,7 @@ pub struct SitlArgs {
 /// What the reference firmware simulator prints for an argument it does not understand, or one without its value; it
 /// leaves with exit code 1 then. `None` for other errors, `--help` included.
 #[must_use]
-pub fn sitl_complaint(error: &clap::Error) -> Option<String> {
+pub fn sitl_usage_error(error: &clap::Error) -> Option<String> {
     if !matches!(error.kind(), ErrorKind::UnknownArgument | ErrorKind::InvalidValue) {
         return None;
     }
@@ -235,15 +235,15 @@ mod tests {
 
     #[test]
     fn sitl_complains_like_the_reference() {
-        let complaint = |arguments: &[&str]| {
+        let usage_error = |arguments: &[&str]| {
             let line = ["x", "sitl"].iter().chain(arguments);
-            sitl_complaint(&Doors::try_parse_from(line).unwrap_err())
+            sitl_usage_error(&Doors::try_parse_from(line).unwrap_err())
         };
         let text =
             |argument: &str| Some(format!("[SITL] Unknown argument: {argument} (use --help for usage)"));
-        assert_eq!(complaint(&["--frobnicate"]), text("--frobnicate"));
-        assert_eq!(complaint(&["what"]), text("what"));
-        assert_eq!(complaint(&["--config"]), text("--config"));
-        assert_eq!(complaint(&["--help"]), None);
+        assert_eq!(usage_error(&["--frobnicate"]), text("--frobnicate"));
+        assert_eq!(usage_error(&["what"]), text("what"));
+        assert_eq!(usage_error(&["--config"]), text("--config"));
+        assert_eq!(usage_error(&["--help"]), None);
     }
 }

@@ -6,7 +6,7 @@ use crate::plan::format::Home;
 use crate::sim::{self, Noise, Switches, Turbulence, Wind};
 
 use super::help;
-use super::value::{self, Attitude, OnOff, Speed};
+use super::value::{self, AttitudeChoice, OnOff, Speed};
 
 /// The options that all flying commands share; `None` = the command's default.
 #[derive(Debug, Clone, Default, PartialEq, clap::Args)]
@@ -43,7 +43,7 @@ pub struct FlightArgs {
 
     /// Where the attitude comes from: estimated, truth [default: estimated; external simulator: truth]
     #[arg(long, value_name = "SOURCE", hide_possible_values = true, help_heading = "Craft")]
-    pub attitude: Option<Attitude>,
+    pub attitude: Option<AttitudeChoice>,
 
     /// Lets a script arm that holds the ARM switch on from its first packet: on, off [default: on; fly: off]
     #[arg(long, value_name = "SWITCH", hide_possible_values = true, help_heading = "Craft")]

@@ -224,7 +224,7 @@ fn scalar(value: &toml::Value) -> Option<String> {
 }
 
 fn problem(text: &str) -> clap::Error {
-    super::complaint(ErrorKind::InvalidValue, text)
+    super::usage_error(ErrorKind::InvalidValue, text)
 }
 
 /// Says where the value came from that an option's parser refused.

@@ -10,7 +10,7 @@ use crate::sim::ScheduledFault;
 
 /// Whose physics moves the craft.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
-pub enum Physics {
+pub enum PhysicsChoice {
     /// The world inside.
     #[default]
     Embedded,
@@ -27,7 +27,7 @@ pub struct PhysicsArgs {
     /// 9001 (--udp-ports), and its stamps are the time. What makes the embedded world (--wind, --airframe, --speed …)
     /// has no effect then.
     #[arg(long, value_name = "WHERE", hide_possible_values = true, help_heading = "Simulator")]
-    pub physics: Option<Physics>,
+    pub physics: Option<PhysicsChoice>,
 
     /// How to speak with it.
     #[command(flatten)]
@@ -58,7 +58,7 @@ impl PhysicsArgs {
     /// Whether a simulator outside moves the craft.
     #[must_use]
     pub fn is_external(&self) -> bool {
-        self.physics == Some(Physics::External)
+        self.physics == Some(PhysicsChoice::External)
     }
 
     /// What was given but has no effect with this physics, as a sentence.
@@ -119,7 +119,7 @@ mod tests {
             FlightArgs { wind: "5@270".parse().ok(), speed: Some(Speed(2.0)), ..FlightArgs::default() };
         let embedded = PhysicsArgs::default();
         assert_eq!(embedded.idle_options(&flight), None);
-        let external = PhysicsArgs { physics: Some(Physics::External), ..PhysicsArgs::default() };
+        let external = PhysicsArgs { physics: Some(PhysicsChoice::External), ..PhysicsArgs::default() };
         assert_eq!(external.idle_options(&FlightArgs::default()), None);
         let sentence = external.idle_options(&flight).unwrap();
         assert_eq!(sentence, "--wind, --speed have no effect: the external simulator decides that.");

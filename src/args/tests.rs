@@ -67,7 +67,7 @@ fn fly_reads_every_option() {
     );
     assert_eq!(fly.flight.home.unwrap().to_string(), "-40.0000000,-79.0000000,300");
     assert!(fly.flight.fresh && fly.flight.arm_assist.is_some_and(OnOff::is_on));
-    assert_eq!(fly.flight.attitude, Some(Attitude::Truth));
+    assert_eq!(fly.flight.attitude, Some(AttitudeChoice::Truth));
 }
 
 #[test]

@@ -30,7 +30,7 @@ impl OnOff {
 
 /// Where the firmware's attitude comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub enum Attitude {
+pub enum AttitudeChoice {
     /// Estimated from the sensors.
     Estimated,
     /// The simulator's truth.

@@ -37,7 +37,7 @@ impl GpxHeader {
 
 /// One place of the track.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TrackPoint {
+pub struct GpxPoint {
     /// When.
     pub time: SimTime,
     /// Latitude, degrees.
@@ -95,14 +95,14 @@ impl<W: Write> GpxWriter<W> {
     /// # Errors
     ///
     /// When the output fails.
-    pub fn offer(&mut self, point: &TrackPoint) -> io::Result<()> {
+    pub fn offer(&mut self, point: &GpxPoint) -> io::Result<()> {
         let second = point.time.0 / 1_000_000;
         let on_globe = point.lat_deg.abs() <= 90.0 && point.lon_deg.abs() <= 180.0 && point.alt_m.is_finite();
         if !on_globe || self.last.is_some_and(|last| last >= second) {
             return Ok(());
         }
         self.last = Some(second);
-        let TrackPoint { lat_deg, lon_deg, alt_m, .. } = point;
+        let GpxPoint { lat_deg, lon_deg, alt_m, .. } = point;
         let ele = self.header.home_amsl_m + alt_m;
         let time = self.header.boot.plus(second);
         writeln!(self.out, "      <trkpt lat=\"{lat_deg:.7}\" lon=\"{lon_deg:.7}\">")?;
@@ -169,7 +169,7 @@ mod tests {
             ..Waypoint::default()
         });
         let mut writer = GpxWriter::new(Vec::new(), header(), &plan).unwrap();
-        let point = |us, lat_deg| TrackPoint { time: SimTime(us), lat_deg, lon_deg: -79.518_2, alt_m: 1.25 };
+        let point = |us, lat_deg| GpxPoint { time: SimTime(us), lat_deg, lon_deg: -79.518_2, alt_m: 1.25 };
         for (us, lat) in
             [(0, 40.0), (999_999, 41.0), (3_000_000, 42.0), (3_500_000, 43.0), (5_000_000, f64::NAN)]
         {

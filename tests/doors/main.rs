@@ -10,9 +10,9 @@
 
 mod app;
 mod app_flow;
+mod hostile_clients;
 mod msp;
 mod program;
-mod rude;
 mod scripts;
 mod serial;
 mod simulator;

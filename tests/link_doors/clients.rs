@@ -13,7 +13,7 @@ use tokio::sync::mpsc;
 use tokio_tungstenite::tungstenite::http::StatusCode;
 use tokio_tungstenite::tungstenite::{Error, Message};
 
-use super::house::{API_REPLY, API_VERSION, Client, GREETING, House, PATIENCE, hex, unhex};
+use super::harness::{API_REPLY, API_VERSION, Client, GREETING, House, PATIENCE, hex, unhex};
 
 async fn captured_exchanges(house: &House, client: &mut Client) {
     for line in include_str!("../vectors/msp.tsv").lines().filter(|line| !line.starts_with('#')) {

@@ -3,5 +3,5 @@
 #![allow(clippy::unwrap_used, clippy::disallowed_methods, reason = "tests may panic and wait")]
 
 mod clients;
-mod house;
+mod harness;
 mod packets;

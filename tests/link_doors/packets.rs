@@ -10,7 +10,7 @@ use betadeck::signals::{MotorCommand, RcFrame};
 use betadeck::telemetry::{EndpointKind, EndpointState, LinkState, Transport};
 use tokio::net::UdpSocket;
 
-use super::house::{House, PATIENCE, hex, unhex};
+use super::harness::{House, PATIENCE, hex, unhex};
 
 #[tokio::test]
 async fn rc_and_states_arrive_and_other_sizes_are_counted() {

@@ -4,9 +4,9 @@
 //! The plant waits for the motors before it moves on, so that a flight is the same on a slow machine and on a fast one.
 
 mod child;
+mod failing_simulators;
 mod plant;
 mod rates;
 mod serve;
 mod simulator;
 mod square;
-mod trouble;

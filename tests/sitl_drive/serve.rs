@@ -3,8 +3,8 @@
 use betadeck::signals::fdm::Dialect;
 
 use crate::child::Child;
+use crate::failing_simulators::{BOUNDS, hang};
 use crate::simulator::{Hand, Simulator};
-use crate::trouble::{BOUNDS, hang};
 
 fn serve(dialect: Dialect, more: &[&str]) -> (Child, Simulator) {
     let mut simulator = Simulator::new(dialect);

@@ -8,7 +8,7 @@ use crate::app::error::{self, AppError};
 use crate::args::{FlyArgs, OutputFile, PlanArg};
 use crate::flight::Report;
 use crate::plan::format::PlanFile;
-use crate::record::{End, GpxHeader, GpxWriter, TrackPoint, UtcSeconds, json, sentence, truth};
+use crate::record::{End, GpxHeader, GpxPoint, GpxWriter, UtcSeconds, json, sentence, truth};
 use crate::session::Event;
 use crate::signals::SimTime;
 use crate::vehicle::Vehicle;
@@ -98,7 +98,7 @@ impl Output {
         let frame = world.local_frame();
         let (lat_deg, lon_deg, amsl_m) = frame.to_geodetic(truth.pos_enu);
         let alt_m = amsl_m - frame.alt_amsl_m;
-        gpx.offer(&TrackPoint { time: vehicle.time(), lat_deg, lon_deg, alt_m }).map_err(write_failed)
+        gpx.offer(&GpxPoint { time: vehicle.time(), lat_deg, lon_deg, alt_m }).map_err(write_failed)
     }
 
     /// Ends the files and says how the flight ended.

@@ -8,7 +8,7 @@ use crate::rates::sitl;
 use crate::simulator::{Hand, Simulator};
 use crate::square::{Bounds, Flown};
 
-/// Errors of a flight that went on after trouble.
+/// Errors of a flight that went on after a failure.
 pub(crate) const BOUNDS: Bounds =
     Bounds { flyover_m: 2.0, hold_m: 2.0, land_m: 1.0, height_m: 3.0, impact_mps: 1.5 };
 

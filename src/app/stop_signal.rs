@@ -7,7 +7,7 @@ use std::io;
 /// called inside a runtime.
 ///
 /// # Errors
-/// When the system lets the program hear none.
+/// When the system installs no signal handler.
 #[cfg(unix)]
 pub(super) fn stop() -> io::Result<impl Future<Output = ()>> {
     use tokio::signal::unix::{SignalKind, signal};

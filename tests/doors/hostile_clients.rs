@@ -1,4 +1,4 @@
-//! Clients of bad manners, while a craft flies.
+//! Clients that break the protocols, while a craft flies.
 
 use std::io::{Read, Write};
 use std::net::{SocketAddr, TcpStream, UdpSocket};
