@@ -5,8 +5,8 @@
 
 use std::time::Duration;
 
-/// Debt of wall time that is forgiven rather than caught up with.
-const MAX_DEBT: Duration = Duration::from_millis(50);
+/// Backlog of wall time that is caught up with; what exceeds it is dropped.
+const MAX_BACKLOG: Duration = Duration::from_millis(50);
 /// Window of the achieved-speed average.
 const WINDOW: Duration = Duration::from_secs(1);
 /// Slowest and fastest factor that is paced; beyond the upper one the loop runs freely.
@@ -19,8 +19,8 @@ pub struct Pacer {
     speed: f64,
     paused: bool,
     /// Wall time up to which the due ticks were handed out.
-    paid: Duration,
-    /// Part of a step owed from the last call, in steps.
+    handed_out: Duration,
+    /// Part of a step left from the last call, in steps.
     carry: f64,
     window_start: Duration,
     window_ticks: u64,
@@ -35,7 +35,7 @@ impl Pacer {
             step: Duration::from_micros(step_us),
             speed: clamp_speed(speed),
             paused: false,
-            paid: Duration::ZERO,
+            handed_out: Duration::ZERO,
             carry: 0.0,
             window_start: Duration::ZERO,
             window_ticks: 0,
@@ -52,7 +52,7 @@ impl Pacer {
     /// Changes the factor; values outside [`SPEED_RANGE`] are limited, infinity is kept.
     pub fn set_speed(&mut self, speed: f64, now: Duration) {
         self.speed = clamp_speed(speed);
-        self.forget_debt(now);
+        self.drop_backlog(now);
     }
 
     /// Whether time stands still.
@@ -64,7 +64,7 @@ impl Pacer {
     /// Stops time or lets it go on.
     pub fn set_paused(&mut self, paused: bool, now: Duration) {
         self.paused = paused;
-        self.forget_debt(now);
+        self.drop_backlog(now);
         if paused {
             self.achieved = 0.0;
         }
@@ -81,22 +81,22 @@ impl Pacer {
     /// Ticks due at wall time `now`, at most `most`. Whatever is not handed out stays due, up to 50 ms of wall time.
     pub fn due(&mut self, now: Duration, most: u64) -> u64 {
         if self.paused {
-            self.paid = now;
+            self.handed_out = now;
             return 0;
         }
         if self.speed.is_infinite() {
-            self.paid = now;
+            self.handed_out = now;
             return most;
         }
-        if now.saturating_sub(self.paid) > MAX_DEBT {
-            self.paid = now.saturating_sub(MAX_DEBT);
+        if now.saturating_sub(self.handed_out) > MAX_BACKLOG {
+            self.handed_out = now.saturating_sub(MAX_BACKLOG);
         }
         let steps_per_second = self.speed / self.step.as_secs_f64();
-        let owed = self.carry + now.saturating_sub(self.paid).as_secs_f64() * steps_per_second;
-        let ticks = (owed as u64).min(most);
-        // What was not handed out is owed still, but only as much as 50 ms are worth.
-        self.carry = (owed - ticks as f64).min(MAX_DEBT.as_secs_f64() * steps_per_second);
-        self.paid = now;
+        let due_steps = self.carry + now.saturating_sub(self.handed_out).as_secs_f64() * steps_per_second;
+        let ticks = (due_steps as u64).min(most);
+        // What was not handed out stays due, but only as much as 50 ms are worth.
+        self.carry = (due_steps - ticks as f64).min(MAX_BACKLOG.as_secs_f64() * steps_per_second);
+        self.handed_out = now;
         ticks
     }
 
@@ -111,8 +111,8 @@ impl Pacer {
         }
     }
 
-    fn forget_debt(&mut self, now: Duration) {
-        self.paid = now;
+    fn drop_backlog(&mut self, now: Duration) {
+        self.handed_out = now;
         self.carry = 0.0;
     }
 }
@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn debt_beyond_fifty_milliseconds_is_forgiven() {
+    fn backlog_beyond_fifty_milliseconds_is_dropped() {
         let mut pacer = Pacer::new(1000, 10.0);
         assert_eq!(pacer.due(ms(5_000), 100_000), 500);
         assert_eq!(pacer.due(ms(5_002), 100_000), 20);

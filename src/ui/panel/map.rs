@@ -14,11 +14,11 @@ use crate::ui::pane::Pane;
 use crate::ui::viewport::{MapMode, Viewport};
 
 mod labels;
+mod lines;
 mod marks;
-mod strokes;
 
 /// A waypoint on the ground.
-struct Spot {
+struct PlacedWaypoint {
     index: usize,
     place: MapPoint,
     wp: Waypoint,
@@ -27,7 +27,7 @@ struct Spot {
 /// Everything the map shows, placed on the ground.
 struct Scene {
     view: Viewport,
-    spots: Vec<Spot>,
+    spots: Vec<PlacedWaypoint>,
     home: MapPoint,
     craft: Option<MapPoint>,
     believed: Option<MapPoint>,
@@ -62,7 +62,7 @@ pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
         .marker(state.theme.marker())
         .x_bounds(scene.view.east_bounds())
         .y_bounds(scene.view.north_bounds())
-        .paint(|context| strokes::paint(state, &scene, context))
+        .paint(|context| lines::paint(state, &scene, context))
         .render(area, buffer);
     marks::write(state, &scene, buffer);
 }
@@ -87,12 +87,12 @@ fn scene(state: &AppState, area: Rect) -> Scene {
 }
 
 /// The positional waypoints; a TAKEOFF stands at home, wherever its record points.
-fn spots(plan: &FlightPlan, frame: &LocalFrame, home: MapPoint) -> Vec<Spot> {
+fn spots(plan: &FlightPlan, frame: &LocalFrame, home: MapPoint) -> Vec<PlacedWaypoint> {
     let positional = plan.waypoints.iter().enumerate().filter(|(_, wp)| wp.kind.is_positional());
     positional
         .map(|(index, wp)| {
             let place = if wp.kind == WaypointType::Takeoff { home } else { to_map(frame, wp.position) };
-            Spot { index, place, wp: *wp }
+            PlacedWaypoint { index, place, wp: *wp }
         })
         .collect()
 }

@@ -9,7 +9,7 @@ use crate::ui::theme::Role;
 use crate::ui::viewport::round_length;
 
 use super::labels::Labels;
-use super::{Scene, Spot};
+use super::{PlacedWaypoint, Scene};
 
 /// Eight directions, clockwise from north.
 const ARROWS: [&str; 8] = ["↑", "↗", "→", "↘", "↓", "↙", "←", "↖"];
@@ -44,7 +44,7 @@ pub(super) fn write(state: &AppState, scene: &Scene, buffer: &mut Buffer) {
         labels.mark(craft, mark, role);
     }
     // The current waypoint chooses its place first.
-    let mut order: Vec<&Spot> = scene.spots.iter().collect();
+    let mut order: Vec<&PlacedWaypoint> = scene.spots.iter().collect();
     order.sort_by_key(|spot| Some(spot.index) != scene.current);
     for spot in order {
         let role = if Some(spot.index) == scene.current { Role::Target } else { Role::Title };

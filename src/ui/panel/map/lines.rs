@@ -10,21 +10,21 @@ use crate::ui::app_state::AppState;
 use crate::ui::map_point::{self, MapPoint, to_map};
 use crate::ui::theme::Role;
 
-use super::{Scene, Spot};
+use super::{PlacedWaypoint, Scene};
 
 /// Dots of a dash and of the gap behind it.
 const DASH_DOTS: f64 = 3.0;
 /// A line of more dashes than this is drawn solid: the rest lies outside anyhow.
 const MAX_DASHES: f64 = 400.0;
 
-/// The pencil of a layer: strokes of one colour in the metres of the map.
-struct Pencil<'a, 'c> {
+/// Draws the lines of a layer: of one colour, in the metres of the map.
+struct LinePainter<'a, 'c> {
     context: &'a mut Context<'c>,
     colour: Color,
     dot_m: f64,
 }
 
-impl Pencil<'_, '_> {
+impl LinePainter<'_, '_> {
     fn line(&mut self, a: MapPoint, b: MapPoint) {
         if a.n.is_finite() && a.e.is_finite() && b.n.is_finite() && b.e.is_finite() {
             self.context.draw(&CanvasLine::new(a.e, a.n, b.e, b.n, self.colour));
@@ -64,43 +64,43 @@ pub(super) fn paint(state: &AppState, scene: &Scene, context: &mut Context<'_>) 
     let settings = state.view.vehicle.settings;
     let theme = &state.theme;
     let dot_m = scene.view.scale / 2.0;
-    let mut layer = |role: Role, strokes: &mut dyn FnMut(&mut Pencil<'_, '_>)| {
-        strokes(&mut Pencil { context: &mut *context, colour: theme.colour(role), dot_m });
+    let mut layer = |role: Role, lines: &mut dyn FnMut(&mut LinePainter<'_, '_>)| {
+        lines(&mut LinePainter { context: &mut *context, colour: theme.colour(role), dot_m });
         context.layer();
     };
-    layer(Role::Fence, &mut |pencil| {
+    layer(Role::Fence, &mut |painter| {
         if let Some(fence_m) = settings.and_then(|settings| settings.fence_m) {
-            pencil.circle(scene.home, fence_m, true);
+            painter.circle(scene.home, fence_m, true);
         }
     });
-    layer(Role::Dim, &mut |pencil| {
-        legs(scene, pencil);
+    layer(Role::Dim, &mut |painter| {
+        legs(scene, painter);
         for (at, spot) in scene.spots.iter().enumerate() {
-            figure(state, scene, at, spot, pencil);
+            figure(state, scene, at, spot, painter);
         }
     });
-    layer(Role::Track, &mut |pencil| {
+    layer(Role::Track, &mut |painter| {
         let points = state.track.points();
         for pair in points.windows(2) {
-            pencil.line(MapPoint::new(pair[0].n, pair[0].e), MapPoint::new(pair[1].n, pair[1].e));
+            painter.line(MapPoint::new(pair[0].n, pair[0].e), MapPoint::new(pair[1].n, pair[1].e));
         }
         // From the last point kept to where the craft is.
         if let (Some(last), Some(craft)) = (points.last(), scene.craft) {
-            pencil.line(MapPoint::new(last.n, last.e), craft);
+            painter.line(MapPoint::new(last.n, last.e), craft);
         }
     });
-    layer(Role::Target, &mut |pencil| {
+    layer(Role::Target, &mut |painter| {
         if let Some((from, to)) = current_leg(state, scene) {
-            pencil.dashed(from, to);
+            painter.dashed(from, to);
         }
     });
 }
 
 /// The legs in flight order, from home.
-fn legs(scene: &Scene, pencil: &mut Pencil<'_, '_>) {
+fn legs(scene: &Scene, painter: &mut LinePainter<'_, '_>) {
     let mut from = scene.home;
     for spot in &scene.spots {
-        pencil.dashed(from, spot.place);
+        painter.dashed(from, spot.place);
         from = spot.place;
     }
 }
@@ -114,30 +114,38 @@ fn current_leg(state: &AppState, scene: &Scene) -> Option<(MapPoint, MapPoint)> 
 }
 
 /// What is flown at a waypoint: the radius that ends the leg, the hold pattern, the cut corner.
-fn figure(state: &AppState, scene: &Scene, at: usize, spot: &Spot, pencil: &mut Pencil<'_, '_>) {
+fn figure(
+    state: &AppState,
+    scene: &Scene,
+    at: usize,
+    spot: &PlacedWaypoint,
+    painter: &mut LinePainter<'_, '_>,
+) {
     let Some(settings) = &state.view.vehicle.settings else { return };
     match (spot.wp.kind, spot.wp.pattern) {
-        (WaypointType::Hold, HoldPattern::Orbit) => pencil.circle(spot.place, settings.orbit_radius_m, false),
+        (WaypointType::Hold, HoldPattern::Orbit) => {
+            painter.circle(spot.place, settings.orbit_radius_m, false);
+        }
         (WaypointType::Hold, HoldPattern::Figure8) => {
             let radius = settings.figure8_width_m / 2.0;
             for side in [-radius, radius] {
-                pencil.circle(MapPoint::new(spot.place.n, spot.place.e + side), radius, false);
+                painter.circle(MapPoint::new(spot.place.n, spot.place.e + side), radius, false);
             }
         }
         (WaypointType::Hold | WaypointType::Land | WaypointType::Takeoff, _) => {
-            pencil.circle(spot.place, settings.hold_radius_m, false);
+            painter.circle(spot.place, settings.hold_radius_m, false);
         }
         (WaypointType::Flyby, _) => {
             let previous = at.checked_sub(1).map_or(scene.home, |before| scene.spots[before].place);
             match scene.spots.get(at + 1) {
                 Some(next) => {
                     let radius = turn_radius(&spot.wp, settings.max_velocity_mps, settings.max_angle_deg);
-                    cut_corner(previous, spot.place, next.place, radius, pencil);
+                    cut_corner(previous, spot.place, next.place, radius, painter);
                 }
-                None => pencil.circle(spot.place, settings.arrival_radius_m, false),
+                None => painter.circle(spot.place, settings.arrival_radius_m, false),
             }
         }
-        (WaypointType::Flyover, _) => pencil.circle(spot.place, settings.arrival_radius_m, false),
+        (WaypointType::Flyover, _) => painter.circle(spot.place, settings.arrival_radius_m, false),
         (WaypointType::AltChange | WaypointType::Delay | WaypointType::YawRate, _) => {}
     }
 }
@@ -152,7 +160,13 @@ fn turn_radius(wp: &Waypoint, max_velocity_mps: f64, max_angle_deg: f64) -> f64 
 }
 
 /// The curve that leaves one leg and joins the next at `radius` from the corner.
-fn cut_corner(from: MapPoint, corner: MapPoint, to: MapPoint, radius: f64, pencil: &mut Pencil<'_, '_>) {
+fn cut_corner(
+    from: MapPoint,
+    corner: MapPoint,
+    to: MapPoint,
+    radius: f64,
+    painter: &mut LinePainter<'_, '_>,
+) {
     const PIECES: u32 = 12;
     let along = |end: MapPoint| {
         let length = corner.distance(end);
@@ -164,7 +178,7 @@ fn cut_corner(from: MapPoint, corner: MapPoint, to: MapPoint, radius: f64, penci
         a.towards(corner, t).towards(corner.towards(b, t), t)
     };
     for piece in 0..PIECES {
-        pencil.line(at(piece), at(piece + 1));
+        painter.line(at(piece), at(piece + 1));
     }
 }
 
