@@ -5,6 +5,7 @@ pub mod engage;
 pub mod fence;
 pub mod guidance;
 pub mod io;
+pub mod land_detector;
 pub mod machine;
 pub mod navigator;
 pub mod params;

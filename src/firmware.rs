@@ -38,6 +38,7 @@ pub mod rx;
 pub mod settings;
 pub mod storage;
 
+mod left_stick;
 mod requests;
 mod stages;
 mod views;
@@ -211,9 +212,8 @@ impl Firmware {
     fn update_navigation(&mut self) {
         self.keep_calibrations();
         self.sensing.watch_heading(&mut self.outbox);
-        self.sensing.watch_fix(self.now, self.setup.parameters(), &mut self.outbox);
-        let throttle_us = self.control.state().throttle_us;
-        let dt = self.navigation.observe(self.now, &self.sensing, &self.safety, &self.rc, throttle_us);
+        self.sensing.watch_fix(self.setup.parameters(), &mut self.outbox);
+        self.navigation.observe(self.now, &self.sensing, &self.safety, &self.rc, self.control.state());
 
         let (parameters, uptime) = (self.setup.parameters(), self.uptime());
         match self.navigation.update_failsafe(parameters, uptime, &self.rc, self.modes, &mut self.outbox) {
@@ -223,14 +223,13 @@ impl Firmware {
         }
 
         let (parameters, stored) = (self.setup.parameters(), &self.setup.configuration().plan);
-        let craft = (self.safety.armed(), self.sensing.fix_since());
-        if self.navigation.navigate(parameters, stored, &self.rc, craft, &mut self.outbox) {
+        let armed = self.safety.armed();
+        if self.navigation.navigate(parameters, stored, &self.rc, armed, &mut self.outbox) {
             self.disarm(DisarmReason::Landing);
         }
 
-        let (parameters, estimate) = (self.setup.parameters(), self.sensing.estimate());
-        let alt_hold = self.modes.has(Mode::AltHold);
-        if self.safety.is_touchdown(parameters, &self.rc, alt_hold, estimate, dt) {
+        let (parameters, alt_hold) = (self.setup.parameters(), self.modes.has(Mode::AltHold));
+        if self.navigation.is_impact(parameters, &self.rc, &self.safety, alt_hold) {
             self.disarm(DisarmReason::Landing);
         }
         self.update_modes();

@@ -15,7 +15,7 @@ use betadeck::autopilot::control::{
     YAW_SLEW_DPS2, throttle_share,
 };
 use betadeck::autopilot::guidance::{L1Limits, l1};
-use betadeck::autopilot::machine::{GroundFacts, TouchdownFacts, TouchdownGuards};
+use betadeck::autopilot::land_detector::{GroundFacts, TouchdownFacts, TouchdownGuards};
 use betadeck::autopilot::rx_loss::{RxLossFacts, decide};
 use betadeck::plan::WaypointType::{Flyover, Hold, Land};
 use betadeck::plan::{HoldPattern, Waypoint};

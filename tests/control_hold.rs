@@ -3,7 +3,7 @@
 #[path = "control_support/rig.rs"]
 mod control_support;
 
-use betadeck::firmware::control::hold::HoldModes;
+use betadeck::firmware::control::hold::{DescentRate, HoldModes};
 use betadeck::firmware::settings::Settings;
 use betadeck::sim::{Airframe, Noise, Turbulence, Wind, WorldConfig};
 use control_support::{Rig, world};
@@ -98,7 +98,7 @@ fn the_failsafe_descent_lands_softly_and_says_so() {
     for (noise, wind) in [(Noise::None, 0.0), (Noise::Real, 3.0)] {
         let mut rig = Rig::airborne(windy(noise, wind), &Settings::default());
         rig.run(5.0);
-        rig.modes = HoldModes { altitude: true, position: true, descend: true };
+        rig.modes = HoldModes { altitude: true, position: true, descend: Some(DescentRate::Failsafe) };
         let (mut seconds, mut impact) = (0.0, 0.0);
         while !rig.hold.touchdown && seconds < 60.0 {
             rig.run(0.05);
@@ -163,7 +163,7 @@ fn hard_flying_is_never_taken_for_standing() {
                 [500.0, 500.0, 500.0, -500.0, -500.0].get(part % 11).copied().unwrap_or(0.0);
             rig.sticks.stick_roll = if part == 7 { 500.0 } else { 0.0 };
             rig.sticks.throttle_us = [1500.0, 1850.0, 1200.0][second / 5 % 3];
-            rig.watch(1.0, |rig| assert!(!rig.controller.state().on_legs, "in the air after {second} s"));
+            rig.watch(1.0, |rig| assert!(!rig.controllers.land.on_ground(), "in the air after {second} s"));
         }
         assert!(!rig.truth().on_ground);
     }

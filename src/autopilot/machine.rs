@@ -10,18 +10,17 @@
 
 mod rules;
 mod table;
-mod touchdown;
 
 use arrayvec::ArrayVec;
 
 use super::fence::FenceFacts;
 use super::guidance::PlaneCrossing;
+use super::land_detector::{GroundFacts, TouchdownFacts, TouchdownGuards};
 use crate::plan::{HoldPattern, WaypointType};
 use crate::telemetry::{AbortReason, FenceAction, Guard, GuardName, NavState, PlanSource, TransitionReason};
 
 pub use rules::rules;
 pub use table::transition_table;
-pub use touchdown::{GroundFacts, TouchdownFacts, TouchdownGuards, TouchdownTimer};
 
 /// Time without progress after which a mission is given up, s.
 pub const STALL_S: f64 = 30.0;
@@ -96,6 +95,8 @@ pub struct Facts {
     pub touchdown_held_us: Option<u64>,
     /// Time they must hold, ds.
     pub detection_time_ds: u8,
+    /// Time without any motion although the craft is commanded to descend, s.
+    pub stationary_s: f64,
 }
 
 impl Default for Facts {
@@ -133,6 +134,7 @@ impl Default for Facts {
             touchdown: TouchdownGuards::new(&TouchdownFacts::default(), &GroundFacts::CERTAIN),
             touchdown_held_us: None,
             detection_time_ds: 10,
+            stationary_s: 0.0,
         }
     }
 }
@@ -246,11 +248,11 @@ pub fn transition(state: NavState, facts: &Facts) -> Option<Transition> {
 
 /// The guards to show for `state`: what it waits for, without those that only say that fix and plan are there.
 #[must_use]
-pub fn waiting_for(state: NavState, facts: &Facts) -> ArrayVec<Guard, 8> {
+pub fn waiting_for(state: NavState, facts: &Facts) -> ArrayVec<Guard, 9> {
     rules(state, facts)
         .iter()
         .flat_map(|rule| rule.guards.iter().copied())
         .filter(|guard| !matches!(guard.name, GuardName::Fix | GuardName::Plan))
-        .take(8)
+        .take(9)
         .collect()
 }

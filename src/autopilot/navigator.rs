@@ -137,8 +137,10 @@ impl Navigator {
             self.cursor.follow_clearing(stored);
             self.engage_controllers(&now, params, controllers);
             self.prepare(&now, params, &seen, controllers.position.speed_setpoint_mps());
-            let mut facts = self.facts(&now, params, &seen, &controllers.altitude);
-            facts.touchdown_held_us = self.descent.time_touchdown(&facts.touchdown, now.time);
+            self.end_old_descent(controllers);
+            controllers.land.follow_altitude(now.alt_m);
+            let mut facts = self.facts(&now, params, &seen, controllers);
+            facts.touchdown_held_us = controllers.land.time_touchdown(&facts.touchdown, now.time);
             (!self.step(&facts, &now, params)).then_some((facts, seen))
         } else {
             self.check_fence_after_abort(&now, params, &seen);
@@ -152,14 +154,22 @@ impl Navigator {
         }
         // A transition leads to another leg, and after an abort it takes over the craft.
         self.engage_controllers(&now, params, controllers);
+        self.end_old_descent(controllers);
         let (facts, seen) = undecided.unwrap_or_else(|| {
             let seen = self.observe(&now, params);
-            (self.facts(&now, params, &seen, &controllers.altitude), seen)
+            (self.facts(&now, params, &seen, controllers), seen)
         });
         let flown = self.fly(&now, params, &seen, controllers);
         self.watch_station(&now, params, &seen, controllers);
         self.report(&now, params, &seen, controllers, Some((&facts, flown)));
         flown.output
+    }
+
+    /// Makes the land detector forget a descent that is not flown any more.
+    fn end_old_descent(&self, controllers: &mut FlightControllers) {
+        if self.state != NavState::Landing || !self.descent.has_begun() {
+            controllers.land.end_descent();
+        }
     }
 
     /// Engages the controllers once after taking over the craft.

@@ -4,7 +4,6 @@
 //! ARM_SWITCH, which stays until the switch goes off.
 
 pub mod crash;
-pub mod impact;
 pub mod runaway;
 
 use crate::signals::SimTime;

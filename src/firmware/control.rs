@@ -19,7 +19,6 @@ mod boost;
 mod controller;
 mod curve;
 mod derived;
-mod ground;
 mod gyro;
 mod heading;
 pub mod hold;
@@ -81,7 +80,7 @@ pub struct ControlInput {
     pub yaw_rate_rps: Option<f64>,
     /// Throttle demanded instead of the pilot's, 0…1.
     pub throttle: Option<f64>,
-    /// The navigator feels the ground: what the integrals gathered against it is dropped.
+    /// The legs carry weight: what the integrals gather while the attitude is levelled is dropped.
     pub stands: bool,
     /// Full stabilisation at zero throttle: the AIRMODE feature or its switch, once the throttle was raised.
     pub airmode: bool,
@@ -143,8 +142,6 @@ pub struct ControlState {
     pub pid_sum: [f64; 3],
     /// Demanded roll and pitch while levelling, rad.
     pub angle_demand_rad: Option<[f64; 2]>,
-    /// The legs carry weight; demanded leans are not flown then.
-    pub on_legs: bool,
 }
 
 impl Default for ControlState {
@@ -157,7 +154,6 @@ impl Default for ControlState {
             setpoint_dps: [0.0; 3],
             pid_sum: [0.0; 3],
             angle_demand_rad: None,
-            on_legs: false,
         }
     }
 }

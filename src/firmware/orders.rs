@@ -14,9 +14,6 @@ use super::modes::AfterAbort;
 use super::parameters::{RescueAltitude, RescueCause, RescueConfig, RescueSanity};
 use crate::geo::local_offset;
 
-/// A lost fix must be back this long before an order is repeated, s.
-const FIX_BACK_S: f64 = 2.0;
-
 /// An order that does not come from the AUTOPILOT switch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Order {
@@ -39,8 +36,6 @@ pub struct OrderFacts {
     pub failsafe_active: bool,
     /// What the navigator flies for the failsafe, if it does.
     pub failsafe_mission: Option<Response>,
-    /// How long there has been a fix, s.
-    pub fix_for_s: f64,
 }
 
 /// The orders in force.
@@ -53,17 +48,16 @@ pub struct Orders {
     switch_spent: bool,
     rescue_was: bool,
     by_rescue_switch: bool,
-    /// Why the last mission was given up, while its order stays.
-    aborted: Option<AbortReason>,
     highest_m: f64,
 }
 
 impl Orders {
     /// What a given-up mission leaves behind while its order stays.
     #[must_use]
-    pub fn after_abort(&self) -> AfterAbort {
-        match self.aborted {
+    pub fn after_abort(&self, navigator: &Navigator) -> AfterAbort {
+        match navigator.given_up() {
             None => AfterAbort::Nothing,
+            Some(AbortReason::GpsLost) if navigator.has_landing_to_resume() => AfterAbort::Descent,
             Some(AbortReason::GpsLost) => AfterAbort::Altitude,
             Some(AbortReason::Stalled | AbortReason::Flyaway | AbortReason::NoPlan) => AfterAbort::Position,
         }
@@ -75,7 +69,7 @@ impl Orders {
         match (navigator.is_flying(), navigator.state()) {
             (true, NavState::Complete) => MissionStatus::Over,
             (true, _) => MissionStatus::Flying,
-            (false, _) if self.aborted.is_some() => MissionStatus::Over,
+            (false, _) if navigator.given_up().is_some() => MissionStatus::Over,
             (false, _) => MissionStatus::Absent,
         }
     }
@@ -94,7 +88,6 @@ impl Orders {
         navigator.return_to_home(inputs, params, rescue)?;
         self.order = Some(Order::ReturnHome(rescue));
         self.by_rescue_switch = false;
-        self.aborted = None;
         Ok(())
     }
 
@@ -106,7 +99,6 @@ impl Orders {
         navigator.emergency_land(inputs)?;
         self.order = Some(Order::Land);
         self.by_rescue_switch = false;
-        self.aborted = None;
         Ok(())
     }
 
@@ -129,11 +121,6 @@ impl Orders {
         self.by_rescue_switch = false;
     }
 
-    /// Remembers why the navigator gave a mission up.
-    pub fn mission_aborted(&mut self, why: AbortReason) {
-        self.aborted = Some(why);
-    }
-
     /// One update, before the navigator's own.
     pub fn update(
         &mut self,
@@ -148,7 +135,6 @@ impl Orders {
         let was_armed = std::mem::replace(&mut self.was_armed, inputs.armed);
         if !inputs.armed {
             self.cancel();
-            self.aborted = None;
         }
         self.switch_spent = facts.autopilot_switch && (self.switch_spent || was_armed && !inputs.armed);
         if facts.failsafe_active {
@@ -164,7 +150,6 @@ impl Orders {
             std::mem::replace(&mut self.switch_was, facts.autopilot_switch) && !facts.autopilot_switch;
         if released {
             self.cancel();
-            self.aborted = None;
             navigator.disengage();
         }
         self.update_rescue_switch(navigator, inputs, params, rescue, facts);
@@ -177,44 +162,17 @@ impl Orders {
             return;
         }
         if !wanted {
-            self.aborted = None;
+            navigator.forget_given_up();
             return;
         }
-        let engaged = match self.order {
-            None => navigator.engage(inputs, params, stored).is_ok(),
-            Some(order) => match self.repeat(order, navigator, inputs, params, facts.fix_for_s) {
-                Ok(()) => true,
-                Err(refusal) => {
+        match self.order {
+            Some(order) if !navigator.has_landing_to_resume() => {
+                if let Err(refusal) = repeat(order, navigator, inputs, params) {
                     navigator.refuse(refusal);
-                    false
                 }
-            },
-        };
-        if engaged {
-            self.aborted = None;
-        }
-    }
-
-    /// Tries an order again whose flight was given up.
-    fn repeat(
-        &self,
-        order: Order,
-        navigator: &mut Navigator,
-        inputs: &NavInputs,
-        params: &Params,
-        fix_for_s: f64,
-    ) -> Result<(), Refusal> {
-        // What made no progress is not tried again until it is asked for again.
-        if let Some(why @ (AbortReason::Stalled | AbortReason::Flyaway | AbortReason::NoPlan)) = self.aborted
-        {
-            return Err(Refusal::Aborted(why));
-        }
-        if fix_for_s < FIX_BACK_S {
-            return Err(Refusal::Aborted(AbortReason::GpsLost));
-        }
-        match order {
-            Order::ReturnHome(rescue) => navigator.return_to_home(inputs, params, rescue),
-            Order::Land => navigator.emergency_land(inputs),
+            }
+            // The navigator remembers a refusal and says so.
+            Some(_) | None => _ = navigator.engage(inputs, params, stored),
         }
     }
 
@@ -261,6 +219,22 @@ impl Orders {
                 RescueSanity::FailsafeOnly => cause == RescueCause::Failsafe,
             },
         }
+    }
+}
+
+/// Tries an order again that was given up: only for a lost fix, for a return home that makes no progress lands instead.
+fn repeat(
+    order: Order,
+    navigator: &mut Navigator,
+    inputs: &NavInputs,
+    params: &Params,
+) -> Result<(), Refusal> {
+    if !navigator.has_fix_back(inputs) {
+        return Err(Refusal::Aborted(AbortReason::GpsLost));
+    }
+    match order {
+        Order::ReturnHome(rescue) => navigator.return_to_home(inputs, params, rescue),
+        Order::Land => navigator.emergency_land(inputs),
     }
 }
 

@@ -80,6 +80,9 @@ pub enum GuardName {
     /// Time for which all other conditions of the touchdown have held.
     #[strum(to_string = "touchdown time")]
     TouchdownTime,
+    /// Time for which the craft has not moved although it is commanded to descend.
+    #[strum(to_string = "stationary time")]
+    Stationary,
 }
 
 impl GuardName {
@@ -100,7 +103,7 @@ impl GuardName {
             | Self::Beside
             | Self::TouchdownAltitude
             | Self::Descent => GuardUnit::Metres,
-            Self::NoProgress | Self::HoldTime | Self::TouchdownTime => GuardUnit::Seconds,
+            Self::NoProgress | Self::HoldTime | Self::TouchdownTime | Self::Stationary => GuardUnit::Seconds,
             Self::TouchdownSpeed | Self::TouchdownSink => GuardUnit::MetresPerSecond,
             Self::TouchdownThrottle | Self::BelowHover => GuardUnit::Microseconds,
         }
@@ -144,6 +147,12 @@ pub struct Guard {
 }
 
 impl Guard {
+    /// A condition on a measured value.
+    #[must_use]
+    pub fn new(name: GuardName, value: f64, op: GuardOp, limit: f64) -> Self {
+        Self { name, value, limit, op }
+    }
+
     /// Unit of value and limit.
     #[must_use]
     pub fn unit(&self) -> GuardUnit {

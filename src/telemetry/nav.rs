@@ -61,9 +61,6 @@ pub struct NavOutput {
     pub throttle: f64,
     /// The same throttle as RC µs.
     pub throttle_us: f64,
-    /// A landing craft does not sink although the throttle was taken off: it stands on its legs, and controllers should
-    /// forget what they gathered against the ground.
-    pub stands: bool,
 }
 
 /// Where the active plan came from.
@@ -240,7 +237,7 @@ pub struct NavTelemetry {
     /// Hover throttle in use, µs.
     pub hover_us: f64,
     /// The guards of the active state, in the order they are evaluated.
-    pub guards: arrayvec::ArrayVec<Guard, 8>,
+    pub guards: arrayvec::ArrayVec<Guard, 9>,
     /// The demands of this update.
     pub output: NavOutput,
 }

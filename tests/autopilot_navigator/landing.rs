@@ -18,12 +18,12 @@ fn a_craft_that_stands_is_flown_level_with_its_throttle_off() {
     let mut flight = coming_down();
     assert!(flight.until(60.0, |f| f.plant.alt <= 0.0));
     let (contact, air) = (flight.t(), flight.log.last().unwrap().clone());
-    assert!(air.demand_deg > 5.0 && !air.out.stands, "it leaned into the wind");
+    assert!(air.demand_deg > 5.0 && !air.stands, "it leaned into the wind");
     assert!(flight.until(4.0, |f| f.disarmed), "not down after 4 s");
     assert!(flight.t() - contact >= 1.0);
     flight.log.pop();
     let mut stood = flight.since(contact + 2.0);
-    assert!(stood.all(|s| s.demand_deg < 0.1 && s.out.stands));
+    assert!(stood.all(|s| s.demand_deg < 0.1 && s.stands));
     let last = flight.log.last().unwrap();
     assert!(last.out.throttle_us < air.throttle_us - 200.0, "{}", last.out.throttle_us);
 }

@@ -8,12 +8,13 @@ use betadeck::autopilot::control::{
     PositionMeasurement, PositionTarget, earth_to_body, throttle_share,
 };
 use betadeck::autopilot::io::NavInputs;
+use betadeck::autopilot::land_detector::GroundMeasurement;
 use betadeck::autopilot::{Navigator, Params};
 use betadeck::geo::{GRAVITY, LatLon, local_offset, offset_to_latlon};
 use betadeck::plan::{FlightPlan, HoldPattern, Waypoint, WaypointType};
 use betadeck::signals::SimTime;
 use betadeck::telemetry::{NavEvent, NavOutput, NavState};
-use nalgebra::Vector2;
+use nalgebra::{Vector2, Vector3};
 
 pub(crate) const HOME: LatLon = LatLon::new(404_635_000, -795_182_000);
 pub(crate) const DT: f64 = 0.01;
@@ -133,6 +134,7 @@ pub(crate) struct Sample {
     pub(crate) xte: Option<f64>,
     pub(crate) target: Vector2<f64>,
     pub(crate) out: NavOutput,
+    pub(crate) stands: bool,
 }
 
 /// A flight: craft, navigator, plan and log. Time counts from engaging.
@@ -269,6 +271,11 @@ impl Flight {
         self.inputs.pitch_rad = plant.lean.x;
         self.inputs.cos_tilt = plant.lean.norm().cos();
         self.inputs.accel_ne = plant.accel;
+        let on_legs = if plant.alt <= 0.0 { (1.0 - plant.thrust).max(0.0) } else { 0.0 };
+        let force = Vector3::new(0.0, 0.0, (plant.thrust + on_legs) * GRAVITY);
+        let motor = (self.inputs.throttle_us - 1050.0) / 950.0;
+        let ground = GroundMeasurement::new(&self.inputs, force, plant.yaw_rate.abs(), &[motor; 4]);
+        self.controllers.land.observe(&ground, true, DT);
     }
 
     /// The pilot's altitude and position hold for some seconds, with the shared controllers.
@@ -312,7 +319,10 @@ impl Flight {
 
     pub(crate) fn tick(&mut self) {
         self.sense();
-        let out = self.nav.update(&self.inputs, &self.params, &self.plan, &mut self.controllers);
+        let mut out = self.nav.update(&self.inputs, &self.params, &self.plan, &mut self.controllers);
+        // As the firmware does: a craft that stands is not tilted on its legs.
+        let share = self.controllers.land.lean_share();
+        (out.roll_rad, out.pitch_rad) = (share * out.roll_rad, share * out.pitch_rad);
         let t = self.t();
         for event in self.nav.drain_events() {
             if event == NavEvent::Disarm {
@@ -337,6 +347,7 @@ impl Flight {
             xte: telemetry.xte_m,
             target: telemetry.target_ne.unwrap_or_default(),
             out,
+            stands: self.controllers.land.stands(),
         });
         let share = if self.disarmed { 0.0 } else { out.throttle };
         self.plant.step(out.roll_rad, out.pitch_rad, out.yaw_rate_rps.unwrap_or(0.0), share);

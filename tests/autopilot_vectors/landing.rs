@@ -1,9 +1,8 @@
 //! The way down, and the touchdown.
 
 use betadeck::autopilot::guidance::{Spiral, landing_setpoint_m, spiral_offset};
-use betadeck::autopilot::machine::{
-    Facts, GroundFacts, Outcome, TouchdownFacts, TouchdownGuards, TouchdownTimer, transition,
-};
+use betadeck::autopilot::land_detector::{GroundFacts, TouchdownFacts, TouchdownGuards, TouchdownTimer};
+use betadeck::autopilot::machine::{Facts, Outcome, transition};
 use betadeck::autopilot::params::Params;
 use betadeck::signals::SimTime;
 use betadeck::telemetry::NavState;

@@ -3,9 +3,8 @@
 use std::str::FromStr;
 
 use betadeck::autopilot::guidance::{PlaneCrossing, hold_remaining_ds, turn_radius_m};
-use betadeck::autopilot::machine::{
-    Facts, GroundFacts, Outcome, ProgressFacts, TouchdownFacts, TouchdownGuards, transition,
-};
+use betadeck::autopilot::land_detector::{GroundFacts, TouchdownFacts, TouchdownGuards};
+use betadeck::autopilot::machine::{Facts, Outcome, ProgressFacts, transition};
 use betadeck::plan::{HoldPattern, WaypointType};
 use betadeck::signals::SimTime;
 use betadeck::telemetry::{FenceAction, NavState};

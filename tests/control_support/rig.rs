@@ -6,6 +6,7 @@
 use betadeck::autopilot::Params;
 use betadeck::autopilot::control::FlightControllers;
 use betadeck::autopilot::io::NavInputs;
+use betadeck::autopilot::land_detector::GroundMeasurement;
 use betadeck::firmware::config::MixerKind;
 use betadeck::firmware::control::hold::{HoldModes, HoldOutput, HoldTuning, Holds};
 use betadeck::firmware::control::{ControlInput, Controller, LeanDemand, StickMode, Tuning};
@@ -13,7 +14,7 @@ use betadeck::firmware::estimate::{Estimate, Estimator, EstimatorOptions, Estima
 use betadeck::firmware::settings::Settings;
 use betadeck::signals::SimTime;
 use betadeck::sim::{Airframe, Noise, Truth, World, WorldConfig};
-use nalgebra::Vector2;
+use nalgebra::{Vector2, Vector3};
 
 /// Interval of the RC frames, µs.
 const FRAME_US: u64 = 20_000;
@@ -24,7 +25,7 @@ pub(crate) struct Rig {
     pub(crate) estimator: Estimator,
     pub(crate) controller: Controller,
     pub(crate) holds: Holds,
-    controllers: FlightControllers,
+    pub(crate) controllers: FlightControllers,
     pub(crate) hold_tuning: HoldTuning,
     pub(crate) params: Params,
     pub(crate) modes: HoldModes,
@@ -74,7 +75,7 @@ impl Rig {
         let mut rig = Self::new(config, settings);
         rig.run(6.0);
         rig.arm();
-        rig.modes = HoldModes { altitude: true, position: true, descend: false };
+        rig.modes = HoldModes { altitude: true, position: true, descend: None };
         rig.sticks.throttle_us = 1900.0;
         let mut left = 30.0;
         while rig.estimate().alt_m < 18.0 && left > 0.0 {
@@ -152,7 +153,12 @@ impl Rig {
         let due = self.estimator.update(&frame);
         if due.navigation {
             let now = self.nav_inputs(frame.time);
-            let stick = self.received.throttle_us;
+            let rates = self.estimate().rates;
+            let rate_rps = Vector3::new(rates.roll, rates.pitch, rates.yaw).norm();
+            let motors = &self.controller.state().motors.0;
+            let ground = GroundMeasurement::new(&now, self.estimate().force_flu, rate_rps, motors);
+            self.controllers.land.observe(&ground, now.armed, now.dt);
+            let stick = Some(self.received.throttle_us);
             self.hold = self.holds.update(
                 self.modes,
                 &now,
@@ -165,7 +171,13 @@ impl Rig {
         let mut input = self.received;
         (input.due, input.rc_frame) = (due, is_frame);
         input.throttle = self.hold.throttle.or(input.throttle);
-        input.lean = self.hold.lean.or(input.lean);
+        let share = self.controllers.land.lean_share();
+        let held = self
+            .hold
+            .lean
+            .map(|lean| LeanDemand { roll_rad: share * lean.roll_rad, pitch_rad: share * lean.pitch_rad });
+        input.lean = held.or(input.lean);
+        input.stands = self.controllers.land.stands();
         if self.modes.altitude && input.lean.is_none() {
             input.mode = StickMode::Angle;
         }

@@ -16,6 +16,7 @@ mod geofence;
 mod gps;
 mod hover;
 mod landing;
+mod landing_ends;
 mod leaving;
 mod monitors;
 mod orbit;

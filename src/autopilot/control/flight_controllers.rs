@@ -3,9 +3,10 @@
 use super::altitude::{AltitudeController, AltitudeMeasurement};
 use super::position::{PositionController, PositionMeasurement};
 use crate::autopilot::io::NavInputs;
+use crate::autopilot::land_detector::LandDetector;
 use crate::autopilot::params::Params;
 
-/// The one altitude controller and the one position controller of a craft.
+/// The one altitude controller, the one position controller and the one land detector of a craft.
 ///
 /// They are lent to the navigator or to the hold modes. Whoever takes one over engages it, so that the demand does not
 /// step, and updates it in every cycle; a controller that nobody flies with tracks the flight, so that wind and hover
@@ -16,6 +17,8 @@ pub struct FlightControllers {
     pub altitude: AltitudeController,
     /// Lean.
     pub position: PositionController,
+    /// Ground or air.
+    pub land: LandDetector,
 }
 
 impl FlightControllers {

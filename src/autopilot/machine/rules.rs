@@ -5,6 +5,7 @@ use arrayvec::ArrayVec;
 use super::{Facts, Outcome, Rule, Rules, STALL_S};
 use crate::autopilot::fence;
 use crate::autopilot::guidance::PlaneCrossing;
+use crate::autopilot::land_detector::STATIONARY_S;
 use crate::plan::{HoldPattern, WaypointType};
 use crate::telemetry::{AbortReason, Guard, GuardName, GuardOp, NavState, PlanSource, TransitionReason};
 
@@ -31,23 +32,19 @@ pub(super) fn own(state: NavState, facts: &Facts, list: &mut Rules) {
     }
 }
 
-pub(super) fn guard(name: GuardName, value: f64, op: GuardOp, limit: f64) -> Guard {
-    Guard { name, value, limit, op }
-}
-
 fn rule(guards: impl IntoIterator<Item = Guard>, outcome: Outcome, reason: TransitionReason) -> Rule {
     Rule { guards: ArrayVec::from_iter(guards), outcome, reason }
 }
 
 /// What ends a mission from any state.
 pub(super) fn common(state: NavState, facts: &Facts, list: &mut Rules) {
-    let fix = guard(GuardName::Fix, f64::from(u8::from(facts.fix)), GuardOp::Below, 1.0);
+    let fix = Guard::new(GuardName::Fix, f64::from(u8::from(facts.fix)), GuardOp::Below, 1.0);
     list.push(rule(
         [fix],
         Outcome::Abort(AbortReason::GpsLost),
         TransitionReason::GivenUp(AbortReason::GpsLost),
     ));
-    let plan = guard(GuardName::Plan, f64::from(facts.count), GuardOp::Below, 1.0);
+    let plan = Guard::new(GuardName::Plan, f64::from(facts.count), GuardOp::Below, 1.0);
     list.push(rule(
         [plan],
         Outcome::Abort(AbortReason::NoPlan),
@@ -61,7 +58,7 @@ pub(super) fn common(state: NavState, facts: &Facts, list: &mut Rules) {
 
 fn approaching(facts: &Facts, list: &mut Rules) {
     if let Some((altitude, enough)) = facts.climb {
-        let climbed = guard(GuardName::Climb, altitude, GuardOp::AtLeast, enough);
+        let climbed = Guard::new(GuardName::Climb, altitude, GuardOp::AtLeast, enough);
         list.push(rule([climbed], Outcome::Climbed, TransitionReason::Climb));
         return;
     }
@@ -72,8 +69,12 @@ fn approaching(facts: &Facts, list: &mut Rules) {
         WaypointType::Hold | WaypointType::Land => list.push(arrival(facts, facts.approach.hold_radius_m)),
         WaypointType::Takeoff => {
             let radius = facts.approach.hold_radius_m;
-            let level =
-                guard(GuardName::Altitude, facts.approach.altitude_error_m.abs(), GuardOp::AtMost, radius);
+            let level = Guard::new(
+                GuardName::Altitude,
+                facts.approach.altitude_error_m.abs(),
+                GuardOp::AtMost,
+                radius,
+            );
             let mut reached = arrival(facts, radius);
             reached.guards.push(level);
             list.push(reached);
@@ -92,13 +93,13 @@ pub(super) fn monitors(facts: &Facts, list: &mut Rules) {
         PlanSource::Rth | PlanSource::Emergency => Outcome::LandHere,
     };
     if let Some(progress) = facts.progress {
-        let stalled = guard(GuardName::NoProgress, progress.no_progress_s, GuardOp::AtLeast, STALL_S);
+        let stalled = Guard::new(GuardName::NoProgress, progress.no_progress_s, GuardOp::AtLeast, STALL_S);
         list.push(rule(
             [stalled],
             give_up(AbortReason::Stalled),
             TransitionReason::GivenUp(AbortReason::Stalled),
         ));
-        let away = guard(GuardName::Flyaway, progress.distance_m, GuardOp::Above, progress.flyaway_m);
+        let away = Guard::new(GuardName::Flyaway, progress.distance_m, GuardOp::Above, progress.flyaway_m);
         list.push(rule(
             [away],
             give_up(AbortReason::Flyaway),
@@ -108,7 +109,7 @@ pub(super) fn monitors(facts: &Facts, list: &mut Rules) {
 }
 
 fn arrival(facts: &Facts, radius: f64) -> Rule {
-    let near = guard(GuardName::Arrival, facts.approach.distance_m, GuardOp::AtMost, radius);
+    let near = Guard::new(GuardName::Arrival, facts.approach.distance_m, GuardOp::AtMost, radius);
     rule([near], Outcome::Arrive, TransitionReason::Arrival)
 }
 
@@ -116,7 +117,7 @@ fn arrival(facts: &Facts, radius: f64) -> Rule {
 fn pass(facts: &Facts, flyby: bool, list: &mut Rules) {
     let radius = facts.approach.arrival_radius_m;
     let waypoint = facts.waypoint;
-    let turn = guard(
+    let turn = Guard::new(
         GuardName::TurnRadius,
         facts.approach.distance_m,
         GuardOp::AtMost,
@@ -136,16 +137,16 @@ fn pass(facts: &Facts, flyby: bool, list: &mut Rules) {
         PlaneCrossing::Crossed { lateral_m } => (0.0, Some(lateral_m)),
         PlaneCrossing::Behind => {
             // It stood on the plane before: only when it runs away from the point does it have to come back.
-            let overrun = guard(GuardName::Overrun, facts.approach.distance_m, GuardOp::Above, radius);
+            let overrun = Guard::new(GuardName::Overrun, facts.approach.distance_m, GuardOp::Above, radius);
             list.push(rule([overrun], Outcome::Missed, TransitionReason::Missed));
             return;
         }
     };
-    let plane = guard(GuardName::Plane, to_go, GuardOp::AtMost, 0.0);
-    let beside = lateral.map(|lateral| guard(GuardName::Beside, lateral, GuardOp::AtMost, radius));
+    let plane = Guard::new(GuardName::Plane, to_go, GuardOp::AtMost, 0.0);
+    let beside = lateral.map(|lateral| Guard::new(GuardName::Beside, lateral, GuardOp::AtMost, radius));
     list.push(rule(std::iter::once(plane).chain(beside), Outcome::Arrive, TransitionReason::Plane));
     if let Some(lateral) = lateral {
-        let too_far = guard(GuardName::Beside, lateral, GuardOp::Above, radius);
+        let too_far = Guard::new(GuardName::Beside, lateral, GuardOp::Above, radius);
         list.push(rule([plane, too_far], Outcome::Missed, TransitionReason::Missed));
     }
 }
@@ -179,7 +180,7 @@ fn holding(facts: &Facts, list: &mut Rules) {
             HoldPattern::None => hold_time(facts, list),
         },
         WaypointType::Land => {
-            let over = guard(GuardName::HoldTime, hold_s(facts), GuardOp::AtLeast, duration_s(facts));
+            let over = Guard::new(GuardName::HoldTime, hold_s(facts), GuardOp::AtLeast, duration_s(facts));
             list.push(rule([over], Outcome::Land, TransitionReason::HoldTime));
         }
         WaypointType::Takeoff
@@ -194,7 +195,7 @@ fn holding(facts: &Facts, list: &mut Rules) {
 /// A duration of zero is endless: the guard is shown, with a limit that is never reached.
 fn hold_time(facts: &Facts, list: &mut Rules) {
     let limit = if facts.waypoint.duration_ds > 0 { duration_s(facts) } else { f64::INFINITY };
-    let over = guard(GuardName::HoldTime, hold_s(facts), GuardOp::AtLeast, limit);
+    let over = Guard::new(GuardName::HoldTime, hold_s(facts), GuardOp::AtLeast, limit);
     list.push(rule([over], next(facts), TransitionReason::HoldTime));
 }
 
@@ -210,6 +211,8 @@ fn duration_s(facts: &Facts) -> f64 {
 fn landing(facts: &Facts, list: &mut Rules) {
     let held = facts.touchdown_held_us.unwrap_or(0) as f64 / 1e6;
     let needed = f64::from(facts.detection_time_ds) / 10.0;
-    let time = guard(GuardName::TouchdownTime, held, GuardOp::AtLeast, needed);
+    let time = Guard::new(GuardName::TouchdownTime, held, GuardOp::AtLeast, needed);
     list.push(rule(facts.touchdown.iter().chain([time]), Outcome::Touchdown, TransitionReason::Touchdown));
+    let still = Guard::new(GuardName::Stationary, facts.stationary_s, GuardOp::AtLeast, STATIONARY_S);
+    list.push(rule([still], Outcome::Touchdown, TransitionReason::Touchdown));
 }

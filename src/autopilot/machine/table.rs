@@ -5,8 +5,9 @@ use std::fmt::Write as _;
 use strum::IntoEnumIterator as _;
 
 use super::rules::{common, monitors, own};
-use super::{Facts, GroundFacts, Outcome, ProgressFacts, Rules, TouchdownFacts, TouchdownGuards};
+use super::{Facts, Outcome, ProgressFacts, Rules};
 use crate::autopilot::guidance::PlaneCrossing;
+use crate::autopilot::land_detector::{GroundFacts, TouchdownFacts, TouchdownGuards};
 use crate::autopilot::params::Params;
 use crate::plan::{HoldPattern, WaypointType};
 use crate::telemetry::{FenceAction, Guard, NavState, PlanSource};

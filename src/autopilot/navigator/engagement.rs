@@ -1,6 +1,7 @@
 //! What outlasts a mission until the switch is cycled or the craft disarmed: why it was given up, the fix, the refusal.
 
 use crate::autopilot::io::NavInputs;
+use crate::geo::LatLon;
 use crate::signals::SimTime;
 use crate::telemetry::{AbortReason, Refusal};
 
@@ -23,8 +24,10 @@ pub(super) struct Engagement {
     /// Touched down and disarmed; the state reads COMPLETE until the next arming.
     landed: bool,
     fix_since: Option<SimTime>,
-    /// Why the last mission was given up, until the switch is cycled; after a lost fix until it is back.
+    /// Why the last mission was given up, until the next one begins or the switch is cycled.
     given_up: Option<AbortReason>,
+    /// Where the landing is to end that was given up for the lost fix.
+    landing_at: Option<LatLon>,
     refused: Option<Refusal>,
 }
 
@@ -52,25 +55,36 @@ impl Engagement {
         self.landed = true;
     }
 
-    /// The mission was given up.
-    pub(super) fn give_up(&mut self, why: AbortReason) {
-        match why {
-            AbortReason::Stalled | AbortReason::Flyaway | AbortReason::GpsLost => self.given_up = Some(why),
-            // A new plan is a new mission.
-            AbortReason::NoPlan => {}
-        }
+    /// The mission was given up; `landing_at` is where its landing was to end, if one was under way.
+    pub(super) fn give_up(&mut self, why: AbortReason, landing_at: Option<LatLon>) {
+        self.given_up = Some(why);
+        self.landing_at = landing_at;
     }
 
-    /// Why the craft was left to the wind, if it was.
+    /// Why the last mission was given up, while nothing has taken its place.
+    pub(super) fn given_up(&self) -> Option<AbortReason> {
+        self.given_up
+    }
+
+    /// Where the landing is to end that was given up for the lost fix.
+    pub(super) fn landing_at(&self) -> Option<LatLon> {
+        self.landing_at
+    }
+
+    /// Why the craft was left to the wind and is not taken over again before the switch is cycled, if so.
     pub(super) fn aborted(&self) -> Option<AbortReason> {
-        self.given_up.filter(|why| *why != AbortReason::GpsLost)
+        // A lost fix comes back, and a new plan is a new mission.
+        self.given_up.filter(|why| matches!(why, AbortReason::Stalled | AbortReason::Flyaway))
     }
 
     /// Whether a mission waits for the fix to be back.
     pub(super) fn waits_for_fix(&self, now: &NavInputs) -> bool {
-        let is_back =
-            now.fix && self.fix_since.is_some_and(|since| now.time.seconds_since(since) >= FIX_BACK_S);
-        self.given_up == Some(AbortReason::GpsLost) && !is_back
+        self.given_up == Some(AbortReason::GpsLost) && !self.has_fix_back(now)
+    }
+
+    /// Whether there has been a fix for long enough to fly by it again.
+    pub(super) fn has_fix_back(&self, now: &NavInputs) -> bool {
+        now.fix && self.fix_since.is_some_and(|since| now.time.seconds_since(since) >= FIX_BACK_S)
     }
 
     /// Why the switch has no effect, if it has none.
@@ -85,12 +99,13 @@ impl Engagement {
 
     /// The switch was cycled, or a mission begins: neither refusal nor a mission given up count any more.
     pub(super) fn clear(&mut self) {
-        self.given_up = None;
+        self.forget_mission();
         self.refused = None;
     }
 
-    /// The craft was disarmed.
+    /// The mission that was given up is not waited for any more.
     pub(super) fn forget_mission(&mut self) {
         self.given_up = None;
+        self.landing_at = None;
     }
 }

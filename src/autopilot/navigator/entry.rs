@@ -6,9 +6,12 @@ use super::leg::Leg;
 use crate::autopilot::engage::{self, EngageFacts};
 use crate::autopilot::io::NavInputs;
 use crate::autopilot::params::Params;
-use crate::geo::{LatLon, offset_to_latlon};
+use crate::geo::{LatLon, local_offset, offset_to_latlon};
 use crate::plan::{FlightPlan, HoldPattern, Waypoint, WaypointType};
 use crate::telemetry::{AbortReason, Guard, NavEvent, NavState, PlanSource, Refusal, TransitionReason};
+
+/// A landing whose fix comes back this near to its place ends there, m.
+const SAME_LANDING_M: f64 = 20.0;
 
 /// How a rescue flies home, beyond a plain return: the altitude is climbed to on the spot first.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,9 +45,12 @@ impl Navigator {
         }
         let inputs = &self.inputs.apply(inputs);
         let facts = self.engage_facts(inputs, params, stored);
+        let landing_at = self.engagement.landing_at();
         let lost = self.engagement.waits_for_fix(inputs);
         let verdict = if facts.armed && facts.throttle_raised && lost {
             Err(Refusal::Aborted(AbortReason::GpsLost))
+        } else if landing_at.is_some() {
+            engage::check_craft(&facts)
         } else {
             engage::check(&facts)
         };
@@ -52,8 +58,47 @@ impl Navigator {
             self.refuse(refusal);
             return Err(refusal);
         }
-        self.resume(inputs, params, stored);
+        match landing_at {
+            Some(land_at) => self.resume_landing(land_at, inputs),
+            None => self.resume(inputs, params, stored),
+        }
         Ok(())
+    }
+
+    /// Whether a landing that lost its fix waits for it.
+    #[must_use]
+    pub fn has_landing_to_resume(&self) -> bool {
+        self.engagement.landing_at().is_some()
+    }
+
+    /// Why the last mission was given up, while nothing has taken its place.
+    #[must_use]
+    pub fn given_up(&self) -> Option<AbortReason> {
+        self.engagement.given_up()
+    }
+
+    /// Whether there has been a fix for long enough to fly by it again.
+    #[must_use]
+    pub fn has_fix_back(&self, inputs: &NavInputs) -> bool {
+        self.engagement.has_fix_back(inputs)
+    }
+
+    /// The mission that was given up is not waited for any more.
+    pub fn forget_given_up(&mut self) {
+        self.engagement.forget_mission();
+        if !self.is_flying() {
+            self.cursor.unload();
+        }
+    }
+
+    /// Goes on landing where the fix was lost, from the present altitude: at its place when that is near, else here.
+    fn resume_landing(&mut self, land_at: LatLon, inputs: &NavInputs) {
+        self.take_over(inputs);
+        let here = here(inputs);
+        let distance_m = (local_offset(inputs.origin, land_at) - inputs.pos_ne).norm();
+        let waypoint = if distance_m <= SAME_LANDING_M { land_at } else { here };
+        self.leg = Leg { waypoint, altitude_m: inputs.alt_m, start: here, ..Leg::default() };
+        self.enter(NavState::Landing, TransitionReason::Resume, None);
     }
 
     fn engage_facts(&self, inputs: &NavInputs, params: &Params, stored: &FlightPlan) -> EngageFacts {
@@ -161,9 +206,11 @@ impl Navigator {
     /// resumed until disarming, and a mission that was given up may start again.
     pub fn disengage(&mut self) {
         self.engagement.clear();
-        self.report_status();
         if self.is_flying() {
             self.go_idle(TransitionReason::Disengage, None);
+        } else {
+            self.cursor.unload();
+            self.report_status();
         }
     }
 
@@ -174,7 +221,9 @@ impl Navigator {
         if self.engagement.has_landed() {
             return;
         }
-        if self.state != NavState::Idle {
+        if self.state == NavState::Idle {
+            self.cursor.unload();
+        } else {
             self.go_idle(TransitionReason::Disarm, None);
         }
     }

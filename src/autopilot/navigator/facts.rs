@@ -3,21 +3,15 @@
 use super::Navigator;
 use super::observed::Observed;
 use super::progress::LegTurn;
-use crate::autopilot::control::AltitudeController;
+use crate::autopilot::control::{AltitudeController, FlightControllers};
 use crate::autopilot::fence::FenceFacts;
 use crate::autopilot::guidance::{CornerArc, PlaneCrossing, plane_crossing, turn_radius_m};
 use crate::autopilot::io::NavInputs;
-use crate::autopilot::machine::{
-    ApproachFacts, Facts, GroundFacts, TouchdownFacts, TouchdownGuards, WaypointFacts,
-};
+use crate::autopilot::land_detector::{GroundFacts, TouchdownFacts, TouchdownGuards};
+use crate::autopilot::machine::{ApproachFacts, Facts, WaypointFacts};
 use crate::autopilot::params::Params;
 use crate::plan::WaypointType;
 use crate::telemetry::{NavEvent, NavState};
-
-/// How far the setpoint may be under the craft without counting as pressing on the ground, m.
-const PRESSING_M: f64 = 1.5;
-/// Most that the throttle must be below the learned hover throttle for a touchdown, µs.
-const BELOW_HOVER_US: f64 = 50.0;
 
 impl Navigator {
     /// Clocks and overlays that run before the decision.
@@ -31,7 +25,6 @@ impl Navigator {
         self.move_pattern(now, params);
         self.begin_climb(now, params, seen);
         self.watch_progress(now, params, seen, speed_setpoint_mps);
-        self.descent.follow_altitude(now.alt_m);
     }
 
     pub(super) fn facts(
@@ -39,7 +32,7 @@ impl Navigator {
         now: &NavInputs,
         params: &Params,
         seen: &Observed,
-        altitude: &AltitudeController,
+        controllers: &FlightControllers,
     ) -> Facts {
         let waypoint = self.cursor.current().unwrap_or_default();
         let plane = self.previous.map_or(PlaneCrossing::NoLeg, |previous| {
@@ -69,11 +62,12 @@ impl Navigator {
             progress: self.progress.facts(self.progress_distance_m(now, seen), now.time),
             hold_elapsed_us: self.hold.elapsed_us(now.time),
             touchdown: TouchdownGuards::new(
-                &touchdown_facts(now, params, seen, altitude),
-                &self.ground_facts(now, params, altitude),
+                &touchdown_facts(now, params, seen, &controllers.altitude),
+                &GroundFacts::new(now, params, &controllers.altitude, &controllers.land),
             ),
-            touchdown_held_us: self.descent.held_us(),
+            touchdown_held_us: controllers.land.held_us(),
             detection_time_ds: params.landing_detection_time,
+            stationary_s: controllers.land.stationary_s(),
         }
     }
 
@@ -139,15 +133,6 @@ impl Navigator {
                 arc_rps: self.leg.arc.as_ref().map(CornerArc::turn_rate_rps),
             };
             self.progress.update(self.progress_distance_m(now, seen), &turn, now.time);
-        }
-    }
-
-    fn ground_facts(&self, now: &NavInputs, params: &Params, altitude: &AltitudeController) -> GroundFacts {
-        let pressing = now.alt_m - altitude.setpoint_m() - PRESSING_M;
-        GroundFacts {
-            descent_m: self.descent.descended_m(now.alt_m).max(pressing),
-            below_hover_us: altitude.hover_us() - altitude.throttle_us(),
-            needed_us: (0.5 * f64::from(params.landing_throttle_threshold)).min(BELOW_HOVER_US),
         }
     }
 }

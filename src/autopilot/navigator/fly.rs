@@ -42,11 +42,12 @@ impl Navigator {
         seen: &Observed,
         controllers: &mut FlightControllers,
     ) -> Flown {
-        let FlightControllers { altitude: altitude_controller, position: position_controller } = controllers;
         let params = &self.with_rescue_climb(params);
-        let (target, path) = self.horizontal_target(now, params, seen);
-        let altitude = self.altitude_target(now, params, altitude_controller.setpoint_m());
-        altitude_controller.set_relief_us(self.descent.relief_us());
+        let (target, path) = self.horizontal_target(now, params, seen, &mut controllers.land);
+        let altitude = self.altitude_target(now, params, controllers);
+        let FlightControllers { altitude: altitude_controller, position: position_controller, land } =
+            controllers;
+        altitude_controller.set_relief_us(land.relief_us());
         let throttle_us =
             altitude_controller.update(&AltitudeMeasurement::from(now), altitude, params, now.dt);
         self.target_alt_m = match altitude {
@@ -62,7 +63,7 @@ impl Navigator {
                 * params.max_lean_rad()
         } else {
             let demand = position_controller.update(&horizontal, &target, params, now.dt);
-            earth_to_body(demand, now.heading_rad) * self.descent.lean_share()
+            earth_to_body(demand, now.heading_rad)
         };
         let output = NavOutput {
             roll_rad: lean.y,
@@ -70,7 +71,6 @@ impl Navigator {
             yaw_rate_rps: self.yaw_rate(now, params, seen),
             throttle: throttle_share(throttle_us, params),
             throttle_us,
-            stands: self.descent.stands(),
         };
         Flown { output, path }
     }
@@ -85,13 +85,18 @@ impl Navigator {
         }
     }
 
-    /// `setpoint_m` is the altitude controller's now.
-    fn altitude_target(&mut self, now: &NavInputs, params: &Params, setpoint_m: f64) -> AltitudeTarget {
+    fn altitude_target(
+        &mut self,
+        now: &NavInputs,
+        params: &Params,
+        controllers: &mut FlightControllers,
+    ) -> AltitudeTarget {
+        let FlightControllers { altitude, land, .. } = controllers;
         match self.state {
-            NavState::Landing => self.descent.setpoint(now, params, setpoint_m).map_or(
-                AltitudeTarget::Altitude(self.target_alt_m),
-                |path| AltitudeTarget::Landing { setpoint_m: path.altitude_m, rate_mps: path.climb_mps },
-            ),
+            NavState::Landing => self
+                .descent
+                .target(now, params, (altitude.setpoint_m(), altitude.throttle_us()), land)
+                .unwrap_or(AltitudeTarget::Altitude(self.target_alt_m)),
             NavState::Complete | NavState::Idle => AltitudeTarget::Altitude(self.target_alt_m),
             NavState::Approaching if self.climb.is_on() => {
                 AltitudeTarget::Altitude(self.leg.altitude_m.max(self.climb_goal_m(params) + 1.0))

@@ -31,7 +31,7 @@ impl Navigator {
             speed_mps: speed,
             home_distance_m,
             fence_margin_m: params.fence_m().zip(home_distance_m).map(|(limit, distance)| limit - distance),
-            touchdown_held_s: self.descent.held_us().map(|held| held as f64 * 1e-6),
+            touchdown_held_s: controllers.land.held_us().map(|held| held as f64 * 1e-6),
             hover_us: controllers.altitude.hover_us(),
             ..NavTelemetry::default()
         };

@@ -145,7 +145,8 @@ impl Navigator {
             NavState::Orbiting | NavState::Figure8 => Some(self.pattern_radius_m(params)),
             NavState::Idle | NavState::Approaching | NavState::Arrived => None,
         };
-        let kept = pattern_m.filter(|_| self.is_flying() && !seen.stick_override && !self.descent.stands());
+        let kept =
+            pattern_m.filter(|_| self.is_flying() && !seen.stick_override && !controllers.land.stands());
         let event = match kept {
             None => self.station.leave(),
             Some(pattern_m) => {

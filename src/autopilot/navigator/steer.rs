@@ -10,6 +10,7 @@ use crate::autopilot::guidance::{
     spiral_offset,
 };
 use crate::autopilot::io::NavInputs;
+use crate::autopilot::land_detector::LandDetector;
 use crate::autopilot::params::Params;
 use crate::plan::WaypointType;
 use crate::telemetry::{L1Mode, NavState};
@@ -47,6 +48,7 @@ impl Navigator {
         now: &NavInputs,
         params: &Params,
         seen: &Observed,
+        land: &mut LandDetector,
     ) -> (PositionTarget, PathView) {
         let speed_mps = self.leg_speed(now, params);
         let mut target = PositionTarget { speed_mps, ..PositionTarget::stay(seen.waypoint_ne, params) };
@@ -70,7 +72,7 @@ impl Navigator {
                 target.aim = target.target;
             }
             NavState::Landing => {
-                let elapsed_s = self.descent.advance(now, params, self.rescue);
+                let elapsed_s = self.descent.advance(now, params, self.leg.altitude_m, self.rescue, land);
                 if let Some(spiral) = Spiral::from_params(params) {
                     target.target += spiral_offset(&spiral, elapsed_s, now.alt_m);
                     target.aim = target.target;

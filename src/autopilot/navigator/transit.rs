@@ -93,7 +93,8 @@ impl Navigator {
     }
 
     fn abort(&mut self, why: AbortReason, reason: TransitionReason, guard: Option<Guard>) {
-        self.engagement.give_up(why);
+        let lands = why == AbortReason::GpsLost && self.state == NavState::Landing;
+        self.engagement.give_up(why, lands.then_some(self.leg.waypoint));
         if why == AbortReason::NoPlan {
             self.cursor.forget_mission();
         }
@@ -142,7 +143,9 @@ impl Navigator {
     pub(super) fn go_idle(&mut self, reason: TransitionReason, guard: Option<Guard>) {
         self.enter(NavState::Idle, reason, guard);
         self.takes_over = false;
-        self.cursor.unload();
+        if self.engagement.landing_at().is_none() {
+            self.cursor.unload();
+        }
         self.yaw_cap_dps = None;
         self.rescue = None;
         self.clear_clocks();

@@ -2,7 +2,6 @@
 
 use super::boost::{GainBoost, ThrottleBoost};
 use super::derived::Derived;
-use super::ground::Legs;
 use super::gyro::GyroFilter;
 use super::heading::{HeadingHold, headless};
 use super::level::{Horizon, Level, LevelDemand};
@@ -44,8 +43,6 @@ pub struct Controller {
     since_level_s: f64,
     /// The attitude is fresh since the last step of the rate loop.
     is_level_due: bool,
-    legs: Legs,
-    since_legs_s: f64,
     rate_loop: RateLoop,
     phase: u8,
     was_armed: bool,
@@ -74,8 +71,6 @@ impl Controller {
             horizon_strength: 0.0,
             since_level_s: 0.0,
             is_level_due: false,
-            legs: Legs::default(),
-            since_legs_s: 0.0,
             rate_loop: RateLoop::default(),
             phase: 0,
             was_armed: false,
@@ -141,14 +136,9 @@ impl Controller {
         self.state.gyro_dps = self.gyro.apply(&estimate.rates, &self.derived);
         let [roll, pitch, yaw, lift] = self.sticks(input, estimate, dt);
         self.since_level_s += dt;
-        self.since_legs_s += dt;
         if !input.armed {
             self.rest(input);
             return &self.state;
-        }
-        if input.due.navigation {
-            self.legs.update(&self.state.motors.0, estimate, self.since_legs_s);
-            self.since_legs_s = 0.0;
         }
         self.is_level_due |= input.due.attitude;
         self.phase += 1;
@@ -198,14 +188,12 @@ impl Controller {
     fn rest(&mut self, input: &ControlInput) {
         self.rate_loop.clear_integrals();
         self.level.release();
-        self.legs.rest();
         self.phase = 0;
         let state = &mut self.state;
         state.motors_us = input.motor_test_us;
         state.motors = command(&input.motor_test_us);
         state.throttle_us = 1000.0;
         (state.setpoint_dps, state.pid_sum, state.angle_demand_rad) = ([0.0; 3], [0.0; 3], None);
-        state.on_legs = false;
     }
 
     fn yaw_dps(&mut self, input: &ControlInput, estimate: &Estimate, stick_dps: f64) -> f64 {
@@ -261,9 +249,6 @@ impl Controller {
     /// Demanded roll and pitch, °: the navigator's, or the sticks' within the angle limit.
     fn target_deg(&self, input: &ControlInput, setpoint: &[f64; 3]) -> [f64; 2] {
         if let Some(lean) = input.lean {
-            if self.legs.are_loaded() {
-                return [0.0; 2];
-            }
             let sane =
                 |angle: f64| if angle.is_finite() { angle.to_degrees().clamp(-85.0, 85.0) } else { 0.0 };
             return [sane(lean.roll_rad), sane(lean.pitch_rad)];
@@ -291,7 +276,7 @@ impl Controller {
             // A throttle that somebody else holds does not jump with the stick.
             boost: if input.anti_gravity && !is_held { gain_boost } else { GainBoost::NONE },
             integrate: (airmode || !is_low)
-                && !(input.stands || input.lean.is_some() && self.legs.are_loaded()),
+                && !(input.stands && (input.lean.is_some() || is_held || input.mode == StickMode::Angle)),
         };
         let rate = &self.tuning.rate;
         let sums = self.rate_loop.step(&demand, rate, &self.derived);
@@ -309,7 +294,6 @@ impl Controller {
         state.motors = command(&motors_us);
         state.throttle_us = zero + throttle * (2000.0 - zero);
         (state.setpoint_dps, state.pid_sum) = (setpoint, sums);
-        state.on_legs = self.legs.are_loaded();
     }
 
     /// TPA, the gain factor for the stick throttle (0…1): less at high throttle, and less near the ground before take-off.

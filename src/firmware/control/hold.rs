@@ -13,8 +13,10 @@ use super::LeanDemand;
 mod altitude;
 mod position;
 
-use altitude::AltitudeHold;
+use altitude::{AltitudeHold, AltitudeOrder};
 use position::PositionHold;
+
+pub use altitude::DescentRate;
 
 /// Which holds are on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -24,12 +26,12 @@ pub struct HoldModes {
     /// Hold the position; roll and pitch sticks fly by angle.
     pub position: bool,
     /// Descend and land: the throttle stick has no effect.
-    pub descend: bool,
+    pub descend: Option<DescentRate>,
 }
 
 impl HoldModes {
     /// No hold.
-    pub const NONE: Self = Self { altitude: false, position: false, descend: false };
+    pub const NONE: Self = Self { altitude: false, position: false, descend: None };
 }
 
 /// Settings of the holds.
@@ -102,22 +104,28 @@ impl Holds {
         *self = Self::default();
     }
 
-    /// One update of a craft that the navigator does not fly. `throttle_stick_us` is the pilot's throttle.
+    /// One update of a craft that the navigator does not fly. `throttle_stick_us` is the pilot's throttle,
+    /// `None` while it has no effect.
     pub fn update(
         &mut self,
         modes: HoldModes,
         now: &NavInputs,
-        throttle_stick_us: f64,
+        throttle_stick_us: Option<f64>,
         params: &Params,
         tuning: &HoldTuning,
         controllers: &mut FlightControllers,
     ) -> HoldOutput {
-        let (throttle, touchdown) = if now.altitude_valid && (modes.altitude || modes.descend) {
-            let stick = (!modes.descend).then_some(throttle_stick_us);
-            let throttle = self.altitude.update(stick, now, params, tuning, &mut controllers.altitude);
+        let (throttle, touchdown) = if now.altitude_valid && (modes.altitude || modes.descend.is_some()) {
+            let order = match (modes.descend, throttle_stick_us) {
+                (Some(rate), _) => AltitudeOrder::Descend(rate),
+                (None, Some(stick)) => AltitudeOrder::Stick(stick),
+                (None, None) => AltitudeOrder::Keep,
+            };
+            let throttle = self.altitude.update(order, now, params, tuning, controllers);
             (Some(throttle), self.altitude.has_touched_down())
         } else {
             self.altitude.release();
+            controllers.land.end_descent();
             controllers.track_altitude(now, params);
             (None, false)
         };

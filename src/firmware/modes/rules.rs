@@ -32,6 +32,8 @@ pub enum AfterAbort {
     Nothing,
     /// Level and at the present altitude; the pilot steers (no position is known).
     Altitude,
+    /// Level and down to the ground: the fix was lost in a landing.
+    Descent,
     /// Level, at the present altitude and place.
     Position,
 }

@@ -57,7 +57,6 @@ const CALM: OrderFacts = OrderFacts {
     signal: true,
     failsafe_active: false,
     failsafe_mission: None,
-    fix_for_s: 60.0,
 };
 
 /// A flight of the navigator under orders, without a craft.
@@ -102,7 +101,7 @@ fn switch_engages_and_releases() {
     let mut flight = Flight::engaged();
     flight.update(CALM);
     assert_eq!(flight.navigator.state(), NavState::Idle);
-    assert_eq!(flight.orders.after_abort(), AfterAbort::Nothing);
+    assert_eq!(flight.orders.after_abort(&flight.navigator), AfterAbort::Nothing);
 }
 
 #[test]
@@ -170,10 +169,9 @@ fn lost_fix_keeps_the_altitude_and_resumes() {
     let mut flight = Flight::engaged();
     let on = OrderFacts { autopilot_switch: true, ..CALM };
     flight.inputs.fix = false;
-    flight.update(OrderFacts { fix_for_s: 0.0, ..on });
+    flight.update(on);
     assert_eq!(flight.navigator.state(), NavState::Idle);
-    flight.orders.mission_aborted(AbortReason::GpsLost);
-    assert_eq!(flight.orders.after_abort(), AfterAbort::Altitude);
+    assert_eq!(flight.orders.after_abort(&flight.navigator), AfterAbort::Altitude);
     assert_eq!(flight.orders.status(&flight.navigator), MissionStatus::Over);
     flight.inputs.fix = true;
     for _ in 0..199 {
@@ -184,7 +182,7 @@ fn lost_fix_keeps_the_altitude_and_resumes() {
         flight.update(on);
     }
     assert_eq!(flight.navigator.state(), NavState::Approaching);
-    assert_eq!(flight.orders.after_abort(), AfterAbort::Nothing);
+    assert_eq!(flight.orders.after_abort(&flight.navigator), AfterAbort::Nothing);
 }
 
 #[test]
@@ -194,24 +192,79 @@ fn an_order_that_waits_says_what_for() {
     let done = flight.orders.return_to_home(&mut flight.navigator, &flight.inputs, &Params::default(), None);
     assert_eq!(done, Ok(()));
     flight.inputs.fix = false;
-    flight.update(OrderFacts { fix_for_s: 0.0, ..CALM });
+    flight.update(CALM);
     assert_eq!(flight.navigator.state(), NavState::Idle);
-    flight.orders.mission_aborted(AbortReason::GpsLost);
     let waits = Some(Refusal::Aborted(AbortReason::GpsLost));
-    for (fix, fix_for_s) in [(false, 0.0), (true, 1.9)] {
+    for (fix, updates) in [(false, 1), (true, 199)] {
         flight.inputs.fix = fix;
-        flight.update(OrderFacts { fix_for_s, ..CALM });
-        assert_eq!(flight.navigator.telemetry().refusal, waits, "fix for {fix_for_s} s");
+        for _ in 0..updates {
+            flight.update(CALM);
+        }
+        assert_eq!(flight.navigator.telemetry().refusal, waits, "fix for {updates} updates");
     }
-    flight.update(OrderFacts { fix_for_s: 2.0, ..CALM });
+    for _ in 0..3 {
+        flight.update(CALM);
+    }
     assert_eq!(flight.navigator.source(), PlanSource::Rth);
     assert_eq!(flight.navigator.telemetry().refusal, None);
-    for why in [AbortReason::Stalled, AbortReason::Flyaway] {
-        flight.navigator.disengage();
-        flight.orders.mission_aborted(why);
+}
+
+/// A flight that lands by command.
+fn landing() -> Flight {
+    let mut flight = Flight::new();
+    flight.update(CALM);
+    assert_eq!(flight.orders.emergency_land(&mut flight.navigator, &flight.inputs), Ok(()));
+    flight.update(CALM);
+    assert_eq!(flight.navigator.state(), NavState::Landing);
+    flight
+}
+
+#[test]
+fn a_landing_that_loses_its_fix_goes_on_down_and_lands_when_it_is_back() {
+    for (north_m, place_m) in [(0.0, 0.0), (19.0, 0.0), (25.0, 25.0)] {
+        let mut flight = landing();
+        flight.inputs.fix = false;
         flight.update(CALM);
-        assert_eq!(flight.navigator.telemetry().refusal, Some(Refusal::Aborted(why)));
+        assert_eq!(flight.navigator.state(), NavState::Idle);
+        assert_eq!(flight.orders.after_abort(&flight.navigator), AfterAbort::Descent);
+        flight.inputs.fix = true;
+        flight.inputs.alt_m = 12.0;
+        flight.inputs.pos_ne.x = north_m;
+        for _ in 0..199 {
+            flight.update(CALM);
+        }
+        assert_eq!(flight.navigator.state(), NavState::Idle);
+        for _ in 0..3 {
+            flight.update(CALM);
+        }
+        assert_eq!(flight.navigator.state(), NavState::Landing);
+        assert_eq!(flight.navigator.source(), PlanSource::Emergency, "the plan is kept");
+        assert_eq!(flight.navigator.active_plan().waypoints.len(), 1);
+        let target = flight.navigator.telemetry().target_ne.unwrap();
+        // About the landing spiral.
+        assert!((target.x - place_m).abs() < 2.5, "{north_m} m away: {target}");
+        assert!(flight.navigator.telemetry().target_alt_m.unwrap() <= 12.0);
     }
+}
+
+#[test]
+fn a_landing_of_the_plan_is_resumed_as_a_landing_unless_the_switch_goes_off() {
+    let lost = |switch| {
+        let mut flight = Flight::engaged();
+        flight.inputs.fix = true;
+        flight.orders.emergency_land(&mut flight.navigator, &flight.inputs).unwrap();
+        let on = OrderFacts { autopilot_switch: true, ..CALM };
+        flight.update(on);
+        flight.inputs.fix = false;
+        flight.update(on);
+        flight.update(OrderFacts { autopilot_switch: switch, ..CALM });
+        flight
+    };
+    let kept = lost(true);
+    assert_eq!(kept.orders.after_abort(&kept.navigator), AfterAbort::Descent);
+    let dropped = lost(false);
+    assert_eq!(dropped.orders.after_abort(&dropped.navigator), AfterAbort::Nothing);
+    assert!(dropped.navigator.active_plan().waypoints.is_empty());
 }
 
 #[test]

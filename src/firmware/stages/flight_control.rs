@@ -28,7 +28,7 @@ impl From<NavOutput> for Demand {
             lean: Some(LeanDemand { roll_rad: output.roll_rad, pitch_rad: output.pitch_rad }),
             yaw_rate_rps: output.yaw_rate_rps,
             throttle: Some(output.throttle),
-            stands: output.stands,
+            stands: false,
         }
     }
 }

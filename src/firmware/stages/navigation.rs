@@ -1,14 +1,17 @@
 //! Who gives the demands that take the place of the pilot's: failsafe, navigator, holds. Runs a hundred times a second.
 
-use nalgebra::Vector2;
+use nalgebra::{Vector2, Vector3};
 
 use crate::autopilot::Navigator;
 use crate::autopilot::control::FlightControllers;
 use crate::autopilot::io::NavInputs;
-use crate::firmware::control::hold::{HoldModes, HoldOutput, Holds};
+use crate::autopilot::land_detector::{GroundMeasurement, ImpactFacts};
+use crate::firmware::control::hold::{DescentRate, HoldModes, HoldOutput, Holds};
+use crate::firmware::control::{ControlState, LeanDemand};
 use crate::firmware::estimate::Estimate;
 use crate::firmware::failsafe::{Failsafe, FailsafeAction, FailsafeFacts, Procedure, Response};
-use crate::firmware::modes::{ModeFacts, boxes};
+use crate::firmware::left_stick::LeftStick;
+use crate::firmware::modes::{AfterAbort, ModeFacts, boxes};
 use crate::firmware::orders::{OrderFacts, Orders, failsafe_response};
 use crate::firmware::outbox::Outbox;
 use crate::firmware::parameters::{Parameters, RescueCause};
@@ -16,8 +19,7 @@ use crate::geo::LatLon;
 use crate::plan::FlightPlan;
 use crate::signals::SimTime;
 use crate::telemetry::{
-    FirmwareEvent, FirmwareNotice, Mode, ModeFlags, NavEvent, NavOutput, NavState, NavTelemetry, Refusal,
-    TransitionReason,
+    FirmwareEvent, FirmwareNotice, Mode, ModeFlags, NavEvent, NavOutput, NavTelemetry, Refusal,
 };
 
 use super::flight_control::Demand;
@@ -48,6 +50,7 @@ pub(in crate::firmware) struct Navigation {
     orders: Orders,
     navigator: Navigator,
     holds: Holds,
+    left_stick: LeftStick,
     /// Lent to the navigator or to the holds, whoever flies.
     controllers: FlightControllers,
     inputs: NavInputs,
@@ -66,6 +69,7 @@ impl Navigation {
             orders: Orders::default(),
             navigator: Navigator::new(),
             holds: Holds::default(),
+            left_stick: LeftStick::default(),
             controllers: FlightControllers::default(),
             inputs: unknown_craft(),
             output: None,
@@ -74,15 +78,15 @@ impl Navigation {
         }
     }
 
-    /// Begins an update: notes the state of the craft and gives the seconds since the last update.
+    /// Begins an update: notes the state of the craft.
     pub(in crate::firmware) fn observe(
         &mut self,
         now: SimTime,
         sensing: &Sensing,
         safety: &Safety,
         rc: &RcInput,
-        throttle_us: f64,
-    ) -> f64 {
+        control: &ControlState,
+    ) {
         let dt = now.seconds_since(std::mem::replace(&mut self.updated_at, now));
         let estimate = sensing.estimate();
         let receiver = rc.receiver();
@@ -109,12 +113,15 @@ impl Navigation {
             pitch_rad: estimate.pitch_rad,
             cos_tilt: estimate.cos_tilt,
             accel_ne: estimate.accel_ne,
-            throttle_us,
+            throttle_us: control.throttle_us,
             stick_roll: stick(sticks.roll),
             stick_pitch: stick(sticks.pitch),
             stick_yaw: stick(sticks.yaw),
         };
-        dt
+        let rates = estimate.rates;
+        let rate_rps = Vector3::new(rates.roll, rates.pitch, rates.yaw).norm();
+        let ground = GroundMeasurement::new(&self.inputs, estimate.force_flu, rate_rps, &control.motors.0);
+        self.controllers.land.observe(&ground, self.inputs.armed, dt);
     }
 
     /// One update of the failsafe; `uptime` counts from boot.
@@ -195,7 +202,7 @@ impl Navigation {
         parameters: &Parameters,
         stored: &FlightPlan,
         rc: &RcInput,
-        (armed, fix_since): (bool, SimTime),
+        armed: bool,
         outbox: &mut Outbox,
     ) -> bool {
         self.inputs.armed = armed;
@@ -207,7 +214,6 @@ impl Navigation {
             signal: rc.receiver().signal(),
             failsafe_active: self.failsafe.active(),
             failsafe_mission: self.failsafe.mission(),
-            fix_for_s: if inputs.fix { inputs.time.seconds_since(fix_since) } else { 0.0 },
         };
         let (nav, rescue) = (&parameters.nav, &parameters.rescue);
         self.orders.update(&mut self.navigator, inputs, nav, rescue, stored, &facts);
@@ -219,21 +225,28 @@ impl Navigation {
     fn report_events(&mut self, outbox: &mut Outbox) -> bool {
         let mut touched_down = false;
         for event in self.navigator.drain_events() {
-            match event {
-                NavEvent::Disarm => touched_down = true,
-                NavEvent::State { to: NavState::Idle, reason: TransitionReason::GivenUp(why), .. } => {
-                    self.orders.mission_aborted(why);
-                }
-                NavEvent::State { .. }
-                | NavEvent::Plan { .. }
-                | NavEvent::Climbing(_)
-                | NavEvent::Geofence { .. }
-                | NavEvent::CannotHold { .. }
-                | NavEvent::Refused(_) => {}
-            }
+            touched_down |= event == NavEvent::Disarm;
             outbox.push(FirmwareEvent::Nav(event));
         }
         touched_down
+    }
+
+    /// Whether the bump of the ground ends the flight of an armed craft.
+    pub(in crate::firmware) fn is_impact(
+        &self,
+        parameters: &Parameters,
+        rc: &RcInput,
+        safety: &Safety,
+        alt_hold: bool,
+    ) -> bool {
+        let facts = ImpactFacts {
+            raised: safety.raised(),
+            stick_percent: rc.receiver().sticks().deflection_percent(),
+            throttle_percent: rc.throttle_percent(),
+            alt_hold,
+            near_ground: self.inputs.alt_m < f64::from(parameters.nav.landing_altitude_m),
+        };
+        safety.armed() && self.controllers.land.is_impact(parameters.landing_disarm_threshold, &facts)
     }
 
     /// What the flight modes depend on.
@@ -253,7 +266,7 @@ impl Navigation {
             failsafe_shown: self.failsafe.shown(),
             failsafe_active: self.failsafe.active(),
             autopilot: self.navigator.is_flying() && !under_failsafe,
-            after_abort: self.orders.after_abort(),
+            after_abort: self.orders.after_abort(&self.navigator),
         }
     }
 
@@ -270,13 +283,20 @@ impl Navigation {
             self.holds.release();
             HoldOutput::default()
         } else {
+            let (nav, tuning) = (&parameters.nav, &parameters.hold);
+            let after_abort = self.orders.after_abort(&self.navigator);
+            let stick_us = self.left_stick.update(after_abort, throttle_stick_us, nav);
+            let descend = if self.failsafe.auto_landing() {
+                Some(DescentRate::Failsafe)
+            } else {
+                (after_abort == AfterAbort::Descent && stick_us.is_none()).then_some(DescentRate::Landing)
+            };
             let hold = HoldModes {
                 altitude: armed && modes.has(Mode::AltHold),
                 position: armed && modes.has(Mode::PosHold) && self.inputs.heading_valid,
-                descend: armed && self.failsafe.auto_landing(),
+                descend: descend.filter(|_| armed),
             };
-            let (nav, tuning) = (&parameters.nav, &parameters.hold);
-            self.holds.update(hold, &self.inputs, throttle_stick_us, nav, tuning, &mut self.controllers)
+            self.holds.update(hold, &self.inputs, stick_us, nav, tuning, &mut self.controllers)
         };
         let no_heading = armed && modes.has(Mode::PosHold) && !self.inputs.heading_valid;
         let only_levelled = match (no_heading, held.no_position) {
@@ -292,6 +312,12 @@ impl Navigation {
             Some(output) => Demand::from(output),
             None => Demand { lean: held.lean, throttle: held.throttle, ..Demand::default() },
         };
+        let land = &self.controllers.land;
+        let share = land.lean_share();
+        let lean = demand
+            .lean
+            .map(|lean| LeanDemand { roll_rad: share * lean.roll_rad, pitch_rad: share * lean.pitch_rad });
+        let demand = Demand { lean, stands: land.stands(), ..demand };
         Flown { demand, touchdown: held.touchdown }
     }
 

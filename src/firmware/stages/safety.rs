@@ -1,7 +1,6 @@
 //! Arming, and everything that stops the motors by itself.
 
 use crate::firmware::arming::crash::{CrashAction, CrashDetector, CrashFacts};
-use crate::firmware::arming::impact::{Impact, ImpactFacts};
 use crate::firmware::arming::runaway::{Runaway, RunawayFacts};
 use crate::firmware::arming::{Arming, ArmingChange, ArmingFacts};
 use crate::firmware::control::ControlState;
@@ -19,7 +18,6 @@ pub(in crate::firmware) struct Safety {
     arming: Arming,
     runaway: Runaway,
     crash: CrashDetector,
-    impact: Impact,
     last_disarm: Option<DisarmReason>,
     home: Option<LatLon>,
     headfree_rad: f64,
@@ -174,27 +172,6 @@ impl Safety {
             tilt_rad: tilt_rad(estimate),
         };
         self.crash.update(config, &facts).then_some(config.action)
-    }
-
-    /// Whether the bump of the ground ends the flight. To be asked a hundred times a second, `dt` seconds apart, armed
-    /// or not.
-    pub(in crate::firmware) fn is_touchdown(
-        &mut self,
-        parameters: &Parameters,
-        rc: &RcInput,
-        alt_hold: bool,
-        estimate: &Estimate,
-        dt: f64,
-    ) -> bool {
-        self.impact.observe(estimate.force_flu, dt);
-        let facts = ImpactFacts {
-            raised: self.arming.raised(),
-            stick_percent: rc.receiver().sticks().deflection_percent(),
-            throttle_percent: rc.throttle_percent(),
-            alt_hold,
-            near_ground: estimate.alt_m < f64::from(parameters.nav.landing_altitude_m),
-        };
-        self.armed() && self.impact.is_touchdown(parameters.landing_disarm_threshold, &facts)
     }
 }
 

@@ -8,7 +8,7 @@ use crate::firmware::estimate::{DueTasks, Estimate, Estimator, EstimatorOptions,
 use crate::firmware::outbox::Outbox;
 use crate::firmware::parameters::Parameters;
 use crate::geo::LatLon;
-use crate::signals::{BatterySample, SensorFrame, SimTime};
+use crate::signals::{BatterySample, SensorFrame};
 use crate::telemetry::{BatteryAlarm, FirmwareEvent, FirmwareNotice};
 
 /// What the sensors tell of the craft.
@@ -20,7 +20,6 @@ pub(in crate::firmware) struct Sensing {
     /// Newest magnetic field, body forward-left-up, as sensed.
     mag_flu: Vector3<f64>,
     fix: bool,
-    fix_since: SimTime,
     /// The magnetometer was reported as doubted.
     heading_doubted: bool,
 }
@@ -39,7 +38,6 @@ impl Sensing {
             imu_frozen: false,
             mag_flu: Vector3::zeros(),
             fix: false,
-            fix_since: SimTime::ZERO,
             heading_doubted: false,
         }
     }
@@ -93,19 +91,13 @@ impl Sensing {
     }
 
     /// Reports a fix that comes or goes.
-    pub(in crate::firmware) fn watch_fix(
-        &mut self,
-        now: SimTime,
-        parameters: &Parameters,
-        outbox: &mut Outbox,
-    ) {
+    pub(in crate::firmware) fn watch_fix(&mut self, parameters: &Parameters, outbox: &mut Outbox) {
         let gps = self.estimate().gps;
         let fix = gps.fix && parameters.gps;
         if fix == self.fix {
             return;
         }
         self.fix = fix;
-        self.fix_since = now;
         outbox.push(match fix {
             true => FirmwareEvent::GpsFix { sats: gps.sats },
             false => FirmwareEvent::GpsLost { sats: gps.sats },
@@ -165,10 +157,5 @@ impl Sensing {
     /// Whether there is a fix.
     pub(in crate::firmware) fn fix(&self) -> bool {
         self.fix
-    }
-
-    /// When the fix came or went last.
-    pub(in crate::firmware) fn fix_since(&self) -> SimTime {
-        self.fix_since
     }
 }

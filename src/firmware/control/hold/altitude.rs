@@ -2,8 +2,13 @@
 
 use super::HoldTuning;
 use crate::autopilot::Params;
-use crate::autopilot::control::{AltitudeController, AltitudeMeasurement, AltitudeTarget, throttle_share};
+use crate::autopilot::control::{
+    AltitudeController, AltitudeMeasurement, AltitudeTarget, FlightControllers, throttle_share,
+};
 use crate::autopilot::io::NavInputs;
+use crate::autopilot::land_detector::{
+    DescentFacts, GroundFacts, STATIONARY_S, TouchdownFacts, TouchdownGuards,
+};
 
 /// A craft that climbs faster than this (m/s) when the hold begins is stopped first.
 const STEADY_MPS: f64 = 0.5;
@@ -25,6 +30,17 @@ const DESCENT_LEASH_M: f64 = 5.0;
 /// A craft on the ground sinks slower than this share of the demanded rate, and drifts slower than this, m/s.
 const GROUNDED_SHARE: f64 = 0.25;
 const GROUNDED_DRIFT_MPS: f64 = 0.5;
+
+/// Who moves the altitude.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum AltitudeOrder {
+    /// The throttle stick, µs.
+    Stick(f64),
+    /// Nobody: the altitude is kept.
+    Keep,
+    /// A descent to the ground.
+    Descend(DescentRate),
+}
 
 /// What is held.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -48,8 +64,7 @@ pub(super) struct AltitudeHold {
     phase: Phase,
     /// The hold began on the ground, where the hover throttle cannot be learned; seconds in the air since.
     lifting_s: Option<f64>,
-    grounded_s: f64,
-    grounded_limit_s: f64,
+    has_touched_down: bool,
 }
 
 impl AltitudeHold {
@@ -60,18 +75,19 @@ impl AltitudeHold {
 
     /// Whether the descent has ended on the ground.
     pub(super) fn has_touched_down(&self) -> bool {
-        matches!(self.phase, Phase::Descending(_)) && self.grounded_s >= self.grounded_limit_s
+        self.has_touched_down
     }
 
-    /// Throttle 0…1; without a stick the craft descends.
+    /// Throttle 0…1.
     pub(super) fn update(
         &mut self,
-        stick_us: Option<f64>,
+        order: AltitudeOrder,
         now: &NavInputs,
         params: &Params,
         tuning: &HoldTuning,
-        controller: &mut AltitudeController,
+        controllers: &mut FlightControllers,
     ) -> f64 {
+        let controller = &mut controllers.altitude;
         let measured = AltitudeMeasurement::from(now);
         if self.phase == Phase::Off {
             controller.engage(&measured, params);
@@ -80,10 +96,16 @@ impl AltitudeHold {
             self.phase = if is_steady { Phase::Holding(now.alt_m) } else { stop(now) };
         }
         self.learn_after_lift_off(now, &measured, params, controller);
-        let target = match stick_us {
-            Some(stick) => self.by_stick(stick, now, params, tuning, controller),
-            None => self.descend(now, params, controller),
+        let target = match order {
+            AltitudeOrder::Stick(stick) => self.by_stick(stick, now, params, tuning, controller),
+            AltitudeOrder::Keep => self.keep(now, 0.0),
+            AltitudeOrder::Descend(rate) => self.descend(rate, now, params, controllers),
         };
+        let FlightControllers { altitude: controller, land, .. } = controllers;
+        if !matches!(order, AltitudeOrder::Descend(_)) {
+            land.end_descent();
+        }
+        controller.set_relief_us(land.relief_us());
         let throttle_us = controller.update(&measured, target, params, now.dt);
         throttle_share(throttle_us, params)
     }
@@ -115,10 +137,14 @@ impl AltitudeHold {
     ) -> AltitudeTarget {
         let hover = controller.reference_hover_us(params);
         let share = climb_share(stick_us, hover, tuning);
-        let rate = share * params.climb_rate_mps();
-        self.grounded_s = 0.0;
+        self.keep(now, share * params.climb_rate_mps())
+    }
+
+    /// Moves at `rate` (m/s); at 0 comes to rest and stays.
+    fn keep(&mut self, now: &NavInputs, rate: f64) -> AltitudeTarget {
+        self.has_touched_down = false;
         self.phase = match self.phase {
-            _ if share != 0.0 => Phase::Moving,
+            _ if rate != 0.0 => Phase::Moving,
             Phase::Moving | Phase::Descending(_) => stop(now),
             Phase::Stopping(setpoint, rate) if has_stopped(setpoint, rate, now) => Phase::Holding(setpoint),
             Phase::Stopping(setpoint, rate) => {
@@ -141,24 +167,46 @@ impl AltitudeHold {
 
     fn descend(
         &mut self,
+        rate: DescentRate,
         now: &NavInputs,
         params: &Params,
-        controller: &AltitudeController,
+        controllers: &mut FlightControllers,
     ) -> AltitudeTarget {
-        let rate = descent_rate_mps(now.alt_m, params);
+        let rate = rate.at(now.alt_m, params);
+        let FlightControllers { altitude: controller, land, .. } = controllers;
         let before = match self.phase {
             Phase::Descending(setpoint) => setpoint,
-            _ => now.alt_m,
+            _ => {
+                land.begin_descent(now.alt_m, now.climb_mps);
+                now.alt_m
+            }
         };
         let setpoint = (before - rate * now.dt).max(now.alt_m - DESCENT_LEASH_M.max(rate));
         self.phase = Phase::Descending(setpoint);
+        land.follow_altitude(now.alt_m);
+        let demand = (controller.setpoint_m(), controller.throttle_us());
+        land.descend(&DescentFacts::new(now, params, demand, rate), now.time, now.dt);
+        let ground = GroundFacts::new(now, params, controller, land);
         // By the hover throttle in use: the configured one may be far off, and waiting for it would tip the craft over.
-        let light = controller.hover_us() - f64::from(params.landing_throttle_threshold);
-        let is_grounded = now.climb_mps > -GROUNDED_SHARE * rate
-            && now.throttle_us < light
-            && (!now.fix || now.vel_ne.norm() < GROUNDED_DRIFT_MPS);
-        self.grounded_s = if is_grounded { self.grounded_s + now.dt } else { 0.0 };
-        self.grounded_limit_s = f64::from(params.landing_detection_time) / 10.0;
+        // A descent without a plan has no altitude of its own below which the ground is expected.
+        let facts = TouchdownFacts {
+            landing_altitude_m: f64::INFINITY,
+            max_speed_mps: GROUNDED_DRIFT_MPS,
+            ground_speed_mps: if now.fix { now.vel_ne.norm() } else { 0.0 },
+            min_climb_mps: -GROUNDED_SHARE * rate,
+            ..TouchdownFacts::new(
+                params,
+                controller.hover_us(),
+                now.alt_m,
+                0.0,
+                now.throttle_us,
+                now.climb_mps,
+            )
+        };
+        let held_us = land.time_touchdown(&TouchdownGuards::new(&facts, &ground), now.time);
+        self.has_touched_down = held_us
+            .is_some_and(|held| held >= u64::from(params.landing_detection_time) * 100_000)
+            || land.stationary_s() >= STATIONARY_S;
         AltitudeTarget::Landing { setpoint_m: setpoint, rate_mps: -rate }
     }
 }
@@ -173,10 +221,26 @@ fn has_stopped(setpoint: f64, rate: f64, now: &NavInputs) -> bool {
     rate == 0.0 && now.climb_mps.abs() < STOPPED_MPS && (now.alt_m - setpoint).abs() < STOPPED_M
 }
 
-/// Sink rate of the failsafe descent: a fifth of the climb rate near the ground, faster from high up.
-fn descent_rate_mps(altitude_m: f64, params: &Params) -> f64 {
-    let factor = 0.9 + (altitude_m * DESCENT_GROWTH_PER_M).clamp(0.1, 9.0);
-    factor * params.climb_rate_mps() * DESCENT_SHARE
+/// How fast a descent to the ground sinks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum DescentRate {
+    /// The failsafe's: a fifth of the climb rate near the ground, faster from high up.
+    Failsafe,
+    /// `ap_landing_descent_rate`, as the landing whose fix was lost.
+    Landing,
+}
+
+impl DescentRate {
+    /// Sink rate at an altitude, m/s.
+    fn at(self, altitude_m: f64, params: &Params) -> f64 {
+        match self {
+            Self::Failsafe => {
+                let factor = 0.9 + (altitude_m * DESCENT_GROWTH_PER_M).clamp(0.1, 9.0);
+                factor * params.climb_rate_mps() * DESCENT_SHARE
+            }
+            Self::Landing => params.descent_rate_mps(),
+        }
+    }
 }
 
 /// Share of the climb rate that the throttle stick demands, −1…1. Zero about the hover throttle and about the centre
@@ -245,7 +309,7 @@ mod tests {
     /// Seconds until a craft that neither sinks nor carries its weight is called landed, while it drifts; 10 s at most.
     fn seconds_to_touchdown(drift_mps: f64, fix: bool) -> f64 {
         let (params, tuning) = (Params::default(), HoldTuning::default());
-        let now = NavInputs {
+        let mut now = NavInputs {
             time: crate::signals::SimTime::ZERO,
             dt: 0.01,
             armed: true,
@@ -271,11 +335,18 @@ mod tests {
             stick_pitch: 0.0,
             stick_yaw: 0.0,
         };
-        let (mut hold, mut controller) = (AltitudeHold::default(), AltitudeController::default());
+        let (mut hold, mut controllers) = (AltitudeHold::default(), FlightControllers::default());
         let mut updates = 0;
         while !hold.has_touched_down() && updates < 1000 {
-            hold.update(None, &now, &params, &tuning, &mut controller);
+            hold.update(
+                AltitudeOrder::Descend(DescentRate::Failsafe),
+                &now,
+                &params,
+                &tuning,
+                &mut controllers,
+            );
             updates += 1;
+            now.time.0 += 10_000;
         }
         f64::from(updates) * now.dt
     }
@@ -295,7 +366,7 @@ mod tests {
     fn the_descent_slows_down_towards_the_ground() {
         let params = Params::default();
         for (altitude, rate) in [(0.0, 1.0), (2.0, 1.0), (20.0, 1.9), (180.0, 9.9), (500.0, 9.9)] {
-            assert!((descent_rate_mps(altitude, &params) - rate).abs() < 1e-9, "{altitude}");
+            assert!((DescentRate::Failsafe.at(altitude, &params) - rate).abs() < 1e-9, "{altitude}");
         }
     }
 }

@@ -28,14 +28,14 @@ pub struct ImpactFacts {
 
 /// Low-passed size of the jerk, updated a hundred times a second.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Impact {
+pub(super) struct Impact {
     previous: Option<Vector3<f64>>,
     jerk: Vector3<f64>,
 }
 
 impl Impact {
     /// Takes the specific force (m/s², any frame) of this update, `dt` seconds after the last.
-    pub fn observe(&mut self, specific_force: Vector3<f64>, dt: f64) {
+    pub(super) fn observe(&mut self, specific_force: Vector3<f64>, dt: f64) {
         let previous = self.previous.replace(specific_force).unwrap_or(specific_force);
         if dt > 0.0 {
             let omega_dt = std::f64::consts::TAU * FILTER_HZ * dt;
@@ -45,7 +45,7 @@ impl Impact {
 
     /// Whether a bump above `threshold` (setting units, 0 = never) ended the flight.
     #[must_use]
-    pub fn is_touchdown(&self, threshold: f64, facts: &ImpactFacts) -> bool {
+    pub(super) fn is_touchdown(&self, threshold: f64, facts: &ImpactFacts) -> bool {
         let hands_off = facts.stick_percent < HANDS_OFF_PERCENT && facts.throttle_percent < HANDS_OFF_PERCENT;
         if threshold <= 0.0 || !facts.raised || !(hands_off || facts.alt_hold) {
             return false;

@@ -1,12 +1,18 @@
-//! The land detector: the conditions of a touchdown and the time they have held.
+//! The conditions of a touchdown and the time they have held.
 
-use super::rules::guard;
+use super::LandDetector;
+use crate::autopilot::control::AltitudeController;
+use crate::autopilot::io::NavInputs;
 use crate::autopilot::params::Params;
 use crate::signals::SimTime;
 use crate::telemetry::{Guard, GuardName, GuardOp};
 
 /// Descent that makes a touchdown credible, m.
 const DESCENT_M: f64 = 0.5;
+/// How far the setpoint may be under the craft without counting as pressing on the ground, m.
+const PRESSING_M: f64 = 1.5;
+/// Most that the throttle must be below the learned hover throttle for a touchdown, µs.
+const BELOW_HOVER_US: f64 = 50.0;
 
 /// What decides a touchdown: four measured values and their limits, SI and µs.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -66,6 +72,17 @@ pub struct GroundFacts {
 }
 
 impl GroundFacts {
+    /// What tells the ground from a craft that hovers low, whoever descends.
+    #[must_use]
+    pub fn new(now: &NavInputs, params: &Params, altitude: &AltitudeController, land: &LandDetector) -> Self {
+        let pressing = now.alt_m - altitude.setpoint_m() - PRESSING_M;
+        Self {
+            descent_m: land.descended_m(now.alt_m).max(pressing),
+            below_hover_us: altitude.hover_us() - altitude.throttle_us(),
+            needed_us: (0.5 * f64::from(params.landing_throttle_threshold)).min(BELOW_HOVER_US),
+        }
+    }
+
     /// Evidence that needs no more.
     pub const CERTAIN: Self =
         Self { descent_m: f64::INFINITY, below_hover_us: f64::INFINITY, needed_us: 0.0 };
@@ -81,12 +98,27 @@ impl TouchdownGuards {
     #[must_use]
     pub fn new(touch: &TouchdownFacts, ground: &GroundFacts) -> Self {
         Self([
-            guard(GuardName::TouchdownAltitude, touch.altitude_m, GuardOp::Below, touch.landing_altitude_m),
-            guard(GuardName::TouchdownSpeed, touch.ground_speed_mps, GuardOp::Below, touch.max_speed_mps),
-            guard(GuardName::TouchdownThrottle, touch.throttle_us, GuardOp::Below, touch.max_throttle_us),
-            guard(GuardName::TouchdownSink, touch.climb_mps, GuardOp::Above, touch.min_climb_mps),
-            guard(GuardName::Descent, ground.descent_m, GuardOp::AtLeast, DESCENT_M),
-            guard(GuardName::BelowHover, ground.below_hover_us, GuardOp::AtLeast, ground.needed_us),
+            Guard::new(
+                GuardName::TouchdownAltitude,
+                touch.altitude_m,
+                GuardOp::Below,
+                touch.landing_altitude_m,
+            ),
+            Guard::new(
+                GuardName::TouchdownSpeed,
+                touch.ground_speed_mps,
+                GuardOp::Below,
+                touch.max_speed_mps,
+            ),
+            Guard::new(
+                GuardName::TouchdownThrottle,
+                touch.throttle_us,
+                GuardOp::Below,
+                touch.max_throttle_us,
+            ),
+            Guard::new(GuardName::TouchdownSink, touch.climb_mps, GuardOp::Above, touch.min_climb_mps),
+            Guard::new(GuardName::Descent, ground.descent_m, GuardOp::AtLeast, DESCENT_M),
+            Guard::new(GuardName::BelowHover, ground.below_hover_us, GuardOp::AtLeast, ground.needed_us),
         ])
     }
 

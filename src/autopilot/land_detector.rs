@@ -1,0 +1,180 @@
+//! The land detector: tells the ground from the air for whoever flies the craft.
+//!
+//! - [`GroundContact`]: the legs carry weight, by what the accelerometer feels beyond the thrust. Leans and attitude
+//!   integrals work against the ground then.
+//! - [`ThrottleRelief`]: feels for the ground in a descent. A craft that does not sink although it should gets less and
+//!   less throttle: on the ground until it stands firmly, in the air until it sinks again.
+//! - [`TouchdownGuards`] and [`TouchdownTimer`]: the conditions of a touchdown and the time they have held.
+//! - [`StationaryTimer`]: a second way to a touchdown, for a craft that stands while one of those cannot become true.
+//! - [`Impact`]: the bump of the ground, where `landing_disarm_threshold` asks for it.
+
+mod contact;
+mod impact;
+mod relief;
+mod stationary;
+mod touchdown;
+
+use nalgebra::Vector3;
+
+use super::io::NavInputs;
+use crate::signals::SimTime;
+use contact::GroundContact;
+use impact::Impact;
+use relief::ThrottleRelief;
+use stationary::StationaryTimer;
+
+pub use impact::ImpactFacts;
+pub use relief::DescentFacts;
+pub use stationary::STATIONARY_S;
+pub use touchdown::{GroundFacts, TouchdownFacts, TouchdownGuards, TouchdownTimer};
+
+/// What the detector sees of the craft, a hundred times a second.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GroundMeasurement {
+    /// Specific force, body forward-left-up, m/s².
+    pub force_flu: Vector3<f64>,
+    /// Size of the turn rate, rad/s.
+    pub rate_rps: f64,
+    /// Mean square of the motor commands (0…1) in force.
+    pub motor_square: f64,
+    /// Altitude above home, m; `None` while it is not known.
+    pub altitude_m: Option<f64>,
+    /// Climb rate, m/s.
+    pub climb_mps: f64,
+    /// Ground speed, m/s; 0 while it is not known.
+    pub ground_speed_mps: f64,
+}
+
+impl GroundMeasurement {
+    /// The measurement of a craft in the state `now`.
+    #[must_use]
+    pub fn new(now: &NavInputs, force_flu: Vector3<f64>, rate_rps: f64, motors: &[f64; 4]) -> Self {
+        Self {
+            force_flu,
+            rate_rps,
+            motor_square: motors.iter().map(|motor| motor * motor).sum::<f64>() / 4.0,
+            altitude_m: now.altitude_valid.then_some(now.alt_m),
+            climb_mps: now.climb_mps,
+            ground_speed_mps: if now.fix { now.vel_ne.norm() } else { 0.0 },
+        }
+    }
+}
+
+/// The land detector of a craft; see the module's description.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct LandDetector {
+    contact: GroundContact,
+    impact: Impact,
+    relief: ThrottleRelief,
+    /// Highest altitude of the descent under way, m.
+    highest_m: Option<f64>,
+    timer: TouchdownTimer,
+    held_us: Option<u64>,
+    stationary: StationaryTimer,
+}
+
+impl LandDetector {
+    /// Takes one cycle of an armed or disarmed craft, `dt` seconds after the last.
+    pub fn observe(&mut self, now: &GroundMeasurement, armed: bool, dt: f64) {
+        self.impact.observe(now.force_flu, dt);
+        if armed {
+            self.contact.update(now, dt);
+            self.stationary.observe(now, dt);
+        } else {
+            self.contact.rest();
+        }
+    }
+
+    /// Whether the legs carry weight: before the lift-off, and after a touchdown.
+    #[must_use]
+    pub fn on_ground(&self) -> bool {
+        self.contact.on_ground()
+    }
+
+    /// A descent to the ground begins at this altitude, m.
+    pub fn begin_descent(&mut self, altitude_m: f64, climb_mps: f64) {
+        self.end_descent();
+        self.highest_m = Some(altitude_m);
+        self.relief.begin(climb_mps);
+    }
+
+    /// Nobody descends to the ground in this cycle.
+    pub fn end_descent(&mut self) {
+        if self.highest_m.take().is_some() {
+            self.relief = ThrottleRelief::default();
+            self.timer = TouchdownTimer::default();
+            self.held_us = None;
+            self.stationary.restart();
+        }
+    }
+
+    /// One cycle of the descent, `dt` seconds after the last.
+    pub fn descend(&mut self, facts: &DescentFacts, time: SimTime, dt: f64) {
+        self.relief.update(facts, dt);
+        let lowers_throttle = facts.sink_mps > 0.0 && (self.relief.is_rising() || facts.throttle_at_min);
+        self.stationary.update(lowers_throttle, facts.max_speed_mps, time);
+    }
+
+    /// Takes the altitude of this cycle, m; returns how far the craft has come down from the highest point of the
+    /// descent, m.
+    pub fn follow_altitude(&mut self, altitude_m: f64) {
+        self.highest_m = self.highest_m.map(|highest| highest.max(altitude_m));
+    }
+
+    /// How far the craft has come down from the highest point of the descent, m.
+    #[must_use]
+    pub fn descended_m(&self, altitude_m: f64) -> f64 {
+        self.highest_m.map_or(0.0, |highest| highest - altitude_m)
+    }
+
+    /// Runs the timer on the conditions of this cycle while a descent is under way; returns the time they have held, µs.
+    pub fn time_touchdown(&mut self, guards: &TouchdownGuards, time: SimTime) -> Option<u64> {
+        if self.highest_m.is_some() {
+            self.held_us = self.timer.update(time, guards.all_hold());
+        }
+        self.held_us
+    }
+
+    /// Time the conditions of the touchdown have held, µs.
+    #[must_use]
+    pub fn held_us(&self) -> Option<u64> {
+        self.held_us
+    }
+
+    /// How long the craft has not moved although it is commanded to descend, s.
+    #[must_use]
+    pub fn stationary_s(&self) -> f64 {
+        self.stationary.held_s()
+    }
+
+    /// Climb rate in the descent without the jolts of the legs, m/s.
+    #[must_use]
+    pub fn climb_mps(&self) -> f64 {
+        self.relief.climb_mps()
+    }
+
+    /// Throttle to take off, µs.
+    #[must_use]
+    pub fn relief_us(&self) -> f64 {
+        self.relief.relief_us()
+    }
+
+    /// Share of the lean demand that is flown: a craft that stands is not tilted on its legs.
+    #[must_use]
+    pub fn lean_share(&self) -> f64 {
+        if self.on_ground() { 0.0 } else { self.relief.lean_share() }
+    }
+
+    /// Whether attitude integrals would gather what the ground does: the legs carry weight, or a descent has ended on
+    /// them.
+    #[must_use]
+    pub fn stands(&self) -> bool {
+        self.on_ground() || self.relief.stands()
+    }
+
+    /// Whether a bump above `threshold` (setting units, 0 = never) ended the flight.
+    #[must_use]
+    pub fn is_impact(&self, threshold: f64, facts: &ImpactFacts) -> bool {
+        self.impact.is_touchdown(threshold, facts)
+    }
+}

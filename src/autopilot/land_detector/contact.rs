@@ -1,0 +1,134 @@
+//! Whether the legs carry the craft.
+//!
+//! In the air the accelerometer feels the thrust; on the ground it feels gravity whatever the motors do. How much
+//! thrust a motor command makes is learned in flight, so what the accelerometer feels beyond it is weight on the legs.
+//! A craft that is kept in place by its autopilot there would lean against the ground until it falls over.
+
+use super::GroundMeasurement;
+use crate::geo::GRAVITY;
+
+/// Altitude above home from which the thrust is learned, m.
+const AIRBORNE_M: f64 = 1.0;
+/// A craft has lifted off above this altitude, m, or at this speed, m/s.
+const LIFTED_M: f64 = 0.5;
+const LIFTED_MPS: f64 = 0.3;
+/// Time constants of learning and of the averages that are compared, s.
+const LEARN_S: f64 = 2.0;
+const AVERAGE_S: f64 = 0.05;
+/// Share of the weight on the legs that begins and that ends contact.
+const LOADED_SHARE: f64 = 0.3;
+const FREE_SHARE: f64 = 0.1;
+/// How long the load must last, s.
+const LOADED_S: f64 = 0.3;
+/// Standing is feeling gravity, within this share, and not moving, m/s: in the air the flow through the rotors changes
+/// the thrust, too. Faster than the second speed the craft does not stand any more.
+const STEADY_SHARE: f64 = 0.2;
+const STILL_MPS: f64 = 0.5;
+const MOVING_MPS: f64 = 1.0;
+
+/// Watches for weight on the legs.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(super) struct GroundContact {
+    /// The craft has left the ground since arming.
+    has_lifted_off: bool,
+    /// Specific force per mean square of the motor commands, m/s².
+    thrust: Option<f64>,
+    force: f64,
+    square: f64,
+    loaded_s: f64,
+    is_loaded: bool,
+}
+
+impl GroundContact {
+    /// Whether the legs carry weight.
+    pub(super) fn on_ground(&self) -> bool {
+        !self.has_lifted_off || self.is_loaded
+    }
+
+    /// The craft is disarmed.
+    pub(super) fn rest(&mut self) {
+        self.has_lifted_off = false;
+        (self.loaded_s, self.is_loaded) = (0.0, false);
+    }
+
+    /// One cycle of an armed craft, `dt` seconds after the last.
+    pub(super) fn update(&mut self, now: &GroundMeasurement, dt: f64) {
+        let share = dt / (AVERAGE_S + dt);
+        self.square += share * (now.motor_square - self.square);
+        self.force += share * (now.force_flu.z - self.force);
+        let altitude_m = now.altitude_m.unwrap_or(f64::NEG_INFINITY);
+        // Without an altitude nothing shows the lift-off.
+        self.has_lifted_off |=
+            now.altitude_m.is_none() || altitude_m.abs() > LIFTED_M || now.climb_mps.abs() > LIFTED_MPS;
+        if !self.has_lifted_off || self.square < 1e-4 {
+            (self.loaded_s, self.is_loaded) = (0.0, false);
+            return;
+        }
+        let felt = self.force / self.square;
+        let thrust = self.thrust.get_or_insert(felt);
+        if altitude_m > AIRBORNE_M && !self.is_loaded {
+            *thrust += (dt / (LEARN_S + dt)) * (felt - *thrust);
+        }
+        let on_legs = 1.0 - *thrust * self.square / GRAVITY;
+        let is_steady = (self.force / GRAVITY - 1.0).abs() < STEADY_SHARE;
+        let speed = now.climb_mps.hypot(now.ground_speed_mps);
+        let is_pressed = on_legs > LOADED_SHARE && is_steady && speed < STILL_MPS;
+        self.loaded_s = if is_pressed { self.loaded_s + dt } else { 0.0 };
+        self.is_loaded = if self.is_loaded {
+            on_legs > FREE_SHARE && speed < MOVING_MPS
+        } else {
+            self.loaded_s >= LOADED_S
+        };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector3;
+
+    fn at(altitude_m: f64, force: f64, motor: f64) -> GroundMeasurement {
+        GroundMeasurement {
+            force_flu: Vector3::new(0.0, 0.0, force),
+            rate_rps: 0.0,
+            motor_square: motor * motor,
+            altitude_m: Some(altitude_m),
+            climb_mps: 0.0,
+            ground_speed_mps: 0.0,
+        }
+    }
+
+    #[test]
+    fn throttling_down_in_the_air_is_no_contact_but_on_the_ground_it_is() {
+        let mut contact = GroundContact::default();
+        for _ in 0..1000 {
+            contact.update(&at(10.0, GRAVITY, 0.5), 0.01);
+        }
+        // In the air half the command is a quarter of the force.
+        for _ in 0..50 {
+            contact.update(&at(10.0, GRAVITY / 4.0, 0.25), 0.01);
+            assert!(!contact.on_ground());
+        }
+        for _ in 0..50 {
+            contact.update(&at(0.0, GRAVITY, 0.4), 0.01);
+        }
+        assert!(contact.on_ground());
+        for _ in 0..50 {
+            contact.update(&at(0.0, GRAVITY, 0.52), 0.01);
+        }
+        assert!(!contact.on_ground());
+    }
+
+    #[test]
+    fn the_legs_carry_the_craft_until_it_rises() {
+        let mut contact = GroundContact::default();
+        for motor in [0.05, 0.3, 0.7, 0.9] {
+            for _ in 0..100 {
+                contact.update(&at(0.05, GRAVITY, motor), 0.01);
+            }
+            assert!(contact.on_ground(), "{motor}");
+        }
+        contact.update(&GroundMeasurement { climb_mps: 0.31, ..at(0.1, 1.1 * GRAVITY, 0.95) }, 0.01);
+        assert!(!contact.on_ground());
+    }
+}
