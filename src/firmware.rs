@@ -38,9 +38,9 @@ pub mod rx;
 pub mod settings;
 pub mod storage;
 
-mod left_stick;
 mod requests;
 mod stages;
+mod throttle_takeover;
 mod views;
 
 pub use estimate::AttitudeSource;

@@ -259,6 +259,7 @@ impl Flight {
             source: nav.source,
             refusal: nav.refusal,
             ends_in_land: self.ends_in_land,
+            lift_share: waiting::lift_share(&self.vehicle),
             touched_down: self.touched_down,
             crashed: self.vehicle.crashed(),
             diverged: self.vehicle.diverged(),

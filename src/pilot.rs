@@ -35,6 +35,17 @@ const AHEAD_ALT_M: f64 = 5.0;
 /// Channel index of pitch, and its stick in the middle, µs.
 const PITCH: usize = 1;
 const MID_US: u16 = 1500;
+/// How far below the takeoff altitude the climb ends, m, and the response time, s, and deceleration, m/s², of ALTHOLD that the
+/// pilot counts on.
+const TOP_M: f64 = 0.1;
+const RESPONSE_S: f64 = 0.3;
+const STOP_MPS2: f64 = 1.25;
+/// A craft that is higher (m) or climbs faster (m/s) has left the ground.
+const AIRBORNE_M: f64 = 0.3;
+const AIRBORNE_MPS: f64 = 0.3;
+/// On the ground the stick goes quickly up this share of its way, and then further at this rate, µs/s.
+const GROUND_STICK_SHARE: f64 = 0.4;
+const GROUND_STICK_US_PER_S: f64 = 20.0;
 /// The highest stick the pilot uses to climb, µs.
 const CLIMB_STICK_MAX_US: f64 = 1900.0;
 
@@ -66,9 +77,9 @@ pub struct PilotFacts {
 }
 
 impl PilotFacts {
-    /// Where the throttle stick goes to take off, µs: hover, but raised in any case.
-    fn takeoff_stick_us(&self) -> f64 {
-        f64::from(self.hover_stick_us.max(self.raised_stick_us))
+    /// Whether the craft has left the ground as far as the pilot sees.
+    fn is_airborne(&self) -> bool {
+        self.alt_m > AIRBORNE_M || self.climb_mps > AIRBORNE_MPS
     }
 }
 
@@ -148,7 +159,7 @@ impl Pilot {
             Phase::Waiting | Phase::Arming | Phase::Done => LOW_US,
             Phase::Raising { since } => {
                 let part = (facts.time.seconds_since(since) / RAISE_S).clamp(0.0, 1.0);
-                LOW_US + part * (facts.takeoff_stick_us() - LOW_US)
+                LOW_US + part * (f64::from(facts.raised_stick_us) - LOW_US)
             }
             Phase::Climbing { stick_us } => stick_us,
             Phase::Hovering { .. } | Phase::Engaging | Phase::FlyingAhead { .. } => {
@@ -195,7 +206,7 @@ impl Pilot {
                         self.takeoff_m = self.takeoff_m.max(AHEAD_ALT_M);
                     }
                     self.phase = if self.takeoff_m > 0.0 {
-                        Phase::Climbing { stick_us: facts.takeoff_stick_us() }
+                        Phase::Climbing { stick_us: f64::from(facts.hover_stick_us) }
                     } else {
                         self.switch_on(self.switches.autopilot);
                         Phase::Engaging
@@ -204,7 +215,9 @@ impl Pilot {
             }
             Phase::Climbing { stick_us } => {
                 let left = self.takeoff_m - facts.alt_m;
-                if left <= 0.2 {
+                // ALTHOLD comes to rest on the way that is left.
+                let climb = facts.climb_mps.max(0.0);
+                if left <= TOP_M + climb * RESPONSE_S + climb * climb / (2.0 * STOP_MPS2) {
                     self.phase = Phase::Hovering { since: facts.time };
                 } else {
                     self.phase = Phase::Climbing { stick_us: climb_stick(stick_us, left, facts) };
@@ -239,11 +252,14 @@ impl Pilot {
     }
 }
 
-/// Feels for the stick position that gives the wanted climb, slowing down near the top as a person would.
+/// Feels for the stick position that gives the wanted climb, slowing down near the top as a person would. On the ground
+/// the stick goes up a good part of its way, and further slowly: the craft needs a moment to come up.
 fn climb_stick(stick_us: f64, left_m: f64, facts: &PilotFacts) -> f64 {
+    let hover_us = f64::from(facts.hover_stick_us);
     let wanted = CLIMB_MPS.min(0.3 + 0.8 * left_m);
-    let error = wanted - facts.climb_mps;
-    (stick_us + 120.0 * error * FRAME_S).clamp(f64::from(facts.hover_stick_us), CLIMB_STICK_MAX_US)
+    let is_early = facts.is_airborne() || stick_us < hover_us + GROUND_STICK_SHARE * (2000.0 - hover_us);
+    let rate = if is_early { 120.0 * (wanted - facts.climb_mps) } else { GROUND_STICK_US_PER_S };
+    (stick_us + rate * FRAME_S).clamp(hover_us, CLIMB_STICK_MAX_US)
 }
 
 #[cfg(test)]

@@ -342,6 +342,7 @@ impl Vehicle {
             }
             NavEvent::State { .. }
             | NavEvent::Climbing(_)
+            | NavEvent::Limited { .. }
             | NavEvent::Geofence { .. }
             | NavEvent::CannotHold { .. }
             | NavEvent::Refused(_)

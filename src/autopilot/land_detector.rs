@@ -91,6 +91,18 @@ impl LandDetector {
         self.contact.on_ground()
     }
 
+    /// Whether the craft has not left the ground since arming.
+    #[must_use]
+    pub fn awaits_lift_off(&self) -> bool {
+        !self.contact.has_lifted_off()
+    }
+
+    /// Specific force along the thrust, averaged over 50 ms, in multiples of gravity.
+    #[must_use]
+    pub fn load(&self) -> f64 {
+        self.contact.load()
+    }
+
     /// A descent to the ground begins at this altitude, m.
     pub fn begin_descent(&mut self, altitude_m: f64, climb_mps: f64) {
         self.end_descent();

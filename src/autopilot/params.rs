@@ -183,9 +183,9 @@ parameters! {
     /// Stick deflection (full stick = 500) beyond which the pilot overrides.
     "ap_stick_deadband" stick_deadband: u16 = 50, 0..=500, Live,
         "Stick movement beyond which the pilot steers, µs.";
-    /// Stored, without effect: the throttle stick never overrides.
-    "ap_throttle_deadband" throttle_deadband: u16 = 50, 0..=500, Stored,
-        "Throttle movement beyond which the pilot climbs, µs.";
+    /// Throttle stick movement that takes over a hold left behind by a mission that was given up, µs.
+    "ap_throttle_deadband" throttle_deadband: u16 = 50, 0..=500, Live,
+        "Throttle movement that takes over after a mission was given up, µs.";
     /// Where the nose points.
     "ap_yaw_mode" yaw_mode: YawMode = YawMode::Velocity, 0..=4, Live,
         "Where the nose points: along the path, at the waypoint, both, or as at engagement (FIXED, DAMPENER).";

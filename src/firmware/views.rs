@@ -151,6 +151,12 @@ impl Firmware {
         self.safety.home()
     }
 
+    /// Whether the craft is to climb and has not left the ground although it has all the throttle there is.
+    #[must_use]
+    pub fn is_too_heavy(&self) -> bool {
+        self.safety.armed() && self.navigation.is_too_heavy()
+    }
+
     /// Whether there is a fix.
     #[must_use]
     pub fn gps_fix(&self) -> bool {

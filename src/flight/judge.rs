@@ -12,6 +12,8 @@ const AFTERMATH_S: f64 = 1.0;
 const REFUSED_S: f64 = 10.0;
 /// Seconds the machine may stay IDLE after an engagement.
 const IDLE_S: f64 = 30.0;
+/// Seconds at full throttle after which a craft that has not lifted off is too heavy.
+const HEAVY_S: f64 = 5.0;
 /// What a landing without a fix must come down in that time to be one that goes on, m.
 const COMING_DOWN_M: f64 = 1.0;
 
@@ -40,6 +42,8 @@ pub struct JudgeFacts {
     pub refusal: Option<Refusal>,
     /// The mission's last positional waypoint is a LAND.
     pub ends_in_land: bool,
+    /// Thrust over weight of a craft that stands on the ground although it is to climb and has all the throttle there is.
+    pub lift_share: Option<f64>,
     /// At rest on the ground.
     pub touched_down: bool,
     /// Crashed.
@@ -58,6 +62,8 @@ pub struct Judge {
     completed_source: PlanSource,
     over_at: Option<SimTime>,
     refused: Option<(Refusal, SimTime)>,
+    /// Since when all throttle does not lift the craft.
+    heavy_since: Option<SimTime>,
     /// Since when the machine is IDLE, and the altitude then, m.
     idle_since: Option<(SimTime, f64)>,
     state: NavState,
@@ -77,6 +83,7 @@ impl Judge {
             completed_source: PlanSource::Stored,
             over_at: None,
             refused: None,
+            heavy_since: None,
             idle_since: None,
             state: NavState::Idle,
             lands_without_fix: false,
@@ -114,6 +121,7 @@ impl Judge {
         self.judge_ground(facts)
             .or_else(|| self.judge_complete(facts))
             .or_else(|| self.judge_refusal(facts))
+            .or_else(|| self.judge_lift(facts))
             .or_else(|| self.judge_idle(facts))
             .or_else(|| (now >= self.timeout).then(|| self.timeout_verdict(facts)))
     }
@@ -205,6 +213,23 @@ impl Judge {
         }
     }
 
+    /// A craft that is too heavy to take off.
+    fn judge_lift(&mut self, facts: &JudgeFacts) -> Option<Verdict> {
+        let Some(share) = facts.lift_share else {
+            self.heavy_since = None;
+            return None;
+        };
+        let since = *self.heavy_since.get_or_insert(facts.time);
+        (facts.time.seconds_since(since) >= HEAVY_S).then(|| {
+            Verdict::new(
+                FlightResult::Refused,
+                format!(
+                    "the craft does not lift off: with all the throttle of ap_throttle_max its thrust is {share:.2} of its weight"
+                ),
+            )
+        })
+    }
+
     fn judge_idle(&mut self, facts: &JudgeFacts) -> Option<Verdict> {
         if self.engaged_at.is_none() || facts.state != NavState::Idle {
             self.idle_since = None;
@@ -257,6 +282,7 @@ mod tests {
             source: PlanSource::Stored,
             refusal: None,
             ends_in_land: true,
+            lift_share: None,
             touched_down: false,
             crashed: false,
             diverged: false,
@@ -375,5 +401,18 @@ mod tests {
         let verdict = judge().look(&facts(100.0)).unwrap();
         assert_eq!(verdict.result, FlightResult::Timeout);
         assert!(verdict.reason.contains("APPROACHING at waypoint 1"), "{}", verdict.reason);
+    }
+
+    #[test]
+    fn a_craft_that_is_too_heavy_is_refused_with_the_number() {
+        let mut judge = Judge::new(SimTime::from_secs_f64(100.0));
+        let heavy =
+            |s, share| JudgeFacts { engaged: false, lift_share: share, state: NavState::Idle, ..facts(s) };
+        assert_eq!(judge.look(&heavy(10.0, Some(0.97))), None);
+        assert_eq!(judge.look(&heavy(14.0, None)), None);
+        assert_eq!(judge.look(&heavy(15.0, Some(0.97))), None);
+        let verdict = judge.look(&heavy(20.0, Some(0.97))).unwrap();
+        assert_eq!(verdict.result, FlightResult::Refused);
+        assert!(verdict.reason.contains("0.97 of its weight"), "{}", verdict.reason);
     }
 }

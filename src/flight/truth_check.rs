@@ -82,6 +82,7 @@ impl TruthCheck {
                 self.enter(*to, *reason, guard.as_ref(), leg, craft, settings);
             }
             NavEvent::Climbing(_)
+            | NavEvent::Limited { .. }
             | NavEvent::Geofence { .. }
             | NavEvent::CannotHold { .. }
             | NavEvent::Refused(_)

@@ -20,6 +20,16 @@ pub(super) fn sentence(vehicle: &Vehicle, takeoff_m: f64) -> Option<String> {
     Some(refusal.sentence().trim_end_matches('.').to_owned())
 }
 
+/// Thrust over weight of a craft that does not leave the ground with all the throttle there is.
+pub(super) fn lift_share(vehicle: &Vehicle) -> Option<f64> {
+    let world = vehicle.world()?;
+    if !vehicle.embedded()?.is_too_heavy() {
+        return None;
+    }
+    let square = vehicle.controller().motors().0.iter().map(|motor| motor * motor).sum::<f64>() / 4.0;
+    Some(world.thrust_to_weight() * square)
+}
+
 /// What keeps it from arming.
 fn arming(vehicle: &Vehicle) -> Option<String> {
     let firmware = vehicle.embedded()?;

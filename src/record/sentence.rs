@@ -106,6 +106,10 @@ fn nav(event: &NavEvent) -> Option<String> {
         }
         NavEvent::Climbing(true) => "Climbing to the minimum altitude first.".to_owned(),
         NavEvent::Climbing(false) => "Climb done.".to_owned(),
+        NavEvent::Limited { lean_rad } => format!(
+            "The throttle does not suffice: leaning {:.0}° at most to keep the altitude, flying slower.",
+            lean_rad.to_degrees()
+        ),
         NavEvent::Geofence { distance_m, limit_m, action } => {
             let what = match action {
                 FenceAction::Land => "landing here",

@@ -145,6 +145,12 @@ pub enum NavEvent {
     },
     /// The climb before the first leg began (`true`) or ended.
     Climbing(bool),
+    /// The thrust does not suffice for the lean that is asked for: this much is flown, and the speed follows; sent once a
+    /// leg.
+    Limited {
+        /// Greatest lean now, rad.
+        lean_rad: f64,
+    },
     /// The craft left the fence.
     Geofence {
         /// Distance from home, m.

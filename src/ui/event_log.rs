@@ -76,7 +76,10 @@ impl Level {
                 NavEvent::State { to: NavState::Complete, .. } => Self::Good,
                 NavEvent::State { .. } => Self::Step,
                 NavEvent::CannotHold { on: false, .. } => Self::Good,
-                NavEvent::Refused(_) | NavEvent::Geofence { .. } | NavEvent::CannotHold { .. } => Self::Warn,
+                NavEvent::Refused(_)
+                | NavEvent::Geofence { .. }
+                | NavEvent::Limited { .. }
+                | NavEvent::CannotHold { .. } => Self::Warn,
                 NavEvent::Plan { .. } | NavEvent::Climbing(_) | NavEvent::Disarm => Self::Info,
             },
         }

@@ -95,6 +95,8 @@ fn fields(event: &str) -> &'static str {
             "from:state to:state wp:num type:word? reason:text guard:map? target_lat:num target_lon:num target_alt:num"
         }
         "climbing" => "on:flag",
+        "limited" => "by:text lean_deg:num",
+        "cannot_hold" => "on:flag distance_m:num vertical_m:num limit:text",
         "geofence" => "distance_m:num limit_m:num action:word",
         "rx_loss" | "rx_recovered" | "failsafe" => "policy:text? stage:num procedure:text?",
         "fault" => "name:text on:flag value:text?",

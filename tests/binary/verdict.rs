@@ -138,16 +138,16 @@ fn what_really_happened_is_told_in_sentences_too() {
 
 #[test]
 fn a_craft_that_never_arms_or_climbs_says_what_it_waited_for() {
-    let reason = |arguments: &[&str]| {
-        let flown = fly(HOLD, &[&["--timeout", "60"], arguments].concat()).ends(1, "timeout");
+    let reason = |arguments: &[&str], result| {
+        let flown = fly(HOLD, &[&["--timeout", "60"], arguments].concat()).ends(1, result);
         flown.first("end").text("reason").to_owned()
     };
-    let fix = reason(&["--gps-loss-at", "boot+0"]);
+    let fix = reason(&["--gps-loss-at", "boot+0"], "timeout");
     assert!(fix.contains("the craft never armed: it waits for a GPS fix"), "{fix}");
-    let blocked = reason(&["--stick", "throttle=1500@boot+0"]);
+    let blocked = reason(&["--stick", "throttle=1500@boot+0"], "timeout");
     assert!(blocked.contains("arming is blocked by THROTTLE (lower the throttle)"), "{blocked}");
-    let heavy = reason(&["--fault", "payload@boot+0,,3"]);
-    assert!(heavy.contains("the climb stopped at ") && heavy.contains("m of 10.0 m"), "{heavy}");
+    let heavy = reason(&["--fault", "payload@boot+0,,5"], "refused");
+    assert!(heavy.contains("does not lift off") && heavy.contains(" of its weight"), "{heavy}");
 }
 
 #[test]

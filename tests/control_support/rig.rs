@@ -157,7 +157,9 @@ impl Rig {
             let rate_rps = Vector3::new(rates.roll, rates.pitch, rates.yaw).norm();
             let motors = &self.controller.state().motors.0;
             let ground = GroundMeasurement::new(&now, self.estimate().force_flu, rate_rps, motors);
-            self.controllers.land.observe(&ground, now.armed, now.dt);
+            let FlightControllers { altitude, land, .. } = &mut self.controllers;
+            land.observe(&ground, now.armed, now.dt);
+            altitude.set_on_ground(land.awaits_lift_off(), land.load());
             let stick = Some(self.received.throttle_us);
             self.hold = self.holds.update(
                 self.modes,

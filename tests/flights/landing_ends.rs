@@ -54,7 +54,7 @@ fn a_barometer_that_is_ten_metres_off_does_not_keep_the_craft_up() {
             fault(&mut rig, "baro-drift", &rate.to_string(), Some(12.0));
             rig.until(150.0, "disarm", |rig| rig.disarmed().is_some()).fly(2.0);
             let mut checks = Checks::default();
-            is_down(&mut checks, &rig, 3.0);
+            is_down(&mut checks, &rig, 4.0);
             checks.verdict(&format!("baro {rate} Pa/s, seed {seed}"), &rig.story())
         })
     }));

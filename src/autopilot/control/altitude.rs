@@ -2,8 +2,10 @@
 
 use super::bumpless::BumplessTransfer;
 use super::hover_throttle::{HoverMeasurement, HoverThrottleEstimator};
+use super::spool_up::SpoolUp;
 use crate::autopilot::io::NavInputs;
 use crate::autopilot::params::Params;
+use crate::geo::GRAVITY;
 
 /// How fast the setpoint's speed may change, m/s².
 const SETPOINT_ACCEL: f64 = 2.0;
@@ -19,6 +21,13 @@ const SLOWEST_FLARE_MPS: f64 = 0.3;
 const INTEGRAL_LIMIT_US: f64 = 200.0;
 /// Fastest change of the throttle, µs/s.
 pub const THROTTLE_SLEW_US_PER_S: f64 = 5000.0;
+/// A target this far above a craft on the ground asks it to take off, m.
+const CLIMB_M: f64 = 0.3;
+/// Below its setpoint by this (m) and sinking faster than this (m/s) at full throttle, the craft has too little thrust.
+const BELOW_M: f64 = 0.2;
+const SINKING_MPS: f64 = 0.1;
+/// Throttle below its limit that is one to spare, µs.
+const SPARE_US: f64 = 20.0;
 /// Fastest change of the throttle limits in use, µs/s.
 const LIMIT_SLEW_US_PER_S: f64 = 500.0;
 
@@ -109,6 +118,8 @@ pub struct AltitudeController {
     setpoint_m: f64,
     setpoint_rate: f64,
     integral_us: f64,
+    /// Acceleration of the setpoint, m/s².
+    setpoint_accel: f64,
     /// Throttle of the last update, µs.
     throttle_us: f64,
     /// Throttle taken off the law's, µs.
@@ -116,12 +127,26 @@ pub struct AltitudeController {
     limits_us: Option<(f64, f64)>,
     params: Option<Params>,
     transfer: BumplessTransfer,
+    on_ground: bool,
+    load: f64,
+    spool_up: SpoolUp,
+}
+
+impl AltitudeTarget {
+    /// Whether it asks a craft at this altitude (m) to climb.
+    fn climbs(self, altitude_m: f64) -> bool {
+        match self {
+            Self::Altitude(target_m) => target_m > altitude_m + CLIMB_M,
+            Self::Rate(rate_mps) | Self::Landing { rate_mps, .. } => rate_mps > 0.0,
+        }
+    }
 }
 
 impl AltitudeController {
     /// Tracks a cycle that somebody else flies, so that the hover throttle is known when this controller takes over.
     pub fn track(&mut self, now: &AltitudeMeasurement, params: &Params, dt: f64) {
         self.hover.update(&hover_measurement(now, params), dt);
+        self.spool_up = SpoolUp::default();
     }
 
     /// Takes over: the setpoint starts at the craft, the throttle where it was.
@@ -139,6 +164,9 @@ impl AltitudeController {
         self.relief_us = 0.0;
         self.limits_us = None;
         self.params = Some(*params);
+        if !self.on_ground {
+            self.spool_up = SpoolUp::default();
+        }
         let law = self.terms(now).throttle_us(params);
         self.throttle_us = now.throttle_us;
         self.transfer.start(now.throttle_us, law);
@@ -177,6 +205,30 @@ impl AltitudeController {
         self.throttle_us
     }
 
+    /// Says whether the craft stands on the ground and has not lifted off yet, and the specific force along its thrust in
+    /// multiples of gravity.
+    pub fn set_on_ground(&mut self, on_ground: bool, load: f64) {
+        (self.on_ground, self.load) = (on_ground, load);
+    }
+
+    /// Whether the throttle is all there is.
+    #[must_use]
+    pub fn is_at_full_throttle(&self) -> bool {
+        self.limits_us.is_some_and(|(_, max)| self.throttle_us >= max)
+    }
+
+    /// Whether the craft loses altitude although it has all the throttle there is.
+    #[must_use]
+    pub(super) fn sinks_at_full_throttle(&self, now: &NavInputs) -> bool {
+        self.is_at_full_throttle() && self.setpoint_m > now.alt_m + BELOW_M && now.climb_mps < -SINKING_MPS
+    }
+
+    /// Whether there is throttle left.
+    #[must_use]
+    pub(super) fn has_throttle_to_spare(&self) -> bool {
+        self.limits_us.is_none_or(|(_, max)| self.throttle_us < max - SPARE_US)
+    }
+
     /// Throttle (µs) towards `target` after `dt` seconds; inside the limits of the parameters.
     pub fn update(
         &mut self,
@@ -189,7 +241,18 @@ impl AltitudeController {
             return self.throttle_us;
         }
         self.hover.update(&hover_measurement(now, params), dt);
+        if self.on_ground {
+            return self.wait_for_lift_off(now, target, params, dt);
+        }
+        if self.spool_up.lift_off() {
+            self.hover.lift_off(self.load, params.throttle_zero_us());
+            self.setpoint_rate = now.climb_mps;
+            self.transfer = BumplessTransfer::default();
+        }
+        let rate_before = self.setpoint_rate;
         let landing = self.move_setpoint(now, target, params, dt);
+        let change = self.setpoint_rate - rate_before;
+        self.setpoint_accel = if dt > 0.0 { change / dt } else { 0.0 };
         self.integrate(now, landing, params, dt);
         if let Some(old) = self.params.filter(|old| old != params) {
             // A changed parameter must not step the throttle.
@@ -198,12 +261,34 @@ impl AltitudeController {
             self.transfer.start(before, terms.throttle_us(params));
             self.params = Some(*params);
         }
-        let wanted = self.transfer.apply(self.terms(now).throttle_us(params), dt) - self.relief_us;
+        let law_us = self.terms(now).throttle_us(params) + self.accel_throttle_us(params);
+        let wanted = self.transfer.apply(law_us, dt) - self.relief_us;
         let (min, max) = self.slew_limits(params, dt);
         let step = THROTTLE_SLEW_US_PER_S * dt;
         let slewed = wanted.clamp(self.throttle_us - step, self.throttle_us + step);
         self.throttle_us = if slewed.is_finite() { slewed.clamp(min, max) } else { min };
         self.throttle_us
+    }
+
+    /// On the ground nothing is controlled: the throttle rises until the craft leaves it.
+    fn wait_for_lift_off(
+        &mut self,
+        now: &AltitudeMeasurement,
+        target: AltitudeTarget,
+        params: &Params,
+        dt: f64,
+    ) -> f64 {
+        (self.setpoint_m, self.setpoint_rate, self.integral_us) = (now.altitude_m, 0.0, 0.0);
+        let limits = self.slew_limits(params, dt);
+        let thrust = (self.reference_hover_us(params), params.throttle_zero_us());
+        self.throttle_us = self.spool_up.update(target.climbs(now.altitude_m), thrust, limits, dt);
+        self.throttle_us
+    }
+
+    /// Throttle for the acceleration of the setpoint, µs: thrust grows with the square of the throttle above its zero.
+    fn accel_throttle_us(&self, params: &Params) -> f64 {
+        let load = 1.0 + (self.setpoint_accel / GRAVITY).clamp(-0.5, 0.5);
+        (self.hover.hover_us() - params.throttle_zero_us()) * (load.sqrt() - 1.0)
     }
 
     fn terms(&self, now: &AltitudeMeasurement) -> ThrottleTerms {

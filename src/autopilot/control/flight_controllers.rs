@@ -1,6 +1,7 @@
 //! The controllers of a flight, lent to whoever flies.
 
 use super::altitude::{AltitudeController, AltitudeMeasurement};
+use super::lean_limit::LeanLimiter;
 use super::position::{PositionController, PositionMeasurement};
 use crate::autopilot::io::NavInputs;
 use crate::autopilot::land_detector::LandDetector;
@@ -19,6 +20,8 @@ pub struct FlightControllers {
     pub position: PositionController,
     /// Ground or air.
     pub land: LandDetector,
+    /// Altitude before lean.
+    pub lean: LeanLimiter,
 }
 
 impl FlightControllers {
@@ -26,6 +29,12 @@ impl FlightControllers {
     pub fn engage(&mut self, now: &NavInputs, params: &Params) {
         self.altitude.engage(&AltitudeMeasurement::from(now), params);
         self.position.engage(&PositionMeasurement::from(now));
+    }
+
+    /// Lets the lean be no greater than the thrust allows, after the altitude controller was updated.
+    pub fn limit_lean(&mut self, now: &NavInputs, params: &Params) {
+        let limit_rad = self.lean.update(now, &self.altitude, params);
+        self.position.limit_lean(limit_rad);
     }
 
     /// Tracks a cycle whose throttle is not this altitude controller's.

@@ -5,7 +5,7 @@ use crate::geo::GRAVITY;
 /// Limits of the estimated hover throttle, µs.
 pub const HOVER_MIN_US: f64 = 1050.0;
 /// See [`HOVER_MIN_US`].
-pub const HOVER_MAX_US: f64 = 1700.0;
+pub const HOVER_MAX_US: f64 = 1900.0;
 /// Time constant of the filters on throttle and climb rate, s.
 const FILTER_S: f64 = 0.15;
 /// Time constant of the estimate while somebody else flies and right after engaging, s.
@@ -16,6 +16,8 @@ const FAST_FOR_S: f64 = 5.0;
 const SLOW_S: f64 = 10.0;
 /// Altitude error beyond which the integral of the altitude nearly rests, m.
 const FAR_M: f64 = 2.0;
+/// Time constant, beside the fast one, with which it is followed there, s: something has changed.
+const FAR_S: f64 = 1.0;
 /// Wanted climb rate at which the estimate follows half as fast, m/s: climbing and sinking take another throttle than hovering.
 const HALF_CLIMB_MPS: f64 = 1.0;
 /// How long the craft must have been airborne before an estimate counts at engaging, s.
@@ -34,6 +36,8 @@ pub struct HoverThrottleEstimator {
     throttle_filter: f64,
     climb_filter: f64,
     airborne_s: f64,
+    /// The hover throttle in use was found at a lift-off.
+    is_found: bool,
     /// Quiet time in the air since engaging, s.
     followed_s: f64,
 }
@@ -46,6 +50,7 @@ impl Default for HoverThrottleEstimator {
             throttle_filter: 0.0,
             climb_filter: 0.0,
             airborne_s: 0.0,
+            is_found: false,
             followed_s: 0.0,
         }
     }
@@ -96,12 +101,26 @@ impl HoverThrottleEstimator {
         self.airborne_s = if now.altitude_m > AIRBORNE_M { self.airborne_s + dt } else { 0.0 };
     }
 
-    /// Chooses the hover throttle at engaging: what held the craft when it has been airborne for a while, else
-    /// `configured_us`.
+    /// The craft has just been lifted off the ground by the throttle above `zero_us` (µs), feeling `load` times gravity.
+    pub fn lift_off(&mut self, load: f64, zero_us: f64) {
+        // The filtered throttle lags behind as the thrust and what is felt of it do.
+        let hover_us = zero_us + (self.throttle_filter - zero_us) / load.clamp(1.0, 4.0).sqrt();
+        self.hover_us =
+            if hover_us.is_finite() { hover_us.clamp(HOVER_MIN_US, HOVER_MAX_US) } else { self.hover_us };
+        self.estimate_us = Some(self.hover_us);
+        self.followed_s = 0.0;
+        self.is_found = true;
+    }
+
+    /// Chooses the hover throttle at engaging: what held the craft when it has been airborne for a while, else what was found
+    /// at the lift-off, else `configured_us`.
     pub fn engage(&mut self, configured_us: f64) {
         let held = self.estimate_us.filter(|_| self.airborne_s >= SETTLED_S);
-        self.hover_us = held.unwrap_or(configured_us).clamp(HOVER_MIN_US, HOVER_MAX_US);
-        self.followed_s = 0.0;
+        let found = self.is_found.then_some(self.hover_us);
+        let known = held.or(found);
+        self.hover_us = known.unwrap_or(configured_us).clamp(HOVER_MIN_US, HOVER_MAX_US);
+        // What held the craft needs no quick correction: a climb right after engaging would only mislead it.
+        self.followed_s = if known.is_some() { FAST_FOR_S } else { 0.0 };
     }
 
     /// Follows the estimate in the first quiet seconds in the air, and whenever the altitude error is so large that the
@@ -114,8 +133,11 @@ impl HoverThrottleEstimator {
         if is_new || error_m.abs() > FAR_M {
             // An average over the quiet time since engaging, never faster than the estimate itself; a climb tells
             // nothing.
-            let quiet = quiet * quiet;
-            let step = quiet * dt / (FAST_S + self.followed_s);
+            // But one that runs ahead of its setpoint has the wrong hover throttle.
+            let runs_ahead = error_m.abs() > FAR_M && error_m * wanted_climb_mps < 0.0;
+            let quiet = if runs_ahead { 1.0 } else { quiet * quiet };
+            let followed_s = if error_m.abs() > FAR_M { self.followed_s.min(FAR_S) } else { self.followed_s };
+            let step = quiet * dt / (FAST_S + followed_s);
             let estimate = self.estimate_us.unwrap_or(before);
             // A craft that stands on the ground needs at least the throttle that did not lift it.
             let estimate = if self.airborne_s > 0.0 { estimate } else { estimate.max(before) };

@@ -23,6 +23,8 @@ const HALF_INTEGRAL_ACCEL: f64 = 0.3;
 /// Rate at which the velocity setpoint closes small differences, rad/s: without it a turn of the direction at walking
 /// pace would kick the lean.
 const SETPOINT_RPS: f64 = 5.0;
+/// How far the speed setpoint may lead the speed while the thrust limits the lean, m/s.
+const SPEED_LEAD_MPS: f64 = 1.0;
 /// Fastest change of the lean limit in use, rad/s.
 const LIMIT_SLEW: f64 = 30.0 * DEG;
 /// Fastest change of the lean demand, rad/s.
@@ -127,6 +129,8 @@ pub struct PositionController {
     direct_integral: Vector2<f64>,
     saturated: bool,
     limit_rad: Option<f64>,
+    /// Lean that the thrust allows, rad; none = what the parameters allow.
+    thrust_limit_rad: Option<f64>,
     params: Option<Params>,
     transfer: [BumplessTransfer; 2],
     /// Lean flown by somebody else until now, to lead on from.
@@ -155,8 +159,7 @@ impl PositionController {
 
     /// Takes over: integrals empty, setpoints at the craft, lean where it was.
     pub fn engage(&mut self, now: &PositionMeasurement) {
-        let observer = self.observer;
-        *self = Self { observer, ..Self::default() };
+        *self = Self { observer: self.observer, thrust_limit_rad: self.thrust_limit_rad, ..Self::default() };
         self.track(now, 0.0);
     }
 
@@ -164,6 +167,17 @@ impl PositionController {
     #[must_use]
     pub fn is_saturated(&self) -> bool {
         self.saturated
+    }
+
+    /// Limits the lean to what the thrust allows, rad.
+    pub fn limit_lean(&mut self, limit_rad: f64) {
+        self.thrust_limit_rad = Some(limit_rad);
+    }
+
+    /// The greatest lean that may be flown, rad.
+    #[must_use]
+    pub fn max_lean_rad(&self, params: &Params) -> f64 {
+        self.thrust_limit_rad.unwrap_or(f64::INFINITY).min(params.max_lean_rad())
     }
 
     /// Speed setpoint, m/s.
@@ -219,6 +233,10 @@ impl PositionController {
         };
         let brake = params.max_accel_mps2();
         self.speed += (demand - self.speed).clamp(-brake * dt, params.build_up_accel_mps2() * dt);
+        if self.max_lean_rad(params) < params.max_lean_rad() {
+            // A speed that the lean cannot hold is not asked for.
+            self.speed = self.speed.min(now.velocity.norm() + SPEED_LEAD_MPS);
+        }
         let direction = (target.aim - now.position).try_normalize(1e-6).unwrap_or_default();
         let left = direction * self.speed - self.velocity_setpoint;
         let step = (left * (SETPOINT_RPS * dt).min(1.0)).cap_magnitude(brake * dt);
@@ -299,7 +317,7 @@ impl PositionController {
 
     /// The greatest lean, led to the parameter's at a limited rate.
     fn slew_limit(&mut self, params: &Params, dt: f64) -> f64 {
-        let wanted = params.max_lean_rad();
+        let wanted = self.max_lean_rad(params);
         let limit = match self.limit_rad {
             Some(old) => old + (wanted - old).clamp(-LIMIT_SLEW * dt, LIMIT_SLEW * dt),
             None => wanted,

@@ -9,7 +9,8 @@ use crate::geo::GRAVITY;
 
 /// Altitude above home from which the thrust is learned, m.
 const AIRBORNE_M: f64 = 1.0;
-/// A craft has lifted off above this altitude, m, or at this speed, m/s.
+/// A craft has lifted off when it feels more than this multiple of gravity, above this altitude, m, or at this speed, m/s.
+const LIFTING_LOAD: f64 = 1.06;
 const LIFTED_M: f64 = 0.5;
 const LIFTED_MPS: f64 = 0.3;
 /// Time constants of learning and of the averages that are compared, s.
@@ -45,6 +46,16 @@ impl GroundContact {
         !self.has_lifted_off || self.is_loaded
     }
 
+    /// Whether the craft has left the ground since arming.
+    pub(super) fn has_lifted_off(&self) -> bool {
+        self.has_lifted_off
+    }
+
+    /// Specific force along the thrust in multiples of gravity.
+    pub(super) fn load(&self) -> f64 {
+        self.force / GRAVITY
+    }
+
     /// The craft is disarmed.
     pub(super) fn rest(&mut self) {
         self.has_lifted_off = false;
@@ -58,8 +69,10 @@ impl GroundContact {
         self.force += share * (now.force_flu.z - self.force);
         let altitude_m = now.altitude_m.unwrap_or(f64::NEG_INFINITY);
         // Without an altitude nothing shows the lift-off.
-        self.has_lifted_off |=
-            now.altitude_m.is_none() || altitude_m.abs() > LIFTED_M || now.climb_mps.abs() > LIFTED_MPS;
+        self.has_lifted_off |= now.altitude_m.is_none()
+            || altitude_m.abs() > LIFTED_M
+            || now.climb_mps.abs() > LIFTED_MPS
+            || self.load() > LIFTING_LOAD;
         if !self.has_lifted_off || self.square < 1e-4 {
             (self.loaded_s, self.is_loaded) = (0.0, false);
             return;

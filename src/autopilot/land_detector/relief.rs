@@ -11,8 +11,11 @@ const STILL_SHARE: f64 = 0.25;
 const JOLT_S: f64 = 0.3;
 /// How far the setpoint must be below a craft that does not sink, m.
 const SETPOINT_BELOW_M: f64 = 0.3;
-/// How long a craft that is not known to be low must have rested, s: the altitude may be wrong.
+/// How long a craft that is not known to be low must have rested, s, for the altitude may be wrong: after it sank at this
+/// share of the wanted rate, and before.
+const REST_AFTER_SINKING_S: f64 = 0.4;
 const REST_S: f64 = 1.5;
+const SANK_SHARE: f64 = 0.6;
 /// Rates at which the throttle is taken off while a craft does not sink, and given back, µs/s.
 const RELIEF_US_PER_S: f64 = 120.0;
 const GIVE_BACK_US_PER_S: f64 = 300.0;
@@ -73,6 +76,7 @@ impl DescentFacts {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct ThrottleRelief {
     climb_mps: f64,
+    has_sunk: bool,
     rest_s: f64,
     is_rising: bool,
     relief_us: f64,
@@ -87,11 +91,13 @@ impl ThrottleRelief {
     /// One cycle. Low and still although it should sink, the craft stands, or the air carries it.
     pub(super) fn update(&mut self, facts: &DescentFacts, dt: f64) {
         self.climb_mps += (facts.climb_mps - self.climb_mps) * (dt / (JOLT_S + dt));
+        self.has_sunk |= facts.sink_mps > 0.0 && self.climb_mps < -SANK_SHARE * facts.sink_mps;
         let rests = facts.sink_mps > 0.0
             && self.climb_mps.abs() < STILL_SHARE * facts.landing_rate_mps
             && facts.altitude_m - facts.setpoint_m > SETPOINT_BELOW_M;
         self.rest_s = if rests { self.rest_s + dt } else { 0.0 };
-        self.is_rising = rests && (facts.is_low || self.rest_s > REST_S);
+        let needed_s = if self.has_sunk { REST_AFTER_SINKING_S } else { REST_S };
+        self.is_rising = rests && (facts.is_low || self.rest_s > needed_s);
         let rate = if self.is_rising { RELIEF_US_PER_S } else { -GIVE_BACK_US_PER_S };
         self.relief_us = (self.relief_us + rate * dt).clamp(0.0, RELIEF_LIMIT_US);
     }

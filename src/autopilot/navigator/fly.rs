@@ -12,7 +12,7 @@ use crate::autopilot::control::{
 use crate::autopilot::io::NavInputs;
 use crate::autopilot::params::Params;
 use crate::plan::WaypointType;
-use crate::telemetry::{NavOutput, NavState};
+use crate::telemetry::{NavEvent, NavOutput, NavState};
 
 /// Deflection of a stick at its end.
 const FULL_STICK: f64 = 500.0;
@@ -24,6 +24,23 @@ pub(super) struct Flown {
     pub output: NavOutput,
     /// How the aim was chosen.
     pub path: PathView,
+}
+
+/// No setpoint outside a landing goes below this altitude, m, unless the waypoint lies well below home.
+const LOWEST_M: f64 = 1.0;
+const BELOW_HOME_M: f64 = -2.0;
+
+/// The altitude target (m) that keeps off the ground: not below 1 m above home, or, when the setpoint is lower already,
+/// no lower. To a waypoint well below home, where the ground must be, too, it sinks as slowly as a landing.
+fn above_ground_m(target_m: f64, now: &NavInputs, params: &Params, setpoint_m: f64) -> f64 {
+    if target_m >= BELOW_HOME_M {
+        return target_m.max(LOWEST_M.min(setpoint_m));
+    }
+    if now.alt_m >= f64::from(params.landing_altitude_m) {
+        return target_m;
+    }
+    // The setpoint moves at √(2·1 m/s²·way left).
+    target_m.max(setpoint_m - 0.5 * params.descent_rate_mps().powi(2))
 }
 
 /// Share of the full deflection beyond the deadband, −1…1, so that crossing it is no step.
@@ -45,8 +62,7 @@ impl Navigator {
         let params = &self.with_rescue_climb(params);
         let (target, path) = self.horizontal_target(now, params, seen, &mut controllers.land);
         let altitude = self.altitude_target(now, params, controllers);
-        let FlightControllers { altitude: altitude_controller, position: position_controller, land } =
-            controllers;
+        let FlightControllers { altitude: altitude_controller, land, .. } = controllers;
         altitude_controller.set_relief_us(land.relief_us());
         let throttle_us =
             altitude_controller.update(&AltitudeMeasurement::from(now), altitude, params, now.dt);
@@ -55,12 +71,15 @@ impl Navigator {
             AltitudeTarget::Landing { setpoint_m, .. } => setpoint_m,
             AltitudeTarget::Rate(_) => altitude_controller.setpoint_m(),
         };
+        controllers.limit_lean(now, params);
+        self.tell_limited_lean(controllers, params);
+        let position_controller = &mut controllers.position;
         let horizontal = PositionMeasurement::from(now);
         let lean = if seen.stick_override {
             position_controller.track(&horizontal, now.dt);
             Vector2::new(stick_share(now.stick_pitch, params), stick_share(now.stick_roll, params))
                 .cap_magnitude(1.0)
-                * params.max_lean_rad()
+                * position_controller.max_lean_rad(params)
         } else {
             let demand = position_controller.update(&horizontal, &target, params, now.dt);
             earth_to_body(demand, now.heading_rad)
@@ -73,6 +92,13 @@ impl Navigator {
             throttle_us,
         };
         Flown { output, path }
+    }
+
+    /// Tells once a leg that the thrust does not suffice for the lean.
+    fn tell_limited_lean(&mut self, controllers: &FlightControllers, params: &Params) {
+        if controllers.lean.is_binding() && !std::mem::replace(&mut self.leg.told_limited, true) {
+            self.push(NavEvent::Limited { lean_rad: controllers.position.max_lean_rad(params) });
+        }
     }
 
     fn with_rescue_climb(&self, params: &Params) -> Params {
@@ -97,7 +123,12 @@ impl Navigator {
                 .descent
                 .target(now, params, (altitude.setpoint_m(), altitude.throttle_us()), land)
                 .unwrap_or(AltitudeTarget::Altitude(self.target_alt_m)),
-            NavState::Complete | NavState::Idle => AltitudeTarget::Altitude(self.target_alt_m),
+            NavState::Complete | NavState::Idle => AltitudeTarget::Altitude(above_ground_m(
+                self.target_alt_m,
+                now,
+                params,
+                altitude.setpoint_m(),
+            )),
             NavState::Approaching if self.climb.is_on() => {
                 AltitudeTarget::Altitude(self.leg.altitude_m.max(self.climb_goal_m(params) + 1.0))
             }
@@ -105,7 +136,12 @@ impl Navigator {
             | NavState::Arrived
             | NavState::Holding
             | NavState::Orbiting
-            | NavState::Figure8 => AltitudeTarget::Altitude(self.leg.altitude_m),
+            | NavState::Figure8 => AltitudeTarget::Altitude(above_ground_m(
+                self.leg.altitude_m,
+                now,
+                params,
+                altitude.setpoint_m(),
+            )),
         }
     }
 

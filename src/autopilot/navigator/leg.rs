@@ -36,6 +36,8 @@ pub(super) struct Leg {
     pub delay: Option<(f64, SimTime)>,
     /// The arc at the start of the leg.
     pub arc: Option<CornerArc>,
+    /// It was told that the thrust limits the lean.
+    pub told_limited: bool,
 }
 
 impl Navigator {
@@ -93,9 +95,7 @@ impl Navigator {
             waypoint: position,
             altitude_m: f64::from(waypoint.alt_cm) / 100.0,
             start,
-            missed: false,
-            delay: None,
-            arc: None,
+            ..Leg::default()
         };
         self.clear_clocks();
         self.apply_modifiers(modifiers_from, index, inputs);

@@ -10,11 +10,11 @@ use crate::firmware::control::hold::{DescentRate, HoldModes, HoldOutput, Holds};
 use crate::firmware::control::{ControlState, LeanDemand};
 use crate::firmware::estimate::Estimate;
 use crate::firmware::failsafe::{Failsafe, FailsafeAction, FailsafeFacts, Procedure, Response};
-use crate::firmware::left_stick::LeftStick;
 use crate::firmware::modes::{AfterAbort, ModeFacts, boxes};
 use crate::firmware::orders::{OrderFacts, Orders, failsafe_response};
 use crate::firmware::outbox::Outbox;
 use crate::firmware::parameters::{Parameters, RescueCause};
+use crate::firmware::throttle_takeover::ThrottleTakeover;
 use crate::geo::LatLon;
 use crate::plan::FlightPlan;
 use crate::signals::SimTime;
@@ -50,7 +50,7 @@ pub(in crate::firmware) struct Navigation {
     orders: Orders,
     navigator: Navigator,
     holds: Holds,
-    left_stick: LeftStick,
+    throttle_takeover: ThrottleTakeover,
     /// Lent to the navigator or to the holds, whoever flies.
     controllers: FlightControllers,
     inputs: NavInputs,
@@ -69,7 +69,7 @@ impl Navigation {
             orders: Orders::default(),
             navigator: Navigator::new(),
             holds: Holds::default(),
-            left_stick: LeftStick::default(),
+            throttle_takeover: ThrottleTakeover::default(),
             controllers: FlightControllers::default(),
             inputs: unknown_craft(),
             output: None,
@@ -121,7 +121,9 @@ impl Navigation {
         let rates = estimate.rates;
         let rate_rps = Vector3::new(rates.roll, rates.pitch, rates.yaw).norm();
         let ground = GroundMeasurement::new(&self.inputs, estimate.force_flu, rate_rps, &control.motors.0);
-        self.controllers.land.observe(&ground, self.inputs.armed, dt);
+        let FlightControllers { altitude, land, .. } = &mut self.controllers;
+        land.observe(&ground, self.inputs.armed, dt);
+        altitude.set_on_ground(land.awaits_lift_off(), land.load());
     }
 
     /// One update of the failsafe; `uptime` counts from boot.
@@ -285,7 +287,7 @@ impl Navigation {
         } else {
             let (nav, tuning) = (&parameters.nav, &parameters.hold);
             let after_abort = self.orders.after_abort(&self.navigator);
-            let stick_us = self.left_stick.update(after_abort, throttle_stick_us, nav);
+            let stick_us = self.throttle_takeover.update(after_abort, throttle_stick_us, nav);
             let descend = if self.failsafe.auto_landing() {
                 Some(DescentRate::Failsafe)
             } else {
@@ -348,6 +350,11 @@ impl Navigation {
     /// Whether such a command is in force.
     pub(in crate::firmware) fn is_commanded(&self) -> bool {
         self.orders.is_commanded()
+    }
+
+    /// Whether all the throttle there is does not lift the craft off the ground.
+    pub(in crate::firmware) fn is_too_heavy(&self) -> bool {
+        self.controllers.land.awaits_lift_off() && self.controllers.altitude.is_at_full_throttle()
     }
 
     /// The failsafe.

@@ -173,7 +173,8 @@ impl Run {
     fn watch(&self, pattern: Pattern, craft: &CraftTruth) -> HoldWatch {
         let limits = HoldLimits {
             small_m: self.settings.hold_radius_m,
-            small_alt_m: self.tolerance_m,
+            // Half of it: a craft at the edge of the tolerance is still on its way.
+            small_alt_m: 0.5 * self.tolerance_m,
             speed_mps: self.target.speed_mps,
             climb_mps: self.settings.climb_mps,
         };

@@ -28,6 +28,7 @@ pub(super) enum Fields<'a> {
     Refused { reason: String, wp: Option<u8>, cause: Option<String>, text: Cow<'static, str> },
     State(Box<State>),
     On { on: bool },
+    Limited { by: &'static str, lean_deg: Milli },
     Geofence { distance_m: Milli, limit_m: Milli, action: &'a str },
     CannotHold { on: bool, distance_m: Milli, vertical_m: Milli, limit: &'a str },
     Failsafe { policy: Option<&'a str>, stage: u8, procedure: Option<&'a str> },
@@ -167,6 +168,9 @@ impl<'a> Fields<'a> {
                 ("state", Self::State(Box::new(state)))
             }
             NavEvent::Climbing(on) => ("climbing", Self::On { on: *on }),
+            NavEvent::Limited { lean_rad } => {
+                ("limited", Self::Limited { by: "throttle", lean_deg: Decimals(lean_rad.to_degrees()) })
+            }
             NavEvent::Geofence { distance_m, limit_m, action } => {
                 let (distance_m, limit_m) = (Decimals(*distance_m), Decimals(*limit_m));
                 ("geofence", Self::Geofence { distance_m, limit_m, action: action.into() })

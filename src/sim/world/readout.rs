@@ -10,6 +10,13 @@ use crate::sim::truth::Truth;
 use super::World;
 
 impl World {
+    /// Greatest thrust over weight in the air at the craft, with its payload.
+    #[must_use]
+    pub fn thrust_to_weight(&self) -> f64 {
+        let unladen = self.airframe.thrust_to_weight() * self.air_now.density_ratio;
+        unladen * self.airframe.mass_kg / self.plant.mass_kg()
+    }
+
     /// The sensor readings of the present instant.
     #[must_use]
     pub fn sensors(&self) -> &SensorFrame {

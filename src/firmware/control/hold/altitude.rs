@@ -25,6 +25,8 @@ const STOPPED_M: f64 = 0.3;
 /// The descent: rate near the ground over the climb rate, and how it grows with height (1/m).
 const DESCENT_SHARE: f64 = 0.2;
 const DESCENT_GROWTH_PER_M: f64 = 0.05;
+/// Below this altitude the failsafe's descent is as slow as a landing, m.
+const LAST_METRES_M: f64 = 1.5;
 /// The setpoint of a descent runs at most this far below the craft, m.
 const DESCENT_LEASH_M: f64 = 5.0;
 /// A craft on the ground sinks slower than this share of the demanded rate, and drifts slower than this, m/s.
@@ -107,10 +109,11 @@ impl AltitudeHold {
         }
         controller.set_relief_us(land.relief_us());
         let throttle_us = controller.update(&measured, target, params, now.dt);
+        controllers.limit_lean(now, params);
         throttle_share(throttle_us, params)
     }
 
-    /// Takes over once more when the craft has flown for a moment: now its hover throttle is known.
+    /// Takes over once more when the craft has flown for a moment and climbs no more: now its hover throttle is known.
     fn learn_after_lift_off(
         &mut self,
         now: &NavInputs,
@@ -121,7 +124,7 @@ impl AltitudeHold {
         let Some(seconds) = self.lifting_s else { return };
         let seconds = if now.alt_m > AIRBORNE_M { seconds + now.dt } else { 0.0 };
         self.lifting_s = Some(seconds);
-        if seconds >= LIFTED_S {
+        if seconds >= LIFTED_S && now.climb_mps.abs() < STEADY_MPS {
             self.lifting_s = None;
             controller.engage(measured, params);
         }
@@ -186,7 +189,9 @@ impl AltitudeHold {
         land.follow_altitude(now.alt_m);
         let demand = (controller.setpoint_m(), controller.throttle_us());
         land.descend(&DescentFacts::new(now, params, demand, rate), now.time, now.dt);
-        let ground = GroundFacts::new(now, params, controller, land);
+        // It may begin on the ground, with nothing to come down from.
+        let ground =
+            GroundFacts { descent_m: f64::INFINITY, ..GroundFacts::new(now, params, controller, land) };
         // By the hover throttle in use: the configured one may be far off, and waiting for it would tip the craft over.
         // A descent without a plan has no altitude of its own below which the ground is expected.
         let facts = TouchdownFacts {
@@ -224,7 +229,7 @@ fn has_stopped(setpoint: f64, rate: f64, now: &NavInputs) -> bool {
 /// How fast a descent to the ground sinks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum DescentRate {
-    /// The failsafe's: a fifth of the climb rate near the ground, faster from high up.
+    /// The failsafe's: a fifth of the climb rate near the ground, faster from high up; the last metres as a landing.
     Failsafe,
     /// `ap_landing_descent_rate`, as the landing whose fix was lost.
     Landing,
@@ -234,6 +239,8 @@ impl DescentRate {
     /// Sink rate at an altitude, m/s.
     fn at(self, altitude_m: f64, params: &Params) -> f64 {
         match self {
+            // The ground is felt for at the rate of a landing.
+            Self::Failsafe if altitude_m < LAST_METRES_M => params.descent_rate_mps(),
             Self::Failsafe => {
                 let factor = 0.9 + (altitude_m * DESCENT_GROWTH_PER_M).clamp(0.1, 9.0);
                 factor * params.climb_rate_mps() * DESCENT_SHARE
@@ -365,7 +372,7 @@ mod tests {
     #[test]
     fn the_descent_slows_down_towards_the_ground() {
         let params = Params::default();
-        for (altitude, rate) in [(0.0, 1.0), (2.0, 1.0), (20.0, 1.9), (180.0, 9.9), (500.0, 9.9)] {
+        for (altitude, rate) in [(0.0, 0.5), (2.0, 1.0), (20.0, 1.9), (180.0, 9.9), (500.0, 9.9)] {
             assert!((DescentRate::Failsafe.at(altitude, &params) - rate).abs() < 1e-9, "{altitude}");
         }
     }

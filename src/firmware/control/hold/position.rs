@@ -40,7 +40,7 @@ impl PositionHold {
             controller.engage(&measured);
             self.is_on = true;
         }
-        let limit = params.max_lean_rad();
+        let limit = controller.max_lean_rad(params);
         let stick = Vector2::new(
             share(now.stick_pitch, tuning.stick_deadband),
             share(now.stick_roll, tuning.stick_deadband),

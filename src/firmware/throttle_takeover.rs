@@ -3,31 +3,33 @@
 use crate::autopilot::Params;
 use crate::firmware::modes::AfterAbort;
 
-/// The stick was left where the mission needed it: it has no effect until the pilot moves it.
+/// The stick stands where the mission needed it: it has no effect until the pilot moves it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(super) enum LeftStick {
+pub(super) enum ThrottleTakeover {
     /// The pilot's.
     #[default]
     Flown,
-    /// Left at this pulse, µs.
-    At(f64),
+    /// Standing at this pulse since the mission was given up, µs.
+    Standing(f64),
     /// Moved since.
     Moved,
 }
 
-impl LeftStick {
+impl ThrottleTakeover {
     /// The pulse (µs) that counts in this update; `None` while the stick was not moved by more than
     /// `ap_throttle_deadband` since the mission was given up.
     pub(super) fn update(&mut self, after_abort: AfterAbort, stick_us: f64, params: &Params) -> Option<f64> {
         *self = match *self {
             _ if after_abort == AfterAbort::Nothing => Self::Flown,
-            Self::Flown => Self::At(stick_us),
-            Self::At(left_us) if (stick_us - left_us).abs() > f64::from(params.throttle_deadband) => {
+            Self::Flown => Self::Standing(stick_us),
+            Self::Standing(standing_us)
+                if (stick_us - standing_us).abs() > f64::from(params.throttle_deadband) =>
+            {
                 Self::Moved
             }
             same => same,
         };
-        (!matches!(self, Self::At(_))).then_some(stick_us)
+        (!matches!(self, Self::Standing(_))).then_some(stick_us)
     }
 }
 
@@ -38,7 +40,7 @@ mod tests {
     #[test]
     fn a_stick_counts_again_when_it_was_moved() {
         let params = Params::default();
-        let mut stick = LeftStick::default();
+        let mut stick = ThrottleTakeover::default();
         assert_eq!(stick.update(AfterAbort::Nothing, 1300.0, &params), Some(1300.0));
         for pulse in [1500.0, 1550.0, 1450.0] {
             assert_eq!(stick.update(AfterAbort::Altitude, pulse, &params), None, "{pulse}");
@@ -47,6 +49,6 @@ mod tests {
             assert_eq!(stick.update(AfterAbort::Altitude, pulse, &params), Some(pulse));
         }
         assert_eq!(stick.update(AfterAbort::Nothing, 1500.0, &params), Some(1500.0));
-        assert_eq!(stick.update(AfterAbort::Descent, 1500.0, &params), None, "left anew");
+        assert_eq!(stick.update(AfterAbort::Descent, 1500.0, &params), None, "given up anew");
     }
 }

@@ -1,0 +1,106 @@
+//! A mission: plan, craft, air, and how it ended.
+
+use betadeck::firmware::config::Configuration;
+use betadeck::flight::setup::BootLines;
+use betadeck::flight::{Flight, FlightEnd, FlightOptions, FlightResult, FlightSetup, Report};
+use betadeck::geo::LatLon;
+use betadeck::plan::FlightPlan;
+use betadeck::plan::format::{Format, Home, parse};
+use betadeck::signals::SimTime;
+use betadeck::sim::WorldConfig;
+use betadeck::telemetry::{DisarmReason, EventKind, FirmwareEvent, NavEvent};
+
+/// What is flown.
+#[derive(Debug, Clone)]
+pub(crate) struct Mission {
+    pub(crate) world: WorldConfig,
+    pub(crate) plan: FlightPlan,
+    /// `set` lines, as `name = value`.
+    pub(crate) settings: Vec<String>,
+    pub(crate) takeoff_m: f64,
+    pub(crate) timeout_s: f64,
+}
+
+/// What came of it.
+#[derive(Debug)]
+pub(crate) struct Outcome {
+    pub(crate) end: FlightEnd,
+    /// Greatest true altitude before the engagement, m.
+    pub(crate) climbed_m: f64,
+    /// The thrust limited the lean.
+    pub(crate) limited: bool,
+    /// Reasons of the disarms, with the true altitude, m.
+    pub(crate) disarms: Vec<(DisarmReason, f64)>,
+    pub(crate) is_finite: bool,
+}
+
+impl Outcome {
+    pub(crate) fn result(&self) -> FlightResult {
+        self.end.verdict.result
+    }
+}
+
+/// A plan of CLI lines.
+pub(crate) fn plan(lines: &str) -> FlightPlan {
+    parse("test", lines, Format::CliText).unwrap().plan
+}
+
+impl Mission {
+    pub(crate) fn new(plan: FlightPlan) -> Self {
+        Self { world: WorldConfig::default(), plan, settings: Vec::new(), takeoff_m: 10.0, timeout_s: 900.0 }
+    }
+
+    pub(crate) fn set(mut self, name: &str, value: impl ToString) -> Self {
+        self.settings.push(format!("{name} = {}", value.to_string()));
+        self
+    }
+
+    pub(crate) fn fly(self) -> Outcome {
+        let stored = Configuration { plan: self.plan, ..Configuration::default() };
+        let boot_lines = vec![BootLines::settings("settings", &self.settings)];
+        let at = self.world.home;
+        let home = Some(Home {
+            position: LatLon::from_degrees(at.lat_deg, at.lon_deg),
+            amsl_m: Some(at.alt_amsl_m),
+        });
+        let setup = FlightSetup { world: self.world, home, stored, boot_lines, ..FlightSetup::default() };
+        let (vehicle, _) = setup.build().unwrap();
+        let standing_m = vehicle.world().unwrap().truth().pos_enu.z;
+        let options = FlightOptions {
+            takeoff_m: self.takeoff_m,
+            timeout: SimTime::from_secs_f64(self.timeout_s),
+            ..FlightOptions::default()
+        };
+        let mut flight = Flight::new(vehicle, &options).unwrap();
+        let (mut climbed_m, mut limited, mut is_finite) = (0.0_f64, false, true);
+        let mut disarms = Vec::new();
+        loop {
+            let mut disarmed = None;
+            let end = flight.tick(|report| match report {
+                Report::Event(event) => match event.kind {
+                    EventKind::Firmware(FirmwareEvent::Disarmed(reason)) => disarmed = Some(reason),
+                    EventKind::Firmware(FirmwareEvent::Nav(NavEvent::Limited { .. })) => limited = true,
+                    _ => {}
+                },
+                Report::Sample(_) => {}
+            });
+            let truth = flight.vehicle().world().unwrap().truth();
+            let altitude_m = truth.pos_enu.z - standing_m;
+            is_finite &= truth.pos_enu.iter().chain(truth.vel_enu.iter()).all(|value| value.is_finite());
+            if flight.engaged_at().is_none() {
+                climbed_m = climbed_m.max(altitude_m);
+            }
+            disarms.extend(disarmed.map(|reason| (reason, altitude_m)));
+            if let Some(end) = end {
+                return Outcome { end, climbed_m, limited, disarms, is_finite };
+            }
+        }
+    }
+}
+
+/// Fails with all complaints.
+#[track_caller]
+pub(crate) fn assert_none(complaints: impl IntoIterator<Item = Option<String>>) {
+    let complaints: Vec<String> = complaints.into_iter().flatten().collect();
+    assert!(complaints.is_empty(), "{} missions:\n{}", complaints.len(), complaints.join("\n"));
+}

@@ -1,0 +1,205 @@
+//! A random search over missions: plans, airframes, settings, air and faults, with fixed seeds.
+//!
+//! `cargo test --release --test missions -- --ignored --nocapture ten_thousand` flies the whole search.
+
+use crate::mission::{Mission, assert_none};
+use betadeck::flight::FlightResult;
+use betadeck::geo::{LatLon, offset_to_latlon};
+use betadeck::plan::{FlightPlan, HoldPattern, Waypoint, WaypointType, plan_lines};
+use betadeck::sim::{Airframe, ScheduledFault, Turbulence, Wind};
+use betadeck::telemetry::DisarmReason;
+use nalgebra::Vector2;
+
+/// Missions of the quick search.
+const QUICK: u64 = 60;
+/// A craft this high has not landed, m.
+const AIRBORNE_M: f64 = 0.3;
+const HOME: LatLon = LatLon::new(404_635_000, -795_182_000);
+
+/// Numbers from a seed (SplitMix64).
+struct Dice(u64);
+
+impl Dice {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+
+    fn below(&mut self, limit: u64) -> u64 {
+        self.next() % limit
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * (self.next() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn one_in(&mut self, count: u64) -> bool {
+        self.below(count) == 0
+    }
+
+    fn pick<T: Clone>(&mut self, list: &[T]) -> T {
+        list[self.below(list.len() as u64) as usize].clone()
+    }
+}
+
+fn random_plan(dice: &mut Dice) -> FlightPlan {
+    let count = 1 + dice.below(5);
+    let ends_in_land = !dice.one_in(3);
+    let waypoints = (0..count).map(|index| {
+        let kinds = [WaypointType::Flyover, WaypointType::Flyby, WaypointType::Hold, WaypointType::Flyover];
+        let is_land = ends_in_land && index + 1 == count;
+        let kind = if is_land { WaypointType::Land } else { dice.pick(&kinds) };
+        let place = Vector2::new(dice.between(-120.0, 120.0), dice.between(-120.0, 120.0));
+        let patterns = [HoldPattern::None, HoldPattern::Orbit, HoldPattern::Figure8];
+        Waypoint {
+            position: offset_to_latlon(HOME, place),
+            alt_cm: dice.between(300.0, 5000.0) as i32,
+            speed_cms: if dice.one_in(3) { 0 } else { dice.between(150.0, 1200.0) as u16 },
+            duration_ds: if kind == WaypointType::Hold { 50 + dice.below(250) as u16 } else { 0 },
+            kind,
+            pattern: dice.pick(&patterns),
+        }
+    });
+    FlightPlan { waypoints: waypoints.collect() }
+}
+
+/// Settings within their ranges, each as a pilot might choose it.
+fn random_settings(dice: &mut Dice) -> Vec<String> {
+    let ranges = [
+        ("ap_max_angle", 15.0, 55.0),
+        ("ap_max_velocity", 300.0, 1500.0),
+        ("ap_hover_throttle", 1150.0, 1700.0),
+        ("ap_altitude_p", 10.0, 60.0),
+        ("ap_altitude_i", 10.0, 50.0),
+        ("ap_altitude_d", 15.0, 50.0),
+        ("ap_velocity_p", 30.0, 70.0),
+        ("ap_position_p", 20.0, 50.0),
+        ("ap_landing_descent_rate", 20.0, 150.0),
+        ("ap_landing_throttle_threshold", 20.0, 500.0),
+        ("ap_landing_altitude_m", 1.0, 10.0),
+        ("ap_landing_detection_time", 5.0, 50.0),
+        ("ap_waypoint_arrival_radius", 200.0, 1500.0),
+        ("ap_waypoint_hold_radius", 100.0, 500.0),
+        ("ap_l1_turn_rate", 0.0, 60.0),
+        ("ap_yaw_mode", 0.0, 4.9),
+        ("ap_hold_orbit_radius", 500.0, 2500.0),
+        ("alt_hold_climb_rate", 20.0, 100.0),
+        ("ap_throttle_max", 1800.0, 2000.0),
+    ];
+    ranges
+        .iter()
+        .filter_map(|(name, low, high)| {
+            let value = dice.between(*low, *high) as i64;
+            dice.one_in(3).then(|| {
+                let modes = ["VELOCITY", "BEARING", "HYBRID", "FIXED", "DAMPENER"];
+                match *name {
+                    "ap_yaw_mode" => format!("{name} = {}", modes[value as usize]),
+                    _ => format!("{name} = {value}"),
+                }
+            })
+        })
+        .collect()
+}
+
+/// A fault, and whether it may bring the craft down.
+fn random_fault(dice: &mut Dice) -> (String, bool) {
+    let at = dice.between(0.0, 60.0).round();
+    let for_s = dice.between(1.0, 20.0).round();
+    let faults = [
+        (format!("gps-loss@{at},{for_s}"), false),
+        (format!("gps-glitch@{at},{for_s},20@45"), false),
+        (format!("rx-loss@{at},{for_s}"), false),
+        (format!("baro-drift@{at},{for_s},{}", if dice.one_in(2) { 4 } else { -4 }), false),
+        (format!("baro-spike@{at},{for_s},50"), false),
+        (format!("gust@{at},,8@{}", dice.below(360)), false),
+        (format!("push@{at},,0.5,up"), false),
+        (format!("payload@{at},,0.2"), false),
+        (format!("motor@{at},,{}:0.85", 1 + dice.below(4)), true),
+        (format!("motor@{at},,{}:0", 1 + dice.below(4)), true),
+        (format!("mag-bias@{at},,20"), false),
+    ];
+    dice.pick(&faults)
+}
+
+/// Flies the mission of a seed; what is wrong with it, if anything is.
+fn complaint(seed: u64) -> Option<String> {
+    let dice = &mut Dice(seed);
+    let mut mission =
+        Mission { takeoff_m: dice.pick(&[0.5, 2.0, 10.0, 20.0]), ..Mission::new(random_plan(dice)) };
+    mission.settings = random_settings(dice);
+    mission.world.seed = seed;
+    mission.world.airframe = dice.pick(&[Airframe::iris(), Airframe::five_inch()]);
+    let wind_mps = if dice.one_in(2) { 0.0 } else { dice.between(0.0, 15.0) };
+    mission.world.wind = Wind { speed_mps: wind_mps, from_deg: dice.between(0.0, 359.0).floor() };
+    if dice.one_in(2) {
+        mission.world.turbulence = Turbulence::Light;
+    }
+    let fault = dice.one_in(2).then(|| random_fault(dice));
+    if let Some((text, _)) = &fault {
+        mission.world.faults.push(text.parse::<ScheduledFault>().unwrap());
+    }
+    // With the failsafe's default procedure a lost link stops the motors in the air.
+    mission.settings.push("failsafe_procedure = AUTO-LAND".to_owned());
+    let lines: Vec<String> = plan_lines(&mission.plan).collect();
+    let Mission { takeoff_m, settings, world, .. } = &mission;
+    let told = format!(
+        "seed {seed}: {}, takeoff {takeoff_m} m, wind {}, {:?}, {fault:?}, {settings:?}\n{}",
+        world.airframe.name,
+        world.wind,
+        world.turbulence,
+        lines.join("\n")
+    );
+    let outcome = mission.fly();
+    let may_crash = fault.is_some_and(|(_, fatal)| fatal) || wind_mps > 10.0;
+    let is_bad = match outcome.result() {
+        FlightResult::Crashed => !may_crash,
+        FlightResult::Missed => !may_crash && wind_mps < 5.0,
+        _ => false,
+    };
+    let problem = if !outcome.is_finite || outcome.result() == FlightResult::Diverged {
+        Some("not a number".to_owned())
+    } else if is_bad {
+        Some(outcome.end.verdict.reason.clone())
+    } else {
+        outcome
+            .disarms
+            .iter()
+            .find(|(reason, alt_m)| *alt_m > AIRBORNE_M && *reason != DisarmReason::Switch && !may_crash)
+            .map(|(reason, alt_m)| format!("disarmed by {reason} {alt_m:.1} m up"))
+    };
+    problem.map(|problem| format!("{told}: {problem}"))
+}
+
+/// What is wrong with the missions of these seeds.
+fn complaints(seeds: std::ops::Range<u64>) -> Vec<Option<String>> {
+    let threads = std::thread::available_parallelism().map_or(1, usize::from) as u64;
+    std::thread::scope(|scope| {
+        let runs: Vec<_> = (0..threads)
+            .map(|thread| {
+                let seeds = (seeds.start + thread..seeds.end).step_by(threads as usize);
+                scope.spawn(move || seeds.map(complaint).collect::<Vec<_>>())
+            })
+            .collect();
+        runs.into_iter().flat_map(|run| run.join().unwrap()).collect()
+    })
+}
+
+#[test]
+fn random_missions_never_stop_the_motors_in_the_air_and_crash_only_for_a_cause() {
+    assert_none(complaints(0..QUICK));
+}
+
+#[test]
+#[ignore = "10 000 missions: cargo test --release --test missions -- --ignored --nocapture ten_thousand"]
+fn ten_thousand_random_missions_never_stop_the_motors_in_the_air_and_crash_only_for_a_cause() {
+    let mut found = Vec::new();
+    for start in (0..10_000).step_by(250) {
+        let new: Vec<_> = complaints(start..start + 250).into_iter().flatten().collect();
+        println!("{} missions, {} complaints {}", start + 250, found.len() + new.len(), new.join("\n"));
+        found.extend(new.into_iter().map(Some));
+    }
+    assert_none(found);
+}
