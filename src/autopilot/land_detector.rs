@@ -28,6 +28,12 @@ pub use relief::DescentFacts;
 pub use stationary::STATIONARY_S;
 pub use touchdown::{GroundFacts, TouchdownFacts, TouchdownGuards, TouchdownTimer};
 
+/// Below this altitude a descent waits while the craft is faster over ground than the speed, m and m/s; not longer than
+/// the time, s.
+const LAST_METRES_M: f64 = 5.0;
+const TOUCHDOWN_MPS: f64 = 2.0;
+const FAST_PATIENCE_S: f64 = 30.0;
+
 /// What the detector sees of the craft, a hundred times a second.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GroundMeasurement {
@@ -68,6 +74,8 @@ pub struct LandDetector {
     relief: ThrottleRelief,
     /// Highest altitude of the descent under way, m.
     highest_m: Option<f64>,
+    /// When it was first too fast over ground for the last metres.
+    fast_since: Option<SimTime>,
     timer: TouchdownTimer,
     held_us: Option<u64>,
     stationary: StationaryTimer,
@@ -114,10 +122,22 @@ impl LandDetector {
     pub fn end_descent(&mut self) {
         if self.highest_m.take().is_some() {
             self.relief = ThrottleRelief::default();
+            self.fast_since = None;
             self.timer = TouchdownTimer::default();
             self.held_us = None;
             self.stationary.restart();
         }
+    }
+
+    /// Whether a descent should wait in its last metres: a craft that still flies fast over ground does not sink into it on
+    /// the way. It waits once for a while, for one that the wind carries off must come down, too.
+    pub fn is_too_fast(&mut self, now: &NavInputs) -> bool {
+        let is_low = (1.0..LAST_METRES_M).contains(&now.alt_m);
+        if !now.fix || !is_low || now.vel_ne.norm() <= TOUCHDOWN_MPS {
+            return false;
+        }
+        let since = *self.fast_since.get_or_insert(now.time);
+        now.time.seconds_since(since) < FAST_PATIENCE_S
     }
 
     /// One cycle of the descent, `dt` seconds after the last.

@@ -195,3 +195,22 @@ fn the_throttle_stick_takes_a_landing_without_a_fix_over() {
     let held = rig.samples.last().unwrap();
     assert!(held.vu.abs() < 0.3, "{}", held.vu);
 }
+
+#[test]
+fn a_failsafe_in_low_fast_flight_does_not_fly_the_craft_into_the_ground() {
+    let plan = "
+waypoint insert 0 40.4653000 -79.5182000 400 1000 FLYOVER 0 NONE
+waypoint insert 1 40.4680000 -79.5182000 400 1000 LAND 0 NONE";
+    assert_met([1, 2, 3].map(|seed| {
+        let lines = format!("set failsafe_procedure = AUTO-LAND\nset ap_max_distance_from_home = 0\n{plan}");
+        let mut rig = Rig::new(world(seed).0, &lines, 4.0);
+        rig.engaged().fly(14.0);
+        let lost = rig.t();
+        rig.vehicle.change_world(WorldCommand::FaultOn(Fault::RxLoss, None)).unwrap();
+        rig.until(90.0, "disarm", |rig| rig.disarmed().is_some() || rig.vehicle.crashed()).fly(2.0);
+        let mut checks = Checks::default();
+        checks.holds("not crashed", !rig.vehicle.crashed());
+        checks.holds("was fast", rig.at(lost).speed() > 6.0);
+        checks.verdict(&format!("seed {seed}"), &rig.story())
+    }));
+}

@@ -112,11 +112,11 @@ fn random_fault(dice: &mut Dice) -> (String, bool) {
         (format!("gps-loss@{at},{for_s}"), false),
         (format!("gps-glitch@{at},{for_s},20@45"), false),
         (format!("rx-loss@{at},{for_s}"), false),
-        (format!("baro-drift@{at},{for_s},{}", if dice.one_in(2) { 4 } else { -4 }), false),
+        (format!("baro-drift@{at},{for_s},{}", if dice.one_in(2) { 4 } else { -4 }), true),
         (format!("baro-spike@{at},{for_s},50"), false),
         (format!("gust@{at},,8@{}", dice.below(360)), false),
         (format!("push@{at},,0.5,up"), false),
-        (format!("payload@{at},,0.2"), false),
+        (format!("payload@{at},,0.2"), true),
         (format!("motor@{at},,{}:0.85", 1 + dice.below(4)), true),
         (format!("motor@{at},,{}:0", 1 + dice.below(4)), true),
         (format!("mag-bias@{at},,20"), false),
@@ -154,14 +154,9 @@ fn complaint(seed: u64) -> Option<String> {
     );
     let outcome = mission.fly();
     let may_crash = fault.is_some_and(|(_, fatal)| fatal) || wind_mps > 10.0;
-    let is_bad = match outcome.result() {
-        FlightResult::Crashed => !may_crash,
-        FlightResult::Missed => !may_crash && wind_mps < 5.0,
-        _ => false,
-    };
     let problem = if !outcome.is_finite || outcome.result() == FlightResult::Diverged {
         Some("not a number".to_owned())
-    } else if is_bad {
+    } else if outcome.result() == FlightResult::Crashed && !may_crash {
         Some(outcome.end.verdict.reason.clone())
     } else {
         outcome

@@ -8,11 +8,6 @@ use crate::autopilot::land_detector::{DescentFacts, LandDetector};
 use crate::autopilot::params::Params;
 use crate::signals::SimTime;
 
-/// Below this altitude a landing waits while the craft is faster over ground than the speed, m and m/s; not longer than
-/// the time, s.
-const LAST_METRES_M: f64 = 5.0;
-const TOUCHDOWN_MPS: f64 = 2.0;
-const FAST_PATIENCE_S: f64 = 30.0;
 /// Below this altitude a rescue sinks at the landing rate, m.
 const SLOW_LANDING_M: f64 = 4.0;
 /// Share of the descent rate below which a landing does not sink.
@@ -33,30 +28,17 @@ struct Path {
     rate_since: SimTime,
     rate_start_m: f64,
     rate_mps: f64,
-    /// When it was first too fast over ground for the last metres.
-    fast_since: Option<SimTime>,
 }
 
 impl Path {
     fn begin(now: &NavInputs, rate_mps: f64) -> Self {
-        Self { began: now.time, rate_since: now.time, rate_start_m: now.alt_m, rate_mps, fast_since: None }
+        Self { began: now.time, rate_since: now.time, rate_start_m: now.alt_m, rate_mps }
     }
 
     fn setpoint_m(&self, now: &NavInputs, params: &Params) -> f64 {
         let elapsed_s = now.time.seconds_since(self.rate_since);
         let landing_altitude_m = f64::from(params.landing_altitude_m);
         landing_setpoint_m(self.rate_start_m, self.rate_mps, elapsed_s, now.alt_m, landing_altitude_m)
-    }
-
-    /// A craft that still flies back to its place does not sink into the ground on the way. It waits once for a while:
-    /// one that the wind carries off must come down, too.
-    fn waits_for_slow_ground(&mut self, now: &NavInputs) -> bool {
-        let is_low = (1.0..LAST_METRES_M).contains(&now.alt_m);
-        if !is_low || now.vel_ne.norm() <= TOUCHDOWN_MPS {
-            return false;
-        }
-        let since = *self.fast_since.get_or_insert(now.time);
-        now.time.seconds_since(since) < FAST_PATIENCE_S
     }
 }
 
@@ -108,7 +90,7 @@ impl Descent {
             self.0 = Phase::Profile(Path::begin(now, sinking));
         }
         let Phase::Profile(path) = &mut self.0 else { return 0.0 };
-        let rate = if path.waits_for_slow_ground(now) { 0.0 } else { sinking };
+        let rate = if land.is_too_fast(now) { 0.0 } else { sinking };
         #[expect(clippy::float_cmp, reason = "the rate is copied, not computed")]
         if path.rate_mps != rate {
             path.rate_start_m = path.setpoint_m(now, params);

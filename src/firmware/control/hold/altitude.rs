@@ -184,6 +184,7 @@ impl AltitudeHold {
                 now.alt_m
             }
         };
+        let rate = if land.is_too_fast(now) { 0.0 } else { rate };
         let setpoint = (before - rate * now.dt).max(now.alt_m - DESCENT_LEASH_M.max(rate));
         self.phase = Phase::Descending(setpoint);
         land.follow_altitude(now.alt_m);
