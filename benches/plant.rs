@@ -64,7 +64,7 @@ fn fly(config: &WorldConfig) -> f64 {
     if world.apply(WorldCommand::FaultOn(high, None)).is_err() {
         return f64::NAN;
     }
-    let hover = 1.1 * world.airframe().hover_command();
+    let hover = 1.1 * world.airframe().hover_rotor_speed() / world.airframe().rotor_speed_max;
     let start = Instant::now();
     for _ in 0..TICKS {
         let truth = world.truth();

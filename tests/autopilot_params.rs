@@ -20,7 +20,7 @@ use betadeck::autopilot::rx_loss::{RxLossFacts, decide};
 use betadeck::plan::WaypointType::{Flyover, Hold, Land};
 use betadeck::plan::{HoldPattern, Waypoint};
 use betadeck::telemetry::{L1Mode, NavState, PlanSource};
-use flight::{DT, Flight, guide, inputs, vertical, waypoint, worst};
+use flight::{DT, Flight, guide, inputs, set, vertical, waypoint, worst};
 use nalgebra::Vector2;
 
 /// Parameters that are stored for other firmware versions and change nothing here.
@@ -38,7 +38,7 @@ const UNUSED: [&str; 9] = [
 
 fn with(name: &str, value: i64) -> Params {
     let mut params = guide();
-    params.set_by_name(name, value).unwrap();
+    set(&mut params, name, value);
     params
 }
 

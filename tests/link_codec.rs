@@ -217,7 +217,6 @@ proptest! {
         }
         prop_assert_eq!(rc::decode(&bytes).is_some(), bytes.len() >= rc::SIZE);
         prop_assert!(servo::decode(&bytes).is_none() || bytes.len() >= servo::SIZE);
-        prop_assert_eq!(servo::decode_raw(&bytes).is_some(), bytes.len() >= servo::RAW_SIZE);
     }
 }
 
@@ -407,8 +406,6 @@ fn worked_motor_packets_both_ways() {
         let count = case["motor_count"].as_u64().unwrap() as u16;
         let bytes = bytes_of(case);
         assert_eq!(servo::encode_raw(count, &values).to_vec(), bytes, "{}", case["id"]);
-        let (decoded_count, decoded) = servo::decode_raw(&bytes).unwrap();
-        assert_eq!((decoded_count, decoded.to_vec()), (count, values), "{}", case["id"]);
     }
 }
 

@@ -2,13 +2,16 @@
 
 #![allow(clippy::unwrap_used, clippy::disallowed_methods, reason = "tests may panic and wait")]
 
+#[path = "simulator_support/at_rest.rs"]
+mod at_rest;
+
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::time::Duration;
 
+use at_rest::at_rest;
 use betadeck::firmware::cli::BuildInfo;
 use betadeck::firmware::{AttitudeSource, FirmwareOptions};
 use betadeck::link::ListenConfig;
-use betadeck::link::proto::fdm::{State, pressure_pa};
 use betadeck::link::proto::fdm_link::FdmLinkConfig;
 use betadeck::link::proto::{rc, servo};
 use betadeck::session::sitl::{OutputLine, Sitl, SitlConfig, SitlEnd, SitlError, SitlPorts};
@@ -17,7 +20,6 @@ use betadeck::signals::fdm::Dialect;
 use betadeck::signals::fdm::MotorOrder;
 use betadeck::storage::Store;
 use betadeck::telemetry::EndpointKind;
-use nalgebra::{UnitQuaternion, Vector3};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::{TcpStream, UdpSocket};
 use tokio::sync::{mpsc, oneshot};
@@ -94,17 +96,7 @@ impl Rig {
     /// One step of a simulator that waits for each answer: the motors of the answer.
     async fn step(&mut self) -> [f32; 4] {
         self.stamp_ms += 1;
-        let state = State {
-            stamp_s: self.stamp_ms as f64 * 1e-3,
-            rate_flu: Vector3::zeros(),
-            specific_force_flu: Vector3::new(0.0, 0.0, betadeck::geo::GRAVITY),
-            attitude: UnitQuaternion::from_axis_angle(&Vector3::z_axis(), std::f64::consts::FRAC_PI_2),
-            vel_enu: Vector3::zeros(),
-            lon_deg: -79.51825,
-            lat_deg: 40.4635,
-            alt_m: 0.0,
-            pressure_pa: pressure_pa(0.0),
-        };
+        let state = at_rest(self.stamp_ms as f64 * 1e-3);
         self.sender.send_to(&Dialect::SitlGz.encode(&state).to_bytes(), self.fdm_door).await.unwrap();
         let answer = receive(&self.motors).await;
         servo::decode(&answer).unwrap()

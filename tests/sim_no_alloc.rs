@@ -71,7 +71,7 @@ fn a_flight_with_faults_wind_and_a_crash_allocates_nothing() {
         ..WorldConfig::default()
     })
     .expect("a world");
-    let hover = world.airframe().hover_command();
+    let hover = world.airframe().hover_rotor_speed() / world.airframe().rotor_speed_max;
     let mut events = 0;
     let before = allocations();
     for step in 0..20_000_u32 {

@@ -44,26 +44,6 @@ pub enum Effect {
     Stored,
 }
 
-/// Why a parameter was not set.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum ParamError {
-    /// No parameter of that name.
-    #[error("there is no autopilot parameter {0}: `get ap_` lists them all")]
-    Unknown(String),
-    /// Out of range.
-    #[error("{name} = {value} is out of range: allowed is {min} to {max}")]
-    Range {
-        /// Name of the parameter.
-        name: &'static str,
-        /// The value asked for.
-        value: i64,
-        /// Smallest value.
-        min: i64,
-        /// Greatest value.
-        max: i64,
-    },
-}
-
 /// Struct, defaults and table from one list: the only way to write each name, range and default once.
 macro_rules! parameters {
     ($($(#[$doc:meta])* $name:literal $field:ident : $ty:ty = $default:expr, $min:literal ..= $max:literal,
@@ -294,19 +274,6 @@ parameters! {
 }
 
 impl Params {
-    /// Sets the parameter called `name` (enumerations and switches by their code).
-    ///
-    /// # Errors
-    /// When there is no such parameter, or the value is outside its range.
-    pub fn set_by_name(&mut self, name: &str, value: i64) -> Result<(), ParamError> {
-        let field = Self::field(name).ok_or_else(|| ParamError::Unknown(name.to_owned()))?;
-        if !(field.min..=field.max).contains(&value) {
-            return Err(ParamError::Range { name: field.name, value, min: field.min, max: field.max });
-        }
-        (field.set)(self, value);
-        Ok(())
-    }
-
     /// The parameter called `name`.
     #[must_use]
     pub fn field(name: &str) -> Option<&'static Field> {
@@ -406,7 +373,7 @@ mod tests {
         for field in Params::FIELDS {
             for value in [field.min, field.max] {
                 let mut params = Params::default();
-                params.set_by_name(field.name, value).unwrap();
+                (field.set)(&mut params, value);
                 assert_eq!((field.get)(&params), value, "{}", field.name);
                 let changed = Params::FIELDS
                     .iter()
@@ -415,13 +382,6 @@ mod tests {
                 assert!(changed, "{} changed another field", field.name);
             }
         }
-    }
-
-    #[test]
-    fn a_value_out_of_range_names_the_range() {
-        let error = Params::default().set_by_name("ap_max_angle", 71).unwrap_err();
-        assert_eq!(error.to_string(), "ap_max_angle = 71 is out of range: allowed is 10 to 70");
-        assert!(Params::default().set_by_name("ap_nothing", 0).is_err());
     }
 
     #[test]

@@ -84,9 +84,3 @@ pub fn check_records(
 pub fn check_plan(plan: &FlightPlan) -> Result<(), PlanFault> {
     check_records(plan.waypoints.len(), plan.waypoints.iter().copied().map(Some))
 }
-
-/// Whether `index` names a waypoint of a plan with this stored `count`, also when the count is damaged.
-#[must_use]
-pub fn is_valid_index(count: usize, index: usize) -> bool {
-    index < MAX_WAYPOINTS && index < count
-}

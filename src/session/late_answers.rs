@@ -11,6 +11,11 @@ const ANSWER_TIMEOUT: Duration = Duration::from_secs(5);
 /// What is said in place of an answer that did not come.
 pub(super) const NO_ANSWER: &str = "the flight controller does not answer";
 
+/// What a command line prints in place of the output of a line that was not answered.
+pub(super) fn no_answer_line() -> String {
+    format!("###ERROR: {}###", NO_ANSWER.to_uppercase())
+}
+
 /// Who awaits which answer.
 #[derive(Debug)]
 pub(super) struct LateAnswers<R>(BTreeMap<Ticket, (Instant, R)>);

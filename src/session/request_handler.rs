@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use tokio::sync::oneshot;
 
-use super::late_answers::{LateAnswers, NO_ANSWER};
+use super::late_answers::{LateAnswers, no_answer_line};
 use super::persistence::Persistence;
 use crate::firmware::cli::{CliAction, CliReply, Interpreter, Mode, complete};
 use crate::firmware::msp::{MspAction, Outcome, UtcTime};
@@ -160,7 +160,7 @@ impl RequestHandler {
             match recipient {
                 WaitingClient::Message(reply) => answer(reply, None),
                 WaitingClient::Line(reply) => {
-                    let text = format!("###ERROR: {}###", NO_ANSWER.to_uppercase());
+                    let text = no_answer_line();
                     answer(reply, LineReply { text, refused: true, ..LineReply::default() });
                 }
             }

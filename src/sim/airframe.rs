@@ -177,12 +177,6 @@ impl Airframe {
         (self.mass_kg * GRAVITY / (ROTORS as f64 * self.thrust_coeff)).sqrt()
     }
 
-    /// Motor command at which four rotors carry the weight at the reference density, 0…1.
-    #[must_use]
-    pub fn hover_command(&self) -> f64 {
-        self.hover_rotor_speed() / self.rotor_speed_max
-    }
-
     /// Greatest thrust over weight at the reference density.
     #[must_use]
     pub fn thrust_to_weight(&self) -> f64 {

@@ -8,7 +8,7 @@ use nalgebra::Vector2;
 use rand::{RngExt as _, SeedableRng as _};
 use rand_chacha::ChaCha8Rng;
 
-use crate::flight::{Flight, guide, waypoint};
+use crate::flight::{Flight, guide, set, waypoint};
 
 /// Simulated seconds after which a flight is judged as it is.
 const LIMIT_S: f64 = 600.0;
@@ -18,10 +18,6 @@ fn given_up(flight: &Flight) -> Option<(f64, AbortReason)> {
         NavEvent::State { reason: TransitionReason::GivenUp(why), .. } => Some((*t, *why)),
         _ => None,
     })
-}
-
-fn set(params: &mut Params, name: &str, value: i64) {
-    params.set_by_name(name, value).unwrap();
 }
 
 /// Settings that a craft can be flown with, between timid and wild.

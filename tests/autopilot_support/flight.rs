@@ -182,6 +182,13 @@ pub(crate) fn inputs() -> NavInputs {
     }
 }
 
+/// Sets a parameter within its range.
+pub(crate) fn set(params: &mut Params, name: &str, value: i64) {
+    let field = Params::field(name).unwrap();
+    assert!((field.min..=field.max).contains(&value), "{name} = {value}");
+    (field.set)(params, value);
+}
+
 /// The parameters of the guide's configuration block.
 pub(crate) fn guide() -> Params {
     let mut params = Params::default();
@@ -208,7 +215,7 @@ pub(crate) fn guide() -> Params {
         ("ap_max_yaw_rate", 90),
         ("ap_max_distance_from_home", 500),
     ] {
-        params.set_by_name(name, value).unwrap();
+        set(&mut params, name, value);
     }
     params
 }

@@ -59,7 +59,7 @@ fn state(name: &str) -> NavState {
 }
 
 fn set(params: &mut Params, name: &str, case: &Value, key: &str) {
-    params.set_by_name(name, case[key].as_i64().unwrap()).unwrap();
+    (Params::field(name).unwrap().set)(params, case[key].as_i64().unwrap());
 }
 
 #[track_caller]

@@ -49,9 +49,7 @@ impl Rig {
         let dt = 1.0 / f64::from(config.rate_hz);
         let mut params = Params::default();
         for field in Params::FIELDS {
-            params
-                .set_by_name(field.name, settings.number(field.name))
-                .expect("settings have the same ranges");
+            (field.set)(&mut params, settings.number(field.name));
         }
         Self {
             world: World::new(config).expect("a valid world"),

@@ -2,7 +2,7 @@
 
 use betadeck::link::proto::servo;
 
-/// Reads both forms.
+/// Reads the normalised form.
 pub fn run(data: &[u8]) {
     match servo::decode(data) {
         Some(motors) => {
@@ -23,17 +23,5 @@ pub fn run(data: &[u8]) {
             let number = |bytes: &[u8; 4]| f32::from_le_bytes(*bytes).is_finite();
             assert!(!whole || !data[..servo::SIZE].as_chunks::<4>().0.iter().all(number));
         }
-    }
-    match servo::decode_raw(data) {
-        Some((count, pulses)) => {
-            let mut bytes = servo::encode_raw(count, &pulses);
-            // What pads the count is not kept.
-            bytes[2..4].copy_from_slice(&data[2..4]);
-            // A number that is none may change its bits on the way.
-            if pulses.iter().all(|pulse| !pulse.is_nan()) {
-                assert_eq!(bytes, data[..servo::RAW_SIZE]);
-            }
-        }
-        None => assert!(data.len() < servo::RAW_SIZE),
     }
 }

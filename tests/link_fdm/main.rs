@@ -2,32 +2,19 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
+#[path = "../simulator_support/at_rest.rs"]
+mod at_rest;
 mod hostile;
 mod lossy;
 mod sensors;
 mod timing;
 
-use betadeck::link::proto::fdm::{GZ_PLUGIN_SIZE, State, pressure_pa};
+use at_rest::at_rest;
+use betadeck::link::proto::fdm::{GZ_PLUGIN_SIZE, State};
 use betadeck::link::proto::fdm_link::{FdmLink, FdmLinkConfig};
 use betadeck::signals::fdm::Dialect;
-use nalgebra::{UnitQuaternion, Vector3};
 
 const MS: u64 = 1000;
-
-/// A craft at rest, level, facing north.
-fn at_rest(stamp_s: f64) -> State {
-    State {
-        stamp_s,
-        rate_flu: Vector3::zeros(),
-        specific_force_flu: Vector3::new(0.0, 0.0, betadeck::geo::GRAVITY),
-        attitude: UnitQuaternion::from_axis_angle(&Vector3::z_axis(), std::f64::consts::FRAC_PI_2),
-        vel_enu: Vector3::zeros(),
-        lon_deg: -79.51825,
-        lat_deg: 40.4635,
-        alt_m: 0.0,
-        pressure_pa: pressure_pa(0.0),
-    }
-}
 
 fn bytes(dialect: Dialect, state: &State) -> Vec<u8> {
     let mut bytes = dialect.encode(state).to_bytes().to_vec();

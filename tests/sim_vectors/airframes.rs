@@ -34,7 +34,7 @@ fn the_built_in_airframes_have_the_published_constants() {
         assert_eq!(got.friction_full_mps, num(&want["friction_regularisation_mps"]));
         let derived = &want["derived"];
         near(got.hover_rotor_speed(), num(&derived["omega_hover"]), 1e-9);
-        near(got.hover_command(), num(&derived["u_hover"]), 1e-9);
+        near(got.hover_rotor_speed() / got.rotor_speed_max, num(&derived["u_hover"]), 1e-9);
         near(got.thrust_to_weight(), num(&derived["thrust_to_weight"]), 1e-9);
     }
 }

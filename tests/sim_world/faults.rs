@@ -26,7 +26,7 @@ fn hovering() -> (World, f64) {
     let mut config = ideal();
     config.switches.set("air_density=reference").expect("a switch");
     let mut world = world(config);
-    let hover = world.airframe().hover_command();
+    let hover = world.airframe().hover_rotor_speed() / world.airframe().rotor_speed_max;
     put_on(&mut world, "teleport=0,0,20", None);
     run(&mut world, 0.1, hover);
     events(&mut world);

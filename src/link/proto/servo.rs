@@ -77,14 +77,3 @@ pub fn encode_raw(motor_count: u16, pulses_us: &[f32]) -> [u8; RAW_SIZE] {
     }
     datagram
 }
-
-/// Number of motors and all pulses (µs) of a raw datagram; `None` when it is too short.
-#[must_use]
-pub fn decode_raw(datagram: &[u8]) -> Option<(u16, [f32; RAW_OUTPUTS])> {
-    let (count, rest) = datagram.get(..RAW_SIZE)?.split_first_chunk::<2>()?;
-    let mut pulses = [0.0; RAW_OUTPUTS];
-    for (pulse, field) in pulses.iter_mut().zip(rest[2..].as_chunks::<4>().0) {
-        *pulse = f32::from_le_bytes(*field);
-    }
-    Some((u16::from_le_bytes(*count), pulses))
-}

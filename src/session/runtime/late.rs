@@ -9,7 +9,7 @@ use super::console::output;
 use crate::firmware::cli::CliAction;
 use crate::session::command::CliOutput;
 use crate::session::hazards;
-use crate::session::late_answers::NO_ANSWER;
+use crate::session::late_answers::{NO_ANSWER, no_answer_line};
 use crate::session::upload::{Upload, UploadProgress};
 use crate::vehicle::LateAnswer;
 
@@ -58,8 +58,7 @@ impl Session {
         for recipient in self.late_answers.take_overdue(now) {
             match recipient {
                 WaitingInterface::Line { reply, .. } => {
-                    let text = format!("###ERROR: {}###", NO_ANSWER.to_uppercase());
-                    drop(reply.send(CliOutput { text, ..CliOutput::default() }));
+                    drop(reply.send(CliOutput { text: no_answer_line(), ..CliOutput::default() }));
                 }
                 WaitingInterface::Upload { reply, .. } => drop(reply.send(Err(NO_ANSWER.to_owned()))),
             }

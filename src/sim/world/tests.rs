@@ -1,6 +1,7 @@
 //! The world as a whole: standing, flying, falling, failing.
 
 use super::*;
+use crate::sim::airframe::Airframe;
 use crate::sim::command::WorldCommand;
 use crate::sim::config::{Noise, Turbulence, Wind, WorldConfig, WorldError};
 use crate::sim::fault::{FAULTS, Fault, FaultStart, ScheduledFault};
@@ -19,6 +20,11 @@ fn run(world: &mut World, seconds: f64, command: [f64; 4]) {
 
 fn events(world: &mut World) -> Vec<WorldEventKind> {
     std::iter::from_fn(|| world.take_event()).map(|event| event.kind).collect()
+}
+
+/// The command at which four rotors carry the weight, 0…1.
+fn hover_command(airframe: &Airframe) -> f64 {
+    airframe.hover_rotor_speed() / airframe.rotor_speed_max
 }
 
 /// A craft lifted `height` metres above its stand.
@@ -110,7 +116,7 @@ fn a_fall_is_a_crash_and_stops_the_rotors() {
 #[test]
 fn a_dead_motor_tips_the_craft_over_and_names_no_nan() {
     let mut world = lifted(ideal(), 20.0);
-    let hover = world.airframe().hover_command();
+    let hover = hover_command(world.airframe());
     world
         .apply(WorldCommand::FaultOn("motor@0,,2:0".parse::<ScheduledFault>().unwrap().fault, None))
         .unwrap();
@@ -126,7 +132,7 @@ fn a_dead_motor_tips_the_craft_over_and_names_no_nan() {
 #[test]
 fn commands_that_are_no_numbers_are_refused_and_counted() {
     let mut world = lifted(ideal(), 20.0);
-    let hover = world.airframe().hover_command();
+    let hover = hover_command(world.airframe());
     run(&mut world, 0.1, [hover; 4]);
     let mut twin = world.clone();
     world.step(&MotorCommand([f64::NAN, f64::INFINITY, f64::NEG_INFINITY, hover]));
@@ -182,7 +188,7 @@ fn a_push_changes_the_momentum() {
 #[test]
 fn payload_makes_it_heavier_until_it_is_dropped() {
     let mut world = lifted(ideal(), 20.0);
-    let hover = world.airframe().hover_command();
+    let hover = hover_command(world.airframe());
     world.rotors = [world.airframe().hover_rotor_speed(); 4];
     let payload = Fault::Payload(0.53);
     world.apply(WorldCommand::FaultOn(payload, None)).unwrap();
