@@ -27,4 +27,4 @@ pub use external::ExternalSimulator;
 pub use impairment::{ImpairedLink, LinkImpairment};
 pub use listeners::{ListenConfig, ListenError, Listeners, RestartSignal};
 pub use request::{ClientId, Request};
-pub use udp::{MotorPort, Sent};
+pub use udp::{MotorPort, Sent, StateQueue};

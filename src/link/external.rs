@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use super::proto::fdm_link::{Counters, FdmLink, FdmLinkConfig, Received, Reply};
 use super::proto::servo;
-use super::udp::{MotorPort, Sent};
+use super::udp::{MotorPort, Sent, StateQueue};
 use crate::signals::fdm::MotorOrder;
 use crate::signals::{MotorCommand, SensorFrame};
 use crate::telemetry::{EndpointKind, EndpointState, EndpointStatus, LinkState, SimulatorStats};
@@ -14,6 +14,8 @@ use crate::telemetry::{EndpointKind, EndpointState, EndpointStatus, LinkState, S
 pub struct ExternalSimulator {
     link: FdmLink,
     port: MotorPort,
+    /// Where its packets wait before they become requests.
+    states: Option<StateQueue>,
     order: MotorOrder,
     started: Instant,
     pulses_us: [f32; 4],
@@ -26,6 +28,7 @@ impl ExternalSimulator {
         let mut simulator = Self {
             link: FdmLink::new(config, 0),
             port,
+            states: None,
             order,
             started: now,
             pulses_us: servo::pulses_us(&MotorCommand::default()),
@@ -33,6 +36,20 @@ impl ExternalSimulator {
         simulator.send_servo();
         simulator.port.send_raw(simulator.pulses_us);
         simulator
+    }
+
+    /// The simulator with the queue in which its packets wait.
+    #[must_use]
+    pub fn with_states(self, states: Option<StateQueue>) -> Self {
+        Self { states, ..self }
+    }
+
+    /// Makes requests of the packets that have arrived by now. A packet that was there before something is sent unasked
+    /// is not the answer to that, however late it is read: first of all on waking, what is queued is read.
+    pub fn pass_on_queued(&self) {
+        if let Some(states) = &self.states {
+            states.pass_on();
+        }
     }
 
     /// Takes a datagram that arrived at `at`. When it describes the craft, `run` steps the firmware that many ticks on
@@ -58,7 +75,7 @@ impl ExternalSimulator {
         received
     }
 
-    /// Sends what is due unasked.
+    /// Sends what is due unasked; [`Self::pass_on_queued`] and [`Self::receive`] come first.
     pub fn poll(&mut self, now: Instant) {
         if self.link.poll(self.micros(now)) {
             self.send_servo();

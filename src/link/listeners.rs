@@ -7,7 +7,7 @@ use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use tokio::net::{TcpListener, UdpSocket};
+use tokio::net::TcpListener;
 use tokio::sync::{mpsc, watch};
 use tokio_util::sync::CancellationToken;
 use tokio_util::task::TaskTracker;
@@ -16,7 +16,7 @@ use super::client::SharedChannels;
 use super::endpoint_stats::EndpointStats;
 use super::listener::{self, ListenerKind};
 use super::request::Request;
-use super::udp::{self, Datagrams};
+use super::udp::{DatagramPort, Datagrams, StateQueue};
 use crate::telemetry::{EndpointKind, EndpointState, EndpointStatus};
 
 /// How long the listeners may take to close.
@@ -104,14 +104,21 @@ pub struct Listeners {
     shutdown: CancellationToken,
     tasks: TaskTracker,
     restarts: watch::Sender<u64>,
+    /// What comes from an external simulator, when one is listened to.
+    states: Option<StateQueue>,
 }
 
 impl Listeners {
     /// Opens the endpoints. One that cannot be opened says why in its status; the others work.
     pub async fn open(config: &ListenConfig, requests: mpsc::Sender<Request>) -> (Self, Vec<EndpointStatus>) {
         let (restarts, restarted) = watch::channel(0);
-        let mut listeners =
-            Self { all: Vec::new(), shutdown: CancellationToken::new(), tasks: TaskTracker::new(), restarts };
+        let mut listeners = Self {
+            all: Vec::new(),
+            shutdown: CancellationToken::new(),
+            tasks: TaskTracker::new(),
+            restarts,
+            states: None,
+        };
         let channels = SharedChannels { requests, shutdown: listeners.shutdown.clone(), restarts: restarted };
         if let Some(port) = config.ws_port {
             let kind = ListenerKind::WebSocket {
@@ -126,10 +133,10 @@ impl Listeners {
                 .await;
         }
         if let Some(port) = config.fdm_port {
-            listeners.open_datagrams(EndpointKind::Fdm, config.listen, port, Datagrams::Fdm, &channels).await;
+            listeners.open_datagrams(EndpointKind::Fdm, config.listen, port, Datagrams::Fdm, &channels);
         }
         if let Some(port) = config.rc_port {
-            listeners.open_datagrams(EndpointKind::Rc, config.listen, port, Datagrams::Rc, &channels).await;
+            listeners.open_datagrams(EndpointKind::Rc, config.listen, port, Datagrams::Rc, &channels);
         }
         let status = listeners.status();
         (listeners, status)
@@ -173,7 +180,7 @@ impl Listeners {
         self.tasks.spawn(listener::listen(listener, server.clone(), channels.clone(), stats, tasks));
     }
 
-    async fn open_datagrams(
+    fn open_datagrams(
         &mut self,
         kind: EndpointKind,
         listen: Option<IpAddr>,
@@ -183,10 +190,14 @@ impl Listeners {
     ) {
         let stats = Arc::new(EndpointStats::new(Instant::now()));
         let address = SocketAddr::new(listen.unwrap_or(IpAddr::V4(Ipv4Addr::LOCALHOST)), port);
-        let bound = UdpSocket::bind(address).await.and_then(|socket| Ok((socket.local_addr()?, socket)));
+        let bound = DatagramPort::bind(address, datagrams, channels.requests.clone(), Arc::clone(&stats));
         let place = match bound {
-            Ok((place, socket)) => {
-                self.tasks.spawn(udp::receive(socket, datagrams, channels.clone(), Arc::clone(&stats)));
+            Ok((port, place)) => {
+                let (port, shutdown) = (Arc::new(port), channels.shutdown.clone());
+                if datagrams == Datagrams::Fdm {
+                    self.states = Some(StateQueue(Arc::clone(&port)));
+                }
+                self.tasks.spawn(async move { port.receive(shutdown).await });
                 Ok(place)
             }
             Err(error) => Err(explain(kind, address, error)),
@@ -217,6 +228,12 @@ impl Listeners {
     #[must_use]
     pub fn clients(&self, kind: EndpointKind) -> u32 {
         self.all.iter().find(|listener| listener.kind == kind).map_or(0, |listener| listener.stats.clients())
+    }
+
+    /// The states of an external simulator, when they are listened to.
+    #[must_use]
+    pub fn states(&self) -> Option<StateQueue> {
+        self.states.clone()
     }
 
     /// The signal that a restart of the firmware sends.

@@ -2,12 +2,14 @@
 
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, Ipv6Addr, SocketAddr, UdpSocket as StdUdpSocket};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
+use tokio::io::Interest;
 use tokio::net::UdpSocket;
+use tokio::sync::mpsc;
+use tokio_util::sync::CancellationToken;
 
-use super::client::SharedChannels;
 use super::endpoint_stats::EndpointStats;
 use super::proto::{fdm, rc, servo};
 use super::request::Request;
@@ -21,30 +23,74 @@ pub(super) enum Datagrams {
 
 /// More than any datagram that is looked at.
 const BUFFER: usize = 2048;
+/// Most datagrams that are taken from a socket in one go.
+const QUEUED_MAX: usize = 4096;
 
-/// Passes datagrams to the session until the doors close. The session is never waited for: what comes while its queue is
-/// full is dropped and counted as an error.
-#[allow(clippy::disallowed_methods, reason = "the age of RC counts in wall time from its arrival")]
-pub(super) async fn receive(
+/// A socket whose datagrams become requests. The task that waits for them and the session may both empty it.
+#[derive(Debug)]
+pub(super) struct DatagramPort {
+    /// Waits for datagrams.
     socket: UdpSocket,
+    /// The same socket, which is asked without waiting. Locked until what it gave is among the requests.
+    queue: Mutex<StdUdpSocket>,
     datagrams: Datagrams,
-    channels: SharedChannels,
+    requests: mpsc::Sender<Request>,
     stats: Arc<EndpointStats>,
-) {
-    let mut buffer = [0; BUFFER];
-    loop {
-        let received = tokio::select! {
-            () = channels.shutdown.cancelled() => return,
-            received = socket.recv_from(&mut buffer) => received,
-        };
-        let Ok((size, from)) = received else {
-            stats.error();
-            continue;
-        };
+}
+
+impl DatagramPort {
+    /// A port at this address, and where it is.
+    pub(super) fn bind(
+        address: SocketAddr,
+        datagrams: Datagrams,
+        requests: mpsc::Sender<Request>,
+        stats: Arc<EndpointStats>,
+    ) -> io::Result<(Self, SocketAddr)> {
+        let queue = StdUdpSocket::bind(address)?;
+        queue.set_nonblocking(true)?;
+        let socket = UdpSocket::from_std(queue.try_clone()?)?;
+        let place = queue.local_addr()?;
+        Ok((Self { socket, queue: Mutex::new(queue), datagrams, requests, stats }, place))
+    }
+
+    /// Passes datagrams to the session until the doors close.
+    pub(super) async fn receive(&self, shutdown: CancellationToken) {
+        loop {
+            tokio::select! {
+                () = shutdown.cancelled() => return,
+                // It fails when the runtime ends.
+                ready = self.socket.readable() => if ready.is_err() { return },
+            }
+            let passed_on = self.socket.try_io(Interest::READABLE, || self.pass_one_on());
+            if passed_on.is_err_and(|error| error.kind() != io::ErrorKind::WouldBlock) {
+                self.stats.error();
+            }
+        }
+    }
+
+    /// Passes on what has arrived by now, also what nobody was woken for yet.
+    pub(super) fn pass_on_queued(&self) {
+        for _ in 0..QUEUED_MAX {
+            match self.pass_one_on() {
+                Ok(()) => {}
+                Err(error) if error.kind() == io::ErrorKind::WouldBlock => return,
+                Err(_) => self.stats.error(),
+            }
+        }
+    }
+
+    /// Passes a datagram on. The session is never waited for: what comes while its queue is full is dropped and counted as
+    /// an error.
+    #[allow(clippy::disallowed_methods, reason = "the age of RC counts in wall time from its arrival")]
+    fn pass_one_on(&self) -> io::Result<()> {
+        let mut buffer = [0; BUFFER];
+        // Held until it is among the requests, so that none is on its way when the other side finds the socket empty.
+        let queue = self.queue.lock().unwrap_or_else(PoisonError::into_inner);
+        let (size, from) = queue.recv_from(&mut buffer)?;
         let at = Instant::now();
-        stats.received(size);
+        self.stats.received(size);
         let datagram = &buffer[..size];
-        let request = match datagrams {
+        let request = match self.datagrams {
             Datagrams::Rc => {
                 rc::decode(datagram).map(|(stamp_s, frame)| Request::Rc { stamp_s, frame, from, at })
             }
@@ -56,13 +102,25 @@ pub(super) async fn receive(
         };
         match request {
             Some(request) => {
-                stats.packet(at);
-                if channels.requests.try_send(request).is_err() {
-                    stats.error();
+                self.stats.packet(at);
+                if self.requests.try_send(request).is_err() {
+                    self.stats.error();
                 }
             }
-            None => stats.wrong_size(),
+            None => self.stats.wrong_size(),
         }
+        Ok(())
+    }
+}
+
+/// The states of an external simulator that are on their way to the session.
+#[derive(Debug, Clone)]
+pub struct StateQueue(pub(super) Arc<DatagramPort>);
+
+impl StateQueue {
+    /// Makes everything that has arrived by now a request.
+    pub(super) fn pass_on(&self) {
+        self.0.pass_on_queued();
     }
 }
 

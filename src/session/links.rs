@@ -58,6 +58,7 @@ impl Links {
         simulator: Option<ExternalSimulator>,
     ) -> (Listeners, Endpoints, watch::Sender<Vec<EndpointStatus>>) {
         let handler = RequestHandler::new(self.doors.restart_signal());
+        let simulator = simulator.map(|simulator| simulator.with_states(self.doors.states()));
         let (publish, status) = watch::channel(self.status);
         (self.doors, Endpoints { requests: self.requests, handler, status, simulator }, publish)
     }

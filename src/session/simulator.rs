@@ -91,6 +91,15 @@ impl Simulator {
         due.saturating_duration_since(now)
     }
 
+    /// Whether something is due to be sent unasked. What the simulator has sent by now goes before: it is made requests.
+    pub(super) fn read_before_sending(&self, now: Instant) -> bool {
+        let is_due = self.link.due() <= now;
+        if is_due {
+            self.link.pass_on_queued();
+        }
+        is_due
+    }
+
     /// Its line among the endpoints.
     pub(super) fn status(&self, now: Instant) -> EndpointStatus {
         self.link.status(now)
@@ -176,10 +185,12 @@ impl Simulator {
         u64::from(received.ticks)
     }
 
-    /// Carries out what is due by time, as [`Self::receive`] does; gives the ticks.
+    /// Carries out what is due by time, as [`Self::receive`] does; gives the ticks. Sends unasked only when everything
+    /// that it sent before has been received.
     pub(super) fn poll(
         &mut self,
         now: Instant,
+        is_read: bool,
         vehicle: &mut Vehicle,
         handler: &mut RequestHandler,
         events: &EventSender,
@@ -187,7 +198,9 @@ impl Simulator {
     ) -> u64 {
         self.end_faults(now, vehicle);
         let ticks = self.take_arrived(now, vehicle, handler, events, speed);
-        self.link.poll(now);
+        if is_read {
+            self.link.poll(now);
+        }
         if self.state == LinkState::Flowing && self.link.state(now) == LinkState::Silent {
             self.state = LinkState::Silent;
             self.changed = true;

@@ -6,7 +6,9 @@
 mod at_rest;
 mod hostile;
 mod lossy;
+mod plugin;
 mod sensors;
+mod stalls;
 mod timing;
 
 use at_rest::at_rest;

@@ -4,4 +4,5 @@
 
 mod faults;
 mod rig;
+mod stalls;
 mod time;

@@ -111,6 +111,27 @@ pub(crate) async fn rig_with(faults: &[&str]) -> Rig {
     }
 }
 
+/// A craft this far north of the start and above it, m.
+fn datagram(stamp_ms: u64, (north_m, up_m): (f64, f64), vel_enu: Vector3<f64>) -> Vec<u8> {
+    let state = State {
+        stamp_s: stamp_ms as f64 * 1e-3,
+        rate_flu: Vector3::zeros(),
+        specific_force_flu: Vector3::new(0.0, 0.0, betadeck::geo::GRAVITY),
+        attitude: attitude(90.0, 5.0, -3.0),
+        vel_enu,
+        lon_deg: START.1,
+        lat_deg: mirrored(START.0, START.0 + north_m / 111_043.55),
+        alt_m: START.2 + up_m,
+        pressure_pa: pressure_pa(START.2 + up_m),
+    };
+    Dialect::SitlGz.encode(&state).to_bytes().to_vec()
+}
+
+/// A craft that does not move.
+pub(crate) fn at_rest(stamp_ms: u64) -> Vec<u8> {
+    datagram(stamp_ms, (0.0, 0.0), Vector3::zeros())
+}
+
 impl Rig {
     /// Sends a state `ms` after the one before, this far north of the start and this high above it, m.
     pub(crate) async fn state(&mut self, ms: u64, north_m: f64, up_m: f64) {
@@ -119,18 +140,8 @@ impl Rig {
         let moved = (north_m - self.place.0, up_m - self.place.1);
         let seconds = (ms as f64 * 1e-3).max(1e-3);
         self.place = (north_m, up_m);
-        let state = State {
-            stamp_s: self.stamp_ms as f64 * 1e-3,
-            rate_flu: Vector3::zeros(),
-            specific_force_flu: Vector3::new(0.0, 0.0, betadeck::geo::GRAVITY),
-            attitude: attitude(90.0, 5.0, -3.0),
-            vel_enu: Vector3::new(0.0, moved.0, moved.1) / seconds,
-            lon_deg: START.1,
-            lat_deg: mirrored(START.0, START.0 + north_m / 111_043.55),
-            alt_m: START.2 + up_m,
-            pressure_pa: pressure_pa(START.2 + up_m),
-        };
-        let datagram = Dialect::SitlGz.encode(&state).to_bytes().to_vec();
+        let vel_enu = Vector3::new(0.0, moved.0, moved.1) / seconds;
+        let datagram = datagram(self.stamp_ms, self.place, vel_enu);
         let from = SocketAddr::from(([127, 0, 0, 1], 1));
         self.requests.send(Request::Fdm { datagram, from, at: self.at }).await.unwrap();
     }

@@ -28,8 +28,14 @@ impl Session {
         let mut flown = 0;
         let until = Instant::now() + REQUEST_TIME;
         self.more_waits = true;
+        let mut may_send = false;
         while flown < SLICE && Instant::now() < until {
             let Poll::Ready(Some(request)) = endpoints.requests.poll_recv(context) else {
+                let is_due = |simulator: &Simulator| simulator.read_before_sending(Instant::now());
+                if !may_send && self.simulator.as_ref().is_some_and(is_due) {
+                    may_send = true;
+                    continue;
+                }
                 self.more_waits = false;
                 break;
             };
@@ -68,6 +74,7 @@ impl Session {
             let speed = self.pacer.achieved();
             flown += simulator.poll(
                 Instant::now(),
+                may_send && !self.more_waits,
                 &mut self.vehicle,
                 &mut endpoints.handler,
                 &self.events,

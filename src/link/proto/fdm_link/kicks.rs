@@ -1,8 +1,12 @@
-//! When to send a servo packet unasked, and how many replies are withheld for it later.
+//! When to send a servo packet unasked, and which replies are withheld for it later.
 //!
 //! The simulator reads one servo packet a step and waits when there is none. So a lost packet must be replaced, and a
-//! packet too many stays in its socket for ever and makes every command one step older. As many replies are
-//! withheld afterwards as packets were sent unasked during a silence, less the one that ended it.
+//! packet too many stays in its socket for ever and makes every command one step older. Whether a silence came from a
+//! lost packet or from a simulator that stood still cannot be seen when it ends. So every packet that was sent unasked
+//! counts as one too many, and for each of them one reply is withheld. A simulator that goes on without the reply has
+//! read one of them; one that starves has nothing left to read, gets the reply late, and nothing is withheld any more.
+//!
+//! A link that was just shown to lose packets is taken to have lost one again: there the probe, which costs a pause, waits.
 
 /// From one kick to the next until the first packet, and while the simulator refuses them, µs.
 const WAITING_US: u64 = 500_000;
@@ -13,8 +17,18 @@ const FIRST_US: u64 = 100_000;
 const NEXT_US: [u64; 3] = [25_000, 20_000, 855_000];
 /// Between further kicks, µs.
 const LATER_US: u64 = 10_000_000;
-/// A packet this soon after a kick was caused by it, µs.
+/// A packet this soon after a kick may have been caused by it, µs.
 const CAUSED_US: u64 = 50_000;
+/// Silence after a withheld reply that shows that the simulator starves: this and twice the usual interval, µs.
+const STARVED_US: u64 = 10_000;
+/// How long a link that lost a packet is taken to lose more, µs.
+const LOSSY_FOR_US: u64 = 5_000_000;
+/// A simulator goes on by itself after waiting for so long, µs …
+const SIMULATOR_WAITS_US: u64 = 1_000_000;
+/// … so many times.
+const SIMULATOR_MISSES: u64 = 10;
+/// Usual interval of packets as long as nothing is known, µs.
+const INTERVAL_US: f64 = 20_000.0;
 
 /// The kicks of one link.
 #[derive(Debug, Clone)]
@@ -27,7 +41,16 @@ pub(super) struct Kicks {
     /// Whether an answer of ours lies in the simulator's socket, from before this silence.
     has_answer: bool,
     unreachable: bool,
+    /// Packets that may lie in the simulator's socket beyond the one it is to read next.
     surplus: u32,
+    /// Those of which it is likely that the simulator waited for them.
+    doubtful: u32,
+    /// The newest packet was not replied to because of the surplus.
+    withheld: bool,
+    /// When it was shown last that a packet was lost.
+    lost_at_us: Option<u64>,
+    /// Usual interval of the packets, µs.
+    interval_us: f64,
 }
 
 impl Kicks {
@@ -40,6 +63,10 @@ impl Kicks {
             has_answer: true,
             unreachable: false,
             surplus: 0,
+            doubtful: 0,
+            withheld: false,
+            lost_at_us: None,
+            interval_us: INTERVAL_US,
         }
     }
 
@@ -50,11 +77,20 @@ impl Kicks {
     /// When the next kick is due.
     pub(super) fn due_us(&self) -> u64 {
         match (self.heard_at_us, self.arrived) {
-            (Some(heard), 0) if !self.unreachable => heard + FIRST_US,
+            (Some(heard), 0) if !self.unreachable => heard + self.patience_us(),
             (Some(_), kicks) if !self.unreachable => {
                 self.kicked_at_us + NEXT_US.get(kicks as usize - 1).copied().unwrap_or(LATER_US)
             }
             _ => self.kicked_at_us + WAITING_US,
+        }
+    }
+
+    /// Silence before the first kick: short after a withheld reply, for which the simulator may wait.
+    fn patience_us(&self) -> u64 {
+        if self.withheld {
+            STARVED_US + (2.0 * self.interval_us).min(SIMULATOR_WAITS_US as f64) as u64
+        } else {
+            FIRST_US
         }
     }
 
@@ -65,40 +101,73 @@ impl Kicks {
         }
         self.kicked_at_us = now_us;
         self.arrived += 1;
-        self.surplus = 0;
         // Until the contrary is reported.
         self.unreachable = false;
         true
     }
 
-    /// The newest servo packet did not arrive.
+    /// The newest servo packet did not arrive: there is no socket, nor anything in it.
     pub(super) fn refused(&mut self) {
         self.unreachable = true;
-        if self.arrived > 0 {
-            self.arrived -= 1;
-        } else {
-            self.has_answer = false;
-        }
+        self.arrived = 0;
+        self.has_answer = false;
+        self.withheld = false;
+        (self.surplus, self.doubtful) = (0, 0);
     }
 
-    /// A packet came.
+    /// A packet came, which was not there yet when the newest kick was sent.
     pub(super) fn heard(&mut self, now_us: u64) {
-        if self.arrived > 0 {
-            let caused = now_us.saturating_sub(self.kicked_at_us) <= CAUSED_US;
-            let awaited = caused || !self.has_answer;
-            self.surplus = self.arrived - u32::from(awaited);
+        let withheld = std::mem::take(&mut self.withheld);
+        let kicks = std::mem::take(&mut self.arrived);
+        let at_once = now_us.saturating_sub(self.kicked_at_us) <= CAUSED_US;
+        // The simulator has read one packet: that which was withheld is missing.
+        let left = self.surplus.saturating_sub(u32::from(withheld));
+        if kicks == 0 {
+            self.surplus = left + self.misses(now_us);
+        } else if withheld && at_once {
+            // It starved: there was nothing left over.
+            (self.surplus, self.doubtful) = (0, 0);
+            self.lost_at_us = Some(now_us);
+        } else if !self.has_answer {
+            self.surplus = kicks - 1;
+        } else if at_once && self.is_lossy(now_us) {
+            self.surplus = left + kicks - 1;
+            self.doubtful += 1;
+        } else {
+            self.surplus = left + kicks;
         }
+        self.measure_interval(now_us);
         self.heard_at_us = Some(now_us);
-        self.arrived = 0;
         self.has_answer = true;
         self.unreachable = false;
     }
 
-    /// Whether this answer is one too many.
-    pub(super) fn withhold(&mut self) -> bool {
-        let withheld = self.surplus > 0;
-        self.surplus = self.surplus.saturating_sub(1);
-        withheld
+    /// Packets for which the simulator did not wait any longer, while the firmware stood still and did not kick.
+    fn misses(&self, now_us: u64) -> u32 {
+        let silence = self.heard_at_us.map_or(0, |heard| now_us.saturating_sub(heard));
+        (silence / SIMULATOR_WAITS_US).min(SIMULATOR_MISSES) as u32
+    }
+
+    fn is_lossy(&self, now_us: u64) -> bool {
+        self.lost_at_us.is_some_and(|lost| now_us.saturating_sub(lost) < LOSSY_FOR_US)
+    }
+
+    /// Follows the interval of the packets; a single long one changes little.
+    fn measure_interval(&mut self, now_us: u64) {
+        if let Some(heard) = self.heard_at_us {
+            let interval = now_us.saturating_sub(heard) as f64;
+            let longest = self.interval_us * 1.25 + 100.0;
+            self.interval_us += (interval.min(longest) - self.interval_us) / 8.0;
+        }
+    }
+
+    /// Whether the answer to the packet of `now_us` is one too many.
+    pub(super) fn withhold(&mut self, now_us: u64) -> bool {
+        if !self.is_lossy(now_us) {
+            self.surplus += std::mem::take(&mut self.doubtful);
+        }
+        self.withheld = self.surplus > 0;
+        self.withheld
     }
 }
 
@@ -109,6 +178,16 @@ mod tests {
     /// Times (ms) of the kicks until `end_ms`.
     fn kicks_until(kicks: &mut Kicks, start_ms: u64, end_ms: u64) -> Vec<u64> {
         (start_ms..end_ms).filter(|ms| kicks.poll(ms * 1000)).collect()
+    }
+
+    /// How many replies in a row are withheld, to packets from `ms` on, one a millisecond.
+    fn withheld_from(kicks: &mut Kicks, ms: u64) -> usize {
+        (ms..)
+            .take_while(|ms| {
+                kicks.heard(ms * 1000);
+                kicks.withhold(ms * 1000)
+            })
+            .count()
     }
 
     #[test]
@@ -133,31 +212,59 @@ mod tests {
         assert_eq!(kicks.due_us(), 600_000);
         assert!(kicks.poll(600_000));
         kicks.heard(601_000);
-        assert!(!kicks.withhold(), "the refused kick does not count, the other was awaited");
+        assert!(!kicks.withhold(601_000), "the refused kick does not count, the other was awaited");
     }
 
     #[test]
-    fn a_pause_costs_all_kicks_unless_the_last_ended_it() {
-        let paused_until = |resumed_us: u64| {
+    fn a_pause_costs_all_kicks_whenever_it_ends() {
+        for resumed_ms in [1040, 1500, 1999] {
             let mut kicks = Kicks::new(0);
             kicks.heard(0);
-            kicks_until(&mut kicks, 0, 2000);
-            kicks.heard(resumed_us);
-            (0..9).take_while(|_| kicks.withhold()).count()
-        };
-        assert_eq!(paused_until(1_999_000), 4);
-        assert_eq!(paused_until(1_040_000), 3);
+            assert_eq!(kicks_until(&mut kicks, 0, resumed_ms).len(), 4);
+            assert_eq!(withheld_from(&mut kicks, resumed_ms), 4, "{resumed_ms} ms");
+        }
     }
 
     #[test]
-    fn a_new_silence_forgets_the_surplus() {
+    fn a_simulator_that_starves_without_the_withheld_reply_gets_it_and_owes_nothing() {
         let mut kicks = Kicks::new(0);
         kicks.heard(0);
         kicks_until(&mut kicks, 0, 2000);
         kicks.heard(2_000_000);
-        assert!(kicks.withhold());
-        assert!(kicks.poll(2_100_000));
-        kicks.heard(2_110_000);
-        assert!(!kicks.withhold());
+        assert!(kicks.withhold(2_000_000));
+        assert!(!kicks.poll(2_010_000));
+        assert!(kicks.poll(2_055_000));
+        kicks.heard(2_056_000);
+        assert!(!kicks.withhold(2_056_000));
+    }
+
+    #[test]
+    fn a_second_stall_while_a_reply_is_withheld_is_counted_too() {
+        let mut kicks = Kicks::new(0);
+        kicks.heard(0);
+        assert_eq!(kicks_until(&mut kicks, 0, 140).len(), 2);
+        kicks.heard(140_000);
+        assert!(kicks.withhold(140_000));
+        // Two are left over; the simulator stands still again and is sent three more.
+        assert_eq!(kicks_until(&mut kicks, 140, 500).len(), 3);
+        assert_eq!(withheld_from(&mut kicks, 500), 4, "it has read one of the five");
+    }
+
+    #[test]
+    fn where_packets_are_lost_the_probe_waits_until_none_was_for_five_seconds() {
+        let mut kicks = Kicks::new(0);
+        kicks.heard(0);
+        assert!(kicks.poll(100_000));
+        kicks.heard(100_500);
+        assert!(kicks.withhold(100_500), "not known yet whether it was lost");
+        assert!(kicks.poll(200_000));
+        kicks.heard(200_500);
+        assert!(!kicks.withhold(200_500));
+        assert!(kicks.poll(300_500));
+        kicks.heard(301_000);
+        assert!(!kicks.withhold(301_000), "lost again");
+        kicks.heard(5_300_000);
+        kicks.heard(5_301_000);
+        assert!(kicks.withhold(5_301_000));
     }
 }
