@@ -3,13 +3,16 @@
 #![allow(clippy::unwrap_used, clippy::disallowed_methods, reason = "tests may panic and wait")]
 
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use betadeck::firmware::FirmwareOptions;
 use betadeck::firmware::config::Configuration;
 use betadeck::link::proto::command_line::LineSource;
 use betadeck::link::{ClientId, ListenConfig, Listeners, Request};
-use betadeck::session::{Command, Endpoints, Handle, RequestHandler, SessionConfig, SessionView, start};
+use betadeck::session::{
+    Command, Endpoints, Event, Handle, RequestHandler, SessionConfig, SessionEvent, SessionView, start,
+};
+use betadeck::signals::RcFrame;
 use betadeck::sim::WorldConfig;
 use betadeck::storage::Store;
 use betadeck::telemetry::{ArmingFlag, EndpointKind};
@@ -159,4 +162,61 @@ async fn what_a_client_changes_is_seen_while_time_stands_still() {
         .unwrap();
     assert!(!answer.await.unwrap().refused);
     rig.picture("the waypoint", |view| view.vehicle.stored_plan.as_ref().unwrap().waypoints.len() == 1).await;
+}
+
+/// The switch that a script turns on, a channel.
+const SCRIPT: usize = 8;
+/// The switch that the user turns on.
+const STICKS: usize = 9;
+
+/// A frame with one switch on.
+fn frame_with(channel: usize) -> RcFrame {
+    let mut frame = RcFrame::SAFE;
+    frame.channels[channel] = 2000;
+    frame
+}
+
+/// Sends frames of a script in real time.
+async fn script(requests: mpsc::Sender<Request>) {
+    let from = "127.0.0.1:9".parse().unwrap();
+    loop {
+        let frame = frame_with(SCRIPT);
+        let sent = requests.send(Request::Rc { stamp_s: 0.0, frame, from, at: Instant::now() }).await;
+        if sent.is_err() {
+            return;
+        }
+        tokio::time::sleep(Duration::from_millis(10)).await;
+    }
+}
+
+#[tokio::test]
+async fn sticks_are_cut_while_a_script_flies_and_after_it_until_they_are_taken_back() {
+    let mut rig = rig().await;
+    rig.session.commands.send(Command::Sticks(frame_with(STICKS))).await.unwrap();
+    let is_on = |view: &SessionView, channel: usize| {
+        view.vehicle.craft.channels.is_some_and(|channels| channels[channel] > 1700)
+    };
+    rig.picture("the sticks", |view| is_on(view, STICKS)).await;
+    let running = tokio::spawn(script(rig.requests.clone()));
+    rig.picture("the script", |view| is_on(view, SCRIPT) && !is_on(view, STICKS)).await;
+    running.abort();
+    // The script is gone for longer than a source stays fresh and than the link takes to count as lost.
+    let then = rig.session.view.borrow().vehicle.time.as_secs_f64() + 1.5;
+    rig.picture("the silence", |view| view.vehicle.time.as_secs_f64() > then).await;
+    {
+        let view = rig.session.view.borrow();
+        assert!(view.rc_cut && !is_on(&view, STICKS), "the sticks fly in the script's place");
+        assert_eq!(view.vehicle.craft.rc_link, Some(false));
+    }
+    let told = |event: &Event| matches!(&event.kind, SessionEvent::Notice(text) if text.contains("x takes"));
+    let events = std::iter::from_fn(|| rig.session.events.try_recv().ok());
+    assert_eq!(events.filter(told).count(), 1);
+    // Whoever takes them back flies, whatever the script sends.
+    let running = tokio::spawn(script(rig.requests.clone()));
+    rig.session.commands.send(Command::CutRc(false)).await.unwrap();
+    rig.picture("the sticks again", |view| is_on(view, STICKS) && !view.rc_cut).await;
+    let then = rig.session.view.borrow().vehicle.time.as_secs_f64() + 0.5;
+    rig.picture("half a second", |view| view.vehicle.time.as_secs_f64() > then).await;
+    assert!(!rig.session.view.borrow().rc_cut && is_on(&rig.session.view.borrow(), STICKS));
+    running.abort();
 }
