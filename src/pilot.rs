@@ -99,7 +99,7 @@ enum Phase {
 
 /// The switches of the pilot's modes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Switches {
+struct ModeSwitches {
     arm: Switch,
     levelling: [Option<Switch>; 3],
     autopilot: Switch,
@@ -110,7 +110,7 @@ struct Switches {
 pub struct Pilot {
     phase: Phase,
     takeoff_m: f64,
-    switches: Switches,
+    switches: ModeSwitches,
     frame: RcFrame,
 }
 
@@ -122,7 +122,7 @@ impl Pilot {
     /// The name of the mode that no channel switches: without ARM and AUTOPILOT there is no flight.
     pub fn new(takeoff_m: f64, ranges: &[ModeRange]) -> Result<Self, Mode> {
         let find = |mode| Switch::of(mode, ranges);
-        let switches = Switches {
+        let switches = ModeSwitches {
             arm: find(Mode::Arm).ok_or(Mode::Arm)?,
             levelling: [Mode::Angle, Mode::AltHold, Mode::PosHold].map(find),
             autopilot: find(Mode::Autopilot).ok_or(Mode::Autopilot)?,

@@ -20,7 +20,7 @@ use rand::RngExt as _;
 use rand_chacha::ChaCha8Rng;
 
 pub use controller::{
-    Answer, FlightController, FrameOut, LateAnswer, RemoteController, RemoteTelemetry, Request, Ticket,
+    Answer, FlightController, FrameOut, LateAnswer, RemoteController, RemoteRequest, RemoteTelemetry, Ticket,
 };
 
 use crate::firmware::config::Configuration;

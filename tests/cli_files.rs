@@ -1,7 +1,7 @@
 //! Whole files and pastes: the guide's blocks, a real quad's configuration, round trips, provisioning.
 
 use betadeck::firmware::cli::{
-    ApplyReport, CliAction, CliContext, CliFacts, CliReply, Interpreter, Mode, apply_lines, provision,
+    ApplyReport, CliAction, CliContext, CliFacts, CliMode, CliReply, Interpreter, apply_lines, provision,
 };
 use betadeck::firmware::config::{Configuration, ModeCondition, correct};
 use betadeck::firmware::settings::{SETTINGS, Scope};
@@ -29,7 +29,7 @@ fn text(configuration: &Configuration, line: &str) -> String {
 
 fn apply(configuration: &mut Configuration, lines: &str) -> ApplyReport {
     let mut context = CliContext { configuration, facts: &CliFacts::default() };
-    apply_lines(lines.lines(), &mut Interpreter::new(Mode::File), &mut context, |_, _| ())
+    apply_lines(lines.lines(), &mut Interpreter::new(CliMode::File), &mut context, |_, _| ())
 }
 
 #[test]
@@ -242,7 +242,7 @@ fn provisioned(file: &str) -> (Configuration, ApplyReport, String) {
     let mut shown = String::new();
     let mut context = CliContext { configuration: &mut configuration, facts: &CliFacts::default() };
     let report =
-        provision(file, &mut Interpreter::new(Mode::File), &mut context, |text| shown.push_str(text));
+        provision(file, &mut Interpreter::new(CliMode::File), &mut context, |text| shown.push_str(text));
     (configuration, report, shown)
 }
 
@@ -268,7 +268,7 @@ fn lines_of_a_file_are_cut_as_at_a_prompt() {
     assert_eq!(report.failed[0].line.len(), 255);
     let mut context = CliContext { configuration: &mut craft, facts: &CliFacts::default() };
     let stop = format!("{blanks}save\nset small_angle = 50");
-    assert_eq!(provision(&stop, &mut Interpreter::new(Mode::File), &mut context, |_| ()).commands, 0);
+    assert_eq!(provision(&stop, &mut Interpreter::new(CliMode::File), &mut context, |_| ()).commands, 0);
 }
 
 #[test]
@@ -287,7 +287,7 @@ fn provisioning_refuses_a_failed_batch() {
     }
     assert!(!provisioned("batch start\nset small_angle = 1\nbatch end\nset nonsense = 1").1.batch_failed);
     let mut craft = Configuration::default();
-    let mut lenient = Interpreter::new(Mode::File).lenient(true);
+    let mut lenient = Interpreter::new(CliMode::File).lenient(true);
     let mut context = CliContext { configuration: &mut craft, facts: &CliFacts::default() };
     assert!(
         !provision("batch start\nset nonsense = 1\nsave", &mut lenient, &mut context, |_| ()).batch_failed

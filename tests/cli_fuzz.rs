@@ -8,7 +8,7 @@ mod meter;
 
 use std::time::Duration;
 
-use betadeck::firmware::cli::{COMMANDS, CliContext, CliFacts, Interpreter, Mode, complete, hint};
+use betadeck::firmware::cli::{COMMANDS, CliContext, CliFacts, CliMode, Interpreter, complete, hint};
 use betadeck::firmware::config::{Configuration, correct};
 use betadeck::firmware::settings::SETTINGS;
 use betadeck::firmware::storage::{decode, encode};
@@ -22,7 +22,7 @@ const MIB: usize = 1 << 20;
 
 /// Runs lines in every mode, with completion and hints for each.
 fn run_lines(lines: &[&str]) {
-    for mode in [Mode::Interactive, Mode::Framed, Mode::Message, Mode::File] {
+    for mode in [CliMode::Interactive, CliMode::Framed, CliMode::Message, CliMode::File] {
         let mut configuration = Configuration::default();
         let mut interpreter = Interpreter::new(mode);
         let facts = CliFacts::default();

@@ -9,7 +9,7 @@ use std::ops::RangeInclusive;
 use std::time::Duration;
 
 use betadeck::firmware::cli::{
-    CliAction, CliContext, CliFacts, GpsFacts, GpsSolutionFacts, Interpreter, LoopFacts, Mode, TaskFacts,
+    CliAction, CliContext, CliFacts, CliMode, GpsFacts, GpsSolutionFacts, Interpreter, LoopFacts, TaskFacts,
     complete,
 };
 use betadeck::firmware::config::Configuration;
@@ -144,7 +144,7 @@ fn what_only_a_link_knows_is_reproduced() {
     let sent = link(&mut bench, &mut in_cli(), b"wa\t");
     assert_matches(&all[&242], sent.strip_prefix("wa").expect("the echo"));
 
-    bench.interpreter = Interpreter::new(Mode::Framed);
+    bench.interpreter = Interpreter::new(CliMode::Framed);
     let sent = link(&mut bench, &mut LineEditor::default(), b"\x02foo\n\x03");
     let reply = sent.strip_prefix('\x02').and_then(|sent| sent.strip_suffix('\x03'));
     assert_matches(&all[&243], reply.expect("a reply between STX and ETX"));
@@ -303,7 +303,7 @@ fn armed_craft_refuses_to_save() {
 fn flying_craft_is_reported() {
     let all = all();
     let mut bench = Bench::new();
-    bench.interpreter = Interpreter::new(Mode::Message);
+    bench.interpreter = Interpreter::new(CliMode::Message);
     let home = LatLon::new(-275_000_000, 1_530_000_000);
     bench.facts.gps = GpsFacts::Connected(Some(GpsSolutionFacts {
         sats: 12,
@@ -384,7 +384,7 @@ fn the_link_greets_echoes_and_completes() {
 #[test]
 fn framed_lines_have_no_echo() {
     let mut bench = Bench::new();
-    bench.interpreter = Interpreter::new(Mode::Framed);
+    bench.interpreter = Interpreter::new(CliMode::Framed);
     let mut editor = LineEditor::default();
     assert_eq!(link(&mut bench, &mut editor, b"\x02foo bar\n\x03"), "\x02ERR_CMD_NA: foo bar\r\n\x03");
     assert_eq!(link(&mut bench, &mut editor, b"\x02version\x03"), "\x02\x03");

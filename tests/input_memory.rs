@@ -9,7 +9,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use betadeck::firmware::cli::{
-    COMMANDS, CliContext, CliFacts, Interpreter, MAX_LINE, Mode, apply_lines, complete, hint, provision,
+    COMMANDS, CliContext, CliFacts, CliMode, Interpreter, MAX_LINE, apply_lines, complete, hint, provision,
 };
 use betadeck::firmware::config::{Configuration, KeptLine};
 use betadeck::firmware::settings::Scope;
@@ -69,7 +69,7 @@ fn the_meter_measures() {
 #[test]
 fn stored_lines() {
     for text in [texts("cli"), texts("settings_file")].concat() {
-        for mode in [Mode::Interactive, Mode::Framed, Mode::Message, Mode::File] {
+        for mode in [CliMode::Interactive, CliMode::Framed, CliMode::Message, CliMode::File] {
             let (mut interpreter, mut configuration) = (Interpreter::new(mode), Configuration::default());
             for line in text.lines() {
                 assert_line_within(line, &mut interpreter, &mut configuration);
@@ -81,7 +81,7 @@ fn stored_lines() {
 /// A craft on which everything is as long as can be.
 fn fullest() -> Configuration {
     let mut configuration = Configuration::default();
-    let mut interpreter = Interpreter::new(Mode::File);
+    let mut interpreter = Interpreter::new(CliMode::File);
     let facts = CliFacts::default();
     let mut context = CliContext { configuration: &mut configuration, facts: &facts };
     for index in 0..MAX_WAYPOINTS {
@@ -123,7 +123,7 @@ fn one_endless_line() {
     for piece in ["x", " ", "\t", "#", "set ", "é", "a=", "waypoint insert 0 ", "led\t"] {
         let line = piece.repeat(LONG / piece.len());
         let mut configuration = Configuration::default();
-        for mode in [Mode::Interactive, Mode::File] {
+        for mode in [CliMode::Interactive, CliMode::File] {
             let mut interpreter = Interpreter::new(mode);
             let mut context = CliContext { configuration: &mut configuration, facts: &facts };
             let (_, taken) = measured(|| interpreter.run(&line, &mut context));

@@ -88,7 +88,8 @@ fn the_example_in_the_readme_reads() {
 
 #[test]
 fn every_plan_is_flyable_and_short() {
-    let home: betadeck::plan::format::Home = "40.4635,-79.5182,300".parse().expect("the default home");
+    let home: betadeck::plan::format::HomePosition =
+        "40.4635,-79.5182,300".parse().expect("the default home");
     for (name, _, _, file) in plans() {
         let assumptions = Assumptions::from_settings(&file.settings);
         assert_eq!(review(&file.plan, home.position, &assumptions), [], "{name}");

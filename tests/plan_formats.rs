@@ -1,7 +1,7 @@
 //! Laws of the plan formats: what is written reads back, canonical text prints as it was, no text panics.
 
 use betadeck::geo::LatLon;
-use betadeck::plan::format::{Format, Home, PlanFile, degrees_e7, parse, report, write};
+use betadeck::plan::format::{Format, HomePosition, PlanFile, degrees_e7, parse, report, write};
 use betadeck::plan::{FlightPlan, HoldPattern, MAX_WAYPOINTS, Waypoint, WaypointType};
 use proptest::collection::vec;
 use proptest::option;
@@ -33,7 +33,7 @@ prop_compose! {
         settings in vec("[a-z_]{1,12} = [A-Z0-9.]{1,6}", 0..4),
         waypoints in vec(waypoint(), 0..=MAX_WAYPOINTS),
     ) -> PlanFile {
-        let home = home.map(|(position, amsl)| Home { position, amsl_m: amsl.map(f64::from) });
+        let home = home.map(|(position, amsl)| HomePosition { position, amsl_m: amsl.map(f64::from) });
         let mut plan = FlightPlan::default();
         plan.waypoints.extend(waypoints);
         PlanFile { name, description, home, settings, plan, notes: Vec::new() }

@@ -5,7 +5,7 @@ use std::time::Duration;
 use betadeck::session::Command;
 use betadeck::session::command::CliOutput;
 use betadeck::ui::keymap::KeyPress;
-use betadeck::ui::{AppState, Effect, Layer, MapMode, Msg, Pane, layout, update};
+use betadeck::ui::{AppState, Effect, MapMode, Msg, Panel, Popup, layout, update};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
 
 #[path = "ui/fixture.rs"]
@@ -145,7 +145,7 @@ fn scrolling_ends_where_the_oldest_line_is_visible_and_turns_at_once() {
     press(&mut state, '8');
     let long = "a sentence that is longer than the panel is wide, so that it takes several rows of it";
     for line in 0..40 {
-        state.notify(betadeck::ui::Level::Info, format!("{line} {long}"));
+        state.notify(betadeck::ui::Severity::Info, format!("{line} {long}"));
     }
     key(&mut state, KeyCode::End);
     let end = state.scrolls.log;
@@ -164,10 +164,10 @@ fn q_asks_while_armed_and_only_then() {
     assert!(matches!(press(&mut state, 'q')[..], [Effect::Quit]));
     fixture::approach(&mut state);
     assert!(press(&mut state, 'q').is_empty());
-    assert_eq!(state.layers, [Layer::Quit]);
+    assert_eq!(state.popups, [Popup::Quit]);
     assert!(press(&mut state, 'a').is_empty(), "the question hears keys first");
     press(&mut state, 'n');
-    assert!(state.layers.is_empty());
+    assert!(state.popups.is_empty());
     press(&mut state, 'q');
     assert!(matches!(press(&mut state, 'y')[..], [Effect::Quit]));
 }
@@ -204,7 +204,7 @@ fn in_the_cli_letters_are_text_until_esc() {
     let output = CliOutput { text: "Saving\r\n".to_owned(), advice: None, restarted: true };
     assert!(update(&mut state, Msg::CliReply(Some(output))).is_empty());
     key(&mut state, KeyCode::Esc);
-    assert_eq!(state.focus, Pane::Map);
+    assert_eq!(state.focus, Panel::Map);
     assert!(matches!(press(&mut state, ' ')[..], [Effect::Send(Command::Pause(true))]));
 }
 
@@ -219,7 +219,7 @@ fn tab_completes_in_the_cli_and_moves_on_when_there_is_nothing_to_complete() {
     assert_eq!(state.cli.input.value(), "set ap_position_");
     ctrl_c(&mut state);
     key(&mut state, KeyCode::Tab);
-    assert_eq!(state.focus, Pane::Log);
+    assert_eq!(state.focus, Panel::Log);
 }
 
 #[test]
@@ -237,14 +237,14 @@ fn pasted_lines_run_one_at_a_time() {
 fn tab_goes_through_all_panels_and_back() {
     let mut state = ready();
     let mut seen = Vec::new();
-    for _ in Pane::ALL {
+    for _ in Panel::ALL {
         seen.push(state.focus);
-        assert!(layout::screen(&state).is_some_and(|screen| screen.pane(state.focus).is_some()), "visible");
+        assert!(layout::screen(&state).is_some_and(|screen| screen.panel(state.focus).is_some()), "visible");
         key(&mut state, KeyCode::Tab);
     }
-    assert_eq!(seen, Pane::ALL);
+    assert_eq!(seen, Panel::ALL);
     key(&mut state, KeyCode::BackTab);
-    assert_eq!(state.focus, Pane::Log);
+    assert_eq!(state.focus, Panel::Log);
 }
 
 #[test]
@@ -269,14 +269,14 @@ fn the_map_pans_zooms_follows_and_fits() {
 fn the_mouse_sets_a_channel_and_drags_the_map() {
     let mut state = ready();
     press(&mut state, '4');
-    let area = layout::screen(&state).and_then(|screen| screen.pane(Pane::Rc)).expect("visible");
+    let area = layout::screen(&state).and_then(|screen| screen.panel(Panel::Rc)).expect("visible");
     let at = |kind, column, row| Msg::Mouse(MouseEvent { kind, column, row, modifiers: KeyModifiers::NONE });
     let down = MouseEventKind::Down(MouseButton::Left);
     let effects = update(&mut state, at(down, area.x + 25, area.y + 2));
     let channels = sticks(&effects).expect("a click on a bar sets the channel");
     assert_ne!(channels[1], 1500);
 
-    let area = layout::screen(&state).and_then(|screen| screen.pane(Pane::Map)).expect("visible");
+    let area = layout::screen(&state).and_then(|screen| screen.panel(Panel::Map)).expect("visible");
     update(&mut state, at(down, area.x + 10, area.y + 10));
     update(&mut state, at(MouseEventKind::Drag(MouseButton::Left), area.x + 14, area.y + 10));
     assert!(matches!(state.map.mode, MapMode::Free { .. }));
@@ -286,10 +286,10 @@ fn the_mouse_sets_a_channel_and_drags_the_map() {
 fn help_closes_by_the_key_it_explains() {
     let mut state = ready();
     press(&mut state, '?');
-    assert!(matches!(state.layers[..], [Layer::Help { .. }]));
+    assert!(matches!(state.popups[..], [Popup::Help { .. }]));
     assert!(matches!(press(&mut state, ' ')[..], []), "blank scrolls");
     assert!(matches!(press(&mut state, 'x')[..], [Effect::Send(Command::CutRc(true))]));
-    assert!(state.layers.is_empty());
+    assert!(state.popups.is_empty());
 }
 
 #[test]
@@ -297,9 +297,9 @@ fn z_zooms_the_focused_panel_and_esc_ends_it() {
     let mut state = ready();
     press(&mut state, 'z');
     let screen = layout::screen(&state).expect("large enough");
-    assert_eq!(screen.panes.len(), 1);
+    assert_eq!(screen.panels.len(), 1);
     key(&mut state, KeyCode::Esc);
-    assert!(layout::screen(&state).is_some_and(|screen| screen.panes.len() > 1));
+    assert!(layout::screen(&state).is_some_and(|screen| screen.panels.len() > 1));
 }
 
 #[test]

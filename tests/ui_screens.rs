@@ -2,7 +2,7 @@
 
 use betadeck::session::command::CliOutput;
 use betadeck::telemetry::{ArmingFlag, CannotHold, EndpointKind, HoldLimit, NavState};
-use betadeck::ui::{AppState, Level, Msg, Pane, Theme, draw, update};
+use betadeck::ui::{AppState, Msg, Panel, Severity, Theme, draw, update};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
@@ -99,12 +99,12 @@ fn help_and_quit_are_always_offered() {
     for size in [(60, 20), (80, 24), (200, 60)] {
         let mut state = fixture::state(size, fixture::colour());
         fixture::approach(&mut state);
-        for pane in Pane::ALL {
-            state.focus = pane;
+        for panel in Panel::ALL {
+            state.focus = panel;
             let screen = text(&state);
-            let words: &[&str] = if pane == Pane::Cli { &["Esc leave"] } else { &["? help", "q quit"] };
+            let words: &[&str] = if panel == Panel::Cli { &["Esc leave"] } else { &["? help", "q quit"] };
             for word in words {
-                assert!(screen.contains(word), "{word} missing at {size:?} in {pane:?}\n{screen}");
+                assert!(screen.contains(word), "{word} missing at {size:?} in {panel:?}\n{screen}");
             }
         }
     }
@@ -156,10 +156,10 @@ fn a_notice_leaves_the_hints_alone_and_loses_no_word() {
         let mut state = fixture::state(size, fixture::colour());
         let hints = |screen: &str| screen.lines().last().map(str::to_owned);
         let before = hints(&text(&state));
-        state.notify(Level::Warn, long);
+        state.notify(Severity::Warn, long);
         // Where the log would show it, too.
-        state.focus = Pane::Rc;
-        state.slots.visit(Pane::Rc);
+        state.focus = Panel::Rc;
+        state.slots.visit(Panel::Rc);
         state.zoomed = true;
         let screen = text(&state);
         assert!(
@@ -230,8 +230,8 @@ fn landing_80x24_shows_the_whole_machine_and_every_guard() {
 fn a_craft_that_cannot_hold_says_so_on_an_80x24_screen() {
     let mut state = fixture::state((80, 24), fixture::colour());
     fixture::orbit(&mut state);
-    state.focus = Pane::State;
-    state.slots.visit(Pane::State);
+    state.focus = Panel::State;
+    state.slots.visit(Panel::State);
     let mut view = state.view.clone();
     let vehicle = std::sync::Arc::make_mut(&mut view.vehicle);
     let nav = vehicle.nav.as_mut().unwrap();
@@ -268,14 +268,14 @@ fn no_size_panics_with_any_focus_zoom_or_popup() {
     let mut state = fixture::state((80, 24), themes[0]);
     fixture::orbit(&mut state);
     press(&mut state, '?');
-    let popup = std::mem::take(&mut state.layers);
+    let popup = std::mem::take(&mut state.popups);
     for width in (1..=250).step_by(3) {
         for height in (1..=85).step_by(2) {
             update(&mut state, Msg::Resize(width, height));
-            state.focus = Pane::ALL[usize::from(width + height) % Pane::ALL.len()];
+            state.focus = Panel::ALL[usize::from(width + height) % Panel::ALL.len()];
             state.slots.visit(state.focus);
             state.zoomed = (width / 3 + height) % 3 == 0;
-            state.layers = if width % 5 == 0 { popup.clone() } else { Vec::new() };
+            state.popups = if width % 5 == 0 { popup.clone() } else { Vec::new() };
             state.theme = themes[usize::from(height % 2)];
             screen(&state);
         }

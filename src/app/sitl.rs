@@ -11,7 +11,7 @@ use super::error::{self, AppError};
 use super::setup::{attitude_source, read_file};
 use super::stop_signal;
 use crate::args::{OnOff, SitlArgs};
-use crate::firmware::cli::{ApplyReport, CliContext, CliFacts, Interpreter, Mode, provision};
+use crate::firmware::cli::{ApplyReport, CliContext, CliFacts, CliMode, Interpreter, provision};
 use crate::flight::FlightSetup;
 use crate::flight::setup::PhysicsSource;
 use crate::link::ListenConfig;
@@ -124,7 +124,7 @@ fn apply(args: &SitlArgs, file: &Path, text: &str) -> Result<u8, AppError> {
     say(OutputLine::Out(format!("[CONFIG] Processing config file: {}", file.display())));
     let facts = CliFacts { storage: store.facts(), ..CliFacts::default() };
     let mut context = CliContext { configuration: &mut configuration, facts: &facts };
-    let mut interpreter = Interpreter::new(Mode::File).lenient(args.lenient);
+    let mut interpreter = Interpreter::new(CliMode::File).lenient(args.lenient);
     let mut session = String::new();
     let report = provision(text, &mut interpreter, &mut context, |text| session += text);
     error::write_stdout(session.as_bytes())?;

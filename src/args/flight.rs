@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::plan::format::Home;
+use crate::plan::format::HomePosition;
 use crate::sim::{self, Noise, Switches, Turbulence, Wind};
 
 use super::help;
@@ -17,7 +17,7 @@ pub struct FlightArgs {
     /// When neither you nor the plan gives a home and the first waypoint is more than 10 km from the default, the craft
     /// stands at that waypoint.
     #[arg(long, value_name = "LAT,LON[,AMSL]", allow_hyphen_values = true, help_heading = "Craft")]
-    pub home: Option<Home>,
+    pub home: Option<HomePosition>,
 
     /// Heading of the nose at boot, degrees clockwise from north [default: 0]
     #[arg(long, value_name = "DEG", allow_hyphen_values = true, value_parser = value::heading, help_heading = "Craft")]

@@ -34,7 +34,7 @@ pub use advice::advice;
 pub use apply::{ApplyReport, FailedLine, apply_lines, provision};
 pub use command_table::{COMMANDS, Command};
 pub use complete::{Completion, complete, hint};
-pub use interpreter::{Interpreter, Mode};
+pub use interpreter::{CliMode, Interpreter};
 pub use observation::{
     BatteryFacts, BuildInfo, CliFacts, GpsFacts, GpsSolutionFacts, LoopFacts, NavFacts, SmoothingFacts,
     StorageFacts, TaskFacts,

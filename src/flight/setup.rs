@@ -15,7 +15,7 @@ use crate::firmware::cli::BuildInfo;
 use crate::firmware::config::Configuration;
 use crate::firmware::{AttitudeSource, FirmwareOptions, settings};
 use crate::pilot::StickInput;
-use crate::plan::format::{self, Home, PlanError, PlanFile, SettingFault};
+use crate::plan::format::{self, HomePosition, PlanError, PlanFile, SettingFault};
 use crate::sim::{WorldConfig, WorldError};
 use crate::vehicle::{Vehicle, VehicleConfig};
 
@@ -45,7 +45,7 @@ pub struct FlightSetup {
     /// an external physics only step rate, seed and faults count.
     pub world: WorldConfig,
     /// Where the craft stands, whatever the plan says.
-    pub home: Option<Home>,
+    pub home: Option<HomePosition>,
     /// The plan: its home is where the craft stands unless `home` says otherwise, its settings are applied at boot.
     pub plan: PlanFile,
     /// Where the attitude comes from; `None` = the estimator, or with an external physics the simulator's truth.

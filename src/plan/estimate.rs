@@ -106,7 +106,7 @@ impl Assumptions {
 
 /// One waypoint of the estimate.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Leg {
+pub struct LegEstimate {
     /// Horizontal distance from the place before, m; `None` for modifiers.
     pub distance_m: Option<f64>,
     /// Bearing of the leg, degrees clockwise from north, where there is one.
@@ -122,9 +122,9 @@ pub struct Leg {
 
 /// An estimate for a plan.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Estimate {
+pub struct PlanEstimate {
     /// One entry a waypoint.
-    pub legs: Vec<Leg>,
+    pub legs: Vec<LegEstimate>,
     /// Length of the path that is flown, m.
     pub distance_m: f64,
     /// Time from the start to the end of the mission, s; `None` when a HOLD lasts forever.
@@ -133,7 +133,7 @@ pub struct Estimate {
 
 /// Estimates a flight of the plan that begins above `home`.
 #[must_use]
-pub fn estimate(plan: &FlightPlan, home: LatLon, assumptions: &Assumptions) -> Estimate {
+pub fn estimate(plan: &FlightPlan, home: LatLon, assumptions: &Assumptions) -> PlanEstimate {
     let mut walk = Walk {
         place: home,
         alt_m: assumptions.start_alt_m,
@@ -144,7 +144,7 @@ pub fn estimate(plan: &FlightPlan, home: LatLon, assumptions: &Assumptions) -> E
         distance_m: 0.0,
     };
     let legs = plan.waypoints.iter().map(|waypoint| walk.leg(waypoint, assumptions)).collect();
-    Estimate { legs, distance_m: walk.distance_m, time_s: walk.clock_s }
+    PlanEstimate { legs, distance_m: walk.distance_m, time_s: walk.clock_s }
 }
 
 /// Where the craft is after some waypoints.
@@ -159,7 +159,7 @@ struct Walk {
 }
 
 impl Walk {
-    fn leg(&mut self, waypoint: &Waypoint, assumptions: &Assumptions) -> Leg {
+    fn leg(&mut self, waypoint: &Waypoint, assumptions: &Assumptions) -> LegEstimate {
         let own_alt_m = f64::from(waypoint.alt_cm) / 100.0;
         let duration_s = f64::from(waypoint.duration_ds) / 10.0;
         match waypoint.kind {
@@ -172,7 +172,13 @@ impl Walk {
             | WaypointType::Land
             | WaypointType::Takeoff => return self.fly(waypoint, own_alt_m, duration_s, assumptions),
         }
-        Leg { distance_m: None, bearing_deg: None, alt_m: own_alt_m, speed_mps: None, done_s: self.done() }
+        LegEstimate {
+            distance_m: None,
+            bearing_deg: None,
+            alt_m: own_alt_m,
+            speed_mps: None,
+            done_s: self.done(),
+        }
     }
 
     fn fly(
@@ -181,7 +187,7 @@ impl Walk {
         own_alt_m: f64,
         duration_s: f64,
         assumptions: &Assumptions,
-    ) -> Leg {
+    ) -> LegEstimate {
         let target = if waypoint.kind.uses_position() { waypoint.position } else { self.place };
         let alt_m = self.alt_change_m.take().unwrap_or(own_alt_m);
         let (distance_m, bearing_rad) = distance_bearing(self.place, target);
@@ -213,7 +219,7 @@ impl Walk {
         (self.place, self.alt_m) = (target, alt_m);
         let bearing_deg = (distance_m > 0.0).then(|| bearing_rad.to_degrees());
         let speed_mps = (distance_m > 0.0).then_some(speed_mps);
-        Leg { distance_m: Some(distance_m), bearing_deg, alt_m, speed_mps, done_s }
+        LegEstimate { distance_m: Some(distance_m), bearing_deg, alt_m, speed_mps, done_s }
     }
 
     /// The clock, unless the mission is over already.
@@ -235,7 +241,7 @@ mod tests {
         Waypoint { position, alt_cm: alt_m * 100, speed_cms, duration_ds, kind, ..Waypoint::default() }
     }
 
-    fn plan(waypoints: &[Waypoint]) -> Estimate {
+    fn plan(waypoints: &[Waypoint]) -> PlanEstimate {
         let mut plan = FlightPlan::default();
         plan.waypoints.extend(waypoints.iter().copied());
         estimate(&plan, HOME, &Assumptions::default())

@@ -20,7 +20,7 @@ use strum::IntoEnumIterator as _;
 use super::FlightPlan;
 
 pub use field::degrees_e7;
-pub use home::{Home, HomeError};
+pub use home::{HomeError, HomePosition};
 pub use note::{Note, NoteKind};
 pub use problem::{PlanError, Problems, report};
 pub use setting::{SettingCheck, SettingFault, SettingPart, setting_line};
@@ -86,7 +86,7 @@ pub struct PlanFile {
     /// What the plan shows, for people; may be empty.
     pub description: String,
     /// Where the craft stands at boot, if the plan asks for a place.
-    pub home: Option<Home>,
+    pub home: Option<HomePosition>,
     /// Settings the plan is made for, as `name = value`, in the order in which they are applied.
     pub settings: Vec<String>,
     /// The waypoints.

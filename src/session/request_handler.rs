@@ -8,7 +8,7 @@ use tokio::sync::oneshot;
 
 use super::late_answers::{LateAnswers, no_answer_line};
 use super::persistence::Persistence;
-use crate::firmware::cli::{CliAction, CliReply, Interpreter, Mode, complete};
+use crate::firmware::cli::{CliAction, CliMode, CliReply, Interpreter, complete};
 use crate::firmware::msp::{MspAction, Outcome, UtcTime};
 use crate::link::proto::command_line::{AfterLine, Completion, LineReply, LineSource};
 use crate::link::{ClientId, Request, RestartSignal};
@@ -168,7 +168,7 @@ impl RequestHandler {
     }
 
     fn enter_cli(&mut self, client: ClientId, interactive: bool, controller: &mut FlightController) {
-        let mode = if interactive { Mode::Interactive } else { Mode::Framed };
+        let mode = if interactive { CliMode::Interactive } else { CliMode::Framed };
         self.cli_sessions.insert(client, CliSession { interpreter: Interpreter::new(mode), interactive });
         if interactive {
             controller.cli_opened();
@@ -185,9 +185,9 @@ impl RequestHandler {
         controller: &mut FlightController,
     ) -> Answer<CliReply> {
         let (mode, session) = match source {
-            LineSource::Prompt => (Mode::Interactive, self.cli_sessions.get_mut(&client)),
-            LineSource::Framed => (Mode::Framed, self.cli_sessions.get_mut(&client)),
-            LineSource::Message => (Mode::Message, None),
+            LineSource::Prompt => (CliMode::Interactive, self.cli_sessions.get_mut(&client)),
+            LineSource::Framed => (CliMode::Framed, self.cli_sessions.get_mut(&client)),
+            LineSource::Message => (CliMode::Message, None),
         };
         match session {
             Some(session) => controller.run_cli(&mut session.interpreter, line),

@@ -77,14 +77,14 @@ impl Upload {
 mod tests {
     use super::*;
     use crate::plan::Waypoint;
-    use crate::vehicle::Request;
+    use crate::vehicle::RemoteRequest;
 
     /// What the remote flight controller was asked since.
     fn asked(controller: &mut FlightController) -> Vec<String> {
         let mailbox = controller.remote_mut().unwrap();
         std::iter::from_fn(|| mailbox.take_request())
             .map(|(_, request)| match request {
-                Request::Cli(line) => line,
+                RemoteRequest::Cli(line) => line,
                 other => panic!("{other:?}"),
             })
             .collect()

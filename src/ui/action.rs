@@ -1,6 +1,6 @@
 //! Everything a key can do, by name: the one table behind keymap, hint bar and help.
 
-use super::pane::Pane;
+use super::panel::Panel;
 
 mod enabled;
 mod table;
@@ -17,7 +17,7 @@ pub enum Context {
     /// Everywhere, in text fields too.
     Always,
     /// While this panel has the focus.
-    In(Pane),
+    In(Panel),
     /// While a panel that scrolls has the focus.
     Lists,
 }
@@ -52,7 +52,7 @@ pub enum Action {
     /// Real time.
     RealTime,
     /// Focus a panel.
-    Show(Pane),
+    Show(Panel),
     /// Focus the next panel.
     Next,
     /// Focus the previous panel.
@@ -139,12 +139,12 @@ pub fn spec_of(action: Action) -> Option<&'static Spec> {
 impl Context {
     /// Whether keys of this context apply while `focus` has the focus. In a text field letters are text.
     #[must_use]
-    pub fn applies(self, focus: Pane) -> bool {
+    pub fn applies(self, focus: Panel) -> bool {
         match self {
             Self::Always => true,
             Self::Global => !focus.takes_text(),
-            Self::In(pane) => pane == focus,
-            Self::Lists => matches!(focus, Pane::State | Pane::Log | Pane::Plan),
+            Self::In(panel) => panel == focus,
+            Self::Lists => matches!(focus, Panel::State | Panel::Log | Panel::Plan),
         }
     }
 }
@@ -157,7 +157,7 @@ mod tests {
     #[test]
     fn every_action_has_a_row_a_key_and_a_name_of_its_own() {
         let actions =
-            Action::iter().filter(|a| !matches!(a, Action::Show(_))).chain(Pane::ALL.map(Action::Show));
+            Action::iter().filter(|a| !matches!(a, Action::Show(_))).chain(Panel::ALL.map(Action::Show));
         for action in actions {
             let spec = spec_of(action).unwrap_or_else(|| panic!("{action:?} is not in the table"));
             assert!(!spec.keys.is_empty(), "{} has no key", spec.name);

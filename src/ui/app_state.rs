@@ -9,10 +9,11 @@ use crate::signals::{RcFrame, SimTime};
 use crate::telemetry::{EventKind, FirmwareEvent, NavEvent, NavState, TransitionReason};
 
 use super::console::{CliHelp, CliState};
-use super::event_log::{Level, LogState};
+use super::event_log::{LogState, Severity};
 use super::keymap::Keymap;
 use super::layout::Slots;
-use super::pane::{Layer, Pane};
+use super::panel::Panel;
+use super::popup::Popup;
 use super::theme::Theme;
 use super::track::Track;
 use super::viewport::MapState;
@@ -52,7 +53,7 @@ pub struct Notice {
     /// The sentence.
     pub text: String,
     /// How serious.
-    pub level: Level,
+    pub severity: Severity,
     /// When it appeared, wall clock.
     pub at: Duration,
 }
@@ -103,13 +104,13 @@ pub struct AppState {
     /// Columns and rows of the terminal.
     pub size: (u16, u16),
     /// The panel that gets the keys.
-    pub focus: Pane,
+    pub focus: Panel,
     /// The focused panel fills the screen.
     pub zoomed: bool,
     /// Which panels the shared places show.
     pub slots: Slots,
     /// Popups.
-    pub layers: Vec<Layer>,
+    pub popups: Vec<Popup>,
     /// Wall-clock time since start.
     pub now: Duration,
     /// The map.
@@ -167,10 +168,10 @@ impl AppState {
             keymap: Keymap::default(),
             plan: config.plan,
             size,
-            focus: Pane::Map,
+            focus: Panel::Map,
             zoomed: false,
             slots: Slots::default(),
-            layers: Vec::new(),
+            popups: Vec::new(),
             now: Duration::ZERO,
             map: MapState::default(),
             channel: 0,
@@ -189,24 +190,24 @@ impl AppState {
     }
 
     /// Says something to the user: on the screen for a moment, in the log for good.
-    pub fn notify(&mut self, level: Level, text: impl Into<String>) {
+    pub fn notify(&mut self, severity: Severity, text: impl Into<String>) {
         let text = text.into();
-        self.log.push(self.view.vehicle.time, level, text.clone());
-        self.notice = Some(Notice { text, level, at: self.now });
+        self.log.push(self.view.vehicle.time, severity, text.clone());
+        self.notice = Some(Notice { text, severity, at: self.now });
     }
 
     /// Takes an event in.
     pub fn take_event(&mut self, event: &Event) {
         let text = (self.sentence)(event);
-        let level = Level::of(&event.kind);
+        let severity = Severity::of(&event.kind);
         if !text.is_empty() {
-            self.log.push(event.time, level, text.clone());
+            self.log.push(event.time, severity, text.clone());
         }
         if let SessionEvent::Vehicle(kind) = &event.kind {
             self.follow_vehicle(event.time, kind);
         }
-        if matches!(level, Level::Warn | Level::Fault) && !text.is_empty() {
-            self.notice = Some(Notice { text, level, at: self.now });
+        if matches!(severity, Severity::Warn | Severity::Fault) && !text.is_empty() {
+            self.notice = Some(Notice { text, severity, at: self.now });
         }
     }
 

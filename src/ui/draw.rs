@@ -10,8 +10,9 @@ use super::app_state::AppState;
 use super::ascii;
 use super::formatting;
 use super::layout::{self, SMALLEST};
-use super::pane::{Layer, Pane};
+use super::panel::Panel;
 use super::panel::{self, span};
+use super::popup::Popup;
 use super::text_wrap::wrapped;
 use super::theme::{Charset, Role};
 use super::{hint_bar, notice, status_bar};
@@ -24,8 +25,8 @@ pub fn draw(state: &AppState, frame: &mut Frame<'_>) {
         Some(screen) => {
             status_bar::draw(state, screen.status, buffer);
             let mut cursor = None;
-            for (pane, area) in screen.panes {
-                cursor = cursor.or(pane_with_frame(state, pane, area, buffer));
+            for (panel, area) in screen.panels {
+                cursor = cursor.or(framed_panel(state, panel, area, buffer));
             }
             hint_bar::draw(state, screen.hints, buffer);
             notice::draw(state, screen.hints, buffer);
@@ -36,31 +37,31 @@ pub fn draw(state: &AppState, frame: &mut Frame<'_>) {
             None
         }
     };
-    for layer in &state.layers {
-        match layer {
-            Layer::Help { scroll } => panel::help::draw(state, *scroll, area, buffer),
-            Layer::Quit => quit_question(state, area, buffer),
+    for popup in &state.popups {
+        match popup {
+            Popup::Help { scroll } => panel::help::draw(state, *scroll, area, buffer),
+            Popup::Quit => quit_question(state, area, buffer),
         }
     }
     if state.theme.charset == Charset::Ascii {
         ascii::replace(buffer);
     }
-    if let Some(position) = cursor.filter(|_| state.layers.is_empty()) {
+    if let Some(position) = cursor.filter(|_| state.popups.is_empty()) {
         frame.set_cursor_position(position);
     }
 }
 
 /// Draws a panel; gives the place of the cursor if it is there.
-fn pane_with_frame(state: &AppState, pane: Pane, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+fn framed_panel(state: &AppState, panel: Panel, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     let theme = &state.theme;
-    let focused = state.focus == pane;
-    let title = match pane {
-        Pane::Map => panel::map::title(state),
-        Pane::Plan => panel::plan::title(state),
-        Pane::State => panel::state::title(state),
-        Pane::Rc => panel::rc::title(state),
-        Pane::Cli => panel::cli::title(state),
-        Pane::Log => panel::log::title(state),
+    let focused = state.focus == panel;
+    let title = match panel {
+        Panel::Map => panel::map::title(state),
+        Panel::Plan => panel::plan::title(state),
+        Panel::State => panel::state::title(state),
+        Panel::Rc => panel::rc::title(state),
+        Panel::Cli => panel::cli::title(state),
+        Panel::Log => panel::log::title(state),
     };
     let title = formatting::cut(&title, usize::from(area.width.saturating_sub(4)));
     let (mark, frame_role, title_role) =
@@ -71,13 +72,13 @@ fn pane_with_frame(state: &AppState, pane: Pane, area: Rect, buffer: &mut Buffer
         .title(Line::from(span(theme, title_role, format!("{mark}{title}"))))
         .render(area, buffer);
     let inner = layout::inner(area);
-    match pane {
-        Pane::Map => panel::map::draw(state, inner, buffer),
-        Pane::Plan => panel::plan::draw(state, inner, buffer),
-        Pane::State => panel::state::draw(state, inner, buffer),
-        Pane::Rc => panel::rc::draw(state, inner, buffer),
-        Pane::Log => panel::log::draw(state, inner, buffer),
-        Pane::Cli => return panel::cli::draw(state, inner, buffer).filter(|_| focused),
+    match panel {
+        Panel::Map => panel::map::draw(state, inner, buffer),
+        Panel::Plan => panel::plan::draw(state, inner, buffer),
+        Panel::State => panel::state::draw(state, inner, buffer),
+        Panel::Rc => panel::rc::draw(state, inner, buffer),
+        Panel::Log => panel::log::draw(state, inner, buffer),
+        Panel::Cli => return panel::cli::draw(state, inner, buffer).filter(|_| focused),
     }
     None
 }

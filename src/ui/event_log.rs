@@ -13,7 +13,7 @@ const MAX_LINES: usize = 5000;
 
 /// How serious a line is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Level {
+pub enum Severity {
     /// For the record.
     Info,
     /// The mission went on.
@@ -26,7 +26,7 @@ pub enum Level {
     Fault,
 }
 
-impl Level {
+impl Severity {
     /// How serious an event is.
     #[must_use]
     pub fn of(kind: &SessionEvent) -> Self {
@@ -116,7 +116,7 @@ pub struct LogLine {
     /// Simulated time.
     pub time: SimTime,
     /// How serious.
-    pub level: Level,
+    pub severity: Severity,
     /// The sentence.
     pub text: String,
 }
@@ -129,12 +129,12 @@ pub struct LogState {
 
 impl LogState {
     /// Appends a line; the oldest goes when the log is full. Line breaks and control characters become blanks.
-    pub fn push(&mut self, time: SimTime, level: Level, text: String) {
+    pub fn push(&mut self, time: SimTime, severity: Severity, text: String) {
         if self.lines.len() == MAX_LINES {
             self.lines.pop_front();
         }
         let text = if text.contains(char::is_control) { text.replace(char::is_control, " ") } else { text };
-        self.lines.push_back(LogLine { time, level, text });
+        self.lines.push_back(LogLine { time, severity, text });
     }
 
     /// The lines, the newest first.
@@ -160,16 +160,16 @@ mod tests {
 
     #[test]
     fn a_restart_that_was_asked_for_is_no_fault() {
-        let disarmed = |reason| Level::of_firmware(&FirmwareEvent::Disarmed(reason));
-        assert_eq!(disarmed(DisarmReason::System), Level::Info);
-        assert_eq!(disarmed(DisarmReason::Failsafe), Level::Fault);
+        let disarmed = |reason| Severity::of_firmware(&FirmwareEvent::Disarmed(reason));
+        assert_eq!(disarmed(DisarmReason::System), Severity::Info);
+        assert_eq!(disarmed(DisarmReason::Failsafe), Severity::Fault);
     }
 
     #[test]
     fn the_log_is_bounded_and_keeps_the_newest() {
         let mut log = LogState::default();
         for n in 0..MAX_LINES + 10 {
-            log.push(SimTime(n as u64), Level::Info, format!("line\r\n{n}"));
+            log.push(SimTime(n as u64), Severity::Info, format!("line\r\n{n}"));
         }
         assert_eq!(log.len(), MAX_LINES);
         let newest = log.newest_first().next().expect("a line");

@@ -10,7 +10,7 @@ use crate::telemetry::{EndpointState, LinkState};
 use super::action::{Action, enabled, is_wrecked, spec_of};
 use super::app_state::AppState;
 use super::keymap::shown;
-use super::pane::Pane;
+use super::panel::Panel;
 use super::panel::span;
 use super::status_bar::sides;
 use super::theme::{Role, Theme};
@@ -37,7 +37,7 @@ pub(super) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
         used += width;
         spans.extend(hint(theme, keys, label));
     };
-    if state.focus == Pane::Cli {
+    if state.focus == Panel::Cli {
         for (keys, label) in
             [("Enter", "run"), ("Tab", "complete"), ("↑ ↓", "history"), ("PgUp PgDn", "scroll")]
         {
@@ -56,17 +56,17 @@ fn hint_actions(state: &AppState) -> Vec<(&'static [Action], &'static str)> {
     let craft = &state.view.vehicle.craft;
     let mut hints: Vec<(&'static [Action], &'static str)> = Vec::new();
     match state.focus {
-        Pane::Cli => {}
-        Pane::Rc => hints.extend([
+        Panel::Cli => {}
+        Panel::Rc => hints.extend([
             (&[Action::ChannelUp, Action::ChannelDown] as &[_], "channel"),
             (&[Action::Lower, Action::Raise], "value"),
         ]),
-        Pane::Map if state.zoomed => hints.extend([
+        Panel::Map if state.zoomed => hints.extend([
             (&[Action::ZoomIn, Action::ZoomOut] as &[_], "zoom"),
             (&[Action::Follow], "follow"),
             (&[Action::Fit], "fit"),
         ]),
-        Pane::Map | Pane::Plan | Pane::State | Pane::Log => {}
+        Panel::Map | Panel::Plan | Panel::State | Panel::Log => {}
     }
     let wrecked = is_wrecked(state);
     if wrecked {
@@ -115,7 +115,7 @@ fn hint_actions(state: &AppState) -> Vec<(&'static [Action], &'static str)> {
         // Last: in the air nobody should press it by mistake.
         hints.push((&[Action::Arm], "disarm"));
     }
-    if state.focus == Pane::Rc {
+    if state.focus == Panel::Rc {
         hints.push((&[Action::Flip], "flip"));
     }
     hints.retain(|(actions, _)| actions.iter().all(|&action| enabled(state, action).is_ok()));
@@ -134,7 +134,7 @@ fn throttle_label(state: &AppState) -> &'static str {
 
 /// The keys that are never left out: help and quit.
 fn permanent_hints(state: &AppState) -> Vec<(String, &'static str)> {
-    if state.focus == Pane::Cli {
+    if state.focus == Panel::Cli {
         return vec![("Esc".to_owned(), "leave")];
     }
     vec![(keys_of(&[Action::Help]), "help"), (keys_of(&[Action::Quit]), "quit")]

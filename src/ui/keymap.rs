@@ -3,7 +3,7 @@
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
 use super::action::{ACTIONS, Action, Context};
-use super::pane::Pane;
+use super::panel::Panel;
 
 /// A key with its modifiers; shift is part of the character where there is one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -117,7 +117,7 @@ impl Default for Keymap {
 impl Keymap {
     /// The action of a key while `focus` has the focus; the panel's own meaning comes before the general one.
     #[must_use]
-    pub fn action(&self, key: KeyPress, focus: Pane) -> Option<Action> {
+    pub fn action(&self, key: KeyPress, focus: Panel) -> Option<Action> {
         let own = |context: &Context| matches!(context, Context::In(_) | Context::Lists);
         // Function keys are never text.
         let function = matches!(key.code, KeyCode::F(_));
@@ -150,12 +150,12 @@ mod tests {
     fn letters_are_text_in_the_cli_and_panels_come_before_the_rest() {
         let keymap = Keymap::default();
         let key = |text| KeyPress::parse(text).expect("a key");
-        assert_eq!(keymap.action(key("a"), Pane::Map), Some(Action::Arm));
-        assert_eq!(keymap.action(key("a"), Pane::Cli), None);
-        assert_eq!(keymap.action(key("ctrl-c"), Pane::Cli), Some(Action::Cancel));
-        assert_eq!(keymap.action(key("f1"), Pane::Cli), Some(Action::Show(Pane::Map)));
-        assert_eq!(keymap.action(key("up"), Pane::Rc), Some(Action::ChannelUp));
-        assert_eq!(keymap.action(key("up"), Pane::Log), Some(Action::ScrollUp));
+        assert_eq!(keymap.action(key("a"), Panel::Map), Some(Action::Arm));
+        assert_eq!(keymap.action(key("a"), Panel::Cli), None);
+        assert_eq!(keymap.action(key("ctrl-c"), Panel::Cli), Some(Action::Cancel));
+        assert_eq!(keymap.action(key("f1"), Panel::Cli), Some(Action::Show(Panel::Map)));
+        assert_eq!(keymap.action(key("up"), Panel::Rc), Some(Action::ChannelUp));
+        assert_eq!(keymap.action(key("up"), Panel::Log), Some(Action::ScrollUp));
     }
 
     #[test]

@@ -15,7 +15,7 @@
 use ratatui::layout::Rect;
 
 use super::app_state::AppState;
-use super::pane::Pane;
+use super::panel::Panel;
 
 /// The smallest screen that shows anything useful.
 pub const SMALLEST: (u16, u16) = (60, 20);
@@ -24,37 +24,37 @@ pub const SMALLEST: (u16, u16) = (60, 20);
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Slots {
     /// 80x24: map (with the log below), or one of RC, CLI, plan instead of both.
-    main: Pane,
+    main: Panel,
     /// 120x40, bottom left: log or CLI.
-    left: Pane,
+    left: Panel,
     /// 120x40, bottom right: RC or plan.
-    right: Pane,
+    right: Panel,
 }
 
 impl Default for Slots {
     fn default() -> Self {
-        Self { main: Pane::Map, left: Pane::Log, right: Pane::Plan }
+        Self { main: Panel::Map, left: Panel::Log, right: Panel::Plan }
     }
 }
 
 impl Slots {
     /// Remembers that a panel got the focus.
-    pub fn visit(&mut self, pane: Pane) {
-        match pane {
-            Pane::Map => self.main = Pane::Map,
-            Pane::Log => {
-                self.main = Pane::Map;
-                self.left = Pane::Log;
+    pub fn visit(&mut self, panel: Panel) {
+        match panel {
+            Panel::Map => self.main = Panel::Map,
+            Panel::Log => {
+                self.main = Panel::Map;
+                self.left = Panel::Log;
             }
-            Pane::Cli => {
-                self.main = Pane::Cli;
-                self.left = Pane::Cli;
+            Panel::Cli => {
+                self.main = Panel::Cli;
+                self.left = Panel::Cli;
             }
-            Pane::Rc | Pane::Plan => {
-                self.main = pane;
-                self.right = pane;
+            Panel::Rc | Panel::Plan => {
+                self.main = panel;
+                self.right = panel;
             }
-            Pane::State => {}
+            Panel::State => {}
         }
     }
 }
@@ -65,7 +65,7 @@ pub struct Screen {
     /// Two lines.
     pub status: Rect,
     /// The visible panels with their frames.
-    pub panes: Vec<(Pane, Rect)>,
+    pub panels: Vec<(Panel, Rect)>,
     /// One line.
     pub hints: Rect,
 }
@@ -73,14 +73,14 @@ pub struct Screen {
 impl Screen {
     /// The place of a panel, if it is visible.
     #[must_use]
-    pub fn pane(&self, pane: Pane) -> Option<Rect> {
-        self.panes.iter().find(|(p, _)| *p == pane).map(|(_, area)| *area)
+    pub fn panel(&self, panel: Panel) -> Option<Rect> {
+        self.panels.iter().find(|(p, _)| *p == panel).map(|(_, area)| *area)
     }
 
     /// The panel at a cell.
     #[must_use]
-    pub fn at(&self, column: u16, row: u16) -> Option<(Pane, Rect)> {
-        self.panes.iter().find(|(_, area)| area.contains((column, row).into())).copied()
+    pub fn at(&self, column: u16, row: u16) -> Option<(Panel, Rect)> {
+        self.panels.iter().find(|(_, area)| area.contains((column, row).into())).copied()
     }
 }
 
@@ -108,7 +108,7 @@ pub fn divided(state: &AppState, (width, height): (u16, u16)) -> Option<Screen> 
         return None;
     }
     let body = Rect::new(0, 2, width, height - 3);
-    let panes = if state.zoomed || width < 80 || height < 24 {
+    let panels = if state.zoomed || width < 80 || height < 24 {
         vec![(state.focus, body)]
     } else if width >= 180 && height >= 48 {
         large(body)
@@ -117,44 +117,44 @@ pub fn divided(state: &AppState, (width, height): (u16, u16)) -> Option<Screen> 
     } else {
         small(body, state.slots)
     };
-    Some(Screen { status: Rect::new(0, 0, width, 2), panes, hints: Rect::new(0, height - 1, width, 1) })
+    Some(Screen { status: Rect::new(0, 0, width, 2), panels, hints: Rect::new(0, height - 1, width, 1) })
 }
 
-fn small(body: Rect, slots: Slots) -> Vec<(Pane, Rect)> {
+fn small(body: Rect, slots: Slots) -> Vec<(Panel, Rect)> {
     let side = (body.width * 29 / 100).clamp(26, 46);
-    if slots.main != Pane::Map {
+    if slots.main != Panel::Map {
         let [main, state] = columns(body, [body.width - side, side]);
-        return vec![(slots.main, main), (Pane::State, state)];
+        return vec![(slots.main, main), (Panel::State, state)];
     }
     let log = (body.height / 4).max(5);
     let [top, bottom] = rows(body, [body.height - log, log]);
     let [map, state] = columns(top, [top.width - side, side]);
-    vec![(Pane::Map, map), (Pane::State, state), (Pane::Log, bottom)]
+    vec![(Panel::Map, map), (Panel::State, state), (Panel::Log, bottom)]
 }
 
-fn medium(body: Rect, slots: Slots) -> Vec<(Pane, Rect)> {
+fn medium(body: Rect, slots: Slots) -> Vec<(Panel, Rect)> {
     let bottom = (body.height * 32 / 100).clamp(10, 20);
     let [top, bottom] = rows(body, [body.height - bottom, bottom]);
     let side = (body.width * 38 / 100).clamp(46, 60);
     let [map, state] = columns(top, [top.width - side, side]);
     let right = (body.width / 2).clamp(60, 76).min(body.width - 60);
     let [left, right] = columns(bottom, [bottom.width - right, right]);
-    vec![(Pane::Map, map), (Pane::State, state), (slots.left, left), (slots.right, right)]
+    vec![(Panel::Map, map), (Panel::State, state), (slots.left, left), (slots.right, right)]
 }
 
-fn large(body: Rect) -> Vec<(Pane, Rect)> {
+fn large(body: Rect) -> Vec<(Panel, Rect)> {
     let bottom = body.height * 36 / 100;
     let [top, bottom] = rows(body, [body.height - bottom, bottom]);
     let [map, state, rc] = columns(top, [top.width - 96, 48, 48]);
     let third = body.width / 3;
     let [log, plan, cli] = columns(bottom, [body.width - 2 * third, third, third]);
     vec![
-        (Pane::Map, map),
-        (Pane::State, state),
-        (Pane::Rc, rc),
-        (Pane::Log, log),
-        (Pane::Plan, plan),
-        (Pane::Cli, cli),
+        (Panel::Map, map),
+        (Panel::State, state),
+        (Panel::Rc, rc),
+        (Panel::Log, log),
+        (Panel::Plan, plan),
+        (Panel::Cli, cli),
     ]
 }
 

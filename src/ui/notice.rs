@@ -20,9 +20,9 @@ pub(super) fn draw(state: &AppState, hints: Rect, buffer: &mut Buffer) {
     let Some(notice) = state.notice.as_ref().filter(|notice| within(state.now, notice.at, NOTICE_FOR)) else {
         return;
     };
-    let style = state.theme.style(notice.level.role());
+    let style = state.theme.style(notice.severity.role());
     let width = usize::from(hints.width.saturating_sub(6));
-    let mut lines = wrapped(&format!("{} {}", notice.level.glyph(), notice.text), width);
+    let mut lines = wrapped(&format!("{} {}", notice.severity.glyph(), notice.text), width);
     if lines.len() > NOTICE_ROWS {
         let rest = lines.split_off(NOTICE_ROWS - 1).join(" ");
         lines.push(cut(&rest, width));

@@ -1,4 +1,5 @@
-//! The panels, one file each: `draw(state, area, buffer)` fills the inside, `title(state)` stands on the frame.
+//! The panels by their numbers, one file each: `draw(state, area, buffer)` fills the inside, `title(state)` stands on
+//! the frame.
 
 pub(super) mod cli;
 pub(super) mod help;
@@ -15,6 +16,48 @@ use ratatui::text::{Line, Span};
 
 use super::formatting::cut;
 use super::theme::{Role, Theme};
+
+/// A panel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::EnumIter)]
+pub enum Panel {
+    /// The map.
+    #[default]
+    Map,
+    /// The waypoint table.
+    Plan,
+    /// The state machine.
+    State,
+    /// The channels.
+    Rc,
+    /// The firmware's command line.
+    Cli,
+    /// Events and notices.
+    Log,
+}
+
+impl Panel {
+    /// All panels in the order of their numbers.
+    pub const ALL: [Self; 6] = [Self::Map, Self::Plan, Self::State, Self::Rc, Self::Cli, Self::Log];
+
+    /// Number and name.
+    #[must_use]
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::Map => "1 Map",
+            Self::Plan => "2 Plan",
+            Self::State => "3 State",
+            Self::Rc => "4 RC",
+            Self::Cli => "5 CLI",
+            Self::Log => "8 Log",
+        }
+    }
+
+    /// Whether letters are text there.
+    #[must_use]
+    pub fn takes_text(self) -> bool {
+        self == Self::Cli
+    }
+}
 
 /// A span in a role.
 pub(super) fn span(theme: &Theme, role: Role, text: impl Into<String>) -> Span<'static> {

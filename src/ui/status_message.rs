@@ -3,7 +3,7 @@
 use crate::telemetry::{ArmingFlag, ArmingFlags, CannotHold, HoldLimit, LinkState, Mode, NavState, Refusal};
 
 use super::app_state::AppState;
-use super::event_log::Level;
+use super::event_log::Severity;
 use super::transmitter;
 use super::transmitter::ThrottleMove;
 
@@ -11,15 +11,19 @@ use super::transmitter::ThrottleMove;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct StatusMessage {
     /// How serious.
-    pub level: Level,
+    pub severity: Severity,
     /// What keeps the craft from flying, or how it flies.
     pub condition: String,
     /// What to do.
     pub action: String,
 }
 
-fn message(level: Level, condition: impl Into<String>, action: impl Into<String>) -> Option<StatusMessage> {
-    Some(StatusMessage { level, condition: condition.into(), action: action.into() })
+fn message(
+    severity: Severity,
+    condition: impl Into<String>,
+    action: impl Into<String>,
+) -> Option<StatusMessage> {
+    Some(StatusMessage { severity, condition: condition.into(), action: action.into() })
 }
 
 /// The arming-disable flag that tells the user most; those that only repeat a cause come last.
@@ -63,24 +67,24 @@ pub fn current(state: &AppState) -> Option<StatusMessage> {
     match state.view.simulator {
         Some(LinkState::Silent) => {
             return message(
-                Level::Fault,
+                Severity::Fault,
                 "The simulator is silent: time stands still.",
                 "let it go on, or start it again",
             );
         }
         Some(LinkState::Waiting) => {
             let action = "start it; its states come to the door udp fdm";
-            return message(Level::Warn, "No simulator yet.", action);
+            return message(Severity::Warn, "No simulator yet.", action);
         }
         Some(LinkState::Flowing) | None => {}
     }
     if let Some(truth) = &vehicle.truth {
         if truth.crashed {
-            return message(Level::Fault, "The craft crashed.", "R puts it back home");
+            return message(Severity::Fault, "The craft crashed.", "R puts it back home");
         }
         if truth.diverged {
             return message(
-                Level::Fault,
+                Severity::Fault,
                 "The simulation left the range where it means something.",
                 "R resets",
             );
@@ -91,49 +95,49 @@ pub fn current(state: &AppState) -> Option<StatusMessage> {
     }
     let switched_on = transmitter::switch_is_on(state, Mode::Autopilot);
     if state.view.rc_cut {
-        return message(Level::Fault, "The RC link is cut.", "x restores it");
+        return message(Severity::Fault, "The RC link is cut.", "x restores it");
     }
     let Some(armed) = craft.armed else {
         return message(
-            Level::Warn,
+            Severity::Warn,
             "The flight controller does not tell whether it is armed.",
             "wait for it to speak",
         );
     };
     if armed {
         if craft.failsafe_stage.is_some_and(|stage| stage > 0) {
-            return message(Level::Fault, "Failsafe: the RC link is lost.", "send RC frames again");
+            return message(Severity::Fault, "Failsafe: the RC link is lost.", "send RC frames again");
         }
         if let Some(refusal) = vehicle.nav.as_ref().and_then(|nav| nav.refusal).filter(|_| switched_on) {
             let condition = format!("AUTOPILOT refused: {}", refusal.sentence());
-            return message(Level::Fault, condition, action_after(refusal));
+            return message(Severity::Fault, condition, action_after(refusal));
         }
         if let Some(doing) = state.view.pilot {
-            return message(Level::Info, format!("The pilot flies: {doing}."), "F stops it");
+            return message(Severity::Info, format!("The pilot flies: {doing}."), "F stops it");
         }
         return by_hand(state);
     }
     let outside = state.view.simulator.is_some();
     if vehicle.truth.as_ref().is_some_and(|truth| !truth.on_ground && truth.alt > 1.0) {
         let action = if outside { "reset the simulator's world" } else { "R puts the craft back home" };
-        return message(Level::Fault, "Disarmed in the air.", action);
+        return message(Severity::Fault, "Disarmed in the air.", action);
     }
     if vehicle.nav.as_ref().is_some_and(|nav| nav.state == NavState::Complete) {
         let action = if outside { "F flies again" } else { "R puts the craft back home, F flies again" };
-        return message(Level::Good, "Mission complete.", action);
+        return message(Severity::Good, "Mission complete.", action);
     }
     if let Some(doing) = state.view.pilot {
         if let Some(flag) = most_useful_flag(craft.arming_flags()).filter(|_| craft.has_fix()) {
             let condition = format!("The pilot waits, arming is blocked: {flag}.");
-            return message(Level::Info, condition, arming_hint(flag));
+            return message(Severity::Info, condition, arming_hint(flag));
         }
-        return message(Level::Info, format!("The pilot prepares: {doing}."), "F stops it");
+        return message(Severity::Info, format!("The pilot prepares: {doing}."), "F stops it");
     }
     if craft.gps_fix == Some(false) {
-        return message(Level::Warn, "No GPS fix yet.", "wait for satellites; F waits by itself");
+        return message(Severity::Warn, "No GPS fix yet.", "wait for satellites; F waits by itself");
     }
     if let Some(flag) = most_useful_flag(craft.arming_flags()) {
-        return message(Level::Warn, format!("Arming is blocked: {flag}."), arming_hint(flag));
+        return message(Severity::Warn, format!("Arming is blocked: {flag}."), arming_hint(flag));
     }
     if vehicle.stored_plan.as_ref().is_some_and(|plan| plan.waypoints.is_empty()) {
         let action = if state.plan.plan.waypoints.is_empty() {
@@ -141,12 +145,12 @@ pub fn current(state: &AppState) -> Option<StatusMessage> {
         } else {
             format!("U uploads {}; F does it and flies", state.plan.name)
         };
-        return message(Level::Warn, "The craft has no plan.", action);
+        return message(Severity::Warn, "The craft has no plan.", action);
     }
     if switched_on {
-        return message(Level::Warn, "AUTOPILOT is on while disarmed.", "g switches it off, then a arms");
+        return message(Severity::Warn, "AUTOPILOT is on while disarmed.", "g switches it off, then a arms");
     }
-    message(Level::Good, "Ready.", "F flies the plan; by hand: a, t, g")
+    message(Severity::Good, "Ready.", "F flies the plan; by hand: a, t, g")
 }
 
 /// A craft that is blown off its place, or cannot keep its altitude.
@@ -159,7 +163,7 @@ fn cannot_hold_message(deviation: CannotHold) -> Option<StatusMessage> {
         HoldLimit::Throttle => "the throttle is at its limit: land",
         HoldLimit::None => "no limit binds: sticks take over; check sensors and gains",
     };
-    message(Level::Warn, condition, action)
+    message(Severity::Warn, condition, action)
 }
 
 /// An armed craft on the sticks: where it is, and the keys that lead on from there.
@@ -178,7 +182,7 @@ fn by_hand(state: &AppState) -> Option<StatusMessage> {
         (false, ThrottleMove::Hover) => ("Flown by hand.", "t holds the place, g engages"),
         (false, ThrottleMove::Low) => ("Flown by hand.", "g engages the autopilot"),
     };
-    message(Level::Info, condition, action)
+    message(Severity::Info, condition, action)
 }
 
 /// What to do after a refusal, with the keys of the screen.

@@ -10,7 +10,7 @@ use crate::telemetry::switch::Switch;
 use crate::telemetry::{Mode, ModeBox, switch};
 
 use super::app_state::AppState;
-use super::event_log::Level;
+use super::event_log::Severity;
 use super::formatting::within;
 use super::message::Effect;
 use super::status_message;
@@ -279,14 +279,14 @@ fn send(state: &mut AppState, next: RcFrame) -> Vec<Effect> {
     let mut effects = Vec::new();
     if state.view.pilot.is_some() {
         effects.push(Effect::Send(Command::Pilot(false)));
-        state.notify(Level::Info, "The pilot let go: the sticks are yours.");
+        state.notify(Severity::Info, "The pilot let go: the sticks are yours.");
     }
     match state.view.vehicle.craft.rc_source {
         Some(RcSource::Udp | RcSource::Msp) if state.view.vehicle.craft.rc_link == Some(true) => {
-            state.notify(Level::Warn, "Another RC source drives the craft: stop it to fly by keys.");
+            state.notify(Severity::Warn, "Another RC source drives the craft: stop it to fly by keys.");
         }
         _ if state.view.rc_cut => {
-            state.notify(Level::Warn, "The RC link is cut: `x` restores it.");
+            state.notify(Severity::Warn, "The RC link is cut: `x` restores it.");
         }
         _ => {}
     }

@@ -8,12 +8,13 @@ use crate::session::{Command, SessionView};
 
 use super::action::{self, Action};
 use super::app_state::AppState;
-use super::event_log::Level;
+use super::event_log::Severity;
 use super::formatting::within;
 use super::keymap::KeyPress;
 use super::map_point;
 use super::message::{Effect, Msg};
-use super::pane::{Layer, Pane};
+use super::panel::Panel;
+use super::popup::Popup;
 use super::track::TrackPoint;
 use super::transmitter;
 use super::viewport::MapMode;
@@ -59,7 +60,7 @@ pub fn update(state: &mut AppState, msg: Msg) -> Vec<Effect> {
         }
         Msg::UploadReply(result) => uploaded(state, result),
         Msg::Busy => {
-            state.notify(Level::Warn, "The simulator does not keep up: the last key was dropped.");
+            state.notify(Severity::Warn, "The simulator does not keep up: the last key was dropped.");
             Vec::new()
         }
     }
@@ -90,17 +91,17 @@ fn key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
         state.cancelled = None;
     }
     state.notice = None;
-    match state.layers.last().copied() {
+    match state.popups.last().copied() {
         _ if found == Some(Action::Cancel) => cancel(state),
-        Some(Layer::Quit) => match event.code {
+        Some(Popup::Quit) => match event.code {
             KeyCode::Char('y' | 'Y' | 'q') | KeyCode::Enter => vec![Effect::Quit],
             KeyCode::Char('n' | 'N') | KeyCode::Esc => {
-                state.layers.pop();
+                state.popups.pop();
                 Vec::new()
             }
             _ => Vec::new(),
         },
-        Some(Layer::Help { scroll }) => {
+        Some(Popup::Help { scroll }) => {
             let to = match event.code {
                 KeyCode::Up | KeyCode::Char('k') => Some(scroll.saturating_sub(1)),
                 KeyCode::Down | KeyCode::Char('j') => Some(scroll + 1),
@@ -108,10 +109,10 @@ fn key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
                 KeyCode::PageDown | KeyCode::Char(' ') => Some(scroll + 10),
                 _ => None,
             };
-            state.layers.pop();
+            state.popups.pop();
             match to {
                 Some(scroll) => {
-                    state.layers.push(Layer::Help { scroll: scroll.min(action::ACTIONS.len()) });
+                    state.popups.push(Popup::Help { scroll: scroll.min(action::ACTIONS.len()) });
                     Vec::new()
                 }
                 // Any other key closes the help and does what it does, so that keys can be tried as they are read.
@@ -121,7 +122,7 @@ fn key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
         }
         None => match found {
             Some(action) => act(state, action),
-            None if state.focus == Pane::Cli => cli_key(state, event),
+            None if state.focus == Panel::Cli => cli_key(state, event),
             None => Vec::new(),
         },
     }
@@ -133,18 +134,18 @@ fn cancel(state: &mut AppState) -> Vec<Effect> {
         return vec![Effect::Quit];
     }
     state.cancelled = Some(state.now);
-    let popup = state.layers.pop().is_some();
-    let input = state.focus == Pane::Cli && state.cli.cancel();
+    let popup = state.popups.pop().is_some();
+    let input = state.focus == Panel::Cli && state.cli.cancel();
     let upload = std::mem::take(&mut state.fly_after_upload);
     let what = if popup || input || upload { "Cancelled. " } else { "" };
-    state.notify(Level::Info, format!("{what}Ctrl-C again within 2 s quits."));
+    state.notify(Severity::Info, format!("{what}Ctrl-C again within 2 s quits."));
     Vec::new()
 }
 
 /// Carries an action out, or says why not.
 fn act(state: &mut AppState, action: Action) -> Vec<Effect> {
     if let Err(reason) = action::enabled(state, action) {
-        state.notify(Level::Warn, reason);
+        state.notify(Severity::Warn, reason);
         return Vec::new();
     }
     match action {
@@ -172,7 +173,7 @@ fn act(state: &mut AppState, action: Action) -> Vec<Effect> {
         Action::Slower => speed(state, -1),
         Action::Faster => speed(state, 1),
         Action::RealTime => speed(state, 0),
-        Action::Show(pane) => focus(state, pane),
+        Action::Show(panel) => focus(state, panel),
         Action::Next => focus(state, neighbour(state, 1)),
         Action::Previous => focus(state, neighbour(state, -1)),
         Action::Zoom => {
@@ -180,20 +181,20 @@ fn act(state: &mut AppState, action: Action) -> Vec<Effect> {
             Vec::new()
         }
         Action::Help => {
-            state.layers.push(Layer::Help { scroll: 0 });
+            state.popups.push(Popup::Help { scroll: 0 });
             Vec::new()
         }
         Action::Back => {
             // Out of the text first: keys pressed next must not be typed.
             if state.focus.takes_text() {
-                focus(state, Pane::Map);
+                focus(state, Panel::Map);
             } else {
                 state.zoomed = false;
             }
             Vec::new()
         }
         Action::Quit if state.view.vehicle.craft.is_armed() => {
-            state.layers.push(Layer::Quit);
+            state.popups.push(Popup::Quit);
             Vec::new()
         }
         Action::Quit => vec![Effect::Quit],

@@ -2,7 +2,7 @@
 
 mod remote;
 
-pub use remote::{FrameOut, RemoteController, RemoteTelemetry, Request};
+pub use remote::{FrameOut, RemoteController, RemoteRequest, RemoteTelemetry};
 
 use crate::firmware::Firmware;
 use crate::firmware::cli::{BuildInfo, CliReply, Interpreter, StorageFacts};
@@ -97,7 +97,7 @@ impl FlightController {
     pub fn run_cli(&mut self, session: &mut Interpreter, line: &str) -> Answer<CliReply> {
         match self {
             Self::Embedded(firmware) => Answer::Now(firmware.run_cli(session, line)),
-            Self::Remote(remote) => Answer::Later(remote.ask(Request::Cli(line.to_owned()))),
+            Self::Remote(remote) => Answer::Later(remote.ask(RemoteRequest::Cli(line.to_owned()))),
         }
     }
 
@@ -107,7 +107,7 @@ impl FlightController {
         match self {
             Self::Embedded(firmware) => Answer::Now(firmware.run_msp(code, payload, clock)),
             Self::Remote(remote) => {
-                Answer::Later(remote.ask(Request::Msp { code, payload: payload.to_vec() }))
+                Answer::Later(remote.ask(RemoteRequest::Msp { code, payload: payload.to_vec() }))
             }
         }
     }
@@ -185,7 +185,7 @@ impl FlightController {
         match self {
             Self::Embedded(firmware) => firmware.return_to_home(),
             Self::Remote(remote) => {
-                remote.ask(Request::ReturnHome);
+                remote.ask(RemoteRequest::ReturnHome);
                 Ok(())
             }
         }
@@ -196,7 +196,7 @@ impl FlightController {
         match self {
             Self::Embedded(firmware) => firmware.cancel_command(),
             Self::Remote(remote) => {
-                remote.ask(Request::CancelReturn);
+                remote.ask(RemoteRequest::CancelReturn);
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use betadeck::firmware::cli::{CliContext, CliFacts, Interpreter, MAX_LINE, Mode, complete, hint};
+use betadeck::firmware::cli::{CliContext, CliFacts, CliMode, Interpreter, MAX_LINE, complete, hint};
 use betadeck::firmware::config::Configuration;
 use betadeck::link::proto::command_line::Completion;
 use betadeck::link::proto::line_editor::LineEditor;
@@ -10,7 +10,7 @@ use betadeck::link::proto::line_editor::LineEditor;
 use super::craft;
 
 /// What a session may be.
-const MODES: [Mode; 4] = [Mode::Interactive, Mode::Framed, Mode::Message, Mode::File];
+const MODES: [CliMode; 4] = [CliMode::Interactive, CliMode::Framed, CliMode::Message, CliMode::File];
 
 /// Types the lines in every kind of session, on the ground and in the air, and the bytes at a serial link.
 pub fn run(data: &[u8]) {
@@ -26,7 +26,7 @@ pub fn run(data: &[u8]) {
 }
 
 /// One session: what became of the craft.
-fn session(text: &str, mode: Mode, facts: &CliFacts) -> Configuration {
+fn session(text: &str, mode: CliMode, facts: &CliFacts) -> Configuration {
     let mut configuration = Configuration::default();
     let mut interpreter = Interpreter::new(mode);
     for line in text.lines() {

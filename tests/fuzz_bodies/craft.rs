@@ -1,6 +1,6 @@
 //! What must hold for a craft, whatever was typed, sent or stored.
 
-use betadeck::firmware::cli::{CliContext, CliFacts, Interpreter, Mode, apply_lines};
+use betadeck::firmware::cli::{CliContext, CliFacts, CliMode, Interpreter, apply_lines};
 use betadeck::firmware::config::{Configuration, correct};
 use betadeck::firmware::msp::MESSAGES;
 use betadeck::firmware::storage::{MAX_IMAGE, decode, encode};
@@ -68,7 +68,7 @@ fn assert_retyped(configuration: &Configuration) {
     let diff = run_line(&mut configuration.clone(), &mut Interpreter::default(), "diff all");
     let mut copy = Configuration::default();
     let mut context = CliContext { configuration: &mut copy, facts: &CliFacts::default() };
-    let report = apply_lines(diff.lines(), &mut Interpreter::new(Mode::File), &mut context, |_, _| ());
+    let report = apply_lines(diff.lines(), &mut Interpreter::new(CliMode::File), &mut context, |_, _| ());
     assert_eq!(report.failed, [], "{diff}");
     let copied = run_line(&mut copy, &mut Interpreter::default(), "diff all");
     assert_eq!(copied, diff);

@@ -3,7 +3,7 @@
 
 use std::time::Duration;
 
-use betadeck::firmware::cli::{Interpreter, Mode, complete};
+use betadeck::firmware::cli::{CliMode, Interpreter, complete};
 use betadeck::firmware::config::Configuration;
 use betadeck::firmware::{Firmware, FirmwareOptions};
 use betadeck::link::proto::command_line::{Completion, LineSource};
@@ -123,10 +123,10 @@ impl Client {
                 self.session.admit(admitted, self.now);
                 assert_eq!(self.session.is_in_cli(), admitted);
                 self.interpreter =
-                    Interpreter::new(if *interactive { Mode::Interactive } else { Mode::Framed });
+                    Interpreter::new(if *interactive { CliMode::Interactive } else { CliMode::Framed });
             }
             SerialRequest::Line { line, source } => {
-                let mut own = Interpreter::new(Mode::Message);
+                let mut own = Interpreter::new(CliMode::Message);
                 let interpreter =
                     if *source == LineSource::Message { &mut own } else { &mut self.interpreter };
                 let reply = self.firmware.run_cli(interpreter, line);

@@ -1,7 +1,7 @@
 //! A file of settings: `--settings`, `sitl --config`, a `diff all` of a real craft.
 
 use betadeck::firmware::cli::{
-    ApplyReport, CliContext, CliFacts, Interpreter, MAX_LINE, Mode, advice, apply_lines, provision,
+    ApplyReport, CliContext, CliFacts, CliMode, Interpreter, MAX_LINE, advice, apply_lines, provision,
 };
 use betadeck::firmware::config::{Configuration, correct};
 
@@ -12,7 +12,7 @@ pub fn run(data: &[u8]) {
     let text = String::from_utf8_lossy(data);
     let facts = CliFacts::default();
     let mut checked = craft::Checked::default();
-    for mode in [Mode::File, Mode::Interactive] {
+    for mode in [CliMode::File, CliMode::Interactive] {
         let mut applied = Configuration::default();
         let mut context = CliContext { configuration: &mut applied, facts: &facts };
         let report = apply_lines(text.lines(), &mut Interpreter::new(mode), &mut context, |line, reply| {

@@ -4,7 +4,7 @@ use std::net::SocketAddr;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use betadeck::firmware::cli::{CliAction, CliContext, CliFacts, CliReply, Interpreter, Mode, complete};
+use betadeck::firmware::cli::{CliAction, CliContext, CliFacts, CliMode, CliReply, Interpreter, complete};
 use betadeck::firmware::config::{Configuration, ModeCondition};
 use betadeck::firmware::msp::{GpsReading, MspAction, MspFacts, handle};
 use betadeck::geo::LatLon;
@@ -124,9 +124,9 @@ pub(crate) async fn answer_requests(
             }
             Request::Cli { line, source, reply, .. } => {
                 let mut interpreter = Interpreter::new(match source {
-                    LineSource::Prompt => Mode::Interactive,
-                    LineSource::Framed => Mode::Framed,
-                    LineSource::Message => Mode::Message,
+                    LineSource::Prompt => CliMode::Interactive,
+                    LineSource::Framed => CliMode::Framed,
+                    LineSource::Message => CliMode::Message,
                 });
                 let craft = &mut *craft.lock().unwrap();
                 let mut context = CliContext { configuration: &mut craft.configuration, facts: &craft.cli };

@@ -7,7 +7,7 @@ use betadeck::firmware::config::Configuration;
 use betadeck::firmware::{Firmware, FirmwareOptions};
 use betadeck::signals::MotorCommand;
 use betadeck::telemetry::snapshot::EstimateView;
-use betadeck::vehicle::{FrameOut, LateAnswer, RemoteController, RemoteTelemetry, Request, Ticket};
+use betadeck::vehicle::{FrameOut, LateAnswer, RemoteController, RemoteRequest, RemoteTelemetry, Ticket};
 
 /// Ticks until a motor command or an answer of the stand-in arrives.
 pub(super) const DELAY: usize = 4;
@@ -52,15 +52,15 @@ impl StandIn {
         }
         while let Some((ticket, request)) = mailbox.take_request() {
             let answer = match request {
-                Request::Cli(line) => LateAnswer::Cli(self.firmware.run_cli(&mut self.console, &line)),
-                Request::Msp { code, payload } => {
+                RemoteRequest::Cli(line) => LateAnswer::Cli(self.firmware.run_cli(&mut self.console, &line)),
+                RemoteRequest::Msp { code, payload } => {
                     LateAnswer::Msp(self.firmware.run_msp(code, &payload, None).reply)
                 }
-                Request::Restart => {
+                RemoteRequest::Restart => {
                     self.restarts += 1;
                     continue;
                 }
-                Request::ReturnHome | Request::CancelReturn => continue,
+                RemoteRequest::ReturnHome | RemoteRequest::CancelReturn => continue,
             };
             self.answers.push_back((self.ticks + DELAY, ticket, answer));
         }

@@ -8,7 +8,7 @@ use super::{CliContext, CliReply, MAX_LINE};
 
 /// Who talks to the interpreter, which changes a few answers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Mode {
+pub enum CliMode {
     /// A person or a script at a prompt.
     #[default]
     Interactive,
@@ -32,7 +32,7 @@ pub(super) enum Batch {
 /// The interpreter of one session.
 #[derive(Debug, Clone)]
 pub struct Interpreter {
-    pub(super) mode: Mode,
+    pub(super) mode: CliMode,
     pub(super) batch: Batch,
     /// Section to which kept lines belong: master, or the profile selected last.
     pub(super) section: (Scope, u8),
@@ -41,14 +41,14 @@ pub struct Interpreter {
 
 impl Default for Interpreter {
     fn default() -> Self {
-        Self::new(Mode::default())
+        Self::new(CliMode::default())
     }
 }
 
 impl Interpreter {
     /// A fresh session.
     #[must_use]
-    pub fn new(mode: Mode) -> Self {
+    pub fn new(mode: CliMode) -> Self {
         Self { mode, batch: Batch::Closed, section: (Scope::Master, 0), lenient: false }
     }
 
@@ -71,13 +71,13 @@ impl Interpreter {
         if line.is_empty() {
             return CliReply::default();
         }
-        if self.mode == Mode::Message && ends_the_link(line) {
+        if self.mode == CliMode::Message && ends_the_link(line) {
             return CliReply { failed: true, ..CliReply::default() };
         }
         let (word, rest) = line.split_once([' ', '\t']).unwrap_or((line, ""));
         let rest = rest.trim();
         let command = by_name(word);
-        let keeps_foreign = self.batch != Batch::Closed || self.mode == Mode::File;
+        let keeps_foreign = self.batch != Batch::Closed || self.mode == CliMode::File;
         let mut session = Session {
             command: command.map_or("input", |command| command.name),
             interpreter: self,
@@ -101,7 +101,7 @@ impl Interpreter {
 }
 
 fn unknown(session: &mut Session<'_>, line: &str) {
-    if matches!(session.interpreter.mode, Mode::Framed | Mode::Message) {
+    if matches!(session.interpreter.mode, CliMode::Framed | CliMode::Message) {
         session.line(format_args!("ERR_CMD_NA: {line}"));
     } else {
         // The only error without a line end.
@@ -209,7 +209,7 @@ mod tests {
             let facts = CliFacts { armed, ..CliFacts::default() };
             let mut configuration = Configuration::default();
             let mut context = CliContext { configuration: &mut configuration, facts: &facts };
-            Interpreter::new(Mode::Message).run(line, &mut context)
+            Interpreter::new(CliMode::Message).run(line, &mut context)
         };
         for line in ["bl", " BL rom", "defaults", "serialpassthrough 1", "msc # now"] {
             let refused = CliReply { failed: true, ..CliReply::default() };
@@ -222,7 +222,7 @@ mod tests {
         assert!(!run_message("waypoint clear", true).failed);
         let mut configuration = Configuration::default();
         let mut context = CliContext { configuration: &mut configuration, facts: &CliFacts::default() };
-        let mut message = Interpreter::new(Mode::Message);
+        let mut message = Interpreter::new(CliMode::Message);
         assert_eq!(message.run("save", &mut context).actions, [CliAction::Save]);
         assert_eq!(message.run("exit", &mut context), CliReply::default());
     }

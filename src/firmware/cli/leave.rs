@@ -1,7 +1,7 @@
 //! Saving, leaving, resetting and batches.
 
 use super::CliAction;
-use super::interpreter::{Batch, Mode};
+use super::interpreter::{Batch, CliMode};
 use super::session::Session;
 use crate::firmware::config::correct;
 use crate::firmware::settings::Scope;
@@ -20,12 +20,12 @@ fn flag(session: &mut Session<'_>, rest: &str, word: &str) -> Option<bool> {
 /// Ends the session by a restart, as far as the link allows it.
 fn restart(session: &mut Session<'_>) {
     match session.interpreter.mode {
-        Mode::Interactive | Mode::File => {
+        CliMode::Interactive | CliMode::File => {
             session.raw("\r\nRebooting");
             session.act(CliAction::Restart { close_links: true });
         }
-        Mode::Framed => session.act(CliAction::Restart { close_links: false }),
-        Mode::Message => {}
+        CliMode::Framed => session.act(CliAction::Restart { close_links: false }),
+        CliMode::Message => {}
     }
 }
 
@@ -66,7 +66,7 @@ pub(super) fn exit(session: &mut Session<'_>, rest: &str) {
         return;
     }
     let Some(noreboot) = flag(session, rest, "noreboot") else { return };
-    if matches!(session.interpreter.mode, Mode::Framed | Mode::Message) {
+    if matches!(session.interpreter.mode, CliMode::Framed | CliMode::Message) {
         return;
     }
     session.interpreter.batch = Batch::Closed;

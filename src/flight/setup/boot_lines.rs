@@ -1,6 +1,6 @@
 //! Command lines that are applied at boot as if typed.
 
-use crate::firmware::cli::{CliContext, CliFacts, CliReply, Interpreter, Mode, advice, apply_lines};
+use crate::firmware::cli::{CliContext, CliFacts, CliMode, CliReply, Interpreter, advice, apply_lines};
 use crate::firmware::config::Configuration;
 use crate::firmware::settings;
 use crate::plan::format::{PlanError, Problems, SettingPart};
@@ -25,7 +25,7 @@ impl BootLines {
     pub(super) fn apply(&self, configuration: &mut Configuration) -> Result<(), Vec<PlanError>> {
         let facts = CliFacts::default();
         let mut context = CliContext { configuration, facts: &facts };
-        let mut interpreter = Interpreter::new(Mode::File);
+        let mut interpreter = Interpreter::new(CliMode::File);
         let mut reasons = Vec::new();
         let report = apply_lines(self.text.lines(), &mut interpreter, &mut context, |line, reply| {
             if reply.failed {

@@ -2,7 +2,7 @@
 
 use super::{FlightSetup, SetupNotice};
 use crate::geo::{LatLon, distance_bearing};
-use crate::plan::format::Home;
+use crate::plan::format::HomePosition;
 use crate::sim;
 
 /// Beyond this distance from home the first waypoint is far: a default home moves there, m.
@@ -14,7 +14,7 @@ impl FlightSetup {
     #[must_use]
     pub fn boot_home(&self) -> (sim::Home, Option<SetupNotice>) {
         let default = self.world.home;
-        let at = |home: Home| sim::Home {
+        let at = |home: HomePosition| sim::Home {
             lat_deg: home.position.lat_deg(),
             lon_deg: home.position.lon_deg(),
             alt_amsl_m: home.amsl_m.unwrap_or(default.alt_amsl_m),
@@ -35,7 +35,7 @@ impl FlightSetup {
         match chosen {
             Some(_) => (home, Some(SetupNotice::PlanFarFromHome { first, home: place, distance_m })),
             None => {
-                let at_first = at(Home { position: first, amsl_m: None });
+                let at_first = at(HomePosition { position: first, amsl_m: None });
                 (at_first, Some(SetupNotice::HomeAtFirstWaypoint { first, distance_m }))
             }
         }
@@ -55,7 +55,11 @@ mod tests {
         PlanFile { plan, ..PlanFile::default() }
     }
 
-    fn start(home: Option<Home>, plan_home: Option<Home>, plan: PlanFile) -> (sim::Home, Option<String>) {
+    fn start(
+        home: Option<HomePosition>,
+        plan_home: Option<HomePosition>,
+        plan: PlanFile,
+    ) -> (sim::Home, Option<String>) {
         let mut setup =
             FlightSetup { home, plan: PlanFile { home: plan_home, ..plan }, ..FlightSetup::default() };
         setup.world.home.heading_deg = 90.0;
@@ -65,7 +69,7 @@ mod tests {
 
     #[test]
     fn home_is_the_users_the_plans_or_the_default() {
-        let plan_home: Option<Home> = "10,20".parse().ok();
+        let plan_home: Option<HomePosition> = "10,20".parse().ok();
         let near = plan_at(404_640_000);
         let (home, notice) = start(None, None, near.clone());
         assert_eq!((home.lat_deg, home.alt_amsl_m, home.heading_deg, notice), (40.4635, 300.0, 90.0, None));
@@ -85,7 +89,7 @@ mod tests {
 
     #[test]
     fn a_chosen_home_far_from_the_plan_stays_with_a_notice() {
-        let far: Option<Home> = "10,10".parse().ok();
+        let far: Option<HomePosition> = "10,10".parse().ok();
         for (typed, of_plan) in [(far, None), (None, far)] {
             let (home, notice) = start(typed, of_plan, plan_at(404_640_000));
             assert!((home.lat_deg - 10.0).abs() < 1e-9);

@@ -8,7 +8,7 @@ use crate::geo::LatLon;
 
 /// A place to start from: `LAT,LON` or `LAT,LON,AMSL`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Home {
+pub struct HomePosition {
     /// Position.
     pub position: LatLon,
     /// Altitude above mean sea level, m, when given.
@@ -46,7 +46,7 @@ pub(super) fn amsl_m(text: &str) -> Result<f64, String> {
 /// What [`amsl_m`] accepts.
 pub(super) const AMSL_HINT: &str = "allowed: -500 to 9000 m above mean sea level";
 
-impl FromStr for Home {
+impl FromStr for HomePosition {
     type Err = HomeError;
 
     fn from_str(text: &str) -> Result<Self, HomeError> {
@@ -68,7 +68,7 @@ impl FromStr for Home {
     }
 }
 
-impl fmt::Display for Home {
+impl fmt::Display for HomePosition {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.position)?;
         self.amsl_m.map_or(Ok(()), |amsl| write!(f, ",{amsl}"))
@@ -81,15 +81,15 @@ mod tests {
 
     #[test]
     fn homes_read_and_print() {
-        let home: Home = "40.4635,-79.5182,300".parse().unwrap();
+        let home: HomePosition = "40.4635,-79.5182,300".parse().unwrap();
         assert_eq!(home.to_string(), "40.4635000,-79.5182000,300");
-        assert_eq!("1,2".parse::<Home>().unwrap().amsl_m, None);
+        assert_eq!("1,2".parse::<HomePosition>().unwrap().amsl_m, None);
         assert_eq!(field::degrees_e7("40.4635"), Some(home.position.lat_e7));
     }
 
     #[test]
     fn wrong_homes_say_why() {
-        let say = |text: &str| text.parse::<Home>().unwrap_err().to_string();
+        let say = |text: &str| text.parse::<HomePosition>().unwrap_err().to_string();
         assert!(say("40.4").contains("write LAT,LON or LAT,LON,AMSL"));
         assert!(say("95,2").starts_with("latitude 95 is out of range; allowed: -90"));
         assert!(say("5,2,x").starts_with("altitude x is not a number"));

@@ -7,7 +7,7 @@ use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
 use super::field::{self, FieldError};
-use super::home::{self, Home};
+use super::home::{self, HomePosition};
 use super::setting::{SettingCheck, SettingPart, setting_line};
 use super::{PlanFile, Problems};
 use crate::geo::LatLon;
@@ -61,7 +61,7 @@ pub(super) fn read(text: &str, check: SettingCheck, problems: &mut Problems<'_>)
     }
 }
 
-fn read_home(value: &Value<'_>, problems: &mut Problems<'_>) -> Option<Home> {
+fn read_home(value: &Value<'_>, problems: &mut Problems<'_>) -> Option<HomePosition> {
     let table = Table::new("home".to_owned(), value, problems)?;
     table.refuse_unknown(HOME_KEYS, problems);
     let lat = table.required("lat_deg", problems).and_then(|v| number(v, field::latitude, problems));
@@ -70,7 +70,7 @@ fn read_home(value: &Value<'_>, problems: &mut Problems<'_>) -> Option<Home> {
         home::amsl_m(text).map_err(|message| FieldError { message, hint: home::AMSL_HINT.to_owned() })
     };
     let amsl_m = table.get("alt_amsl_m").and_then(|value| number(value, amsl, problems));
-    Some(Home { position: LatLon::new(lat?, lon?), amsl_m })
+    Some(HomePosition { position: LatLon::new(lat?, lon?), amsl_m })
 }
 
 fn read_settings(

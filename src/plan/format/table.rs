@@ -1,7 +1,7 @@
 //! A plan as a table for people.
 
 use crate::geo::{Degrees7, LatLon};
-use crate::plan::estimate::{Assumptions, Estimate, Leg, estimate};
+use crate::plan::estimate::{Assumptions, LegEstimate, PlanEstimate, estimate};
 use crate::plan::review::review;
 use crate::plan::{HoldPattern, Waypoint, WaypointType};
 
@@ -42,7 +42,7 @@ pub fn table(file: &PlanFile, home: LatLon, assumptions: &Assumptions) -> String
     text
 }
 
-fn row(index: usize, waypoint: &Waypoint, leg: &Leg) -> [String; 10] {
+fn row(index: usize, waypoint: &Waypoint, leg: &LegEstimate) -> [String; 10] {
     let kind = match (waypoint.kind, waypoint.pattern) {
         (WaypointType::Hold, HoldPattern::None) => "HOLD".to_owned(),
         (WaypointType::Hold, pattern) => format!("HOLD {pattern}"),
@@ -98,7 +98,7 @@ fn push_rows(rows: &[[String; 10]], text: &mut String) {
     }
 }
 
-fn total(estimate: &Estimate) -> String {
+fn total(estimate: &PlanEstimate) -> String {
     let time = match estimate.time_s {
         Some(seconds) => format!("at least {} from engagement", clock(seconds)),
         None => "holding without end".to_owned(),

@@ -7,7 +7,7 @@ use ratatui::text::Line;
 use crate::ui::app_state::AppState;
 use crate::ui::console::CliLineKind;
 use crate::ui::formatting::cut;
-use crate::ui::pane::Pane;
+use crate::ui::panel::Panel;
 use crate::ui::theme::Role;
 
 use super::{line, row, span};
@@ -22,7 +22,7 @@ const WELCOME: &str =
 
 /// The title: what it is doing.
 pub(crate) fn title(state: &AppState) -> String {
-    let name = Pane::Cli.title();
+    let name = Panel::Cli.title();
     match (state.cli.queued(), state.cli.waiting, state.cli.scroll) {
         (0, false, 0) => name.to_owned(),
         (0, true, 0) => format!("{name} — running"),

@@ -6,7 +6,7 @@ use ratatui::text::Line;
 
 use crate::ui::app_state::AppState;
 use crate::ui::formatting::clock_ms;
-use crate::ui::pane::Pane;
+use crate::ui::panel::Panel;
 use crate::ui::theme::Role;
 
 use super::{line, row, span};
@@ -17,7 +17,7 @@ const STAMP: usize = 12;
 
 /// The title: how many lines are above the first one shown.
 pub(crate) fn title(state: &AppState) -> String {
-    let name = Pane::Log.title();
+    let name = Panel::Log.title();
     match state.scrolls.log {
         0 => name.to_owned(),
         newer => format!("{name} — {newer} newer above"),
@@ -46,9 +46,9 @@ pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     let text_width = text_width(area);
     let mut at = 0;
     for entry in state.log.newest_first().skip(first) {
-        let role = entry.level.role();
+        let role = entry.severity.role();
         let mut stamp = format!("{} ", clock_ms(entry.time));
-        let mut mark = entry.level.glyph();
+        let mut mark = entry.severity.glyph();
         for part in wrapped(&entry.text, text_width) {
             if at == area.height {
                 return;

@@ -10,7 +10,7 @@ use crate::plan::{FlightPlan, Waypoint, WaypointType};
 use crate::telemetry::PlanSource;
 use crate::ui::app_state::AppState;
 use crate::ui::map_point::{self, MapPoint, to_map};
-use crate::ui::pane::Pane;
+use crate::ui::panel::Panel;
 use crate::ui::viewport::{MapMode, Viewport};
 
 mod labels;
@@ -36,7 +36,7 @@ struct Scene {
 
 /// The title: how the map chooses its place.
 pub(crate) fn title(state: &AppState) -> String {
-    let name = Pane::Map.title();
+    let name = Panel::Map.title();
     let source = match &state.view.vehicle.active_plan {
         Some(_) => state.view.vehicle.nav.as_ref().map_or(PlanSource::Stored, |nav| nav.source),
         None => PlanSource::Stored,

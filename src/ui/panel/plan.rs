@@ -6,7 +6,7 @@ use ratatui::layout::Rect;
 use crate::geo::{Degrees7, LatLon, distance_bearing};
 use crate::plan::{FlightPlan, HoldPattern, Waypoint, WaypointType};
 use crate::ui::app_state::AppState;
-use crate::ui::pane::Pane;
+use crate::ui::panel::Panel;
 use crate::ui::theme::Role;
 
 use super::row;
@@ -17,7 +17,7 @@ const PROBLEM_ROWS: usize = 2;
 
 /// The title: name of the plan, and whether the craft has it.
 pub(crate) fn title(state: &AppState) -> String {
-    let name = Pane::Plan.title();
+    let name = Panel::Plan.title();
     if state.plan.plan.waypoints.is_empty() {
         return name.to_owned();
     }

@@ -7,7 +7,7 @@ use crate::signals::{RC_CHANNELS, RcSource};
 use crate::telemetry::snapshot::{CraftView, ModeRange};
 use crate::ui::app_state::AppState;
 use crate::ui::formatting::cut;
-use crate::ui::pane::Pane;
+use crate::ui::panel::Panel;
 use crate::ui::theme::Role;
 
 use super::row;
@@ -19,7 +19,7 @@ const SPAN_US: (f64, f64) = (900.0, 2100.0);
 
 /// The title: who drives the channels, and how old the newest frame is.
 pub(crate) fn title(state: &AppState) -> String {
-    let name = Pane::Rc.title();
+    let name = Panel::Rc.title();
     let craft = &state.view.vehicle.craft;
     let ours = !matches!(craft.rc_source, Some(RcSource::Udp | RcSource::Msp));
     if state.view.rc_cut && ours {
@@ -125,7 +125,7 @@ fn name(craft: &CraftView, channel: usize) -> String {
 pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     let craft = &state.view.vehicle.craft;
-    let focused = state.focus == Pane::Rc;
+    let focused = state.focus == Panel::Rc;
     for (channel, place) in grid(area, state.channel) {
         let us = craft.channels.and_then(|channels| channels.get(channel).copied()).unwrap_or_default();
         let known = us > 0;

@@ -9,7 +9,7 @@ use ratatui::text::Line;
 use crate::telemetry::{Guard, GuardName};
 use crate::ui::app_state::AppState;
 use crate::ui::formatting::{clock, cut, fixed, signed, within};
-use crate::ui::pane::Pane;
+use crate::ui::panel::Panel;
 use crate::ui::status_message;
 use crate::ui::theme::{Role, Theme};
 
@@ -31,7 +31,7 @@ const GUARD_ROWS: u16 = 8;
 
 /// The title: the waypoint of the mission.
 pub(crate) fn title(state: &AppState) -> String {
-    let name = Pane::State.title();
+    let name = Panel::State.title();
     let Some(nav) = state.view.vehicle.nav.as_ref().filter(|nav| nav.engaged && nav.count > 0) else {
         return name.to_owned();
     };
@@ -67,7 +67,7 @@ fn draw_status_message(state: &AppState, area: Rect, diagram: &Diagram, buffer: 
     let width = usize::from(area.width.saturating_sub(2));
     let mut used = 0;
     for (glyph, text, role) in [
-        (message.level.glyph(), &message.condition, message.level.role()),
+        (message.severity.glyph(), &message.condition, message.severity.role()),
         ("→", &message.action, Role::Title),
     ] {
         for (at, text) in wrapped(text, width).iter().enumerate() {

@@ -4,11 +4,11 @@ use crossterm::event::{Event as TerminalEvent, KeyCode, KeyEvent};
 use tui_input::backend::crossterm::EventHandler as _;
 
 use crate::ui::app_state::AppState;
-use crate::ui::event_log::Level;
+use crate::ui::event_log::Severity;
 use crate::ui::message::Effect;
-use crate::ui::pane::Pane;
+use crate::ui::panel::Panel;
 
-use super::view::{focus, neighbour, scroll_pane};
+use super::view::{focus, neighbour, scroll_panel};
 
 /// A key while the CLI has the focus.
 pub(super) fn cli_key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
@@ -25,8 +25,8 @@ pub(super) fn cli_key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
         }
         KeyCode::Up => state.cli.older(),
         KeyCode::Down => state.cli.newer(),
-        KeyCode::PageUp => scroll_pane(state, Pane::Cli, -10),
-        KeyCode::PageDown => scroll_pane(state, Pane::Cli, 10),
+        KeyCode::PageUp => scroll_panel(state, Panel::Cli, -10),
+        KeyCode::PageDown => scroll_panel(state, Panel::Cli, 10),
         _ => {
             if state.cli.input.handle_event(&TerminalEvent::Key(event)).is_some() {
                 state.cli.candidates.clear();
@@ -38,8 +38,8 @@ pub(super) fn cli_key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
 }
 
 pub(super) fn paste(state: &mut AppState, text: &str) -> Vec<Effect> {
-    if state.focus != Pane::Cli || !state.layers.is_empty() {
-        state.notify(Level::Info, "Pasted text goes to the CLI: press 5 first.");
+    if state.focus != Panel::Cli || !state.popups.is_empty() {
+        state.notify(Severity::Info, "Pasted text goes to the CLI: press 5 first.");
         return Vec::new();
     }
     state.cli.paste(text);

@@ -2,7 +2,7 @@
 
 use crate::session::Command;
 use crate::ui::app_state::AppState;
-use crate::ui::event_log::Level;
+use crate::ui::event_log::Severity;
 use crate::ui::message::Effect;
 
 /// The speeds `[` and `]` go through.
@@ -14,18 +14,18 @@ pub(super) fn fly(state: &mut AppState) -> Vec<Effect> {
         return vec![Effect::Send(Command::Pilot(false))];
     }
     if state.view.paused {
-        state.notify(Level::Info, "The simulation is paused: Space goes on.");
+        state.notify(Severity::Info, "The simulation is paused: Space goes on.");
     }
     if state.view.vehicle.stored_plan.as_ref().is_none_or(|plan| !plan.waypoints.is_empty()) {
         if !state.plan.plan.waypoints.is_empty() && !state.plan_is_on_craft() {
             let text =
                 format!("Flying the plan in the craft, which is not {}: U uploads it.", state.plan.name);
-            state.notify(Level::Info, text);
+            state.notify(Severity::Info, text);
         }
         return vec![Effect::Send(Command::Pilot(true))];
     }
     if state.plan.plan.waypoints.is_empty() {
-        state.notify(Level::Warn, "There is no plan to fly: `waypoint insert …` in the CLI (5) adds one.");
+        state.notify(Severity::Warn, "There is no plan to fly: `waypoint insert …` in the CLI (5) adds one.");
         return Vec::new();
     }
     state.fly_after_upload = true;
@@ -42,11 +42,11 @@ pub(super) fn uploaded(state: &mut AppState, result: Result<(), String>) -> Vec<
         Ok(()) => {
             let text =
                 format!("Uploaded {}: {} waypoints.", state.plan.name, state.plan.plan.waypoints.len());
-            state.notify(Level::Good, text);
+            state.notify(Severity::Good, text);
             if fly { vec![Effect::Send(Command::Pilot(true))] } else { Vec::new() }
         }
         Err(sentence) => {
-            state.notify(Level::Fault, format!("The craft refused the plan: {sentence}"));
+            state.notify(Severity::Fault, format!("The craft refused the plan: {sentence}"));
             Vec::new()
         }
     }

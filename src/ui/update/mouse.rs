@@ -7,65 +7,65 @@ use crate::ui::app_state::AppState;
 use crate::ui::layout;
 use crate::ui::map_point::MapPoint;
 use crate::ui::message::Effect;
-use crate::ui::pane::Pane;
+use crate::ui::panel::Panel;
 use crate::ui::panel::rc;
 use crate::ui::transmitter;
 use crate::ui::viewport::{MapMode, Viewport};
 
-use super::view::{ZOOM_STEP, focus, scroll_pane};
+use super::view::{ZOOM_STEP, focus, scroll_panel};
 
 /// Lines a turn of the wheel scrolls.
 const WHEEL_LINES: isize = 3;
 
 /// Takes a mouse event in.
 pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
-    if !state.layers.is_empty() {
+    if !state.popups.is_empty() {
         return Vec::new();
     }
-    let Some((pane, area)) = layout::screen(state).and_then(|screen| screen.at(event.column, event.row))
+    let Some((panel, area)) = layout::screen(state).and_then(|screen| screen.at(event.column, event.row))
     else {
         return Vec::new();
     };
     match event.kind {
         MouseEventKind::Down(MouseButton::Left) => {
-            focus(state, pane);
-            match pane {
-                Pane::Map => {
+            focus(state, panel);
+            match panel {
+                Panel::Map => {
                     let centre = Viewport::of(state, layout::inner(area)).centre;
                     state.drag = Some((event.column, event.row, centre.n, centre.e));
                     Vec::new()
                 }
-                Pane::Rc => set_channel(state, area, &event),
-                Pane::Plan | Pane::State | Pane::Cli | Pane::Log => Vec::new(),
+                Panel::Rc => set_channel(state, area, &event),
+                Panel::Plan | Panel::State | Panel::Cli | Panel::Log => Vec::new(),
             }
         }
-        MouseEventKind::Drag(MouseButton::Left) => match pane {
-            Pane::Map => {
+        MouseEventKind::Drag(MouseButton::Left) => match panel {
+            Panel::Map => {
                 drag_map(state, area, &event);
                 Vec::new()
             }
-            Pane::Rc => set_channel(state, area, &event),
-            Pane::Plan | Pane::State | Pane::Cli | Pane::Log => Vec::new(),
+            Panel::Rc => set_channel(state, area, &event),
+            Panel::Plan | Panel::State | Panel::Cli | Panel::Log => Vec::new(),
         },
         MouseEventKind::Up(_) => {
             state.drag = None;
             Vec::new()
         }
         MouseEventKind::ScrollUp => {
-            wheel(state, pane, area, &event, -1);
+            wheel(state, panel, area, &event, -1);
             Vec::new()
         }
         MouseEventKind::ScrollDown => {
-            wheel(state, pane, area, &event, 1);
+            wheel(state, panel, area, &event, 1);
             Vec::new()
         }
         _ => Vec::new(),
     }
 }
 
-fn wheel(state: &mut AppState, pane: Pane, area: Rect, event: &MouseEvent, direction: isize) {
-    if pane != Pane::Map {
-        scroll_pane(state, pane, direction * WHEEL_LINES);
+fn wheel(state: &mut AppState, panel: Panel, area: Rect, event: &MouseEvent, direction: isize) {
+    if panel != Panel::Map {
+        scroll_panel(state, panel, direction * WHEEL_LINES);
         return;
     }
     let factor = if direction < 0 { 1.0 / ZOOM_STEP } else { ZOOM_STEP };

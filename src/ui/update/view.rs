@@ -3,29 +3,29 @@
 use crate::ui::app_state::AppState;
 use crate::ui::layout;
 use crate::ui::message::Effect;
-use crate::ui::pane::Pane;
 use crate::ui::panel;
+use crate::ui::panel::Panel;
 use crate::ui::viewport::{MapMode, Viewport};
 
 /// A zoom step of the map.
 pub(super) const ZOOM_STEP: f64 = 1.5;
 
-pub(super) fn focus(state: &mut AppState, pane: Pane) -> Vec<Effect> {
-    state.focus = pane;
-    state.slots.visit(pane);
+pub(super) fn focus(state: &mut AppState, panel: Panel) -> Vec<Effect> {
+    state.focus = panel;
+    state.slots.visit(panel);
     Vec::new()
 }
 
 /// The panel before or after the focused one in the order of numbers.
-pub(super) fn neighbour(state: &AppState, step: isize) -> Pane {
-    let count = Pane::ALL.len();
-    let at = Pane::ALL.iter().position(|&pane| pane == state.focus).unwrap_or(0);
-    Pane::ALL[(at + count).wrapping_add_signed(step) % count]
+pub(super) fn neighbour(state: &AppState, step: isize) -> Panel {
+    let count = Panel::ALL.len();
+    let at = Panel::ALL.iter().position(|&panel| panel == state.focus).unwrap_or(0);
+    Panel::ALL[(at + count).wrapping_add_signed(step) % count]
 }
 
 /// The window of the map as it is on the screen.
 fn viewport(state: &AppState) -> Option<Viewport> {
-    let area = layout::screen(state)?.pane(Pane::Map)?;
+    let area = layout::screen(state)?.panel(Panel::Map)?;
     Some(Viewport::of(state, layout::inner(area)))
 }
 
@@ -57,34 +57,34 @@ pub(super) fn zoom_map(state: &mut AppState, factor: f64) -> Vec<Effect> {
 }
 
 pub(super) fn scroll(state: &mut AppState, by: isize) -> Vec<Effect> {
-    scroll_pane(state, state.focus, by);
+    scroll_panel(state, state.focus, by);
     Vec::new()
 }
 
 /// Scrolls a panel by lines, as far as it has some.
-pub(super) fn scroll_pane(state: &mut AppState, pane: Pane, by: isize) {
-    let Some(area) = layout::screen(state).and_then(|screen| screen.pane(pane)).map(layout::inner) else {
+pub(super) fn scroll_panel(state: &mut AppState, panel: Panel, by: isize) {
+    let Some(area) = layout::screen(state).and_then(|screen| screen.panel(panel)).map(layout::inner) else {
         return;
     };
-    let (at, by, last) = match pane {
-        Pane::State => {
+    let (at, by, last) = match panel {
+        Panel::State => {
             let last = state.transitions.len().saturating_sub(1);
             (&mut state.scrolls.transitions, by, last)
         }
-        Pane::Log => {
+        Panel::Log => {
             let last = panel::log::last_scroll(state, area);
             (&mut state.scrolls.log, by, last)
         }
-        Pane::Plan => {
+        Panel::Plan => {
             let last = panel::plan::last_scroll(state, area);
             (&mut state.scrolls.plan, by, last)
         }
         // The newest line of the CLI is below, so up is forwards in its own count.
-        Pane::Cli => {
+        Panel::Cli => {
             let last = panel::cli::last_scroll(state, area);
             (&mut state.cli.scroll, by.saturating_neg(), last)
         }
-        Pane::Map | Pane::Rc => return,
+        Panel::Map | Panel::Rc => return,
     };
     *at = (*at).min(last).saturating_add_signed(by).min(last);
 }

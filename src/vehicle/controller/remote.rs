@@ -31,7 +31,7 @@ pub enum FrameOut {
 
 /// What the flight controller is asked.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Request {
+pub enum RemoteRequest {
     /// To run a CLI line; answered by [`LateAnswer::Cli`].
     Cli(String),
     /// An MSP message; answered by [`LateAnswer::Msp`].
@@ -68,7 +68,7 @@ pub struct RemoteTelemetry {
 #[derive(Debug, Clone)]
 pub struct RemoteController {
     frames: VecDeque<FrameOut>,
-    requests: VecDeque<(Ticket, Request)>,
+    requests: VecDeque<(Ticket, RemoteRequest)>,
     next_ticket: u64,
     rc: [Option<RcFrame>; RcSource::COUNT],
     motors: MotorCommand,
@@ -99,7 +99,7 @@ impl RemoteController {
     }
 
     /// Takes the oldest request out.
-    pub fn take_request(&mut self) -> Option<(Ticket, Request)> {
+    pub fn take_request(&mut self) -> Option<(Ticket, RemoteRequest)> {
         self.requests.pop_front()
     }
 
@@ -148,7 +148,7 @@ impl RemoteController {
         self.rc.fill(None);
     }
 
-    pub(super) fn ask(&mut self, request: Request) -> Ticket {
+    pub(super) fn ask(&mut self, request: RemoteRequest) -> Ticket {
         let ticket = Ticket(self.next_ticket);
         self.next_ticket += 1;
         self.requests.push_back((ticket, request));
@@ -157,7 +157,7 @@ impl RemoteController {
 
     /// Asks for a restart; what was told before it means nothing, and its motors stand still.
     pub(super) fn restart(&mut self) {
-        self.ask(Request::Restart);
+        self.ask(RemoteRequest::Restart);
         self.motors = MotorCommand::default();
         self.telemetry = RemoteTelemetry::default();
     }

@@ -1,0 +1,13 @@
+//! The popups.
+
+/// What lies over the panels; the last one opened gets the keys first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Popup {
+    /// The keys, scrolled down by this many lines.
+    Help {
+        /// First line shown.
+        scroll: usize,
+    },
+    /// "The craft is armed. Quit?"
+    Quit,
+}
