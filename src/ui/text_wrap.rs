@@ -1,22 +1,29 @@
 //! Text in lines of a width.
 
-/// `text` in lines of at most `width` columns, broken at blanks; a word that is longer is broken anywhere.
+/// `text` in lines of at most `width` columns, broken at blanks; a word that is longer is broken anywhere. A character
+/// that is wider than a line has one of its own.
 pub(super) fn wrapped(text: &str, width: usize) -> Vec<String> {
-    use unicode_width::UnicodeWidthStr as _;
+    use unicode_width::{UnicodeWidthChar as _, UnicodeWidthStr as _};
     let mut lines: Vec<String> = Vec::new();
     let mut current = String::new();
+    let mut used = 0;
     for word in text.split_whitespace() {
-        if !current.is_empty() && current.width() + 1 + word.width() > width {
+        if !current.is_empty() && used + 1 + word.width() > width {
             lines.push(std::mem::take(&mut current));
+            used = 0;
         }
         if !current.is_empty() {
             current.push(' ');
+            used += 1;
         }
         for c in word.chars() {
-            if width > 0 && current.width() >= width {
+            let columns = c.width().unwrap_or(0);
+            if used > 0 && used + columns > width {
                 lines.push(std::mem::take(&mut current));
+                used = 0;
             }
             current.push(c);
+            used += columns;
         }
     }
     if !current.is_empty() {
@@ -95,6 +102,7 @@ mod tests {
     fn text_wraps_at_blanks_and_never_exceeds_the_width() {
         assert_eq!(wrapped("one two three", 7), ["one two", "three"]);
         assert_eq!(wrapped("abcdefgh", 3), ["abc", "def", "gh"]);
+        assert_eq!(wrapped("一二 三", 3), ["一", "二", "三"]);
         assert!(wrapped("", 3).is_empty());
     }
 }

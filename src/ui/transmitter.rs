@@ -235,9 +235,11 @@ pub(super) fn move_throttle(state: &mut AppState) -> Vec<Effect> {
     send(state, next)
 }
 
-/// The settings of the sticks; zero where the flight controller does not tell.
+/// The settings of the sticks; a throttle in the middle hovers where the flight controller does not tell.
 fn settings(state: &AppState) -> SettingsView {
-    state.view.vehicle.settings.unwrap_or_default()
+    let unknown =
+        SettingsView { hover_stick_us: MIDDLE_US, raised_stick_us: MIDDLE_US, ..SettingsView::default() };
+    state.view.vehicle.settings.unwrap_or(unknown)
 }
 
 /// Where the throttle stick hovers, with ALTHOLD and without; raised in any case.

@@ -5,7 +5,7 @@ use betadeck::flight::setup::BootLines;
 use betadeck::flight::{Flight, FlightEnd, FlightOptions, FlightResult, FlightSetup, Report};
 use betadeck::geo::LatLon;
 use betadeck::plan::FlightPlan;
-use betadeck::plan::format::{Format, Home, parse};
+use betadeck::plan::format::{Format, HomePosition, parse};
 use betadeck::signals::SimTime;
 use betadeck::sim::WorldConfig;
 use betadeck::telemetry::{DisarmReason, EventKind, FirmwareEvent, NavEvent};
@@ -59,7 +59,7 @@ impl Mission {
         let stored = Configuration { plan: self.plan, ..Configuration::default() };
         let boot_lines = vec![BootLines::settings("settings", &self.settings)];
         let at = self.world.home;
-        let home = Some(Home {
+        let home = Some(HomePosition {
             position: LatLon::from_degrees(at.lat_deg, at.lon_deg),
             amsl_m: Some(at.alt_amsl_m),
         });

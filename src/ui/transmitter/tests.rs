@@ -53,6 +53,14 @@ fn the_throttle_goes_to_hover_and_back() {
     assert_eq!(sticks(&move_throttle(&mut state)).channels[2], 1000);
 }
 
+#[test]
+fn without_a_word_of_the_hover_the_throttle_goes_to_the_middle() {
+    let mut state = state(&[]);
+    std::sync::Arc::make_mut(&mut state.view.vehicle).settings = None;
+    assert_eq!(sticks(&move_throttle(&mut state)).channels[2], 1500);
+    assert_eq!(sticks(&move_throttle(&mut state)).channels[2], 1000);
+}
+
 const HOLDS: [(Mode, u8, u16, u16); 5] = [
     (Mode::Arm, 4, 1700, 2100),
     (Mode::Autopilot, 5, 1700, 2100),
