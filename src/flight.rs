@@ -56,9 +56,7 @@ pub struct Flight {
     truth_check: TruthCheck,
     /// What the navigator said in this tick.
     nav_events: Vec<NavEvent>,
-    /// Height of the centre of mass of a craft that stands, m.
-    standing_m: f64,
-    /// True altitude of the place where the craft was armed, m above the boot place.
+    /// True altitude where the craft was armed, m.
     armed_alt_m: f64,
     battery_empty_at: Option<SimTime>,
 }
@@ -95,7 +93,6 @@ impl Flight {
         let ends_in_land = vehicle.controller().stored_plan().is_some_and(ends_in_land);
         let sample_every_us =
             (options.samples_hz > 0.0).then(|| ((1e6 / options.samples_hz).round() as u64).max(1));
-        let standing_m = vehicle.world().map_or(0.0, |world| world.airframe().standing_height_m());
         Ok(Self {
             vehicle,
             judge: Judge::new(options.timeout),
@@ -105,7 +102,6 @@ impl Flight {
             takeoff_m: options.takeoff_m,
             truth_check: TruthCheck::new(options.tolerance_m),
             nav_events: Vec::with_capacity(8),
-            standing_m,
             armed_alt_m: 0.0,
             battery_empty_at: None,
         })
@@ -224,9 +220,9 @@ impl Flight {
         })
     }
 
-    /// True altitude above the boot place, m.
+    /// True altitude of the centre of mass above the ground at the boot place, m.
     fn true_alt_m(&self) -> f64 {
-        self.vehicle.world().map_or(0.0, |world| world.truth().pos_enu.z - self.standing_m)
+        self.vehicle.world().map_or(0.0, |world| world.truth().pos_enu.z)
     }
 
     fn battery_used_pct(&self) -> Option<f64> {

@@ -32,7 +32,7 @@ pub struct JudgeFacts {
     pub state: NavState,
     /// Why it was entered.
     pub entered_for: Option<TransitionReason>,
-    /// True altitude above home, m.
+    /// True altitude above the boot place, m.
     pub alt_m: f64,
     /// Current waypoint.
     pub wp: u8,

@@ -72,7 +72,7 @@ impl<W: Write> GpxWriter<W> {
             escaped(&header.creator)
         )?;
         for (index, waypoint) in plan.waypoints.iter().enumerate() {
-            if !waypoint.kind.is_positional() || !waypoint.position.is_on_globe() {
+            if !waypoint.kind.uses_position() || !waypoint.position.is_on_globe() {
                 continue;
             }
             let (lat, lon) = (Degrees7(waypoint.position.lat_e7), Degrees7(waypoint.position.lon_e7));
@@ -162,6 +162,7 @@ mod tests {
     fn a_document_has_waypoints_and_one_point_a_second() {
         let mut plan = FlightPlan::default();
         plan.waypoints.push(Waypoint { kind: WaypointType::Delay, ..Waypoint::default() });
+        plan.waypoints.push(Waypoint { kind: WaypointType::Takeoff, ..Waypoint::default() });
         plan.waypoints.push(Waypoint {
             position: LatLon::new(404_640_000, -795_175_000),
             alt_cm: 5000,
@@ -176,13 +177,14 @@ mod tests {
             writer.offer(&point(us, lat)).unwrap();
         }
         let text = String::from_utf8(writer.finish().unwrap()).unwrap();
+        // A DELAY and a TAKEOFF are no places.
         assert_eq!(
             text,
             r#"<?xml version="1.0" encoding="UTF-8"?>
 <gpx version="1.1" creator="betadeck &lt;test&gt;" xmlns="http://www.topografix.com/GPX/1/1">
   <wpt lat="40.4640000" lon="-79.5175000">
     <ele>350.00</ele>
-    <name>WP1 FLYBY</name>
+    <name>WP2 FLYBY</name>
   </wpt>
   <trk>
     <name>a &amp; b</name>

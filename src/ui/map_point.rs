@@ -46,7 +46,7 @@ pub(super) fn origin(state: &AppState) -> Option<LocalFrame> {
         return Some(LocalFrame::new(lat, lon, 0.0));
     }
     let first =
-        || state.shown_plan().waypoints.iter().find(|wp| wp.kind.is_positional()).map(|wp| wp.position);
+        || state.shown_plan().waypoints.iter().find(|wp| wp.kind.uses_position()).map(|wp| wp.position);
     let place = vehicle.craft.home.or_else(first)?;
     Some(LocalFrame::new(place.lat_deg(), place.lon_deg(), 0.0))
 }

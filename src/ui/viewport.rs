@@ -5,8 +5,6 @@
 
 use ratatui::layout::Rect;
 
-use crate::plan::WaypointType;
-
 use super::app_state::AppState;
 use super::map_point::{MapPoint, craft, origin, to_map};
 
@@ -76,11 +74,8 @@ impl Viewport {
         let places = origin.iter().flat_map(|frame| {
             // The open plan, too: the map shall not jump when a return home or a landing takes over.
             let plans = [state.shown_plan(), &state.plan.plan];
-            // A TAKEOFF stands at home, wherever its record points.
-            let waypoints = plans
-                .into_iter()
-                .flat_map(|plan| &plan.waypoints)
-                .filter(|wp| wp.kind.is_positional() && wp.kind != WaypointType::Takeoff);
+            let waypoints =
+                plans.into_iter().flat_map(|plan| &plan.waypoints).filter(|wp| wp.kind.uses_position());
             waypoints.map(|wp| wp.position).chain(home).map(|position| to_map(frame, position))
         });
         let mut low = MapPoint::default();

@@ -4,7 +4,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
 use crate::geo::{Degrees7, LatLon, distance_bearing};
-use crate::plan::{FlightPlan, HoldPattern, Waypoint, WaypointType};
+use crate::plan::{FlightPlan, Waypoint, WaypointType};
 use crate::ui::app_state::AppState;
 use crate::ui::panel::Panel;
 use crate::ui::theme::Role;
@@ -29,18 +29,23 @@ pub(crate) fn title(state: &AppState) -> String {
     format!("{name} — {} {where_it_is}", state.plan.name)
 }
 
+/// Home and the radius of the fence, m, when both are known.
+fn fence(state: &AppState) -> Option<(LatLon, f64)> {
+    let vehicle = &state.view.vehicle;
+    vehicle.craft.home.zip(vehicle.settings.and_then(|settings| settings.fence_m))
+}
+
 /// What is wrong with each waypoint that has something wrong.
 fn problems(state: &AppState) -> Vec<String> {
     let plan = &state.plan.plan;
-    let vehicle = &state.view.vehicle;
-    let fence = vehicle.craft.home.zip(vehicle.settings.and_then(|settings| settings.fence_m));
+    let fence = fence(state);
     (0..plan.waypoints.len()).filter_map(|index| waypoint_problem(plan, index, fence)).collect()
 }
 
 /// What is wrong with a waypoint of a plan, or worth knowing.
 fn waypoint_problem(plan: &FlightPlan, index: usize, fence: Option<(LatLon, f64)>) -> Option<String> {
     let wp = plan.waypoints.get(index)?;
-    if !wp.kind.is_positional() {
+    if !wp.kind.uses_position() {
         return None;
     }
     if !wp.position.is_on_globe() {
@@ -79,7 +84,7 @@ pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     };
     row(buffer, area, 0, theme, Role::Title, head);
     let vehicle = &state.view.vehicle;
-    let fence = vehicle.craft.home.zip(vehicle.settings.and_then(|settings| settings.fence_m));
+    let fence = fence(state);
     let problems = problems(state);
     let below = problems.len().min(PROBLEM_ROWS) as u16;
     let rows = waypoint_rows(area, &problems);
@@ -104,7 +109,7 @@ pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
 
 fn waypoint_row(index: usize, wp: &Waypoint, wide: bool) -> String {
     let kind = wp.kind.to_string();
-    let place = |e7: i32| if wp.kind.is_positional() { Degrees7(e7).to_string() } else { "—".to_owned() };
+    let place = |e7: i32| if wp.kind.uses_position() { Degrees7(e7).to_string() } else { "—".to_owned() };
     let (lat, lon) = (place(wp.position.lat_e7), place(wp.position.lon_e7));
     let alt = match wp.kind {
         WaypointType::Delay | WaypointType::YawRate => "—".to_owned(),
@@ -122,9 +127,22 @@ fn waypoint_row(index: usize, wp: &Waypoint, wide: bool) -> String {
         0 => "—".to_owned(),
         cms => format!("{:.1}", f64::from(cms) / 100.0),
     };
-    let pattern = match (wp.kind, wp.pattern) {
-        (WaypointType::Hold, HoldPattern::None) | (WaypointType::Hold, _) => wp.pattern.to_string(),
-        _ => "—".to_owned(),
-    };
+    let pattern = if wp.kind == WaypointType::Hold { wp.pattern.to_string() } else { "—".to_owned() };
     format!("{index:>2} {kind:<10} {lat:>11} {lon:>12} {alt:>8} {speed:>4} {time:>7} {pattern}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_takeoff_far_from_home_is_no_problem_for_it_has_no_place() {
+        let mut plan = FlightPlan::default();
+        plan.waypoints.push(Waypoint { kind: WaypointType::Takeoff, ..Waypoint::default() });
+        plan.waypoints.push(Waypoint { kind: WaypointType::Flyover, ..Waypoint::default() });
+        let fence = Some((LatLon::new(404_635_000, -795_182_000), 500.0));
+        assert_eq!(waypoint_problem(&plan, 0, fence), None);
+        assert!(waypoint_problem(&plan, 1, fence).is_some_and(|text| text.contains("the fence is 500 m")));
+        assert!(!waypoint_row(0, &plan.waypoints[0], true).contains("0.0000000"));
+    }
 }
