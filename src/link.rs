@@ -18,6 +18,7 @@ mod external;
 mod impairment;
 mod listener;
 mod listeners;
+mod notices;
 mod origin;
 pub mod proto;
 mod request;

@@ -12,7 +12,9 @@ use tokio_util::sync::CancellationToken;
 
 use super::client_stream::ClientStream;
 use super::endpoint_stats::EndpointStats;
+use super::notices::Notices;
 use super::proto::command_line::LineSource;
+use super::proto::first_line::{FirstLine, ForeignProtocol};
 use super::proto::serial_session::{SerialRequest, SerialSession};
 use super::request::{ClientId, Request};
 
@@ -38,6 +40,10 @@ enum Stop {
     Ended,
     /// The client cannot be reached.
     Failed,
+    /// The client does not take its answers.
+    Deaf,
+    /// The client is none of this door's.
+    Foreign(ForeignProtocol),
 }
 
 impl From<io::Error> for Stop {
@@ -51,7 +57,9 @@ pub(super) struct Client {
     id: ClientId,
     stream: ClientStream,
     channels: SharedChannels,
+    notices: Notices,
     stats: Arc<EndpointStats>,
+    first_line: FirstLine,
     session: SerialSession,
     arrived: Instant,
 }
@@ -61,17 +69,44 @@ impl Client {
         id: ClientId,
         stream: ClientStream,
         mut channels: SharedChannels,
+        notices: Notices,
         stats: Arc<EndpointStats>,
     ) -> Self {
         // A restart before the client came does not concern it.
         channels.restarts.mark_unchanged();
-        Self { id, stream, channels, stats, session: SerialSession::default(), arrived: Instant::now() }
+        Self {
+            id,
+            stream,
+            channels,
+            notices,
+            stats,
+            first_line: FirstLine::default(),
+            session: SerialSession::default(),
+            arrived: Instant::now(),
+        }
     }
 
     /// Serves the client until it goes, the firmware restarts or the doors close.
     pub(super) async fn serve(mut self) {
-        if let Stop::Failed = self.exchange().await {
-            self.stats.error();
+        let stop = self.exchange().await;
+        let door = self.stream.door();
+        match stop {
+            Stop::Ended => {}
+            Stop::Failed => self.stats.error(),
+            Stop::Deaf => {
+                self.stats.error();
+                self.notices.tell(format!(
+                    "A client of the {door} door did not take its answers for {} s and was closed.",
+                    WRITE_TIMEOUT.as_secs()
+                ));
+            }
+            Stop::Foreign(protocol) => {
+                self.stats.error();
+                self.notices.tell(format!(
+                    "A web page or a program that speaks {protocol} came to the {door} door and was turned away: it is \
+                     for MSP and the command line."
+                ));
+            }
         }
         if self.session.is_in_cli() {
             let _gone = self.channels.requests.send(Request::LeftCli { client: self.id }).await;
@@ -101,13 +136,24 @@ impl Client {
                 bytes = self.stream.read() => match bytes {
                     Ok(Some(bytes)) => {
                         self.stats.received(bytes.len());
-                        self.session.push(&bytes);
+                        if let Err(protocol) = self.take(&bytes) {
+                            return Stop::Foreign(protocol);
+                        }
                     }
                     Ok(None) => return Stop::Ended,
                     Err(error) => return error.into(),
                 },
             }
         }
+    }
+
+    /// Takes bytes from the client. Behind a websocket's handshake there is no browser that does not know whom it speaks to.
+    fn take(&mut self, bytes: &[u8]) -> Result<(), ForeignProtocol> {
+        match &self.stream {
+            ClientStream::Tcp(_) => self.session.push(&self.first_line.take(bytes)?),
+            ClientStream::WebSocket(_) => self.session.push(bytes),
+        }
+        Ok(())
     }
 
     /// Answers everything that the bytes so far ask for.
@@ -169,12 +215,10 @@ impl Client {
 
     async fn flush(&mut self) -> Result<(), Stop> {
         let output = self.session.take_output();
-        if output.is_empty() {
-            return Ok(());
-        }
         self.stats.sent(output.len());
-        Ok(tokio::time::timeout(WRITE_TIMEOUT, self.stream.write(output))
-            .await
-            .map_err(io::Error::from)??)
+        match tokio::time::timeout(WRITE_TIMEOUT, self.stream.write(output)).await {
+            Ok(written) => Ok(written?),
+            Err(_too_long) => Err(Stop::Deaf),
+        }
     }
 }

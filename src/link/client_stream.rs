@@ -10,6 +10,8 @@ use tokio_tungstenite::tungstenite::{self, Bytes, Message};
 
 /// Most bytes taken from TCP at once.
 const CHUNK: usize = 4096;
+/// Largest websocket message, either way.
+pub(super) const MESSAGE_MAX: usize = 64 * 1024;
 
 /// A connected client.
 #[derive(Debug)]
@@ -39,11 +41,27 @@ impl ClientStream {
         }
     }
 
-    /// Sends bytes, as one message where there are messages.
+    /// Sends bytes, as one message where there are messages, unless they are more than one may hold. Without bytes only
+    /// what is left is sent: answers to control frames.
     pub(super) async fn write(&mut self, bytes: Vec<u8>) -> io::Result<()> {
         match self {
             Self::Tcp(stream) => stream.write_all(&bytes).await,
-            Self::WebSocket(socket) => socket.send(Message::Binary(bytes.into())).await.or_else(ended),
+            Self::WebSocket(socket) => {
+                let mut bytes = Bytes::from(bytes);
+                while !bytes.is_empty() {
+                    let message = bytes.split_to(bytes.len().min(MESSAGE_MAX));
+                    socket.send(Message::Binary(message)).await.or_else(ended)?;
+                }
+                socket.flush().await.or_else(ended)
+            }
+        }
+    }
+
+    /// The door that it came through.
+    pub(super) fn door(&self) -> &'static str {
+        match self {
+            Self::Tcp(_) => "TCP",
+            Self::WebSocket(_) => "websocket",
         }
     }
 

@@ -1,23 +1,24 @@
-//! The TCP and the websocket door: listens, lets clients in, refuses web pages of foreign origins.
+//! The TCP and the websocket door: listens, lets clients in, refuses web pages of foreign origins and foreign hosts.
 
 #![allow(clippy::disallowed_methods, reason = "the doors wait for people and programs")]
 
-use std::collections::BTreeSet;
+use std::net::IpAddr;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
-use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use tokio::net::{TcpListener, TcpStream};
 use tokio_tungstenite::tungstenite::handshake::server::{ErrorResponse, Request as Handshake, Response};
-use tokio_tungstenite::tungstenite::http::{HeaderValue, StatusCode, header};
+use tokio_tungstenite::tungstenite::http::{HeaderName, HeaderValue, StatusCode, header};
 use tokio_tungstenite::tungstenite::protocol::WebSocketConfig;
 use tokio_util::task::TaskTracker;
 
 use super::client::{Client, SharedChannels};
-use super::client_stream::ClientStream;
+use super::client_stream::{ClientStream, MESSAGE_MAX};
 use super::endpoint_stats::EndpointStats;
-use super::origin;
-use super::request::{ClientId, Request};
+use super::notices::Notices;
+use super::origin::{self, Refusal};
+use super::request::ClientId;
 
 /// Most clients of one door.
 const CLIENTS_MAX: u32 = 32;
@@ -25,15 +26,12 @@ const CLIENTS_MAX: u32 = 32;
 const HANDSHAKE_TIMEOUT: Duration = Duration::from_secs(10);
 /// Pause after a client could not be accepted (too many open files).
 const ACCEPT_PAUSE: Duration = Duration::from_millis(100);
-/// Largest websocket message.
-const MESSAGE_MAX: usize = 64 * 1024;
+/// Bytes that a websocket reads at once.
+const READ_BUFFER: usize = 16 * 1024;
+/// Most bytes that a websocket holds until the client takes them: a message, and answers to control frames.
+const WRITE_BUFFER_MAX: usize = 2 * MESSAGE_MAX;
 /// The sub-protocol of the Betaflight App.
 const BINARY: &str = "binary";
-/// Most origins that are remembered as reported.
-const REMEMBERED_MAX: usize = 64;
-/// Most characters of an origin in a notice.
-const ORIGIN_SHOWN: usize = 100;
-
 /// Numbers for clients, shared by all doors.
 static NEXT_CLIENT: AtomicU64 = AtomicU64::new(1);
 
@@ -44,13 +42,11 @@ pub(super) enum ListenerKind {
     WebSocket {
         /// Origins that are served besides the usual ones.
         allow_origin: Arc<[String]>,
-        /// Origins whose refusal was reported already.
-        reported: Arc<Mutex<BTreeSet<String>>>,
     },
 }
 
 impl ListenerKind {
-    fn name(&self) -> &'static str {
+    pub(super) fn name(&self) -> &'static str {
         match self {
             Self::Tcp => "TCP",
             Self::WebSocket { .. } => "websocket",
@@ -63,10 +59,10 @@ pub(super) async fn listen(
     listener: TcpListener,
     kind: ListenerKind,
     channels: SharedChannels,
+    notices: Notices,
     stats: Arc<EndpointStats>,
     tasks: TaskTracker,
 ) {
-    let mut reported_full = false;
     loop {
         let stream = tokio::select! {
             () = channels.shutdown.cancelled() => return,
@@ -82,24 +78,21 @@ pub(super) async fn listen(
         if stats.client_connected() > CLIENTS_MAX {
             stats.client_disconnected();
             stats.error();
-            if !std::mem::replace(&mut reported_full, true) {
-                let notice = format!(
-                    "The {} door serves {CLIENTS_MAX} clients at once: another one was turned away.",
-                    kind.name()
-                );
-                // When nobody has time to listen, it is seen in the door's count of errors.
-                drop(channels.requests.try_send(Request::Notice(notice)));
-            }
+            notices.tell(format!(
+                "The {} door serves {CLIENTS_MAX} clients at once: another one was turned away.",
+                kind.name()
+            ));
             continue;
         }
         let (kind, channels, stats) = (kind.clone(), channels.clone(), Arc::clone(&stats));
+        let notices = notices.clone();
         tasks.spawn(async move {
             // An interactive line is small packets both ways.
             let _only_slower = stream.set_nodelay(true);
-            match admit(stream, &kind, &channels).await {
+            match admit(stream, &kind, &channels, &notices).await {
                 Some(stream) => {
                     let id = ClientId(NEXT_CLIENT.fetch_add(1, Relaxed));
-                    Client::new(id, stream, channels, Arc::clone(&stats)).serve().await;
+                    Client::new(id, stream, channels, notices, Arc::clone(&stats)).serve().await;
                 }
                 None => stats.error(),
             }
@@ -109,37 +102,49 @@ pub(super) async fn listen(
 }
 
 /// The client's stream, once it is admitted.
-async fn admit(stream: TcpStream, kind: &ListenerKind, channels: &SharedChannels) -> Option<ClientStream> {
-    let ListenerKind::WebSocket { allow_origin, reported } = kind else {
+async fn admit(
+    stream: TcpStream,
+    kind: &ListenerKind,
+    channels: &SharedChannels,
+    notices: &Notices,
+) -> Option<ClientStream> {
+    let ListenerKind::WebSocket { allow_origin } = kind else {
         return Some(ClientStream::Tcp(stream));
     };
+    let own_address = stream.local_addr().ok()?.ip();
     let mut refused = None;
     #[expect(clippy::result_large_err, reason = "the type of the handshake's callback is given")]
-    let callback = |request: &Handshake, response: Response| {
-        let origin = request.headers().get(header::ORIGIN).map(|value| value.to_str().unwrap_or("?"));
-        if origin::is_served(origin, allow_origin) {
-            return Ok(with_sub_protocol(request, response));
+    let callback = |request: &Handshake, response: Response| match judge(request, own_address, allow_origin) {
+        Ok(()) => Ok(with_sub_protocol(request, response)),
+        Err(refusal) => {
+            refused = Some(refusal);
+            Err(forbidden())
         }
-        refused = origin.map(shown);
-        Err(forbidden())
     };
-    let config =
-        WebSocketConfig::default().max_message_size(Some(MESSAGE_MAX)).max_frame_size(Some(MESSAGE_MAX));
+    let config = WebSocketConfig::default()
+        .max_message_size(Some(MESSAGE_MAX))
+        .max_frame_size(Some(MESSAGE_MAX))
+        .read_buffer_size(READ_BUFFER)
+        .write_buffer_size(0)
+        .max_write_buffer_size(WRITE_BUFFER_MAX);
     let handshake = tokio_tungstenite::accept_hdr_async_with_config(stream, callback, Some(config));
     let accepted = tokio::select! {
         () = channels.shutdown.cancelled() => return None,
         accepted = tokio::time::timeout(HANDSHAKE_TIMEOUT, handshake) => accepted.ok()?,
     };
-    if let Some(origin) = refused
-        && is_first_refusal(reported, &origin)
-    {
-        let notice = format!(
-            "A web page of {origin} tried to reach the craft through the websocket and was refused: start with \
-             --allow-origin {origin} to serve it."
-        );
-        let _session_gone = channels.requests.send(Request::Notice(notice)).await;
+    if let Some(refusal) = refused {
+        notices.tell(refusal.to_string());
     }
     accepted.ok().map(|socket| ClientStream::WebSocket(Box::new(socket)))
+}
+
+/// Whether a handshake comes from somebody who is served. A header that is there twice counts twice.
+fn judge(request: &Handshake, own_address: IpAddr, allowed: &[String]) -> Result<(), Refusal> {
+    let values = |name: HeaderName| {
+        request.headers().get_all(name).into_iter().map(|value| value.to_str().unwrap_or("?"))
+    };
+    values(header::ORIGIN).try_for_each(|origin| origin::judge_origin(origin, allowed))?;
+    values(header::HOST).try_for_each(|host| origin::judge_host(host, own_address, allowed))
 }
 
 /// Chooses the sub-protocol when it is offered: browsers fail a handshake that ignores what they asked for.
@@ -158,15 +163,4 @@ fn forbidden() -> ErrorResponse {
         ErrorResponse::new(Some("this page may not reach the craft: see --allow-origin\n".to_owned()));
     *response.status_mut() = StatusCode::FORBIDDEN;
     response
-}
-
-/// An origin as it may stand in a notice.
-fn shown(origin: &str) -> String {
-    origin.chars().filter(char::is_ascii_graphic).take(ORIGIN_SHOWN).collect()
-}
-
-/// Whether a refusal was not reported before; a page that tries again and again is reported once.
-fn is_first_refusal(reported: &Mutex<BTreeSet<String>>, origin: &str) -> bool {
-    let mut reported = reported.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-    reported.len() < REMEMBERED_MAX && reported.insert(origin.to_owned())
 }

@@ -15,6 +15,7 @@ use tokio_util::task::TaskTracker;
 use super::client::SharedChannels;
 use super::endpoint_stats::EndpointStats;
 use super::listener::{self, ListenerKind};
+use super::notices::Notices;
 use super::request::Request;
 use super::udp::{DatagramPort, Datagrams, StateQueue};
 use crate::telemetry::{EndpointKind, EndpointState, EndpointStatus};
@@ -121,10 +122,7 @@ impl Listeners {
         };
         let channels = SharedChannels { requests, shutdown: listeners.shutdown.clone(), restarts: restarted };
         if let Some(port) = config.ws_port {
-            let kind = ListenerKind::WebSocket {
-                allow_origin: config.allow_origin.clone().into(),
-                reported: Arc::default(),
-            };
+            let kind = ListenerKind::WebSocket { allow_origin: config.allow_origin.clone().into() };
             listeners.open_stream(EndpointKind::WebSocket, config.listen, port, &kind, &channels).await;
         }
         if let Some(port) = config.tcp_port {
@@ -151,15 +149,16 @@ impl Listeners {
         channels: &SharedChannels,
     ) {
         let stats = Arc::new(EndpointStats::new(Instant::now()));
+        let notices = Notices::new(channels.requests.clone());
         let address = SocketAddr::new(listen.unwrap_or(IpAddr::V4(Ipv4Addr::LOCALHOST)), port);
         let place = match bind_tcp(kind, address).await {
             Ok((listener, place)) => {
-                self.spawn_listener(listener, server, channels, &stats);
+                self.spawn_listener(listener, server, channels, &notices, &stats);
                 if listen.is_none() {
                     // A machine without IPv6 has no such address.
                     let six = SocketAddr::new(IpAddr::V6(Ipv6Addr::LOCALHOST), place.port());
                     if let Ok((listener, _)) = bind_tcp(kind, six).await {
-                        self.spawn_listener(listener, server, channels, &stats);
+                        self.spawn_listener(listener, server, channels, &notices, &stats);
                     }
                 }
                 Ok(place)
@@ -174,10 +173,11 @@ impl Listeners {
         listener: TcpListener,
         server: &ListenerKind,
         channels: &SharedChannels,
+        notices: &Notices,
         stats: &Arc<EndpointStats>,
     ) {
-        let (tasks, stats) = (self.tasks.clone(), Arc::clone(stats));
-        self.tasks.spawn(listener::listen(listener, server.clone(), channels.clone(), stats, tasks));
+        let (tasks, stats, notices) = (self.tasks.clone(), Arc::clone(stats), notices.clone());
+        self.tasks.spawn(listener::listen(listener, server.clone(), channels.clone(), notices, stats, tasks));
     }
 
     fn open_datagrams(

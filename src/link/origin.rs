@@ -1,19 +1,72 @@
 //! Which web pages may reach the craft.
 //!
 //! A browser lets any page on the net open a websocket to this machine and names the page's origin. Without a check a
-//! stranger's page could fly the craft.
+//! stranger's page could fly the craft. The host that the client names is checked too: a page whose name was made to point
+//! to this machine after it was loaded is not of a foreign origin.
+
+use std::net::IpAddr;
 
 /// The page of the hosted App.
 const APP: &str = "https://app.betaflight.com";
 
+/// Most characters of an origin or a host in a notice.
+const SHOWN_MAX: usize = 100;
+
+/// A client that is not served, as a notice tells it.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub(super) enum Refusal {
+    /// A web page whose origin can be allowed.
+    #[error(
+        "A web page of {0} tried to reach the craft through the websocket and was refused: start with \
+         --allow-origin {0} to serve it."
+    )]
+    Origin(String),
+    /// A web page that could be anybody's.
+    #[error(
+        "A web page without an origin of its own (a file, a sandboxed frame) tried to reach the craft through the \
+         websocket and was refused: serve it from this machine, under http://localhost."
+    )]
+    NoOrigin,
+    /// A name that is not this machine's: a page may have made it point here.
+    #[error(
+        "A client that took this machine for {0:?} tried to reach the craft through the websocket and was refused: \
+         connect to its address, or start with --allow-origin http://NAME."
+    )]
+    Host(String),
+}
+
 /// Whether a page of this origin is served. Clients that are no browsers name none.
-#[must_use]
-pub(super) fn is_served(origin: Option<&str>, allowed: &[String]) -> bool {
-    let Some(origin) = origin else { return true };
+pub(super) fn judge_origin(origin: &str, allowed: &[String]) -> Result<(), Refusal> {
     let origin = origin.trim().trim_end_matches('/');
-    origin.eq_ignore_ascii_case(APP)
+    let is_served = origin.eq_ignore_ascii_case(APP)
         || allowed.iter().any(|allowed| allowed.trim_end_matches('/').eq_ignore_ascii_case(origin))
-        || host(origin).is_some_and(is_loopback)
+        || host(origin).is_some_and(is_loopback);
+    if is_served {
+        return Ok(());
+    }
+    // One that is cut would not be served.
+    let can_be_allowed = host(origin).is_some_and(|host| !host.is_empty()) && origin.len() <= SHOWN_MAX;
+    Err(if can_be_allowed { Refusal::Origin(origin.to_owned()) } else { Refusal::NoOrigin })
+}
+
+/// Whether a client is served that calls this machine so: by a name of the loopback, by the address at which it has
+/// reached the door, or by a host that is allowed. A page of a stranger whose name was made to point to this machine is of
+/// the same origin as what it reaches.
+pub(super) fn judge_host(named: &str, own_address: IpAddr, allowed: &[String]) -> Result<(), Refusal> {
+    let named = named.trim();
+    let is_own = |host: &str| {
+        host.parse::<IpAddr>().is_ok_and(|address| address.to_canonical() == own_address.to_canonical())
+    };
+    let is_allowed = |named: &str| {
+        allowed
+            .iter()
+            .filter_map(|allowed| host(allowed.trim_end_matches('/')))
+            .any(|host| host.eq_ignore_ascii_case(named))
+    };
+    match host_of_authority(named) {
+        Some(host) if is_loopback(host) || is_own(host) || is_allowed(host) => Ok(()),
+        _ => Err(Refusal::Host(named.chars().filter(char::is_ascii_graphic).take(SHOWN_MAX).collect())),
+    }
 }
 
 /// The host of `scheme://host` or `scheme://host:port`; `None` for anything else.
@@ -23,6 +76,11 @@ fn host(origin: &str) -> Option<&str> {
     if scheme.is_empty() || !scheme.bytes().all(in_scheme) {
         return None;
     }
+    host_of_authority(authority)
+}
+
+/// The host of `host` or `host:port`; `None` for anything else.
+fn host_of_authority(authority: &str) -> Option<&str> {
     let (host, port) = match authority.strip_prefix('[') {
         Some(rest) => match rest.split_once(']')? {
             (host, "") => (host, None),
@@ -44,12 +102,16 @@ fn is_loopback(host: &str) -> bool {
     let host = host.to_ascii_lowercase();
     host == "localhost"
         || host.ends_with(".localhost")
-        || host.parse::<std::net::IpAddr>().is_ok_and(|address| address.is_loopback())
+        || host.parse::<IpAddr>().is_ok_and(|address| address.is_loopback())
 }
 
 #[cfg(test)]
 mod tests {
-    use super::is_served;
+    use super::{IpAddr, Refusal, judge_host, judge_origin};
+
+    fn is_served(origin: Option<&str>, allowed: &[String]) -> bool {
+        origin.is_none_or(|origin| judge_origin(origin, allowed).is_ok())
+    }
 
     #[test]
     fn local_pages_shells_and_the_app_are_served() {
@@ -105,5 +167,47 @@ mod tests {
         assert!(is_served(Some("HTTPS://My.Page"), &allowed));
         assert!(!is_served(Some("https://my.page:8443"), &allowed));
         assert!(!is_served(Some("null"), &allowed));
+    }
+    #[test]
+    fn a_notice_proposes_to_allow_an_origin_only_where_that_helps() {
+        let notice = |origin: &str| judge_origin(origin, &[]).unwrap_err().to_string();
+        assert!(notice("https://evil.example").contains("start with --allow-origin https://evil.example to"));
+        let long = format!("https://{}.example", "a".repeat(100));
+        for origin in ["null", "", "?", "file://", "https://a b", "https://\u{202e}x", &long] {
+            assert!(!notice(origin).contains("--allow-origin"), "{origin}: {}", notice(origin));
+        }
+    }
+
+    #[test]
+    fn a_host_is_this_machine_or_was_allowed() {
+        let own: IpAddr = "192.168.4.7".parse().unwrap();
+        let allowed = ["https://my.page:8443/".to_owned(), "http://craft.lan".to_owned()];
+        for host in [
+            "localhost",
+            "LocalHost:6761",
+            "tauri.localhost",
+            "127.0.0.1:6761",
+            "127.8.8.8",
+            "[::1]:6761",
+            "192.168.4.7:6761",
+            "[::ffff:192.168.4.7]:6761",
+            "my.page",
+            "craft.lan:6761",
+        ] {
+            assert_eq!(judge_host(host, own, &allowed), Ok(()), "{host}");
+        }
+        for host in [
+            "",
+            "evil.example",
+            "evil.example:6761",
+            "localhost.evil.example:6761",
+            "192.168.4.8:6761",
+            "0.0.0.0:6761",
+            "127.0.0.1@evil.example",
+            "localhost:6761:1",
+            "http://localhost",
+        ] {
+            assert!(matches!(judge_host(host, own, &allowed), Err(Refusal::Host(_))), "{host}");
+        }
     }
 }

@@ -5,6 +5,7 @@ pub mod command_line;
 mod command_message;
 pub mod fdm;
 pub mod fdm_link;
+pub mod first_line;
 pub mod line_editor;
 pub mod msp;
 pub mod rc;

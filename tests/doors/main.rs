@@ -11,6 +11,7 @@
 mod app;
 mod app_flow;
 mod hostile_clients;
+mod memory;
 mod msp;
 mod program;
 mod scripts;

@@ -39,6 +39,11 @@ impl Program {
         Self { child, lines, seen: Vec::new(), _home: home }
     }
 
+    /// The number of its process.
+    pub(crate) fn id(&self) -> u32 {
+        self.child.id()
+    }
+
     /// The next line for which `wanted` gives something; panics with everything said when none comes.
     pub(crate) fn wait<T>(&mut self, what: &str, wanted: impl Fn(&str) -> Option<T>) -> T {
         let end = Instant::now() + PATIENCE;
@@ -103,6 +108,11 @@ impl Serve {
         Self { websocket: address("ws"), tcp: address("tcp"), rc: address("rc"), program }
     }
 
+    /// The number of its process.
+    pub(crate) fn id(&self) -> u32 {
+        self.program.id()
+    }
+
     /// The next event for which `wanted` is true.
     pub(crate) fn wait(&mut self, what: &str, wanted: impl Fn(&Value) -> bool) -> Value {
         self.program.wait(what, |line| {
@@ -131,8 +141,7 @@ impl Serve {
 
 /// `betadeck sitl` with its doors on ports of the system's choice.
 pub(crate) struct Sitl {
-    /// Ended with this.
-    _program: Program,
+    program: Program,
     pub(crate) fdm: SocketAddr,
     pub(crate) rc: SocketAddr,
     pub(crate) tcp: SocketAddr,
@@ -160,7 +169,12 @@ impl Sitl {
                 tcp = Some(place);
             }
         }
-        Self { _program: program, fdm: udp[0], rc: udp[1], tcp: tcp.unwrap() }
+        Self { program, fdm: udp[0], rc: udp[1], tcp: tcp.unwrap() }
+    }
+
+    /// The number of its process.
+    pub(crate) fn id(&self) -> u32 {
+        self.program.id()
     }
 }
 

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::disallowed_methods, reason = "tests may panic and wait")]
 
+mod browsers;
 mod clients;
 mod harness;
 mod packets;
