@@ -6,6 +6,7 @@ mod doors;
 mod error;
 mod fly;
 mod layers;
+mod live;
 mod plan;
 mod serve;
 mod setup;

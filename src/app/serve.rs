@@ -4,15 +4,13 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 
 use super::error::{self, AppError};
+use super::live::{self, LiveArgs};
 use super::setup;
-use super::{doors, stop_signal};
-use crate::args::{OutputFile, ServeArgs, Speed};
+use super::stop_signal;
+use crate::args::{OutputFile, ServeArgs};
 use crate::plan::format::PlanFile;
 use crate::record::{json, sentence};
-use crate::session::{self, Command, Event, Handle, SessionConfig, SessionEvent};
-
-/// Altitude of the scripted pilot, which nobody starts here, m.
-const TAKEOFF_M: f64 = 10.0;
+use crate::session::{Command, Event, Handle};
 
 /// Serves until a signal ends it; every event is a line of output.
 pub(super) fn run(args: &ServeArgs) -> Result<u8, AppError> {
@@ -35,28 +33,8 @@ pub(super) fn run(args: &ServeArgs) -> Result<u8, AppError> {
     runtime.block_on(async {
         let stop = stop_signal::stop()
             .map_err(|error| AppError::environment(format!("cannot listen for signals: {error}")))?;
-        let opened = doors::open(&args.doors, &args.physics, &args.flight).await?;
-        let mut first_events = Vec::new();
-        let (doors, endpoints) = match opened {
-            Some(opened) => {
-                notices.extend(opened.notices);
-                first_events.push(SessionEvent::Endpoints(opened.addresses));
-                (Some(opened.doors), Some(opened.endpoints))
-            }
-            None => (None, None),
-        };
-        first_events.extend(notices.into_iter().map(SessionEvent::Notice));
-        let speed = args.flight.speed.map_or(1.0, |Speed(speed)| speed);
-        let session = session::start(SessionConfig {
-            vehicle,
-            store,
-            starter_modes: true,
-            speed,
-            takeoff_m: TAKEOFF_M,
-            endpoints,
-            first_events,
-        })
-        .map_err(|error| AppError::environment(format!("cannot start a thread: {error}")))?;
+        let options = LiveArgs { doors: &args.doors, physics: &args.physics, flight: &args.flight };
+        let (session, doors) = live::start(options, vehicle, store, notices).await?;
         let outcome = report(session, &mut output, stop).await;
         if let Some(doors) = doors {
             doors.close().await;

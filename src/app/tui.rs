@@ -3,20 +3,16 @@
 
 use std::io::IsTerminal as _;
 
-use super::doors;
 use super::error::{self, AppError};
+use super::live::{self, LiveArgs};
 use super::setup;
 use super::stop_signal;
-use crate::args::{PlanArg, Speed, TuiArgs};
+use crate::args::{PlanArg, TuiArgs};
 use crate::firmware::cli;
 use crate::plan::builtin::{BuiltinPlan, DEMO};
 use crate::plan::format::PlanFile;
 use crate::record::sentence;
-use crate::session::{self, SessionConfig, SessionEvent};
 use crate::ui::{self, CliHelp, Ending, OpenPlan, SessionLink, Theme, Tui, UiConfig};
-
-/// Altitude to which the `F` key climbs before it engages, m.
-const TAKEOFF_M: f64 = 10.0;
 
 /// Opens the user interface; returns its exit code when the user has left it.
 pub(super) fn run(args: &TuiArgs) -> Result<u8, AppError> {
@@ -55,27 +51,8 @@ pub(super) fn run(args: &TuiArgs) -> Result<u8, AppError> {
         .build()
         .map_err(problem)?;
     let ending = runtime.block_on(async {
-        let mut first_events = Vec::new();
-        let (doors, endpoints) = match doors::open(&args.doors, &args.physics, &args.flight).await? {
-            Some(opened) => {
-                notices.extend(opened.notices);
-                first_events.push(SessionEvent::Endpoints(opened.addresses));
-                (Some(opened.doors), Some(opened.endpoints))
-            }
-            None => (None, None),
-        };
-        first_events.extend(notices.into_iter().map(SessionEvent::Notice));
-        let speed = args.flight.speed.map_or(1.0, |Speed(speed)| speed);
-        let session = session::start(SessionConfig {
-            vehicle,
-            store,
-            starter_modes: true,
-            speed,
-            takeoff_m: TAKEOFF_M,
-            endpoints,
-            first_events,
-        })
-        .map_err(|error| AppError::environment(format!("cannot start a thread: {error}")))?;
+        let options = LiveArgs { doors: &args.doors, physics: &args.physics, flight: &args.flight };
+        let (session, doors) = live::start(options, vehicle, store, notices).await?;
         let link = SessionLink { commands: session.commands, view: session.view, events: session.events };
         // Before the first frame: whoever sees it may already send one.
         let stop = stop_signal::stop().map_err(problem)?;

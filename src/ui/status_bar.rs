@@ -105,7 +105,7 @@ fn battery_bar(volts: Option<f64>, cells: Option<u8>) -> (String, Role) {
     ("▮".repeat(full) + &"▯".repeat(BAR - full), role)
 }
 
-/// Who drives the channels, in at most nine columns.
+/// Who drives the channels, in at most ten columns.
 pub(super) fn rc(state: &AppState) -> (String, Role) {
     let craft = &state.view.vehicle.craft;
     let ours = matches!(craft.rc_source, Some(RcSource::Sticks) | None);

@@ -1,0 +1,52 @@
+//! Starts the session of `betadeck` and `serve`, which flies in real time behind its doors.
+
+use super::AppError;
+use super::doors::{self, OpenDoors};
+use crate::args::{DoorArgs, FlightArgs, PhysicsArgs, Speed};
+use crate::session::{self, Handle, SessionConfig, SessionEvent};
+use crate::storage::Store;
+use crate::vehicle::Vehicle;
+
+/// Altitude to which the scripted pilot climbs before it engages, m.
+const TAKEOFF_M: f64 = 10.0;
+
+/// The options of a session.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct LiveArgs<'a> {
+    pub(super) doors: &'a DoorArgs,
+    pub(super) physics: &'a PhysicsArgs,
+    pub(super) flight: &'a FlightArgs,
+}
+
+/// Opens the doors and starts the session behind them; `notices` are told first. No doors are open with `--no-ports`.
+///
+/// # Errors
+/// When there is no socket for the motors of an external simulator, or no thread.
+pub(super) async fn start(
+    args: LiveArgs<'_>,
+    vehicle: Vehicle,
+    store: Store,
+    mut notices: Vec<String>,
+) -> Result<(Handle, Option<OpenDoors>), AppError> {
+    let mut first_events = Vec::new();
+    let (doors, endpoints) = match doors::open(args.doors, args.physics, args.flight).await? {
+        Some(opened) => {
+            notices.extend(opened.notices);
+            first_events.push(SessionEvent::Endpoints(opened.addresses));
+            (Some(opened.doors), Some(opened.endpoints))
+        }
+        None => (None, None),
+    };
+    first_events.extend(notices.into_iter().map(SessionEvent::Notice));
+    let session = session::start(SessionConfig {
+        vehicle,
+        store,
+        starter_modes: true,
+        speed: args.flight.speed.map_or(1.0, |Speed(speed)| speed),
+        takeoff_m: TAKEOFF_M,
+        endpoints,
+        first_events,
+    })
+    .map_err(|error| AppError::environment(format!("cannot start a thread: {error}")))?;
+    Ok((session, doors))
+}
