@@ -8,6 +8,7 @@ mod late_answers;
 mod links;
 mod pacer;
 mod persistence;
+mod real_time;
 mod request_handler;
 mod runtime;
 mod simulator;

@@ -1,7 +1,7 @@
 //! What the owner of the firmware can ask of it: command line, plans, return home, restart.
 
 use crate::signals::{RcFrame, RcSource};
-use crate::telemetry::{BadPackets, DisarmReason, FirmwareEvent, NavEvent, Refusal};
+use crate::telemetry::{BadPackets, DisarmReason, FirmwareEvent, LostTime, NavEvent, Refusal};
 
 use super::Firmware;
 use super::cli::{BuildInfo, CliAction, CliContext, CliFacts, CliReply, Interpreter, StorageFacts};
@@ -60,6 +60,11 @@ impl Firmware {
     /// What the commands tell of useless packets from scripts and simulators.
     pub fn set_bad_packets(&mut self, bad_packets: BadPackets) {
         self.setup.set_bad_packets(bad_packets);
+    }
+
+    /// What the commands tell of real time that the flight could not keep up with.
+    pub fn set_lost_time(&mut self, lost_time: LostTime) {
+        self.setup.set_lost_time(lost_time);
     }
 
     /// Version and build that the firmware announces.

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::plan::FlightPlan;
 use crate::signals::RcFrame;
-use crate::telemetry::{EndpointStatus, LinkState, Snapshot};
+use crate::telemetry::{EndpointStatus, LinkState, LostTime, Snapshot};
 
 /// Why time cannot be paused, stepped or made faster with an external simulator.
 pub const TIME_IS_EXTERNAL: &str = "The simulator sets the time: pause it or change its speed there.";
@@ -83,6 +83,8 @@ pub struct SessionView {
     pub speed_wanted: f64,
     /// Achieved over the last second.
     pub speed_achieved: f64,
+    /// Real time that was lost.
+    pub lost_time: LostTime,
     /// The frame of the virtual sticks.
     pub sticks: RcFrame,
     /// The virtual sticks are cut.

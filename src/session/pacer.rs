@@ -25,6 +25,8 @@ pub struct Pacer {
     window_start: Duration,
     window_ticks: u64,
     achieved: f64,
+    /// Wall time that was dropped and not told yet.
+    lost: Duration,
 }
 
 impl Pacer {
@@ -40,6 +42,7 @@ impl Pacer {
             window_start: Duration::ZERO,
             window_ticks: 0,
             achieved: 0.0,
+            lost: Duration::ZERO,
         }
     }
 
@@ -88,16 +91,22 @@ impl Pacer {
             self.handed_out = now;
             return most;
         }
-        if now.saturating_sub(self.handed_out) > MAX_BACKLOG {
-            self.handed_out = now.saturating_sub(MAX_BACKLOG);
-        }
+        let dropped = now.saturating_sub(self.handed_out).saturating_sub(MAX_BACKLOG);
+        self.handed_out += dropped;
         let steps_per_second = self.speed / self.step.as_secs_f64();
         let due_steps = self.carry + now.saturating_sub(self.handed_out).as_secs_f64() * steps_per_second;
         let ticks = (due_steps as u64).min(most);
         // What was not handed out stays due, but only as much as 50 ms are worth.
-        self.carry = (due_steps - ticks as f64).min(MAX_BACKLOG.as_secs_f64() * steps_per_second);
+        let left = due_steps - ticks as f64;
+        self.carry = left.min(MAX_BACKLOG.as_secs_f64() * steps_per_second);
+        self.lost += dropped + Duration::from_secs_f64((left - self.carry) / steps_per_second);
         self.handed_out = now;
         ticks
+    }
+
+    /// Wall time that was dropped since this was asked last.
+    pub fn take_lost(&mut self) -> Duration {
+        std::mem::take(&mut self.lost)
     }
 
     /// Notes that `ticks` were run by wall time `now`.
@@ -147,6 +156,29 @@ mod tests {
         let mut pacer = Pacer::new(1000, 10.0);
         assert_eq!(pacer.due(ms(5_000), 100_000), 500);
         assert_eq!(pacer.due(ms(5_002), 100_000), 20);
+    }
+
+    #[test]
+    fn what_is_dropped_is_known() {
+        let mut pacer = Pacer::new(1000, 1.0);
+        pacer.due(ms(30), 10_000);
+        assert_eq!(pacer.take_lost(), ms(0));
+        pacer.due(ms(5_080), 10_000);
+        assert_eq!(pacer.take_lost(), ms(5_000));
+        // A machine that does half of what is due: 50 ms of it wait, the rest is dropped.
+        for step in 1..=100 {
+            pacer.due(ms(5_080 + step * 10), 5);
+        }
+        assert_eq!(pacer.take_lost(), ms(450));
+        pacer.set_paused(true, ms(7_000));
+        pacer.due(ms(9_000), 10);
+        pacer.set_paused(false, ms(9_000));
+        pacer.set_speed(2.0, ms(9_010));
+        pacer.due(ms(9_020), 100);
+        assert_eq!(pacer.take_lost(), ms(0), "a pause is no loss");
+        pacer.set_speed(f64::INFINITY, ms(9_020));
+        pacer.due(ms(19_020), 10);
+        assert_eq!(pacer.take_lost(), ms(0));
     }
 
     #[test]

@@ -23,6 +23,7 @@ use super::event::{Event, EventSender, SessionEvent};
 use super::late_answers::LateAnswers;
 use super::pacer::Pacer;
 use super::persistence::Persistence;
+use super::real_time::RealTime;
 use super::request_handler::RequestHandler;
 use super::simulator::Simulator;
 use crate::firmware::cli::Interpreter;
@@ -109,6 +110,7 @@ pub fn start(mut config: SessionConfig) -> std::io::Result<Handle> {
         events: EventSender::new(event_tx),
         arming: ArmingWatch::default(),
         late_answers: LateAnswers::default(),
+        real_time: RealTime::default(),
         rc_received: false,
         changed: true,
         more_waits: false,
@@ -136,6 +138,7 @@ struct Session {
     arming: ArmingWatch,
     /// What the user interface asked of a remote flight controller.
     late_answers: LateAnswers<WaitingInterface>,
+    real_time: RealTime,
     /// A script has sent RC.
     rc_received: bool,
     /// Something other than time changed what the view shows.
@@ -175,6 +178,7 @@ impl Session {
             let ticks = flown + due;
             let after = start.elapsed();
             self.pacer.ran(ticks, after);
+            self.count_lost_time(after);
             if ticks > 0 || self.changed {
                 self.flush_events();
             }
@@ -184,6 +188,7 @@ impl Session {
                 (self.changed, moved) = (false, false);
                 let view_now = self.view();
                 self.vehicle.controller_mut().set_bad_packets(BadPackets::of(&view_now.endpoints));
+                self.vehicle.controller_mut().set_lost_time(view_now.lost_time);
                 if let Some(notice) = self.arming.check(&view_now.vehicle) {
                     self.events.report(&mut self.vehicle, SessionEvent::ArmingBlocked(notice));
                 }
@@ -200,6 +205,19 @@ impl Session {
     /// Until an external simulator speaks, and without one, time passes with the wall clock.
     fn follows_wall_clock(&self) -> bool {
         self.simulator.as_ref().is_none_or(|simulator| simulator.state() == LinkState::Waiting)
+    }
+
+    /// Counts the real time that was lost by `now`, and tells it.
+    fn count_lost_time(&mut self, now: Duration) {
+        self.real_time.lose(self.pacer.take_lost());
+        if let Some(simulator) = &mut self.simulator {
+            let (wall, simulated) = simulator.take_passed();
+            self.real_time.advance(wall, simulated);
+        }
+        let wanted = if self.simulator.is_some() { 1.0 } else { self.pacer.speed() };
+        if let Some(notice) = self.real_time.notice(now, wanted, self.pacer.achieved()) {
+            self.notice(notice.to_string());
+        }
     }
 
     /// How long the thread may sleep when nothing comes.

@@ -17,6 +17,9 @@ use crate::vehicle::Vehicle;
 /// How often frames from sockets are repeated while time runs fast, µs of simulated time.
 pub(super) const RC_REPEAT_US: u64 = 20_000;
 
+/// A simulator that is silent for this long is paused, not slow.
+const PAUSE: Duration = Duration::from_secs(1);
+
 /// Kinds of refusals, each of which is told once.
 const REFUSALS: usize = 6;
 
@@ -64,6 +67,8 @@ pub(super) struct Simulator {
     /// When it spoke last.
     received_at: Instant,
     reported_refusals: ArrayVec<PacketError, REFUSALS>,
+    /// Wall and simulated time since it was asked last, silences left out.
+    passed: (Duration, Duration),
     /// Something happened that the view should show at once.
     changed: bool,
 }
@@ -76,6 +81,7 @@ impl Simulator {
             state: LinkState::Waiting,
             received_at: now,
             reported_refusals: ArrayVec::new(),
+            passed: (Duration::ZERO, Duration::ZERO),
             changed: false,
         }
     }
@@ -170,6 +176,7 @@ impl Simulator {
             self.report_refusal(refusal, vehicle, events);
             return 0;
         }
+        self.count_time(at, received.ticks, vehicle.step_us());
         self.report_return(at, vehicle, events);
         if received.kind == (PacketKind::Resync { restarted: true }) {
             vehicle.reset_craft();
@@ -212,6 +219,20 @@ impl Simulator {
     /// Whether there is something to show at once.
     pub(super) fn take_changed(&mut self) -> bool {
         std::mem::take(&mut self.changed)
+    }
+
+    /// Counts the time since the packet before, unless the simulator paused.
+    fn count_time(&mut self, at: Instant, ticks: u32, step_us: u64) {
+        let wall = at.saturating_duration_since(self.received_at);
+        if self.state == LinkState::Flowing && wall < PAUSE {
+            self.passed.0 += wall;
+            self.passed.1 += Duration::from_micros(u64::from(ticks) * step_us);
+        }
+    }
+
+    /// Wall and simulated time that passed since this was asked last.
+    pub(super) fn take_passed(&mut self) -> (Duration, Duration) {
+        std::mem::take(&mut self.passed)
     }
 
     fn report_return(&mut self, at: Instant, vehicle: &mut Vehicle, events: &EventSender) {

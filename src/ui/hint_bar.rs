@@ -152,7 +152,7 @@ fn hint(theme: &Theme, keys: &str, label: &str) -> [Span<'static>; 2] {
     [span(theme, Role::Key, format!(" {keys}")), span(theme, Role::Text, format!(" {label} "))]
 }
 
-/// The doors: name, whether somebody is connected, and what is wrong.
+/// The doors: name, whether somebody is connected, and what is wrong; then the real time that was lost.
 fn doors(state: &AppState, width: u16) -> Vec<Span<'static>> {
     let theme = &state.theme;
     let mut spans = Vec::new();
@@ -166,6 +166,10 @@ fn doors(state: &AppState, width: u16) -> Vec<Span<'static>> {
         };
         spans.push(span(theme, role, text));
         spans.push(span(theme, Role::Text, " "));
+    }
+    let lost = state.view.lost_time;
+    if lost.is_notable() {
+        spans.push(span(theme, Role::Warn, format!("{:.1} s lost ", lost.sum.as_secs_f64())));
     }
     spans
 }

@@ -12,7 +12,9 @@ use crate::pilot::PilotFacts;
 use crate::plan::FlightPlan;
 use crate::signals::{MotorCommand, RcFrame, RcSource, SensorFrame, SimTime};
 use crate::telemetry::snapshot::{CraftView, EstimateView, ModeRange, SettingsView};
-use crate::telemetry::{BadPackets, DisarmReason, FirmwareEvent, Mode, ModeFlags, NavTelemetry, Refusal};
+use crate::telemetry::{
+    BadPackets, DisarmReason, FirmwareEvent, LostTime, Mode, ModeFlags, NavTelemetry, Refusal,
+};
 
 /// Identifies a request to a remote flight controller until its answer comes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -159,6 +161,13 @@ impl FlightController {
     pub fn set_bad_packets(&mut self, bad_packets: BadPackets) {
         if let Self::Embedded(firmware) = self {
             firmware.set_bad_packets(bad_packets);
+        }
+    }
+
+    /// What the commands of an embedded one tell of real time that the flight could not keep up with.
+    pub fn set_lost_time(&mut self, lost_time: LostTime) {
+        if let Self::Embedded(firmware) = self {
+            firmware.set_lost_time(lost_time);
         }
     }
 

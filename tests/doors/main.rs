@@ -11,6 +11,7 @@
 mod app;
 mod app_flow;
 mod hostile_clients;
+mod lost_time;
 mod memory;
 mod msp;
 mod program;

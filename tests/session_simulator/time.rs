@@ -1,13 +1,13 @@
 //! Time and truth are the simulator's: its stamps, its silence, its restart.
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use betadeck::session::command::{PLACE_IS_EXTERNAL, TIME_IS_EXTERNAL};
 use betadeck::session::{Command, SessionView};
 use betadeck::telemetry::{EndpointKind, LinkState, SimulatorStats};
 use tokio::sync::oneshot;
 
-use super::rig::{AHEAD, PATIENCE, START, rig, stats};
+use super::rig::{AHEAD, PATIENCE, START, rig, speaking, stats};
 
 #[tokio::test]
 async fn until_a_simulator_speaks_the_firmware_lives_and_nothing_is_made_up() {
@@ -126,4 +126,24 @@ async fn a_restarted_simulator_finds_a_disarmed_craft_and_resting_sticks() {
     rig.hear("The simulator was restarted: disarmed.").await;
     let view = rig.picture(|view| !view.vehicle.craft.is_armed()).await;
     assert_eq!(view.sticks, betadeck::signals::RcFrame::SAFE);
+}
+
+#[tokio::test]
+async fn a_simulator_that_is_slower_than_the_clock_is_told_with_its_speed_and_what_was_lost() {
+    let (mut rig, _) = speaking(&[]).await;
+    // What a busy machine lost before the simulator spoke.
+    let before = rig.session.view.borrow().lost_time.sum;
+    for _ in 0..100 {
+        // Ten milliseconds of flight take twenty-five.
+        rig.at += Duration::from_millis(15);
+        rig.state(10, 0.0, 0.0).await;
+    }
+    rig.hear("instead of 1 times real time").await;
+    let lost = before + Duration::from_millis(1500);
+    assert_eq!(rig.picture(|view| view.lost_time.sum >= lost).await.lost_time.sum, lost);
+    // A pause is none of the machine's business.
+    rig.at += Duration::from_secs(30);
+    rig.state(10, 0.0, 0.0).await;
+    rig.flown_ms().await;
+    assert_eq!(rig.session.view.borrow().lost_time.sum, lost);
 }

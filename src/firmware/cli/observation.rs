@@ -3,7 +3,7 @@
 use crate::firmware::Firmware;
 use crate::geo::LatLon;
 use crate::plan::FlightPlan;
-use crate::telemetry::{ArmingFlags, BadPackets, NavTelemetry};
+use crate::telemetry::{ArmingFlags, BadPackets, LostTime, NavTelemetry};
 
 /// Housekeeping rate, Hz.
 const SYSTEM_HZ: u32 = 10;
@@ -29,6 +29,8 @@ pub struct CliFacts {
     pub battery: BatteryFacts,
     /// What scripts and simulators sent in vain.
     pub bad_packets: BadPackets,
+    /// Real time that the flight could not keep up with.
+    pub lost_time: LostTime,
     /// Loop rates.
     pub loops: LoopFacts,
     /// One row a task, in order of their numbers.
@@ -60,6 +62,7 @@ impl CliFacts {
                 state: firmware.battery().state().into(),
             },
             bad_packets: firmware.setup.bad_packets(),
+            lost_time: firmware.setup.lost_time(),
             loops: LoopFacts {
                 cpu_load_percent: 0,
                 cycle_time_us: 1_000_000 / firmware.setup.options().rate_hz.max(1),

@@ -74,6 +74,9 @@ pub(super) fn status(session: &mut Session<'_>, _rest: &str) {
     if !facts.bad_packets.is_none() {
         session.line(format_args!("Bad packets: {}", facts.bad_packets));
     }
+    if facts.lost_time.is_notable() {
+        session.line(format_args!("Real time lost: {}", facts.lost_time));
+    }
     session.raw("Arming disable flags:");
     for flag in facts.arming_blocks.iter() {
         session.raw(format_args!(" {flag}"));

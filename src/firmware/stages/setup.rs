@@ -7,7 +7,7 @@ use crate::firmware::estimate::NotTurned;
 use crate::firmware::outbox::Outbox;
 use crate::firmware::parameters::{BootChoices, Parameters};
 use crate::firmware::settings::Value;
-use crate::telemetry::{BadPackets, FirmwareEvent, FirmwareNotice};
+use crate::telemetry::{BadPackets, FirmwareEvent, FirmwareNotice, LostTime};
 
 /// The configuration in memory, what was chosen from it at boot, and the parameters in force.
 #[derive(Debug, Clone)]
@@ -16,6 +16,7 @@ pub(in crate::firmware) struct Setup {
     build: BuildInfo,
     storage: StorageFacts,
     bad_packets: BadPackets,
+    lost_time: LostTime,
     configuration: Configuration,
     boot: BootChoices,
     parameters: Parameters,
@@ -36,8 +37,8 @@ impl Setup {
             outbox.push(FirmwareEvent::Notice(FirmwareNotice::MixerNotFlown));
         }
         let (build, storage) = (BuildInfo::default(), StorageFacts::default());
-        let bad_packets = BadPackets::default();
-        let setup = Self { options, build, storage, bad_packets, configuration, boot, parameters };
+        let (bad_packets, lost_time) = (BadPackets::default(), LostTime::default());
+        let setup = Self { options, build, storage, bad_packets, lost_time, configuration, boot, parameters };
         setup.report_lost_gps(had_gps, outbox);
         setup
     }
@@ -49,6 +50,7 @@ impl Setup {
             build: self.build.clone(),
             storage: self.storage.clone(),
             bad_packets: self.bad_packets,
+            lost_time: self.lost_time,
             ..fresh
         }
     }
@@ -86,6 +88,16 @@ impl Setup {
     /// Sets what [`Setup::bad_packets`] tells.
     pub(in crate::firmware) fn set_bad_packets(&mut self, bad_packets: BadPackets) {
         self.bad_packets = bad_packets;
+    }
+
+    /// Real time that the flight could not keep up with.
+    pub(in crate::firmware) fn lost_time(&self) -> LostTime {
+        self.lost_time
+    }
+
+    /// Sets what [`Setup::lost_time`] tells.
+    pub(in crate::firmware) fn set_lost_time(&mut self, lost_time: LostTime) {
+        self.lost_time = lost_time;
     }
 
     /// The configuration in memory.

@@ -19,6 +19,7 @@ impl Session {
                 None => self.pacer.speed(),
             },
             speed_achieved: self.pacer.achieved(),
+            lost_time: self.real_time.lost(self.pacer.achieved()),
             sticks: self.vehicle.transmitter().sticks(),
             rc_cut: self.vehicle.transmitter().is_cut(),
             pilot: self.vehicle.transmitter().pilot_doing(),

@@ -1,0 +1,125 @@
+//! Counts the real time that is lost, and decides when to tell it.
+
+use std::fmt;
+use std::time::Duration;
+
+use crate::telemetry::LostTime;
+
+/// Time between two notices.
+const NOTICE_INTERVAL: Duration = Duration::from_secs(60);
+/// Less than this since the notice before is not told.
+const NOTABLE: Duration = Duration::from_millis(500);
+
+/// Real time was lost: what a notice tells.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct LostTimeNotice {
+    /// How far the flight is behind.
+    lost: LostTime,
+    /// Times real time it was to run.
+    wanted: f64,
+}
+
+impl fmt::Display for LostTimeNotice {
+    /// As a sentence.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let LostTime { sum, achieved } = self.lost;
+        write!(
+            f,
+            "Real time was lost: the flight runs at {achieved:.2} instead of {} times real time, {:.1} s are lost so far.",
+            self.wanted,
+            sum.as_secs_f64()
+        )
+    }
+}
+
+/// The real time that a session has lost.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct RealTime {
+    /// Time that was never flown.
+    dropped: Duration,
+    /// By how much a simulator's time is behind the wall clock …
+    behind: Duration,
+    /// … and was at most: what it catches up with later was lost all the same.
+    most_behind: Duration,
+    /// When it was told last, since the session began, and what.
+    told: Option<(Duration, Duration)>,
+}
+
+impl RealTime {
+    /// Time was dropped, since the machine is too slow.
+    pub(super) fn lose(&mut self, dropped: Duration) {
+        self.dropped += dropped;
+    }
+
+    /// A simulator advanced the flight by `simulated` in this much wall time.
+    pub(super) fn advance(&mut self, wall: Duration, simulated: Duration) {
+        self.behind = (self.behind + wall).saturating_sub(simulated);
+        self.most_behind = self.most_behind.max(self.behind);
+    }
+
+    /// How far it is behind, at this speed.
+    pub(super) fn lost(&self, achieved: f64) -> LostTime {
+        LostTime { sum: self.dropped + self.most_behind, achieved }
+    }
+
+    /// What is to be told at `now`, counted since the session began.
+    pub(super) fn notice(&mut self, now: Duration, wanted: f64, achieved: f64) -> Option<LostTimeNotice> {
+        let (told_at, told) = self.told.unzip();
+        let is_due = told_at.is_none_or(|at| now.saturating_sub(at) >= NOTICE_INTERVAL);
+        let lost = self.lost(achieved);
+        if !is_due || lost.sum.saturating_sub(told.unwrap_or_default()) < NOTABLE {
+            return None;
+        }
+        self.told = Some((now, lost.sum));
+        Some(LostTimeNotice { lost, wanted })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ms(n: u64) -> Duration {
+        Duration::from_millis(n)
+    }
+
+    #[test]
+    fn a_slow_machine_is_told_once_a_minute_with_the_speed_and_the_sum() {
+        let mut time = RealTime::default();
+        let mut told = Vec::new();
+        for second in 1..=150 {
+            time.lose(ms(400));
+            told.extend(time.notice(ms(second * 1000), 1.0, 0.6).map(|notice| (second, notice.to_string())));
+        }
+        assert_eq!(told.iter().map(|(second, _)| *second).collect::<Vec<_>>(), [2, 62, 122]);
+        assert_eq!(
+            told[1].1,
+            "Real time was lost: the flight runs at 0.60 instead of 1 times real time, 24.8 s are lost so far."
+        );
+        assert_eq!(time.lost(0.6).to_string(), "60.0 s, at 0.60 times real time");
+    }
+
+    #[test]
+    fn a_short_stall_is_counted_but_not_told() {
+        let mut time = RealTime::default();
+        time.lose(ms(120));
+        assert_eq!(time.notice(ms(5000), 1.0, 0.9), None);
+        assert!(!time.lost(0.9).is_notable());
+        time.lose(ms(400));
+        assert!(time.notice(ms(6000), 1.0, 0.9).is_some());
+        assert_eq!(time.notice(ms(600_000), 1.0, 1.0), None, "nothing was lost since");
+    }
+
+    #[test]
+    fn a_simulator_that_is_slow_loses_time_and_one_that_is_fast_or_uneven_none() {
+        let lost_after = |simulated_ms: [u64; 2]| {
+            let mut time = RealTime::default();
+            (0..1000).for_each(|step| time.advance(ms(10), ms(simulated_ms[step % 2])));
+            time.lost(1.0).sum
+        };
+        assert_eq!(lost_after([5, 5]), ms(5000));
+        assert_eq!(lost_after([12, 12]), ms(0));
+        assert_eq!(lost_after([10, 10]), ms(0));
+        assert!(lost_after([1, 19]) <= ms(9), "{:?}", lost_after([1, 19]));
+    }
+}

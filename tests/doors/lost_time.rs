@@ -1,0 +1,42 @@
+//! A program that was held up says how much time that cost.
+
+use std::io::{Read, Write};
+use std::net::TcpStream;
+use std::process::Command;
+use std::time::Duration;
+
+use super::program::{PATIENCE, Serve};
+
+fn signal(name: &str, process: u32) {
+    assert!(Command::new("kill").args([name, &process.to_string()]).status().unwrap().success());
+}
+
+/// What the command line says to `status`.
+fn status(serve: &Serve) -> String {
+    let mut client = TcpStream::connect(serve.tcp).unwrap();
+    client.set_read_timeout(Some(PATIENCE)).unwrap();
+    client.write_all(b"\x02status\n\x03").unwrap();
+    let mut answer = Vec::new();
+    while !answer.ends_with(b"\x03") {
+        let mut chunk = [0; 4096];
+        let count = client.read(&mut chunk).unwrap();
+        assert!(count > 0, "{}", answer.escape_ascii());
+        answer.extend_from_slice(&chunk[..count]);
+    }
+    String::from_utf8(answer).unwrap()
+}
+
+#[test]
+fn a_stopped_program_tells_the_time_that_it_lost() {
+    let mut serve = Serve::start("1");
+    signal("-STOP", serve.id());
+    std::thread::sleep(Duration::from_secs(2));
+    signal("-CONT", serve.id());
+    serve.wait("notice of lost time", |event| {
+        event["text"]
+            .as_str()
+            .is_some_and(|text| text.starts_with("Real time was lost: the flight runs at 0."))
+    });
+    assert!(status(&serve).contains("\r\nReal time lost: "), "{}", status(&serve));
+    assert_eq!(serve.notices("Real time was lost"), 1, "once a minute at most");
+}
