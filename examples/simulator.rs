@@ -14,6 +14,7 @@
 )]
 
 use std::error::Error;
+use std::io::ErrorKind;
 use std::net::{Ipv4Addr, UdpSocket};
 use std::time::{Duration, Instant};
 
@@ -47,8 +48,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut next = Instant::now();
     println!("Reading motors on {motors_port}, telling states to {states_port}.");
     loop {
-        let mut bytes = [0; 64];
-        let heard = socket.recv(&mut bytes).ok().and_then(|size| servo::decode(&bytes[..size]));
+        let heard = receive(&socket);
         match heard {
             Some(values) => {
                 if misses >= MOST_MISSES {
@@ -71,6 +71,18 @@ fn main() -> Result<(), Box<dyn Error>> {
         // In real time; what is late is not caught up with.
         next = (next + STEP).max(Instant::now());
         std::thread::sleep(next.saturating_duration_since(Instant::now()));
+    }
+}
+
+/// The next packet of motors. Being stopped and continued ends the wait early: that is no miss.
+fn receive(socket: &UdpSocket) -> Option<[f32; 4]> {
+    let mut bytes = [0; 64];
+    loop {
+        match socket.recv(&mut bytes) {
+            Ok(size) => return servo::decode(&bytes[..size]),
+            Err(error) if error.kind() == ErrorKind::Interrupted => {}
+            Err(_) => return None,
+        }
     }
 }
 

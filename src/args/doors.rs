@@ -36,7 +36,8 @@ pub struct DoorArgs {
     /// Serves web pages of this origin on the websocket, too; repeatable
     ///
     /// Always served: requests without an origin, loopback hosts, https://app.betaflight.com, and the App's desktop and
-    /// mobile shells.
+    /// mobile shells. The name by which a client calls this machine (Host) has to be one of the loopback, the address it
+    /// reached, or that of an allowed origin.
     #[arg(long, value_name = "ORIGIN", help_heading = "Doors")]
     pub allow_origin: Vec<String>,
 }
