@@ -18,7 +18,6 @@ pub use bumpless::BumplessTransfer;
 pub use disturbance::DisturbanceObserver;
 pub use flight_controllers::FlightControllers;
 pub use hover_throttle::{HOVER_MAX_US, HOVER_MIN_US, HoverMeasurement, HoverThrottleEstimator};
-pub use lean_limit::LeanLimiter;
 pub use position::{
     LEAN_SLEW_RPS, PositionController, PositionLaw, PositionMeasurement, PositionTarget, earth_to_body,
 };

@@ -60,3 +60,55 @@ pub struct NavInputs {
     /// Yaw stick, RC command units ±500, right positive; 0 while the link is lost.
     pub stick_yaw: f64,
 }
+
+impl NavInputs {
+    /// A disarmed craft of which nothing is known yet.
+    #[must_use]
+    pub fn unknown() -> Self {
+        Self {
+            time: SimTime::ZERO,
+            dt: 0.01,
+            armed: false,
+            fix: false,
+            altitude_valid: false,
+            heading_valid: false,
+            throttle_raised: false,
+            failsafe: false,
+            home: None,
+            origin: LatLon::default(),
+            pos_ne: Vector2::zeros(),
+            vel_ne: Vector2::zeros(),
+            alt_m: 0.0,
+            climb_mps: 0.0,
+            heading_rad: 0.0,
+            yaw_rate_rps: 0.0,
+            roll_rad: 0.0,
+            pitch_rad: 0.0,
+            cos_tilt: 1.0,
+            accel_ne: Vector2::zeros(),
+            throttle_us: 1000.0,
+            stick_roll: 0.0,
+            stick_pitch: 0.0,
+            stick_yaw: 0.0,
+        }
+    }
+
+    /// An armed craft that hovers 20 m above home.
+    #[cfg(test)]
+    pub(crate) fn hovering() -> Self {
+        let home = LatLon::new(404_635_000, -795_182_000);
+        Self {
+            time: SimTime(60_000_000),
+            armed: true,
+            fix: true,
+            altitude_valid: true,
+            heading_valid: true,
+            throttle_raised: true,
+            home: Some(home),
+            origin: home,
+            alt_m: 20.0,
+            throttle_us: 1500.0,
+            ..Self::unknown()
+        }
+    }
+}

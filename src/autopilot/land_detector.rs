@@ -64,6 +64,11 @@ impl GroundMeasurement {
             ground_speed_mps: if now.fix { now.vel_ne.norm() } else { 0.0 },
         }
     }
+
+    fn is_finite(&self) -> bool {
+        let scalars = self.rate_rps + self.motor_square + self.climb_mps + self.ground_speed_mps;
+        (self.force_flu.sum() + scalars + self.altitude_m.unwrap_or(0.0)).is_finite()
+    }
 }
 
 /// The land detector of a craft; see the module's description.
@@ -82,14 +87,17 @@ pub struct LandDetector {
 }
 
 impl LandDetector {
-    /// Takes one cycle of an armed or disarmed craft, `dt` seconds after the last.
+    /// Takes one cycle of an armed or disarmed craft, `dt` seconds after the last; a measurement that is not finite is left
+    /// out, for it would stay in the averages.
     pub fn observe(&mut self, now: &GroundMeasurement, armed: bool, dt: f64) {
-        self.impact.observe(now.force_flu, dt);
-        if armed {
+        if now.is_finite() {
+            self.impact.observe(now.force_flu, dt);
+        }
+        if !armed {
+            self.contact.rest();
+        } else if now.is_finite() {
             self.contact.update(now, dt);
             self.stationary.observe(now, dt);
-        } else {
-            self.contact.rest();
         }
     }
 
@@ -147,8 +155,7 @@ impl LandDetector {
         self.stationary.update(lowers_throttle, facts.max_speed_mps, time);
     }
 
-    /// Takes the altitude of this cycle, m; returns how far the craft has come down from the highest point of the
-    /// descent, m.
+    /// Takes the altitude of this cycle, m.
     pub fn follow_altitude(&mut self, altitude_m: f64) {
         self.highest_m = self.highest_m.map(|highest| highest.max(altitude_m));
     }
@@ -171,6 +178,14 @@ impl LandDetector {
     #[must_use]
     pub fn held_us(&self) -> Option<u64> {
         self.held_us
+    }
+
+    /// Whether a descent has ended on the ground: the conditions have held for `detection_time_ds` (0.1 s), or nothing has
+    /// moved for [`STATIONARY_S`].
+    #[must_use]
+    pub fn has_landed(&self, detection_time_ds: u8) -> bool {
+        let needed_us = u64::from(detection_time_ds) * 100_000;
+        self.held_us.is_some_and(|held| held >= needed_us) || self.stationary_s() >= STATIONARY_S
     }
 
     /// How long the craft has not moved although it is commanded to descend, s.
@@ -208,5 +223,45 @@ impl LandDetector {
     #[must_use]
     pub fn is_impact(&self, threshold: f64, facts: &ImpactFacts) -> bool {
         self.impact.is_touchdown(threshold, facts)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geo::GRAVITY;
+
+    #[test]
+    fn a_single_broken_measurement_does_not_blind_the_land_detector() {
+        let sound =
+            GroundMeasurement::new(&NavInputs::hovering(), Vector3::new(0.0, 0.0, GRAVITY), 0.0, &[0.5; 4]);
+        let broken = [
+            GroundMeasurement { force_flu: Vector3::new(f64::NAN, 0.0, 0.0), ..sound },
+            GroundMeasurement { force_flu: Vector3::new(0.0, 0.0, f64::INFINITY), ..sound },
+            GroundMeasurement { motor_square: f64::NAN, ..sound },
+            GroundMeasurement { climb_mps: f64::NAN, ..sound },
+        ];
+        let mut land = LandDetector::default();
+        land.observe(&sound, true, 0.01);
+        for now in broken {
+            land.observe(&now, true, 0.01);
+        }
+        for _ in 0..100 {
+            land.observe(&sound, true, 0.01);
+        }
+        assert!((land.load() - 1.0).abs() < 0.01, "{}", land.load());
+        land.observe(
+            &GroundMeasurement { force_flu: Vector3::new(0.0, 0.0, 4.0 * GRAVITY), ..sound },
+            true,
+            0.01,
+        );
+        let landing = ImpactFacts {
+            raised: true,
+            stick_percent: 0.0,
+            throttle_percent: 0.0,
+            alt_hold: false,
+            near_ground: true,
+        };
+        assert!(land.is_impact(10.0, &landing));
     }
 }

@@ -162,23 +162,11 @@ pub(crate) fn inputs() -> NavInputs {
         altitude_valid: true,
         heading_valid: true,
         throttle_raised: true,
-        failsafe: false,
         home: Some(HOME),
         origin: HOME,
-        pos_ne: Vector2::zeros(),
-        vel_ne: Vector2::zeros(),
         alt_m: 20.0,
-        climb_mps: 0.0,
-        heading_rad: 0.0,
-        yaw_rate_rps: 0.0,
-        roll_rad: 0.0,
-        pitch_rad: 0.0,
-        cos_tilt: 1.0,
-        accel_ne: Vector2::zeros(),
         throttle_us: 1500.0,
-        stick_roll: 0.0,
-        stick_pitch: 0.0,
-        stick_yaw: 0.0,
+        ..NavInputs::unknown()
     }
 }
 

@@ -7,7 +7,7 @@ use crate::autopilot::io::NavInputs;
 use crate::autopilot::land_detector::LandDetector;
 use crate::autopilot::params::Params;
 
-/// The one altitude controller, the one position controller and the one land detector of a craft.
+/// The one altitude controller, the one position controller, the one lean limiter and the one land detector of a craft.
 ///
 /// They are lent to the navigator or to the hold modes. Whoever takes one over engages it, so that the demand does not
 /// step, and updates it in every cycle; a controller that nobody flies with tracks the flight, so that wind and hover
@@ -21,7 +21,7 @@ pub struct FlightControllers {
     /// Ground or air.
     pub land: LandDetector,
     /// Altitude before lean.
-    pub lean: LeanLimiter,
+    lean: LeanLimiter,
 }
 
 impl FlightControllers {
@@ -34,11 +34,19 @@ impl FlightControllers {
     /// Lets the lean be no greater than the thrust allows, after the altitude controller was updated.
     pub fn limit_lean(&mut self, now: &NavInputs, params: &Params) {
         let limit_rad = self.lean.update(now, &self.altitude, params);
-        self.position.limit_lean(limit_rad);
+        self.position.limit_lean(Some(limit_rad));
     }
 
-    /// Tracks a cycle whose throttle is not this altitude controller's.
+    /// Whether the thrust does not suffice for the lean that is asked for.
+    #[must_use]
+    pub fn thrust_limits_lean(&self) -> bool {
+        self.lean.is_reduced() && self.position.is_saturated()
+    }
+
+    /// Tracks a cycle whose throttle is not this altitude controller's: the pilot weighs lean against altitude.
     pub fn track_altitude(&mut self, now: &NavInputs, params: &Params) {
+        self.lean = LeanLimiter::default();
+        self.position.limit_lean(None);
         self.altitude.track(&AltitudeMeasurement::from(now), params, now.dt);
     }
 
@@ -47,5 +55,46 @@ impl FlightControllers {
         if now.fix {
             self.position.track(&PositionMeasurement::from(now), now.dt);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::autopilot::control::{AltitudeTarget, PositionTarget};
+    use nalgebra::Vector2;
+
+    /// Controllers of a craft that hovers at 1900 µs, asked for full speed for a second, with at most 60° of lean.
+    fn weak_craft() -> (FlightControllers, NavInputs, Params) {
+        let params = Params { max_angle: 60, hover_throttle: 1900, ..Params::default() };
+        let now = NavInputs { throttle_us: 1900.0, ..NavInputs::hovering() };
+        let mut controllers = FlightControllers::default();
+        controllers.engage(&now, &params);
+        let far = PositionTarget {
+            speed_mps: 25.0,
+            pass_through: true,
+            ..PositionTarget::stay(Vector2::new(3000.0, 0.0), &params)
+        };
+        for _ in 0..300 {
+            controllers.altitude.update(&(&now).into(), AltitudeTarget::Altitude(20.0), &params, now.dt);
+            controllers.limit_lean(&now, &params);
+            controllers.position.update(&(&now).into(), &far, &params, now.dt);
+        }
+        (controllers, now, params)
+    }
+
+    #[test]
+    fn a_lean_that_the_thrust_cuts_is_told() {
+        let (controllers, _, params) = weak_craft();
+        assert!(controllers.position.max_lean_rad(&params) < 0.5);
+        assert!(controllers.thrust_limits_lean());
+    }
+
+    #[test]
+    fn a_pilot_who_flies_the_altitude_gets_the_whole_lean() {
+        let (mut controllers, now, params) = weak_craft();
+        controllers.track_altitude(&now, &params);
+        assert_eq!(controllers.position.max_lean_rad(&params), params.max_lean_rad());
+        assert!(!controllers.thrust_limits_lean());
     }
 }

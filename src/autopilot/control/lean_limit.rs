@@ -17,10 +17,10 @@ const TOLD_RAD: f64 = 1.0 * DEG;
 
 /// The lean that the thrust allows.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct LeanLimiter {
+pub(super) struct LeanLimiter {
     /// Limit found in flight, rad; none while the greatest lean of the parameters can be flown.
     found_rad: Option<f64>,
-    is_binding: bool,
+    is_reduced: bool,
 }
 
 impl LeanLimiter {
@@ -47,13 +47,12 @@ impl LeanLimiter {
         .filter(|found| *found < max_rad)
         .map(|found| found.max(LEAST_RAD));
         let limit_rad = self.found_rad.unwrap_or(max_rad).min(by_thrust_rad.max(LEAST_RAD)).min(max_rad);
-        self.is_binding = limit_rad < max_rad - TOLD_RAD && self.found_rad.is_some();
+        self.is_reduced = limit_rad < max_rad - TOLD_RAD;
         limit_rad
     }
 
-    /// Whether the thrust did not suffice for the lean that was asked for.
-    #[must_use]
-    pub fn is_binding(&self) -> bool {
-        self.is_binding
+    /// Whether the limit is lower than the parameters' by an amount that is worth telling.
+    pub(super) fn is_reduced(&self) -> bool {
+        self.is_reduced
     }
 }

@@ -129,7 +129,7 @@ pub struct PositionController {
     direct_integral: Vector2<f64>,
     saturated: bool,
     limit_rad: Option<f64>,
-    /// Lean that the thrust allows, rad; none = what the parameters allow.
+    /// Lean that the thrust allows, rad; none: the thrust is not watched.
     thrust_limit_rad: Option<f64>,
     params: Option<Params>,
     transfer: [BumplessTransfer; 2],
@@ -169,9 +169,9 @@ impl PositionController {
         self.saturated
     }
 
-    /// Limits the lean to what the thrust allows, rad.
-    pub fn limit_lean(&mut self, limit_rad: f64) {
-        self.thrust_limit_rad = Some(limit_rad);
+    /// Limits the lean to what the thrust allows, rad; `None` when nobody keeps the altitude.
+    pub(super) fn limit_lean(&mut self, limit_rad: Option<f64>) {
+        self.thrust_limit_rad = limit_rad;
     }
 
     /// The greatest lean that may be flown, rad.

@@ -70,6 +70,12 @@ impl DescentFacts {
             max_speed_mps: measured_mps,
         }
     }
+
+    /// Vertical speed below which the descent neither sinks nor climbs, m/s.
+    #[must_use]
+    pub fn still_mps(&self) -> f64 {
+        STILL_SHARE * self.landing_rate_mps
+    }
 }
 
 /// The throttle taken off.
@@ -93,7 +99,7 @@ impl ThrottleRelief {
         self.climb_mps += (facts.climb_mps - self.climb_mps) * (dt / (JOLT_S + dt));
         self.has_sunk |= facts.sink_mps > 0.0 && self.climb_mps < -SANK_SHARE * facts.sink_mps;
         let rests = facts.sink_mps > 0.0
-            && self.climb_mps.abs() < STILL_SHARE * facts.landing_rate_mps
+            && self.climb_mps.abs() < facts.still_mps()
             && facts.altitude_m - facts.setpoint_m > SETPOINT_BELOW_M;
         self.rest_s = if rests { self.rest_s + dt } else { 0.0 };
         let needed_s = if self.has_sunk { REST_AFTER_SINKING_S } else { REST_S };

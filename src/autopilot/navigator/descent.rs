@@ -10,8 +10,6 @@ use crate::signals::SimTime;
 
 /// Below this altitude a rescue sinks at the landing rate, m.
 const SLOW_LANDING_M: f64 = 4.0;
-/// Share of the descent rate below which a landing does not sink.
-const STILL_SHARE: f64 = 0.25;
 /// Rate at which the setpoint of a landing comes down to a craft that stopped below it, m/s.
 const CATCH_UP_MPS: f64 = 2.0;
 /// A LAND reached this far above its altitude is approached vertically first, m; the approach ends this near to it, m.
@@ -119,9 +117,8 @@ impl Descent {
         };
         let facts = DescentFacts::new(now, params, (setpoint_m, throttle_us), path.rate_mps);
         land.descend(&facts, now.time, now.dt);
-        let still = STILL_SHARE * params.descent_rate_mps();
         let is_down = path.rate_mps > 0.0 && facts.is_low;
-        if is_down && land.climb_mps() > -still && now.alt_m < setpoint_m {
+        if is_down && land.climb_mps() > -facts.still_mps() && now.alt_m < setpoint_m {
             path.rate_start_m -= CATCH_UP_MPS * now.dt;
         }
         Some(AltitudeTarget::Landing { setpoint_m: path.setpoint_m(now, params), rate_mps: -path.rate_mps })

@@ -96,7 +96,7 @@ impl Navigator {
 
     /// Tells once a leg that the thrust does not suffice for the lean.
     fn tell_limited_lean(&mut self, controllers: &FlightControllers, params: &Params) {
-        if controllers.lean.is_binding() && !std::mem::replace(&mut self.leg.told_limited, true) {
+        if controllers.thrust_limits_lean() && !std::mem::replace(&mut self.leg.told_limited, true) {
             self.push(NavEvent::Limited { lean_rad: controllers.position.max_lean_rad(params) });
         }
     }

@@ -9,38 +9,6 @@ use crate::plan::{Waypoint, WaypointType};
 use crate::signals::SimTime;
 use crate::telemetry::PlanSource;
 
-const HOME: LatLon = LatLon::new(404_635_000, -795_182_000);
-
-/// An armed craft hovering over home at 20 m.
-fn hovering() -> NavInputs {
-    NavInputs {
-        time: SimTime(60_000_000),
-        dt: 0.01,
-        armed: true,
-        fix: true,
-        altitude_valid: true,
-        heading_valid: true,
-        throttle_raised: true,
-        home: Some(HOME),
-        origin: HOME,
-        pos_ne: Vector2::zeros(),
-        vel_ne: Vector2::zeros(),
-        alt_m: 20.0,
-        climb_mps: 0.0,
-        heading_rad: 0.0,
-        yaw_rate_rps: 0.0,
-        roll_rad: 0.0,
-        pitch_rad: 0.0,
-        cos_tilt: 1.0,
-        accel_ne: Vector2::zeros(),
-        throttle_us: 1500.0,
-        stick_roll: 0.0,
-        stick_pitch: 0.0,
-        stick_yaw: 0.0,
-        failsafe: false,
-    }
-}
-
 fn plan() -> FlightPlan {
     let far = Waypoint {
         position: LatLon::new(404_645_000, -795_182_000),
@@ -75,7 +43,7 @@ impl Flight {
             orders: Orders::default(),
             navigator: Navigator::new(),
             controllers: FlightControllers::default(),
-            inputs: hovering(),
+            inputs: NavInputs::hovering(),
             rescue,
         }
     }
@@ -328,7 +296,7 @@ fn rescue_altitude_by_mode() {
         (RescueAltitude::Present, 30.0),
     ] {
         let config = RescueConfig { altitude, ..config };
-        let flight = orders.rescue_flight(&config, &hovering(), RescueCause::Switch);
+        let flight = orders.rescue_flight(&config, &NavInputs::hovering(), RescueCause::Switch);
         assert_eq!(flight.altitude_m, expected);
     }
 }
@@ -338,11 +306,11 @@ fn rescue_next_to_home_does_not_climb_first() {
     let config = RescueConfig { initial_climb_m: 10.0, min_start_dist_m: 15.0, ..RescueConfig::default() };
     let orders = Orders::default();
     for (distance_m, altitude_m) in [(0.0, 20.0), (14.9, 20.0), (15.1, 30.0)] {
-        let inputs = NavInputs { pos_ne: Vector2::new(0.0, distance_m), ..hovering() };
+        let inputs = NavInputs { pos_ne: Vector2::new(0.0, distance_m), ..NavInputs::hovering() };
         let flight = orders.rescue_flight(&config, &inputs, RescueCause::Failsafe);
         assert_eq!(flight.altitude_m, altitude_m, "{distance_m}");
     }
-    let inputs = NavInputs { home: None, ..hovering() };
+    let inputs = NavInputs { home: None, ..NavInputs::hovering() };
     assert_eq!(orders.rescue_flight(&config, &inputs, RescueCause::Failsafe).altitude_m, 30.0);
 }
 
@@ -354,7 +322,8 @@ fn sanity_checks_by_setting_and_cause() {
         (RescueSanity::FailsafeOnly, false, true),
     ] {
         let config = RescueConfig { sanity, ..RescueConfig::default() };
-        let watched = |cause| Orders::default().rescue_flight(&config, &hovering(), cause).is_watched;
+        let watched =
+            |cause| Orders::default().rescue_flight(&config, &NavInputs::hovering(), cause).is_watched;
         assert_eq!((watched(RescueCause::Switch), watched(RescueCause::Failsafe)), (by_switch, by_failsafe));
     }
 }

@@ -71,7 +71,7 @@ impl Navigation {
             holds: Holds::default(),
             throttle_takeover: ThrottleTakeover::default(),
             controllers: FlightControllers::default(),
-            inputs: unknown_craft(),
+            inputs: NavInputs::unknown(),
             output: None,
             updated_at: now,
             only_levelled: None,
@@ -370,35 +370,5 @@ impl Navigation {
     /// The plan being flown, when one is.
     pub(in crate::firmware) fn active_plan(&self) -> Option<&FlightPlan> {
         self.navigator.is_flying().then(|| self.navigator.active_plan())
-    }
-}
-
-/// A craft of which nothing is known yet.
-fn unknown_craft() -> NavInputs {
-    NavInputs {
-        time: SimTime::ZERO,
-        dt: 0.01,
-        armed: false,
-        fix: false,
-        altitude_valid: false,
-        heading_valid: false,
-        throttle_raised: false,
-        failsafe: false,
-        home: None,
-        origin: LatLon::default(),
-        pos_ne: Vector2::zeros(),
-        vel_ne: Vector2::zeros(),
-        alt_m: 0.0,
-        climb_mps: 0.0,
-        heading_rad: 0.0,
-        yaw_rate_rps: 0.0,
-        roll_rad: 0.0,
-        pitch_rad: 0.0,
-        cos_tilt: 1.0,
-        accel_ne: Vector2::zeros(),
-        throttle_us: 1000.0,
-        stick_roll: 0.0,
-        stick_pitch: 0.0,
-        stick_yaw: 0.0,
     }
 }

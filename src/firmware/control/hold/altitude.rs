@@ -6,9 +6,7 @@ use crate::autopilot::control::{
     AltitudeController, AltitudeMeasurement, AltitudeTarget, FlightControllers, throttle_share,
 };
 use crate::autopilot::io::NavInputs;
-use crate::autopilot::land_detector::{
-    DescentFacts, GroundFacts, STATIONARY_S, TouchdownFacts, TouchdownGuards,
-};
+use crate::autopilot::land_detector::{DescentFacts, GroundFacts, TouchdownFacts, TouchdownGuards};
 
 /// A craft that climbs faster than this (m/s) when the hold begins is stopped first.
 const STEADY_MPS: f64 = 0.5;
@@ -209,10 +207,8 @@ impl AltitudeHold {
                 now.climb_mps,
             )
         };
-        let held_us = land.time_touchdown(&TouchdownGuards::new(&facts, &ground), now.time);
-        self.has_touched_down = held_us
-            .is_some_and(|held| held >= u64::from(params.landing_detection_time) * 100_000)
-            || land.stationary_s() >= STATIONARY_S;
+        land.time_touchdown(&TouchdownGuards::new(&facts, &ground), now.time);
+        self.has_touched_down = land.has_landed(params.landing_detection_time);
         AltitudeTarget::Landing { setpoint_m: setpoint, rate_mps: -rate }
     }
 }
@@ -319,29 +315,12 @@ mod tests {
         let (params, tuning) = (Params::default(), HoldTuning::default());
         let mut now = NavInputs {
             time: crate::signals::SimTime::ZERO,
-            dt: 0.01,
-            armed: true,
-            fix,
-            altitude_valid: true,
-            heading_valid: true,
-            throttle_raised: true,
             failsafe: true,
-            home: None,
-            origin: crate::geo::LatLon::default(),
-            pos_ne: nalgebra::Vector2::zeros(),
-            vel_ne: nalgebra::Vector2::new(0.6 * drift_mps, -0.8 * drift_mps),
+            fix,
             alt_m: 0.0,
-            climb_mps: 0.0,
-            heading_rad: 0.0,
-            yaw_rate_rps: 0.0,
-            roll_rad: 0.0,
-            pitch_rad: 0.0,
-            cos_tilt: 1.0,
-            accel_ne: nalgebra::Vector2::zeros(),
+            vel_ne: nalgebra::Vector2::new(0.6 * drift_mps, -0.8 * drift_mps),
             throttle_us: 1000.0,
-            stick_roll: 0.0,
-            stick_pitch: 0.0,
-            stick_yaw: 0.0,
+            ..NavInputs::hovering()
         };
         let (mut hold, mut controllers) = (AltitudeHold::default(), FlightControllers::default());
         let mut updates = 0;
