@@ -27,6 +27,8 @@ pub struct NavInputs {
     pub throttle_raised: bool,
     /// Whether stage 2 of the receiver failsafe is active.
     pub failsafe: bool,
+    /// Whether the battery is at its warning voltage or below.
+    pub battery_low: bool,
     /// Home (GPS position at arming), when known.
     pub home: Option<LatLon>,
     /// Origin of the local frame of this flight.
@@ -74,6 +76,7 @@ impl NavInputs {
             heading_valid: false,
             throttle_raised: false,
             failsafe: false,
+            battery_low: false,
             home: None,
             origin: LatLon::default(),
             pos_ne: Vector2::zeros(),

@@ -109,6 +109,12 @@ impl Battery {
         self.smooth_v / f64::from(self.cells.max(1))
     }
 
+    /// Whether it is at its warning voltage or below.
+    #[must_use]
+    pub fn is_low(&self) -> bool {
+        matches!(self.state, BatteryState::Warning | BatteryState::Critical)
+    }
+
     /// Charge state.
     #[must_use]
     pub fn state(&self) -> BatteryState {

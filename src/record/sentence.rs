@@ -121,6 +121,7 @@ fn nav(event: &NavEvent) -> Option<String> {
             let binds = match deviation.limit {
                 HoldLimit::Lean => "; the lean is at its limit",
                 HoldLimit::Throttle => "; the throttle is at its limit",
+                HoldLimit::Battery => "; the battery is too low",
                 HoldLimit::None => "",
             };
             format!("Cannot hold: {}{binds}.", off(deviation))

@@ -8,6 +8,8 @@ pub enum HoldLimit {
     Lean,
     /// The throttle is at `ap_throttle_max`.
     Throttle,
+    /// The throttle is at `ap_throttle_max`, and the battery is low: it gives no more thrust.
+    Battery,
     /// Nothing that the autopilot knows of.
     #[default]
     None,

@@ -161,6 +161,7 @@ fn cannot_hold_message(deviation: CannotHold) -> Option<StatusMessage> {
     let action = match limit {
         HoldLimit::Lean => "the lean is at its limit: raise ap_max_angle, or land",
         HoldLimit::Throttle => "the throttle is at its limit: land",
+        HoldLimit::Battery => "the battery is too low for its thrust: land",
         HoldLimit::None => "no limit binds: sticks take over; check sensors and gains",
     };
     message(Severity::Warn, condition, action)

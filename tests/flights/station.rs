@@ -1,6 +1,6 @@
 //! A craft that cannot stay where it should says so, and says when it can again.
 
-use betadeck::sim::WorldCommand;
+use betadeck::sim::{BatteryFault, Fault, WorldCommand};
 use betadeck::telemetry::{CannotHold, EventKind, FirmwareEvent, HoldLimit, NavEvent, NavState};
 
 use crate::rig::{Rig, world};
@@ -65,6 +65,21 @@ fn a_craft_that_sinks_from_its_hold_says_so() {
     assert_eq!(deviation.limit, HoldLimit::Throttle);
     rig.cli("set ap_throttle_max = 1900");
     rig.until(60.0, "it holds again", |rig| told(rig).len() == 2);
+}
+
+#[test]
+fn a_craft_that_sinks_on_a_tired_battery_says_so() {
+    let (mut world, _) = world(0);
+    world.switches.battery_sag = true;
+    let mut rig = Rig::new(world, &format!("{HOLD}\nset ap_max_distance_from_home = 0"), 20.0);
+    rig.engaged().until_state(60.0, NavState::Holding).fly(10.0);
+    rig.vehicle
+        .change_world(WorldCommand::FaultOn(Fault::Battery(BatteryFault::Offset(-8.0)), None))
+        .unwrap();
+    rig.until(60.0, "it is told", |rig| !told(rig).is_empty());
+    let (_, deviation) = told(&rig)[0];
+    assert!(deviation.vertical_m < -3.0, "{deviation:?}");
+    assert_eq!(deviation.limit, HoldLimit::Battery);
 }
 
 #[test]

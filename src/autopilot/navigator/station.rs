@@ -31,6 +31,8 @@ struct Station {
     lean_binds: bool,
     /// The throttle demand is cut at its limit.
     throttle_binds: bool,
+    /// The battery is at its warning voltage or below.
+    battery_low: bool,
 }
 
 impl Station {
@@ -69,10 +71,11 @@ impl Period {
     fn limit(&self, station: &Station) -> HoldLimit {
         let most = |time_s: f64| time_s > 0.5 * self.time_s;
         let too_low = station.vertical_m < -VERTICAL_M;
+        let throttle = if station.battery_low { HoldLimit::Battery } else { HoldLimit::Throttle };
         match (most(self.lean_s), most(self.throttle_s)) {
-            (_, true) if too_low => HoldLimit::Throttle,
+            (_, true) if too_low => throttle,
             (true, _) => HoldLimit::Lean,
-            (false, true) => HoldLimit::Throttle,
+            (false, true) => throttle,
             (false, false) => HoldLimit::None,
         }
     }
@@ -162,6 +165,7 @@ impl Navigator {
                     lean_binds: controllers.position.is_saturated(),
                     throttle_binds: controllers.altitude.throttle_us()
                         >= f64::from(params.throttle_max) - THROTTLE_BINDS_US,
+                    battery_low: now.battery_low,
                 };
                 self.station.update(&station, now.dt)
             }

@@ -1,6 +1,6 @@
 //! Who gives the demands that take the place of the pilot's: failsafe, navigator, holds. Runs a hundred times a second.
 
-use nalgebra::{Vector2, Vector3};
+use nalgebra::Vector3;
 
 use crate::autopilot::Navigator;
 use crate::autopilot::control::FlightControllers;
@@ -15,7 +15,6 @@ use crate::firmware::orders::{OrderFacts, Orders, failsafe_response};
 use crate::firmware::outbox::Outbox;
 use crate::firmware::parameters::{Parameters, RescueCause};
 use crate::firmware::throttle_takeover::ThrottleTakeover;
-use crate::geo::LatLon;
 use crate::plan::FlightPlan;
 use crate::signals::SimTime;
 use crate::telemetry::{
@@ -101,6 +100,7 @@ impl Navigation {
             heading_valid: estimate.heading_valid,
             throttle_raised: safety.raised(),
             failsafe: self.failsafe.active(),
+            battery_low: sensing.battery().is_low(),
             home: safety.home(),
             origin: estimate.origin.unwrap_or_default(),
             pos_ne: estimate.pos_ne,
