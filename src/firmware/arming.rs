@@ -162,6 +162,12 @@ impl Arming {
         self.raised
     }
 
+    /// Whether the craft was armed since boot.
+    #[must_use]
+    pub fn ever_armed(&self) -> bool {
+        self.ever_armed
+    }
+
     /// What blocks arming, as judged at the last update while disarmed.
     #[must_use]
     pub fn flags(&self) -> ArmingFlags {

@@ -57,7 +57,10 @@ impl Orders {
     pub fn after_abort(&self, navigator: &Navigator) -> AfterAbort {
         match navigator.given_up() {
             None => AfterAbort::Nothing,
-            Some(AbortReason::GpsLost) if navigator.has_landing_to_resume() => AfterAbort::Descent,
+            // The pilot of a rescue may not see the craft any more: it does not wait up there for a fix.
+            Some(AbortReason::GpsLost) if navigator.has_landing_to_resume() || self.by_rescue_switch => {
+                AfterAbort::Descent
+            }
             Some(AbortReason::GpsLost) => AfterAbort::Altitude,
             Some(AbortReason::Stalled | AbortReason::Flyaway | AbortReason::NoPlan) => AfterAbort::Position,
         }

@@ -11,8 +11,7 @@ use super::arming::crash::{CrashAction, CrashConfig};
 use super::arming::runaway::RunawayConfig;
 use super::battery::BatteryConfig;
 use super::config::{
-    ChannelMap, Configuration, Feature, Features, MAX_MIX_ROWS, MODE_CONDITIONS, MixRow, MixerKind,
-    ModeCondition,
+    Configuration, Feature, Features, MAX_MIX_ROWS, MODE_CONDITIONS, MixRow, MixerKind, ModeCondition,
 };
 use super::control::Tuning;
 use super::control::hold::HoldTuning;
@@ -31,8 +30,6 @@ const LEAST_FULL_YAW: f64 = 100.0;
 pub struct BootChoices {
     /// Feature switches.
     pub features: Features,
-    /// Order of the stick channels on the wire.
-    pub channel_map: ChannelMap,
     /// AUX channels evaluated.
     pub max_aux: u8,
     /// A magnetometer is present.
@@ -60,7 +57,6 @@ impl BootChoices {
         let settings = &configuration.settings;
         Self {
             features: configuration.features,
-            channel_map: configuration.channel_map,
             max_aux: small(settings, "max_aux_channels"),
             mag: settings.text("mag_hardware") != "NONE",
             mixer: configuration.mixer,
@@ -230,7 +226,7 @@ fn receiver(configuration: &Configuration, boot: &BootChoices) -> RxConfig {
     let mid_us = pulse(settings, "mid_rc");
     RxConfig {
         channels: ChannelConfig {
-            map: boot.channel_map,
+            map: configuration.channel_map,
             max_aux: boot.max_aux,
             min_us: pulse(settings, "rx_min_usec"),
             max_us: pulse(settings, "rx_max_usec"),

@@ -116,13 +116,10 @@ impl Firmware {
         self.estimate().origin
     }
 
-    /// Where the throttle stick rests in ALTHOLD, µs: the hover throttle, or the middle when it is to be learned.
+    /// Where the throttle stick rests in ALTHOLD, µs: the hover throttle in use, or the middle when it is to be learned.
     #[must_use]
     pub fn hover_stick_us(&self) -> u16 {
-        match self.parameters().nav.hover_throttle {
-            0 => self.parameters().hold.mid_us as u16,
-            us => us.clamp(1100, 1900),
-        }
+        self.navigation.hover_stick_us(self.parameters()).round().clamp(1100.0, 1900.0) as u16
     }
 
     /// The pitch stick that leans the craft forward by 15° in ANGLE, µs.
@@ -141,7 +138,9 @@ impl Firmware {
     /// The throttle stick that brings a craft down gently in ALTHOLD, µs; `None` when no stick does.
     #[must_use]
     pub fn sink_stick_us(&self) -> Option<u16> {
-        let stick = self.parameters().hold.sink_stick_us(GENTLE_SINK_MPS, &self.parameters().nav)?;
+        let parameters = self.parameters();
+        let hover_us = self.navigation.hover_stick_us(parameters);
+        let stick = parameters.hold.sink_stick_us(GENTLE_SINK_MPS, hover_us, &parameters.nav)?;
         Some(stick.round() as u16)
     }
 

@@ -67,8 +67,8 @@ impl Refusal {
             Self::NoPlan => "No waypoints: upload a plan.".into(),
             Self::PlanCorrupt => "The stored plan is damaged: upload it again.".into(),
             Self::BadWaypoint(wp) => format!(
-                "Waypoint {wp} is invalid: its position must lie within \u{b1}90\u{b0} and \u{b1}180\u{b0} and its type and pattern \
-                 must be known; correct it."
+                "Waypoint {wp} is invalid: its latitude must lie within 90 degrees, its longitude within 180, and its type \
+                 and pattern must be known; correct it."
             )
             .into(),
             Self::NoHome => "Fence is set but home is unknown: arm with a fix.".into(),

@@ -96,12 +96,17 @@ fn set_hold_modes(state: &AppState, next: &mut RcFrame, on: bool) {
     }
 }
 
-/// Prepares the sticks for the moment when the navigator gives the craft back: it shall be held, not sink.
+/// Prepares the sticks for the moment when the navigator gives the craft back: it shall be held, not sink or climb.
 fn prepare_hold(state: &AppState, next: &mut RcFrame) {
-    if is_sinking(state) {
+    rest_throttle(state, next);
+    set_hold_modes(state, next, true);
+}
+
+/// Puts the throttle stick of a flying craft to where ALTHOLD keeps the altitude.
+fn rest_throttle(state: &AppState, next: &mut RcFrame) {
+    if is_airborne(state) {
         next.channels[THROTTLE] = hover_us(state);
     }
-    set_hold_modes(state, next, true);
 }
 
 /// Whether the craft stands on the ground.
@@ -128,9 +133,13 @@ fn is_raised(state: &AppState, frame: &RcFrame) -> bool {
 #[must_use]
 pub(super) fn is_sinking(state: &AppState) -> bool {
     let frame = frame(state);
+    let throttle_us = frame.channels[THROTTLE];
+    // The hover throttle in use moves a little while it is learned, and the sinking stick with it.
+    let is_below = |sink_us: u16| throttle_us <= u16::midpoint(sink_us, hover_us(state));
     is_airborne(state)
         && is_on(state, &frame, Mode::AltHold)
-        && settings(state).sink_stick_us == Some(frame.channels[THROTTLE])
+        && throttle_us > LOW_US
+        && settings(state).sink_stick_us.is_some_and(is_below)
 }
 
 /// What the throttle key does now: on the ground hover and low take turns; in the air the first press holds the craft,
@@ -193,6 +202,9 @@ pub(super) fn toggle_autopilot(state: &mut AppState) -> Vec<Effect> {
         return vec![Effect::Send(Command::CancelReturn)];
     }
     next.channels[switch.channel] = if on { switch.off_us } else { switch.on_us };
+    if on && is_on(state, &next, Mode::AltHold) {
+        rest_throttle(state, &mut next);
+    }
     if on && !is_raised(state, &next) && !is_airborne(state) {
         set_hold_modes(state, &mut next, false);
     } else if !on && (state.view.vehicle.craft.is_armed() || is_raised(state, &next)) {

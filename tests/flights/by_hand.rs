@@ -2,8 +2,10 @@
 
 use crate::checks::greatest;
 use crate::rig::{Rig, world};
+use betadeck::firmware::cli::Interpreter;
 use betadeck::signals::RcFrame;
-use betadeck::telemetry::{EventKind, Mode, NavState};
+use betadeck::sim::{Fault, Truth, WorldCommand};
+use betadeck::telemetry::{DisarmReason, EventKind, Mode, NavState};
 
 /// A craft that hovers ten metres up, held by the switches of the scripted pilot, who has let go.
 fn hovering() -> (Rig, RcFrame) {
@@ -56,4 +58,57 @@ fn a_return_home_that_is_taken_back_leaves_the_craft_held() {
     rig.fly(10.0);
     let fallen = greatest(rig.samples[from..].iter().map(|sample| (sample.alt - height).abs()));
     assert!(fallen < 1.5, "{fallen}");
+}
+
+/// A craft on the ground whose hover throttle is set far too low, with the hold modes on and this throttle stick: the truth
+/// after ten seconds.
+fn after_stick(throttle_us: u16) -> Truth {
+    let mut rig = Rig::new(world(1).0, "set ap_hover_throttle = 1275\nset alt_hold_deadband = 20", 10.0);
+    rig.until(60.0, "the hold modes", |rig| rig.vehicle.embedded().unwrap().modes().has(Mode::AltHold));
+    rig.vehicle.transmitter_mut().stop_pilot();
+    rig.vehicle.transmitter_mut().sticks_mut().channels[2] = throttle_us;
+    rig.fly(10.0);
+    rig.vehicle.world().unwrap().truth().clone()
+}
+
+#[test]
+fn a_throttle_stick_above_the_hover_throttle_takes_the_craft_off() {
+    assert!(after_stick(1400).on_ground, "inside the dead zone");
+    let climbed = after_stick(1600);
+    assert!(climbed.pos_enu.z > 1.0, "{}", climbed.pos_enu.z);
+}
+
+#[test]
+fn a_refused_autopilot_leaves_the_craft_where_it_hovers() {
+    let fence = "set ap_max_distance_from_home = 50\nset ap_hover_throttle = 1275
+waypoint insert 0 40.4663000 -79.5182000 2000 500 FLYOVER 0 NONE";
+    let mut rig = Rig::new(world(1).0, fence, 10.0);
+    rig.until(60.0, "the refusal", |rig| rig.vehicle.embedded().unwrap().nav().refusal.is_some());
+    let height = rig.vehicle.embedded().unwrap().altitude_m();
+    rig.fly(9.0);
+    let left = rig.vehicle.embedded().unwrap().altitude_m() - height;
+    assert!(left.abs() < 1.0, "{left}");
+    let status = rig.vehicle.embedded_mut().unwrap().run_cli(&mut Interpreter::default(), "status").text;
+    assert!(status.contains("Autopilot: Waypoint 0 is 311 m from home, the fence is 50 m."), "{status}");
+    let status =
+        rig.vehicle.embedded_mut().unwrap().run_cli(&mut Interpreter::default(), "waypoint status").text;
+    assert!(status.contains("  inactive\r\n  refused: Waypoint 0 is 311 m from home"), "{status}");
+}
+
+#[test]
+fn a_rescue_that_loses_its_fix_comes_down_and_disarms() {
+    let mut rig = Rig::new(world(1).0, "aux 3 46 3 1700 2100", 10.0);
+    rig.until(60.0, "hover", |rig| rig.vehicle.transmitter().pilot_doing() == Some("hovering"));
+    rig.vehicle.transmitter_mut().stop_pilot();
+    rig.vehicle.transmitter_mut().sticks_mut().channels[7] = 1900;
+    rig.fly(3.0);
+    assert!(rig.vehicle.embedded().unwrap().modes().has(Mode::Autopilot), "the rescue flies");
+    rig.vehicle.change_world(WorldCommand::FaultOn(Fault::GpsLoss, None)).unwrap();
+    rig.fly(3.0);
+    let modes = rig.vehicle.embedded().unwrap().modes();
+    assert!(modes.has(Mode::Angle) && modes.has(Mode::AltHold), "{modes:?}");
+    rig.until(120.0, "disarmed on the ground", |rig| rig.disarmed().is_some());
+    assert_eq!(rig.disarmed().unwrap().1, DisarmReason::Landing);
+    let truth = rig.vehicle.world().unwrap().truth();
+    assert!(truth.on_ground && !truth.crashed);
 }

@@ -130,7 +130,7 @@ fn the_rescue_gains_are_the_autopilots() {
 #[test]
 fn ports_have_the_layout_of_the_executable() {
     let reply = ask(&mut craft(), 0x1009, &[]).unwrap();
-    assert_eq!(hex(&reply[..19]), "08330100000005000405340000000005000405");
+    assert_eq!(hex(&reply[..19]), "08330100000005040005340000000005040005");
     assert_eq!(reply.len(), 1 + 8 * 9);
     assert_eq!(ask(&mut craft(), 54, &[]).unwrap().len(), 56);
     assert_eq!(ask(&mut craft(), 0x100a, &[0]), None);

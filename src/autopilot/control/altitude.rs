@@ -146,6 +146,7 @@ impl AltitudeController {
     /// Tracks a cycle that somebody else flies, so that the hover throttle is known when this controller takes over.
     pub fn track(&mut self, now: &AltitudeMeasurement, params: &Params, dt: f64) {
         self.hover.update(&hover_measurement(now, params), dt);
+        self.hover.release();
         self.spool_up = SpoolUp::default();
     }
 
@@ -182,6 +183,17 @@ impl AltitudeController {
     #[must_use]
     pub fn hover_us(&self) -> f64 {
         self.hover.hover_us()
+    }
+
+    /// Where a throttle stick means no climb, µs: the hover throttle that this flight has shown, before that the parameter,
+    /// and without one `centre_us`.
+    #[must_use]
+    pub fn hover_stick_us(&self, params: &Params, centre_us: f64) -> f64 {
+        let configured_us = match params.hover_throttle {
+            0 => centre_us,
+            us => f64::from(us),
+        };
+        self.hover.learned_us().unwrap_or(configured_us)
     }
 
     /// The hover throttle that a touchdown is measured against, µs: the parameter, or what held the craft when this

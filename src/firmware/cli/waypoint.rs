@@ -195,6 +195,9 @@ fn status(session: &mut Session<'_>) {
     }
     if nav.state == NavState::Idle {
         session.line("  inactive");
+        if let Some(refusal) = nav.refusal {
+            session.line(format_args!("  refused: {}", refusal.sentence()));
+        }
         return;
     }
     session.line(format_args!("  state: {}", nav.state));

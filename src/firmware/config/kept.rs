@@ -41,21 +41,27 @@ pub struct KeptLines {
 }
 
 impl KeptLines {
-    /// Keeps a line: a setting replaces its earlier value, a command already kept is not repeated. `false` when there
-    /// is no room.
+    /// Keeps a line: a setting replaces its earlier value, or, without a value, takes it away; a command already kept is
+    /// not repeated. `false` when there is no room.
     pub fn keep(&mut self, mut line: KeptLine) -> bool {
         // As it would be typed again.
         line.text = line.text.replace(char::is_control, " ").trim().to_owned();
         // From the end: lines of a family begin alike, and a file may have very many of them.
         let is_same = |a: &str, b: &str| a.len() == b.len() && a.bytes().rev().eq(b.bytes().rev());
-        let same_place = |old: &&mut KeptLine| {
+        let same_place = |old: &KeptLine| {
             old.scope == line.scope
                 && old.instance == line.instance
                 && is_same(&old.name, &line.name)
                 && (!line.name.is_empty() || is_same(&old.text, &line.text))
         };
+        if line.text.is_empty() {
+            if let Some(at) = self.lines.iter().position(same_place) {
+                self.cost -= self.lines.remove(at).cost();
+            }
+            return true;
+        }
         let cost = self.cost + line.cost();
-        if let Some(old) = self.lines.iter_mut().find(same_place) {
+        if let Some(old) = self.lines.iter_mut().find(|old| same_place(old)) {
             let cost = cost - old.cost();
             if cost > MAX_CHARACTERS {
                 return false;
@@ -107,6 +113,15 @@ mod tests {
         }
         let commands: Vec<String> = kept.iter().map(KeptLine::command).collect();
         assert_eq!(commands, ["set dyn_idle_min_rpm = 20", "set dyn_idle_min_rpm = 4 0", "led 0 0,0::C:0"]);
+    }
+
+    #[test]
+    fn a_name_that_is_cleared_leaves_no_empty_line() {
+        let mut kept = KeptLines::default();
+        assert!(kept.keep(line(0, "pilot_name", "")));
+        assert_eq!(kept.iter().count(), 0);
+        assert!(kept.keep(line(0, "pilot_name", "ACE")) && kept.keep(line(0, "pilot_name", " ")));
+        assert_eq!(kept, KeptLines::default());
     }
 
     #[test]

@@ -71,10 +71,11 @@ impl HoldTuning {
 }
 
 impl HoldTuning {
-    /// The throttle stick that makes ALTHOLD sink at a rate (m/s), µs; `None` when no stick does.
+    /// The throttle stick that makes a craft with this hover throttle (µs) sink at a rate (m/s) in ALTHOLD, µs; `None` when
+    /// no stick does.
     #[must_use]
-    pub fn sink_stick_us(&self, rate_mps: f64, params: &Params) -> Option<f64> {
-        altitude::sink_stick_us(rate_mps, params, self)
+    pub fn sink_stick_us(&self, rate_mps: f64, hover_us: f64, params: &Params) -> Option<f64> {
+        altitude::sink_stick_us(rate_mps, hover_us, params, self)
     }
 }
 

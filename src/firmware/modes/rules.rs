@@ -32,7 +32,7 @@ pub enum AfterAbort {
     Nothing,
     /// Level and at the present altitude; the pilot steers (no position is known).
     Altitude,
-    /// Level and down to the ground: the fix was lost in a landing.
+    /// Level and down to the ground: the fix was lost in a landing or a rescue.
     Descent,
     /// Level, at the present altitude and place.
     Position,

@@ -117,7 +117,7 @@ pub(super) fn set_motor_reordering(call: &mut Call<'_>) -> Result<(), Refused> {
     call.configuration.settings.set(REORDERING, Value::Array(order)).map_err(|_| Refused)
 }
 
-/// Identifier, functions, and the positions of MSP, telemetry, GPS and flight recorder speeds in the list of speeds,
+/// Identifier, functions, and the positions of MSP, GPS, telemetry and flight recorder speeds in the list of speeds,
 /// of every port.
 fn ports(call: &Call<'_>) -> Vec<(u8, u32, [u8; 4])> {
     let rows = &call.configuration.serial.0;
@@ -126,7 +126,7 @@ fn ports(call: &Call<'_>) -> Vec<(u8, u32, [u8; 4])> {
         .map(|((id, number), row)| {
             let named = PORT_SETTINGS.iter().filter(|(name, _)| call.setting(name) == number);
             let functions = named.fold(row.functions, |functions, (_, function)| functions | function);
-            let bauds = [row.msp_baud, row.telemetry_baud, row.gps_baud, row.blackbox_baud];
+            let bauds = [row.msp_baud, row.gps_baud, row.telemetry_baud, row.blackbox_baud];
             (id, functions, bauds.map(baud_index))
         })
         .collect()

@@ -50,7 +50,7 @@ pub struct MspFacts {
     pub pitch_deg: f64,
     /// Heading, degrees clockwise from north.
     pub heading_deg: f64,
-    /// Estimated altitude above the arming point, m.
+    /// Estimated altitude above the arming point, m; before the first arming above mean sea level.
     pub altitude_m: f64,
     /// Climb rate, m/s.
     pub climb_mps: f64,
@@ -127,7 +127,7 @@ impl MspFacts {
             roll_deg: estimate.roll_rad.to_degrees(),
             pitch_deg: -estimate.pitch_rad.to_degrees(),
             heading_deg: estimate.heading_rad.to_degrees(),
-            altitude_m: estimate.shown_alt_m,
+            altitude_m: altitude_m(firmware),
             climb_mps: estimate.shown_climb_mps,
             battery: BatteryReading::observe(firmware),
             rssi: rssi(firmware),
@@ -141,6 +141,15 @@ impl MspFacts {
             home: HomeReading::observe(firmware),
             clock,
         }
+    }
+}
+
+/// Above home; before the first arming there is none, and the altitude of the GPS is shown.
+fn altitude_m(firmware: &Firmware) -> f64 {
+    let above_home = firmware.estimate().shown_alt_m;
+    match firmware.gps_view() {
+        Some(gps) if !firmware.safety.ever_armed() => gps.alt_amsl_m,
+        _ => above_home,
     }
 }
 

@@ -26,10 +26,21 @@ const MAX_CELL: &str = "vbat_max_cell_voltage";
 const WARNING_CELL: &str = "vbat_warning_cell_voltage";
 const FULL_CELL: &str = "vbat_full_cell_voltage";
 
+/// Voltage source of a converter, as `battery_meter` counts them.
+const VOLTAGE_ADC: i64 = 1;
+
+/// The source of the voltage: a simulated battery is measured although no meter is chosen.
+fn voltage_source(call: &Call<'_>) -> i64 {
+    match call.setting("battery_meter") {
+        0 if call.facts.battery.is_some() => VOLTAGE_ADC,
+        source => source,
+    }
+}
+
 pub(super) fn battery_config(call: &mut Call<'_>) -> Result<(), Refused> {
     let cells = [MIN_CELL, MAX_CELL, WARNING_CELL].map(|name| call.setting(name));
     let (capacity, voltage, current) =
-        (call.setting("bat_capacity"), call.setting("battery_meter"), call.setting("current_meter"));
+        (call.setting("bat_capacity"), voltage_source(call), call.setting("current_meter"));
     for cell in cells {
         call.reply.u8((cell + 5) / 10);
     }
@@ -58,7 +69,10 @@ pub(super) fn set_battery_config(call: &mut Call<'_>) -> Result<(), Refused> {
     call.set(MAX_CELL, max);
     call.set(WARNING_CELL, warning);
     call.set("bat_capacity", i64::from(capacity));
-    call.set("battery_meter", i64::from(voltage));
+    // What was shown comes back with every save of the client and chooses nothing.
+    if i64::from(voltage) != voltage_source(call) {
+        call.set("battery_meter", i64::from(voltage));
+    }
     call.set("current_meter", i64::from(current));
     Ok(())
 }

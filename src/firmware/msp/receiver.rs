@@ -60,11 +60,12 @@ pub(super) fn rx_map(call: &mut Call<'_>) -> Result<(), Refused> {
     Ok(())
 }
 
+/// Refused while armed, as by the command line: the sticks would change places in flight.
 pub(super) fn set_rx_map(call: &mut Call<'_>) -> Result<(), Refused> {
     let mut map = [0; 8];
     map.fill_with(|| call.request.u8());
     let is_permutation = (0..8).all(|channel| map.contains(&channel));
-    if !is_permutation {
+    if !is_permutation || call.facts.armed {
         return Err(Refused);
     }
     call.configuration.channel_map = ChannelMap(map);

@@ -6,7 +6,6 @@ use crate::autopilot::control::FlightControllers;
 use crate::autopilot::params::RxLossPolicy;
 use crate::geo::LatLon;
 use crate::plan::{Waypoint, WaypointType};
-use crate::signals::SimTime;
 use crate::telemetry::PlanSource;
 
 fn plan() -> FlightPlan {

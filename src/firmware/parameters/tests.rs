@@ -107,7 +107,6 @@ fn settings_marked_for_a_restart_are_those_that_boot_takes() {
 fn what_needs_a_restart_waits_for_it() {
     let mut configuration = Configuration::default();
     let boot = BootChoices::new(&configuration);
-    configuration.channel_map = ChannelMap::parse("TAER1234").unwrap();
     configuration.settings.set_number("max_aux_channels", 2).unwrap();
     configuration.settings.set_number("mid_rc", 1480).unwrap();
     configuration.mixer = MixerKind::QuadP;
@@ -115,12 +114,22 @@ fn what_needs_a_restart_waits_for_it() {
     let mag = find("mag_hardware").unwrap();
     configuration.settings.assign(mag, "NONE").unwrap();
     let parameters = Parameters::new(&configuration, &boot, &FirmwareOptions::default());
-    assert_eq!(parameters.rx.channels.map, ChannelMap::default());
     assert_eq!(parameters.rx.channels.max_aux, 6);
     assert_eq!(parameters.rx.channels.mid_us, 1480);
     assert_eq!(parameters.control.mixer, Tuning::default().mixer);
     assert_eq!(parameters.control.rate.denominator, 1);
     assert!(parameters.estimator.has_mag);
+}
+
+#[test]
+fn another_channel_map_acts_at_once() {
+    let mut configuration = Configuration::default();
+    let boot = BootChoices::new(&configuration);
+    let map = crate::firmware::config::ChannelMap::parse("TAER1234").unwrap();
+    configuration.channel_map = map;
+    assert_eq!(BootChoices::new(&configuration), boot, "no restart is asked for");
+    let parameters = Parameters::new(&configuration, &boot, &FirmwareOptions::default());
+    assert_eq!(parameters.rx.channels.map, map);
 }
 
 #[test]

@@ -362,6 +362,11 @@ impl Navigation {
         &self.failsafe
     }
 
+    /// Where the throttle stick rests in ALTHOLD, µs.
+    pub(in crate::firmware) fn hover_stick_us(&self, parameters: &Parameters) -> f64 {
+        self.controllers.altitude.hover_stick_us(&parameters.nav, parameters.hold.mid_us)
+    }
+
     /// The navigator's telemetry.
     pub(in crate::firmware) fn telemetry(&self) -> &NavTelemetry {
         self.navigator.telemetry()

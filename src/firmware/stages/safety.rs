@@ -34,6 +34,11 @@ impl Safety {
         self.arming.raised()
     }
 
+    /// Whether the craft was armed since boot.
+    pub(in crate::firmware) fn ever_armed(&self) -> bool {
+        self.arming.ever_armed()
+    }
+
     /// What blocks arming.
     pub(in crate::firmware) fn flags(&self) -> ArmingFlags {
         self.arming.flags()

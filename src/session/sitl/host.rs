@@ -18,7 +18,9 @@ use crate::session::{Command, Event, Handle, SessionConfig, SessionEvent, Simula
 use crate::signals::fdm::MotorOrder;
 use crate::sim::{WorldConfig, WorldError};
 use crate::storage::Store;
-use crate::telemetry::{BadPackets, EndpointKind, EndpointStatus, LinkState, Snapshot};
+use crate::telemetry::{
+    BadPackets, EndpointKind, EndpointStatus, EventKind, FirmwareEvent, LinkState, NavEvent, Snapshot,
+};
 use crate::vehicle::{Vehicle, VehicleConfig};
 
 /// Interval at which clients of the serial port are counted.
@@ -239,6 +241,9 @@ fn print_event(event: &Event, print: &mut impl FnMut(OutputLine)) {
         SessionEvent::Notice(notice) => print(OutputLine::Err(notice.clone())),
         SessionEvent::Simulator(SimulatorNotice::Adapted(notice)) => {
             print(OutputLine::Err(notice.to_string()));
+        }
+        SessionEvent::Vehicle(EventKind::Firmware(FirmwareEvent::Nav(NavEvent::Refused(refusal)))) => {
+            print(OutputLine::Out(lines::refused_line(event.time.0 / 1000, *refusal)));
         }
         SessionEvent::Simulator(_)
         | SessionEvent::Vehicle(_)

@@ -4,7 +4,7 @@ use std::net::SocketAddr;
 
 use crate::geo::LatLon;
 use crate::signals::RcFrame;
-use crate::telemetry::ArmingFlags;
+use crate::telemetry::{ArmingFlags, Refusal};
 
 use crate::link::proto::fdm;
 
@@ -109,6 +109,12 @@ pub(super) fn blocked_line(t_ms: u64, reasons: ArmingFlags) -> String {
     format!("[SITL] t={t_ms}ms Arming disabled: {reasons}")
 }
 
+/// The autopilot does not engage, or goes on waiting, and why.
+#[must_use]
+pub(super) fn refused_line(t_ms: u64, refusal: Refusal) -> String {
+    format!("[SITL] t={t_ms}ms Autopilot refused: {}", refusal.sentence())
+}
+
 /// The restart of the firmware.
 pub(super) const RESET_LINE: &str = "[system]Reset!";
 
@@ -151,6 +157,10 @@ mod tests {
         assert_eq!(
             blocked_line(7, [ArmingFlag::RxLoss, ArmingFlag::Cli].into_iter().collect()),
             "[SITL] t=7ms Arming disabled: RXLOSS CLI"
+        );
+        assert_eq!(
+            refused_line(7, Refusal::NoPlan),
+            "[SITL] t=7ms Autopilot refused: No waypoints: upload a plan."
         );
         assert_eq!(
             first_rc_line(1.5, &RcFrame::SAFE),

@@ -13,6 +13,8 @@ const STEADY_MPS: f64 = 0.5;
 /// Altitude that counts as airborne, m, and seconds in the air that show the hover throttle.
 const AIRBORNE_M: f64 = 1.0;
 const LIFTED_S: f64 = 2.1;
+/// A stick that moves by less stands still, µs.
+const STILL_STICK_US: f64 = 10.0;
 /// A climb below this share of the demanded rate is none.
 const STUCK_SHARE: f64 = 0.3;
 /// Deceleration that a released craft is led with, m/s².
@@ -64,6 +66,8 @@ pub(super) struct AltitudeHold {
     phase: Phase,
     /// The hold began on the ground, where the hover throttle cannot be learned; seconds in the air since.
     lifting_s: Option<f64>,
+    /// The stick outside the dead zone, and the hover throttle it was judged by, µs.
+    judged: Option<(f64, f64)>,
     has_touched_down: bool,
 }
 
@@ -136,8 +140,13 @@ impl AltitudeHold {
         tuning: &HoldTuning,
         controller: &AltitudeController,
     ) -> AltitudeTarget {
-        let hover = controller.reference_hover_us(params);
-        let share = climb_share(stick_us, hover, tuning);
+        // A climb does not end because the hover throttle becomes known at the lift-off: only a moved stick is judged anew.
+        let is_still = |(stick, _): &(f64, f64)| (stick_us - stick).abs() <= STILL_STICK_US;
+        let judged = self.judged.filter(is_still);
+        let (stick, hover_us) =
+            judged.unwrap_or_else(|| (stick_us, controller.hover_stick_us(params, tuning.mid_us)));
+        let share = climb_share(stick_us, hover_us, tuning);
+        self.judged = (share != 0.0).then_some((stick, hover_us));
         self.keep(now, share * params.climb_rate_mps())
     }
 
@@ -247,15 +256,13 @@ impl DescentRate {
     }
 }
 
-/// Share of the climb rate that the throttle stick demands, −1…1. Zero about the hover throttle and about the centre
-/// of the stick, whichever is farther, so that both a pilot who hovers by hand and one who centres the stick stay.
+/// Share of the climb rate that the throttle stick demands, −1…1; zero about the hover throttle.
 fn climb_share(stick_us: f64, hover_us: f64, tuning: &HoldTuning) -> f64 {
     if stick_us < tuning.low_us {
         return 0.0;
     }
     let low = sink_edge_us(hover_us, tuning);
-    let high = hover_us.max(tuning.mid_us);
-    let high = high + tuning.throttle_deadband * (2000.0 - high).max(0.0);
+    let high = hover_us + tuning.throttle_deadband * (2000.0 - hover_us).max(0.0);
     if stick_us > high {
         ((stick_us - high) / (2000.0 - high).max(1.0)).min(1.0)
     } else if stick_us < low {
@@ -267,16 +274,17 @@ fn climb_share(stick_us: f64, hover_us: f64, tuning: &HoldTuning) -> f64 {
 
 /// Below this the throttle stick makes the craft sink, µs.
 fn sink_edge_us(hover_us: f64, tuning: &HoldTuning) -> f64 {
-    let low = hover_us.min(tuning.mid_us);
-    low - tuning.throttle_deadband * (low - tuning.low_us).max(0.0)
+    hover_us - tuning.throttle_deadband * (hover_us - tuning.low_us).max(0.0)
 }
 
-/// The throttle stick that makes the craft sink at a rate (m/s), or as fast as it can; `None` when it cannot.
-pub(super) fn sink_stick_us(rate_mps: f64, params: &Params, tuning: &HoldTuning) -> Option<f64> {
-    let hover_us = match params.hover_throttle {
-        0 => tuning.mid_us,
-        us => f64::from(us),
-    };
+/// The throttle stick that makes a craft with this hover throttle sink at a rate (m/s), or as fast as it can; `None` when
+/// it cannot.
+pub(super) fn sink_stick_us(
+    rate_mps: f64,
+    hover_us: f64,
+    params: &Params,
+    tuning: &HoldTuning,
+) -> Option<f64> {
     let edge_us = sink_edge_us(hover_us, tuning);
     let share = (rate_mps / params.climb_rate_mps()).min(1.0);
     (edge_us > tuning.low_us).then_some(edge_us - share * (edge_us - tuning.low_us))
@@ -287,11 +295,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_stick_holds_about_hover_and_centre_and_when_low() {
-        let tuning = HoldTuning::default();
-        for stick in [1000.0, 1049.0, 1240.0, 1275.0, 1500.0, 1590.0] {
+    fn the_stick_holds_about_the_hover_throttle_and_when_low() {
+        let tuning = HoldTuning { throttle_deadband: 0.2, ..HoldTuning::default() };
+        for stick in [1000.0, 1049.0, 1240.0, 1275.0, 1420.0] {
             assert_eq!(climb_share(stick, 1275.0, &tuning), 0.0, "{stick}");
         }
+        assert!((climb_share(1600.0, 1275.0, &tuning) - 180.0 / 580.0).abs() < 1e-9);
         assert!((climb_share(2000.0, 1275.0, &tuning) - 1.0).abs() < 1e-9);
         assert!((climb_share(1050.0, 1275.0, &tuning) + 1.0).abs() < 1e-9);
         assert!((climb_share(1800.0, 1500.0, &tuning) - 0.5).abs() < 1e-9);
@@ -300,14 +309,13 @@ mod tests {
     #[test]
     fn the_sinking_stick_sinks_at_the_rate_asked_for() {
         let tuning = HoldTuning::default();
-        for hover_throttle in [0, 1275, 1500] {
-            let params = Params { hover_throttle, ..Params::default() };
-            let stick = sink_stick_us(1.0, &params, &tuning).unwrap();
-            let hover_us = if hover_throttle == 0 { 1500.0 } else { f64::from(hover_throttle) };
+        let params = Params::default();
+        for hover_us in [1275.0, 1500.0] {
+            let stick = sink_stick_us(1.0, hover_us, &params, &tuning).unwrap();
             let rate = climb_share(stick, hover_us, &tuning) * params.climb_rate_mps();
-            assert!((rate + 1.0).abs() < 1e-9, "{hover_throttle}: {stick} {rate}");
+            assert!((rate + 1.0).abs() < 1e-9, "{hover_us}: {stick} {rate}");
         }
-        assert_eq!(sink_stick_us(1.0, &Params { hover_throttle: 1050, ..Params::default() }, &tuning), None);
+        assert_eq!(sink_stick_us(1.0, 1050.0, &params, &tuning), None);
     }
 
     /// Seconds until a craft that neither sinks nor carries its weight is called landed, while it drifts; 10 s at most.
