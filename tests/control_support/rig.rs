@@ -198,6 +198,7 @@ impl Rig {
             heading_valid: estimate.heading_valid,
             throttle_raised: true,
             failsafe: false,
+            battery_low: false,
             home: estimate.origin,
             origin: estimate.origin.unwrap_or_default(),
             pos_ne: estimate.pos_ne,
