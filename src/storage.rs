@@ -39,7 +39,7 @@ pub enum StorageError {
     },
     /// The file is that of another firmware.
     #[error(
-        "{} is not overwritten because {reason}: load your settings with --config, use another directory, or start with --overwrite-config",
+        "{} is not overwritten because {reason}: move it away, or use another directory",
         path.display()
     )]
     Protected {
@@ -149,9 +149,16 @@ impl Store {
     pub fn save(&mut self, configuration: &Configuration) -> Result<(), StorageError> {
         let image = encode(configuration);
         let length = image.len();
-        match &mut self.place {
-            Place::Memory(stored) => *stored = Some(image),
-            Place::Directory(directory) => directory.save(image)?,
+        let saved = match &mut self.place {
+            Place::Memory(stored) => {
+                *stored = Some(image);
+                Ok(())
+            }
+            Place::Directory(directory) => directory.save(image),
+        };
+        if let Err(error) = saved {
+            self.note = Some(format!("not saved: {error}"));
+            return Err(error);
         }
         self.used_bytes = length;
         self.note = None;
@@ -170,10 +177,12 @@ impl Store {
     /// What `status` and `save` tell about the store.
     #[must_use]
     pub fn facts(&self) -> StorageFacts {
+        let save_refusal = self.refusal().map(|error| error.to_string());
+        let read_only = || save_refusal.as_ref().map(|why| format!("read-only: {why}"));
         StorageFacts {
             used_bytes: self.used_bytes,
-            note: self.note.clone(),
-            save_refusal: self.refusal().map(|error| error.to_string()),
+            note: self.note.clone().or_else(read_only),
+            save_refusal,
             ..StorageFacts::default()
         }
     }

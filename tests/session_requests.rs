@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 use betadeck::firmware::cli::Interpreter;
 use betadeck::firmware::config::Configuration;
 use betadeck::firmware::{Firmware, FirmwareOptions};
-use betadeck::link::proto::command_line::{LineReply, LineSource};
+use betadeck::link::proto::command_line::{AfterLine, LineReply, LineSource};
 use betadeck::link::{ClientId, ListenConfig, Listeners, Request};
 use betadeck::session::{Handled, Persistence, RequestHandler};
 use betadeck::signals::{MotorCommand, RcFrame, RcSource, SensorFrame, SimTime};
@@ -52,9 +52,9 @@ impl Bench {
         let closed = ListenConfig { tcp_port: None, ws_port: None, rc_port: None, ..ListenConfig::default() };
         let (doors, _) = Listeners::open(&closed, mpsc::channel(1).0).await;
         let options = FirmwareOptions { arm_assist: true, ..FirmwareOptions::default() };
-        let controller = FlightController::Embedded(Box::new(Firmware::new(configuration, options)));
+        let mut controller = FlightController::Embedded(Box::new(Firmware::new(configuration, options)));
         Self {
-            persistence: Persistence::new(Store::in_memory(), &controller, true),
+            persistence: Persistence::new(Store::in_memory(), &mut controller, true),
             controller,
             handler: RequestHandler::new(doors.restart_signal()),
             ticks: 0,
@@ -63,6 +63,17 @@ impl Bench {
             motors: MotorCommand::default(),
             lost: false,
         }
+    }
+
+    /// On starter modes, with a store whose directory has become a file.
+    async fn without_room(directory: &tempfile::TempDir) -> Self {
+        let folder = directory.path().join("state");
+        let mut bench = Self::new().await;
+        let store = Store::open(&folder, false).unwrap();
+        bench.persistence = Persistence::new(store, &mut bench.controller, true);
+        std::fs::remove_dir_all(&folder).unwrap();
+        std::fs::write(&folder, "").unwrap();
+        bench
     }
 
     fn firmware(&self) -> &Firmware {
@@ -276,19 +287,51 @@ async fn an_armed_craft_is_not_restarted() {
 #[tokio::test]
 async fn what_cannot_be_saved_is_told_in_a_sentence() {
     let directory = tempfile::tempdir().unwrap();
-    let folder = directory.path().join("state");
-    let mut bench = Bench::new().await;
-    bench.persistence = Persistence::new(Store::open(&folder, false).unwrap(), &bench.controller, true);
-    // A file where the directory was.
-    if folder.exists() {
-        std::fs::remove_dir_all(&folder).unwrap();
-    }
-    std::fs::write(&folder, "").unwrap();
+    let mut bench = Bench::without_room(&directory).await;
     let (reply, mut answer) = oneshot::channel();
     let handled = bench.handle(Request::Msp { client: ClientId(1), code: 250, payload: Vec::new(), reply });
     assert_eq!(answer.try_recv().unwrap(), None);
     let [notice] = &handled.notices[..] else { panic!("{:?}", handled.notices) };
     assert!(notice.starts_with("Not saved: ") && notice.ends_with('.'), "{notice}");
+}
+
+#[tokio::test]
+async fn a_save_that_failed_says_so_and_loses_nothing() {
+    for source in [LineSource::Prompt, LineSource::Framed] {
+        let directory = tempfile::tempdir().unwrap();
+        let mut bench = Bench::without_room(&directory).await;
+        assert!(bench.enter(1, source == LineSource::Prompt));
+        bench.line(1, source, "set ap_max_angle = 44");
+        for line in ["save", "save noreboot"] {
+            let reply = bench.line(1, source, line);
+            let expected = "###ERROR IN save: Not saved: cannot write ";
+            assert!(reply.refused && reply.text.starts_with(expected), "{}", reply.text);
+            assert!(!reply.text.contains("saving") && !reply.text.contains("Rebooting"), "{}", reply.text);
+            assert_eq!(reply.then, AfterLine::Stay);
+            assert_eq!(bench.firmware().parameters().nav.max_angle, 44, "{line}: it stays in memory");
+        }
+        let status = bench.line(1, source, "status").text;
+        assert!(status.contains("32768b), not saved: cannot write "), "{status}");
+    }
+}
+
+#[tokio::test]
+async fn a_second_craft_on_the_same_store_does_not_save() {
+    let directory = tempfile::tempdir().unwrap();
+    let first = Store::open(directory.path(), false).unwrap();
+    let mut bench = Bench::new().await;
+    let second = Store::open(directory.path(), false).unwrap();
+    bench.persistence = Persistence::new(second, &mut bench.controller, true);
+    assert!(bench.enter(1, true));
+    let reply = bench.line(1, LineSource::Prompt, "save");
+    assert!(
+        reply.refused && reply.text.starts_with("###ERROR IN save: another betadeck uses "),
+        "{}",
+        reply.text
+    );
+    let status = bench.line(1, LineSource::Prompt, "status").text;
+    assert!(status.contains(", read-only: another betadeck uses "), "{status}");
+    drop(first);
 }
 
 #[tokio::test]

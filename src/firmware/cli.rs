@@ -65,6 +65,16 @@ pub struct CliReply {
     pub failed: bool,
 }
 
+impl CliReply {
+    /// Turns an answer that announced a save into a refusal: it could not be done, for this reason, and nothing
+    /// restarts, so that what is in memory stays.
+    pub fn refuse_save(&mut self, why: &str) {
+        self.text = format!("###ERROR IN save: {why}###\r\n");
+        self.actions.retain(|action| !matches!(action, CliAction::Save | CliAction::Restart { .. }));
+        self.failed = true;
+    }
+}
+
 /// Something a command asks the owner of the firmware to do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CliAction {

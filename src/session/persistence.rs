@@ -1,6 +1,7 @@
 //! Saves the configuration of the flight controller and restarts it, the same for the clients of the links and for the
 //! console. A remote flight controller stores its configuration itself.
 
+use crate::firmware::cli::{CliAction, CliReply};
 use crate::firmware::config::Configuration;
 use crate::storage::Store;
 use crate::vehicle::FlightController;
@@ -15,11 +16,21 @@ pub struct Persistence {
     starter_modes: bool,
 }
 
+/// What saving and restarting for a line of the command line led to.
+#[derive(Debug, Default)]
+pub(super) struct CarriedOut {
+    /// The flight controller restarted; whether the clients' links are closed.
+    pub restarted: Option<bool>,
+    /// Sentences for the user.
+    pub notices: Vec<String>,
+}
+
 impl Persistence {
     /// Keeps the configuration of `controller`, which has just booted, in `store`; `starter_modes` gives a craft without
     /// mode conditions the usual ones at every restart.
     #[must_use]
-    pub fn new(store: Store, controller: &FlightController, starter_modes: bool) -> Self {
+    pub fn new(store: Store, controller: &mut FlightController, starter_modes: bool) -> Self {
+        controller.set_storage_facts(store.facts());
         let at_boot = controller.configuration().cloned().map(Box::new);
         Self { store, at_boot, starter_modes }
     }
@@ -36,6 +47,31 @@ impl Persistence {
             self.at_boot = None;
         }
         saved.map_err(|error| format!("Not saved: {error}."))
+    }
+
+    /// Saves and restarts as the answer to a line asks for, the restart last. A save that fails makes the answer a refusal,
+    /// and nothing restarts.
+    pub(super) fn carry_out(
+        &mut self,
+        reply: &mut CliReply,
+        controller: &mut FlightController,
+    ) -> CarriedOut {
+        let mut done = CarriedOut::default();
+        if reply.actions.contains(&CliAction::Save)
+            && let Err(notice) = self.save(controller)
+        {
+            reply.refuse_save(&notice);
+            done.notices.push(notice);
+        }
+        let restart = reply.actions.iter().find_map(|action| match action {
+            CliAction::Restart { close_links } => Some(*close_links),
+            _ => None,
+        });
+        if restart.is_some() {
+            done.notices.extend(self.restart(controller));
+        }
+        done.restarted = restart;
+        done
     }
 
     /// Restarts the flight controller on what was saved last, or what it booted with. Gives sentences for the user: what

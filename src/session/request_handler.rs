@@ -114,8 +114,8 @@ impl RequestHandler {
             }
             Request::Cli { client, line, source, reply } => {
                 match self.run_line(client, source, &line, controller) {
-                    Answer::Now(said) => {
-                        self.act_on_line(client, &said, controller, persistence, &mut handled);
+                    Answer::Now(mut said) => {
+                        self.act_on_line(client, &mut said, controller, persistence, &mut handled);
                         answer(reply, said.into());
                     }
                     Answer::Later(ticket) => {
@@ -214,7 +214,10 @@ impl RequestHandler {
             }
             Some(MspAction::Reboot) => self.restart(true, controller, persistence, handled),
             Some(MspAction::SaveAndReboot) => {
-                handled.notices.extend(persistence.save(controller).err());
+                if let Err(notice) = persistence.save(controller) {
+                    handled.notices.push(notice);
+                    return None;
+                }
                 self.restart(true, controller, persistence, handled);
             }
             Some(MspAction::SetClock { unix_s, millis }) => {
@@ -238,30 +241,30 @@ impl RequestHandler {
         outcome.reply
     }
 
-    /// Does what a line asks for, a restart last.
+    /// Does what a line asks for; the answer becomes a refusal when what it announced could not be saved.
     fn act_on_line(
         &mut self,
         client: ClientId,
-        said: &CliReply,
+        said: &mut CliReply,
         controller: &mut FlightController,
         persistence: &mut Persistence,
         handled: &mut Handled,
     ) {
-        let mut restart = None;
         for action in &said.actions {
             match *action {
-                CliAction::Save => handled.notices.extend(persistence.save(controller).err()),
-                CliAction::Restart { close_links } => restart = Some(close_links),
                 CliAction::PlanChanged if !self.told_altitude_units => {
                     self.told_altitude_units = true;
                     handled.notices.push("Waypoint altitudes count from home, in centimetres.".to_owned());
                 }
                 CliAction::MotorTest { .. } => self.bench = Some(client),
-                CliAction::PlanChanged | CliAction::Leave => {}
+                CliAction::Save | CliAction::Restart { .. } | CliAction::PlanChanged | CliAction::Leave => {}
             }
         }
-        if let Some(close_links) = restart {
-            self.restart(close_links, controller, persistence, handled);
+        let done = persistence.carry_out(said, controller);
+        handled.notices.extend(done.notices);
+        if let Some(close_links) = done.restarted {
+            handled.restarted = true;
+            self.after_restart(close_links, controller);
         }
     }
 

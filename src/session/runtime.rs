@@ -97,7 +97,7 @@ pub fn start(mut config: SessionConfig) -> std::io::Result<Handle> {
     let incoming = ImpairedLink::new(Stream::Link.rng(config.vehicle.seed()));
     let (command_tx, command_rx) = mpsc::channel(256);
     let (event_tx, event_rx) = mpsc::unbounded_channel();
-    let persistence = Persistence::new(config.store, config.vehicle.controller(), config.starter_modes);
+    let persistence = Persistence::new(config.store, config.vehicle.controller_mut(), config.starter_modes);
     let mut session = Session {
         pacer: Pacer::new(config.vehicle.step_us(), config.speed),
         console: Interpreter::default(),

@@ -4,6 +4,8 @@ use std::fs::{File, TryLockError};
 use std::io::{Read as _, Write as _};
 use std::path::{Path, PathBuf};
 
+use rustix::fs::{Mode, OFlags};
+
 use super::FILE_NAME;
 use crate::firmware::storage::MAX_IMAGE;
 
@@ -39,14 +41,26 @@ impl Step {
 }
 
 impl Files {
+    /// The names in `directory`, or, when the image there is a symbolic link, beside the file that it leads to: a save keeps
+    /// the link.
     pub(super) fn new(directory: &Path) -> Self {
-        let named = |suffix: &str| directory.join(format!("{FILE_NAME}{suffix}"));
+        let image = link_target(&directory.join(FILE_NAME));
+        let directory = match image.parent() {
+            Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),
+            _ => PathBuf::from("."),
+        };
+        let name = image.file_name().unwrap_or(FILE_NAME.as_ref()).to_owned();
+        let named = |suffix: &str| {
+            let mut name = name.clone();
+            name.push(suffix);
+            directory.join(name)
+        };
         Self {
-            directory: directory.to_owned(),
             image: named(""),
             backup: named(".bak"),
             temporary: named(".tmp"),
             temporary_backup: named(".bak.tmp"),
+            directory,
         }
     }
 
@@ -77,7 +91,9 @@ impl Files {
     pub(super) fn perform(&self, step: Step, image: &[u8], keep_previous: bool) -> std::io::Result<()> {
         match step {
             Step::WriteTemporary => {
-                let mut file = File::create(&self.temporary)?;
+                // What an interrupted save left behind goes; a link that somebody put there is not followed.
+                remove_if_there(&self.temporary)?;
+                let mut file = File::create_new(&self.temporary)?;
                 file.write_all(image)?;
                 file.sync_all()
             }
@@ -91,10 +107,7 @@ impl Files {
 
     /// Gives the present image a second name; file systems without links get a copy.
     fn link_previous(&self) -> std::io::Result<()> {
-        match std::fs::remove_file(&self.temporary_backup) {
-            Err(error) if error.kind() != std::io::ErrorKind::NotFound => return Err(error),
-            _ => {}
-        }
+        remove_if_there(&self.temporary_backup)?;
         if std::fs::hard_link(&self.image, &self.temporary_backup).is_ok() {
             return Ok(());
         }
@@ -107,8 +120,12 @@ impl Files {
         const MOST: usize = 100;
         let names = (1..MOST).map(|at| if at == 1 { String::new() } else { format!(".{at}") });
         let mut free = names
-            .map(|number| self.directory.join(format!("{FILE_NAME}.bad{number}")))
-            .filter(|path| !path.exists());
+            .map(|number| {
+                let mut name = self.image.clone().into_os_string();
+                name.push(format!(".bad{number}"));
+                PathBuf::from(name)
+            })
+            .filter(|path| path.symlink_metadata().is_err());
         let kept =
             free.next().ok_or_else(|| std::io::Error::other("there are too many damaged files already"))?;
         std::fs::rename(&self.image, &kept)?;
@@ -116,12 +133,36 @@ impl Files {
     }
 }
 
-/// Reads a file if it exists, at most a little more than the largest image.
+/// Where a path leads when it is a symbolic link, there or not; else the path itself.
+fn link_target(path: &Path) -> PathBuf {
+    const MOST_LINKS: usize = 40;
+    let mut path = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        let Ok(target) = std::fs::read_link(&path) else { break };
+        // An absolute target takes the place of the whole path.
+        path = path.parent().map_or_else(|| target.clone(), |parent| parent.join(&target));
+    }
+    path
+}
+
+fn remove_if_there(path: &Path) -> std::io::Result<()> {
+    match std::fs::remove_file(path) {
+        Err(error) if error.kind() != std::io::ErrorKind::NotFound => Err(error),
+        _ => Ok(()),
+    }
+}
+
+/// Reads a regular file if it exists, at most a little more than the largest image.
 pub(super) fn read_image(path: &Path) -> std::io::Result<Option<Vec<u8>>> {
-    let file = match File::open(path) {
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
-        other => other?,
+    // Without waiting for the writer of a FIFO.
+    let flags = OFlags::RDONLY | OFlags::NONBLOCK | OFlags::CLOEXEC | OFlags::NOCTTY;
+    let file = match rustix::fs::open(path, flags, Mode::empty()) {
+        Err(rustix::io::Errno::NOENT) => return Ok(None),
+        other => File::from(other?),
     };
+    if !file.metadata()?.is_file() {
+        return Err(std::io::Error::other("it is not a regular file"));
+    }
     let mut image = Vec::new();
     file.take(MAX_IMAGE as u64 + 1).read_to_end(&mut image)?;
     Ok(Some(image))
@@ -176,6 +217,51 @@ mod tests {
             std::fs::write(Files::new(directory.path()).temporary, &new[..length]).expect("written");
             assert_eq!(name_in(directory.path()), "old");
         }
+    }
+
+    #[test]
+    fn a_linked_image_keeps_its_link() {
+        let directory = tempfile::tempdir().expect("a directory");
+        let (here, there) = (directory.path().join("here"), directory.path().join("there"));
+        for folder in [&here, &there] {
+            std::fs::create_dir(folder).expect("a directory");
+        }
+        std::os::unix::fs::symlink("../there/craft.bin", here.join(FILE_NAME)).expect("a link");
+        for name in ["first", "second"] {
+            Store::open(&here, false).expect("a store").save(&named(name)).expect("saved");
+            assert_eq!(name_in(&here), name);
+        }
+        assert!(here.join(FILE_NAME).symlink_metadata().expect("there").is_symlink());
+        assert_eq!(std::fs::read(there.join("craft.bin")).expect("there"), encode(&named("second")));
+        let backup = read_image(&there.join("craft.bin.bak")).expect("readable").expect("there");
+        assert_eq!(backup, encode(&named("first")));
+    }
+
+    #[test]
+    fn a_link_in_the_place_of_the_temporary_file_is_not_followed() {
+        let directory = directory_with_two_saves();
+        let victim = directory.path().join("victim");
+        std::fs::write(&victim, "precious").expect("written");
+        let files = Files::new(directory.path());
+        for name in [&files.temporary, &files.temporary_backup] {
+            std::os::unix::fs::symlink(&victim, name).expect("a link");
+        }
+        Store::open(directory.path(), false).expect("a store").save(&named("new")).expect("saved");
+        assert_eq!(std::fs::read(&victim).expect("there"), b"precious");
+        assert_eq!(name_in(directory.path()), "new");
+    }
+
+    #[test]
+    fn a_pipe_in_the_place_of_the_image_is_refused_at_once() {
+        let directory = tempfile::tempdir().expect("a directory");
+        let path = directory.path().join(FILE_NAME);
+        rustix::fs::mknodat(rustix::fs::CWD, &path, rustix::fs::FileType::Fifo, Mode::RWXU, 0)
+            .expect("a FIFO");
+        let mut store = Store::open(directory.path(), false).expect("a store");
+        let findings = store.load().findings;
+        assert!(findings[0].contains("it is not a regular file"), "{findings:?}");
+        assert!(store.save(&named("new")).is_err());
+        assert!(path.exists());
     }
 
     #[test]

@@ -80,7 +80,7 @@ impl Rig {
             rig.run(0.1);
             left -= 0.1;
         }
-        rig.sticks.throttle_us = 1500.0;
+        rig.sticks.throttle_us = rig.controllers.altitude.hover_stick_us(&rig.params, rig.hold_tuning.mid_us);
         rig.run(10.0);
         rig
     }

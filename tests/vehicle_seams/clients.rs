@@ -31,10 +31,10 @@ impl Links {
     async fn new() -> Self {
         let closed = ListenConfig { tcp_port: None, ws_port: None, rc_port: None, ..ListenConfig::default() };
         let (doors, _) = Listeners::open(&closed, mpsc::channel(1).0).await;
-        let rig = Rig::new();
+        let mut rig = Rig::new();
         Self {
             handler: RequestHandler::new(doors.restart_signal()),
-            persistence: Persistence::new(Store::in_memory(), rig.vehicle.controller(), true),
+            persistence: Persistence::new(Store::in_memory(), rig.vehicle.controller_mut(), true),
             rig,
             now: Instant::now(),
         }

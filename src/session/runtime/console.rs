@@ -7,7 +7,7 @@ use tokio::sync::oneshot;
 
 use super::Session;
 use super::late::WaitingInterface;
-use crate::firmware::cli::{CliAction, CliReply, Interpreter, advice};
+use crate::firmware::cli::{CliReply, Interpreter, advice};
 use crate::session::command::CliOutput;
 use crate::vehicle::Answer;
 
@@ -15,8 +15,8 @@ impl Session {
     /// Runs a line; the answer of a remote flight controller comes later.
     pub(super) fn run_cli(&mut self, line: String, reply: oneshot::Sender<CliOutput>) {
         match self.vehicle.controller_mut().run_cli(&mut self.console, &line) {
-            Answer::Now(answer) => {
-                let restarted = self.carry_out_actions(&answer);
+            Answer::Now(mut answer) => {
+                let restarted = self.carry_out_actions(&mut answer);
                 drop(reply.send(output(&line, answer, restarted)));
             }
             Answer::Later(ticket) => {
@@ -26,26 +26,17 @@ impl Session {
     }
 
     /// Does what a line asked the owner of an embedded flight controller to do; says whether that restarted.
-    fn carry_out_actions(&mut self, reply: &CliReply) -> bool {
+    fn carry_out_actions(&mut self, reply: &mut CliReply) -> bool {
         let controller = self.vehicle.controller_mut();
-        let mut restarted = false;
-        let mut notices = Vec::new();
-        for action in &reply.actions {
-            match action {
-                CliAction::Save => notices.extend(self.persistence.save(controller).err()),
-                CliAction::Restart { .. } => {
-                    notices.extend(self.persistence.restart(controller));
-                    self.console = Interpreter::default();
-                    restarted = true;
-                }
-                // The firmware itself has carried these out.
-                CliAction::Leave | CliAction::MotorTest { .. } | CliAction::PlanChanged => {}
+        let done = self.persistence.carry_out(reply, controller);
+        let restarted = done.restarted.is_some();
+        if restarted {
+            self.console = Interpreter::default();
+            if let Some(endpoints) = &mut self.endpoints {
+                endpoints.handler.after_restart(true, controller);
             }
         }
-        if restarted && let Some(endpoints) = &mut self.endpoints {
-            endpoints.handler.after_restart(true, controller);
-        }
-        notices.into_iter().for_each(|notice| self.notice(notice));
+        done.notices.into_iter().for_each(|notice| self.notice(notice));
         restarted
     }
 }

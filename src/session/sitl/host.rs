@@ -17,7 +17,7 @@ use crate::session::links::{Links, MotorTargets, MotorsError};
 use crate::session::{Command, Event, Handle, SessionConfig, SessionEvent, SimulatorNotice, start};
 use crate::signals::fdm::MotorOrder;
 use crate::sim::{WorldConfig, WorldError};
-use crate::storage::Store;
+use crate::storage::{StorageError, Store};
 use crate::telemetry::{
     BadPackets, EndpointKind, EndpointStatus, EventKind, FirmwareEvent, LinkState, NavEvent, Snapshot,
 };
@@ -216,6 +216,10 @@ fn boot(
 ) -> Result<Vehicle, WorldError> {
     let loaded = store.load();
     loaded.findings.into_iter().for_each(|finding| print(OutputLine::Err(finding)));
+    if let Some(StorageError::Protected { .. }) = store.refusal() {
+        let hint = "[SITL] --overwrite-config lets save replace it; --config FILE loads your settings.";
+        print(OutputLine::Err(hint.to_owned()));
+    }
     let mut vehicle = Vehicle::with_external_physics(VehicleConfig {
         world: WorldConfig::default(),
         firmware: config.firmware,
