@@ -14,6 +14,7 @@ pub mod geo;
 pub mod link;
 pub mod pilot;
 pub mod plan;
+pub mod printable;
 pub mod record;
 pub mod session;
 pub mod signals;

@@ -50,7 +50,7 @@ pub use message::{Effect, Msg};
 pub use panel::Panel;
 pub use popup::Popup;
 pub use run::{Ending, SessionLink, run};
-pub use terminal::Tui;
+pub use terminal::{Tui, restore_terminal_modes};
 pub use theme::Theme;
 pub use update::update;
 pub use viewport::MapMode;

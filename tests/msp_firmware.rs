@@ -223,7 +223,7 @@ fn a_change_that_needs_a_restart_blocks_arming_until_then() {
     assert_eq!(bench.blocked(), 0, "taken back");
     for (line, blocks) in [
         ("set max_aux_channels = 8", true),
-        ("map TAER1234", true),
+        ("map TAER1234", false),
         ("mixer quadp", true),
         ("serial UART2 1 115200 57600 0 115200", true),
         ("set ap_max_angle = 20", false),

@@ -5,8 +5,9 @@ use std::io::{ErrorKind, Write as _};
 use std::path::Path;
 
 use super::error::{self, AppError};
+use super::output_file::KeptFiles;
 use super::setup;
-use crate::args::{ConvertArgs, OutputFile};
+use crate::args::{ConvertArgs, OutputFile, PlanArg};
 use crate::plan::format;
 
 /// Converts, and says what the target format cannot carry.
@@ -20,7 +21,14 @@ pub(super) fn run(args: &ConvertArgs) -> Result<u8, AppError> {
     let written = format::write(&file, target);
     match &args.output {
         OutputFile::Stdout => error::write_stdout(written.text.as_bytes()).map(drop)?,
-        OutputFile::File(path) => write(path, &written.text, args.force)?,
+        OutputFile::File(path) => {
+            let mut kept = KeptFiles::default();
+            if let PlanArg::File(input, _) = &source {
+                kept.keep("the plan that was read", input);
+            }
+            kept.check("the output", path)?;
+            write(path, &written.text, args.force)?;
+        }
     }
     for loss in &written.lost {
         error::tell(&format!("not carried: {loss}"));

@@ -28,7 +28,7 @@ pub(super) fn run() -> Result<u8, AppError> {
     let doors =
         [layers, Layers::default()].iter().find_map(|layers| args::parse(["betadeck".into()], layers).ok());
     doors.iter().for_each(|cli| ports(&mut report, &cli.tui.doors));
-    error::write_stdout(report.text.as_bytes())?;
+    error::print(&report.text)?;
     Ok(if report.is_bad { error::ENVIRONMENT } else { 0 })
 }
 

@@ -2,6 +2,8 @@
 
 use std::io::Write as _;
 
+use crate::printable;
+
 /// Exit code: an expectation was not met.
 pub(super) const FAILED: u8 = 1;
 /// Exit code: wrong usage or invalid input.
@@ -40,12 +42,17 @@ impl AppError {
     }
 }
 
-/// Prints a line on standard error. Nobody may be listening any more (`2>&1 | head`), which is no error.
-pub(super) fn tell(line: &str) {
-    writeln!(std::io::stderr(), "{line}").ok();
+/// Prints lines on standard error. Nobody may be listening any more (`2>&1 | head`), which is no error.
+pub(super) fn tell(text: &str) {
+    writeln!(std::io::stderr(), "{}", printable::lines(text)).ok();
 }
 
-/// Writes a result to standard output. A reader that went away (`| head`) is no error.
+/// Prints text for people on standard output, of which nothing reaches the terminal raw.
+pub(super) fn print(text: &str) -> Result<u8, AppError> {
+    write_stdout(printable::lines(text).as_bytes())
+}
+
+/// Writes a result as it is to standard output. A reader that went away (`| head`) is no error.
 pub(super) fn write_stdout(text: &[u8]) -> Result<u8, AppError> {
     match std::io::stdout().write_all(text).and_then(|()| std::io::stdout().flush()) {
         Ok(()) => Ok(0),

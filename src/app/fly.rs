@@ -95,6 +95,11 @@ fn exit_code(result: FlightResult) -> u8 {
 /// `fly` starts fresh unless a directory is named.
 fn open_store(args: &FlyArgs) -> Result<Store, AppError> {
     match &args.flight.state_dir {
+        // Nothing is saved here: a directory that is not there is a mistyped one.
+        Some(directory) if !directory.is_dir() => Err(AppError::input(format!(
+            "--state-dir {} is not a directory: name the one that serve or the user interface stores in",
+            directory.display()
+        ))),
         Some(directory) => {
             Store::open(directory, false).map_err(|error| AppError::environment(error.to_string()))
         }

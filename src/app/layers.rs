@@ -6,6 +6,7 @@ use std::collections::BTreeMap;
 use etcetera::BaseStrategy as _;
 
 use super::AppError;
+use super::input_file;
 use crate::args::{ENVIRONMENT_PREFIX, Layers};
 
 /// Name of the program's folder in the user's directories.
@@ -18,6 +19,13 @@ pub(super) struct Directories {
     pub config: std::path::PathBuf,
     /// Holds the stored configuration of the craft.
     pub state: std::path::PathBuf,
+}
+
+impl Directories {
+    /// The configuration file.
+    pub(super) fn config_file(&self) -> std::path::PathBuf {
+        self.config.join("config.toml")
+    }
 }
 
 /// Finds the user's directories.
@@ -38,13 +46,9 @@ pub(super) fn read() -> Result<Layers, AppError> {
         .collect();
     // Without a home directory there is no configuration file either.
     let Ok(directories) = directories() else { return Ok(Layers { environment, ..Layers::default() }) };
-    let path = directories.config.join("config.toml");
+    let path = directories.config_file();
     let file_name = path.display().to_string();
-    let text = match std::fs::read_to_string(&path) {
-        Ok(text) => text,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => String::new(),
-        Err(error) => return Err(AppError::environment(format!("cannot read {file_name}: {error}"))),
-    };
+    let text = input_file::read_if_there(&path)?.unwrap_or_default();
     let file = text.parse().map_err(|error: toml::de::Error| {
         AppError::input(format!("{file_name}: {error}").trim_end().to_owned())
     })?;

@@ -25,7 +25,7 @@ pub(super) fn show(plan: &PlanArg) -> Result<u8, AppError> {
     if let Some(notice) = notice {
         text.push_str(&format!("{notice}\n"));
     }
-    error::write_stdout(text.as_bytes())?;
+    error::print(&text)?;
     let refused = review(&file.plan, home, &assumptions).iter().any(Finding::is_refusal);
     Ok(if refused { error::USAGE } else { 0 })
 }

@@ -1,6 +1,5 @@
 //! `betadeck serve`: everything but the screen, in real time with all doors open.
 
-use std::fs::File;
 use std::io::{BufWriter, Write};
 
 use super::error::{self, AppError};
@@ -9,6 +8,7 @@ use super::setup;
 use super::stop_signal;
 use crate::args::{OutputFile, ServeArgs};
 use crate::plan::format::PlanFile;
+use crate::printable;
 use crate::record::{json, sentence};
 use crate::session::{Command, Event, Handle};
 
@@ -31,7 +31,7 @@ pub(super) fn run(args: &ServeArgs) -> Result<u8, AppError> {
         .build()
         .map_err(|error| AppError::environment(format!("cannot start: {error}")))?;
     runtime.block_on(async {
-        let stop = stop_signal::stop()
+        let stop = stop_signal::stop_in_time()
             .map_err(|error| AppError::environment(format!("cannot listen for signals: {error}")))?;
         let options = LiveArgs { doors: &args.doors, physics: &args.physics, flight: &args.flight };
         let (session, doors) = live::start(options, vehicle, store, notices).await?;
@@ -80,10 +80,7 @@ fn open_output(args: &ServeArgs) -> Result<Output, AppError> {
         None => (Box::new(std::io::stdout()), false),
         Some(OutputFile::Stdout) => (Box::new(std::io::stdout()), true),
         Some(OutputFile::File(path)) => {
-            let file = File::create(path).map_err(|error| {
-                AppError::environment(format!("cannot write {}: {error}", path.display()))
-            })?;
-            (Box::new(file), true)
+            (Box::new(setup::kept_files(&args.flight, None).create("--json", path)?), true)
         }
     };
     Ok(Output { lines: BufWriter::new(target), json })
@@ -94,6 +91,7 @@ impl Output {
     fn event(&mut self, event: &Event) -> Result<(), Result<u8, AppError>> {
         let line = if self.json { json::event_line(event) } else { sentence::line(event) };
         let Some(line) = line else { return Ok(()) };
+        let line = if self.json { printable::json(&line) } else { printable::line(&line) };
         match writeln!(self.lines, "{line}").and_then(|()| self.lines.flush()) {
             Ok(()) => Ok(()),
             Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Err(Ok(0)),

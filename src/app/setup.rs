@@ -1,9 +1,9 @@
 //! Reads the files that the options name, and makes of both what a flight starts from.
 
-use std::io::Read as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use super::AppError;
+use super::output_file::KeptFiles;
+use super::{AppError, input_file};
 use crate::args::{AttitudeChoice, DoorArgs, FlightArgs, OnOff, PhysicsArgs, PlanArg};
 use crate::firmware::AttitudeSource;
 use crate::firmware::cli::BuildInfo;
@@ -17,39 +17,16 @@ use crate::sim::{Airframe, Home, WorldConfig};
 use crate::storage::Store;
 use crate::vehicle::Vehicle;
 
-/// Largest plan or settings file that is read, bytes.
-const MAX_FILE: u64 = 4 << 20;
-
 /// Reads a plan from wherever it is.
 pub(super) fn read_plan(plan: &PlanArg) -> Result<PlanFile, AppError> {
     let name = plan.display_name();
     let text = match plan {
         PlanArg::Builtin(BuiltinPlan { text, .. }) => (*text).to_owned(),
-        PlanArg::Stdin(_) => read_text(std::io::stdin().lock(), "standard input")?,
-        PlanArg::File(path, _) => read_file(path)?,
+        PlanArg::Stdin(_) => input_file::read_stdin()?,
+        PlanArg::File(path, _) => input_file::read(path)?,
     };
     format::parse_checked(&name, &text, plan.format(&text), check_setting)
         .map_err(|errors| AppError::input(format::report(&errors).trim_end().to_owned()))
-}
-
-/// Reads a text file of sensible size.
-pub(super) fn read_file(path: &Path) -> Result<String, AppError> {
-    let name = path.display().to_string();
-    let file = std::fs::File::open(path)
-        .map_err(|error| AppError::environment(format!("cannot open {name}: {error}")))?;
-    read_text(file, &name)
-}
-
-fn read_text(source: impl std::io::Read, name: &str) -> Result<String, AppError> {
-    let mut bytes = Vec::new();
-    source
-        .take(MAX_FILE + 1)
-        .read_to_end(&mut bytes)
-        .map_err(|error| AppError::environment(format!("cannot read {name}: {error}")))?;
-    if bytes.len() as u64 > MAX_FILE {
-        return Err(AppError::input(format!("{name} is larger than 4 MiB: that is no plan and no settings")));
-    }
-    String::from_utf8(bytes).map_err(|_| AppError::input(format!("{name} is not a text file (UTF-8)")))
 }
 
 /// What the options that all flying commands share make of a flight with this plan.
@@ -69,7 +46,7 @@ pub(super) fn from_args(
     };
     let mut boot_lines = Vec::new();
     if let Some(path) = &args.settings {
-        boot_lines.push(BootLines { source: path.display().to_string(), text: read_file(path)? });
+        boot_lines.push(BootLines { source: path.display().to_string(), text: input_file::read(path)? });
     }
     Ok(FlightSetup {
         physics,
@@ -151,7 +128,7 @@ fn airframe(name: Option<&str>) -> Result<Airframe, AppError> {
     match name.parse() {
         Ok(airframe) => Ok(airframe),
         Err(_) if Path::new(name).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) => {
-            let text = read_file(Path::new(name))?;
+            let text = input_file::read(Path::new(name))?;
             Airframe::from_toml(&text).map_err(|error| AppError::input(error.in_file(name).to_string()))
         }
         Err(error) => Err(AppError::input(format!("--airframe: {error}"))),
@@ -159,15 +136,46 @@ fn airframe(name: Option<&str>) -> Result<Airframe, AppError> {
 }
 
 /// The directory of `--state-dir`, the user's, or none with `--fresh`.
-pub(super) fn open_store(args: &FlightArgs) -> Result<Store, AppError> {
+fn store_directory(args: &FlightArgs) -> Result<Option<PathBuf>, AppError> {
     if args.fresh {
-        return Ok(Store::in_memory());
+        return Ok(None);
     }
-    let directory = match &args.state_dir {
-        Some(directory) => directory.clone(),
-        None => super::layers::directories()?.state,
-    };
-    Store::open(&directory, false).map_err(|error| AppError::environment(error.to_string()))
+    match &args.state_dir {
+        Some(directory) => Ok(Some(directory.clone())),
+        None => super::layers::directories().map(|directories| Some(directories.state)),
+    }
+}
+
+/// The store in that directory.
+pub(super) fn open_store(args: &FlightArgs) -> Result<Store, AppError> {
+    match store_directory(args)? {
+        None => Ok(Store::in_memory()),
+        Some(directory) => {
+            Store::open(&directory, false).map_err(|error| AppError::environment(error.to_string()))
+        }
+    }
+}
+
+/// What a flight is read from and stored in: no output may replace it.
+pub(super) fn kept_files(args: &FlightArgs, plan: Option<&PlanArg>) -> KeptFiles {
+    let mut kept = KeptFiles::default();
+    if let Some(PlanArg::File(path, _)) = plan {
+        kept.keep("the plan", path);
+    }
+    if let Some(path) = &args.settings {
+        kept.keep("--settings", path);
+    }
+    if let Some(name) = args.airframe.as_deref().map(Path::new).filter(|name| name.extension().is_some()) {
+        kept.keep("--airframe", name);
+    }
+    if let Ok(directories) = super::layers::directories() {
+        kept.keep("the configuration file", &directories.config_file());
+        kept.keep_store(&directories.state);
+    }
+    if let Some(directory) = &args.state_dir {
+        kept.keep_store(directory);
+    }
+    kept
 }
 
 /// Why `save` cannot work, as a sentence: better known at the start than when it is typed.

@@ -1,14 +1,19 @@
 //! `betadeck sitl`: the firmware alone, as a drop-in for the SITL executable.
 #![allow(clippy::disallowed_methods, reason = "a track is dated by the wall clock")]
 
+use std::cell::Cell;
 use std::fs::File;
 use std::io::{self, BufWriter, Write as _};
 use std::net::{IpAddr, Ipv4Addr};
 use std::path::Path;
 use std::time::{SystemTime, UNIX_EPOCH};
 
+use tokio::sync::Notify;
+
 use super::error::{self, AppError};
-use super::setup::{attitude_source, read_file};
+use super::input_file;
+use super::output_file::KeptFiles;
+use super::setup::attitude_source;
 use super::stop_signal;
 use crate::args::{OnOff, SitlArgs};
 use crate::firmware::cli::{ApplyReport, CliContext, CliFacts, CliMode, Interpreter, provision};
@@ -16,6 +21,7 @@ use crate::flight::FlightSetup;
 use crate::flight::setup::PhysicsSource;
 use crate::link::ListenConfig;
 use crate::link::proto::fdm_link::FdmLinkConfig;
+use crate::printable;
 use crate::record::gpx::{GpxHeader, GpxPoint, GpxWriter, UtcSeconds};
 use crate::session::sitl::{OutputLine, Sitl, SitlConfig, SitlEnd, SitlError, SitlPorts, show_links};
 use crate::storage::Store;
@@ -34,7 +40,7 @@ pub(super) fn run(args: &SitlArgs) -> Result<u8, AppError> {
     let config = config(args);
     match &args.config {
         Some(file) => {
-            let text = read_file(file).map_err(|error| {
+            let text = input_file::read(file).map_err(|error| {
                 let message = match error.code {
                     error::ENVIRONMENT => format!("Config file not found: {}", file.display()),
                     _ => format!("Config file not used: {error}"),
@@ -82,36 +88,64 @@ fn config(args: &SitlArgs) -> SitlConfig {
     }
 }
 
-fn open_store(args: &SitlArgs) -> Result<Store, AppError> {
-    let directory = args.state_dir.as_deref().unwrap_or(Path::new("."));
-    Store::open(directory, args.overwrite_config).map_err(|error| AppError::environment(error.to_string()))
+fn store_directory(args: &SitlArgs) -> &Path {
+    args.state_dir.as_deref().unwrap_or(Path::new("."))
 }
 
-#[expect(clippy::print_stdout, clippy::print_stderr, reason = "scripts wait for these lines")]
-fn say(said: OutputLine) {
+fn open_store(args: &SitlArgs) -> Result<Store, AppError> {
+    Store::open(store_directory(args), args.overwrite_config)
+        .map_err(|error| AppError::environment(error.to_string()))
+}
+
+/// Prints a line; `false` when nobody reads standard output any more.
+fn print(said: &OutputLine) -> bool {
     match said {
         OutputLine::Out(line) => {
-            println!("{line}");
-            // A reader that went away is told by nothing else.
-            drop(io::stdout().flush());
+            let mut out = io::stdout().lock();
+            writeln!(out, "{}", printable::line(line)).and_then(|()| out.flush()).is_ok()
         }
-        OutputLine::Err(line) => eprintln!("{line}"),
+        OutputLine::Err(line) => {
+            error::tell(line);
+            true
+        }
     }
 }
 
+/// Prints a line, read or not.
+fn say(said: OutputLine) {
+    print(&said);
+}
+
 async fn fly(args: &SitlArgs, config: SitlConfig) -> Result<u8, AppError> {
-    let mut print = say;
-    let stop = stop_signal::stop()
+    let unread = Notify::new();
+    let mut print = |said: OutputLine| {
+        if !print(&said) {
+            unread.notify_one();
+        }
+    };
+    if args.gpx {
+        let mut kept = KeptFiles::default();
+        kept.keep_store(store_directory(args));
+        kept.check("--gpx", Path::new(TRACK))?;
+    }
+    let stop = stop_signal::stop_in_time()
         .map_err(|error| AppError::environment(format!("cannot listen for signals: {error}")))?;
     let sitl = Sitl::open(config, open_store(args)?, &mut print)
         .await
         .map_err(|error: SitlError| AppError::environment(error.to_string()))?;
     let mut track = Track { wanted: args.gpx, writer: None };
+    let was_read = Cell::new(true);
+    let stop = async {
+        tokio::select! {
+            () = stop => {}
+            () = unread.notified() => was_read.set(false),
+        }
+    };
     let end = sitl.run(&mut print, &mut |vehicle| track.record(vehicle), stop).await;
     track.finish();
     Ok(match end {
-        SitlEnd::Stopped => error::INTERRUPTED,
-        SitlEnd::Rebooted => 0,
+        SitlEnd::Stopped if was_read.get() => error::INTERRUPTED,
+        SitlEnd::Stopped | SitlEnd::Rebooted => 0,
     })
 }
 
@@ -127,7 +161,7 @@ fn apply(args: &SitlArgs, file: &Path, text: &str) -> Result<u8, AppError> {
     let mut interpreter = Interpreter::new(CliMode::File).lenient(args.lenient);
     let mut session = String::new();
     let report = provision(text, &mut interpreter, &mut context, |text| session += text);
-    error::write_stdout(session.as_bytes())?;
+    error::print(&session)?;
     say(OutputLine::Out(String::new()));
     tell_failures(&report);
     if report.batch_failed {

@@ -55,7 +55,7 @@ pub(super) fn run(args: &TuiArgs) -> Result<u8, AppError> {
         let (session, doors) = live::start(options, vehicle, store, notices).await?;
         let link = SessionLink { commands: session.commands, view: session.view, events: session.events };
         // Before the first frame: whoever sees it may already send one.
-        let stop = stop_signal::stop().map_err(problem)?;
+        let stop = stop_signal::stop_in_time().map_err(problem)?;
         let tui = Tui::enter(config.mouse).map_err(problem)?;
         let ending = ui::run(tui, link, config, stop).await.map_err(problem);
         // The session ends with its last sender; its thread has nothing left to say.
@@ -68,8 +68,8 @@ pub(super) fn run(args: &TuiArgs) -> Result<u8, AppError> {
     runtime.shutdown_background();
     match ending {
         Ending::Quit => Ok(0),
-        Ending::Signal => Ok(error::INTERRUPTED),
+        // Closing the terminal also sends a signal; which of the two is seen first is chance.
+        Ending::Signal | Ending::TerminalLost => Ok(error::INTERRUPTED),
         Ending::SessionEnded => Err(AppError::internal("the session ended by itself")),
-        Ending::TerminalLost => Err(AppError::environment("the terminal went away")),
     }
 }

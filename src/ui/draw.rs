@@ -16,6 +16,7 @@ use super::popup::Popup;
 use super::text_wrap::wrapped;
 use super::theme::{Charset, Role};
 use super::{hint_bar, notice, status_bar};
+use crate::printable;
 
 /// Draws the state. Reads only.
 pub fn draw(state: &AppState, frame: &mut Frame<'_>) {
@@ -43,11 +44,22 @@ pub fn draw(state: &AppState, frame: &mut Frame<'_>) {
             Popup::Quit => quit_question(state, area, buffer),
         }
     }
+    clean(buffer);
     if state.theme.charset == Charset::Ascii {
         ascii::replace(buffer);
     }
     if let Some(position) = cursor.filter(|_| state.popups.is_empty()) {
         frame.set_cursor_position(position);
+    }
+}
+
+/// Takes out what a terminal would obey instead of show, whoever wrote it.
+fn clean(buffer: &mut Buffer) {
+    for cell in &mut buffer.content {
+        // Most cells are one byte, which the buffer itself keeps free of control characters.
+        if cell.symbol().len() > 1 && !cell.symbol().chars().all(printable::is_printable) {
+            cell.set_symbol("?");
+        }
     }
 }
 

@@ -7,6 +7,8 @@ use std::time::{Duration, Instant};
 
 use crossterm::event::{Event as TerminalEvent, EventStream};
 use futures_util::StreamExt as _;
+use rustix::process::Signal;
+use tokio::signal::unix::{SignalKind, signal};
 use tokio::sync::{mpsc, oneshot, watch};
 use tokio::time::sleep;
 
@@ -53,6 +55,9 @@ pub enum Ending {
 /// Why the loop woke.
 enum Wake {
     Msg(Msg),
+    /// The program is to be stopped, or goes on after it was.
+    Suspend,
+    Resume,
     Flight(Msg),
     Time,
     End(Ending),
@@ -69,6 +74,9 @@ pub async fn run(
     config: UiConfig,
     stop: impl Future<Output = ()>,
 ) -> io::Result<Ending> {
+    // From outside; the key is an effect.
+    let mut suspend = signal(SignalKind::from_raw(Signal::TSTP.as_raw()))?;
+    let mut resume = signal(SignalKind::from_raw(Signal::CONT.as_raw()))?;
     let started = Instant::now();
     let mut stop = std::pin::pin!(stop);
     let size = tui.terminal().size()?;
@@ -89,10 +97,12 @@ pub async fn run(
             // Keys first: what the user does is answered before the flight is shown.
             biased;
             () = &mut stop => Wake::End(Ending::Signal),
+            Some(()) = suspend.recv() => Wake::Suspend,
+            Some(()) = resume.recv() => Wake::Resume,
             key = keys.next() => match key {
                 Some(Ok(event)) => terminal_message(event).map_or(Wake::Time, Wake::Msg),
-                Some(Err(error)) => return Err(error),
-                None => Wake::End(Ending::TerminalLost),
+                Some(Err(error)) if !is_gone(&error) => return Err(error),
+                Some(Err(_)) | None => Wake::End(Ending::TerminalLost),
             },
             Some(msg) = replies.recv() => Wake::Msg(msg),
             () = sleep(frame_at.saturating_duration_since(Instant::now())) => Wake::Time,
@@ -113,6 +123,15 @@ pub async fn run(
                 return Ok(ending);
             }
             Wake::Time => (None, Duration::ZERO),
+            Wake::Suspend | Wake::Resume => {
+                if matches!(wake, Wake::Suspend) {
+                    tui.suspend()?;
+                } else {
+                    tui.resume()?;
+                }
+                let size = tui.terminal().size()?;
+                (Some(Msg::Resize(size.width, size.height)), Duration::ZERO)
+            }
             Wake::Msg(msg) => (Some(msg), KEY_FRAME),
             Wake::Flight(msg) => (Some(msg), FLIGHT_FRAME),
         };
@@ -134,11 +153,22 @@ pub async fn run(
         let wanted = drawn + frame;
         due = Some(due.map_or(wanted, |due| due.min(wanted)));
         if due.is_some_and(|due| due <= now) {
-            tui.draw(&state)?;
+            match tui.draw(&state) {
+                Err(error) if is_gone(&error) => {
+                    link.commands.try_send(Command::Quit).ok();
+                    return Ok(Ending::TerminalLost);
+                }
+                drawn => drawn?,
+            }
             drawn = Instant::now();
             due = None;
         }
     }
+}
+
+/// Whether the terminal was closed.
+fn is_gone(error: &io::Error) -> bool {
+    error.raw_os_error() == Some(rustix::io::Errno::IO.raw_os_error())
 }
 
 /// The message of a terminal event, if it means anything.

@@ -1,6 +1,7 @@
 //! The terminal, borrowed and always given back: at the end, on an error, and before a panic is printed.
 
 use std::io::{self, Stdout, Write as _, stdout};
+use std::mem::ManuallyDrop;
 use std::sync::Once;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -8,8 +9,8 @@ use crossterm::event::{
     DisableBracketedPaste, DisableMouseCapture, EnableBracketedPaste, EnableMouseCapture,
 };
 use crossterm::terminal::{
-    BeginSynchronizedUpdate, EndSynchronizedUpdate, EnterAlternateScreen, LeaveAlternateScreen,
-    disable_raw_mode, enable_raw_mode,
+    BeginSynchronizedUpdate, Clear, ClearType, EndSynchronizedUpdate, EnterAlternateScreen,
+    LeaveAlternateScreen, disable_raw_mode, enable_raw_mode,
 };
 use crossterm::{cursor, execute, style};
 use ratatui::Terminal;
@@ -24,7 +25,9 @@ static HOOK: Once = Once::new();
 
 /// The terminal while it is ours; dropping it gives it back.
 pub struct Tui {
-    terminal: Terminal<CrosstermBackend<Stdout>>,
+    /// Never dropped: that would complain on a standard error that may be the terminal that went away. The cursor is shown
+    /// by [`restore`].
+    terminal: ManuallyDrop<Terminal<CrosstermBackend<Stdout>>>,
     mouse: bool,
 }
 
@@ -44,7 +47,7 @@ impl Tui {
         // The theme decides about colours; the library's own reading of NO_COLOR would wipe bold and reverse, too.
         style::force_color_output(true);
         match take_over(mouse).and_then(|()| Terminal::new(CrosstermBackend::new(stdout()))) {
-            Ok(terminal) => Ok(Self { terminal, mouse }),
+            Ok(terminal) => Ok(Self { terminal: ManuallyDrop::new(terminal), mouse }),
             Err(error) => {
                 restore();
                 Err(error)
@@ -52,16 +55,26 @@ impl Tui {
         }
     }
 
-    /// Gives the terminal back and stops the program as Ctrl-Z does, until the shell continues it.
+    /// Gives the terminal back and stops the program, until the shell continues it.
     ///
     /// # Errors
     /// Whatever the terminal says.
     pub fn suspend(&mut self) -> io::Result<()> {
         restore();
-        #[cfg(unix)]
-        rustix::process::kill_process(rustix::process::getpid(), rustix::process::Signal::TSTP)?;
+        // The signal of Ctrl-Z is handled here, and would not stop the program.
+        rustix::process::kill_process(rustix::process::getpid(), rustix::process::Signal::STOP)?;
+        self.resume()
+    }
+
+    /// Takes the terminal again after the program was stopped: the shell has used it meanwhile.
+    ///
+    /// # Errors
+    /// Whatever the terminal says.
+    pub fn resume(&mut self) -> io::Result<()> {
         take_over(self.mouse)?;
-        self.terminal.clear()
+        // Clearing the terminal that is there would ask for the place of the cursor, and wait for the answer.
+        self.terminal = ManuallyDrop::new(Terminal::new(CrosstermBackend::new(stdout()))?);
+        execute!(stdout(), Clear(ClearType::All))
     }
 
     /// Draws a frame; a terminal that can shows it all at once.
@@ -92,6 +105,13 @@ fn take_over(mouse: bool) -> io::Result<()> {
     TAKEN_OVER.store(true, Ordering::SeqCst);
     execute!(stdout(), EnterAlternateScreen, EnableBracketedPaste)?;
     if mouse { execute!(stdout(), EnableMouseCapture) } else { Ok(()) }
+}
+
+/// Restores the line discipline without writing to the terminal, which nobody may be reading.
+pub fn restore_terminal_modes() {
+    if TAKEN_OVER.load(Ordering::SeqCst) {
+        disable_raw_mode().ok();
+    }
 }
 
 /// Restores the terminal, once.

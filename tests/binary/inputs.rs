@@ -204,10 +204,87 @@ fn without_json_events_are_sentences_and_the_summary_goes_to_standard_error() {
 }
 
 #[test]
+fn a_mistyped_state_directory_is_told_and_not_made() {
+    let sandbox = Sandbox::new();
+    let ran = sandbox.run(&["fly", "square", "--state-dir", "statte"]);
+    assert_eq!(ran.code, Some(2), "{}", ran.err);
+    assert!(ran.err.contains("--state-dir statte is not a directory"), "{}", ran.err);
+    assert!(!sandbox.path("statte").exists());
+}
+
+#[cfg(unix)]
+#[test]
+fn a_pipe_or_device_in_the_place_of_a_file_is_refused_at_once() {
+    let sandbox = Sandbox::new();
+    let fifo = sandbox.path("fifo.txt");
+    let made = std::process::Command::new("mkfifo").arg(&fifo).status().expect("mkfifo");
+    assert!(made.success());
+    sandbox.write("plan.txt", "waypoint insert 0 40.4635901 -79.5182000 2000 500 LAND 0 NONE\n");
+    std::os::unix::fs::symlink("/dev/zero", sandbox.path("zero.txt")).expect("a link");
+    let fifo = fifo.to_str().expect("a name");
+    let refused: [&[&str]; 6] = [
+        &["fly", fifo],
+        &["fly", "zero.txt"],
+        &["plan", "show", "zero.txt"],
+        &["convert", fifo, "out.toml"],
+        &["fly", "plan.txt", "--settings", fifo],
+        &["sitl", "--config", fifo],
+    ];
+    for arguments in refused {
+        let ran = sandbox.run(arguments);
+        assert!(matches!(ran.code, Some(1 | 2)), "{arguments:?}: {ran:?}");
+        assert!(format!("{}{}", ran.out, ran.err).contains("is a device or a pipe, not a file"), "{ran:?}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn no_output_is_written_over_an_input_by_any_link() {
+    let sandbox = Sandbox::new();
+    let text = "waypoint insert 0 40.4635901 -79.5182000 2000 500 LAND 0 NONE\n";
+    sandbox.write("plan.txt", text);
+    std::fs::hard_link(sandbox.path("plan.txt"), sandbox.path("hard.jsonl")).expect("a link");
+    std::os::unix::fs::symlink("plan.txt", sandbox.path("soft.gpx")).expect("a link");
+    let refused: [&[&str]; 5] = [
+        &["fly", "plan.txt", "--json", "hard.jsonl"],
+        &["fly", "plan.txt", "--gpx", "soft.gpx"],
+        &["fly", "plan.txt", "--gpx", "./plan.txt"],
+        &["convert", "plan.txt", "hard.jsonl", "--to", "toml", "--force"],
+        &["fly", "plan.txt", "--state-dir", ".", "--json", "eeprom.bin"],
+    ];
+    for arguments in refused {
+        let ran = sandbox.run(arguments);
+        assert_eq!(ran.code, Some(2), "{arguments:?}: {ran:?}");
+        assert!(ran.err.contains("would write over"), "{ran:?}");
+        assert_eq!(sandbox.read("plan.txt"), text);
+    }
+}
+
+#[test]
+fn nothing_from_a_plan_file_reaches_the_terminal_raw() {
+    let sandbox = Sandbox::new();
+    let name = format!("\\u001B[2J\\u202E{}", "x".repeat(500));
+    let plan = format!(
+        "name = \"{name}\"\nformat = 1\n[[waypoint]]\ntype = \"LAND\"\nlat = 40.4635\nlon = -79.5182\nalt = 20.0\nnonsense\u{202e} = 1\n"
+    );
+    sandbox.write("evil.toml", &plan);
+    for arguments in [["plan", "show", "evil.toml"], ["fly", "evil.toml", "--fresh"]] {
+        let ran = sandbox.run(&arguments);
+        for text in [&ran.out, &ran.err] {
+            let raw: Vec<char> =
+                text.chars().filter(|c| c.is_control() && *c != '\n' || *c == '\u{202e}').collect();
+            assert_eq!(raw, [], "{arguments:?}: {text:?}");
+            assert!(text.lines().all(|line| line.chars().count() <= 400), "{text}");
+        }
+    }
+}
+
+#[test]
 fn a_state_directory_is_used_only_when_named() {
     let sandbox = Sandbox::new();
     sandbox.run(&["fly", "land"]).exits(0);
     assert_eq!(sandbox.names(), Vec::<String>::new());
+    std::fs::create_dir(sandbox.path("state")).expect("a directory");
     sandbox.run(&["fly", "land", "--state-dir", "state"]).exits(0);
     let ran = sandbox.run(&["fly", "land", "--state-dir", "state", "--fresh"]).exits(2);
     assert!(ran.err.contains("--fresh") && ran.err.contains("--state-dir"), "{}", ran.err);

@@ -12,6 +12,8 @@ mod plans;
 mod pty;
 #[cfg(unix)]
 mod signals;
+#[cfg(unix)]
+mod streams;
 mod support;
 #[cfg(unix)]
 mod terminal;

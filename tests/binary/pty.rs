@@ -35,16 +35,7 @@ impl Terminal {
     pub(crate) fn start(columns: u16, rows: u16, program: &str, arguments: &[&str]) -> Self {
         let home = Sandbox::new();
         let pty = native_pty_system().openpty(size(columns, rows)).expect("a pseudo-terminal");
-        let mut command = CommandBuilder::new(program);
-        command.args(arguments);
-        command.env_clear();
-        for (name, value) in home.environment() {
-            command.env(name, value);
-        }
-        command.env("TERM", "xterm-256color");
-        command.env("LANG", "C.UTF-8");
-        command.env("PATH", "/usr/bin:/bin");
-        command.cwd(home.path("."));
+        let command = command(&home, program, arguments);
         let child = pty.slave.spawn_command(command).expect("the program runs");
         drop(pty.slave);
         let mut reader = pty.master.try_clone_reader().expect("a reader");
@@ -67,6 +58,46 @@ impl Terminal {
             raw: Vec::new(),
             _home: home,
         }
+    }
+
+    /// Starts the executable and closes its terminal when it shows a text; gives the exit code.
+    pub(crate) fn closed_when_shown(text: &str) -> u32 {
+        let home = Sandbox::new();
+        let pty = native_pty_system().openpty(size(80, 24)).expect("a pseudo-terminal");
+        let command = command(&home, crate::support::PROGRAM, &["--no-ports"]);
+        let mut child = pty.slave.spawn_command(command).expect("the program runs");
+        drop(pty.slave);
+        let mut reader = pty.master.try_clone_reader().expect("a reader");
+        let mut parser = Parser::new(cells(24), cells(80), 0);
+        let mut bytes = [0; 8192];
+        while !parser.screen().contents().contains(text) {
+            let count = reader.read(&mut bytes).expect("output");
+            assert!(count > 0, "ended before: {text}");
+            parser.process(&bytes[..count]);
+        }
+        drop(reader);
+        drop(pty.master);
+        child.wait().expect("an exit status").exit_code()
+    }
+
+    /// Lets the program write nothing more, as a terminal does after Ctrl-S.
+    pub(crate) fn hold_output(&self) {
+        let name = self.master.tty_name().expect("a name");
+        let flags = rustix::fs::OFlags::RDWR | rustix::fs::OFlags::NOCTTY;
+        let terminal = rustix::fs::open(name, flags, rustix::fs::Mode::empty()).expect("the terminal");
+        rustix::termios::tcflow(terminal, rustix::termios::Action::OOff).expect("output held");
+    }
+
+    /// Whether the program is stopped, as by Ctrl-Z.
+    pub(crate) fn is_stopped(&self) -> bool {
+        let id = self.child.process_id().expect("a process");
+        let stat = std::fs::read_to_string(format!("/proc/{id}/stat")).expect("a process");
+        stat.rsplit(") ").next().is_some_and(|rest| rest.starts_with('T'))
+    }
+
+    /// Whether the program shows its own screen.
+    pub(crate) fn is_alternate(&self) -> bool {
+        self.parser.screen().alternate_screen()
     }
 
     /// Types.
@@ -181,6 +212,21 @@ impl Drop for Terminal {
         drop(self.child.kill());
         drop(self.child.wait());
     }
+}
+
+/// A program with a home directory of its own.
+fn command(home: &Sandbox, program: &str, arguments: &[&str]) -> CommandBuilder {
+    let mut command = CommandBuilder::new(program);
+    command.args(arguments);
+    command.env_clear();
+    for (name, value) in home.environment() {
+        command.env(name, value);
+    }
+    command.env("TERM", "xterm-256color");
+    command.env("LANG", "C.UTF-8");
+    command.env("PATH", "/usr/bin:/bin");
+    command.cwd(home.path("."));
+    command
 }
 
 fn size(columns: u16, rows: u16) -> PtySize {

@@ -2,12 +2,13 @@
 
 use std::fs::File;
 use std::io::{BufWriter, Write};
-use std::path::Path;
 
 use crate::app::error::{self, AppError};
-use crate::args::{FlyArgs, OutputFile, PlanArg};
+use crate::app::setup;
+use crate::args::{FlyArgs, OutputFile};
 use crate::flight::Report;
 use crate::plan::format::PlanFile;
+use crate::printable;
 use crate::record::{End, GpxHeader, GpxPoint, GpxWriter, UtcSeconds, json, sentence, truth};
 use crate::session::Event;
 use crate::signals::SimTime;
@@ -24,12 +25,19 @@ pub(super) struct Output {
 impl Output {
     /// Opens what the options name; what is read must not be among it.
     pub(super) fn open(args: &FlyArgs, vehicle: &Vehicle, plan: &PlanFile) -> Result<Self, AppError> {
-        refuse_overwriting(args)?;
+        let mut kept = setup::kept_files(&args.flight, Some(&args.plan));
+        // Nothing is created when one of them is refused.
+        if let Some(OutputFile::File(path)) = &args.json {
+            kept.check("--json", path)?;
+        }
+        if let Some(path) = &args.gpx {
+            kept.check("--gpx", path)?;
+        }
         let stdout = || Box::new(std::io::stdout()) as Box<dyn Write>;
         let (target, json): (Box<dyn Write>, bool) = match &args.json {
             None => (stdout(), false),
             Some(OutputFile::Stdout) => (stdout(), true),
-            Some(OutputFile::File(path)) => (Box::new(create(path)?), true),
+            Some(OutputFile::File(path)) => (Box::new(kept.create("--json", path)?), true),
         };
         let gpx = match &args.gpx {
             None => None,
@@ -41,7 +49,7 @@ impl Output {
                     home_amsl_m,
                     boot: UtcSeconds::SIMULATED_BOOT,
                 };
-                let file = BufWriter::new(create(path)?);
+                let file = BufWriter::new(kept.create("--gpx", path)?);
                 Some(GpxWriter::new(file, header, &plan.plan).map_err(write_failed)?)
             }
         };
@@ -64,6 +72,7 @@ impl Output {
 
     fn line(&mut self, line: &str) -> Result<(), AppError> {
         let Some(lines) = &mut self.lines else { return Ok(()) };
+        let line = if self.json { printable::json(line) } else { printable::line(line) };
         let written = writeln!(lines, "{line}");
         self.after(written)
     }
@@ -118,46 +127,6 @@ impl Output {
         error::tell(&end.flown_line());
         Ok(())
     }
-}
-
-/// A flight must not write over what it was read from, nor twice into one file.
-fn refuse_overwriting(args: &FlyArgs) -> Result<(), AppError> {
-    // A file that does not exist yet is only as the other option names it.
-    let same = |a: &Path, b: &Path| match (a.canonicalize(), b.canonicalize()) {
-        (Ok(a), Ok(b)) => a == b && a.is_file(),
-        _ => a == b,
-    };
-    let json = match &args.json {
-        Some(OutputFile::File(path)) => Some(("--json", path.as_path())),
-        Some(OutputFile::Stdout) | None => None,
-    };
-    let gpx = args.gpx.as_deref().map(|path| ("--gpx", path));
-    let plan = match &args.plan {
-        PlanArg::File(path, _) => Some(("the plan", path.as_path())),
-        PlanArg::Builtin(_) | PlanArg::Stdin(_) => None,
-    };
-    let settings = args.flight.settings.as_deref().map(|path| ("--settings", path));
-    let airframe = args.flight.airframe.as_deref().map(Path::new);
-    let airframe = airframe.filter(|name| name.extension().is_some()).map(|file| ("--airframe", file));
-    let inputs: Vec<_> = [plan, settings, airframe].into_iter().flatten().collect();
-    let clash = |(option, path): (&'static str, &Path)| {
-        inputs
-            .iter()
-            .chain(gpx.iter().filter(|_| option == "--json"))
-            .find(|(_, other)| same(path, other))
-            .map(|(other, _)| {
-                AppError::input(format!(
-                    "{option} {} would write over {other}: name another file",
-                    path.display()
-                ))
-            })
-    };
-    json.into_iter().chain(gpx).find_map(clash).map_or(Ok(()), Err)
-}
-
-fn create(path: &Path) -> Result<File, AppError> {
-    File::create(path)
-        .map_err(|error| AppError::environment(format!("cannot write {}: {error}", path.display())))
 }
 
 #[expect(clippy::needless_pass_by_value, reason = "a map_err argument")]

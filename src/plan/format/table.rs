@@ -4,6 +4,7 @@ use crate::geo::{Degrees7, LatLon};
 use crate::plan::estimate::{Assumptions, LegEstimate, PlanEstimate, estimate};
 use crate::plan::review::review;
 use crate::plan::{HoldPattern, Waypoint, WaypointType};
+use crate::printable;
 
 use super::PlanFile;
 
@@ -17,7 +18,7 @@ const LEFT: [usize; 1] = [1];
 #[must_use]
 pub fn table(file: &PlanFile, home: LatLon, assumptions: &Assumptions) -> String {
     let estimate = estimate(&file.plan, home, assumptions);
-    let mut text = file.name.clone();
+    let mut text = printable::name(&file.name);
     if !file.description.is_empty() {
         text.push_str(&format!(": {}", file.description));
     }

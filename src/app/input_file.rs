@@ -1,0 +1,135 @@
+//! Reads the text files that the options name.
+//!
+//! Only regular files are read by name: a FIFO would make the program wait, a device could go on for ever. A pipe that the shell
+//! gives (`-`, `/dev/stdin`, `/dev/fd/N`) is read as far as a plan can go.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use rustix::fs::{Mode, OFlags};
+
+use super::AppError;
+
+/// Largest plan or settings file that is read, bytes.
+const MAX_FILE: u64 = 4 << 20;
+
+/// Reads a text file of sensible size.
+pub(super) fn read(path: &Path) -> Result<String, AppError> {
+    let name = path.display().to_string();
+    let file = open(path, &name)?;
+    read_text(file, &name)
+}
+
+/// Reads a text file that may be missing.
+pub(super) fn read_if_there(path: &Path) -> Result<Option<String>, AppError> {
+    match path.symlink_metadata() {
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
+        _ => read(path).map(Some),
+    }
+}
+
+/// Reads standard input.
+pub(super) fn read_stdin() -> Result<String, AppError> {
+    read_text(std::io::stdin().lock(), "standard input")
+}
+
+fn open(path: &Path, name: &str) -> Result<File, AppError> {
+    let cannot_open = |error: std::io::Error| AppError::environment(format!("cannot open {name}: {error}"));
+    if is_descriptor(path) {
+        return File::open(path).map_err(cannot_open);
+    }
+    // Without waiting for the writer of a FIFO.
+    let flags = OFlags::RDONLY | OFlags::NONBLOCK | OFlags::CLOEXEC | OFlags::NOCTTY;
+    let file =
+        File::from(rustix::fs::open(path, flags, Mode::empty()).map_err(|error| cannot_open(error.into()))?);
+    let metadata = file.metadata().map_err(cannot_open)?;
+    if !metadata.is_file() {
+        let what = if metadata.is_dir() { "a directory" } else { "a device or a pipe" };
+        return Err(AppError::input(format!(
+            "{name} is {what}, not a file: name a file, or - for standard input"
+        )));
+    }
+    if metadata.len() > MAX_FILE {
+        return Err(too_large(name));
+    }
+    Ok(file)
+}
+
+/// Whether the path names an open descriptor of this process, as shells write pipes.
+fn is_descriptor(path: &Path) -> bool {
+    let Some(text) = path.to_str() else { return false };
+    let number = text.strip_prefix("/dev/fd/").or_else(|| text.strip_prefix("/proc/self/fd/"));
+    text == "/dev/stdin"
+        || number
+            .is_some_and(|digits| !digits.is_empty() && digits.bytes().all(|digit| digit.is_ascii_digit()))
+}
+
+fn read_text(source: impl Read, name: &str) -> Result<String, AppError> {
+    let mut bytes = Vec::new();
+    source
+        .take(MAX_FILE + 1)
+        .read_to_end(&mut bytes)
+        .map_err(|error| AppError::environment(format!("cannot read {name}: {error}")))?;
+    if bytes.len() as u64 > MAX_FILE {
+        return Err(too_large(name));
+    }
+    String::from_utf8(bytes).map_err(|_| AppError::input(format!("{name} is not a text file (UTF-8)")))
+}
+
+fn too_large(name: &str) -> AppError {
+    AppError::input(format!("{name} is larger than 4 MiB: that is no plan and no settings"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_regular_files_are_read_by_name() {
+        let directory = tempfile::tempdir().expect("a directory");
+        let fifo = directory.path().join("fifo");
+        rustix::fs::mknodat(rustix::fs::CWD, &fifo, rustix::fs::FileType::Fifo, Mode::RWXU, 0)
+            .expect("a FIFO");
+        let link = directory.path().join("link");
+        std::os::unix::fs::symlink(&fifo, &link).expect("a link");
+        for path in [fifo.as_path(), &link, directory.path(), Path::new("/dev/zero"), Path::new("/dev/null")]
+        {
+            let error = read(path).expect_err("not a file");
+            assert!(
+                error.to_string().contains("not a file: name a file, or - for standard input"),
+                "{error}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_huge_file_is_refused_by_its_size() {
+        let directory = tempfile::tempdir().expect("a directory");
+        let path = directory.path().join("huge.txt");
+        File::create(&path).and_then(|file| file.set_len(20 << 30)).expect("a sparse file");
+        let error = read(&path).expect_err("too large");
+        assert!(error.to_string().contains("larger than 4 MiB"), "{error}");
+    }
+
+    #[test]
+    fn a_missing_file_is_none_only_where_it_may_be_missing() {
+        let missing = Path::new("/nonexistent/file");
+        assert_eq!(read_if_there(missing).expect("missing"), None);
+        assert!(read(missing).is_err());
+    }
+
+    #[test]
+    fn the_pipes_of_a_shell_are_descriptors() {
+        for (path, is) in [
+            ("/dev/stdin", true),
+            ("/dev/fd/63", true),
+            ("/proc/self/fd/3", true),
+            ("/dev/fd/", false),
+            ("/dev/fd/../zero", false),
+            ("/dev/zero", false),
+        ] {
+            assert_eq!(is_descriptor(Path::new(path)), is, "{path}");
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! Creates the files that the options name for output, but never over what is read or stored.
+
+use std::fs::File;
+use std::os::unix::fs::MetadataExt as _;
+use std::path::{Path, PathBuf};
+
+use super::AppError;
+use crate::storage;
+
+/// The files that no output may replace, under whatever name or link.
+#[derive(Debug, Default)]
+pub(super) struct KeptFiles {
+    files: Vec<(&'static str, PathBuf)>,
+    stores: Vec<PathBuf>,
+}
+
+impl KeptFiles {
+    /// Keeps a file, called `what` in messages.
+    pub(super) fn keep(&mut self, what: &'static str, path: &Path) {
+        self.files.push((what, path.to_owned()));
+    }
+
+    /// Keeps the stored configuration of a directory.
+    pub(super) fn keep_store(&mut self, directory: &Path) {
+        self.stores.push(directory.to_owned());
+    }
+
+    /// Creates the output of `option`, and keeps it from the next one.
+    pub(super) fn create(&mut self, option: &'static str, path: &Path) -> Result<File, AppError> {
+        self.check(option, path)?;
+        self.keep(option, path);
+        File::create(path)
+            .map_err(|error| AppError::environment(format!("cannot write {}: {error}", path.display())))
+    }
+
+    /// Whether an output may be written there.
+    ///
+    /// # Errors
+    /// The sentence that names what it would replace.
+    pub(super) fn check(&self, option: &str, path: &Path) -> Result<(), AppError> {
+        let stored = self.stores.iter().flat_map(|directory| stored_files(directory));
+        let stored = stored.map(|file| ("the stored configuration", file));
+        let clash = self.files.iter().cloned().chain(stored).find(|(_, kept)| is_same(path, kept));
+        match clash {
+            None => Ok(()),
+            Some((kept, _)) => Err(AppError::input(format!(
+                "{option} {} would write over {kept}: name another file",
+                path.display()
+            ))),
+        }
+    }
+}
+
+/// All names that a store uses in its directory, there or not.
+fn stored_files(directory: &Path) -> Vec<PathBuf> {
+    let listed = std::fs::read_dir(directory).into_iter().flatten().flatten();
+    let is_ours = |name: &std::ffi::OsStr| name.to_string_lossy().starts_with(storage::FILE_NAME);
+    let mut names: Vec<PathBuf> =
+        listed.filter(|entry| is_ours(&entry.file_name())).map(|entry| entry.path()).collect();
+    names.push(directory.join(storage::FILE_NAME));
+    names
+}
+
+/// Whether two paths lead to one file; links count, and of files that are not there yet the place.
+fn is_same(a: &Path, b: &Path) -> bool {
+    match (a.metadata(), b.metadata()) {
+        // Devices and pipes hold nothing that could be lost.
+        (Ok(a), Ok(b)) => a.is_file() && (a.dev(), a.ino()) == (b.dev(), b.ino()),
+        (Err(_), Err(_)) => place(a).is_some_and(|a| place(b) == Some(a)),
+        _ => false,
+    }
+}
+
+/// The real directory of a file that does not exist, and its name.
+fn place(path: &Path) -> Option<(PathBuf, &std::ffi::OsStr)> {
+    let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    Some((parent.canonicalize().ok()?, path.file_name()?))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_output_replaces_an_input_under_any_name() {
+        let directory = tempfile::tempdir().expect("a directory");
+        let at = |name: &str| directory.path().join(name);
+        std::fs::write(at("plan.txt"), "").expect("written");
+        std::fs::hard_link(at("plan.txt"), at("hard.txt")).expect("a link");
+        std::os::unix::fs::symlink(at("plan.txt"), at("soft.txt")).expect("a link");
+        let mut kept = KeptFiles::default();
+        kept.keep("the plan", &at("plan.txt"));
+        for name in ["plan.txt", "hard.txt", "soft.txt", "../plan.txt"] {
+            let path = if let Some(name) = name.strip_prefix("../") {
+                directory.path().join("..").join(directory.path().file_name().expect("a name")).join(name)
+            } else {
+                at(name)
+            };
+            let error = kept.check("--json", &path).expect_err("refused");
+            assert!(error.to_string().contains("would write over the plan: name another file"), "{error}");
+        }
+        assert!(kept.check("--json", &at("other.txt")).is_ok());
+        assert!(kept.check("--json", Path::new("/dev/null")).is_ok());
+    }
+
+    #[test]
+    fn no_output_replaces_the_store_nor_another_output() {
+        let directory = tempfile::tempdir().expect("a directory");
+        let at = |name: &str| directory.path().join(name);
+        let mut kept = KeptFiles::default();
+        kept.keep_store(directory.path());
+        let error = kept.check("--json", &at("eeprom.bin")).expect_err("not stored yet, but soon");
+        assert!(error.to_string().contains("the stored configuration"), "{error}");
+        std::fs::write(at("eeprom.bin.bak"), "").expect("written");
+        std::fs::hard_link(at("eeprom.bin.bak"), at("track.gpx")).expect("a link");
+        assert!(kept.check("--gpx", &at("track.gpx")).is_err());
+        kept.create("--json", &at("lines")).expect("created");
+        let error = kept.create("--gpx", &at("lines")).expect_err("refused");
+        assert!(error.to_string().contains("would write over --json"), "{error}");
+    }
+}

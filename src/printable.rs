@@ -1,0 +1,132 @@
+//! Text that a terminal shows as it is.
+//!
+//! Names, keys, notes and messages come from files and from links. What a terminal would obey instead of show (control
+//! characters), and what would make a reader see other letters than there are (directions of writing, invisible tags), does
+//! not reach it.
+
+use std::borrow::Cow;
+use std::fmt::Write as _;
+
+/// Stands for a character that is not shown.
+const PLACEHOLDER: char = '?';
+/// Most characters of a line: more is no sentence.
+const LONGEST_LINE: usize = 400;
+/// Most characters of a name in the middle of a line.
+const LONGEST_NAME: usize = 60;
+
+/// Whether a terminal shows this character as it is.
+#[must_use]
+pub fn is_printable(c: char) -> bool {
+    !matches!(c,
+        '\0'..='\u{1f}' | '\u{7f}'..='\u{9f}'
+        // Marks and overrides of the direction of writing.
+        | '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}'
+        // Line and paragraph separators, the byte order mark, annotations and tags.
+        | '\u{2028}' | '\u{2029}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e007f}')
+}
+
+/// A single line of text.
+#[must_use]
+pub fn line(text: &str) -> Cow<'_, str> {
+    let is_short = text.len() <= LONGEST_LINE || text.chars().nth(LONGEST_LINE).is_none();
+    if is_short && text.chars().all(is_printable) {
+        return Cow::Borrowed(text);
+    }
+    Cow::Owned(cut(text, LONGEST_LINE))
+}
+
+/// A name inside a line.
+#[must_use]
+pub fn name(text: &str) -> String {
+    cut(text, LONGEST_NAME)
+}
+
+/// Text of several lines; tabs between words stay.
+#[must_use]
+pub fn lines(text: &str) -> Cow<'_, str> {
+    let is_clean = |part: &str| matches!(line(part), Cow::Borrowed(_));
+    if text.split('\n').all(|part| is_clean(part.strip_suffix('\r').unwrap_or(part))) {
+        return Cow::Borrowed(text);
+    }
+    let mut clean = String::with_capacity(text.len());
+    for (at, part) in text.split('\n').enumerate() {
+        if at > 0 {
+            clean.push('\n');
+        }
+        let (part, end) = part.strip_suffix('\r').map_or((part, ""), |part| (part, "\r"));
+        clean.push_str(&line(&part.replace('\t', " ")));
+        clean.push_str(end);
+    }
+    Cow::Owned(clean)
+}
+
+/// A line of JSON: what is not shown is escaped, which changes nothing for its readers.
+#[must_use]
+pub fn json(text: &str) -> Cow<'_, str> {
+    if text.chars().all(is_printable) {
+        return Cow::Borrowed(text);
+    }
+    let mut clean = String::with_capacity(text.len() + 16);
+    for c in text.chars() {
+        if is_printable(c) {
+            clean.push(c);
+        } else {
+            for unit in c.encode_utf16(&mut [0; 2]) {
+                // Writing to a string cannot fail.
+                let _infallible = write!(clean, "\\u{unit:04x}");
+            }
+        }
+    }
+    Cow::Owned(clean)
+}
+
+fn cut(text: &str, most: usize) -> String {
+    let shown = |c: char| if is_printable(c) { c } else { PLACEHOLDER };
+    let mut clean: String = text.chars().take(most).map(shown).collect();
+    if text.chars().nth(most).is_some() {
+        clean.pop();
+        clean.push('\u{2026}');
+    }
+    clean
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn what_a_terminal_obeys_is_not_shown() {
+        assert_eq!(line("a\u{1b}[31mb\u{202e}c\u{7}"), "a?[31mb?c?");
+        assert_eq!(lines("a\tb\r\n\u{9b}2J\n"), "a b\r\n?2J\n");
+        assert_eq!(line("Zürich \u{200d} 飛行"), "Zürich \u{200d} 飛行");
+    }
+
+    #[test]
+    fn a_name_longer_than_a_line_is_cut() {
+        let cut = name(&"x".repeat(10_000));
+        assert_eq!(cut.chars().count(), LONGEST_NAME);
+        assert!(cut.ends_with("x\u{2026}"));
+        assert_eq!(line(&"x".repeat(10_000)).chars().count(), LONGEST_LINE);
+        assert_eq!(line(&"x".repeat(LONGEST_LINE)).chars().count(), LONGEST_LINE);
+    }
+
+    proptest! {
+        #[test]
+        fn no_text_reaches_a_terminal_raw(text in any::<String>()) {
+            prop_assert!(line(&text).chars().all(is_printable));
+            prop_assert!(name(&text).chars().all(is_printable));
+            let shown = lines(&text);
+            prop_assert!(shown.chars().all(|c| is_printable(c) || matches!(c, '\r' | '\n')));
+            prop_assert_eq!(shown.matches('\n').count(), text.matches('\n').count());
+        }
+
+        #[test]
+        fn escaped_json_means_the_same(text in any::<String>()) {
+            let plain = serde_json::to_string(&text).expect("a string");
+            let escaped = json(&plain);
+            prop_assert!(escaped.chars().all(is_printable));
+            prop_assert_eq!(serde_json::from_str::<String>(&escaped).expect("JSON"), text);
+        }
+    }
+}

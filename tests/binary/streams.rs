@@ -1,0 +1,124 @@
+//! Output that nobody reads, terminals that are closed, and a program that is stopped from outside.
+#![allow(clippy::disallowed_methods, reason = "a state of another process is waited for")]
+
+use std::io::Write as _;
+use std::os::fd::OwnedFd;
+use std::process::{Child, Stdio};
+use std::time::{Duration, Instant};
+
+use crate::pty::Terminal;
+use crate::support::Sandbox;
+
+/// When something that is waited for counts as never coming.
+const NEVER: Duration = Duration::from_secs(60);
+
+/// A process that does not outlive its test.
+struct Guard(Child);
+
+impl Guard {
+    fn signal(&self, name: &str) {
+        let id = self.0.id().to_string();
+        assert!(std::process::Command::new("kill").args(["-s", name, &id]).status().expect("kill").success());
+    }
+
+    /// Waits until the process handles SIGTERM itself.
+    fn handles_signals(&mut self) {
+        const TERM: u32 = 15;
+        let path = format!("/proc/{}/status", self.0.id());
+        until("its signal handlers", || {
+            let status = std::fs::read_to_string(&path).expect("a process");
+            let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:")).expect("a mask");
+            u64::from_str_radix(caught.trim(), 16).expect("a mask") & (1 << (TERM - 1)) != 0
+        });
+    }
+
+    /// Waits for the end; gives the exit code.
+    fn end(&mut self) -> Option<i32> {
+        let mut code = None;
+        until("the end of the program", || {
+            let status = self.0.try_wait().expect("a child");
+            code = status.and_then(|status| status.code());
+            status.is_some()
+        });
+        code
+    }
+}
+
+impl Drop for Guard {
+    fn drop(&mut self) {
+        drop(self.0.kill());
+        drop(self.0.wait());
+    }
+}
+
+#[track_caller]
+fn until(wanted: &str, mut done: impl FnMut() -> bool) {
+    let deadline = Instant::now() + NEVER;
+    while !done() {
+        assert!(Instant::now() < deadline, "never came: {wanted}");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+fn start(sandbox: &Sandbox, arguments: &[&str], out: OwnedFd) -> Guard {
+    let mut command = sandbox.command(arguments);
+    Guard(command.stdin(Stdio::null()).stdout(out).stderr(Stdio::null()).spawn().expect("a process"))
+}
+
+#[test]
+fn sitl_ends_quietly_when_its_reader_has_gone() {
+    let sandbox = Sandbox::new();
+    let (reader, writer) = std::io::pipe().expect("a pipe");
+    drop(reader);
+    let doors = ["sitl", "--udp-ports", "0,0,0,0", "--tcp-port=0", "--ws-port=0"];
+    assert_eq!(start(&sandbox, &doors, writer.into()).end(), Some(0));
+}
+
+#[test]
+fn serve_ends_on_a_signal_while_nobody_reads_it() {
+    for signal in ["INT", "TERM", "HUP"] {
+        let sandbox = Sandbox::new();
+        let (_reader, mut writer) = std::io::pipe().expect("a pipe");
+        // Full: the first line that the program writes has to wait for ever.
+        rustix::io::ioctl_fionbio(&writer, true).expect("a pipe that does not wait");
+        while writer.write(&[b' '; 512]).is_ok() {}
+        while writer.write(b" ").is_ok() {}
+        rustix::io::ioctl_fionbio(&writer, false).expect("a pipe that waits");
+        let mut serve = start(&sandbox, &["serve", "--no-ports"], writer.into());
+        serve.handles_signals();
+        serve.signal(signal);
+        assert_eq!(serve.end(), Some(130), "{signal}");
+    }
+}
+
+#[test]
+fn closing_the_terminal_ends_the_program() {
+    assert_eq!(Terminal::closed_when_shown("DISARMED"), 130);
+}
+
+#[test]
+fn a_signal_ends_the_program_while_its_terminal_takes_no_output() {
+    let mut terminal = Terminal::betadeck(80, 24, &["--no-ports"]);
+    terminal.until_shown("DISARMED");
+    terminal.hold_output();
+    terminal.signal("TERM");
+    assert_eq!(terminal.end(), 130);
+}
+
+#[test]
+fn a_program_that_is_stopped_from_outside_gives_the_terminal_back_and_takes_it_again() {
+    let mut terminal = Terminal::betadeck(80, 24, &["--no-ports"]);
+    terminal.until_shown("DISARMED");
+    for _ in 0..2 {
+        terminal.signal("TSTP");
+        until("the program stands still", || terminal.is_stopped());
+        terminal.until("the ordinary screen", |terminal| !terminal.is_alternate());
+        terminal.assert_given_back();
+        terminal.signal("CONT");
+        terminal.until_shown("DISARMED");
+        assert!(terminal.is_alternate());
+    }
+    terminal.send("q");
+    assert_eq!(terminal.end(), 0);
+    terminal.assert_given_back();
+}
