@@ -112,6 +112,7 @@ fn print(said: &OutputLine) -> bool {
 }
 
 /// Prints a line, read or not.
+#[expect(clippy::needless_pass_by_value, reason = "what a session prints with")]
 fn say(said: OutputLine) {
     print(&said);
 }

@@ -68,7 +68,7 @@ fn after_stick(throttle_us: u16) -> Truth {
     rig.vehicle.transmitter_mut().stop_pilot();
     rig.vehicle.transmitter_mut().sticks_mut().channels[2] = throttle_us;
     rig.fly(10.0);
-    rig.vehicle.world().unwrap().truth().clone()
+    *rig.vehicle.world().unwrap().truth()
 }
 
 #[test]
