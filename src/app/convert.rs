@@ -15,6 +15,10 @@ pub(super) fn run(args: &ConvertArgs) -> Result<u8, AppError> {
     let source = args.source().map_err(|error| AppError::input(error.to_string()))?;
     let target = args.target().map_err(AppError::input)?;
     let file = setup::read_plan(&source)?;
+    if file.plan.waypoints.is_empty() {
+        let name = source.display_name();
+        return Err(AppError::input(format!("{name} has no waypoints: there is nothing to convert")));
+    }
     for note in &file.notes {
         error::tell(&note.to_string());
     }

@@ -186,6 +186,15 @@ fn convert_replaces_a_file_only_when_told() {
 }
 
 #[test]
+fn a_file_without_waypoints_is_not_converted() {
+    let sandbox = Sandbox::new();
+    sandbox.write("settings.txt", "set ap_max_angle = 30\nsave\n");
+    let ran = sandbox.run(&["convert", "settings.txt", "plan.toml"]).exits(2);
+    assert!(ran.err.contains("settings.txt has no waypoints: there is nothing to convert"), "{}", ran.err);
+    assert!(!sandbox.path("plan.toml").exists());
+}
+
+#[test]
 fn standard_input_shows_its_format() {
     let sandbox = Sandbox::new();
     let text = std::fs::read_to_string(plan("land.toml")).expect("a plan");

@@ -2,6 +2,7 @@
 
 use crate::geo::Degrees7;
 use crate::plan::{HoldPattern, Waypoint, WaypointType};
+use crate::printable::is_printable;
 
 use super::{PlanFile, Written};
 
@@ -78,8 +79,9 @@ fn quoted(text: &str) -> String {
             '\n' => out.push_str("\\n"),
             '\t' => out.push_str("\\t"),
             '\r' => out.push_str("\\r"),
-            c if c.is_control() => out.push_str(&format!("\\u{:04X}", u32::from(c))),
-            c => out.push(c),
+            c if is_printable(c) => out.push(c),
+            c if c <= '\u{ffff}' => out.push_str(&format!("\\u{:04X}", u32::from(c))),
+            c => out.push_str(&format!("\\U{:08X}", u32::from(c))),
         }
     }
     out.push('"');
@@ -101,6 +103,7 @@ mod tests {
 
     #[test]
     fn strings_are_escaped() {
+        assert_eq!(quoted("\u{202e}飛\u{e0041}"), "\"\\u202E飛\\U000E0041\"");
         assert_eq!(quoted("a \"b\" \\ \n\u{7f}"), "\"a \\\"b\\\" \\\\ \\n\\u007F\"");
     }
 }
