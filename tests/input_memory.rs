@@ -334,6 +334,20 @@ fn files_with_as_many_problems_as_fit() {
 }
 
 #[test]
+fn a_plan_of_four_megabytes_costs_at_most_sixty_four() {
+    const SIZE: usize = 4 * MIB;
+    for item in
+        ["[[waypoint]]\n", "5,", "waypoint insert 0\n", "x", "waypoint insert 0 1 2 3 0 LAND 0 NONE\n"]
+    {
+        let text = item.repeat(SIZE / item.len());
+        for format in [Format::Toml, Format::CliText] {
+            let (_, taken) = measured(|| parse("file", &text, format).map_err(|errors| report(&errors)));
+            assert!(taken.peak <= 64 * MIB, "{format} {item}: {taken:?}");
+        }
+    }
+}
+
+#[test]
 fn lines_of_other_builds_find_an_end() {
     let mut configuration = Configuration::default();
     let mut kept = 0;

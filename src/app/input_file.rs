@@ -13,28 +13,39 @@ use super::AppError;
 
 /// Largest plan or settings file that is read, bytes.
 const MAX_FILE: u64 = 4 << 20;
+/// Largest file of which a syntax tree is made, bytes: it takes a hundred times as much.
+const MAX_TREE: u64 = 512 << 10;
 
 /// Reads a text file of sensible size.
 pub(super) fn read(path: &Path) -> Result<String, AppError> {
+    read_at_most(path, MAX_FILE)
+}
+
+/// Reads a file of which a syntax tree is made.
+pub(super) fn read_small(path: &Path) -> Result<String, AppError> {
+    read_at_most(path, MAX_TREE)
+}
+
+fn read_at_most(path: &Path, most: u64) -> Result<String, AppError> {
     let name = path.display().to_string();
-    let file = open(path, &name)?;
-    read_text(file, &name)
+    let file = open(path, &name, most)?;
+    read_text(file, &name, most)
 }
 
 /// Reads a text file that may be missing.
 pub(super) fn read_if_there(path: &Path) -> Result<Option<String>, AppError> {
     match path.symlink_metadata() {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
-        _ => read(path).map(Some),
+        _ => read_small(path).map(Some),
     }
 }
 
 /// Reads standard input.
 pub(super) fn read_stdin() -> Result<String, AppError> {
-    read_text(std::io::stdin().lock(), "standard input")
+    read_text(std::io::stdin().lock(), "standard input", MAX_FILE)
 }
 
-fn open(path: &Path, name: &str) -> Result<File, AppError> {
+fn open(path: &Path, name: &str, most: u64) -> Result<File, AppError> {
     let cannot_open = |error: std::io::Error| AppError::environment(format!("cannot open {name}: {error}"));
     if is_descriptor(path) {
         return File::open(path).map_err(cannot_open);
@@ -50,8 +61,8 @@ fn open(path: &Path, name: &str) -> Result<File, AppError> {
             "{name} is {what}, not a file: name a file, or - for standard input"
         )));
     }
-    if metadata.len() > MAX_FILE {
-        return Err(too_large(name));
+    if metadata.len() > most {
+        return Err(too_large(name, most));
     }
     Ok(file)
 }
@@ -65,20 +76,21 @@ fn is_descriptor(path: &Path) -> bool {
             .is_some_and(|digits| !digits.is_empty() && digits.bytes().all(|digit| digit.is_ascii_digit()))
 }
 
-fn read_text(source: impl Read, name: &str) -> Result<String, AppError> {
+fn read_text(source: impl Read, name: &str, most: u64) -> Result<String, AppError> {
     let mut bytes = Vec::new();
     source
-        .take(MAX_FILE + 1)
+        .take(most + 1)
         .read_to_end(&mut bytes)
         .map_err(|error| AppError::environment(format!("cannot read {name}: {error}")))?;
-    if bytes.len() as u64 > MAX_FILE {
-        return Err(too_large(name));
+    if bytes.len() as u64 > most {
+        return Err(too_large(name, most));
     }
     String::from_utf8(bytes).map_err(|_| AppError::input(format!("{name} is not a text file (UTF-8)")))
 }
 
-fn too_large(name: &str) -> AppError {
-    AppError::input(format!("{name} is larger than 4 MiB: that is no plan and no settings"))
+fn too_large(name: &str, most: u64) -> AppError {
+    let most = if most < 1 << 20 { format!("{} KiB", most >> 10) } else { format!("{} MiB", most >> 20) };
+    AppError::input(format!("{name} is larger than {most}: that is no plan and no settings"))
 }
 
 #[cfg(test)]

@@ -128,7 +128,7 @@ fn airframe(name: Option<&str>) -> Result<Airframe, AppError> {
     match name.parse() {
         Ok(airframe) => Ok(airframe),
         Err(_) if Path::new(name).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) => {
-            let text = input_file::read(Path::new(name))?;
+            let text = input_file::read_small(Path::new(name))?;
             Airframe::from_toml(&text).map_err(|error| AppError::input(error.in_file(name).to_string()))
         }
         Err(error) => Err(AppError::input(format!("--airframe: {error}"))),

@@ -113,6 +113,9 @@ pub fn parse(name: &str, text: &str, format: Format) -> Result<PlanFile, Vec<Pla
     parse_checked(name, text, format, |_, _| Ok(()))
 }
 
+/// Largest TOML plan, bytes: the syntax tree takes a hundred times as much.
+const MAX_TOML: usize = 512 << 10;
+
 /// Reads a plan file whose settings `check` knows.
 ///
 /// `name` is the file's name as the user gave it: it heads the error messages and names a plan that has no name of
@@ -130,6 +133,12 @@ pub fn parse_checked(
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut problems = Problems::new(name, text);
     let mut file = match format {
+        Format::Toml if text.len() > MAX_TOML => {
+            let message =
+                format!("the file has {} KiB, a TOML plan at most {} KiB", text.len() >> 10, MAX_TOML >> 10);
+            problems.add(0..0, message, "a plan has at most 30 waypoints: is this another file?");
+            PlanFile::default()
+        }
         Format::Toml => native_read::read(text, check, &mut problems),
         Format::CliText => cli_text::read(text, &mut problems),
     };
