@@ -94,8 +94,10 @@ impl Files {
                 // What an interrupted save left behind goes; a link that somebody put there is not followed.
                 remove_if_there(&self.temporary)?;
                 let mut file = File::create_new(&self.temporary)?;
-                file.write_all(image)?;
-                file.sync_all()
+                file.write_all(image).and_then(|()| file.sync_all()).inspect_err(|_| {
+                    // Part of an image, in a directory that is perhaps full.
+                    std::fs::remove_file(&self.temporary).ok();
+                })
             }
             Step::LinkPrevious if keep_previous => self.link_previous(),
             Step::RenamePrevious if keep_previous => std::fs::rename(&self.temporary_backup, &self.backup),
