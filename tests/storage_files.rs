@@ -89,7 +89,7 @@ fn the_file_of_another_firmware_is_left_alone() {
     let loaded = store.load();
     assert_eq!(loaded.configuration, Configuration::default());
     let refusal = store.save(&named("mine")).expect_err("refused").to_string();
-    assert!(refusal.contains("eeprom.bin") && refusal.contains("--config"), "{refusal}");
+    assert!(refusal.contains("eeprom.bin") && refusal.contains("move it away"), "{refusal}");
     assert_eq!(store.facts().save_refusal, Some(refusal));
     assert_eq!(std::fs::read(&file).expect("there"), foreign);
 

@@ -30,7 +30,7 @@ pub(super) fn run(args: &ConvertArgs) -> Result<u8, AppError> {
             if let PlanArg::File(input, _) = &source {
                 kept.keep("the plan that was read", input);
             }
-            kept.check("the output", path)?;
+            kept.claim("the output", path)?;
             write(path, &written.text, args.force)?;
         }
     }

@@ -25,30 +25,31 @@ impl KeptFiles {
         self.stores.push(directory.to_owned());
     }
 
-    /// Creates the output of `option`, and keeps it from the next one.
-    pub(super) fn create(&mut self, option: &'static str, path: &Path) -> Result<File, AppError> {
-        self.check(option, path)?;
-        self.keep(option, path);
-        File::create(path)
-            .map_err(|error| AppError::environment(format!("cannot write {}: {error}", path.display())))
-    }
-
-    /// Whether an output may be written there.
+    /// Whether the output of `option` may be written there; it is kept from the next one.
     ///
     /// # Errors
     /// The sentence that names what it would replace.
-    pub(super) fn check(&self, option: &str, path: &Path) -> Result<(), AppError> {
+    pub(super) fn claim(&mut self, option: &'static str, path: &Path) -> Result<(), AppError> {
         let stored = self.stores.iter().flat_map(|directory| stored_files(directory));
         let stored = stored.map(|file| ("the stored configuration", file));
         let clash = self.files.iter().cloned().chain(stored).find(|(_, kept)| is_same(path, kept));
         match clash {
-            None => Ok(()),
+            None => {
+                self.keep(option, path);
+                Ok(())
+            }
             Some((kept, _)) => Err(AppError::input(format!(
                 "{option} {} would write over {kept}: name another file",
                 path.display()
             ))),
         }
     }
+}
+
+/// Creates a file that was claimed.
+pub(super) fn create(path: &Path) -> Result<File, AppError> {
+    File::create(path)
+        .map_err(|error| AppError::environment(format!("cannot write {}: {error}", path.display())))
 }
 
 /// All names that a store uses in its directory, there or not.
@@ -96,11 +97,11 @@ mod tests {
             } else {
                 at(name)
             };
-            let error = kept.check("--json", &path).expect_err("refused");
+            let error = kept.claim("--json", &path).expect_err("refused");
             assert!(error.to_string().contains("would write over the plan: name another file"), "{error}");
         }
-        assert!(kept.check("--json", &at("other.txt")).is_ok());
-        assert!(kept.check("--json", Path::new("/dev/null")).is_ok());
+        assert!(kept.claim("--json", &at("other.txt")).is_ok());
+        assert!(kept.claim("--json", Path::new("/dev/null")).is_ok());
     }
 
     #[test]
@@ -109,13 +110,13 @@ mod tests {
         let at = |name: &str| directory.path().join(name);
         let mut kept = KeptFiles::default();
         kept.keep_store(directory.path());
-        let error = kept.check("--json", &at("eeprom.bin")).expect_err("not stored yet, but soon");
+        let error = kept.claim("--json", &at("eeprom.bin")).expect_err("not stored yet, but soon");
         assert!(error.to_string().contains("the stored configuration"), "{error}");
         std::fs::write(at("eeprom.bin.bak"), "").expect("written");
         std::fs::hard_link(at("eeprom.bin.bak"), at("track.gpx")).expect("a link");
-        assert!(kept.check("--gpx", &at("track.gpx")).is_err());
-        kept.create("--json", &at("lines")).expect("created");
-        let error = kept.create("--gpx", &at("lines")).expect_err("refused");
+        assert!(kept.claim("--gpx", &at("track.gpx")).is_err());
+        kept.claim("--json", &at("lines")).expect("free");
+        let error = kept.claim("--gpx", &at("lines")).expect_err("refused");
         assert!(error.to_string().contains("would write over --json"), "{error}");
     }
 }

@@ -4,6 +4,7 @@ use std::io::{BufWriter, Write};
 
 use super::error::{self, AppError};
 use super::live::{self, LiveArgs};
+use super::output_file;
 use super::setup;
 use super::stop_signal;
 use crate::args::{OutputFile, ServeArgs};
@@ -80,7 +81,8 @@ fn open_output(args: &ServeArgs) -> Result<Output, AppError> {
         None => (Box::new(std::io::stdout()), false),
         Some(OutputFile::Stdout) => (Box::new(std::io::stdout()), true),
         Some(OutputFile::File(path)) => {
-            (Box::new(setup::kept_files(&args.flight, None).create("--json", path)?), true)
+            setup::kept_files(&args.flight, None).claim("--json", path)?;
+            (Box::new(output_file::create(path)?), true)
         }
     };
     Ok(Output { lines: BufWriter::new(target), json })

@@ -127,7 +127,7 @@ async fn fly(args: &SitlArgs, config: SitlConfig) -> Result<u8, AppError> {
     if args.gpx {
         let mut kept = KeptFiles::default();
         kept.keep_store(store_directory(args));
-        kept.check("--gpx", Path::new(TRACK))?;
+        kept.claim("--gpx", Path::new(TRACK))?;
     }
     let stop = stop_signal::stop_in_time()
         .map_err(|error| AppError::environment(format!("cannot listen for signals: {error}")))?;

@@ -2,7 +2,7 @@
 
 #![allow(clippy::disallowed_methods, reason = "the shell of the user interface lives on wall-clock time")]
 
-use std::io;
+use std::io::{self, IsTerminal as _};
 use std::time::{Duration, Instant};
 
 use crossterm::event::{Event as TerminalEvent, EventStream};
@@ -69,6 +69,19 @@ enum Wake {
 /// # Errors
 /// The terminal could not be read or written.
 pub async fn run(
+    tui: Tui,
+    link: SessionLink,
+    config: UiConfig,
+    stop: impl Future<Output = ()>,
+) -> io::Result<Ending> {
+    match run_loop(tui, link, config, stop).await {
+        // Whatever fails first when it is closed.
+        Err(_) if !io::stdout().is_terminal() => Ok(Ending::TerminalLost),
+        ended => ended,
+    }
+}
+
+async fn run_loop(
     mut tui: Tui,
     mut link: SessionLink,
     config: UiConfig,
@@ -101,8 +114,8 @@ pub async fn run(
             Some(()) = resume.recv() => Wake::Resume,
             key = keys.next() => match key {
                 Some(Ok(event)) => terminal_message(event).map_or(Wake::Time, Wake::Msg),
-                Some(Err(error)) if !is_gone(&error) => return Err(error),
-                Some(Err(_)) | None => Wake::End(Ending::TerminalLost),
+                Some(Err(error)) => return Err(error),
+                None => Wake::End(Ending::TerminalLost),
             },
             Some(msg) = replies.recv() => Wake::Msg(msg),
             () = sleep(frame_at.saturating_duration_since(Instant::now())) => Wake::Time,
@@ -153,22 +166,11 @@ pub async fn run(
         let wanted = drawn + frame;
         due = Some(due.map_or(wanted, |due| due.min(wanted)));
         if due.is_some_and(|due| due <= now) {
-            match tui.draw(&state) {
-                Err(error) if is_gone(&error) => {
-                    link.commands.try_send(Command::Quit).ok();
-                    return Ok(Ending::TerminalLost);
-                }
-                drawn => drawn?,
-            }
+            tui.draw(&state)?;
             drawn = Instant::now();
             due = None;
         }
     }
-}
-
-/// Whether the terminal was closed.
-fn is_gone(error: &io::Error) -> bool {
-    error.raw_os_error() == Some(rustix::io::Errno::IO.raw_os_error())
 }
 
 /// The message of a terminal event, if it means anything.

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 
 use crate::app::error::{self, AppError};
-use crate::app::setup;
+use crate::app::{output_file, setup};
 use crate::args::{FlyArgs, OutputFile};
 use crate::flight::Report;
 use crate::plan::format::PlanFile;
@@ -28,16 +28,16 @@ impl Output {
         let mut kept = setup::kept_files(&args.flight, Some(&args.plan));
         // Nothing is created when one of them is refused.
         if let Some(OutputFile::File(path)) = &args.json {
-            kept.check("--json", path)?;
+            kept.claim("--json", path)?;
         }
         if let Some(path) = &args.gpx {
-            kept.check("--gpx", path)?;
+            kept.claim("--gpx", path)?;
         }
         let stdout = || Box::new(std::io::stdout()) as Box<dyn Write>;
         let (target, json): (Box<dyn Write>, bool) = match &args.json {
             None => (stdout(), false),
             Some(OutputFile::Stdout) => (stdout(), true),
-            Some(OutputFile::File(path)) => (Box::new(kept.create("--json", path)?), true),
+            Some(OutputFile::File(path)) => (Box::new(output_file::create(path)?), true),
         };
         let gpx = match &args.gpx {
             None => None,
@@ -49,7 +49,7 @@ impl Output {
                     home_amsl_m,
                     boot: UtcSeconds::SIMULATED_BOOT,
                 };
-                let file = BufWriter::new(kept.create("--gpx", path)?);
+                let file = BufWriter::new(output_file::create(path)?);
                 Some(GpxWriter::new(file, header, &plan.plan).map_err(write_failed)?)
             }
         };

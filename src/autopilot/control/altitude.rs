@@ -146,7 +146,6 @@ impl AltitudeController {
     /// Tracks a cycle that somebody else flies, so that the hover throttle is known when this controller takes over.
     pub fn track(&mut self, now: &AltitudeMeasurement, params: &Params, dt: f64) {
         self.hover.update(&hover_measurement(now, params), dt);
-        self.hover.release();
         self.spool_up = SpoolUp::default();
     }
 

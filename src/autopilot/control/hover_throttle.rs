@@ -40,8 +40,6 @@ pub struct HoverThrottleEstimator {
     is_found: bool,
     /// Quiet time in the air since engaging, s.
     followed_s: f64,
-    /// The altitude is controlled with it.
-    is_in_use: bool,
 }
 
 impl Default for HoverThrottleEstimator {
@@ -54,7 +52,6 @@ impl Default for HoverThrottleEstimator {
             airborne_s: 0.0,
             is_found: false,
             followed_s: 0.0,
-            is_in_use: false,
         }
     }
 }
@@ -84,15 +81,8 @@ impl HoverThrottleEstimator {
     /// The hover throttle that this flight has shown, µs; `None` before.
     #[must_use]
     pub fn learned_us(&self) -> Option<f64> {
-        match self.estimate_us {
-            Some(estimate_us) if !self.is_in_use && self.airborne_s >= SETTLED_S => Some(estimate_us),
-            _ => (self.is_found || self.airborne_s >= SETTLED_S).then_some(self.hover_us),
-        }
-    }
-
-    /// Somebody else flies the altitude.
-    pub fn release(&mut self) {
-        self.is_in_use = false;
+        let held = self.estimate_us.filter(|_| self.airborne_s >= SETTLED_S);
+        held.or(self.is_found.then_some(self.hover_us))
     }
 
     /// Takes one cycle, flown by anyone; one that is not finite is left out.
@@ -132,13 +122,10 @@ impl HoverThrottleEstimator {
     /// Chooses the hover throttle at engaging: what held the craft when it has been airborne for a while, else what was found
     /// at the lift-off, else `configured_us`.
     pub fn engage(&mut self, configured_us: f64) {
-        let held = self.estimate_us.filter(|_| self.airborne_s >= SETTLED_S);
-        let found = self.is_found.then_some(self.hover_us);
-        let known = held.or(found);
+        let known = self.learned_us();
         self.hover_us = known.unwrap_or(configured_us).clamp(HOVER_MIN_US, HOVER_MAX_US);
         // What held the craft needs no quick correction: a climb right after engaging would only mislead it.
         self.followed_s = if known.is_some() { FAST_FOR_S } else { 0.0 };
-        self.is_in_use = true;
     }
 
     /// Follows the estimate in the first quiet seconds in the air, and whenever the altitude error is so large that the

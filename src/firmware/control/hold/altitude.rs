@@ -66,7 +66,7 @@ pub(super) struct AltitudeHold {
     phase: Phase,
     /// The hold began on the ground, where the hover throttle cannot be learned; seconds in the air since.
     lifting_s: Option<f64>,
-    /// The stick outside the dead zone, and the hover throttle it was judged by, µs.
+    /// The stick, and the hover throttle it was judged by, µs.
     judged: Option<(f64, f64)>,
     has_touched_down: bool,
 }
@@ -140,13 +140,13 @@ impl AltitudeHold {
         tuning: &HoldTuning,
         controller: &AltitudeController,
     ) -> AltitudeTarget {
-        // A climb does not end because the hover throttle becomes known at the lift-off: only a moved stick is judged anew.
+        // Only a moved stick is judged anew: that the hover throttle becomes known ends no climb, and lets no craft sink.
         let is_still = |(stick, _): &(f64, f64)| (stick_us - stick).abs() <= STILL_STICK_US;
         let judged = self.judged.filter(is_still);
         let (stick, hover_us) =
             judged.unwrap_or_else(|| (stick_us, controller.hover_stick_us(params, tuning.mid_us)));
         let share = climb_share(stick_us, hover_us, tuning);
-        self.judged = (share != 0.0).then_some((stick, hover_us));
+        self.judged = Some((stick, hover_us));
         self.keep(now, share * params.climb_rate_mps())
     }
 
