@@ -47,7 +47,7 @@ const AIRBORNE_MPS: f64 = 0.3;
 const GROUND_STICK_SHARE: f64 = 0.4;
 const GROUND_STICK_US_PER_S: f64 = 20.0;
 /// The highest stick the pilot uses to climb, µs.
-const CLIMB_STICK_MAX_US: f64 = 1900.0;
+const CLIMB_STICK_MAX_US: f64 = 2000.0;
 
 /// What the pilot sees.
 #[derive(Debug, Clone, Copy, PartialEq)]

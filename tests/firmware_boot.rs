@@ -120,7 +120,7 @@ fn restart_boots_again_and_drops_what_was_not_stored() {
     bench.run(5.1);
     let stored = bench.firmware.configuration().clone();
     bench.type_line("set ap_max_angle = 33");
-    bench.type_line("map TAER1234");
+    bench.type_line("set max_aux_channels = 8");
     bench.firmware.cli_opened();
     bench.sticks.channels[4] = 2000;
     bench.run(5.2);
