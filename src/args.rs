@@ -28,7 +28,7 @@ pub use fly::FlyArgs;
 pub use generate::{completions, man_page};
 pub use layers::{ENVIRONMENT_PREFIX, Layers};
 pub use physics::{FdmDialect, PhysicsArgs, PhysicsChoice, SimulatorArgs};
-pub use plan_arg::{PlanArg, PlanArgError};
+pub use plan_arg::{PlanArg, PlanArgError, is_descriptor};
 pub use value::{AttitudeChoice, OnOff, OutputFile, Speed};
 
 /// Flies the Betaflight waypoint autopilot in a simulated quadcopter

@@ -10,6 +10,7 @@ use std::path::Path;
 use rustix::fs::{Mode, OFlags};
 
 use super::AppError;
+use crate::args::is_descriptor;
 
 /// Largest plan or settings file that is read, bytes.
 const MAX_FILE: u64 = 4 << 20;
@@ -67,15 +68,6 @@ fn open(path: &Path, name: &str, most: u64) -> Result<File, AppError> {
     Ok(file)
 }
 
-/// Whether the path names an open descriptor of this process, as shells write pipes.
-fn is_descriptor(path: &Path) -> bool {
-    let Some(text) = path.to_str() else { return false };
-    let number = text.strip_prefix("/dev/fd/").or_else(|| text.strip_prefix("/proc/self/fd/"));
-    text == "/dev/stdin"
-        || number
-            .is_some_and(|digits| !digits.is_empty() && digits.bytes().all(|digit| digit.is_ascii_digit()))
-}
-
 fn read_text(source: impl Read, name: &str, most: u64) -> Result<String, AppError> {
     let mut bytes = Vec::new();
     source
@@ -129,19 +121,5 @@ mod tests {
         let missing = Path::new("/nonexistent/file");
         assert_eq!(read_if_there(missing).expect("missing"), None);
         assert!(read(missing).is_err());
-    }
-
-    #[test]
-    fn the_pipes_of_a_shell_are_descriptors() {
-        for (path, is) in [
-            ("/dev/stdin", true),
-            ("/dev/fd/63", true),
-            ("/proc/self/fd/3", true),
-            ("/dev/fd/", false),
-            ("/dev/fd/../zero", false),
-            ("/dev/zero", false),
-        ] {
-            assert_eq!(is_descriptor(Path::new(path)), is, "{path}");
-        }
     }
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use super::output_file::KeptFiles;
 use super::{AppError, input_file};
-use crate::args::{AttitudeChoice, DoorArgs, FlightArgs, OnOff, PhysicsArgs, PlanArg};
+use crate::args::{AttitudeChoice, DoorArgs, FlightArgs, OnOff, PhysicsArgs, PlanArg, is_descriptor};
 use crate::firmware::AttitudeSource;
 use crate::firmware::cli::BuildInfo;
 use crate::firmware::config::Configuration;
@@ -127,12 +127,18 @@ fn airframe(name: Option<&str>) -> Result<Airframe, AppError> {
     let name = name.unwrap_or("iris");
     match name.parse() {
         Ok(airframe) => Ok(airframe),
-        Err(_) if Path::new(name).extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) => {
+        Err(_) if is_airframe_file(name) => {
             let text = input_file::read_small(Path::new(name))?;
             Airframe::from_toml(&text).map_err(|error| AppError::input(error.in_file(name).to_string()))
         }
         Err(error) => Err(AppError::input(format!("--airframe: {error}"))),
     }
+}
+
+/// Whether the name is that of a TOML file, or of a pipe with one.
+fn is_airframe_file(name: &str) -> bool {
+    let path = Path::new(name);
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml")) || is_descriptor(path)
 }
 
 /// The directory of `--state-dir`, the user's, or none with `--fresh`.

@@ -40,7 +40,7 @@ impl ConvertArgs {
     pub fn source(&self) -> Result<PlanArg, PlanArgError> {
         match self.from {
             Some(format) if self.input == "-" => Ok(PlanArg::Stdin(Some(format))),
-            Some(format) => Ok(PlanArg::File(self.input.clone().into(), format)),
+            Some(format) => Ok(PlanArg::File(self.input.clone().into(), Some(format))),
             None => self.input.parse(),
         }
     }

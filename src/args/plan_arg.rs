@@ -1,6 +1,6 @@
 //! The PLAN argument: a built-in plan, a file, or standard input.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use crate::plan::builtin::{BuiltinPlan, PLANS};
@@ -13,8 +13,17 @@ pub enum PlanArg {
     Builtin(BuiltinPlan),
     /// Standard input in a format; `None` = the one that the text shows.
     Stdin(Option<Format>),
-    /// A file and the format that its ending names.
-    File(PathBuf, Format),
+    /// A file or a pipe, in a format; `None` = the one that the text shows.
+    File(PathBuf, Option<Format>),
+}
+
+/// Whether a path names an open descriptor of this process, as shells write pipes.
+#[must_use]
+pub fn is_descriptor(path: &Path) -> bool {
+    let Some(text) = path.to_str() else { return false };
+    let number = text.strip_prefix("/dev/fd/").or_else(|| text.strip_prefix("/proc/self/fd/"));
+    let is_number = |digits: &str| !digits.is_empty() && digits.bytes().all(|digit| digit.is_ascii_digit());
+    text == "/dev/stdin" || number.is_some_and(is_number)
 }
 
 /// Why a text names no plan.
@@ -39,7 +48,10 @@ impl FromStr for PlanArg {
             return Ok(Self::Builtin(plan));
         }
         if let Some(format) = Format::from_file_name(text) {
-            return Ok(Self::File(text.into(), format));
+            return Ok(Self::File(text.into(), Some(format)));
+        }
+        if is_descriptor(Path::new(text)) {
+            return Ok(Self::File(text.into(), None));
         }
         let guess = BuiltinPlan::suggest(text);
         Err(PlanArgError { guess: guess.map_or_else(String::new, |name| format!("; did you mean {name}?")) })
@@ -52,8 +64,7 @@ impl PlanArg {
     pub fn format(&self, text: &str) -> Format {
         match self {
             Self::Builtin(_) => Format::Toml,
-            Self::Stdin(format) => format.unwrap_or_else(|| Format::of_text(text)),
-            Self::File(_, format) => *format,
+            Self::Stdin(format) | Self::File(_, format) => format.unwrap_or_else(|| Format::of_text(text)),
         }
     }
 
@@ -78,8 +89,23 @@ mod tests {
         assert_eq!("-".parse(), Ok(PlanArg::Stdin(None)));
         assert_eq!(PlanArg::Stdin(None).format("name = 'x'"), Format::Toml);
         assert_eq!(PlanArg::Stdin(Some(Format::CliText)).format("name = 'x'"), Format::CliText);
-        assert_eq!("./square.txt".parse(), Ok(PlanArg::File("./square.txt".into(), Format::CliText)));
+        assert_eq!("./square.txt".parse(), Ok(PlanArg::File("./square.txt".into(), Some(Format::CliText))));
         assert_eq!("square.txt".parse::<PlanArg>().unwrap().display_name(), "square.txt");
+    }
+
+    #[test]
+    fn the_pipes_of_a_shell_are_plans_in_the_format_of_their_text() {
+        for (path, is) in [
+            ("/dev/stdin", true),
+            ("/dev/fd/63", true),
+            ("/proc/self/fd/3", true),
+            ("/dev/fd/", false),
+            ("/dev/fd/../zero", false),
+            ("/dev/zero", false),
+        ] {
+            assert_eq!(path.parse() == Ok(PlanArg::File(path.into(), None)), is, "{path}");
+        }
+        assert_eq!(PlanArg::File("/dev/fd/63".into(), None).format("name = 'x'"), Format::Toml);
     }
 
     #[test]

@@ -126,7 +126,7 @@ fn convert_knows_its_formats() {
     );
     assert_eq!(
         convert("betadeck convert a b --from txt --to toml").0,
-        PlanArg::File("a".into(), Format::CliText)
+        PlanArg::File("a".into(), Some(Format::CliText))
     );
     assert!(matches!(convert("betadeck convert square b.txt").0, PlanArg::Builtin(_)));
 }

@@ -239,6 +239,18 @@ fn a_pipe_or_device_in_the_place_of_a_file_is_refused_at_once() {
 
 #[cfg(unix)]
 #[test]
+fn a_pipe_that_the_shell_gives_is_read() {
+    let sandbox = Sandbox::new();
+    let line = "waypoint insert 0 40.4635901 -79.5182000 2000 500 LAND 0 NONE\n";
+    for path in ["-", "/dev/stdin", "/dev/fd/0"] {
+        let ran = sandbox.run_with(&["plan", "show", path], line).exits(0);
+        assert!(ran.out.contains("LAND"), "{path}: {ran:?}");
+    }
+    sandbox.run_with(&["fly", "land", "--settings", "/dev/fd/0"], "set ap_max_angle = 30\n").exits(0);
+}
+
+#[cfg(unix)]
+#[test]
 fn no_output_is_written_over_an_input_by_any_link() {
     let sandbox = Sandbox::new();
     let text = "waypoint insert 0 40.4635901 -79.5182000 2000 500 LAND 0 NONE\n";
