@@ -21,7 +21,14 @@ use crate::firmware::storage::{ImageError, decode, encode};
 
 mod files;
 
+pub use files::link_target;
 use files::{Files, read_image};
+
+/// The files that a store in this directory uses or leaves behind, there or not; a link leads to those beside its target.
+#[must_use]
+pub fn files_in(directory: &Path) -> Vec<PathBuf> {
+    Files::new(directory).all()
+}
 
 /// Name of the file.
 pub const FILE_NAME: &str = "eeprom.bin";
@@ -46,6 +53,14 @@ pub enum StorageError {
         /// The file.
         path: PathBuf,
         /// What it is, or why it cannot be read.
+        reason: String,
+    },
+    /// What is there cannot be read, or is no configuration.
+    #[error("{} is left alone because {reason}: move it away, or use another directory", path.display())]
+    Unusable {
+        /// The file.
+        path: PathBuf,
+        /// Why.
         reason: String,
     },
     /// Another process uses the directory.
@@ -97,8 +112,17 @@ struct Directory {
     overwrite: bool,
     /// The stored image, when it is ours and good.
     current: Option<Vec<u8>>,
-    /// Why the file must not be replaced, if so: it belongs to another firmware, or cannot be read.
-    protected: Option<String>,
+    /// Why the file must not be replaced, if so.
+    protected: Option<Protection>,
+}
+
+/// Why a file is not replaced, with the words for it.
+#[derive(Debug, Clone)]
+enum Protection {
+    /// It belongs to another firmware.
+    Foreign(String),
+    /// It cannot be read, or a link leads to something else than a configuration.
+    Unusable(String),
 }
 
 impl Store {
@@ -117,6 +141,14 @@ impl Store {
         let lock = files.lock().map_err(unusable)?;
         let place = Directory { files, lock, overwrite, current: None, protected: None };
         Ok(Self { place: Place::Directory(Box::new(place)), used_bytes: 0, note: None })
+    }
+
+    /// The store in a directory that is there, only to be read: nothing is written, moved or locked.
+    #[must_use]
+    pub fn read_only(directory: &Path) -> Self {
+        let files = Files::new(directory);
+        let place = Directory { files, lock: None, overwrite: false, current: None, protected: None };
+        Self { place: Place::Directory(Box::new(place)), used_bytes: 0, note: None }
     }
 
     /// Reads the stored configuration; what cannot be read is replaced as well as possible, and told. On the first
@@ -193,8 +225,11 @@ impl Directory {
         if self.lock.is_none() {
             return Some(StorageError::Locked { path: self.files.directory.clone() });
         }
-        let reason = self.protected.clone()?;
-        Some(StorageError::Protected { path: self.files.image.clone(), reason })
+        let path = self.files.image.clone();
+        Some(match self.protected.clone()? {
+            Protection::Foreign(reason) => StorageError::Protected { path, reason },
+            Protection::Unusable(reason) => StorageError::Unusable { path, reason },
+        })
     }
 
     /// The best image there is, and what was wrong with the others.
@@ -211,9 +246,15 @@ impl Directory {
                 }
                 Err(reason @ (ImageError::Foreign | ImageError::LaterFormat { .. })) => {
                     if !self.overwrite {
-                        self.protected = Some(reason.to_string());
+                        self.protected = Some(Protection::Foreign(reason.to_string()));
                     }
                     findings.push(format!("{name} is not used: {reason}"));
+                    return (None, findings);
+                }
+                Err(ImageError::Damaged) if self.files.is_linked => {
+                    let reason = "a link leads to it, and it is no configuration";
+                    findings.push(format!("{name} is not used: {reason}"));
+                    self.protected = Some(Protection::Unusable(reason.to_owned()));
                     return (None, findings);
                 }
                 Err(ImageError::Damaged) => findings.push(self.set_aside(&name)),
@@ -221,7 +262,7 @@ impl Directory {
             Ok(None) => {}
             Err(error) => {
                 findings.push(format!("{name} cannot be read: {error}"));
-                self.protected = Some(format!("it cannot be read: {error}"));
+                self.protected = Some(Protection::Unusable(format!("it cannot be read: {error}")));
                 return (None, findings);
             }
         }

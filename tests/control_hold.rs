@@ -180,3 +180,18 @@ fn a_position_hold_without_a_source_is_only_levelled() {
         assert_eq!(rig.hold.no_position, !holds, "{source}");
     }
 }
+
+#[test]
+fn standing_in_position_hold_winds_nothing_up_for_the_lift_off() {
+    let mut rig = Rig::new(windy(Noise::Real, 0.0), &settings());
+    rig.run(6.0);
+    rig.arm();
+    rig.modes = HoldModes { altitude: true, position: true, descend: None };
+    rig.sticks.throttle_us = 1300.0;
+    rig.run(120.0);
+    rig.sticks.throttle_us = 1700.0;
+    let mut fastest: f64 = 0.0;
+    rig.watch(6.0, |rig| fastest = fastest.max(rig.truth().vel_enu.xy().norm()));
+    println!("lifted off after two minutes: {fastest:.2} m/s at most");
+    assert!(rig.altitude_m() > 1.0 && fastest < 1.0, "{} m up, {fastest} m/s", rig.altitude_m());
+}

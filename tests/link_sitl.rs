@@ -84,10 +84,13 @@ impl Rig {
             (address(EndpointKind::Fdm), address(EndpointKind::Rc), address(EndpointKind::Tcp));
         let (stop, stopped) = oneshot::channel::<()>();
         let task = tokio::spawn(async move {
-            sitl.run(&mut print, &mut |_| {}, async {
-                let _gone = stopped.await;
-            })
-            .await
+            let (end, doors) = sitl
+                .run(&mut print, &mut |_| {}, async {
+                    let _gone = stopped.await;
+                })
+                .await;
+            doors.close().await;
+            end
         });
         let sender = socket().await;
         Self { fdm_door, rc_door, tcp_door, motors, raw, sender, said, stop: Some(stop), task, stamp_ms: 0 }

@@ -100,9 +100,7 @@ fn open_store(args: &FlyArgs) -> Result<Store, AppError> {
             "--state-dir {} is not a directory: name the one that serve or the user interface stores in",
             directory.display()
         ))),
-        Some(directory) => {
-            Store::open(directory, false).map_err(|error| AppError::environment(error.to_string()))
-        }
+        Some(directory) => Ok(Store::read_only(directory)),
         None => Ok(Store::in_memory()),
     }
 }

@@ -1,5 +1,6 @@
 //! Creates the files that the options name for output, but never over what is read or stored.
 
+use std::ffi::OsString;
 use std::fs::File;
 use std::os::unix::fs::MetadataExt as _;
 use std::path::{Path, PathBuf};
@@ -30,7 +31,7 @@ impl KeptFiles {
     /// # Errors
     /// The sentence that names what it would replace.
     pub(super) fn claim(&mut self, option: &'static str, path: &Path) -> Result<(), AppError> {
-        let stored = self.stores.iter().flat_map(|directory| stored_files(directory));
+        let stored = self.stores.iter().flat_map(|directory| storage::files_in(directory));
         let stored = stored.map(|file| ("the stored configuration", file));
         let clash = self.files.iter().cloned().chain(stored).find(|(_, kept)| is_same(path, kept));
         match clash {
@@ -52,16 +53,6 @@ pub(super) fn create(path: &Path) -> Result<File, AppError> {
         .map_err(|error| AppError::environment(format!("cannot write {}: {error}", path.display())))
 }
 
-/// All names that a store uses in its directory, there or not.
-fn stored_files(directory: &Path) -> Vec<PathBuf> {
-    let listed = std::fs::read_dir(directory).into_iter().flatten().flatten();
-    let is_ours = |name: &std::ffi::OsStr| name.to_string_lossy().starts_with(storage::FILE_NAME);
-    let mut names: Vec<PathBuf> =
-        listed.filter(|entry| is_ours(&entry.file_name())).map(|entry| entry.path()).collect();
-    names.push(directory.join(storage::FILE_NAME));
-    names
-}
-
 /// Whether two paths lead to one file; links count, and of files that are not there yet the place.
 fn is_same(a: &Path, b: &Path) -> bool {
     match (a.metadata(), b.metadata()) {
@@ -72,10 +63,11 @@ fn is_same(a: &Path, b: &Path) -> bool {
     }
 }
 
-/// The real directory of a file that does not exist, and its name.
-fn place(path: &Path) -> Option<(PathBuf, &std::ffi::OsStr)> {
+/// Where a file would be created: its real directory and name, links followed.
+fn place(path: &Path) -> Option<(PathBuf, OsString)> {
+    let path = storage::link_target(path);
     let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    Some((parent.canonicalize().ok()?, path.file_name()?))
+    Some((parent.canonicalize().ok()?, path.file_name()?.to_owned()))
 }
 
 #[cfg(test)]
@@ -116,6 +108,8 @@ mod tests {
         std::fs::hard_link(at("eeprom.bin.bak"), at("track.gpx")).expect("a link");
         assert!(kept.claim("--gpx", &at("track.gpx")).is_err());
         kept.claim("--json", &at("lines")).expect("free");
+        std::os::unix::fs::symlink(at("lines"), at("dangling")).expect("a link");
+        assert!(kept.claim("--gpx", &at("dangling")).is_err());
         let error = kept.claim("--gpx", &at("lines")).expect_err("refused");
         assert!(error.to_string().contains("would write over --json"), "{error}");
     }

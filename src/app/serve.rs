@@ -15,7 +15,6 @@ use crate::session::{Command, Event, Handle};
 
 /// Serves until a signal ends it; every event is a line of output.
 pub(super) fn run(args: &ServeArgs) -> Result<u8, AppError> {
-    let mut output = open_output(args)?;
     let mut notices = Vec::new();
     let mut store = setup::open_store(&args.flight)?;
     notices.extend(setup::storage_notice(&store));
@@ -26,6 +25,7 @@ pub(super) fn run(args: &ServeArgs) -> Result<u8, AppError> {
     let mut vehicle = setup::build(setup, &mut notices)?;
     // RC comes through the doors only; resting virtual sticks would hide the loss of a script.
     vehicle.transmitter_mut().set_cut(true);
+    let mut output = open_output(args)?;
     let runtime = tokio::runtime::Builder::new_multi_thread()
         .worker_threads(1)
         .enable_all()

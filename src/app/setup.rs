@@ -165,8 +165,10 @@ pub(super) fn open_store(args: &FlightArgs) -> Result<Store, AppError> {
 /// What a flight is read from and stored in: no output may replace it.
 pub(super) fn kept_files(args: &FlightArgs, plan: Option<&PlanArg>) -> KeptFiles {
     let mut kept = KeptFiles::default();
-    if let Some(PlanArg::File(path, _)) = plan {
-        kept.keep("the plan", path);
+    match plan {
+        Some(PlanArg::File(path, _)) => kept.keep("the plan", path),
+        Some(PlanArg::Stdin(_)) => kept.keep("the plan", Path::new("/dev/stdin")),
+        Some(PlanArg::Builtin(_)) | None => {}
     }
     if let Some(path) = &args.settings {
         kept.keep("--settings", path);

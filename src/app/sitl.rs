@@ -97,16 +97,16 @@ fn open_store(args: &SitlArgs) -> Result<Store, AppError> {
         .map_err(|error| AppError::environment(error.to_string()))
 }
 
-/// Prints a line; `false` when nobody reads standard output any more.
-fn print(said: &OutputLine) -> bool {
+/// Prints a line.
+fn print(said: &OutputLine) -> io::Result<()> {
     match said {
         OutputLine::Out(line) => {
             let mut out = io::stdout().lock();
-            writeln!(out, "{}", printable::line(line)).and_then(|()| out.flush()).is_ok()
+            writeln!(out, "{}", printable::line(line)).and_then(|()| out.flush())
         }
         OutputLine::Err(line) => {
             error::tell(line);
-            true
+            Ok(())
         }
     }
 }
@@ -114,13 +114,16 @@ fn print(said: &OutputLine) -> bool {
 /// Prints a line, read or not.
 #[expect(clippy::needless_pass_by_value, reason = "what a session prints with")]
 fn say(said: OutputLine) {
-    print(&said);
+    print(&said).ok();
 }
 
 async fn fly(args: &SitlArgs, config: SitlConfig) -> Result<u8, AppError> {
     let unread = Notify::new();
+    // What went wrong with standard output, unless its reader has just gone.
+    let failed = Cell::new(None);
     let mut print = |said: OutputLine| {
-        if !print(&said) {
+        if let Err(error) = print(&said) {
+            failed.set(Some(error).filter(|error| error.kind() != io::ErrorKind::BrokenPipe));
             unread.notify_one();
         }
     };
@@ -142,8 +145,13 @@ async fn fly(args: &SitlArgs, config: SitlConfig) -> Result<u8, AppError> {
             () = unread.notified() => was_read.set(false),
         }
     };
-    let end = sitl.run(&mut print, &mut |vehicle| track.record(vehicle), stop).await;
+    let (end, doors) = sitl.run(&mut print, &mut |vehicle| track.record(vehicle), stop).await;
+    // First of all: a client that does not read keeps its door open for a while.
     track.finish();
+    doors.close().await;
+    if let Some(error) = failed.take() {
+        return Err(AppError::environment(format!("cannot write the output: {error}")));
+    }
     Ok(match end {
         SitlEnd::Stopped if was_read.get() => error::INTERRUPTED,
         SitlEnd::Stopped | SitlEnd::Rebooted => 0,

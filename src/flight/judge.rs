@@ -67,7 +67,9 @@ pub struct Judge {
     /// Since when the machine is IDLE, and the altitude then, m.
     idle_since: Option<(SimTime, f64)>,
     state: NavState,
-    /// The fix was lost in a landing, which goes on without it.
+    /// Which plan was flown last.
+    source: PlanSource,
+    /// The fix was lost in a landing, or on the way home, which goes on without it as a descent.
     lands_without_fix: bool,
 }
 
@@ -86,6 +88,7 @@ impl Judge {
             heavy_since: None,
             idle_since: None,
             state: NavState::Idle,
+            source: PlanSource::Stored,
             lands_without_fix: false,
         }
     }
@@ -130,12 +133,18 @@ impl Judge {
         if facts.state != self.state {
             let fix_lost = facts.entered_for == Some(TransitionReason::GivenUp(AbortReason::GpsLost));
             match facts.state {
-                NavState::Idle => self.lands_without_fix = self.state == NavState::Landing && fix_lost,
+                NavState::Idle => {
+                    let may_land = self.state == NavState::Landing || self.source == PlanSource::Rth;
+                    self.lands_without_fix = may_land && fix_lost;
+                }
                 // What the firmware says of a touchdown without a fix.
                 NavState::Complete => {}
                 _ => self.lands_without_fix = false,
             }
             self.state = facts.state;
+        }
+        if facts.state != NavState::Idle {
+            self.source = facts.source;
         }
     }
 

@@ -25,9 +25,9 @@ impl fmt::Display for LostTimeNotice {
         let LostTime { sum, achieved } = self.lost;
         write!(
             f,
-            "Real time was lost: the flight runs at {achieved:.2} instead of {} times real time, {:.1} s are lost so far.",
-            self.wanted,
-            sum.as_secs_f64()
+            "Real time was lost: {:.1} s so far; the flight ran at {achieved:.2} times real time lately, {} was wanted.",
+            sum.as_secs_f64(),
+            self.wanted
         )
     }
 }
@@ -94,7 +94,7 @@ mod tests {
         assert_eq!(told.iter().map(|(second, _)| *second).collect::<Vec<_>>(), [2, 62, 122]);
         assert_eq!(
             told[1].1,
-            "Real time was lost: the flight runs at 0.60 instead of 1 times real time, 24.8 s are lost so far."
+            "Real time was lost: 24.8 s so far; the flight ran at 0.60 times real time lately, 1 was wanted."
         );
         assert_eq!(time.lost(0.6).to_string(), "60.0 s, at 0.60 times real time");
     }

@@ -17,6 +17,8 @@ pub(super) struct Files {
     pub(super) backup: PathBuf,
     temporary: PathBuf,
     temporary_backup: PathBuf,
+    /// The image is found by a symbolic link.
+    pub(super) is_linked: bool,
 }
 
 /// One step of a save; after each of them the directory holds a good image.
@@ -44,7 +46,9 @@ impl Files {
     /// The names in `directory`, or, when the image there is a symbolic link, beside the file that it leads to: a save keeps
     /// the link.
     pub(super) fn new(directory: &Path) -> Self {
-        let image = link_target(&directory.join(FILE_NAME));
+        let named_image = directory.join(FILE_NAME);
+        let image = link_target(&named_image);
+        let is_linked = image != named_image;
         let directory = match image.parent() {
             Some(parent) if !parent.as_os_str().is_empty() => parent.to_owned(),
             _ => PathBuf::from("."),
@@ -61,7 +65,20 @@ impl Files {
             temporary: named(".tmp"),
             temporary_backup: named(".bak.tmp"),
             directory,
+            is_linked,
         }
+    }
+
+    /// Every file of the store that there is, and those that it will use.
+    pub(super) fn all(&self) -> Vec<PathBuf> {
+        let name = self.image.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let listed = std::fs::read_dir(&self.directory).into_iter().flatten().flatten();
+        let is_ours =
+            |path: &PathBuf| path.file_name().is_some_and(|file| file.to_string_lossy().starts_with(&name));
+        let mut files: Vec<PathBuf> = listed.map(|entry| entry.path()).filter(is_ours).collect();
+        let used = [&self.image, &self.backup, &self.temporary, &self.temporary_backup];
+        files.extend(used.into_iter().cloned());
+        files
     }
 
     /// Locks the directory; `None` when another process has it.
@@ -136,7 +153,8 @@ impl Files {
 }
 
 /// Where a path leads when it is a symbolic link, there or not; else the path itself.
-fn link_target(path: &Path) -> PathBuf {
+#[must_use]
+pub fn link_target(path: &Path) -> PathBuf {
     const MOST_LINKS: usize = 40;
     let mut path = path.to_owned();
     for _ in 0..MOST_LINKS {
@@ -237,6 +255,19 @@ mod tests {
         assert_eq!(std::fs::read(there.join("craft.bin")).expect("there"), encode(&named("second")));
         let backup = read_image(&there.join("craft.bin.bak")).expect("readable").expect("there");
         assert_eq!(backup, encode(&named("first")));
+    }
+
+    #[test]
+    fn a_link_to_somebody_elses_file_is_left_alone() {
+        let directory = tempfile::tempdir().expect("a directory");
+        let thesis = directory.path().join("thesis.txt");
+        std::fs::write(&thesis, "precious").expect("written");
+        std::os::unix::fs::symlink(&thesis, directory.path().join(FILE_NAME)).expect("a link");
+        let mut store = Store::open(directory.path(), false).expect("a store");
+        let findings = store.load().findings;
+        assert!(findings[0].contains("is not used: a link leads to it"), "{findings:?}");
+        assert!(store.save(&named("new")).is_err());
+        assert_eq!(std::fs::read(&thesis).expect("there"), b"precious");
     }
 
     #[test]

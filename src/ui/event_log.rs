@@ -32,6 +32,8 @@ impl Severity {
     pub fn of(kind: &SessionEvent) -> Self {
         match kind {
             SessionEvent::Vehicle(event) => Self::of_vehicle(event),
+            // What the store says of a save that failed.
+            SessionEvent::Notice(text) if text.starts_with("Not saved: ") => Self::Warn,
             SessionEvent::Endpoints(_)
             | SessionEvent::Notice(_)
             | SessionEvent::ArmingBlocked(_)

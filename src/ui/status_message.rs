@@ -167,10 +167,18 @@ fn cannot_hold_message(deviation: CannotHold) -> Option<StatusMessage> {
     message(Severity::Warn, condition, action)
 }
 
+/// Whether the craft has no plan to fly.
+fn lacks_plan(state: &AppState) -> bool {
+    state.view.vehicle.stored_plan.as_ref().is_some_and(|plan| plan.waypoints.is_empty())
+}
+
 /// An armed craft on the sticks: where it is, and the keys that lead on from there.
 fn by_hand(state: &AppState) -> Option<StatusMessage> {
     let craft = &state.view.vehicle.craft;
     let (condition, action) = match (transmitter::is_standing(state), transmitter::throttle_move(state)) {
+        (true, ThrottleMove::Low) if lacks_plan(state) => {
+            ("Armed, on the ground.", "U uploads the plan, then g takes off")
+        }
         (true, ThrottleMove::Low) => ("Armed, on the ground.", "g takes off; t low, then a disarms"),
         (true, _) => ("Armed, throttle low.", "t raises it and holds, then g engages"),
         (false, _) if transmitter::is_sinking(state) => {

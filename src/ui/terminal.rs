@@ -61,8 +61,9 @@ impl Tui {
     /// Whatever the terminal says.
     pub fn suspend(&mut self) -> io::Result<()> {
         restore();
-        // The signal of Ctrl-Z is handled here, and would not stop the program.
-        rustix::process::kill_process(rustix::process::getpid(), rustix::process::Signal::STOP)?;
+        // The whole job, as the terminal does: a script or cargo may have started the program, and the shell waits for
+        // them. The signal of Ctrl-Z is handled here, and would not stop it.
+        rustix::process::kill_current_process_group(rustix::process::Signal::STOP)?;
         self.resume()
     }
 

@@ -298,6 +298,7 @@ fn a_state_directory_is_used_only_when_named() {
     assert_eq!(sandbox.names(), Vec::<String>::new());
     std::fs::create_dir(sandbox.path("state")).expect("a directory");
     sandbox.run(&["fly", "land", "--state-dir", "state"]).exits(0);
+    assert_eq!(std::fs::read_dir(sandbox.path("state")).expect("a directory").count(), 0, "it only reads");
     let ran = sandbox.run(&["fly", "land", "--state-dir", "state", "--fresh"]).exits(2);
     assert!(ran.err.contains("--fresh") && ran.err.contains("--state-dir"), "{}", ran.err);
 }

@@ -75,6 +75,14 @@ fn sitl_ends_quietly_when_its_reader_has_gone() {
 }
 
 #[test]
+fn sitl_says_that_its_log_cannot_be_written() {
+    let sandbox = Sandbox::new();
+    let full = std::fs::OpenOptions::new().write(true).open("/dev/full").expect("a full device");
+    let doors = ["sitl", "--udp-ports", "0,0,0,0", "--tcp-port=0", "--ws-port=0"];
+    assert_eq!(start(&sandbox, &doors, full.into()).end(), Some(3));
+}
+
+#[test]
 fn serve_ends_on_a_signal_while_nobody_reads_it() {
     for signal in ["INT", "TERM", "HUP"] {
         let sandbox = Sandbox::new();

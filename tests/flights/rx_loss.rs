@@ -153,6 +153,18 @@ fn auto_land_descends_and_disarms() {
 }
 
 #[test]
+fn a_link_lost_in_a_fast_climb_does_not_stop_the_motors_up_there() {
+    let lines = format!("set failsafe_procedure = AUTO-LAND{MISSION}");
+    let mut rig = Rig::new(world(1).0, &lines, 0.5);
+    rig.engaged();
+    rig.until(30.0, "a fast climb", |rig| rig.samples.last().is_some_and(|now| now.vu > 3.5));
+    rig.vehicle.transmitter_mut().set_cut(true);
+    rig.until(120.0, "disarmed", |rig| rig.disarmed().is_some());
+    let truth = rig.vehicle.world().unwrap().truth();
+    assert!(truth.on_ground && !truth.crashed, "{}", rig.story());
+}
+
+#[test]
 fn rescue_flies_home_at_its_altitude() {
     let lines = format!(
         "set failsafe_procedure = GPS-RESCUE\nset gps_rescue_alt_mode = FIXED_ALT\nset gps_rescue_return_alt = 30{MISSION}"

@@ -157,7 +157,10 @@ fn complaint(seed: u64) -> Option<String> {
     let outcome = mission.fly();
     // Without a fix the craft comes down as fast over ground as the wind.
     let drifts = |fault: &str| fault.starts_with("gps-loss") && wind_mps > DRIFT_MPS;
-    let may_crash = fault.is_some_and(|(text, fatal)| fatal || drifts(&text)) || wind_mps > 10.0;
+    // A jump of the position or of the wind in the last metre moves it over the ground while it touches down.
+    let jumps = |fault: &str| fault.starts_with("gps-glitch") || fault.starts_with("gust");
+    let is_fatal = fault.as_ref().is_some_and(|(_, fatal)| *fatal) || wind_mps > 10.0;
+    let may_crash = is_fatal || fault.is_some_and(|(text, _)| drifts(&text) || jumps(&text));
     let problem = if !outcome.is_finite || outcome.result() == FlightResult::Diverged {
         Some("not a number".to_owned())
     } else if outcome.result() == FlightResult::Crashed && !may_crash {
@@ -166,7 +169,7 @@ fn complaint(seed: u64) -> Option<String> {
         outcome
             .disarms
             .iter()
-            .find(|(reason, alt_m)| *alt_m > AIRBORNE_M && *reason != DisarmReason::Switch && !may_crash)
+            .find(|(reason, alt_m)| *alt_m > AIRBORNE_M && *reason != DisarmReason::Switch && !is_fatal)
             .map(|(reason, alt_m)| format!("disarmed by {reason} {alt_m:.1} m up"))
     };
     problem.map(|problem| format!("{told}: {problem}"))

@@ -3,7 +3,7 @@
 use crate::firmware::Firmware;
 use crate::geo::LatLon;
 use crate::plan::FlightPlan;
-use crate::telemetry::{ArmingFlags, BadPackets, LostTime, NavTelemetry};
+use crate::telemetry::{ArmingFlags, BadPackets, LostTime, NavTelemetry, Refusal};
 
 /// Housekeeping rate, Hz.
 const SYSTEM_HZ: u32 = 10;
@@ -72,7 +72,11 @@ impl CliFacts {
             },
             tasks: tasks(firmware, rx_hz),
             smoothing: SmoothingFacts { rx_hz: signal.then_some(rx_hz), setpoint_hz, throttle_hz },
-            nav: NavFacts { telemetry: firmware.nav().clone(), active_plan: firmware.active_plan().cloned() },
+            nav: NavFacts {
+                telemetry: firmware.nav().clone(),
+                active_plan: firmware.active_plan().cloned(),
+                refusal: firmware.navigation.last_refusal(),
+            },
         }
     }
 }
@@ -260,4 +264,6 @@ pub struct NavFacts {
     pub telemetry: NavTelemetry,
     /// The plan being flown, while one is.
     pub active_plan: Option<FlightPlan>,
+    /// Why the autopilot did not engage, until it does or the craft is armed again.
+    pub refusal: Option<Refusal>,
 }

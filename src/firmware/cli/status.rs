@@ -77,7 +77,7 @@ pub(super) fn status(session: &mut Session<'_>, _rest: &str) {
     if facts.lost_time.is_notable() {
         session.line(format_args!("Real time lost: {}", facts.lost_time));
     }
-    if let Some(refusal) = facts.nav.telemetry.refusal {
+    if let Some(refusal) = facts.nav.refusal {
         session.line(format_args!("Autopilot: {}", refusal.sentence()));
     }
     session.raw("Arming disable flags:");

@@ -195,7 +195,7 @@ fn status(session: &mut Session<'_>) {
     }
     if nav.state == NavState::Idle {
         session.line("  inactive");
-        if let Some(refusal) = nav.refusal {
+        if let Some(refusal) = facts.nav.refusal {
             session.line(format_args!("  refused: {}", refusal.sentence()));
         }
         return;

@@ -130,7 +130,13 @@ impl Holds {
             controllers.track_altitude(now, params);
             (None, false)
         };
-        let lean = if modes.position && now.fix && tuning.uses_gps {
+        let keeps_place = modes.position && now.fix && tuning.uses_gps;
+        let lean = if keeps_place && controllers.land.awaits_lift_off() {
+            // On the ground the noise of the GPS would wind the integral up, for a jump at the lift-off.
+            self.position.release();
+            controllers.track_position(now);
+            Some(LeanDemand { roll_rad: 0.0, pitch_rad: 0.0 })
+        } else if keeps_place {
             Some(self.position.update(now, params, tuning, &mut controllers.position))
         } else {
             self.position.release();

@@ -56,6 +56,8 @@ pub(in crate::firmware) struct Navigation {
     /// The navigator's demands, while it flies.
     output: Option<NavOutput>,
     updated_at: SimTime,
+    /// Why the autopilot did not engage, until it does or the craft is armed again.
+    last_refusal: Option<Refusal>,
     /// Why position hold only levels the craft, as it was reported.
     only_levelled: Option<FirmwareNotice>,
 }
@@ -73,6 +75,7 @@ impl Navigation {
             inputs: NavInputs::unknown(),
             output: None,
             updated_at: now,
+            last_refusal: None,
             only_levelled: None,
         }
     }
@@ -87,6 +90,9 @@ impl Navigation {
         control: &ControlState,
     ) {
         let dt = now.seconds_since(std::mem::replace(&mut self.updated_at, now));
+        if safety.armed() && !self.inputs.armed {
+            self.last_refusal = None;
+        }
         let estimate = sensing.estimate();
         let receiver = rc.receiver();
         let stick = |value: f64| if receiver.signal() { value } else { 0.0 };
@@ -281,6 +287,7 @@ impl Navigation {
         throttle_stick_us: f64,
         outbox: &mut Outbox,
     ) -> Flown {
+        self.note_refusal();
         let held = if self.output.is_some() {
             self.holds.release();
             HoldOutput::default()
@@ -360,6 +367,20 @@ impl Navigation {
     /// The failsafe.
     pub(in crate::firmware) fn failsafe(&self) -> &Failsafe {
         &self.failsafe
+    }
+
+    /// Why the autopilot did not engage, also when the switch is off again or the craft disarmed.
+    pub(in crate::firmware) fn last_refusal(&self) -> Option<Refusal> {
+        self.last_refusal
+    }
+
+    fn note_refusal(&mut self) {
+        let refusal = self.navigator.telemetry().refusal;
+        if self.navigator.is_flying() {
+            self.last_refusal = None;
+        } else if refusal != Some(Refusal::NotArmed) || self.last_refusal.is_none() {
+            self.last_refusal = refusal.or(self.last_refusal);
+        }
     }
 
     /// Where the throttle stick rests in ALTHOLD, µs.

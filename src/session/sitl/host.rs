@@ -138,14 +138,14 @@ impl Sitl {
         self.doors.address(door)
     }
 
-    /// Runs until `stop`, or until the firmware restarts and was told to end then. `each_second` sees the vehicle once
-    /// a second while a simulator flies it.
+    /// Runs until `stop`, or until the firmware restarts and was told to end then; gives back the doors, which are still open.
+    /// `each_second` sees the vehicle once a second while a simulator flies it.
     pub async fn run(
         mut self,
         print: &mut impl FnMut(OutputLine),
         each_second: &mut impl FnMut(&Snapshot),
         stop: impl Future<Output = ()>,
-    ) -> SitlEnd {
+    ) -> (SitlEnd, Listeners) {
         tokio::pin!(stop);
         let mut next_line = Instant::now() + FLIGHT_INTERVAL;
         let mut count_clients = interval(CLIENT_INTERVAL);
@@ -181,8 +181,7 @@ impl Sitl {
         if !bad.is_none() {
             print(OutputLine::Err(format!("[SITL] Bad packets: {bad}.")));
         }
-        self.doors.close().await;
-        end
+        (end, self.doors)
     }
 
     fn report_flight(&self, print: &mut impl FnMut(OutputLine), each_second: &mut impl FnMut(&Snapshot)) {

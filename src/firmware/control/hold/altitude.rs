@@ -29,7 +29,7 @@ const DESCENT_GROWTH_PER_M: f64 = 0.05;
 const LAST_METRES_M: f64 = 1.5;
 /// The setpoint of a descent runs at most this far below the craft, m.
 const DESCENT_LEASH_M: f64 = 5.0;
-/// A craft on the ground sinks slower than this share of the demanded rate, and drifts slower than this, m/s.
+/// A craft on the ground moves vertically slower than this share of the landing rate, and drifts slower than this, m/s.
 const GROUNDED_SHARE: f64 = 0.25;
 const GROUNDED_DRIFT_MPS: f64 = 0.5;
 
@@ -206,7 +206,9 @@ impl AltitudeHold {
             landing_altitude_m: f64::INFINITY,
             max_speed_mps: GROUNDED_DRIFT_MPS,
             ground_speed_mps: if now.fix { now.vel_ne.norm() } else { 0.0 },
-            min_climb_mps: -GROUNDED_SHARE * rate,
+            // Neither sinks nor climbs: one that is stopped in a climb has little throttle, too, and has not landed.
+            climb_mps: -now.climb_mps.abs(),
+            min_climb_mps: -GROUNDED_SHARE * rate.min(params.descent_rate_mps()),
             ..TouchdownFacts::new(
                 params,
                 controller.hover_us(),
