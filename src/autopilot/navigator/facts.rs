@@ -128,6 +128,7 @@ impl Navigator {
             self.progress.pause();
         } else {
             let turn = LegTurn {
+                ground_speed_mps: seen.ground_speed_mps,
                 speed_mps: seen.ground_speed_mps.max(speed_setpoint_mps),
                 max_lean_rad: params.max_lean_rad(),
                 arc_rps: self.leg.arc.as_ref().map(CornerArc::turn_rate_rps),

@@ -10,10 +10,14 @@ const PROGRESS_M: f64 = 2.0;
 const FLYAWAY_SHARE: f64 = 0.25;
 const FLYAWAY_LEAST_M: f64 = 20.0;
 const FLYAWAY_MOST_M: f64 = 100.0;
+/// Until a craft that flew past its waypoint leans against its speed, s.
+const LEAN_DELAY_S: f64 = 1.0;
 
 /// The turn that a leg begins with.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct LegTurn {
+    /// Ground speed, m/s.
+    pub ground_speed_mps: f64,
     /// Ground speed, or the speed setpoint while that is greater, m/s: it has to come down first.
     pub speed_mps: f64,
     /// Greatest lean, rad.
@@ -26,8 +30,12 @@ impl LegTurn {
     /// How far the craft may be carried away from the waypoint before it has turned, m: the way it needs to stop, and
     /// the diameter of the arc.
     fn overshoot_m(&self) -> f64 {
-        let stop = self.speed_mps.powi(2) / (2.0 * GRAVITY * self.max_lean_rad.tan().max(0.1));
-        stop + self.arc_rps.map_or(0.0, |rate| 2.0 * self.speed_mps / rate)
+        self.stop_m(self.speed_mps) + self.arc_rps.map_or(0.0, |rate| 2.0 * self.speed_mps / rate)
+    }
+
+    /// How far a craft of this speed goes on while it brakes at the greatest lean, m.
+    fn stop_m(&self, speed_mps: f64) -> f64 {
+        speed_mps.powi(2) / (2.0 * GRAVITY * self.max_lean_rad.tan().max(0.1))
     }
 }
 
@@ -37,6 +45,8 @@ struct Progress {
     began: SimTime,
     leg_m: f64,
     best_m: f64,
+    /// How far the speed that the craft had there carries it past a near waypoint.
+    carry_m: f64,
     /// Where progress was last seen, and when.
     mark_m: f64,
     marked_at: SimTime,
@@ -51,6 +61,7 @@ impl Progress {
             began: time,
             leg_m: distance_m,
             best_m: distance_m,
+            carry_m: 0.0,
             mark_m: distance_m,
             marked_at: time,
             overshoot_m: turn.overshoot_m(),
@@ -65,7 +76,10 @@ impl Progress {
     }
 
     fn update(&mut self, distance_m: f64, turn: &LegTurn, time: SimTime) {
-        self.best_m = self.best_m.min(distance_m);
+        if distance_m < self.best_m {
+            self.best_m = distance_m;
+            self.carry_m = turn.ground_speed_mps * LEAN_DELAY_S + turn.stop_m(turn.ground_speed_mps);
+        }
         if self.on_arc {
             // It speeds up on the arc.
             self.overshoot_m = self.overshoot_m.max(turn.overshoot_m());
@@ -104,7 +118,7 @@ impl ProgressMonitor {
     pub(super) fn facts(&self, distance_m: f64, time: SimTime) -> Option<ProgressFacts> {
         self.0.map(|progress| {
             let margin = (FLYAWAY_SHARE * progress.leg_m).clamp(FLYAWAY_LEAST_M, FLYAWAY_MOST_M);
-            let turn = if progress.is_turning(time) { progress.overshoot_m } else { 0.0 };
+            let turn = if progress.is_turning(time) { progress.overshoot_m } else { progress.carry_m };
             ProgressFacts {
                 no_progress_s: time.seconds_since(progress.marked_at),
                 distance_m,
