@@ -2,14 +2,12 @@
 
 use std::collections::VecDeque;
 
-use tui_input::{Input, InputRequest};
-
+use super::history::History;
+use super::text_field::TextField;
 use crate::session::command::CliOutput;
 
 /// Lines of scrollback kept.
 const MAX_SCROLLBACK: usize = 5000;
-/// Lines of history kept.
-const MAX_HISTORY: usize = 500;
 
 /// Completion and help, given by who knows the firmware.
 #[derive(Debug, Clone, Copy)]
@@ -44,7 +42,7 @@ pub enum CliLineKind {
 #[derive(Debug, Default)]
 pub struct CliState {
     /// The line being typed.
-    pub input: Input,
+    pub input: TextField,
     /// Everything above it.
     pub lines: VecDeque<(CliLineKind, String)>,
     /// Lines scrolled up from the newest.
@@ -54,24 +52,16 @@ pub struct CliState {
     /// A line is being run.
     pub waiting: bool,
     queue: VecDeque<String>,
-    history: Vec<String>,
-    recalled: Option<usize>,
-    draft: String,
+    history: History,
 }
 
 impl CliState {
     /// Takes the input as a line to run.
     pub fn enter(&mut self) {
-        let line = self.input.value_and_reset();
+        let line = self.input.take();
         self.candidates.clear();
-        self.recalled = None;
         self.scroll = 0;
-        if !line.trim().is_empty() && self.history.last() != Some(&line) {
-            if self.history.len() == MAX_HISTORY {
-                self.history.remove(0);
-            }
-            self.history.push(line.clone());
-        }
+        self.history.remember(&line);
         self.queue.push_back(line);
     }
 
@@ -125,9 +115,7 @@ impl CliState {
         let text = text.replace("\r\n", "\n").replace('\r', "\n");
         let mut parts = text.split('\n').peekable();
         while let Some(part) = parts.next() {
-            for c in part.chars().filter(|c| !c.is_control()) {
-                self.input.handle(InputRequest::InsertChar(c));
-            }
+            self.input.insert(part);
             if parts.peek().is_some() {
                 self.enter();
             }
@@ -136,41 +124,26 @@ impl CliState {
 
     /// Throws the input and all queued lines away; whether there was anything.
     pub fn cancel(&mut self) -> bool {
-        let any = !self.input.value().is_empty() || !self.queue.is_empty();
+        let any = !self.input.is_empty() || !self.queue.is_empty();
         self.queue.clear();
-        self.input.reset();
+        self.input = TextField::default();
         self.candidates.clear();
-        self.recalled = None;
+        self.history.forget_place();
         any
     }
 
     /// Recalls an older line.
     pub fn older(&mut self) {
-        let next = match self.recalled {
-            None => {
-                self.draft = self.input.value().to_owned();
-                self.history.len().checked_sub(1)
-            }
-            Some(at) => at.checked_sub(1).or(Some(0)),
-        };
-        self.recall(next);
+        if let Some(line) = self.history.older(self.input.value()) {
+            self.input = TextField::new(line);
+        }
     }
 
     /// Recalls a newer line, in the end the one being typed.
     pub fn newer(&mut self) {
-        let Some(at) = self.recalled else { return };
-        if at + 1 < self.history.len() {
-            self.recall(Some(at + 1));
-        } else {
-            self.recalled = None;
-            self.input = Input::new(std::mem::take(&mut self.draft));
+        if let Some(line) = self.history.newer() {
+            self.input = TextField::new(line);
         }
-    }
-
-    fn recall(&mut self, at: Option<usize>) {
-        let Some(line) = at.and_then(|at| self.history.get(at)) else { return };
-        self.input = Input::new(line.clone());
-        self.recalled = at;
     }
 
     /// Extends the input as far as all completions agree, and lists them when they do not.
@@ -190,7 +163,7 @@ impl CliState {
             common = common.get(..shared).unwrap_or(common);
         }
         if common.len() >= self.input.value().len() {
-            self.input = Input::new(common.to_owned());
+            self.input = TextField::new(common);
         }
         self.candidates = if candidates.len() > 1 { candidates } else { Vec::new() };
     }

@@ -1,7 +1,7 @@
 //! The popups.
 
 /// What lies over the panels; the last one opened gets the keys first.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Popup {
     /// The keys, scrolled down by this many lines.
     Help {

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use crossterm::event::{KeyCode, KeyEvent, KeyEventKind};
+use crossterm::event::{KeyEvent, KeyEventKind};
 
 use crate::session::{Command, SessionView};
 
@@ -19,12 +19,13 @@ use super::track::TrackPoint;
 use super::transmitter;
 use super::viewport::MapMode;
 
-mod command_line;
+mod cli;
 mod flight;
 mod mouse;
+mod popup;
 mod view;
 
-use command_line::{cli_key, paste, run_cli};
+use cli::{cli_key, paste, run_cli};
 use flight::{fly, speed, upload, uploaded};
 use view::{ZOOM_STEP, focus, follow, neighbour, pan, scroll, zoom_map};
 
@@ -91,35 +92,9 @@ fn key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
         state.cancelled = None;
     }
     state.notice = None;
-    match state.popups.last().copied() {
+    match state.popups.last() {
         _ if found == Some(Action::Cancel) => cancel(state),
-        Some(Popup::Quit) => match event.code {
-            KeyCode::Char('y' | 'Y' | 'q') | KeyCode::Enter => vec![Effect::Quit],
-            KeyCode::Char('n' | 'N') | KeyCode::Esc => {
-                state.popups.pop();
-                Vec::new()
-            }
-            _ => Vec::new(),
-        },
-        Some(Popup::Help { scroll }) => {
-            let to = match event.code {
-                KeyCode::Up | KeyCode::Char('k') => Some(scroll.saturating_sub(1)),
-                KeyCode::Down | KeyCode::Char('j') => Some(scroll + 1),
-                KeyCode::PageUp => Some(scroll.saturating_sub(10)),
-                KeyCode::PageDown | KeyCode::Char(' ') => Some(scroll + 10),
-                _ => None,
-            };
-            state.popups.pop();
-            match to {
-                Some(scroll) => {
-                    state.popups.push(Popup::Help { scroll: scroll.min(action::ACTIONS.len()) });
-                    Vec::new()
-                }
-                // Any other key closes the help and does what it does, so that keys can be tried as they are read.
-                None if matches!(found, Some(Action::Help | Action::Back | Action::Quit)) => Vec::new(),
-                None => found.map_or_else(Vec::new, |action| act(state, action)),
-            }
-        }
+        Some(_) => popup::key(state, event, found),
         None => match found {
             Some(action) => act(state, action),
             None if state.focus == Panel::Cli => cli_key(state, event),

@@ -2,7 +2,6 @@
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
-use ratatui::text::Line;
 
 use crate::ui::app_state::AppState;
 use crate::ui::console::CliLineKind;
@@ -10,11 +9,14 @@ use crate::ui::formatting::cut;
 use crate::ui::panel::Panel;
 use crate::ui::theme::Role;
 
-use super::{line, row, span};
+use super::row;
 use crate::ui::text_wrap::{fitting, folded, wrapped};
 
 /// Rows of completion candidates shown at most.
 const CANDIDATE_ROWS: usize = 4;
+
+/// Stands in front of what is typed.
+const PROMPT: &str = "# ";
 
 /// Shown while nothing was entered yet.
 const WELCOME: &str =
@@ -66,13 +68,10 @@ pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<
         row(buffer, area, prompt_row - above, theme, *role, text);
     }
 
-    let room = width - 3;
-    let scroll = cli.input.visual_scroll(room);
-    let visible: String = cli.input.value().chars().skip(scroll).take(room).collect();
-    let prompt = Line::from(vec![span(theme, Role::Key, "# "), span(theme, Role::Text, visible)]);
-    line(buffer, area, prompt_row, &prompt);
-    let column = 2 + cli.input.visual_cursor().saturating_sub(scroll).min(room);
-    Some(Position::new(area.x + column as u16, area.y + prompt_row))
+    row(buffer, area, prompt_row, theme, Role::Key, PROMPT);
+    let prompt = PROMPT.len() as u16;
+    let place = Rect::new(area.x + prompt, area.y + prompt_row, area.width - prompt, 1);
+    cli.input.draw(theme, place, buffer)
 }
 
 /// The furthest that the panel scrolls up: then its oldest line is the first on the screen.

@@ -1,7 +1,6 @@
 //! Keys and pasted text while the CLI panel has the focus.
 
-use crossterm::event::{Event as TerminalEvent, KeyCode, KeyEvent};
-use tui_input::backend::crossterm::EventHandler as _;
+use crossterm::event::{KeyCode, KeyEvent};
 
 use crate::ui::app_state::AppState;
 use crate::ui::event_log::Severity;
@@ -18,7 +17,7 @@ pub(super) fn cli_key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
             return run_cli(state);
         }
         KeyCode::Tab => {
-            if state.cli.input.value().is_empty() {
+            if state.cli.input.is_empty() {
                 return focus(state, neighbour(state, 1));
             }
             state.cli.complete(state.cli_help);
@@ -28,7 +27,7 @@ pub(super) fn cli_key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
         KeyCode::PageUp => scroll_panel(state, Panel::Cli, -10),
         KeyCode::PageDown => scroll_panel(state, Panel::Cli, 10),
         _ => {
-            if state.cli.input.handle_event(&TerminalEvent::Key(event)).is_some() {
+            if state.cli.input.key(event) {
                 state.cli.candidates.clear();
                 state.cli.scroll = 0;
             }

@@ -1,0 +1,76 @@
+//! The lines that were entered in a text field, to be recalled.
+
+/// Lines kept.
+const MAX_LINES: usize = 500;
+
+/// Entered lines, the oldest first, and the one that is recalled.
+#[derive(Debug, Default)]
+pub(super) struct History {
+    lines: Vec<String>,
+    recalled: Option<usize>,
+    /// What was being typed when the first line was recalled.
+    draft: String,
+}
+
+impl History {
+    /// Remembers an entered line, unless it is blank or the same as the one before.
+    pub(super) fn remember(&mut self, line: &str) {
+        self.recalled = None;
+        if line.trim().is_empty() || self.lines.last().is_some_and(|last| last == line) {
+            return;
+        }
+        if self.lines.len() == MAX_LINES {
+            self.lines.remove(0);
+        }
+        self.lines.push(line.to_owned());
+    }
+
+    /// Ends recalling: what is typed next is new.
+    pub(super) fn forget_place(&mut self) {
+        self.recalled = None;
+    }
+
+    /// The line before the recalled one, or the newest instead of `typed`; none when there is no older one.
+    pub(super) fn older(&mut self, typed: &str) -> Option<String> {
+        let at = match self.recalled {
+            None => self.lines.len().checked_sub(1)?,
+            Some(at) => at.checked_sub(1)?,
+        };
+        if self.recalled.is_none() {
+            typed.clone_into(&mut self.draft);
+        }
+        self.recalled = Some(at);
+        self.lines.get(at).cloned()
+    }
+
+    /// The line after the recalled one, in the end what was being typed; none when nothing is recalled.
+    pub(super) fn newer(&mut self) -> Option<String> {
+        let next = self.recalled? + 1;
+        if next < self.lines.len() {
+            self.recalled = Some(next);
+            return self.lines.get(next).cloned();
+        }
+        self.recalled = None;
+        Some(std::mem::take(&mut self.draft))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_is_bounded_and_keeps_no_line_twice_in_a_row() {
+        let mut history = History::default();
+        for n in 0..MAX_LINES + 3 {
+            history.remember(&n.to_string());
+            history.remember(&n.to_string());
+        }
+        history.remember("  ");
+        assert_eq!(history.older("").as_deref(), Some("502"));
+        for _ in 1..MAX_LINES {
+            assert!(history.older("").is_some());
+        }
+        assert_eq!(history.older(""), None, "500 are kept");
+    }
+}

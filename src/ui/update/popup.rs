@@ -1,0 +1,47 @@
+//! Keys while something lies over the panels.
+
+use crossterm::event::{KeyCode, KeyEvent};
+
+use super::act;
+use crate::ui::action::{self, Action};
+use crate::ui::app_state::AppState;
+use crate::ui::message::Effect;
+use crate::ui::popup::Popup;
+
+/// A key for the popup that was opened last; `found` is what it means without one.
+pub(super) fn key(state: &mut AppState, event: KeyEvent, found: Option<Action>) -> Vec<Effect> {
+    match state.popups.last_mut() {
+        None => Vec::new(),
+        Some(Popup::Quit) => quit_key(state, event),
+        Some(Popup::Help { scroll }) => {
+            let to = match event.code {
+                KeyCode::Up | KeyCode::Char('k') => Some(scroll.saturating_sub(1)),
+                KeyCode::Down | KeyCode::Char('j') => Some(*scroll + 1),
+                KeyCode::PageUp => Some(scroll.saturating_sub(10)),
+                KeyCode::PageDown | KeyCode::Char(' ') => Some(*scroll + 10),
+                _ => None,
+            };
+            if let Some(to) = to {
+                *scroll = to.min(action::ACTIONS.len());
+                return Vec::new();
+            }
+            state.popups.pop();
+            match found {
+                // Any other key closes the help and does what it does, so that keys can be tried as they are read.
+                None | Some(Action::Help | Action::Back | Action::Quit) => Vec::new(),
+                Some(action) => act(state, action),
+            }
+        }
+    }
+}
+
+fn quit_key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
+    match event.code {
+        KeyCode::Char('y' | 'Y' | 'q') | KeyCode::Enter => vec![Effect::Quit],
+        KeyCode::Char('n' | 'N') | KeyCode::Esc => {
+            state.popups.pop();
+            Vec::new()
+        }
+        _ => Vec::new(),
+    }
+}
