@@ -13,9 +13,10 @@ mod request_handler;
 mod runtime;
 mod simulator;
 pub mod sitl;
+mod timeline;
 mod upload;
 
-pub use command::{Command, SessionView};
+pub use command::{Command, Seek, SessionView};
 pub use event::{EndpointAddresses, Event, SessionEvent};
 pub use hazards::hazards;
 pub use links::{Links, MotorTargets, MotorsError};
@@ -24,4 +25,5 @@ pub use persistence::Persistence;
 pub use request_handler::{Handled, RequestHandler};
 pub use runtime::{Endpoints, Handle, SessionConfig, start};
 pub use simulator::SimulatorNotice;
+pub use timeline::{Mark, MarkKind, TimelineView};
 pub use upload::upload;

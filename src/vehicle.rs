@@ -6,13 +6,15 @@
 //! 2. the flight controller steps on the sensor frame of this instant and gives motor commands;
 //! 3. the physics steps with them, which makes the sensor frame of the next instant.
 //!
-//! A clone is a frozen vehicle: going on from it gives the same trajectory to the last bit.
+//! A clone is a frozen vehicle: going on from it gives the same trajectory to the last bit. What came from outside meanwhile
+//! is an [`Input`].
 //!
 //! The flight controller is embedded or remote ([`FlightController`]), the physics is the simulated world or an external
 //! simulator: then each [`Vehicle::tick_on`] steps the flight controller on what that simulator measured, and
 //! [`Vehicle::see`] tells where it has put the craft.
 
 mod controller;
+mod input;
 mod physics;
 mod view;
 
@@ -20,8 +22,10 @@ use rand::RngExt as _;
 use rand_chacha::ChaCha8Rng;
 
 pub use controller::{
-    Answer, FlightController, FrameOut, LateAnswer, RemoteController, RemoteRequest, RemoteTelemetry, Ticket,
+    Answer, EmbeddedController, FlightController, FrameOut, LateAnswer, RemoteController, RemoteRequest,
+    RemoteTelemetry, Ticket,
 };
+pub use input::{Input, Message};
 
 use crate::firmware::config::Configuration;
 use crate::firmware::{Firmware, FirmwareOptions};
@@ -58,6 +62,8 @@ pub struct Vehicle {
     engaged_at: Option<SimTime>,
     active_plan: Option<Box<FlightPlan>>,
     events: Vec<Event>,
+    /// The transmitter was touched since the inputs were taken last.
+    transmitter_set: bool,
 }
 
 impl Vehicle {
@@ -108,6 +114,7 @@ impl Vehicle {
             engaged_at: None,
             active_plan: None,
             events,
+            transmitter_set: false,
         }
     }
 
@@ -153,6 +160,7 @@ impl Vehicle {
 
     /// The RC transmitter, to move its sticks.
     pub fn transmitter_mut(&mut self) -> &mut RcTransmitter {
+        self.transmitter_set = true;
         &mut self.transmitter
     }
 
@@ -203,7 +211,10 @@ impl Vehicle {
     /// # Errors
     /// When a value is not allowed; then nothing has changed.
     pub fn change_world(&mut self, command: WorldCommand) -> Result<(), WorldError> {
-        self.physics.apply(command)
+        let input = command.clone();
+        self.physics.apply(command)?;
+        self.note_input(|| Input::World(Box::new(input)));
+        Ok(())
     }
 
     /// Lets the scripted pilot fly the mission from here: climb to `takeoff_m`, engage.
@@ -211,6 +222,7 @@ impl Vehicle {
     /// # Errors
     /// The mode that no channel switches.
     pub fn start_pilot(&mut self, takeoff_m: f64) -> Result<(), Mode> {
+        self.transmitter_set = true;
         self.transmitter.start_pilot(Pilot::new(takeoff_m, &self.controller.mode_ranges())?);
         Ok(())
     }
@@ -219,6 +231,7 @@ impl Vehicle {
     /// engagement waits for the next one. A craft that an external simulator moves is disarmed only, and starts
     /// where it is seen next.
     pub fn reset_craft(&mut self) {
+        self.note_input(|| Input::ResetCraft);
         self.engaged_at = None;
         self.transmitter.stop_pilot();
         *self.transmitter.sticks_mut() = RcFrame::SAFE;
@@ -283,6 +296,12 @@ impl Vehicle {
     /// Moves the events since the last call into `sink`, oldest first.
     pub fn drain_events(&mut self, sink: impl FnMut(Event)) {
         self.events.drain(..).for_each(sink);
+    }
+
+    fn note_input(&mut self, input: impl FnOnce() -> Input) {
+        if let Some(log) = self.controller.input_log_mut() {
+            log.note(input);
+        }
     }
 
     fn notice(&mut self, notice: VehicleNotice) {
@@ -352,7 +371,7 @@ impl Vehicle {
 }
 
 fn embedded(configuration: Configuration, options: FirmwareOptions) -> FlightController {
-    FlightController::Embedded(Box::new(Firmware::new(configuration, options)))
+    Firmware::new(configuration, options).into()
 }
 
 #[cfg(test)]

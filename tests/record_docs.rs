@@ -66,8 +66,11 @@ fn one_of_each() -> Vec<SessionEvent> {
         EventKind::BatteryEmpty { cell_v: 2.9 },
         EventKind::Notice(VehicleNotice::BackHome),
     ];
-    let session =
-        [SessionEvent::Endpoints(EndpointAddresses::default()), SessionEvent::Notice("a notice".to_owned())];
+    let session = [
+        SessionEvent::Endpoints(EndpointAddresses::default()),
+        SessionEvent::Branch { number: 1, left: SimTime(2) },
+        SessionEvent::Notice("a notice".to_owned()),
+    ];
     firmware.chain(vehicle).map(SessionEvent::Vehicle).chain(session).collect()
 }
 
@@ -97,6 +100,7 @@ fn name(kind: &SessionEvent) -> Option<&'static str> {
     match kind {
         SessionEvent::Vehicle(kind) => vehicle_name(kind),
         SessionEvent::Endpoints(_) => Some("doors"),
+        SessionEvent::Branch { .. } => Some("branch"),
         SessionEvent::Notice(_) | SessionEvent::ArmingBlocked(_) | SessionEvent::Simulator(_) => {
             Some("notice")
         }

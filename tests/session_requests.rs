@@ -52,7 +52,7 @@ impl Bench {
         let closed = ListenConfig { tcp_port: None, ws_port: None, rc_port: None, ..ListenConfig::default() };
         let (doors, _) = Listeners::open(&closed, mpsc::channel(1).0).await;
         let options = FirmwareOptions { arm_assist: true, ..FirmwareOptions::default() };
-        let mut controller = FlightController::Embedded(Box::new(Firmware::new(configuration, options)));
+        let mut controller = FlightController::from(Firmware::new(configuration, options));
         Self {
             persistence: Persistence::new(Store::in_memory(), &mut controller, true),
             controller,

@@ -21,6 +21,10 @@ pub fn text(kind: &SessionEvent) -> Option<String> {
         SessionEvent::Endpoints(addresses) => Some(endpoints(addresses)),
         SessionEvent::Notice(notice) | SessionEvent::ArmingBlocked(notice) => Some(sentence_end(notice)),
         SessionEvent::Simulator(remark) => Some(sentence_end(&remark.to_string())),
+        SessionEvent::Branch { left, .. } => Some(format!(
+            "Flown on from here: the flight that had come to {:.1} s is left behind; what was saved stays saved.",
+            left.as_secs_f64()
+        )),
         SessionEvent::FirstState { .. } | SessionEvent::FirstRc { .. } | SessionEvent::Restarted => None,
     }
 }

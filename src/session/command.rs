@@ -2,8 +2,9 @@
 
 use std::sync::Arc;
 
+use super::timeline::TimelineView;
 use crate::plan::FlightPlan;
-use crate::signals::RcFrame;
+use crate::signals::{RcFrame, SimTime};
 use crate::telemetry::{EndpointStatus, LinkState, LostTime, Snapshot};
 
 /// Why time cannot be paused, stepped or made faster with an external simulator.
@@ -13,6 +14,33 @@ pub const TIME_IS_EXTERNAL: &str = "The simulator sets the time: pause it or cha
 pub const PLACE_IS_EXTERNAL: &str =
     "The simulator places the craft: reset its world there, and the firmware starts anew by itself.";
 
+/// Why a flight cannot be taken back whose flight controller runs somewhere else.
+pub const NOT_RECORDED: &str = "The flight controller runs elsewhere: its time cannot be taken back.";
+
+/// Why nothing is steered while an earlier instant is shown.
+pub const REWOUND: &str = "An earlier instant is shown: `b` flies on from here, `e` goes back to the end.";
+
+/// Which instant to show.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Seek {
+    /// The instant at this time.
+    Time(SimTime),
+    /// So many seconds later; negative: earlier.
+    Seconds(f64),
+    /// The event before; of the autopilot's states alone, or any.
+    Back {
+        /// Only its states count.
+        states_only: bool,
+    },
+    /// The event after; from the newest instant on, the flight goes on until there is one.
+    Forward {
+        /// Only the autopilot's states count.
+        states_only: bool,
+    },
+    /// The newest instant; time goes on if it did before.
+    Newest,
+}
+
 /// A request to the session. Requests are carried out between two ticks, in the order they were sent.
 #[derive(Debug)]
 pub enum Command {
@@ -20,6 +48,10 @@ pub enum Command {
     Pause(bool),
     /// Advance this many ticks while paused.
     Step(u32),
+    /// Show another instant of the flight, which waits meanwhile.
+    Seek(Seek),
+    /// Fly on from the earlier instant that is shown: what came after it is left behind.
+    FlyOn,
     /// Run at this many times real time; [`f64::INFINITY`] = as fast as possible.
     Speed(f64),
     /// The virtual sticks: sent 50 times a simulated second until replaced.
@@ -97,4 +129,6 @@ pub struct SessionView {
     pub simulator: Option<LinkState>,
     /// Files or doors influence the flight: not repeatable.
     pub live: bool,
+    /// The recording; `None` when the flight cannot be taken back.
+    pub timeline: Option<TimelineView>,
 }

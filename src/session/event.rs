@@ -5,6 +5,7 @@ use std::net::SocketAddr;
 use tokio::sync::mpsc;
 
 use super::simulator::SimulatorNotice;
+use super::timeline::Marks;
 use crate::signals::{RcFrame, SimTime};
 use crate::telemetry::{self, EventKind};
 use crate::vehicle::Vehicle;
@@ -47,6 +48,13 @@ pub enum SessionEvent {
     },
     /// The firmware started anew on what is stored, as a client of a link asked.
     Restarted,
+    /// The flight went on from an earlier instant, that of this event; what came after it is left behind.
+    Branch {
+        /// How often that has happened.
+        number: u32,
+        /// The newest instant of the flight that is left.
+        left: SimTime,
+    },
 }
 
 /// Where other programs reach the vehicle; `None` = that endpoint is closed.
@@ -76,33 +84,55 @@ impl From<telemetry::Event> for Event {
     }
 }
 
-/// Sends the events of a vehicle and the notices about it in the order in which they happened.
+/// Sends the events of a vehicle and the notices about it in the order in which they happened, and marks them.
 #[derive(Debug)]
-pub(super) struct EventSender(mpsc::UnboundedSender<Event>);
+pub(super) struct EventSender {
+    events: mpsc::UnboundedSender<Event>,
+    marks: Marks,
+}
 
 impl EventSender {
     pub(super) fn new(events: mpsc::UnboundedSender<Event>) -> Self {
-        Self(events)
+        Self { events, marks: Marks::default() }
+    }
+
+    /// When something happened.
+    pub(super) fn marks(&self) -> &Marks {
+        &self.marks
+    }
+
+    /// Tells that the flight of `vehicle` goes on from here, an earlier instant than `left`.
+    pub(super) fn branch(&mut self, vehicle: &mut Vehicle, number: u32, left: SimTime) {
+        self.marks.forget_after(vehicle.time());
+        self.report(vehicle, SessionEvent::Branch { number, left });
     }
 
     /// Sends what has happened to the vehicle.
-    pub(super) fn send_events_of(&self, vehicle: &mut Vehicle) {
-        vehicle.drain_events(|event| self.send(event.into()));
+    pub(super) fn send_events_of(&mut self, vehicle: &mut Vehicle) {
+        vehicle.drain_events(|event| {
+            self.marks.note(&event);
+            send(&self.events, event.into());
+        });
     }
 
     /// Sends a notice, after what has happened to the vehicle before.
-    pub(super) fn notice(&self, vehicle: &mut Vehicle, text: impl Into<String>) {
+    pub(super) fn notice(&mut self, vehicle: &mut Vehicle, text: impl Into<String>) {
         self.report(vehicle, SessionEvent::Notice(text.into()));
     }
 
     /// As [`Self::notice`], for any event.
-    pub(super) fn report(&self, vehicle: &mut Vehicle, kind: SessionEvent) {
+    pub(super) fn report(&mut self, vehicle: &mut Vehicle, kind: SessionEvent) {
         self.send_events_of(vehicle);
-        self.send(Event { time: vehicle.time(), kind });
+        send(&self.events, Event { time: vehicle.time(), kind });
     }
 
-    fn send(&self, event: Event) {
-        // The receiver is gone only while the program ends.
-        drop(self.0.send(event));
+    /// Sends a notice about an earlier instant.
+    pub(super) fn notice_at(&self, time: SimTime, text: impl Into<String>) {
+        send(&self.events, Event::notice(time, text));
     }
+}
+
+fn send(events: &mpsc::UnboundedSender<Event>, event: Event) {
+    // The receiver is gone only while the program ends.
+    drop(events.send(event));
 }

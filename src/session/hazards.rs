@@ -28,7 +28,7 @@ mod tests {
     #[test]
     fn an_upload_with_a_hazard_is_warned_of() {
         let firmware = Firmware::new(Configuration::default(), FirmwareOptions::default());
-        let mut controller = FlightController::Embedded(Box::new(firmware));
+        let mut controller = FlightController::from(firmware);
         let mut plan = FlightPlan::default();
         let home = LatLon::new(404_635_000, -795_182_000);
         plan.waypoints.push(Waypoint {

@@ -49,6 +49,11 @@ impl Persistence {
         saved.map_err(|error| format!("Not saved: {error}."))
     }
 
+    /// Tells `controller`, which was brought back from an earlier instant, what is stored now.
+    pub(super) fn tell(&self, controller: &mut FlightController) {
+        controller.set_storage_facts(self.store.facts());
+    }
+
     /// Saves and restarts as the answer to a line asks for, the restart last. A save that fails makes the answer a refusal,
     /// and nothing restarts.
     pub(super) fn carry_out(

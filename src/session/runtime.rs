@@ -1,7 +1,8 @@
 //! The thread that owns the vehicle: takes commands and requests, runs the due ticks, publishes views and events.
 //!
 //! `commands` carries out what the user interface asks, `console` its command line, `requests` what comes over the links;
-//! `late` passes on what a remote flight controller answers; `publishing` makes the view.
+//! `late` passes on what a remote flight controller answers; `rewind` shows earlier instants and flies on from them;
+//! `publishing` makes the view.
 #![allow(clippy::disallowed_methods, reason = "this is where wall time meets simulated time")]
 
 mod commands;
@@ -9,6 +10,7 @@ mod console;
 mod late;
 mod publishing;
 mod requests;
+mod rewind;
 
 use std::sync::Arc;
 use std::task::{Context, Wake, Waker};
@@ -26,6 +28,7 @@ use super::persistence::Persistence;
 use super::real_time::RealTime;
 use super::request_handler::RequestHandler;
 use super::simulator::Simulator;
+use super::timeline::Timeline;
 use crate::firmware::cli::Interpreter;
 use crate::link::{ExternalSimulator, ImpairedLink, Request};
 use crate::sim::Stream;
@@ -33,6 +36,7 @@ use crate::storage::Store;
 use crate::telemetry::{BadPackets, EndpointStatus, LinkState};
 use crate::vehicle::Vehicle;
 use late::WaitingInterface;
+use rewind::RunOn;
 
 /// Interval of published views.
 const VIEW_INTERVAL: Duration = Duration::from_millis(16);
@@ -97,6 +101,7 @@ pub fn start(mut config: SessionConfig) -> std::io::Result<Handle> {
     let incoming = ImpairedLink::new(Stream::Link.rng(config.vehicle.seed()));
     let (command_tx, command_rx) = mpsc::channel(256);
     let (event_tx, event_rx) = mpsc::unbounded_channel();
+    let timeline = if simulator.is_none() { Timeline::new(&mut config.vehicle) } else { None };
     let persistence = Persistence::new(config.store, config.vehicle.controller_mut(), config.starter_modes);
     let mut session = Session {
         pacer: Pacer::new(config.vehicle.step_us(), config.speed),
@@ -111,6 +116,9 @@ pub fn start(mut config: SessionConfig) -> std::io::Result<Handle> {
         arming: ArmingWatch::default(),
         late_answers: LateAnswers::default(),
         real_time: RealTime::default(),
+        timeline,
+        run_on: None,
+        was_paused: false,
         rc_received: false,
         changed: true,
         more_waits: false,
@@ -139,6 +147,12 @@ struct Session {
     /// What the user interface asked of a remote flight controller.
     late_answers: LateAnswers<WaitingInterface>,
     real_time: RealTime,
+    /// The recording, unless the flight cannot be taken back.
+    timeline: Option<Timeline>,
+    /// The flight goes on, as fast as it goes, until this.
+    run_on: Option<RunOn>,
+    /// Time stood still already when the earlier instant was shown.
+    was_paused: bool,
     /// A script has sent RC.
     rc_received: bool,
     /// Something other than time changed what the view shows.
@@ -171,11 +185,7 @@ impl Session {
             let flown = self.handle_requests(&mut context);
             let now = start.elapsed();
             let due = if self.follows_wall_clock() { self.pacer.due(now, SLICE) } else { 0 };
-            for _ in 0..due {
-                self.keep_rc_fresh();
-                self.vehicle.tick();
-            }
-            let ticks = flown + due;
+            let ticks = flown + self.advance(due, now);
             let after = start.elapsed();
             self.pacer.ran(ticks, after);
             self.count_lost_time(after);
@@ -189,7 +199,9 @@ impl Session {
                 let view_now = self.view();
                 self.vehicle.controller_mut().set_bad_packets(BadPackets::of(&view_now.endpoints));
                 self.vehicle.controller_mut().set_lost_time(view_now.lost_time);
-                if let Some(notice) = self.arming.check(&view_now.vehicle) {
+                if !self.is_rewound()
+                    && let Some(notice) = self.arming.check(&view_now.vehicle)
+                {
                     self.events.report(&mut self.vehicle, SessionEvent::ArmingBlocked(notice));
                 }
                 view.send_replace(view_now);
@@ -236,6 +248,9 @@ impl Session {
     }
 
     fn notice(&mut self, text: impl Into<String>) {
-        self.events.notice(&mut self.vehicle, text);
+        match self.timeline.as_ref().and_then(Timeline::shown) {
+            Some(shown) => self.events.notice_at(shown.time(), text),
+            None => self.events.notice(&mut self.vehicle, text),
+        }
     }
 }

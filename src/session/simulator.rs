@@ -119,7 +119,7 @@ impl Simulator {
         at: Instant,
         vehicle: &mut Vehicle,
         handler: &mut RequestHandler,
-        events: &EventSender,
+        events: &mut EventSender,
         speed: f64,
     ) -> u64 {
         self.end_faults(at, vehicle);
@@ -133,7 +133,7 @@ impl Simulator {
         now: Instant,
         vehicle: &mut Vehicle,
         handler: &mut RequestHandler,
-        events: &EventSender,
+        events: &mut EventSender,
         speed: f64,
     ) -> u64 {
         let mut ticks = 0;
@@ -157,7 +157,7 @@ impl Simulator {
         at: Instant,
         vehicle: &mut Vehicle,
         handler: &mut RequestHandler,
-        events: &EventSender,
+        events: &mut EventSender,
         speed: f64,
     ) -> u64 {
         let received = self.link.receive(datagram, at, |sensors, ticks| {
@@ -200,7 +200,7 @@ impl Simulator {
         is_read: bool,
         vehicle: &mut Vehicle,
         handler: &mut RequestHandler,
-        events: &EventSender,
+        events: &mut EventSender,
         speed: f64,
     ) -> u64 {
         self.end_faults(now, vehicle);
@@ -235,7 +235,7 @@ impl Simulator {
         std::mem::take(&mut self.passed)
     }
 
-    fn report_return(&mut self, at: Instant, vehicle: &mut Vehicle, events: &EventSender) {
+    fn report_return(&mut self, at: Instant, vehicle: &mut Vehicle, events: &mut EventSender) {
         let silence = at.saturating_duration_since(std::mem::replace(&mut self.received_at, at));
         let before = std::mem::replace(&mut self.state, LinkState::Flowing);
         self.changed |= before != LinkState::Flowing;
@@ -248,7 +248,7 @@ impl Simulator {
         }
     }
 
-    fn report_refusal(&mut self, refusal: PacketError, vehicle: &mut Vehicle, events: &EventSender) {
+    fn report_refusal(&mut self, refusal: PacketError, vehicle: &mut Vehicle, events: &mut EventSender) {
         // The count of bad packets has changed.
         self.changed = true;
         if !self.reported_refusals.contains(&refusal) && self.reported_refusals.try_push(refusal).is_ok() {
@@ -263,7 +263,7 @@ fn impairment(faults: LinkFaults) -> LinkImpairment {
     LinkImpairment { stall, loss, late_ms, duplicated, jitter_ms }
 }
 
-fn report(notice: SimulatorNotice, vehicle: &mut Vehicle, events: &EventSender) {
+fn report(notice: SimulatorNotice, vehicle: &mut Vehicle, events: &mut EventSender) {
     events.report(vehicle, SessionEvent::Simulator(notice));
 }
 

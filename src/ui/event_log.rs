@@ -34,6 +34,7 @@ impl Severity {
             SessionEvent::Vehicle(event) => Self::of_vehicle(event),
             // What the store says of a save that failed.
             SessionEvent::Notice(text) if text.starts_with("Not saved: ") => Self::Warn,
+            SessionEvent::Branch { .. } => Self::Step,
             SessionEvent::Endpoints(_)
             | SessionEvent::Notice(_)
             | SessionEvent::ArmingBlocked(_)

@@ -1,9 +1,12 @@
 //! The flight controller of a vehicle: embedded in this program, or remote.
 
+mod embedded;
 mod remote;
 
+pub use embedded::EmbeddedController;
 pub use remote::{FrameOut, RemoteController, RemoteRequest, RemoteTelemetry};
 
+use super::input::InputLog;
 use crate::firmware::Firmware;
 use crate::firmware::cli::{BuildInfo, CliReply, Interpreter, StorageFacts};
 use crate::firmware::config::Configuration;
@@ -42,16 +45,22 @@ pub enum LateAnswer {
 #[derive(Debug, Clone)]
 pub enum FlightController {
     /// In this program: answers at once and tells everything.
-    Embedded(Box<Firmware>),
+    Embedded(Box<EmbeddedController>),
     /// Somewhere else: answers later and tells what it tells.
     Remote(Box<RemoteController>),
+}
+
+impl From<Firmware> for FlightController {
+    fn from(firmware: Firmware) -> Self {
+        Self::Embedded(Box::new(EmbeddedController::new(firmware)))
+    }
 }
 
 impl FlightController {
     /// One step: one frame of the sensors in, the motor command in force out.
     pub(super) fn step(&mut self, frame: &SensorFrame) -> MotorCommand {
         match self {
-            Self::Embedded(firmware) => firmware.step(frame),
+            Self::Embedded(embedded) => embedded.firmware.step(frame),
             Self::Remote(remote) => remote.step(frame),
         }
     }
@@ -59,7 +68,7 @@ impl FlightController {
     /// Takes an RC frame for the next step; of one source only the newest counts.
     pub fn receive_rc(&mut self, frame: &RcFrame, source: RcSource) {
         match self {
-            Self::Embedded(firmware) => firmware.receive_rc(frame, source),
+            Self::Embedded(embedded) => embedded.receive_rc(frame, source),
             Self::Remote(remote) => remote.receive_rc(frame, source),
         }
     }
@@ -67,15 +76,15 @@ impl FlightController {
     /// The RC frames that came since the last step never arrived.
     pub fn lose_rc(&mut self) {
         match self {
-            Self::Embedded(firmware) => firmware.lose_rc(),
+            Self::Embedded(embedded) => embedded.firmware.lose_rc(),
             Self::Remote(remote) => remote.lose_rc(),
         }
     }
 
     /// Lets the virtual sticks win over the other sources of RC, or ends that. A remote one has its own rule.
     pub fn take_over_sticks(&mut self, sticks_first: bool) {
-        if let Self::Embedded(firmware) = self {
-            firmware.take_over_sticks(sticks_first);
+        if let Self::Embedded(embedded) = self {
+            embedded.take_over_sticks(sticks_first);
         }
     }
 
@@ -89,7 +98,7 @@ impl FlightController {
     #[must_use]
     pub fn rc_source(&self) -> Option<RcSource> {
         match self {
-            Self::Embedded(firmware) => firmware.receiver().sources().in_charge(),
+            Self::Embedded(embedded) => embedded.firmware.receiver().sources().in_charge(),
             Self::Remote(remote) => remote.telemetry().craft.rc_source,
         }
     }
@@ -98,7 +107,7 @@ impl FlightController {
     /// are left to its owner: the reply says so.
     pub fn run_cli(&mut self, session: &mut Interpreter, line: &str) -> Answer<CliReply> {
         match self {
-            Self::Embedded(firmware) => Answer::Now(firmware.run_cli(session, line)),
+            Self::Embedded(embedded) => Answer::Now(embedded.run_cli(session, line)),
             Self::Remote(remote) => Answer::Later(remote.ask(RemoteRequest::Cli(line.to_owned()))),
         }
     }
@@ -107,7 +116,7 @@ impl FlightController {
     /// left to its owner: the outcome says so.
     pub fn run_msp(&mut self, code: u16, payload: &[u8], clock: Option<UtcTime>) -> Answer<Outcome> {
         match self {
-            Self::Embedded(firmware) => Answer::Now(firmware.run_msp(code, payload, clock)),
+            Self::Embedded(embedded) => Answer::Now(embedded.run_msp(code, payload, clock)),
             Self::Remote(remote) => {
                 Answer::Later(remote.ask(RemoteRequest::Msp { code, payload: payload.to_vec() }))
             }
@@ -124,15 +133,15 @@ impl FlightController {
 
     /// A person opened the command line: an embedded one does not arm until it restarts. A remote one has its own rule.
     pub fn cli_opened(&mut self) {
-        if let Self::Embedded(firmware) = self {
-            firmware.cli_opened();
+        if let Self::Embedded(embedded) = self {
+            embedded.cli_opened();
         }
     }
 
     /// The command line was left: motors that it turned stop. A remote one has its own rule.
     pub fn cli_closed(&mut self) {
-        if let Self::Embedded(firmware) = self {
-            firmware.cli_closed();
+        if let Self::Embedded(embedded) = self {
+            embedded.cli_closed();
         }
     }
 
@@ -145,43 +154,43 @@ impl FlightController {
     /// Restarts: an embedded one on the configuration that `stored` gives, a remote one on what it has stored itself.
     pub fn restart(&mut self, stored: impl FnOnce() -> Configuration) {
         match self {
-            Self::Embedded(firmware) => firmware.restart(stored()),
+            Self::Embedded(embedded) => embedded.restart(stored()),
             Self::Remote(remote) => remote.restart(),
         }
     }
 
     /// What the commands of an embedded one tell about the stored configuration.
     pub fn set_storage_facts(&mut self, facts: StorageFacts) {
-        if let Self::Embedded(firmware) = self {
-            firmware.set_storage_facts(facts);
+        if let Self::Embedded(embedded) = self {
+            embedded.firmware.set_storage_facts(facts);
         }
     }
 
     /// What the commands of an embedded one tell of useless packets from scripts and simulators.
     pub fn set_bad_packets(&mut self, bad_packets: BadPackets) {
-        if let Self::Embedded(firmware) = self {
-            firmware.set_bad_packets(bad_packets);
+        if let Self::Embedded(embedded) = self {
+            embedded.firmware.set_bad_packets(bad_packets);
         }
     }
 
     /// What the commands of an embedded one tell of real time that the flight could not keep up with.
     pub fn set_lost_time(&mut self, lost_time: LostTime) {
-        if let Self::Embedded(firmware) = self {
-            firmware.set_lost_time(lost_time);
+        if let Self::Embedded(embedded) = self {
+            embedded.firmware.set_lost_time(lost_time);
         }
     }
 
     /// Version and build that an embedded one announces.
     pub fn set_build(&mut self, build: BuildInfo) {
-        if let Self::Embedded(firmware) = self {
-            firmware.set_build(build);
+        if let Self::Embedded(embedded) = self {
+            embedded.firmware.set_build(build);
         }
     }
 
     /// Restarts with the configuration in memory, stored or not.
     pub(super) fn restart_in_place(&mut self) {
         match self {
-            Self::Embedded(firmware) => firmware.restart_in_place(),
+            Self::Embedded(embedded) => embedded.firmware.restart_in_place(),
             Self::Remote(remote) => remote.restart(),
         }
     }
@@ -192,7 +201,7 @@ impl FlightController {
     /// Why an embedded one does not.
     pub fn return_to_home(&mut self) -> Result<(), Refusal> {
         match self {
-            Self::Embedded(firmware) => firmware.return_to_home(),
+            Self::Embedded(embedded) => embedded.return_to_home(),
             Self::Remote(remote) => {
                 remote.ask(RemoteRequest::ReturnHome);
                 Ok(())
@@ -203,7 +212,7 @@ impl FlightController {
     /// Takes [`Self::return_to_home`] back.
     pub fn cancel_command(&mut self) {
         match self {
-            Self::Embedded(firmware) => firmware.cancel_command(),
+            Self::Embedded(embedded) => embedded.cancel_command(),
             Self::Remote(remote) => {
                 remote.ask(RemoteRequest::CancelReturn);
             }
@@ -212,14 +221,14 @@ impl FlightController {
 
     pub(super) fn take_event(&mut self) -> Option<FirmwareEvent> {
         match self {
-            Self::Embedded(firmware) => firmware.take_event(),
+            Self::Embedded(embedded) => embedded.firmware.take_event(),
             Self::Remote(remote) => remote.take_event(),
         }
     }
 
     pub(super) fn take_events_lost(&mut self) -> u32 {
         match self {
-            Self::Embedded(firmware) => firmware.take_events_lost(),
+            Self::Embedded(embedded) => embedded.firmware.take_events_lost(),
             Self::Remote(_) => 0,
         }
     }
@@ -228,15 +237,29 @@ impl FlightController {
     #[must_use]
     pub fn embedded(&self) -> Option<&Firmware> {
         match self {
-            Self::Embedded(firmware) => Some(firmware),
+            Self::Embedded(embedded) => Some(&embedded.firmware),
             Self::Remote(_) => None,
         }
     }
 
-    /// As [`Self::embedded`].
+    /// As [`Self::embedded`]; what is done to it here is not among the inputs of the vehicle.
     pub fn embedded_mut(&mut self) -> Option<&mut Firmware> {
         match self {
-            Self::Embedded(firmware) => Some(firmware),
+            Self::Embedded(embedded) => Some(&mut embedded.firmware),
+            Self::Remote(_) => None,
+        }
+    }
+
+    pub(super) fn input_log(&self) -> Option<&InputLog> {
+        match self {
+            Self::Embedded(embedded) => Some(&embedded.inputs),
+            Self::Remote(_) => None,
+        }
+    }
+
+    pub(super) fn input_log_mut(&mut self) -> Option<&mut InputLog> {
+        match self {
+            Self::Embedded(embedded) => Some(&mut embedded.inputs),
             Self::Remote(_) => None,
         }
     }
@@ -253,7 +276,7 @@ impl FlightController {
     #[must_use]
     pub fn armed(&self) -> Option<bool> {
         match self {
-            Self::Embedded(firmware) => Some(firmware.is_armed()),
+            Self::Embedded(embedded) => Some(embedded.firmware.is_armed()),
             Self::Remote(remote) => remote.telemetry().craft.armed,
         }
     }
@@ -268,7 +291,7 @@ impl FlightController {
     #[must_use]
     pub fn modes(&self) -> ModeFlags {
         match self {
-            Self::Embedded(firmware) => firmware.modes(),
+            Self::Embedded(embedded) => embedded.firmware.modes(),
             Self::Remote(remote) => remote.telemetry().craft.modes.unwrap_or_default(),
         }
     }
@@ -283,7 +306,7 @@ impl FlightController {
     #[must_use]
     pub fn nav(&self) -> Option<&NavTelemetry> {
         match self {
-            Self::Embedded(firmware) => Some(firmware.nav()),
+            Self::Embedded(embedded) => Some(embedded.firmware.nav()),
             Self::Remote(remote) => remote.telemetry().nav.as_ref(),
         }
     }
@@ -292,7 +315,7 @@ impl FlightController {
     #[must_use]
     pub fn stored_plan(&self) -> Option<&FlightPlan> {
         match self {
-            Self::Embedded(firmware) => Some(firmware.stored_plan()),
+            Self::Embedded(embedded) => Some(embedded.firmware.stored_plan()),
             Self::Remote(remote) => remote.telemetry().stored_plan.as_ref(),
         }
     }
@@ -301,14 +324,14 @@ impl FlightController {
     #[must_use]
     pub fn motors(&self) -> MotorCommand {
         match self {
-            Self::Embedded(firmware) => firmware.control().motors,
+            Self::Embedded(embedded) => embedded.firmware.control().motors,
             Self::Remote(remote) => remote.motors(),
         }
     }
 
     pub(super) fn craft_view(&self) -> CraftView {
         match self {
-            Self::Embedded(firmware) => firmware.craft_view(),
+            Self::Embedded(embedded) => embedded.firmware.craft_view(),
             Self::Remote(remote) => {
                 CraftView { motors: remote.motors().0, ..remote.telemetry().craft.clone() }
             }
@@ -317,7 +340,7 @@ impl FlightController {
 
     pub(super) fn estimate_view(&self) -> EstimateView {
         match self {
-            Self::Embedded(firmware) => firmware.estimate_view(),
+            Self::Embedded(embedded) => embedded.firmware.estimate_view(),
             Self::Remote(remote) => remote.telemetry().estimate,
         }
     }
@@ -326,14 +349,14 @@ impl FlightController {
     #[must_use]
     pub fn settings_view(&self) -> Option<SettingsView> {
         match self {
-            Self::Embedded(firmware) => Some(firmware.settings_view()),
+            Self::Embedded(embedded) => Some(embedded.firmware.settings_view()),
             Self::Remote(remote) => remote.telemetry().settings,
         }
     }
 
     pub(super) fn mode_ranges(&self) -> Vec<ModeRange> {
         match self {
-            Self::Embedded(firmware) => firmware.mode_ranges(),
+            Self::Embedded(embedded) => embedded.firmware.mode_ranges(),
             Self::Remote(remote) => remote.telemetry().craft.mode_ranges().to_vec(),
         }
     }
@@ -341,18 +364,18 @@ impl FlightController {
     /// What a pilot sees.
     pub(super) fn pilot_facts(&self, time: SimTime) -> PilotFacts {
         match self {
-            Self::Embedded(fw) => PilotFacts {
+            Self::Embedded(embedded) => PilotFacts {
                 time,
-                fix: fw.gps_fix(),
-                arming_blocked: !fw.arming_flags().is_empty(),
-                armed: fw.is_armed(),
-                engaged: fw.modes().has(Mode::Autopilot),
-                heading_known: fw.estimate().heading_valid,
-                forward_stick_us: fw.forward_stick_us(),
-                alt_m: fw.altitude_m(),
-                climb_mps: fw.climb_mps(),
-                hover_stick_us: fw.hover_stick_us(),
-                raised_stick_us: fw.raised_stick_us(),
+                fix: embedded.firmware.gps_fix(),
+                arming_blocked: !embedded.firmware.arming_flags().is_empty(),
+                armed: embedded.firmware.is_armed(),
+                engaged: embedded.firmware.modes().has(Mode::Autopilot),
+                heading_known: embedded.firmware.estimate().heading_valid,
+                forward_stick_us: embedded.firmware.forward_stick_us(),
+                alt_m: embedded.firmware.altitude_m(),
+                climb_mps: embedded.firmware.climb_mps(),
+                hover_stick_us: embedded.firmware.hover_stick_us(),
+                raised_stick_us: embedded.firmware.raised_stick_us(),
             },
             Self::Remote(remote) => remote.pilot_facts(time),
         }

@@ -40,6 +40,7 @@ pub(super) enum Fields<'a> {
     Battery { state: String, cell_v: Milli },
     Doors { ws: Option<SocketAddr>, tcp: Option<SocketAddr>, fdm: Option<SocketAddr>, rc: Option<SocketAddr> },
     Notice { text: Cow<'a, str> },
+    Branch { number: u32, left_at: Decimals<6> },
 }
 
 /// A state transition.
@@ -88,6 +89,9 @@ impl<'a> Fields<'a> {
                 ("notice", Self::Notice { text: text.into() })
             }
             SessionEvent::Simulator(remark) => ("notice", Self::Notice { text: remark.to_string().into() }),
+            SessionEvent::Branch { number, left } => {
+                ("branch", Self::Branch { number: *number, left_at: Decimals(left.as_secs_f64()) })
+            }
             SessionEvent::FirstState { .. } | SessionEvent::FirstRc { .. } | SessionEvent::Restarted => {
                 return None;
             }

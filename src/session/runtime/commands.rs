@@ -28,16 +28,20 @@ impl Session {
     }
 
     fn carry_out(&mut self, command: Command, now: Duration) {
+        let Some(command) = self.refuse_while_rewound(command) else { return };
         match command {
-            Command::Pause(_) | Command::Step(_) | Command::Speed(_) if self.simulator.is_some() => {
+            Command::Pause(_) | Command::Step(_) | Command::Speed(_) | Command::Seek(_) | Command::FlyOn
+                if self.simulator.is_some() =>
+            {
                 self.notice(TIME_IS_EXTERNAL);
             }
-            Command::Pause(paused) => self.pacer.set_paused(paused, now),
-            Command::Step(ticks) => {
-                for _ in 0..ticks {
-                    self.vehicle.tick();
-                }
+            Command::Pause(paused) => {
+                self.run_on = None;
+                self.pacer.set_paused(paused, now);
             }
+            Command::Step(ticks) => self.step(ticks, now),
+            Command::Seek(seek) => self.seek(seek, now),
+            Command::FlyOn => self.fly_on(now),
             Command::Speed(speed) => self.pacer.set_speed(speed, now),
             Command::Sticks(frame) => {
                 if self.vehicle.transmitter_mut().stop_pilot() {

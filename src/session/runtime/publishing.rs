@@ -11,8 +11,9 @@ use crate::telemetry::EndpointStatus;
 
 impl Session {
     pub(super) fn view(&self) -> SessionView {
+        let vehicle = self.shown_vehicle();
         SessionView {
-            vehicle: Arc::new(self.vehicle.snapshot()),
+            vehicle: Arc::new(vehicle.snapshot()),
             paused: self.pacer.is_paused(),
             speed_wanted: match self.simulator {
                 Some(_) => f64::INFINITY,
@@ -20,12 +21,13 @@ impl Session {
             },
             speed_achieved: self.pacer.achieved(),
             lost_time: self.real_time.lost(self.pacer.achieved()),
-            sticks: self.vehicle.transmitter().sticks(),
-            rc_cut: self.vehicle.transmitter().is_cut(),
-            pilot: self.vehicle.transmitter().pilot_doing(),
+            sticks: vehicle.transmitter().sticks(),
+            rc_cut: vehicle.transmitter().is_cut(),
+            pilot: vehicle.transmitter().pilot_doing(),
             endpoints: self.endpoints(),
             simulator: self.simulator.as_ref().map(Simulator::state),
             live: self.endpoints.is_some(),
+            timeline: self.timeline_view(),
         }
     }
 

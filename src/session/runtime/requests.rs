@@ -46,7 +46,7 @@ impl Session {
                 &mut self.rc_received,
                 self.simulator.as_ref(),
                 &mut self.vehicle,
-                &self.events,
+                &mut self.events,
             );
             let controller = self.vehicle.controller_mut();
             let Handled { notices, restarted, fdm } =
@@ -65,7 +65,7 @@ impl Session {
                     at,
                     &mut self.vehicle,
                     &mut endpoints.handler,
-                    &self.events,
+                    &mut self.events,
                     speed,
                 );
             }
@@ -77,7 +77,7 @@ impl Session {
                 may_send && !self.more_waits,
                 &mut self.vehicle,
                 &mut endpoints.handler,
-                &self.events,
+                &mut self.events,
                 speed,
             );
             self.changed |= simulator.take_changed();
@@ -107,10 +107,10 @@ impl Session {
     /// A script sends fifty frames of wall time a second; at a higher speed the receiver would miss it.
     pub(super) fn keep_rc_fresh(&mut self) {
         if let Some(endpoints) = &self.endpoints
-            && self.pacer.speed() > 1.0
+            && self.wanted_speed() > 1.0
             && self.vehicle.time().0.is_multiple_of(RC_REPEAT_US)
         {
-            let speed = self.pacer.speed().min(*SPEED_RANGE.end());
+            let speed = self.wanted_speed().min(*SPEED_RANGE.end());
             endpoints.handler.keep_rc_fresh(self.vehicle.controller_mut(), speed, Instant::now());
         }
     }
@@ -122,7 +122,7 @@ fn report_first_packets(
     rc_received: &mut bool,
     simulator: Option<&Simulator>,
     vehicle: &mut Vehicle,
-    events: &EventSender,
+    events: &mut EventSender,
 ) {
     match request {
         Request::Rc { stamp_s, frame, .. } if !*rc_received => {

@@ -251,6 +251,7 @@ fn print_event(event: &Event, print: &mut impl FnMut(OutputLine)) {
         SessionEvent::Simulator(_)
         | SessionEvent::Vehicle(_)
         | SessionEvent::ArmingBlocked(_)
+        | SessionEvent::Branch { .. }
         | SessionEvent::Endpoints(_) => {}
     }
 }

@@ -1,0 +1,115 @@
+//! The flight as it was: recording, rewind and branches.
+//!
+//! `recording` keeps frozen vehicles and the inputs between them, `replay` flies from one of them to an earlier instant,
+//! `marks` knows when something happened. While an earlier instant is shown, the vehicle that flies waits where it is.
+
+mod marks;
+mod recording;
+mod replay;
+#[cfg(test)]
+mod tests;
+mod view;
+
+use crate::signals::SimTime;
+use crate::vehicle::Vehicle;
+use recording::{Bounds, Recording};
+use replay::Replay;
+
+pub(super) use marks::Marks;
+pub use marks::{Mark, MarkKind};
+pub use view::TimelineView;
+
+/// The recording of a flight, and the earlier instant of it that is shown.
+#[derive(Debug)]
+pub(super) struct Timeline {
+    recording: Recording,
+    replay: Option<Replay>,
+    branch: u32,
+}
+
+/// What replaying led to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Shown {
+    /// An earlier instant is shown.
+    Earlier,
+    /// It has come to where the vehicle that flies waits.
+    Newest,
+}
+
+impl Timeline {
+    /// Records `vehicle` from now on; `None` when it cannot be flown again, because its time or its flight controller
+    /// is not ours.
+    pub(super) fn new(vehicle: &mut Vehicle) -> Option<Self> {
+        Self::within(Bounds::default(), vehicle)
+    }
+
+    fn within(bounds: Bounds, vehicle: &mut Vehicle) -> Option<Self> {
+        if !vehicle.keep_inputs(true) {
+            return None;
+        }
+        Some(Self { recording: Recording::new(bounds), replay: None, branch: 0 })
+    }
+
+    /// Records what came from outside since the tick before; to be called right before each tick.
+    pub(super) fn record(&mut self, vehicle: &mut Vehicle) {
+        self.recording.record(vehicle);
+    }
+
+    /// The vehicle at the earlier instant that is shown, if one is.
+    pub(super) fn shown(&self) -> Option<&Vehicle> {
+        self.replay.as_ref().map(Replay::vehicle)
+    }
+
+    /// The earliest instant that can be shown.
+    pub(super) fn first(&self) -> Option<SimTime> {
+        self.recording.first()
+    }
+
+    /// How often the flight was flown on from an earlier instant.
+    pub(super) fn branch(&self) -> u32 {
+        self.branch
+    }
+
+    /// Shows the vehicle as it was at `time`, or at the earliest instant; `head` is where the vehicle that flies waits.
+    pub(super) fn show(&mut self, time: SimTime, head: SimTime) -> Shown {
+        if time >= head {
+            self.replay = None;
+            return Shown::Newest;
+        }
+        // Forwards by a little from where it is, else from a frozen vehicle.
+        let shown = self.replay.take().filter(|replay| replay.time() <= time);
+        let frozen = self.recording.latest_before(time);
+        let newer = |replay: &Replay| frozen.as_ref().is_none_or(|frozen| frozen.time() <= replay.time());
+        let start = if shown.as_ref().is_some_and(newer) { shown } else { frozen.map(Replay::new) };
+        self.replay = start.map(|mut replay| {
+            replay.fly_to(time, &self.recording);
+            replay
+        });
+        if self.replay.is_some() { Shown::Earlier } else { Shown::Newest }
+    }
+
+    /// Flies the replay on by some ticks, at most to `head`.
+    pub(super) fn play(&mut self, ticks: u64, head: SimTime) -> Shown {
+        let Some(replay) = &self.replay else { return Shown::Newest };
+        let to = SimTime(replay.time().0 + ticks * replay.vehicle().step_us());
+        self.show(to, head)
+    }
+
+    /// Back to the vehicle that flies.
+    pub(super) fn leave(&mut self) {
+        self.replay = None;
+    }
+
+    /// Makes the shown vehicle the one that flies, on a new branch: what was recorded after it is forgotten. `None` when
+    /// no earlier instant is shown.
+    pub(super) fn fly_on(&mut self) -> Option<Vehicle> {
+        let replay = self.replay.take()?;
+        self.recording.forget_after(&replay);
+        self.branch += 1;
+        let mut vehicle = replay.into_vehicle();
+        vehicle.keep_inputs(true);
+        // They were told when they happened.
+        vehicle.drain_events(drop);
+        Some(vehicle)
+    }
+}

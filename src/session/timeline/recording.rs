@@ -1,0 +1,247 @@
+//! Frozen vehicles at intervals and the inputs between them, within bounds.
+//!
+//! ```text
+//!   key frames   ■───────■───────■───────■─┄        a clone of the vehicle, inputs of its instant included
+//!   inputs        ╵ ╵╵    ╵       ╵╵╵      ╵        by the tick in front of which they came
+//! ```
+
+use std::collections::VecDeque;
+
+use super::replay::Replay;
+use crate::signals::SimTime;
+use crate::vehicle::{Input, Vehicle};
+
+/// How much is kept.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Bounds {
+    /// Between two key frames, µs: what a replay flies at most.
+    pub(super) interval_us: u64,
+    /// For how long every key frame is kept, µs.
+    pub(super) dense_us: u64,
+    /// Between two key frames that are older, µs.
+    pub(super) sparse_interval_us: u64,
+    /// How far the recording reaches back, µs.
+    pub(super) reach_us: u64,
+    /// What the inputs may take, bytes.
+    pub(super) input_bytes: usize,
+}
+
+impl Default for Bounds {
+    /// An hour, of which half an hour can be sought at once: some 14 MB of key frames. Two scripts at 50 Hz take two
+    /// thirds of what inputs may take.
+    fn default() -> Self {
+        const MINUTE_US: u64 = 60_000_000;
+        Self {
+            interval_us: 10_000_000,
+            dense_us: 31 * MINUTE_US,
+            sparse_interval_us: MINUTE_US,
+            reach_us: 60 * MINUTE_US,
+            input_bytes: 24 << 20,
+        }
+    }
+}
+
+/// A frozen vehicle.
+#[derive(Debug)]
+pub(super) struct KeyFrame {
+    vehicle: Box<Vehicle>,
+    next_input: u64,
+}
+
+impl KeyFrame {
+    pub(super) fn time(&self) -> SimTime {
+        self.vehicle.time()
+    }
+
+    pub(super) fn vehicle(&self) -> &Vehicle {
+        &self.vehicle
+    }
+
+    /// The number of the first input that came after it.
+    pub(super) fn next_input(&self) -> u64 {
+        self.next_input
+    }
+}
+
+/// An input and the instant at which it came.
+#[derive(Debug)]
+struct TimedInput {
+    at: SimTime,
+    input: Input,
+}
+
+impl TimedInput {
+    fn bytes(&self) -> usize {
+        size_of::<Self>() + self.input.heap_bytes()
+    }
+}
+
+/// Key frames and inputs, the oldest first.
+#[derive(Debug, Default)]
+pub(super) struct Recording {
+    bounds: Bounds,
+    key_frames: VecDeque<KeyFrame>,
+    inputs: VecDeque<TimedInput>,
+    /// The number of the oldest input.
+    first_input: u64,
+    input_bytes: usize,
+}
+
+impl Recording {
+    pub(super) fn new(bounds: Bounds) -> Self {
+        Self { bounds, ..Self::default() }
+    }
+
+    /// Records the inputs since the tick before, and freezes the vehicle when it is time.
+    pub(super) fn record(&mut self, vehicle: &mut Vehicle) {
+        let at = vehicle.time();
+        if vehicle.has_inputs() {
+            vehicle.take_inputs(|input| {
+                let input = TimedInput { at, input };
+                self.input_bytes += input.bytes();
+                self.inputs.push_back(input);
+            });
+        }
+        if self.key_frames.back().is_none_or(|newest| at.0 >= newest.time().0 + self.bounds.interval_us) {
+            let mut frozen = Box::new(vehicle.clone());
+            frozen.keep_inputs(false);
+            frozen.drain_events(drop);
+            let next_input = self.first_input + self.inputs.len() as u64;
+            self.key_frames.push_back(KeyFrame { vehicle: frozen, next_input });
+            self.stay_within_bounds(at);
+        }
+    }
+
+    /// The earliest instant that can be flown to again.
+    pub(super) fn first(&self) -> Option<SimTime> {
+        self.key_frames.front().map(KeyFrame::time)
+    }
+
+    /// The newest key frame before `time`, else the oldest. One of that very instant has its inputs already.
+    pub(super) fn latest_before(&self, time: SimTime) -> Option<&KeyFrame> {
+        let after = self.key_frames.partition_point(|frame| frame.time() < time);
+        self.key_frames.get(after.saturating_sub(1))
+    }
+
+    /// The input with this number, if it came at `time` or before.
+    pub(super) fn input(&self, number: u64, time: SimTime) -> Option<&Input> {
+        let index = usize::try_from(number.checked_sub(self.first_input)?).ok()?;
+        self.inputs.get(index).filter(|input| input.at <= time).map(|input| &input.input)
+    }
+
+    /// Forgets what came after the instant of a replay.
+    pub(super) fn forget_after(&mut self, replay: &Replay) {
+        let stays =
+            |frame: &KeyFrame| frame.time() <= replay.time() && frame.next_input <= replay.next_input();
+        while self.key_frames.back().is_some_and(|newest| !stays(newest)) {
+            self.key_frames.pop_back();
+        }
+        while self.first_input + self.inputs.len() as u64 > replay.next_input()
+            && let Some(input) = self.inputs.pop_back()
+        {
+            self.input_bytes -= input.bytes();
+        }
+    }
+
+    /// Thins the older key frames out and drops the oldest, with the inputs before them.
+    fn stay_within_bounds(&mut self, now: SimTime) {
+        let Bounds { dense_us, sparse_interval_us, reach_us, input_bytes, .. } = self.bounds;
+        let dense_from = now.0.saturating_sub(dense_us);
+        let old = self.key_frames.partition_point(|frame| frame.time().0 < dense_from);
+        // The newest of the old ones has just become one; those before it are thinned out already.
+        if let Some(newest_old) = old.checked_sub(1)
+            && let Some(before) = newest_old.checked_sub(1)
+            && let (Some(frame), Some(older)) = (self.key_frames.get(newest_old), self.key_frames.get(before))
+            && frame.time().0 < older.time().0 + sparse_interval_us
+        {
+            self.key_frames.remove(newest_old);
+        }
+        let too_old = |frame: &KeyFrame| frame.time().0 < now.0.saturating_sub(reach_us);
+        while self.key_frames.len() > 1
+            && (self.key_frames.front().is_some_and(too_old) || self.input_bytes > input_bytes)
+        {
+            self.key_frames.pop_front();
+            self.drop_unreachable_inputs();
+        }
+    }
+
+    /// Drops the inputs in front of the oldest key frame.
+    fn drop_unreachable_inputs(&mut self) {
+        let Some(needed) = self.key_frames.front().map(KeyFrame::next_input) else { return };
+        while self.first_input < needed
+            && let Some(input) = self.inputs.pop_front()
+        {
+            self.input_bytes -= input.bytes();
+            self.first_input += 1;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::signals::{RcFrame, RcSource};
+    use crate::vehicle::{Vehicle, VehicleConfig};
+
+    const BOUNDS: Bounds = Bounds {
+        interval_us: 10_000,
+        dense_us: 100_000,
+        sparse_interval_us: 40_000,
+        reach_us: 300_000,
+        input_bytes: 2000 * size_of::<TimedInput>(),
+    };
+
+    fn recorded(bounds: Bounds, ticks: u64, frames_a_tick: u16) -> Recording {
+        let config = VehicleConfig {
+            world: crate::sim::WorldConfig::default(),
+            firmware: crate::firmware::FirmwareOptions::default(),
+            configuration: crate::firmware::config::Configuration::default(),
+            live: true,
+        };
+        let mut vehicle = Vehicle::new(config).unwrap();
+        assert!(vehicle.keep_inputs(true));
+        let mut recording = Recording::new(bounds);
+        for _ in 0..ticks {
+            for us in 0..frames_a_tick {
+                let mut frame = RcFrame::SAFE;
+                frame.channels[0] += us;
+                vehicle.controller_mut().receive_rc(&frame, RcSource::Udp);
+            }
+            recording.record(&mut vehicle);
+            vehicle.tick();
+        }
+        recording
+    }
+
+    #[test]
+    fn old_key_frames_are_thinned_out_and_the_oldest_go() {
+        let recording = recorded(BOUNDS, 1000, 0);
+        let times: Vec<u64> = recording.key_frames.iter().map(|frame| frame.time().0 / 1000).collect();
+        assert_eq!(times.last(), Some(&990));
+        let (old, new) = times.split_at(times.partition_point(|&time| time < 890));
+        assert!(new.windows(2).all(|pair| pair[1] - pair[0] == 10), "{times:?}");
+        assert!(old.windows(2).all(|pair| pair[1] - pair[0] == 40), "{times:?}");
+        assert!((690..=730).contains(&times[0]), "{times:?}");
+    }
+
+    #[test]
+    fn of_many_frames_before_a_tick_the_newest_is_kept() {
+        let recording = recorded(BOUNDS, 100, 5);
+        assert_eq!(recording.inputs.len(), 100);
+        let Some(Input::Rc(frame, RcSource::Udp)) = recording.input(50, SimTime(50_000)) else {
+            panic!("a frame a tick");
+        };
+        assert_eq!(frame.channels[0], RcFrame::SAFE.channels[0] + 4);
+    }
+
+    #[test]
+    fn inputs_beyond_their_bound_take_the_oldest_key_frames_along() {
+        let bounds = Bounds { reach_us: u64::MAX, ..BOUNDS };
+        let recording = recorded(bounds, 3000, 1);
+        assert!(recording.input_bytes <= bounds.input_bytes);
+        assert!(recording.inputs.len() > 1900, "{}", recording.inputs.len());
+        let first = recording.key_frames.front().unwrap();
+        assert_eq!(first.next_input(), recording.first_input);
+        assert!(recording.inputs.front().unwrap().at > first.time());
+    }
+}

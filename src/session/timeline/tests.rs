@@ -1,0 +1,220 @@
+//! A flight and its replay are the same to the last bit, whatever came from outside.
+
+use super::*;
+use crate::firmware::cli::Interpreter;
+use crate::firmware::config::Configuration;
+use crate::firmware::{FirmwareOptions, msp};
+use crate::plan::builtin::{BuiltinPlan, DEMO};
+use crate::plan::upload_lines;
+use crate::signals::{RcFrame, RcSource};
+use crate::sim::{Turbulence, WorldCommand, WorldConfig};
+use crate::vehicle::{FlightController, VehicleConfig};
+
+/// Key frames every two seconds, so that a short flight has many.
+const BOUNDS: Bounds = Bounds {
+    interval_us: 2_000_000,
+    dense_us: u64::MAX,
+    sparse_interval_us: 0,
+    reach_us: u64::MAX,
+    input_bytes: usize::MAX,
+};
+
+/// The whole vehicle as text, to the last bit of every number that is printed.
+fn picture(vehicle: &Vehicle) -> String {
+    let mut vehicle = vehicle.clone();
+    vehicle.keep_inputs(false);
+    vehicle.drain_events(drop);
+    format!("{vehicle:?}")
+}
+
+fn vehicle() -> Vehicle {
+    let mut configuration = Configuration::default();
+    configuration.starter_modes();
+    let world = WorldConfig { turbulence: Turbulence::Moderate, ..WorldConfig::default() };
+    let config = VehicleConfig { world, firmware: FirmwareOptions::default(), configuration, live: true };
+    Vehicle::new(config).unwrap()
+}
+
+fn line(vehicle: &mut Vehicle, session: &mut Interpreter, line: &str) {
+    let _told = vehicle.controller_mut().run_cli(session, line);
+}
+
+/// What comes from outside in front of a tick of the flight.
+fn happen(tick: u64, vehicle: &mut Vehicle, session: &mut Interpreter) {
+    let world = |vehicle: &mut Vehicle, line: &str| {
+        vehicle.change_world(WorldCommand::parse(line).unwrap()).unwrap();
+    };
+    match tick {
+        500 => {
+            let demo = BuiltinPlan::find(DEMO).unwrap().read().unwrap();
+            for text in upload_lines(&demo.plan, &demo.settings) {
+                line(vehicle, session, &text);
+            }
+        }
+        900 => line(vehicle, session, "batch start"),
+        950 => line(vehicle, session, "set ap_max_angle = 33"),
+        1000 => line(vehicle, session, "batch end"),
+        1003 => vehicle.controller_mut().cli_opened(),
+        1200 => {
+            let kept = vehicle.controller().configuration().cloned().unwrap();
+            vehicle.controller_mut().restart(|| kept);
+        }
+        1300 => world(vehicle, "wind=4@270"),
+        // Until the fix.
+        1500 => vehicle.start_pilot(3.0).unwrap(),
+        16_000 => world(vehicle, "fault=gps-loss,2"),
+        17_000 => {
+            vehicle.transmitter_mut().stop_pilot();
+            vehicle.transmitter_mut().sticks_mut().channels[0] = 1620;
+        }
+        17_500 => vehicle.transmitter_mut().set_cut(true),
+        18_100 => {
+            vehicle.transmitter_mut().set_cut(false);
+            vehicle.controller_mut().take_over_sticks(true);
+        }
+        18_700 => {
+            let _refused = vehicle.controller_mut().return_to_home();
+        }
+        19_200 => vehicle.controller_mut().cancel_command(),
+        19_500 => {
+            let name = b"replayed";
+            let _told = vehicle.controller_mut().run_msp(11, name, None);
+        }
+        20_000 => vehicle.reset_craft(),
+        20_500..22_000 if tick.is_multiple_of(7) => {
+            let mut frame = RcFrame::SAFE;
+            frame.channels[3] = 1500 + (tick % 90) as u16;
+            vehicle.controller_mut().receive_rc(&frame, RcSource::Udp);
+        }
+        22_000..23_000 if tick.is_multiple_of(10) => {
+            let frame: Vec<u8> = (0..8).flat_map(|n| (1400 + n + (tick % 50) as u16).to_le_bytes()).collect();
+            let _told = vehicle.controller_mut().run_msp(200, &frame, None);
+            // Only asks.
+            let _told = vehicle.controller_mut().run_msp(101, &[], None);
+        }
+        _ => {}
+    }
+}
+
+/// A flight with everything, its recording, and its pictures at some instants.
+fn flight() -> (Timeline, Vehicle, Vec<(SimTime, String)>) {
+    let mut vehicle = vehicle();
+    let mut timeline = Timeline::within(BOUNDS, &mut vehicle).unwrap();
+    let mut session = Interpreter::default();
+    let mut pictures = Vec::new();
+    for tick in 0..24_000 {
+        // In front of the inputs of this instant.
+        if tick % 487 == 3 || matches!(tick, 1 | 1001 | 1201 | 2000 | 17_001 | 20_000 | 20_001) {
+            pictures.push((vehicle.time(), picture(&vehicle)));
+        }
+        happen(tick, &mut vehicle, &mut session);
+        timeline.record(&mut vehicle);
+        vehicle.tick();
+        vehicle.drain_events(drop);
+    }
+    (timeline, vehicle, pictures)
+}
+
+#[test]
+fn replayed_instants_are_the_flight_to_the_last_bit() {
+    let (mut timeline, head, pictures) = flight();
+    let armed = pictures.iter().filter(|(_, text)| text.contains("armed: true")).count();
+    assert!(armed > 3, "the flight flies");
+    // Forwards, backwards, and there and back.
+    let count = pictures.len();
+    let order = (0..count).chain((0..count).rev()).chain((0..count).map(|n| n * 17 % count));
+    for at in order {
+        let (time, expected) = &pictures[at];
+        assert_eq!(timeline.show(*time, head.time()), Shown::Earlier);
+        let shown = picture(timeline.shown().unwrap());
+        assert!(shown == *expected, "at {time:?} {}", first_difference(&shown, expected));
+    }
+    assert_eq!(timeline.show(head.time(), head.time()), Shown::Newest);
+}
+
+/// Where two pictures differ first.
+fn first_difference(a: &str, b: &str) -> String {
+    let at = a.bytes().zip(b.bytes()).take_while(|(a, b)| a == b).count().saturating_sub(60);
+    let part = |text: &str| text.chars().skip(at).take(160).collect::<String>();
+    format!("{}\n{}", part(a), part(b))
+}
+
+#[test]
+fn playing_tick_by_tick_shows_what_seeking_shows() {
+    let (mut timeline, head, pictures) = flight();
+    let (start, (end, expected)) = (&pictures[5], &pictures[9]);
+    timeline.show(start.0, head.time());
+    while timeline.shown().unwrap().time() < *end {
+        assert_eq!(timeline.play(1, head.time()), Shown::Earlier);
+    }
+    assert!(picture(timeline.shown().unwrap()) == *expected);
+}
+
+#[test]
+fn a_branch_forgets_what_came_after_it_and_can_itself_be_replayed() {
+    let (mut timeline, head, pictures) = flight();
+    let (time, expected) = &pictures[pictures.len() / 2];
+    timeline.show(*time, head.time());
+    let mut vehicle = timeline.fly_on().unwrap();
+    assert!(picture(&vehicle) == *expected);
+    assert_eq!((timeline.branch(), timeline.shown().is_none()), (1, true));
+    assert!(timeline.fly_on().is_none(), "nothing earlier is shown");
+
+    // Another flight from here on: the sticks go elsewhere.
+    let mut later = None;
+    for tick in 0..5000 {
+        if tick == 1700 {
+            vehicle.transmitter_mut().sticks_mut().channels[1] = 1700;
+        }
+        if tick == 3333 {
+            later = Some((vehicle.time(), picture(&vehicle)));
+        }
+        timeline.record(&mut vehicle);
+        vehicle.tick();
+    }
+    for (time, expected) in [later.unwrap(), (*time, expected.clone())] {
+        timeline.show(time, vehicle.time());
+        assert!(picture(timeline.shown().unwrap()) == expected, "at {time:?}");
+    }
+}
+
+#[test]
+fn a_seek_before_the_recording_shows_its_beginning() {
+    let mut vehicle = vehicle();
+    (0..50).for_each(|_| vehicle.tick());
+    let mut timeline = Timeline::within(BOUNDS, &mut vehicle).unwrap();
+    assert_eq!(timeline.first(), None);
+    for _ in 0..50 {
+        timeline.record(&mut vehicle);
+        vehicle.tick();
+    }
+    timeline.show(SimTime::ZERO, vehicle.time());
+    assert_eq!(timeline.shown().map(Vehicle::time), timeline.first());
+    assert_eq!(timeline.first(), Some(SimTime(50_000)));
+}
+
+#[test]
+fn what_runs_elsewhere_is_not_recorded() {
+    let config = VehicleConfig {
+        world: WorldConfig::default(),
+        firmware: FirmwareOptions::default(),
+        configuration: Configuration::default(),
+        live: true,
+    };
+    assert!(Timeline::new(&mut Vehicle::with_external_physics(config).unwrap()).is_none());
+    let mut remote = Vehicle::with_remote_controller(WorldConfig::default()).unwrap();
+    assert!(matches!(remote.controller(), FlightController::Remote(_)));
+    assert!(Timeline::new(&mut remote).is_none());
+}
+
+#[test]
+fn messages_that_only_ask_are_no_inputs() {
+    let mut vehicle = vehicle();
+    assert!(vehicle.keep_inputs(true));
+    for message in msp::MESSAGES.iter().filter(|message| message.access != msp::Access::Write) {
+        let before = picture(&vehicle);
+        let _told = vehicle.controller_mut().run_msp(message.code, &[0; 8], None);
+        assert!(!vehicle.has_inputs(), "{}", message.name);
+        assert!(picture(&vehicle) == before, "{} changes something", message.name);
+    }
+}

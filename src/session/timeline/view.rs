@@ -1,0 +1,21 @@
+//! What a display needs to draw the timeline.
+
+use std::sync::Arc;
+
+use super::Mark;
+use crate::signals::SimTime;
+
+/// How far the recording reaches, what happened in it, and where in it the shown instant is: the time of the vehicle.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct TimelineView {
+    /// The earliest instant that can be shown.
+    pub first: SimTime,
+    /// The newest instant, from where the flight goes on.
+    pub head: SimTime,
+    /// An earlier instant is shown, while the flight waits.
+    pub rewound: bool,
+    /// How often the flight was flown on from an earlier instant.
+    pub branch: u32,
+    /// What happened, the oldest first.
+    pub marks: Arc<Vec<Mark>>,
+}

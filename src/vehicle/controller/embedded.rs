@@ -1,0 +1,85 @@
+//! A flight controller in this program, with the inputs it was given since the last step.
+
+use crate::firmware::Firmware;
+use crate::firmware::cli::{CliReply, Interpreter};
+use crate::firmware::config::Configuration;
+use crate::firmware::msp::{Access, MESSAGES, MspAction, Outcome, UtcTime};
+use crate::signals::{RcFrame, RcSource};
+use crate::telemetry::Refusal;
+use crate::vehicle::input::{Input, InputLog, Message};
+
+/// The firmware and the inputs since the last step.
+#[derive(Debug, Clone)]
+pub struct EmbeddedController {
+    pub(super) firmware: Firmware,
+    pub(super) inputs: InputLog,
+}
+
+impl EmbeddedController {
+    pub(super) fn new(firmware: Firmware) -> Self {
+        Self { firmware, inputs: InputLog::default() }
+    }
+
+    pub(super) fn receive_rc(&mut self, frame: &RcFrame, source: RcSource) {
+        // Those of the virtual sticks follow from the transmitter.
+        if source != RcSource::Sticks {
+            self.inputs.note(|| Input::Rc(*frame, source));
+        }
+        self.firmware.receive_rc(frame, source);
+    }
+
+    pub(super) fn take_over_sticks(&mut self, sticks_first: bool) {
+        self.inputs.note(|| Input::SticksFirst(sticks_first));
+        self.firmware.take_over_sticks(sticks_first);
+    }
+
+    /// Lines that only ask are inputs too: each makes the parameters follow the settings anew.
+    pub(super) fn run_cli(&mut self, session: &mut Interpreter, line: &str) -> CliReply {
+        self.inputs.note(|| Input::Line(Box::new((session.clone(), line.to_owned()))));
+        self.firmware.run_cli(session, line)
+    }
+
+    pub(super) fn run_msp(&mut self, code: u16, payload: &[u8], clock: Option<UtcTime>) -> Outcome {
+        let outcome = self.firmware.run_msp(code, payload, clock);
+        match outcome.action {
+            Some(MspAction::RawRc(frame)) => self.inputs.note(|| Input::Rc(frame, RcSource::Msp)),
+            _ if writes(code) => {
+                let message = || Message { code, payload: payload.to_vec(), clock };
+                self.inputs.note(|| Input::Message(Box::new(message())));
+            }
+            _ => {}
+        }
+        outcome
+    }
+
+    pub(super) fn cli_opened(&mut self) {
+        self.inputs.note(|| Input::CliOpened);
+        self.firmware.cli_opened();
+    }
+
+    pub(super) fn cli_closed(&mut self) {
+        self.inputs.note(|| Input::CliClosed);
+        self.firmware.cli_closed();
+    }
+
+    pub(super) fn restart(&mut self, configuration: Configuration) {
+        self.inputs.note(|| Input::Restart(Box::new(configuration.clone())));
+        self.firmware.restart(configuration);
+    }
+
+    pub(super) fn return_to_home(&mut self) -> Result<(), Refusal> {
+        self.inputs.note(|| Input::ReturnHome);
+        self.firmware.return_to_home()
+    }
+
+    pub(super) fn cancel_command(&mut self) {
+        self.inputs.note(|| Input::CancelReturn);
+        self.firmware.cancel_command();
+    }
+}
+
+/// Whether a message can change anything.
+fn writes(code: u16) -> bool {
+    let found = MESSAGES.binary_search_by_key(&code, |message| message.code);
+    found.ok().and_then(|index| MESSAGES.get(index)).is_some_and(|message| message.access == Access::Write)
+}

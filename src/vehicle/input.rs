@@ -1,0 +1,167 @@
+//! What reaches a vehicle from outside between two ticks, as data: with its inputs a flight can be flown again to the
+//! last bit.
+//!
+//! Frames of the virtual sticks and losses by faults are no inputs, for they follow from the transmitter and the world.
+//! What commands tell of the program around the craft (storage, links) is none either: it flies nothing.
+
+use super::Vehicle;
+use crate::firmware::cli::Interpreter;
+use crate::firmware::config::Configuration;
+use crate::firmware::msp::UtcTime;
+use crate::pilot::RcTransmitter;
+use crate::signals::{RcFrame, RcSource};
+use crate::sim::WorldCommand;
+
+/// Something that came from outside between two ticks.
+#[derive(Debug, Clone)]
+pub enum Input {
+    /// An RC frame that came over a link.
+    Rc(RcFrame, RcSource),
+    /// The virtual sticks win over the other sources of RC, or no longer.
+    SticksFirst(bool),
+    /// A CLI line and the session that ran it, as it was before.
+    Line(Box<(Interpreter, String)>),
+    /// An MSP message that changes something.
+    Message(Box<Message>),
+    /// A person opened a command line.
+    CliOpened,
+    /// A command line that turned motors was left.
+    CliClosed,
+    /// A restart on this configuration.
+    Restart(Box<Configuration>),
+    /// The command to fly home and land.
+    ReturnHome,
+    /// That command taken back.
+    CancelReturn,
+    /// The transmitter as it was set: sticks, link, pilot.
+    Transmitter(Box<RcTransmitter>),
+    /// A change of air, noise or faults.
+    World(Box<WorldCommand>),
+    /// The craft was put back home.
+    ResetCraft,
+}
+
+/// An MSP message with what answering it takes.
+#[derive(Debug, Clone)]
+pub struct Message {
+    pub(super) code: u16,
+    pub(super) payload: Vec<u8>,
+    pub(super) clock: Option<UtcTime>,
+}
+
+impl Input {
+    /// About how much memory it takes beyond its own size, bytes.
+    #[must_use]
+    pub fn heap_bytes(&self) -> usize {
+        match self {
+            Self::Line(line) => size_of_val(&**line) + line.1.len(),
+            Self::Message(message) => size_of::<Message>() + message.payload.len(),
+            // Its tables lie on the heap.
+            Self::Restart(configuration) => 4 * size_of_val(&**configuration),
+            Self::Transmitter(transmitter) => size_of_val(&**transmitter),
+            Self::World(command) => size_of_val(&**command),
+            Self::Rc(..)
+            | Self::SticksFirst(_)
+            | Self::CliOpened
+            | Self::CliClosed
+            | Self::ReturnHome
+            | Self::CancelReturn
+            | Self::ResetCraft => 0,
+        }
+    }
+}
+
+/// The inputs since the last tick, if they are wanted.
+#[derive(Debug, Clone, Default)]
+pub(super) struct InputLog(Option<Vec<Input>>);
+
+impl InputLog {
+    pub(super) fn set_wanted(&mut self, wanted: bool) {
+        self.0 = wanted.then(Vec::new);
+    }
+
+    pub(super) fn is_wanted(&self) -> bool {
+        self.0.is_some()
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.0.as_ref().is_none_or(Vec::is_empty)
+    }
+
+    /// Notes an input that has been carried out.
+    pub(super) fn note(&mut self, input: impl FnOnce() -> Input) {
+        let Some(inputs) = &mut self.0 else { return };
+        let input = input();
+        // Of one source only the newest frame counts; while time stands still a script goes on sending.
+        if let Input::Rc(frame, source) = input
+            && let Some(Input::Rc(earlier, _)) =
+                inputs.iter_mut().find(|earlier| matches!(earlier, Input::Rc(_, of) if *of == source))
+        {
+            *earlier = frame;
+        } else {
+            inputs.push(input);
+        }
+    }
+
+    pub(super) fn drain(&mut self) -> impl Iterator<Item = Input> {
+        self.0.iter_mut().flat_map(|inputs| inputs.drain(..))
+    }
+}
+
+impl Vehicle {
+    /// Keeps the inputs from now on for [`Self::take_inputs`], or ends that. Only an embedded flight controller in the
+    /// simulated world can be flown again, so others keep none. Says whether inputs are kept.
+    pub fn keep_inputs(&mut self, wanted: bool) -> bool {
+        let wanted = wanted && self.world().is_some();
+        self.transmitter_set = false;
+        self.controller.input_log_mut().is_some_and(|log| {
+            log.set_wanted(wanted);
+            wanted
+        })
+    }
+
+    /// Whether there were inputs since the last call of [`Self::take_inputs`].
+    #[must_use]
+    pub fn has_inputs(&self) -> bool {
+        self.transmitter_set || self.controller.input_log().is_some_and(|log| !log.is_empty())
+    }
+
+    /// Moves the inputs since the last call into `sink`, oldest first. Carrying them out again in front of the same tick
+    /// gives the same vehicle.
+    pub fn take_inputs(&mut self, mut sink: impl FnMut(Input)) {
+        let set = std::mem::take(&mut self.transmitter_set);
+        let Some(log) = self.controller.input_log_mut().filter(|log| log.is_wanted()) else { return };
+        log.drain().for_each(&mut sink);
+        if set {
+            sink(Input::Transmitter(Box::new(self.transmitter.clone())));
+        }
+    }
+
+    /// Carries out an input of an earlier flight.
+    pub fn apply(&mut self, input: &Input) {
+        // What they answer was told when they came.
+        match input {
+            Input::Rc(frame, source) => self.controller.receive_rc(frame, *source),
+            Input::SticksFirst(first) => self.controller.take_over_sticks(*first),
+            Input::Line(line) => {
+                let (session, line) = &**line;
+                let _told = self.controller.run_cli(&mut session.clone(), line);
+            }
+            Input::Message(message) => {
+                let _told = self.controller.run_msp(message.code, &message.payload, message.clock);
+            }
+            Input::CliOpened => self.controller.cli_opened(),
+            Input::CliClosed => self.controller.cli_closed(),
+            Input::Restart(configuration) => self.controller.restart(|| Configuration::clone(configuration)),
+            Input::ReturnHome => {
+                let _told = self.controller.return_to_home();
+            }
+            Input::CancelReturn => self.controller.cancel_command(),
+            Input::Transmitter(transmitter) => self.transmitter.clone_from(transmitter),
+            Input::World(command) => {
+                let _told = self.change_world(WorldCommand::clone(command));
+            }
+            Input::ResetCraft => self.reset_craft(),
+        }
+    }
+}
