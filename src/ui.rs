@@ -10,7 +10,8 @@
 //! * [`update`] is the only thing that changes [`AppState`]; it sees no clock (time comes as [`Msg::Clock`]), no
 //!   terminal and no channel, and answers with [`Effect`]s, which are data.
 //! * [`draw`] only reads. What depends on the size of the screen is computed by [`layout`], which both use.
-//! * Every key is a named [`action`]: keymap, hint bar and help are read from one table.
+//! * Every key is a named [`action`]: keymap, hint bar, help, palette and the `:` line are read from one table. What
+//!   takes an argument is a [`command`].
 //! * [`run`] is the shell around it: it waits for the terminal, the session and the clock, and carries effects out.
 //!
 //! May use: ratatui, crossterm, the session's snapshots, events and commands, and plans. Never firmware internals,
@@ -19,10 +20,13 @@
 pub mod action;
 mod app_state;
 mod ascii;
+pub mod command;
+mod completion;
 mod console;
 mod draw;
 mod event_log;
 mod formatting;
+mod fuzzy;
 mod hint_bar;
 mod history;
 pub mod keymap;
@@ -50,7 +54,7 @@ pub use draw::draw;
 pub use event_log::Severity;
 pub use message::{Effect, Msg};
 pub use panel::Panel;
-pub use popup::Popup;
+pub use popup::{CommandLine, Palette, Popup};
 pub use run::{Ending, SessionLink, run};
 pub use terminal::{Tui, restore_terminal_modes};
 pub use text_field::TextField;

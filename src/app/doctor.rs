@@ -91,7 +91,7 @@ fn terminal(report: &mut Report) {
             let colours = match theme.palette {
                 Palette::Mono => "no colours",
                 Palette::Ansi16 => "16 colours",
-                Palette::TrueColour => "all colours",
+                Palette::Dark | Palette::Light | Palette::HighContrast => "all colours",
             };
             let characters = match theme.charset {
                 Charset::Unicode => "Unicode characters",

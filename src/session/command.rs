@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+pub use crate::sim::{COMMAND_WORDS as WORLD_WORDS, FAULTS, FaultInfo, SWITCHES as WORLD_SWITCHES};
+
 use super::timeline::TimelineView;
 use crate::plan::FlightPlan;
 use crate::signals::{RcFrame, SimTime};

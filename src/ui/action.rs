@@ -1,4 +1,4 @@
-//! Everything a key can do, by name: the one table behind keymap, hint bar and help.
+//! Everything a key can do, by name: the one table behind keymap, hint bar, help, palette and the `:` line.
 
 use super::panel::Panel;
 
@@ -61,6 +61,10 @@ pub enum Action {
     Zoom,
     /// Help.
     Help,
+    /// A command by its name.
+    CommandLine,
+    /// All commands, to be searched.
+    Palette,
     /// One step back.
     Back,
     /// Quit.

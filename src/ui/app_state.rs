@@ -13,7 +13,7 @@ use super::event_log::{LogState, Severity};
 use super::keymap::Keymap;
 use super::layout::Slots;
 use super::panel::Panel;
-use super::popup::Popup;
+use super::popup::{CommandLine, Popup};
 use super::theme::Theme;
 use super::track::Track;
 use super::viewport::MapState;
@@ -117,8 +117,10 @@ pub struct AppState {
     pub map: MapState,
     /// Selected channel of the RC panel.
     pub channel: usize,
-    /// The command line.
+    /// The firmware's command line.
     pub cli: CliState,
+    /// The `:` line.
+    pub command_line: CommandLine,
     /// The log.
     pub log: LogState,
     /// Transitions, the newest last.
@@ -176,6 +178,7 @@ impl AppState {
             map: MapState::default(),
             channel: 0,
             cli: CliState::default(),
+            command_line: CommandLine::default(),
             log: LogState::default(),
             transitions: VecDeque::new(),
             scrolls: Scrolls::default(),

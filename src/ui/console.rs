@@ -2,6 +2,8 @@
 
 use std::collections::VecDeque;
 
+use super::completion::common_prefix;
+use super::event_log::Severity;
 use super::history::History;
 use super::text_field::TextField;
 use crate::session::command::CliOutput;
@@ -38,6 +40,13 @@ pub enum CliLineKind {
     Note,
 }
 
+/// A line that waits for the firmware.
+#[derive(Debug)]
+struct Queued {
+    line: String,
+    reports: bool,
+}
+
 /// The state of the CLI panel.
 #[derive(Debug, Default)]
 pub struct CliState {
@@ -51,7 +60,9 @@ pub struct CliState {
     pub candidates: Vec<String>,
     /// A line is being run.
     pub waiting: bool,
-    queue: VecDeque<String>,
+    queue: VecDeque<Queued>,
+    /// The line that is being run is to be answered outside the panel, too.
+    reports: bool,
     history: History,
 }
 
@@ -62,7 +73,17 @@ impl CliState {
         self.candidates.clear();
         self.scroll = 0;
         self.history.remember(&line);
-        self.queue.push_back(line);
+        self.run_line(line);
+    }
+
+    /// Runs a line, of which only this panel tells.
+    pub fn run_line(&mut self, line: String) {
+        self.queue.push_back(Queued { line, reports: false });
+    }
+
+    /// Runs a line whose answer is a notice, too.
+    pub fn run_and_report(&mut self, line: String) {
+        self.queue.push_back(Queued { line, reports: true });
     }
 
     /// The next line to run, if the firmware is free.
@@ -70,7 +91,8 @@ impl CliState {
         if self.waiting {
             return None;
         }
-        let line = self.queue.pop_front()?;
+        let Queued { line, reports } = self.queue.pop_front()?;
+        self.reports = reports;
         self.waiting = true;
         self.push(CliLineKind::Entered, line.clone());
         Some(line)
@@ -82,25 +104,35 @@ impl CliState {
         self.queue.len()
     }
 
-    /// Takes the answer of the line that was run.
-    pub fn answer(&mut self, output: Option<&CliOutput>) {
+    /// Takes the answer of the line that was run; gives the notice that it is to be.
+    pub fn answer(&mut self, output: Option<&CliOutput>) -> Option<(Severity, String)> {
         self.waiting = false;
         let Some(output) = output else {
             self.push(CliLineKind::Note, "no answer: the firmware went away".to_owned());
             self.queue.clear();
-            return;
+            return None;
         };
+        let mut severity = Severity::Good;
+        let mut said = Vec::new();
         for line in output.text.trim_end().lines() {
             let clean: String = line.trim_end().chars().filter(|c| !c.is_control()).collect();
-            let kind = if clean.starts_with("###ERROR") { CliLineKind::Error } else { CliLineKind::Output };
-            self.push(kind, clean);
+            let is_error = clean.starts_with("###ERROR");
+            if is_error {
+                severity = Severity::Fault;
+            }
+            if !clean.is_empty() {
+                said.push(clean.clone());
+            }
+            self.push(if is_error { CliLineKind::Error } else { CliLineKind::Output }, clean);
         }
         if let Some(advice) = &output.advice {
+            said.push(advice.clone());
             self.push(CliLineKind::Note, advice.clone());
         }
         if output.restarted {
             self.push(CliLineKind::Note, "the firmware restarted".to_owned());
         }
+        std::mem::take(&mut self.reports).then(|| (severity, said.join(" ")))
     }
 
     fn push(&mut self, kind: CliLineKind, text: String) {
@@ -149,20 +181,8 @@ impl CliState {
     /// Extends the input as far as all completions agree, and lists them when they do not.
     pub fn complete(&mut self, help: CliHelp) {
         let candidates = (help.complete)(self.input.value());
-        let Some(first) = candidates.first() else {
-            self.candidates.clear();
-            return;
-        };
-        let mut common = first.as_str();
-        for candidate in &candidates {
-            let shared = common
-                .char_indices()
-                .zip(candidate.chars())
-                .find(|((_, a), b)| !a.eq_ignore_ascii_case(b))
-                .map_or(common.len().min(candidate.len()), |((at, _), _)| at);
-            common = common.get(..shared).unwrap_or(common);
-        }
-        if common.len() >= self.input.value().len() {
+        let common = common_prefix(candidates.iter().map(String::as_str));
+        if !candidates.is_empty() && common.len() >= self.input.value().len() {
             self.input = TextField::new(common);
         }
         self.candidates = if candidates.len() > 1 { candidates } else { Vec::new() };

@@ -12,7 +12,7 @@ use super::formatting;
 use super::layout::{self, SMALLEST};
 use super::panel::Panel;
 use super::panel::{self, span};
-use super::popup::Popup;
+use super::popup::{Popup, command_line, palette};
 use super::text_wrap::wrapped;
 use super::theme::{Charset, Role};
 use super::{hint_bar, notice, status_bar};
@@ -38,17 +38,26 @@ pub fn draw(state: &AppState, frame: &mut Frame<'_>) {
             None
         }
     };
+    let mut cursor = cursor.filter(|_| state.popups.is_empty());
     for popup in &state.popups {
-        match popup {
-            Popup::Help { scroll } => panel::help::draw(state, *scroll, area, buffer),
-            Popup::Quit => quit_question(state, area, buffer),
-        }
+        cursor = match popup {
+            Popup::Help { scroll } => {
+                panel::help::draw(state, *scroll, area, buffer);
+                None
+            }
+            Popup::Quit => {
+                quit_question(state, area, buffer);
+                None
+            }
+            Popup::CommandLine => command_line::draw(state, area, buffer),
+            Popup::Palette(palette) => palette::draw(state, palette, area, buffer),
+        };
     }
     clean(buffer);
     if state.theme.charset == Charset::Ascii {
         ascii::replace(buffer);
     }
-    if let Some(position) = cursor.filter(|_| state.popups.is_empty()) {
+    if let Some(position) = cursor {
         frame.set_cursor_position(position);
     }
 }

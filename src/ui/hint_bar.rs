@@ -7,9 +7,8 @@ use unicode_width::UnicodeWidthStr as _;
 
 use crate::telemetry::{EndpointState, LinkState};
 
-use super::action::{Action, enabled, is_wrecked, spec_of};
+use super::action::{Action, enabled, is_wrecked};
 use super::app_state::AppState;
-use super::keymap::shown;
 use super::panel::Panel;
 use super::panel::span;
 use super::status_bar::sides;
@@ -31,7 +30,7 @@ pub(super) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     let mut used = 0;
     let mut push = |keys: &str, label: &str| {
         let width = keys.width() + label.width() + 3;
-        if used + width > room {
+        if keys.is_empty() || used + width > room {
             return;
         }
         used += width;
@@ -45,7 +44,7 @@ pub(super) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
         }
     } else {
         for (actions, label) in hint_actions(state) {
-            push(&keys_of(actions), label);
+            push(&keys_of(state, actions), label);
         }
     }
     sides(buffer, area, &spans, &right);
@@ -118,6 +117,7 @@ fn hint_actions(state: &AppState) -> Vec<(&'static [Action], &'static str)> {
     if state.focus == Panel::Rc {
         hints.push((&[Action::Flip], "flip"));
     }
+    hints.push((&[Action::CommandLine], "command"));
     hints.retain(|(actions, _)| actions.iter().all(|&action| enabled(state, action).is_ok()));
     hints
 }
@@ -137,14 +137,13 @@ fn permanent_hints(state: &AppState) -> Vec<(String, &'static str)> {
     if state.focus == Panel::Cli {
         return vec![("Esc".to_owned(), "leave")];
     }
-    vec![(keys_of(&[Action::Help]), "help"), (keys_of(&[Action::Quit]), "quit")]
+    vec![(keys_of(state, &[Action::Help]), "help"), (keys_of(state, &[Action::Quit]), "quit")]
 }
 
 /// The first key of each action.
-fn keys_of(actions: &[Action]) -> String {
-    let keys: Vec<String> =
-        actions.iter().filter_map(|&action| spec_of(action)?.keys.first().map(|key| shown(key))).collect();
-    keys.join(" ")
+fn keys_of(state: &AppState, actions: &[Action]) -> String {
+    let first = |&action: &Action| state.keymap.shown_keys(action).into_iter().next();
+    actions.iter().filter_map(first).collect::<Vec<_>>().join(" ")
 }
 
 /// A key and what it does, as it stands in the hint line.

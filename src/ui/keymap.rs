@@ -1,5 +1,7 @@
 //! Keys as text and as events, and which action a key means where the focus is.
 
+use std::fmt;
+
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
 use super::action::{ACTIONS, Action, Context};
@@ -34,6 +36,12 @@ impl KeyPress {
         Self { code, modifiers }
     }
 
+    /// The event that a terminal sends for it.
+    #[must_use]
+    pub fn event(self) -> KeyEvent {
+        KeyEvent::new(self.code, self.modifiers)
+    }
+
     /// A key from text: `a`, `F`, `space`, `ctrl-c`, `shift-tab`, `f1`.
     #[must_use]
     pub fn parse(text: &str) -> Option<Self> {
@@ -61,6 +69,9 @@ impl KeyPress {
             ("end", ..) => KeyCode::End,
             ("pageup", ..) => KeyCode::PageUp,
             ("pagedown", ..) => KeyCode::PageDown,
+            ("insert", ..) => KeyCode::Insert,
+            ("delete", ..) => KeyCode::Delete,
+            ("backspace", ..) => KeyCode::Backspace,
             (_, Some(c), None) => KeyCode::Char(c),
             (_, Some('f'), Some(_)) => KeyCode::F(rest[1..].parse().ok()?),
             _ => return None,
@@ -69,29 +80,33 @@ impl KeyPress {
     }
 }
 
-/// The key as hint bar and help show it.
-#[must_use]
-pub fn shown(key: &str) -> String {
-    match key {
-        "space" => "Space".to_owned(),
-        "tab" => "Tab".to_owned(),
-        "shift-tab" => "Shift-Tab".to_owned(),
-        "esc" => "Esc".to_owned(),
-        "enter" => "Enter".to_owned(),
-        "up" => "↑".to_owned(),
-        "down" => "↓".to_owned(),
-        "left" => "←".to_owned(),
-        "right" => "→".to_owned(),
-        "shift-left" => "Shift-←".to_owned(),
-        "shift-right" => "Shift-→".to_owned(),
-        "home" => "Home".to_owned(),
-        "end" => "End".to_owned(),
-        "pageup" => "PgUp".to_owned(),
-        "pagedown" => "PgDn".to_owned(),
-        "ctrl-c" => "Ctrl-C".to_owned(),
-        "ctrl-z" => "Ctrl-Z".to_owned(),
-        _ if key.len() > 1 && key.starts_with('f') => key.to_uppercase(),
-        _ => key.to_owned(),
+impl fmt::Display for KeyPress {
+    /// The key as hint bar and help show it.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (modifier, name) in
+            [(KeyModifiers::CONTROL, "Ctrl-"), (KeyModifiers::ALT, "Alt-"), (KeyModifiers::SHIFT, "Shift-")]
+        {
+            if self.modifiers.contains(modifier) {
+                f.write_str(name)?;
+            }
+        }
+        match self.code {
+            KeyCode::Char(' ') => f.write_str("Space"),
+            KeyCode::Char(c) if self.modifiers.contains(KeyModifiers::CONTROL) => {
+                write!(f, "{}", c.to_ascii_uppercase())
+            }
+            KeyCode::Char(c) => write!(f, "{c}"),
+            KeyCode::Up => f.write_str("↑"),
+            KeyCode::Down => f.write_str("↓"),
+            KeyCode::Left => f.write_str("←"),
+            KeyCode::Right => f.write_str("→"),
+            KeyCode::PageUp => f.write_str("PgUp"),
+            KeyCode::PageDown => f.write_str("PgDn"),
+            KeyCode::Insert => f.write_str("Ins"),
+            KeyCode::Delete => f.write_str("Del"),
+            KeyCode::F(number) => write!(f, "F{number}"),
+            code => write!(f, "{code:?}"),
+        }
     }
 }
 
@@ -115,6 +130,16 @@ impl Default for Keymap {
 }
 
 impl Keymap {
+    /// The keys of an action, as they are shown.
+    #[must_use]
+    pub fn shown_keys(&self, action: Action) -> Vec<String> {
+        self.bindings
+            .iter()
+            .filter(|binding| binding.2 == action)
+            .map(|binding| binding.1.to_string())
+            .collect()
+    }
+
     /// The action of a key while `focus` has the focus; the panel's own meaning comes before the general one.
     #[must_use]
     pub fn action(&self, key: KeyPress, focus: Panel) -> Option<Action> {
@@ -156,6 +181,22 @@ mod tests {
         assert_eq!(keymap.action(key("f1"), Panel::Cli), Some(Action::Show(Panel::Map)));
         assert_eq!(keymap.action(key("up"), Panel::Rc), Some(Action::ChannelUp));
         assert_eq!(keymap.action(key("up"), Panel::Log), Some(Action::ScrollUp));
+    }
+
+    #[test]
+    fn keys_are_shown_as_they_stand_on_the_keyboard() {
+        for (text, shown) in [
+            ("a", "a"),
+            ("space", "Space"),
+            ("shift-left", "Shift-←"),
+            ("ctrl-c", "Ctrl-C"),
+            ("f10", "F10"),
+            ("pagedown", "PgDn"),
+            ("esc", "Esc"),
+            ("shift-tab", "Shift-Tab"),
+        ] {
+            assert_eq!(KeyPress::parse(text).map(|key| key.to_string()).as_deref(), Some(shown));
+        }
     }
 
     #[test]

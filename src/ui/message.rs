@@ -29,6 +29,13 @@ pub enum Msg {
     CliReply(Option<CliOutput>),
     /// The craft answered an upload: the sentence of the first refusal otherwise.
     UploadReply(Result<(), String>),
+    /// The session answered a change of the world.
+    WorldReply {
+        /// What was to change.
+        line: String,
+        /// The sentence of the refusal otherwise.
+        result: Result<(), String>,
+    },
     /// A command could not be delivered because the session does not keep up.
     Busy,
 }
@@ -40,6 +47,8 @@ pub enum Effect {
     Send(Command),
     /// Run a CLI line; the reply comes back as [`Msg::CliReply`].
     Cli(String),
+    /// Change the world, `wind=5@270`; the reply comes back as [`Msg::WorldReply`].
+    World(String),
     /// Hand a plan to the craft; the reply comes back as [`Msg::UploadReply`].
     Upload {
         /// The plan.

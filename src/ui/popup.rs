@@ -1,5 +1,11 @@
 //! The popups.
 
+pub(super) mod command_line;
+pub(super) mod palette;
+
+pub use command_line::CommandLine;
+pub use palette::Palette;
+
 /// What lies over the panels; the last one opened gets the keys first.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Popup {
@@ -10,4 +16,8 @@ pub enum Popup {
     },
     /// "The craft is armed. Quit?"
     Quit,
+    /// The `:` line.
+    CommandLine,
+    /// All commands, to be searched.
+    Palette(Palette),
 }

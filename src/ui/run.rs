@@ -197,6 +197,16 @@ fn carry_out(effect: Effect, link: &SessionLink, replies: &mpsc::UnboundedSender
             });
             link.commands.try_send(Command::Cli { line, reply })
         }
+        Effect::World(line) => {
+            let (reply, answer) = oneshot::channel();
+            let replies = replies.clone();
+            let asked = line.clone();
+            tokio::spawn(async move {
+                let result = answer.await.unwrap_or_else(|_| Err("The session did not answer.".to_owned()));
+                replies.send(Msg::WorldReply { line: asked, result }).ok();
+            });
+            link.commands.try_send(Command::World { line, reply })
+        }
         Effect::Upload { plan, settings } => {
             let (reply, answer) = oneshot::channel();
             let replies = replies.clone();

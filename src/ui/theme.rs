@@ -39,13 +39,28 @@ pub enum Role {
 /// How many colours the terminal shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Palette {
-    /// 24-bit colours (a set that colour-blind people can tell apart).
+    /// 24-bit colours for a dark background, a set that colour-blind people can tell apart.
     #[default]
-    TrueColour,
+    Dark,
+    /// The same for a light background.
+    Light,
+    /// 24-bit colours far from each other and from a dark background.
+    HighContrast,
     /// The terminal's own sixteen.
     Ansi16,
     /// None: weight and reverse only.
     Mono,
+}
+
+impl Palette {
+    /// The palettes by the names that themes have.
+    pub const NAMES: [(&'static str, Self); 5] = [
+        ("dark", Self::Dark),
+        ("light", Self::Light),
+        ("high-contrast", Self::HighContrast),
+        ("16", Self::Ansi16),
+        ("mono", Self::Mono),
+    ];
 }
 
 /// Which characters the terminal shows.
@@ -65,6 +80,8 @@ pub struct Theme {
     pub palette: Palette,
     /// Characters.
     pub charset: Charset,
+    /// The environment asks for no colours, whatever else is asked for.
+    pub no_colour: bool,
 }
 
 impl Theme {
@@ -75,10 +92,11 @@ impl Theme {
         let set = |name: &str| get(name).filter(|value| !value.is_empty());
         let term = set("TERM").unwrap_or_default();
         let truecolour = set("COLORTERM").is_some_and(|value| value == "truecolor" || value == "24bit");
-        let palette = if set("NO_COLOR").is_some() || term == "dumb" || term.starts_with("vt") {
+        let no_colour = set("NO_COLOR").is_some();
+        let palette = if no_colour || term == "dumb" || term.starts_with("vt") {
             Palette::Mono
         } else if truecolour || term.contains("direct") {
-            Palette::TrueColour
+            Palette::Dark
         } else {
             Palette::Ansi16
         };
@@ -88,7 +106,7 @@ impl Theme {
             value.contains("utf-8") || value.contains("utf8")
         });
         let charset = if utf8 && term != "linux" { Charset::Unicode } else { Charset::Ascii };
-        Self { palette, charset }
+        Self { palette, charset, no_colour }
     }
 
     /// The marker lines on the map are drawn with.
@@ -117,7 +135,31 @@ impl Theme {
                 Role::Target => Color::LightMagenta,
                 Role::Craft => Color::White,
             },
-            Palette::TrueColour => match role {
+            Palette::Light => match role {
+                Role::Text | Role::Selected => Color::Reset,
+                Role::Dim => Color::Rgb(104, 108, 116),
+                Role::Title => Color::Rgb(62, 68, 78),
+                Role::Focus | Role::Key => Color::Rgb(0, 92, 160),
+                Role::Ok => Color::Rgb(0, 110, 80),
+                Role::Track => Color::Rgb(0, 128, 94),
+                Role::Warn => Color::Rgb(150, 90, 0),
+                Role::Fence => Color::Rgb(140, 84, 10),
+                Role::Fault => Color::Rgb(178, 60, 0),
+                Role::Active => Color::Rgb(120, 96, 0),
+                Role::Target => Color::Rgb(150, 50, 110),
+                Role::Craft => Color::Rgb(0, 0, 0),
+            },
+            Palette::HighContrast => match role {
+                Role::Text | Role::Selected | Role::Craft | Role::Title => Color::Rgb(255, 255, 255),
+                Role::Dim => Color::Rgb(190, 190, 190),
+                Role::Focus | Role::Key => Color::Rgb(120, 210, 255),
+                Role::Ok | Role::Track => Color::Rgb(0, 240, 170),
+                Role::Warn | Role::Fence => Color::Rgb(255, 190, 40),
+                Role::Fault => Color::Rgb(255, 130, 70),
+                Role::Active => Color::Rgb(255, 255, 0),
+                Role::Target => Color::Rgb(255, 170, 230),
+            },
+            Palette::Dark => match role {
                 Role::Text | Role::Selected => Color::Reset,
                 Role::Dim => Color::Rgb(120, 124, 133),
                 Role::Title => Color::Rgb(190, 196, 206),
@@ -162,7 +204,7 @@ mod tests {
     #[test]
     fn the_environment_chooses_colours_and_characters() {
         let rich = [("COLORTERM", "truecolor"), ("TERM", "xterm-256color"), ("LANG", "en_GB.UTF-8")];
-        assert_eq!(theme(&rich), Theme { palette: Palette::TrueColour, charset: Charset::Unicode });
+        assert_eq!(theme(&rich), Theme { palette: Palette::Dark, ..Theme::default() });
         assert_eq!(theme(&[("TERM", "xterm"), ("LANG", "C")]).charset, Charset::Ascii);
         assert_eq!(theme(&[("TERM", "xterm"), ("NO_COLOR", "1")]).palette, Palette::Mono);
         assert_eq!(theme(&[("TERM", "xterm"), ("NO_COLOR", "")]).palette, Palette::Ansi16);
@@ -172,7 +214,7 @@ mod tests {
     #[test]
     fn without_colours_no_role_names_one() {
         use strum::IntoEnumIterator as _;
-        let mono = Theme { palette: Palette::Mono, charset: Charset::Unicode };
+        let mono = Theme { palette: Palette::Mono, ..Theme::default() };
         for role in Role::iter() {
             assert_eq!(mono.colour(role), Color::Reset);
         }

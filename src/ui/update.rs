@@ -14,7 +14,7 @@ use super::keymap::KeyPress;
 use super::map_point;
 use super::message::{Effect, Msg};
 use super::panel::Panel;
-use super::popup::Popup;
+use super::popup::{Palette, Popup};
 use super::track::TrackPoint;
 use super::transmitter;
 use super::viewport::MapMode;
@@ -25,9 +25,12 @@ mod mouse;
 mod popup;
 mod view;
 
-use cli::{cli_key, paste, run_cli};
+use cli::{cli_key, paste};
 use flight::{fly, speed, upload, uploaded};
-use view::{ZOOM_STEP, focus, follow, neighbour, pan, scroll, zoom_map};
+use view::{ZOOM_STEP, follow, neighbour, pan, scroll, zoom_map};
+
+pub(super) use cli::run_cli;
+pub(super) use view::focus;
 
 /// Two Ctrl-C within this time quit.
 const TWICE_WITHIN: Duration = Duration::from_secs(2);
@@ -56,8 +59,17 @@ pub fn update(state: &mut AppState, msg: Msg) -> Vec<Effect> {
             Vec::new()
         }
         Msg::CliReply(output) => {
-            state.cli.answer(output.as_ref());
+            if let Some((severity, text)) = state.cli.answer(output.as_ref()) {
+                state.notify(severity, text);
+            }
             run_cli(state)
+        }
+        Msg::WorldReply { line, result } => {
+            match result {
+                Ok(()) => state.notify(Severity::Good, format!("World: {line}.")),
+                Err(sentence) => state.notify(Severity::Fault, sentence),
+            }
+            Vec::new()
         }
         Msg::UploadReply(result) => uploaded(state, result),
         Msg::Busy => {
@@ -123,6 +135,11 @@ fn act(state: &mut AppState, action: Action) -> Vec<Effect> {
         state.notify(Severity::Warn, reason);
         return Vec::new();
     }
+    perform(state, action)
+}
+
+/// Carries an action out that makes sense now.
+pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
     match action {
         Action::Fly => fly(state),
         Action::Arm => transmitter::toggle_arm(state),
@@ -157,6 +174,14 @@ fn act(state: &mut AppState, action: Action) -> Vec<Effect> {
         }
         Action::Help => {
             state.popups.push(Popup::Help { scroll: 0 });
+            Vec::new()
+        }
+        Action::CommandLine => {
+            popup::open_command_line(state, "");
+            Vec::new()
+        }
+        Action::Palette => {
+            state.popups.push(Popup::Palette(Palette::default()));
             Vec::new()
         }
         Action::Back => {

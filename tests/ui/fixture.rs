@@ -77,12 +77,12 @@ pub(crate) fn state(size: (u16, u16), theme: Theme) -> AppState {
 
 /// The full theme.
 pub(crate) fn colour() -> Theme {
-    Theme { palette: Palette::TrueColour, charset: Charset::Unicode }
+    Theme::default()
 }
 
 /// The seven-bit theme.
 pub(crate) fn plain() -> Theme {
-    Theme { palette: Palette::Mono, charset: Charset::Ascii }
+    Theme { palette: Palette::Mono, charset: Charset::Ascii, ..Theme::default() }
 }
 
 /// What differs between the pictures of the flight.

@@ -98,6 +98,15 @@ pub const ACTIONS: &[Spec] = &[
     spec(Action::Zoom, "view.zoom", "zoom", "The focused panel alone, or all again", &["z"], Global),
     spec(Action::Help, "app.help", "help", "The keys of this place", &["?"], Global),
     spec(
+        Action::CommandLine,
+        "app.command",
+        "command",
+        "A command by its name, such as :speed 4",
+        &[":"],
+        Global,
+    ),
+    spec(Action::Palette, "app.palette", "palette", "All commands, to be searched", &["ctrl-p"], Always),
+    spec(
         Action::Back,
         "app.back",
         "back",

@@ -7,7 +7,6 @@ use ratatui::text::Line;
 use crate::ui::action::{ACTIONS, Context};
 use crate::ui::app_state::AppState;
 use crate::ui::draw::popup;
-use crate::ui::keymap::shown;
 use crate::ui::theme::Role;
 
 use super::{line, span};
@@ -28,7 +27,7 @@ pub(crate) fn draw(state: &AppState, scroll: usize, area: Rect, buffer: &mut Buf
         }
         lines.push(Line::from(span(theme, Role::Title, title)));
         for spec in rows {
-            let keys: Vec<String> = spec.keys.iter().map(|key| shown(key)).collect();
+            let keys = state.keymap.shown_keys(spec.action);
             lines.push(Line::from(vec![
                 span(theme, Role::Key, format!("{:>12}  ", keys.join(" "))),
                 span(theme, Role::Text, spec.help),

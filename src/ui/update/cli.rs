@@ -6,6 +6,7 @@ use crate::ui::app_state::AppState;
 use crate::ui::event_log::Severity;
 use crate::ui::message::Effect;
 use crate::ui::panel::Panel;
+use crate::ui::popup::Popup;
 
 use super::view::{focus, neighbour, scroll_panel};
 
@@ -36,7 +37,17 @@ pub(super) fn cli_key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
     Vec::new()
 }
 
+/// Pasted text goes to the text field that has the focus: the first line to one of a single line.
 pub(super) fn paste(state: &mut AppState, text: &str) -> Vec<Effect> {
+    let field = match state.popups.last_mut() {
+        Some(Popup::CommandLine) => Some(&mut state.command_line.field),
+        Some(Popup::Palette(palette)) => Some(&mut palette.query),
+        Some(Popup::Help { .. } | Popup::Quit) | None => None,
+    };
+    if let Some(field) = field {
+        field.insert(text.lines().next().unwrap_or_default());
+        return Vec::new();
+    }
     if state.focus != Panel::Cli || !state.popups.is_empty() {
         state.notify(Severity::Info, "Pasted text goes to the CLI: press 5 first.");
         return Vec::new();
@@ -45,6 +56,7 @@ pub(super) fn paste(state: &mut AppState, text: &str) -> Vec<Effect> {
     run_cli(state)
 }
 
-pub(super) fn run_cli(state: &mut AppState) -> Vec<Effect> {
+/// Runs the next line that waits, if the firmware is free.
+pub(in crate::ui) fn run_cli(state: &mut AppState) -> Vec<Effect> {
     state.cli.next_to_run().map(Effect::Cli).into_iter().collect()
 }

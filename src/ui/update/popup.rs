@@ -5,14 +5,45 @@ use crossterm::event::{KeyCode, KeyEvent};
 use super::act;
 use crate::ui::action::{self, Action};
 use crate::ui::app_state::AppState;
+use crate::ui::command;
+use crate::ui::event_log::Severity;
 use crate::ui::message::Effect;
-use crate::ui::popup::Popup;
+use crate::ui::popup::palette::Entry;
+use crate::ui::popup::{Popup, command_line, palette};
 
 /// A key for the popup that was opened last; `found` is what it means without one.
 pub(super) fn key(state: &mut AppState, event: KeyEvent, found: Option<Action>) -> Vec<Effect> {
     match state.popups.last_mut() {
         None => Vec::new(),
         Some(Popup::Quit) => quit_key(state, event),
+        Some(Popup::CommandLine) => match command_line::key(state, event) {
+            command_line::Outcome::Typing => Vec::new(),
+            command_line::Outcome::Left => {
+                state.popups.pop();
+                Vec::new()
+            }
+            command_line::Outcome::Entered(line) => {
+                state.popups.pop();
+                run(state, &line)
+            }
+        },
+        Some(Popup::Palette(palette)) => match palette::key(palette, event) {
+            palette::Outcome::Searching => Vec::new(),
+            palette::Outcome::Left => {
+                state.popups.pop();
+                Vec::new()
+            }
+            palette::Outcome::Chosen(entry) => {
+                state.popups.pop();
+                match entry {
+                    Entry::Action(spec) => act(state, spec.action),
+                    Entry::Command(command) => {
+                        open_command_line(state, &format!("{} ", command.name));
+                        Vec::new()
+                    }
+                }
+            }
+        },
         Some(Popup::Help { scroll }) => {
             let to = match event.code {
                 KeyCode::Up | KeyCode::Char('k') => Some(scroll.saturating_sub(1)),
@@ -33,6 +64,20 @@ pub(super) fn key(state: &mut AppState, event: KeyEvent, found: Option<Action>) 
             }
         }
     }
+}
+
+/// Opens the `:` line with this text.
+pub(super) fn open_command_line(state: &mut AppState, text: &str) {
+    state.command_line.open(text);
+    state.popups.push(Popup::CommandLine);
+}
+
+/// Carries out what was entered, or says why not.
+fn run(state: &mut AppState, line: &str) -> Vec<Effect> {
+    command::run(state, line).unwrap_or_else(|sentence| {
+        state.notify(Severity::Warn, sentence);
+        Vec::new()
+    })
 }
 
 fn quit_key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {

@@ -10,7 +10,8 @@ use crate::ui::viewport::{MapMode, Viewport};
 /// A zoom step of the map.
 pub(super) const ZOOM_STEP: f64 = 1.5;
 
-pub(super) fn focus(state: &mut AppState, panel: Panel) -> Vec<Effect> {
+/// Gives a panel the keys.
+pub(in crate::ui) fn focus(state: &mut AppState, panel: Panel) -> Vec<Effect> {
     state.focus = panel;
     state.slots.visit(panel);
     Vec::new()

@@ -1,0 +1,166 @@
+//! The language of the `:` line and of `--plain`: every action by its name, and commands that take an argument.
+//!
+//! A line is a word and, behind a blank or `=`, the argument: `flight.arm`, `arm`, `speed 4`, `wind=5@270`. The word is
+//! the name of a [`Command`], the full name of an action, or what stands behind the dot of it where that is unique.
+
+mod display;
+mod suggestion;
+mod table;
+mod time;
+mod vehicle;
+mod world;
+
+pub use suggestion::{Suggestion, hint, suggestions};
+pub use table::{Command, all};
+
+use super::action::{self, ACTIONS, Action, Context, Spec};
+use super::app_state::AppState;
+use super::message::Effect;
+use super::panel::Panel;
+use super::update;
+use crate::did_you_mean;
+
+/// Carries a line out.
+///
+/// # Errors
+/// Why not, in a sentence.
+pub fn run(state: &mut AppState, line: &str) -> Result<Vec<Effect>, String> {
+    let (word, argument) = split(line);
+    if word.is_empty() {
+        return Ok(Vec::new());
+    }
+    if let Some(command) = all().find(|command| command.name == word) {
+        return (command.run)(state, command.name, argument);
+    }
+    let action = action_named(word, state.focus)?;
+    if !argument.is_empty() {
+        return Err(format!("{word} takes no argument."));
+    }
+    action::enabled(state, action)?;
+    Ok(update::perform(state, action))
+}
+
+/// The word of a line and its argument.
+fn split(line: &str) -> (&str, &str) {
+    let line = line.trim().trim_start_matches(':').trim_start();
+    let (word, argument) = line.split_once([' ', '=']).unwrap_or((line, ""));
+    (word, argument.trim())
+}
+
+/// What stands behind the dot of an action's name.
+fn short_name(spec: &Spec) -> &'static str {
+    spec.name.rsplit_once('.').map_or(spec.name, |(_, short)| short)
+}
+
+/// The action that a word names while `focus` has the focus.
+fn action_named(word: &str, focus: Panel) -> Result<Action, String> {
+    if let Some(spec) = ACTIONS.iter().find(|spec| spec.name == word) {
+        return Ok(spec.action);
+    }
+    let named: Vec<&Spec> = ACTIONS.iter().filter(|spec| short_name(spec) == word).collect();
+    let is_here = |spec: &Spec| {
+        matches!(spec.context, Context::Global | Context::Always) || spec.context.applies(focus)
+    };
+    match named[..] {
+        [only] => Ok(only.action),
+        [] => {
+            let words = all().map(|command| command.name);
+            let words = words.chain(ACTIONS.iter().flat_map(|spec| [spec.name, short_name(spec)]));
+            Err(format!("There is no command {word}{}", did_you_mean_end(word, words)))
+        }
+        _ => {
+            let mut here = named.iter().filter(|spec| is_here(spec));
+            match (here.next(), here.next()) {
+                (Some(spec), None) => Ok(spec.action),
+                _ => {
+                    let names: Vec<&str> = named.iter().map(|spec| spec.name).collect();
+                    Err(format!("{word} is more than one command: {}.", names.join(", ")))
+                }
+            }
+        }
+    }
+}
+
+/// The end of a sentence about a wrong word.
+fn did_you_mean_end<'a>(word: &str, words: impl IntoIterator<Item = &'a str>) -> String {
+    match did_you_mean::closest(word, words) {
+        Some(close) => format!("; did you mean {close}?"),
+        None => "; `Ctrl-P` lists all.".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::session::{Command as Request, SessionView};
+
+    fn bare() -> AppState {
+        AppState::bare((80, 24), SessionView::default())
+    }
+
+    #[test]
+    fn every_action_is_reached_by_its_name() {
+        for spec in ACTIONS {
+            assert_eq!(action_named(spec.name, Panel::Log), Ok(spec.action), "{}", spec.name);
+            assert!(all().all(|command| command.name != spec.name), "{}", spec.name);
+        }
+    }
+
+    #[test]
+    fn a_short_name_means_the_action_of_the_focused_panel() {
+        assert_eq!(action_named("arm", Panel::Cli), Ok(Action::Arm));
+        assert_eq!(action_named("up", Panel::Map), Ok(Action::PanUp));
+        assert_eq!(action_named("up", Panel::Log), Ok(Action::ScrollUp));
+        let many = action_named("up", Panel::Cli).expect_err("three actions have this name");
+        assert!(many.contains("map.up, rc.up, list.up"), "{many}");
+    }
+
+    #[test]
+    fn wrong_words_say_what_was_meant() {
+        let mut state = bare();
+        for (line, part) in [
+            ("wnd 5@270", "did you mean wind?"),
+            ("flight.amr", "did you mean flight.arm?"),
+            ("pause now", "pause takes no argument."),
+            ("qwertyuiop", "`Ctrl-P` lists all."),
+            ("speed fast", "a factor"),
+            ("speed 5000", "0.05 to 1000"),
+            ("theme blue", "dark, light"),
+            ("set", "NAME=VALUE"),
+            ("home", "disarmed"),
+        ] {
+            if line == "home" {
+                std::sync::Arc::make_mut(&mut state.view.vehicle).craft.armed = Some(false);
+            }
+            let error = run(&mut state, line).expect_err(line);
+            assert!(error.contains(part), "{line}: {error}");
+        }
+        assert!(run(&mut state, "  : ").is_ok_and(|effects| effects.is_empty()));
+    }
+
+    #[test]
+    fn arguments_stand_behind_a_blank_or_an_equals_sign() {
+        let mut state = bare();
+        for line in ["wind 5@270", ":wind=5@270", " wind = 5@270"] {
+            let effects = run(&mut state, line).expect(line);
+            assert!(matches!(&effects[..], [Effect::World(line)] if line == "wind=5@270"), "{effects:?}");
+        }
+        let effects = run(&mut state, "speed max").expect("a speed");
+        assert!(matches!(effects[..], [Effect::Send(Request::Speed(speed))] if speed.is_infinite()));
+        let effects = run(&mut state, "set ap_max_angle=25").expect("a setting");
+        assert!(matches!(&effects[..], [Effect::Cli(line)] if line == "set ap_max_angle = 25"));
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn any_line_is_carried_out_or_refused(line in ".{0,40}", word in 0usize..20) {
+            let mut state = bare();
+            let _ = run(&mut state, &line);
+            if let Some(command) = all().nth(word) {
+                let _ = run(&mut state, &format!("{} {line}", command.name));
+                let _ = suggestions(&state, &format!("{} {line}", command.name));
+            }
+            let _ = (suggestions(&state, &line), hint(&state, &line));
+        }
+    }
+}

@@ -1,0 +1,56 @@
+//! Commands about how things are shown.
+
+use super::did_you_mean_end;
+use crate::ui::app_state::AppState;
+use crate::ui::message::Effect;
+use crate::ui::theme::{Charset, Palette};
+
+/// `theme light`.
+pub(super) fn theme(state: &mut AppState, _: &str, argument: &str) -> Result<Vec<Effect>, String> {
+    if state.theme.no_colour {
+        return Err("The environment variable NO_COLOR asks for no colours: start without it.".to_owned());
+    }
+    let palette = Palette::NAMES.into_iter().find(|(name, _)| *name == argument);
+    match palette {
+        Some((_, palette)) => {
+            state.theme.palette = palette;
+            Ok(Vec::new())
+        }
+        None => Err(unknown("theme", argument, &Palette::NAMES.map(|(name, _)| name))),
+    }
+}
+
+/// Names of themes.
+pub(super) fn complete_theme(_: &AppState, _: &str, typed: &str) -> Vec<String> {
+    starting(typed, &Palette::NAMES.map(|(name, _)| name))
+}
+
+/// `charset ascii`.
+pub(super) fn charset(state: &mut AppState, _: &str, argument: &str) -> Result<Vec<Effect>, String> {
+    state.theme.charset = match argument {
+        "unicode" => Charset::Unicode,
+        "ascii" => Charset::Ascii,
+        _ => return Err(unknown("character set", argument, &["unicode", "ascii"])),
+    };
+    Ok(Vec::new())
+}
+
+/// Names of character sets.
+pub(super) fn complete_charset(_: &AppState, _: &str, typed: &str) -> Vec<String> {
+    starting(typed, &["unicode", "ascii"])
+}
+
+fn unknown(what: &str, argument: &str, names: &[&'static str]) -> String {
+    let all = names.join(", ");
+    if argument.is_empty() {
+        return format!("Which {what}? There are {all}.");
+    }
+    match did_you_mean_end(argument, names.iter().copied()) {
+        guess if guess.ends_with('?') => format!("There is no {what} {argument}{guess}"),
+        _ => format!("There is no {what} {argument}; there are {all}."),
+    }
+}
+
+fn starting(typed: &str, names: &[&str]) -> Vec<String> {
+    names.iter().filter(|name| name.starts_with(typed)).map(|name| (*name).to_owned()).collect()
+}

@@ -1,0 +1,78 @@
+//! What a line that is being typed may become, and a word about it.
+
+use super::{all, short_name, split};
+use crate::ui::action::{self, ACTIONS};
+use crate::ui::app_state::AppState;
+
+/// Longest form of an argument that stands beside the help.
+const SHORT: usize = 24;
+
+/// A line that what is typed may become.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Suggestion {
+    /// The line.
+    pub line: String,
+    /// What is shown of it: the word that is being typed.
+    pub word: String,
+    /// What it does.
+    pub help: &'static str,
+    /// Its keys.
+    pub keys: String,
+}
+
+/// The lines that `typed` may become, the commands of the `:` line first.
+#[must_use]
+pub fn suggestions(state: &AppState, typed: &str) -> Vec<Suggestion> {
+    let typed = typed.trim_start().trim_start_matches(':').trim_start();
+    if typed.contains([' ', '=']) {
+        let (word, argument) = split(typed);
+        let Some(command) = all().find(|command| command.name == word) else { return Vec::new() };
+        let argument = argument.trim_start_matches('=').trim_start();
+        let whole = |argument: String| Suggestion {
+            line: format!("{word} {argument}"),
+            word: argument,
+            help: "",
+            keys: String::new(),
+        };
+        return (command.complete)(state, word, argument).into_iter().map(whole).collect();
+    }
+    let commands = all().filter(|command| command.name.starts_with(typed)).map(|command| Suggestion {
+        line: format!("{} ", command.name),
+        word: command.name.to_owned(),
+        help: command.help,
+        // A long form stands in the hint, once the word is typed.
+        keys: if command.argument.len() > SHORT { String::new() } else { command.argument.to_owned() },
+    });
+    let by_name = |name: &str| name.starts_with(typed);
+    let full = ACTIONS.iter().any(|spec| by_name(spec.name));
+    // Who types what stands behind the dot gets the whole name offered.
+    let actions = ACTIONS.iter().filter(|spec| by_name(if full { spec.name } else { short_name(spec) }));
+    let actions = actions.map(|spec| Suggestion {
+        line: spec.name.to_owned(),
+        word: spec.name.to_owned(),
+        help: spec.help,
+        keys: state.keymap.shown_keys(spec.action).join(" "),
+    });
+    commands.chain(actions).collect()
+}
+
+/// A word about the line: how the command is used, or what the action does and why it cannot be done now.
+#[must_use]
+pub fn hint(state: &AppState, typed: &str) -> Option<String> {
+    let (word, argument) = split(typed);
+    if word == "set" {
+        let setting = (state.cli_help.hint)(&format!("set {argument}"));
+        if let Some(hint) = setting.filter(|_| !argument.is_empty()) {
+            return Some(hint);
+        }
+    }
+    if let Some(command) = all().find(|command| command.name == word) {
+        return Some(format!("{word} {} — {}", command.argument, command.help));
+    }
+    let action = super::action_named(word, state.focus).ok()?;
+    let spec = action::spec_of(action)?;
+    Some(match action::enabled(state, action) {
+        Ok(()) => format!("{} — {}", spec.name, spec.help),
+        Err(reason) => format!("{} — {reason}", spec.name),
+    })
+}

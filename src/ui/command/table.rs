@@ -1,0 +1,95 @@
+//! The commands that take an argument. To add one: a row here, its function in the file of its subject.
+
+use super::{display, time, vehicle, world};
+use crate::session::command::WORLD_WORDS;
+use crate::ui::app_state::AppState;
+use crate::ui::message::Effect;
+
+/// A command that takes an argument.
+#[derive(Debug, Clone, Copy)]
+pub struct Command {
+    /// What is typed.
+    pub name: &'static str,
+    /// What is to be typed behind it, in capitals what stands for something.
+    pub argument: &'static str,
+    /// What it does, in one sentence.
+    pub help: &'static str,
+    /// Does it: gets the name and the argument, gives a sentence when that is refused.
+    pub run: fn(&mut AppState, &str, &str) -> Result<Vec<Effect>, String>,
+    /// The arguments that what is typed so far may become.
+    pub complete: fn(&AppState, &str, &str) -> Vec<String>,
+}
+
+/// The rows.
+const COMMANDS: &[Command] = &[
+    Command {
+        name: "set",
+        argument: "NAME=VALUE",
+        help: "A setting of the craft; without a value: what it is",
+        run: vehicle::set,
+        complete: vehicle::complete_set,
+    },
+    Command {
+        name: "cli",
+        argument: "LINE",
+        help: "A line for the firmware's command line",
+        run: vehicle::cli,
+        complete: vehicle::complete_cli,
+    },
+    Command {
+        name: "speed",
+        argument: "FACTOR or max",
+        help: "Times real time",
+        run: time::speed,
+        complete: time::complete_speed,
+    },
+    Command {
+        name: "world",
+        argument: "NAME=VALUE",
+        help: "A rare switch of the simulated world",
+        run: world::switch,
+        complete: world::complete_switch,
+    },
+    Command {
+        name: "theme",
+        argument: "NAME",
+        help: "The colours: dark, light, high-contrast, 16, mono",
+        run: display::theme,
+        complete: display::complete_theme,
+    },
+    Command {
+        name: "charset",
+        argument: "unicode or ascii",
+        help: "The characters that the terminal shows",
+        run: display::charset,
+        complete: display::complete_charset,
+    },
+];
+
+/// All commands with an argument: those of the table, and the words that change the world.
+pub fn all() -> impl Iterator<Item = Command> {
+    // The craft is reset by the action, which the firmware hears of.
+    let words = WORLD_WORDS.iter().filter(|word| !word.value.is_empty());
+    let world_commands = words.map(|word| Command {
+        name: word.name,
+        argument: word.value,
+        help: word.help,
+        run: world::change,
+        complete: world::complete,
+    });
+    COMMANDS.iter().copied().chain(world_commands)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_command_has_a_name_of_its_own_and_says_what_it_does() {
+        for command in all() {
+            assert_eq!(all().filter(|other| other.name == command.name).count(), 1, "{}", command.name);
+            assert!(!command.help.is_empty() && !command.argument.is_empty(), "{}", command.name);
+        }
+        assert!(all().any(|command| command.name == "wind") && all().all(|command| command.name != "reset"));
+    }
+}

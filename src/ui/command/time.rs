@@ -1,0 +1,28 @@
+//! Commands about time.
+
+use crate::session::{Command, SPEED_RANGE};
+use crate::ui::app_state::AppState;
+use crate::ui::message::Effect;
+
+/// `speed 4`, `speed max`.
+pub(super) fn speed(state: &mut AppState, _: &str, argument: &str) -> Result<Vec<Effect>, String> {
+    if state.view.simulator.is_some() {
+        return Err(crate::session::command::TIME_IS_EXTERNAL.to_owned());
+    }
+    let (slowest, fastest) = SPEED_RANGE.into_inner();
+    let factor =
+        match argument.trim_end_matches(['x', '×']) {
+            "ma" | "max" => f64::INFINITY,
+            text => text.parse().ok().filter(|factor| SPEED_RANGE.contains(factor)).ok_or_else(|| {
+                format!("Write a factor from {slowest} to {fastest} times real time, or max.")
+            })?,
+        };
+    state.view.speed_wanted = factor;
+    Ok(vec![Effect::Send(Command::Speed(factor))])
+}
+
+/// The usual factors.
+pub(super) fn complete_speed(_: &AppState, _: &str, typed: &str) -> Vec<String> {
+    let usual = ["0.1", "0.25", "0.5", "1", "2", "4", "8", "16", "64", "max"];
+    usual.into_iter().filter(|factor| factor.starts_with(typed)).map(str::to_owned).collect()
+}

@@ -1,0 +1,77 @@
+//! Commands that change the simulated world: wind, noise, faults. The session reads and judges the values.
+
+use super::did_you_mean_end;
+use crate::session::command::{FAULTS, FaultInfo, WORLD_SWITCHES, WORLD_WORDS};
+use crate::ui::app_state::AppState;
+use crate::ui::message::Effect;
+
+/// `wind 5@270`, `fault gps-loss,6`…
+pub(super) fn change(_: &mut AppState, name: &str, argument: &str) -> Result<Vec<Effect>, String> {
+    match WORLD_WORDS.iter().find(|word| word.name == name) {
+        Some(word) if argument.is_empty() => Err(format!("Write :{name} {}.", word.value)),
+        _ => Ok(vec![Effect::World(format!("{name}={}", argument.trim_start_matches('=').trim_start()))]),
+    }
+}
+
+/// Values that are words.
+pub(super) fn complete(_: &AppState, name: &str, typed: &str) -> Vec<String> {
+    let starting = |words: Vec<&str>| -> Vec<String> {
+        words.into_iter().filter(|word| word.starts_with(typed)).map(str::to_owned).collect()
+    };
+    match name {
+        "fault" => starting(FAULTS.iter().map(FaultInfo::name).collect()),
+        "end" => starting(FAULTS.iter().map(FaultInfo::name).chain(["all"]).collect()),
+        _ => match WORLD_WORDS.iter().find(|word| word.name == name) {
+            Some(word) => starting(words_of(word.value)),
+            None => Vec::new(),
+        },
+    }
+}
+
+/// `world battery_sag=on`.
+pub(super) fn switch(_: &mut AppState, _: &str, argument: &str) -> Result<Vec<Effect>, String> {
+    let usage = "Write :world NAME=VALUE, such as :world battery_sag=on.";
+    let (name, value) = argument.split_once(['=', ' ']).ok_or(usage)?;
+    let (name, value) = (name.trim(), value.trim());
+    let names = || WORLD_SWITCHES.iter().map(|switch| switch.name);
+    if !names().any(|known| known == name) {
+        return Err(format!("There is no switch {name}{}", did_you_mean_end(name, names())));
+    }
+    Ok(vec![Effect::World(format!("{name}={value}"))])
+}
+
+/// Names of switches, then their values.
+pub(super) fn complete_switch(_: &AppState, _: &str, typed: &str) -> Vec<String> {
+    let lines = WORLD_SWITCHES.iter().flat_map(|switch| match typed.split_once('=') {
+        Some((name, _)) if name == switch.name => {
+            words_of(switch.values).into_iter().map(|value| format!("{name}={value}")).collect()
+        }
+        Some(_) => Vec::new(),
+        None => vec![format!("{}=", switch.name)],
+    });
+    lines.filter(|line| line.starts_with(typed)).collect()
+}
+
+/// The words of a description of values, `real, none`; none where it is a form to be filled in.
+fn words_of(values: &str) -> Vec<&str> {
+    let parts: Vec<&str> = values.split([',', ' ']).map(str::trim).filter(|part| !part.is_empty()).collect();
+    let is_word = |part: &&str| part.chars().all(|c| c.is_ascii_lowercase() || c == '-');
+    parts.into_iter().filter(|part| is_word(part) && *part != "or" && *part != "to").collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::session::SessionView;
+
+    #[test]
+    fn values_that_are_words_are_completed() {
+        let state = AppState::bare((80, 24), SessionView::default());
+        assert_eq!(complete(&state, "turbulence", "se"), ["severe"]);
+        assert_eq!(complete(&state, "noise", ""), ["real", "none"]);
+        assert_eq!(complete(&state, "wind", ""), ["calm"]);
+        assert!(complete(&state, "gps-rate", "").is_empty());
+        assert_eq!(complete(&state, "fault", "gps-l"), ["gps-loss"]);
+        assert_eq!(complete_switch(&state, "world", "battery_sag="), ["battery_sag=on", "battery_sag=off"]);
+    }
+}

@@ -1,0 +1,141 @@
+//! The `:` line: a command typed by its name, with its history and what it may become.
+
+use crossterm::event::{KeyCode, KeyEvent};
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+use ratatui::text::Line;
+use ratatui::widgets::{Block, Clear, Widget as _};
+
+use crate::ui::app_state::AppState;
+use crate::ui::command::{self, Suggestion};
+use crate::ui::completion::common_prefix;
+use crate::ui::formatting::cut;
+use crate::ui::history::History;
+use crate::ui::layout;
+use crate::ui::panel::{line, row, span};
+use crate::ui::text_field::TextField;
+use crate::ui::text_wrap::wrapped;
+use crate::ui::theme::Role;
+
+/// Suggestions shown at most.
+const MOST: usize = 8;
+/// Columns of a suggested word.
+const WORD: usize = 18;
+
+/// The line, and what was entered before.
+#[derive(Debug, Default)]
+pub struct CommandLine {
+    /// What is being typed.
+    pub field: TextField,
+    history: History,
+}
+
+/// What a key did to the line.
+#[derive(Debug, PartialEq, Eq)]
+pub(in crate::ui) enum Outcome {
+    /// It is being typed.
+    Typing,
+    /// It is to be carried out.
+    Entered(String),
+    /// It is left.
+    Left,
+}
+
+impl CommandLine {
+    /// Begins a new line.
+    pub(in crate::ui) fn open(&mut self, text: &str) {
+        self.field = TextField::new(text);
+        self.history.forget_place();
+    }
+
+    /// Completes the word that is being typed as far as all suggestions agree.
+    fn complete(&mut self, suggestions: &[Suggestion]) {
+        let common = common_prefix(suggestions.iter().map(|suggestion| suggestion.line.as_str()));
+        // A name that is offered instead of a shorter word need not begin with it.
+        if common.len() > self.field.value().trim_start().len() {
+            self.field = TextField::new(common);
+        }
+    }
+}
+
+/// A key while the line is open.
+pub(in crate::ui) fn key(state: &mut AppState, event: KeyEvent) -> Outcome {
+    match event.code {
+        KeyCode::Esc => return Outcome::Left,
+        KeyCode::Backspace if state.command_line.field.is_empty() => return Outcome::Left,
+        KeyCode::Enter => {
+            let entered = state.command_line.field.take();
+            state.command_line.history.remember(&entered);
+            return Outcome::Entered(entered);
+        }
+        KeyCode::Tab => {
+            let suggestions = command::suggestions(state, state.command_line.field.value());
+            state.command_line.complete(&suggestions);
+        }
+        KeyCode::Up | KeyCode::Down => {
+            let CommandLine { field, history } = &mut state.command_line;
+            let recalled =
+                if event.code == KeyCode::Up { history.older(field.value()) } else { history.newer() };
+            if let Some(recalled) = recalled {
+                *field = TextField::new(recalled);
+            }
+        }
+        _ => {
+            state.command_line.field.key(event);
+        }
+    }
+    Outcome::Typing
+}
+
+/// Draws the line in the last row, and above it what it may become; gives the place of the cursor.
+pub(in crate::ui) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+    let theme = &state.theme;
+    let bottom = Rect { y: area.y + area.height.checked_sub(1)?, height: 1, ..area };
+    Clear.render(bottom, buffer);
+    row(buffer, bottom, 0, theme, Role::Key, ":");
+    let typed = state.command_line.field.value();
+    draw_suggestions(state, typed, Rect { height: area.height - 1, ..area }, buffer);
+    let field = Rect { x: bottom.x + 1, width: bottom.width.checked_sub(1)?, ..bottom };
+    state.command_line.field.draw(theme, field, buffer)
+}
+
+fn draw_suggestions(state: &AppState, typed: &str, above: Rect, buffer: &mut Buffer) {
+    let theme = &state.theme;
+    let suggestions = command::suggestions(state, typed);
+    let width = above.width.min(78);
+    let inside = usize::from(width.saturating_sub(2));
+    let hint = command::hint(state, typed).map_or_else(Vec::new, |hint| wrapped(&hint, inside));
+    let shown = suggestions.len().min(MOST);
+    let more = usize::from(suggestions.len() > shown);
+    let height = (shown + more + hint.len() + 2) as u16;
+    if shown + hint.len() == 0 || height > above.height || inside < WORD + 4 {
+        return;
+    }
+    let place = Rect::new(above.x, above.y + above.height - height, width, height);
+    Clear.render(place, buffer);
+    let title = " Tab completes  ↑ ↓ history  Esc leaves ";
+    Block::bordered()
+        .border_style(theme.style(Role::Dim))
+        .title_bottom(Line::from(span(theme, Role::Dim, cut(title, inside))))
+        .render(place, buffer);
+    let area = layout::inner(place);
+    for (at, suggestion) in suggestions.iter().take(shown).enumerate() {
+        let room = inside.saturating_sub(WORD + 1);
+        let keys = cut(&suggestion.keys, room);
+        let help = cut(suggestion.help, room.saturating_sub(keys.chars().count() + 1));
+        let fill = room.saturating_sub(help.chars().count() + keys.chars().count());
+        let spans = vec![
+            span(theme, Role::Text, format!("{:<WORD$} ", cut(&suggestion.word, WORD))),
+            span(theme, Role::Dim, format!("{help}{}", " ".repeat(fill))),
+            span(theme, Role::Key, keys),
+        ];
+        line(buffer, area, at as u16, &Line::from(spans));
+    }
+    if more > 0 {
+        let text = format!("… {} more", suggestions.len() - shown);
+        row(buffer, area, shown as u16, theme, Role::Dim, &text);
+    }
+    for (at, text) in hint.iter().enumerate() {
+        row(buffer, area, (shown + more + at) as u16, theme, Role::Title, text);
+    }
+}

@@ -1,0 +1,202 @@
+//! The palette: every action and command, found by a few letters of its name, title or help.
+
+use crossterm::event::{KeyCode, KeyEvent};
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+use ratatui::text::Line;
+
+use crate::ui::action::{self, ACTIONS, Action, Spec};
+use crate::ui::app_state::AppState;
+use crate::ui::command::{self, Command};
+use crate::ui::draw::popup;
+use crate::ui::formatting::cut;
+use crate::ui::fuzzy;
+use crate::ui::panel::{line, row, span};
+use crate::ui::text_field::TextField;
+use crate::ui::theme::Role;
+
+/// Inner size on a screen that has room for it.
+const SIZE: (u16, u16) = (72, 16);
+/// Columns of a name.
+const NAME: usize = 18;
+/// Rows of the search line above the list, and of the reason below it.
+const AROUND: u16 = 2;
+/// Weight of letters found in the title or the name.
+const IN_NAME: u32 = 4;
+/// Weight of a letter of a word that stands in the help: more than letters scattered over a name.
+const IN_HELP: u32 = 6;
+
+/// What is searched, and the row that is selected.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Palette {
+    /// What is typed.
+    pub query: TextField,
+    /// Selected row of the list.
+    pub selected: usize,
+}
+
+/// A row of the palette.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::ui) enum Entry {
+    /// An action.
+    Action(&'static Spec),
+    /// A command, which needs an argument.
+    Command(Command),
+}
+
+/// What a key did.
+#[derive(Debug)]
+pub(in crate::ui) enum Outcome {
+    /// It is being searched.
+    Searching,
+    /// This row was chosen.
+    Chosen(Entry),
+    /// It is left.
+    Left,
+}
+
+impl Entry {
+    fn name(&self) -> &'static str {
+        match self {
+            Self::Action(spec) => spec.name,
+            Self::Command(command) => command.name,
+        }
+    }
+
+    fn help(&self) -> &'static str {
+        match self {
+            Self::Action(spec) => spec.help,
+            Self::Command(command) => command.help,
+        }
+    }
+
+    fn keys(&self, state: &AppState) -> String {
+        match self {
+            Self::Action(spec) => state.keymap.shown_keys(spec.action).join(" "),
+            Self::Command(command) => format!(":{}", command.name),
+        }
+    }
+
+    /// Why it makes no sense now, if it does not.
+    fn refusal(&self, state: &AppState) -> Option<String> {
+        match self {
+            Self::Action(spec) => action::enabled(state, spec.action).err(),
+            Self::Command(_) => None,
+        }
+    }
+
+    /// How well a query fits: each of its words must occur.
+    fn score(&self, query: &str) -> Option<u32> {
+        let title = match self {
+            Self::Action(spec) => spec.title,
+            Self::Command(command) => command.argument,
+        };
+        let help = self.help().to_lowercase();
+        query.split_whitespace().try_fold(0, |sum, word| {
+            let named = [title, self.name()].into_iter().filter_map(|text| fuzzy::score(word, text)).max();
+            let helped = help.contains(&word.to_lowercase()).then_some(word.chars().count() as u32 * IN_HELP);
+            named.map(|score| score * IN_NAME).max(helped).map(|score| sum + score)
+        })
+    }
+}
+
+/// The rows that a query leaves, the best first.
+pub(in crate::ui) fn entries(query: &str) -> Vec<Entry> {
+    let actions = ACTIONS.iter().filter(|spec| spec.action != Action::Palette).map(Entry::Action);
+    let all = actions.chain(command::all().map(Entry::Command));
+    let mut scored: Vec<(u32, Entry)> = all.filter_map(|entry| Some((entry.score(query)?, entry))).collect();
+    // Stable: what fits equally well stays in the order of the table.
+    scored.sort_by_key(|(score, _)| std::cmp::Reverse(*score));
+    scored.into_iter().map(|(_, entry)| entry).collect()
+}
+
+/// A key while the palette is open.
+pub(in crate::ui) fn key(palette: &mut Palette, event: KeyEvent) -> Outcome {
+    let found = entries(palette.query.value());
+    let last = found.len().saturating_sub(1);
+    match event.code {
+        KeyCode::Esc => return Outcome::Left,
+        KeyCode::Enter => match found.get(palette.selected) {
+            Some(entry) => return Outcome::Chosen(*entry),
+            None => return Outcome::Searching,
+        },
+        KeyCode::Up => palette.selected = palette.selected.saturating_sub(1),
+        KeyCode::Down => palette.selected = (palette.selected + 1).min(last),
+        KeyCode::PageUp => palette.selected = palette.selected.saturating_sub(10),
+        KeyCode::PageDown => palette.selected = (palette.selected + 10).min(last),
+        _ => {
+            let before = palette.query.value().to_owned();
+            palette.query.key(event);
+            if palette.query.value() != before {
+                palette.selected = 0;
+            }
+        }
+    }
+    Outcome::Searching
+}
+
+/// Draws it; gives the place of the cursor.
+pub(in crate::ui) fn draw(
+    state: &AppState,
+    palette: &Palette,
+    area: Rect,
+    buffer: &mut Buffer,
+) -> Option<Position> {
+    let theme = &state.theme;
+    let inside = popup(state, area, SIZE, "Commands — Enter runs, Esc closes", buffer);
+    let found = entries(palette.query.value());
+    let rows = inside.height.saturating_sub(AROUND);
+    let first = (palette.selected + 1).saturating_sub(usize::from(rows));
+    let width = usize::from(inside.width);
+    for (at, entry) in found.iter().enumerate().skip(first).take(usize::from(rows)) {
+        let refused = entry.refusal(state).is_some();
+        let is_selected = at == palette.selected;
+        let role = match (is_selected, refused) {
+            (true, _) => Role::Selected,
+            (false, true) => Role::Dim,
+            (false, false) => Role::Text,
+        };
+        let keys = cut(&entry.keys(state), width.saturating_sub(NAME + 4));
+        let room = width.saturating_sub(NAME + 4 + keys.chars().count());
+        let mark = if refused { '✗' } else { ' ' };
+        let text = format!("{mark} {:<NAME$} {:<room$} ", cut(entry.name(), NAME), cut(entry.help(), room));
+        let key_role = if is_selected { Role::Selected } else { Role::Key };
+        let spans = vec![span(theme, role, text), span(theme, key_role, keys)];
+        line(buffer, inside, 1 + (at - first) as u16, &Line::from(spans));
+    }
+    let (role, text) = match found.get(palette.selected) {
+        Some(entry) => match entry.refusal(state) {
+            Some(reason) => (Role::Warn, format!("✗ {reason}")),
+            None => (Role::Dim, entry.help().to_owned()),
+        },
+        None => (Role::Dim, "Nothing is called so: fewer letters find more.".to_owned()),
+    };
+    row(buffer, inside, inside.height.saturating_sub(1), theme, role, &text);
+    row(buffer, inside, 0, theme, Role::Key, "> ");
+    let field = Rect { x: inside.x + 2, width: inside.width.checked_sub(2)?, height: 1, ..inside };
+    palette.query.draw(theme, field, buffer)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn first(query: &str) -> Option<&'static str> {
+        entries(query).first().map(Entry::name)
+    }
+
+    #[test]
+    fn a_few_letters_find_an_action_by_name_title_or_help() {
+        assert_eq!(first("arm"), Some("flight.arm"));
+        assert_eq!(first("rtime"), Some("sim.real-time"));
+        assert_eq!(first("cut rc"), Some("rc.cut"));
+        assert_eq!(first("wind"), Some("wind"));
+        assert!(entries("whole plan").iter().any(|entry| entry.name() == "flight.fly"));
+        assert_eq!(first("zzzz"), None);
+    }
+
+    #[test]
+    fn without_a_query_it_lists_every_action_but_itself_and_every_command() {
+        assert_eq!(entries("").len(), ACTIONS.len() - 1 + command::all().count());
+    }
+}
