@@ -1,11 +1,13 @@
 //! From arguments to the tasks of one mode.
 
+mod config;
 mod convert;
 mod doctor;
 mod doors;
 mod error;
 mod fly;
 mod input_file;
+mod keys;
 mod layers;
 mod live;
 mod output_file;
@@ -21,6 +23,7 @@ use std::ffi::OsString;
 pub use error::AppError;
 
 use crate::args::{self, Cli, Command, PlanCommand};
+use crate::ui::keymap::Keymap;
 
 /// Runs the program with the given command line (program name first) and gives its exit code.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
@@ -32,14 +35,14 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
 /// The exit code of the command that was typed.
 fn outcome(arguments: Vec<OsString>) -> u8 {
     let is_sitl = arguments.get(1).is_some_and(|command| command == "sitl");
-    let layers = layers::read();
+    let outside = layers::read();
     // Help, completions and the doctor work with a broken configuration file, too.
-    let known = layers.as_ref().cloned().unwrap_or_default();
-    let outcome = match args::parse(arguments, &known) {
-        Ok(cli) => match layers {
-            Err(broken) if reads_layers(cli.command.as_ref()) => Err(broken),
-            _ => dispatch(cli),
-        },
+    let known = outside.as_ref().cloned().unwrap_or_default();
+    let outcome = match args::parse(arguments, &known.layers) {
+        Ok(cli) if !reads_layers(cli.command.as_ref()) => dispatch(cli, Keymap::default()),
+        Ok(cli) => outside
+            .and_then(|outside| keys::keymap(&outside.layers.file_name, &outside.keys))
+            .and_then(|keymap| dispatch(cli, keymap)),
         Err(error) if is_sitl && let Some(usage_error) = args::sitl_usage_error(&error) => {
             Err(AppError { code: error::FAILED, message: usage_error })
         }
@@ -65,6 +68,7 @@ fn reads_layers(command: Option<&Command>) -> bool {
         Some(
             Command::Plan(_)
             | Command::Convert(_)
+            | Command::Config(_)
             | Command::Doctor
             | Command::Completions { .. }
             | Command::Man,
@@ -72,14 +76,15 @@ fn reads_layers(command: Option<&Command>) -> bool {
     }
 }
 
-fn dispatch(cli: Cli) -> Result<u8, AppError> {
+fn dispatch(cli: Cli, keymap: Keymap) -> Result<u8, AppError> {
     match cli.command {
-        None => tui::run(&cli.tui),
+        None => tui::run(&cli.tui, keymap),
         Some(Command::Fly(args)) => fly::run(&args),
         Some(Command::Sitl(args)) => sitl::run(&args),
         Some(Command::Serve(args)) => serve::run(&args),
         Some(Command::Plan(PlanCommand::Show { plan })) => plan::show(&plan),
         Some(Command::Convert(args)) => convert::run(&args),
+        Some(Command::Config(command)) => config::run(command),
         Some(Command::Doctor) => doctor::run(),
         Some(Command::Completions { shell }) => error::write_stdout(&args::completions(shell)),
         Some(Command::Man) => error::write_stdout(&args::man_page().map_err(AppError::internal)?),

@@ -3,7 +3,9 @@
 //! A value comes from the first of: the command line, the environment (`BETADECK_…`), the configuration file, the
 //! default. This module only turns texts into values: it reads no file, no environment and no clock.
 
+mod config_file;
 mod convert;
+mod display;
 mod doors;
 mod flight;
 mod fly;
@@ -21,7 +23,9 @@ use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 
 use crate::did_you_mean;
 
+pub use config_file::{ConfigCommand, KeyHelp, Origin, origins, template};
 pub use convert::ConvertArgs;
+pub use display::{CharsetChoice, DisplayArgs, ThemeChoice, UnitsChoice};
 pub use doors::{DoorArgs, ServeArgs, SitlArgs, UdpPorts, sitl_usage_error};
 pub use flight::FlightArgs;
 pub use fly::FlyArgs;
@@ -63,6 +67,10 @@ pub struct Cli {
 pub struct TuiArgs {
     /// Plan to load: a built-in plan's name or a file (*.toml, *.txt, - for standard input) [default: square]
     pub plan: Option<PlanArg>,
+
+    /// The screen.
+    #[command(flatten)]
+    pub display: DisplayArgs,
 
     /// The doors.
     #[command(flatten)]
@@ -118,6 +126,10 @@ pub enum Command {
     ]))]
     Convert(ConvertArgs),
 
+    /// Writes the configuration file, or shows every value and where it comes from
+    #[command(subcommand, disable_help_subcommand = true)]
+    Config(ConfigCommand),
+
     /// Checks directories, ports, the terminal and versions
     Doctor,
 
@@ -170,6 +182,7 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>, layers: &Layers) -> 
             Command::Serve(_)
             | Command::Sitl(_)
             | Command::Plan(_)
+            | Command::Config(_)
             | Command::Doctor
             | Command::Completions { .. }
             | Command::Man,

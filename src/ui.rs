@@ -45,6 +45,7 @@ mod text_wrap;
 pub mod theme;
 mod track;
 mod transmitter;
+pub mod units;
 mod update;
 mod viewport;
 
@@ -59,5 +60,6 @@ pub use run::{Ending, SessionLink, run};
 pub use terminal::{Tui, restore_terminal_modes};
 pub use text_field::TextField;
 pub use theme::Theme;
+pub use units::Units;
 pub use update::update;
 pub use viewport::MapMode;

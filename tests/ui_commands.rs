@@ -236,3 +236,23 @@ fn the_line_and_the_palette_look_right_at_80x24() {
     type_text(&mut state, "ret");
     insta::assert_snapshot!("palette_80x24", screen(&state));
 }
+
+#[test]
+fn imperial_units_are_shown_and_nothing_else_changes() {
+    let mut state = fixture::state((200, 60), fixture::colour());
+    fixture::approach(&mut state);
+    let metric = screen(&state);
+    assert!(
+        metric.contains("62.3 m ") && metric.contains("5.0 m/s") && metric.contains("┤ 20 m "),
+        "{metric}"
+    );
+    assert!(enter(&mut state, "units imperial").is_empty());
+    let shown = screen(&state);
+    // 62.3 m, 5 m/s, 50.2 m; the guards and the scale of the map.
+    for part in ["204.", " ft", "11.2 mph", "164.7 ft", "wind ↘  7.1 mph", "17.9 ft"] {
+        assert!(shown.contains(part), "{part}\n{shown}");
+    }
+    assert!(!shown.contains("m/s  ") && !shown.contains(" m   N"), "{shown}");
+    enter(&mut state, "units metric");
+    assert_eq!(screen(&state), metric);
+}

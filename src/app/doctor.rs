@@ -7,7 +7,8 @@ use std::net::{TcpListener, UdpSocket};
 use std::path::Path;
 
 use super::error::{self, AppError};
-use super::layers;
+use super::keys;
+use super::layers::{self, Outside};
 use crate::args::{self, DoorArgs, Layers};
 use crate::ui::Theme;
 use crate::ui::layout::SMALLEST;
@@ -50,14 +51,17 @@ impl Report {
 /// The configuration file and the environment, with all their problems.
 fn configuration(report: &mut Report) -> Layers {
     const FILE: &str = "configuration file";
-    let layers = match layers::read() {
-        Ok(layers) => layers,
+    let Outside { layers, keys } = match layers::read() {
+        Ok(outside) => outside,
         Err(error) => {
             report.line(false, FILE, error.message.trim_end());
             return Layers::default();
         }
     };
-    let problems = args::layer_problems(&layers);
+    let mut problems = args::layer_problems(&layers);
+    if let Err(error) = keys::keymap(&layers.file_name, &keys) {
+        problems.extend(error.message.lines().map(str::to_owned));
+    }
     if problems.is_empty() && !layers.file_name.is_empty() {
         let found = if Path::new(&layers.file_name).exists() { "present" } else { "none, defaults apply" };
         report.line(true, FILE, &format!("{} ({found})", layers.file_name));

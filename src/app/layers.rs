@@ -7,7 +7,9 @@ use etcetera::BaseStrategy as _;
 
 use super::AppError;
 use super::input_file;
+use super::keys;
 use crate::args::{ENVIRONMENT_PREFIX, Layers};
+use crate::ui::keymap::KeyLine;
 
 /// Name of the program's folder in the user's directories.
 const FOLDER: &str = "betadeck";
@@ -38,19 +40,32 @@ pub(super) fn directories() -> Result<Directories, AppError> {
     })
 }
 
+/// What stands outside the command line.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Outside {
+    /// The values of options.
+    pub layers: Layers,
+    /// Keys of the user's own.
+    pub keys: Vec<KeyLine>,
+}
+
 /// Reads the environment and the configuration file, which may be missing.
-pub(super) fn read() -> Result<Layers, AppError> {
+pub(super) fn read() -> Result<Outside, AppError> {
     let environment: BTreeMap<String, String> = std::env::vars_os()
         .filter_map(|(name, value)| Some((name.into_string().ok()?, value.into_string().ok()?)))
         .filter(|(name, _)| name.starts_with(ENVIRONMENT_PREFIX))
         .collect();
     // Without a home directory there is no configuration file either.
-    let Ok(directories) = directories() else { return Ok(Layers { environment, ..Layers::default() }) };
+    let Ok(directories) = directories() else {
+        return Ok(Outside { layers: Layers { environment, ..Layers::default() }, keys: Vec::new() });
+    };
     let path = directories.config_file();
     let file_name = path.display().to_string();
     let text = input_file::read_if_there(&path)?.unwrap_or_default();
-    let file = text.parse().map_err(|error: toml::de::Error| {
+    let mut file: toml::Table = text.parse().map_err(|error: toml::de::Error| {
         AppError::input(format!("{file_name}: {error}").trim_end().to_owned())
     })?;
-    Ok(Layers { environment, file_name, file })
+    let keys = keys::read(&file_name, &text)?;
+    file.remove("keys");
+    Ok(Outside { layers: Layers { environment, file_name, file }, keys })
 }

@@ -7,15 +7,17 @@ use super::error::{self, AppError};
 use super::live::{self, LiveArgs};
 use super::setup;
 use super::stop_signal;
-use crate::args::{PlanArg, TuiArgs};
+use crate::args::{CharsetChoice, DisplayArgs, PlanArg, ThemeChoice, TuiArgs, UnitsChoice};
 use crate::firmware::cli;
 use crate::plan::builtin::{BuiltinPlan, DEMO};
 use crate::plan::format::PlanFile;
 use crate::record::sentence;
-use crate::ui::{self, CliHelp, Ending, OpenPlan, SessionLink, Theme, Tui, UiConfig};
+use crate::ui::keymap::Keymap;
+use crate::ui::theme::{Charset, Palette};
+use crate::ui::{self, CliHelp, Ending, OpenPlan, SessionLink, Theme, Tui, UiConfig, Units};
 
 /// Opens the user interface; returns its exit code when the user has left it.
-pub(super) fn run(args: &TuiArgs) -> Result<u8, AppError> {
+pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
     if !std::io::stdout().is_terminal() || !std::io::stdin().is_terminal() {
         return Err(AppError::environment(
             "the user interface needs a terminal: run betadeck in one, or fly without a screen with \
@@ -38,7 +40,9 @@ pub(super) fn run(args: &TuiArgs) -> Result<u8, AppError> {
     let setup = setup::for_session(&args.flight, &args.physics, &args.doors, on_the_ground, stored)?;
     let vehicle = setup::build(setup, &mut notices)?;
     let config = UiConfig {
-        theme: Theme::from_environment(|name| std::env::var(name).ok()),
+        theme: theme(&args.display),
+        units: units(&args.display),
+        keymap,
         cli: CliHelp { complete: |line| cli::complete(line).lines(line), hint: |line| cli::hint(line, None) },
         sentence: |event| sentence::text(&event.kind).unwrap_or_default(),
         plan: OpenPlan { name: plan.name, plan: plan.plan, settings: plan.settings },
@@ -71,5 +75,33 @@ pub(super) fn run(args: &TuiArgs) -> Result<u8, AppError> {
         // Closing the terminal also sends a signal; which of the two is seen first is chance.
         Ending::Signal | Ending::TerminalLost => Ok(error::INTERRUPTED),
         Ending::SessionEnded => Err(AppError::internal("the session ended by itself")),
+    }
+}
+
+/// What the environment says, but for what was asked for; `NO_COLOR` wins.
+fn theme(args: &DisplayArgs) -> Theme {
+    let mut theme = Theme::from_environment(|name| std::env::var(name).ok());
+    let palette = args.theme.map(|choice| match choice {
+        ThemeChoice::Dark => Palette::Dark,
+        ThemeChoice::Light => Palette::Light,
+        ThemeChoice::HighContrast => Palette::HighContrast,
+        ThemeChoice::Sixteen => Palette::Ansi16,
+        ThemeChoice::Mono => Palette::Mono,
+    });
+    if let Some(palette) = palette.filter(|_| !theme.no_colour) {
+        theme.palette = palette;
+    }
+    match args.charset {
+        None | Some(CharsetChoice::Auto) => {}
+        Some(CharsetChoice::Unicode) => theme.charset = Charset::Unicode,
+        Some(CharsetChoice::Ascii) => theme.charset = Charset::Ascii,
+    }
+    theme
+}
+
+fn units(args: &DisplayArgs) -> Units {
+    match args.units {
+        None | Some(UnitsChoice::Metric) => Units::Metric,
+        Some(UnitsChoice::Imperial) => Units::Imperial,
     }
 }

@@ -32,7 +32,7 @@ pub struct Layers {
 type Found = (String, Vec<String>);
 
 /// Commands whose options come from all layers; the empty name is the terminal user interface.
-const FLYING: [&str; 4] = ["", "fly", "serve", "sitl"];
+pub(super) const FLYING: [&str; 4] = ["", "fly", "serve", "sitl"];
 
 /// Parses again with what the layers add to the command line.
 pub(super) fn apply(
@@ -61,7 +61,7 @@ pub(super) fn apply(
 }
 
 /// The options of a command that the layers can give.
-fn options(command: &clap::Command) -> impl Iterator<Item = &Arg> {
+pub(super) fn options(command: &clap::Command) -> impl Iterator<Item = &Arg> {
     command
         .get_arguments()
         .filter(|arg| !arg.is_positional() && !matches!(arg.get_long(), Some("help" | "version")))
@@ -118,6 +118,14 @@ impl Layers {
             given.append(&mut here);
         }
         Ok(added)
+    }
+
+    /// Where an option was found first, and its values.
+    pub(super) fn find(&self, long: &str) -> Result<Option<Found>, String> {
+        match self.in_environment(long)? {
+            Some(found) => Ok(Some(found)),
+            None => self.in_file(long),
+        }
     }
 
     /// Where the environment has the option, and its value.

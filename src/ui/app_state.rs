@@ -16,6 +16,7 @@ use super::panel::Panel;
 use super::popup::{CommandLine, Popup};
 use super::theme::Theme;
 use super::track::Track;
+use super::units::Units;
 use super::viewport::MapState;
 
 /// Transitions remembered for the state panel.
@@ -37,6 +38,10 @@ pub struct OpenPlan {
 pub struct UiConfig {
     /// Colours and characters.
     pub theme: Theme,
+    /// Units of what is shown.
+    pub units: Units,
+    /// Keys.
+    pub keymap: Keymap,
     /// Completion and help of the CLI panel.
     pub cli: CliHelp,
     /// An event as a sentence; empty for events that nobody needs to read.
@@ -93,6 +98,8 @@ pub struct AppState {
     pub view: SessionView,
     /// Colours and characters.
     pub theme: Theme,
+    /// Units of what is shown.
+    pub units: Units,
     /// Completion and help of the CLI panel.
     pub cli_help: CliHelp,
     /// An event as a sentence.
@@ -149,6 +156,8 @@ impl AppState {
     pub(super) fn bare(size: (u16, u16), view: SessionView) -> Self {
         let config = UiConfig {
             theme: Theme::default(),
+            units: Units::default(),
+            keymap: Keymap::default(),
             cli: CliHelp::default(),
             sentence: |_| String::new(),
             plan: OpenPlan::default(),
@@ -167,7 +176,8 @@ impl AppState {
             theme: config.theme,
             cli_help: config.cli,
             sentence: config.sentence,
-            keymap: Keymap::default(),
+            keymap: config.keymap,
+            units: config.units,
             plan: config.plan,
             size,
             focus: Panel::Map,

@@ -7,6 +7,10 @@ use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use super::action::{ACTIONS, Action, Context};
 use super::panel::Panel;
 
+mod remap;
+
+pub use remap::KeyLine;
+
 /// A key with its modifiers; shift is part of the character where there is one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct KeyPress {
@@ -42,11 +46,13 @@ impl KeyPress {
         KeyEvent::new(self.code, self.modifiers)
     }
 
-    /// A key from text: `a`, `F`, `space`, `ctrl-c`, `shift-tab`, `f1`.
+    /// A key from text: `a`, `F`, `space`, `ctrl-c`, `shift-tab`, `f1`. Names may be written in capitals, too.
     #[must_use]
     pub fn parse(text: &str) -> Option<Self> {
+        let lower = text.to_ascii_lowercase();
+        // A single character means itself: `F` is not `f`.
+        let mut rest = if text.chars().nth(1).is_some() { lower.as_str() } else { text };
         let mut modifiers = KeyModifiers::NONE;
-        let mut rest = text;
         for (prefix, modifier) in
             [("ctrl-", KeyModifiers::CONTROL), ("alt-", KeyModifiers::ALT), ("shift-", KeyModifiers::SHIFT)]
         {

@@ -12,6 +12,7 @@ use super::app_state::AppState;
 use super::formatting::{clock, clock_ms, cut, factor, fixed, signed};
 use super::panel::span;
 use super::theme::Role;
+use super::units::Units;
 
 /// Empty and full cell, V.
 const CELL_V: (f64, f64) = (3.3, 4.2);
@@ -145,15 +146,19 @@ fn mission(state: &AppState, room: usize) -> Vec<Span<'static>> {
         Some((wp, kind)) => (format!("WP{wp} {kind}"), 12),
         None => (state.view.pilot.unwrap_or_default().to_owned(), 15),
     };
+    let units = state.units;
+    let (m, mps) = (units.length_unit(), units.speed_unit());
+    let length = |value: Option<f64>| value.map(|metres| units.length(metres));
+    let speed = |value: Option<f64>| value.map(|speed| units.speed(speed));
     let estimate = &vehicle.estimate;
-    let leg = engaged.map_or_else(Vec::new, leg);
+    let leg = engaged.map_or_else(Vec::new, |nav| leg(nav, units));
     // How important, label, value, unit.
     let craft = [
-        (2, "", fixed(estimate.ground_speed_mps, 5, 1), " m/s"),
-        (1, "", fixed(estimate.alt, 6, 1), " m"),
-        (5, "  climb", signed(estimate.climb_mps, 6, 1), " m/s"),
-        (6, "  home", fixed(nav.and_then(|nav| nav.home_distance_m), 6, 0), " m"),
-        (7, "  fence", fixed(nav.and_then(|nav| nav.fence_margin_m), 6, 0), " m left"),
+        (2, "", fixed(speed(estimate.ground_speed_mps), 5, 1), format!(" {mps}")),
+        (1, "", fixed(length(estimate.alt), 6, 1), format!(" {m}")),
+        (5, "  climb", signed(speed(estimate.climb_mps), 6, 1), format!(" {mps}")),
+        (6, "  home", fixed(length(nav.and_then(|nav| nav.home_distance_m)), 6, 0), format!(" {m}")),
+        (7, "  fence", fixed(length(nav.and_then(|nav| nav.fence_margin_m)), 6, 0), format!(" {m} left")),
     ];
     let mut spans = vec![
         span(theme, role, format!(" ◆ {name:<11} ")),
@@ -161,7 +166,7 @@ fn mission(state: &AppState, room: usize) -> Vec<Span<'static>> {
     ];
     let parts: Vec<_> = leg.into_iter().chain(craft).collect();
     let width =
-        |(_, label, value, unit): &(u8, &str, String, &str)| label.width() + value.width() + unit.width();
+        |(_, label, value, unit): &(u8, &str, String, String)| label.width() + value.width() + unit.width();
     let fits = |most: u8| parts.iter().filter(|part| part.0 <= most).map(width).sum::<usize>();
     let left = room.saturating_sub(15 + columns);
     let most = (0..=7).rev().find(|&most| fits(most) <= left).unwrap_or(0);
@@ -174,16 +179,22 @@ fn mission(state: &AppState, room: usize) -> Vec<Span<'static>> {
 }
 
 /// The numbers of the leg: how important, label, value, unit.
-fn leg(nav: &NavTelemetry) -> Vec<(u8, &'static str, String, &'static str)> {
+fn leg(nav: &NavTelemetry, units: Units) -> Vec<(u8, &'static str, String, String)> {
+    let m = || format!(" {}", units.length_unit());
+    let length = |value: Option<f64>| value.map(|metres| units.length(metres));
     let bearing = nav.bearing_rad.map(|rad| rad.to_degrees().rem_euclid(360.0));
     let last = if nav.hold_remaining_ds > 0 {
         let left = (nav.hold_remaining_ds != u16::MAX).then(|| f64::from(nav.hold_remaining_ds) / 10.0);
         let text = left.map_or_else(|| "∞".to_owned(), |left| fixed(Some(left), 4, 0));
-        (4, " hold", format!("{text:>4}"), " s")
+        (4, " hold", format!("{text:>4}"), " s".to_owned())
     } else {
-        (4, " xte", signed(nav.xte_m, 5, 1), " m")
+        (4, " xte", signed(length(nav.xte_m), 5, 1), m())
     };
-    vec![(0, "", fixed(nav.distance_m, 5, 1), " m"), (3, "", fixed(bearing, 4, 0), "°"), last]
+    vec![
+        (0, "", fixed(length(nav.distance_m), 5, 1), m()),
+        (3, "", fixed(bearing, 4, 0), "°".to_owned()),
+        last,
+    ]
 }
 
 /// Simulated time and speed.

@@ -378,6 +378,55 @@ fn options_come_from_the_environment_and_the_configuration_file_too() {
 }
 
 #[test]
+fn the_configuration_file_is_written_shown_and_found() {
+    let sandbox = Sandbox::new();
+    let path = sandbox.run(&["config", "path"]).exits(0).out;
+    assert!(path.trim_end().ends_with(".config/betadeck/config.toml"), "{path}");
+    assert_eq!(sandbox.names(), Vec::<String>::new(), "nothing is written unasked");
+    assert_eq!(sandbox.run(&["config", "init"]).exits(0).out, path);
+    let written = sandbox.read(".config/betadeck/config.toml");
+    assert!(written.contains("#\"flight.arm\" = \"a\"") && written.contains("#wind = "), "{written}");
+    sandbox.run(&["fly", "land"]).exits(0);
+    let again = sandbox.run(&["config", "init"]).exits(3);
+    assert!(again.err.contains("--force"), "{}", again.err);
+
+    configured(&sandbox, "seed = 7\n[keys]\n\"flight.arm\" = \"A\"\n");
+    let shown = sandbox.run(&["config", "show"]).exits(0).out;
+    let line = |name: &str| {
+        let found =
+            shown.lines().find(|line| line.starts_with(name)).unwrap_or_else(|| panic!("{name}\n{shown}"));
+        found.split_whitespace().map(str::to_owned).collect::<Vec<_>>()
+    };
+    assert_eq!(line("seed ")[1], "7");
+    assert!(line("seed ")[2].ends_with("config.toml:"));
+    assert_eq!(line("units ")[1..], ["metric", "default"]);
+    assert!(line("keys.flight.arm ")[2].ends_with("config.toml:3"));
+    sandbox.run(&["config", "init", "--force"]).exits(0);
+    assert_eq!(sandbox.read(".config/betadeck/config.toml"), written);
+}
+
+#[test]
+fn wrong_keys_in_the_configuration_file_are_told_with_their_lines() {
+    let sandbox = Sandbox::new();
+    configured(
+        &sandbox,
+        "[keys]\n\"flight.amr\" = \"b\"\n\"flight.arm\" = \"hyper-x\"\n\"sim.step\" = \"g\"\n",
+    );
+    let ran = sandbox.run(&["fly", "land"]).exits(2);
+    let lines: Vec<&str> = ran.err.lines().collect();
+    assert_eq!(lines.len(), 3, "{}", ran.err);
+    for (line, part) in [
+        (0, "config.toml:2: there is no action flight.amr; did you mean flight.arm?"),
+        (1, "config.toml:3: \"hyper-x\" is no key"),
+        (2, "config.toml:4: g means sim.step and flight.autopilot"),
+    ] {
+        assert!(lines[line].contains(part), "{}", ran.err);
+    }
+    assert!(sandbox.run(&["doctor"]).out.contains("flight.amr"), "the doctor tells it, too");
+    sandbox.run(&["plan", "show", "land"]).exits(0);
+}
+
+#[test]
 fn a_reader_that_goes_away_is_no_error() {
     for stream in ["out", "err"] {
         let sandbox = Sandbox::new();

@@ -14,8 +14,9 @@ use betadeck::telemetry::{
     FirmwareEvent, Guard, GuardName, GuardOp, L1Mode, Mode, ModeFlags, NavEvent, NavState, PacketStats,
     Snapshot, TransitionReason,
 };
+use betadeck::ui::keymap::Keymap;
 use betadeck::ui::theme::{Charset, Palette};
-use betadeck::ui::{AppState, CliHelp, Msg, OpenPlan, Theme, UiConfig, update};
+use betadeck::ui::{AppState, CliHelp, Msg, OpenPlan, Theme, UiConfig, Units, update};
 use nalgebra::{Vector2, Vector3};
 
 /// Where the craft stands at boot.
@@ -58,6 +59,8 @@ fn sentence(event: &Event) -> String {
 pub(crate) fn state(size: (u16, u16), theme: Theme) -> AppState {
     let config = UiConfig {
         theme,
+        units: Units::default(),
+        keymap: Keymap::default(),
         cli: CliHelp {
             complete: |line| {
                 ["set ap_position_p", "set ap_position_i", "save", "status"]

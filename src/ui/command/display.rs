@@ -4,6 +4,7 @@ use super::did_you_mean_end;
 use crate::ui::app_state::AppState;
 use crate::ui::message::Effect;
 use crate::ui::theme::{Charset, Palette};
+use crate::ui::units::Units;
 
 /// `theme light`.
 pub(super) fn theme(state: &mut AppState, _: &str, argument: &str) -> Result<Vec<Effect>, String> {
@@ -38,6 +39,21 @@ pub(super) fn charset(state: &mut AppState, _: &str, argument: &str) -> Result<V
 /// Names of character sets.
 pub(super) fn complete_charset(_: &AppState, _: &str, typed: &str) -> Vec<String> {
     starting(typed, &["unicode", "ascii"])
+}
+
+/// `units imperial`.
+pub(super) fn units(state: &mut AppState, _: &str, argument: &str) -> Result<Vec<Effect>, String> {
+    state.units = match argument {
+        "metric" => Units::Metric,
+        "imperial" => Units::Imperial,
+        _ => return Err(unknown("system of units", argument, &["metric", "imperial"])),
+    };
+    Ok(Vec::new())
+}
+
+/// Names of systems of units.
+pub(super) fn complete_units(_: &AppState, _: &str, typed: &str) -> Vec<String> {
+    starting(typed, &["metric", "imperial"])
 }
 
 fn unknown(what: &str, argument: &str, names: &[&'static str]) -> String {

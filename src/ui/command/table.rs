@@ -64,6 +64,13 @@ const COMMANDS: &[Command] = &[
         run: display::charset,
         complete: display::complete_charset,
     },
+    Command {
+        name: "units",
+        argument: "metric or imperial",
+        help: "The units of what is shown, not of what is stored",
+        run: display::units,
+        complete: display::complete_units,
+    },
 ];
 
 /// All commands with an argument: those of the table, and the words that change the world.

@@ -12,6 +12,7 @@ use crate::ui::formatting::{clock, cut, fixed, signed, within};
 use crate::ui::panel::Panel;
 use crate::ui::status_message;
 use crate::ui::theme::{Role, Theme};
+use crate::ui::units::Units;
 
 use super::state_diagram::{COMPACT, Diagram, FULL, LOW};
 use super::{line, row, span};
@@ -100,25 +101,24 @@ fn draw_guards(state: &AppState, area: Rect, buffer: &mut Buffer) -> u16 {
         return 0;
     }
     let theme = &state.theme;
+    let units = state.units;
     let wide = area.width >= WIDE;
     // What the mission waits for comes first, what would end it below.
     let (watched, awaited): (Vec<&Guard>, Vec<&Guard>) = nav.guards.iter().partition(|guard| is_watch(guard));
     let mut lines: Vec<Line<'_>> = awaited
         .iter()
-        .map(|guard| if wide { wide_guard(theme, guard) } else { narrow_guard(theme, guard, area.width) })
+        .map(|guard| {
+            if wide { wide_guard(theme, units, guard) } else { narrow_guard(theme, units, guard, area.width) }
+        })
         .collect();
     if let Some(eta) = nav.eta_s.filter(|eta| eta.is_finite()) {
-        let speed = fixed(state.view.vehicle.estimate.ground_speed_mps, 4, 1);
-        let text = format!("  in{} s at {speed} m/s", fixed(Some(eta), 5, 0));
+        let speed = fixed(state.view.vehicle.estimate.ground_speed_mps.map(|speed| units.speed(speed)), 4, 1);
+        let text = format!("  in{} s at {speed} {}", fixed(Some(eta), 5, 0), units.speed_unit());
         lines.push(Line::from(span(theme, Role::Dim, text)));
     }
-    lines.extend(
-        watched.iter().map(
-            |guard| {
-                if wide { watch(theme, guard) } else { narrow_watch(theme, guard, area.width) }
-            },
-        ),
-    );
+    lines.extend(watched.iter().map(|guard| {
+        if wide { watch(theme, units, guard) } else { narrow_watch(theme, units, guard, area.width) }
+    }));
     let mut used = u16::from(usize::from(area.height) > lines.len());
     for text in &lines {
         line(buffer, area, used, text);
@@ -159,33 +159,34 @@ fn watch_verdict(guard: &Guard) -> (&'static str, Role) {
 }
 
 /// `· fence           56.1 of   500 m`: how much of a limit is used up.
-fn watch(theme: &Theme, guard: &Guard) -> Line<'static> {
+fn watch(theme: &Theme, units: Units, guard: &Guard) -> Line<'static> {
     let (mark, role) = watch_verdict(guard);
-    let value = fixed(Some(guard.value), 7, 1);
-    let text =
-        format!("{mark} {:<13}{value} of {:>4} {}", short_name(guard), short(guard.limit), guard.unit());
+    let (factor, unit) = units.of_guard(guard.unit());
+    let value = fixed(Some(guard.value * factor), 7, 1);
+    let limit = short(guard.limit * factor);
+    let text = format!("{mark} {:<13}{value} of {limit:>4} {unit}", short_name(guard));
     Line::from(span(theme, role, text))
 }
 
 /// `· fence       56.1/500 m`.
-fn narrow_watch(theme: &Theme, guard: &Guard, width: u16) -> Line<'static> {
+fn narrow_watch(theme: &Theme, units: Units, guard: &Guard, width: u16) -> Line<'static> {
     let (mark, role) = watch_verdict(guard);
-    Line::from(span(theme, role, narrow(guard, mark, "/", width)))
+    Line::from(span(theme, role, narrow(units, guard, mark, "/", width)))
 }
 
 /// `✗ turn radius 62.4≤5.5 m`.
-fn narrow_guard(theme: &Theme, guard: &Guard, width: u16) -> Line<'static> {
+fn narrow_guard(theme: &Theme, units: Units, guard: &Guard, width: u16) -> Line<'static> {
     let (mark, role) = verdict(guard);
-    Line::from(span(theme, role, narrow(guard, mark, &guard.op.to_string(), width)))
+    Line::from(span(theme, role, narrow(units, guard, mark, &guard.op.to_string(), width)))
 }
 
 /// A guard in one narrow line: name at the left, numbers at the right, as many blanks between as there is room for.
-fn narrow(guard: &Guard, mark: &str, op: &str, width: u16) -> String {
-    let value = fixed(Some(guard.value), 5, 1);
-    let numbers = format!("{}{op}{}", value.trim_start(), short(guard.limit));
+fn narrow(units: Units, guard: &Guard, mark: &str, op: &str, width: u16) -> String {
+    let (factor, unit) = units.of_guard(guard.unit());
+    let value = fixed(Some(guard.value * factor), 5, 1);
+    let numbers = format!("{}{op}{}", value.trim_start(), short(guard.limit * factor));
     let name = format!("{mark} {}", short_name(guard));
     let room = usize::from(width).saturating_sub(name.chars().count() + numbers.chars().count());
-    let unit: &str = guard.unit().into();
     let unit = if room > unit.chars().count() + 1 { format!(" {unit}") } else { unit.to_owned() };
     let room = usize::from(width).saturating_sub(numbers.chars().count() + unit.chars().count());
     format!("{:<room$}{numbers}{unit}", cut(&name, room))
@@ -201,15 +202,16 @@ fn verdict(guard: &Guard) -> (&'static str, Role) {
 }
 
 /// `✗ turn radius    62.4 ≤   5.5 m   −56.9`.
-fn wide_guard(theme: &Theme, guard: &Guard) -> Line<'static> {
+fn wide_guard(theme: &Theme, units: Units, guard: &Guard) -> Line<'static> {
+    let (factor, unit) = units.of_guard(guard.unit());
     let (mark, role) = verdict(guard);
     Line::from(vec![
         span(theme, role, format!("{mark} {:<13}", cut(short_name(guard), 13))),
-        span(theme, Role::Text, fixed(Some(guard.value), 7, 1)),
+        span(theme, Role::Text, fixed(Some(guard.value * factor), 7, 1)),
         span(theme, Role::Dim, format!(" {} ", guard.op)),
-        span(theme, Role::Text, format!("{:>5}", short(guard.limit))),
-        span(theme, Role::Dim, format!(" {:<4}", guard.unit())),
-        span(theme, role, signed(Some(guard.margin()), 7, 1)),
+        span(theme, Role::Text, format!("{:>5}", short(guard.limit * factor))),
+        span(theme, Role::Dim, format!(" {unit:<4}")),
+        span(theme, role, signed(Some(guard.margin() * factor), 7, 1)),
     ])
 }
 
@@ -251,7 +253,7 @@ mod tests {
     fn flyaway_warns_only_when_the_craft_moves_away() {
         let shown = |value, limit| {
             let guard = Guard { name: GuardName::Flyaway, value, limit, op: GuardOp::Above };
-            watch(&Theme::default(), &guard).to_string()
+            watch(&Theme::default(), Units::Metric, &guard).to_string()
         };
         assert!(shown(112.9, 139.4).starts_with('·'), "nearer than ever");
         assert!(shown(1980.0, 2080.0).starts_with('·'), "a long leg");

@@ -80,6 +80,7 @@ fn arrow(heading_deg: f64) -> &'static str {
 /// Wind at the bottom left, scale bar and north at the bottom right.
 fn frame_notes(state: &AppState, labels: &mut Labels<'_>) {
     let vehicle = &state.view.vehicle;
+    let units = state.units;
     let wind = match &vehicle.truth {
         Some(truth) => truth.wind_ne.map(|ne| (ne.x.hypot(ne.y), ne.y.atan2(ne.x).to_degrees())),
         None => vehicle.world.wind.map(|wind| (wind.speed_mps, wind.from_deg + 180.0)),
@@ -87,12 +88,14 @@ fn frame_notes(state: &AppState, labels: &mut Labels<'_>) {
     let wind = match wind {
         None => " wind —".to_owned(),
         Some((speed, _)) if speed < 0.05 => " calm".to_owned(),
-        Some((speed, to_deg)) => format!(" wind {} {speed:4.1} m/s", arrow(to_deg)),
+        Some((speed, to_deg)) => {
+            format!(" wind {} {:4.1} {}", arrow(to_deg), units.speed(speed), units.speed_unit())
+        }
     };
-    let scale = labels.view().scale;
+    let scale = units.length(labels.view().scale);
     let length = round_length(scale * f64::from(labels.view().area.width) / 5.0);
     let columns = (length / scale).round().max(2.0) as usize;
-    let bar = format!("├{}┤ {length} m   N ↑ ", "─".repeat(columns.saturating_sub(2)));
+    let bar = format!("├{}┤ {length} {}   N ↑ ", "─".repeat(columns.saturating_sub(2)), units.length_unit());
     labels.bottom(&wind, &bar);
 }
 

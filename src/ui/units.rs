@@ -1,0 +1,80 @@
+//! Metric or imperial: what is shown, never what is stored or sent.
+
+use crate::telemetry::GuardUnit;
+
+/// Feet in a metre.
+const FEET: f64 = 1.0 / 0.3048;
+/// Miles an hour in a metre a second.
+const MILES_AN_HOUR: f64 = 3600.0 / 1609.344;
+
+/// The units of lengths and speeds on the screen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Units {
+    /// Metres, metres a second.
+    #[default]
+    Metric,
+    /// Feet, miles an hour.
+    Imperial,
+}
+
+impl Units {
+    /// A length in metres as it is shown.
+    #[must_use]
+    pub fn length(self, metres: f64) -> f64 {
+        match self {
+            Self::Metric => metres,
+            Self::Imperial => metres * FEET,
+        }
+    }
+
+    /// A speed in metres a second as it is shown.
+    #[must_use]
+    pub fn speed(self, metres_a_second: f64) -> f64 {
+        match self {
+            Self::Metric => metres_a_second,
+            Self::Imperial => metres_a_second * MILES_AN_HOUR,
+        }
+    }
+
+    /// What a guard's values are multiplied by, and the unit they are then in.
+    #[must_use]
+    pub fn of_guard(self, unit: GuardUnit) -> (f64, &'static str) {
+        match unit {
+            GuardUnit::Metres => (self.length(1.0), self.length_unit()),
+            GuardUnit::MetresPerSecond => (self.speed(1.0), self.speed_unit()),
+            GuardUnit::None | GuardUnit::Waypoints | GuardUnit::Seconds | GuardUnit::Microseconds => {
+                (1.0, unit.into())
+            }
+        }
+    }
+
+    /// Name of the unit of lengths.
+    #[must_use]
+    pub fn length_unit(self) -> &'static str {
+        match self {
+            Self::Metric => "m",
+            Self::Imperial => "ft",
+        }
+    }
+
+    /// Name of the unit of speeds.
+    #[must_use]
+    pub fn speed_unit(self) -> &'static str {
+        match self {
+            Self::Metric => "m/s",
+            Self::Imperial => "mph",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn imperial_values_are_those_of_the_definitions() {
+        assert!((Units::Imperial.length(0.3048) - 1.0).abs() < 1e-12);
+        assert!((Units::Imperial.speed(0.44704) - 1.0).abs() < 1e-12);
+        assert_eq!((Units::Metric.length(3.5), Units::Metric.speed(3.5)), (3.5, 3.5));
+    }
+}
