@@ -14,7 +14,8 @@ use betadeck::plan::upload_lines;
 use betadeck::record::sentence;
 use betadeck::session::SessionView;
 use betadeck::sim::WorldConfig;
-use betadeck::ui::{AppState, CliHelp, Msg, OpenPlan, Theme, UiConfig, draw, update};
+use betadeck::ui::keymap::Keymap;
+use betadeck::ui::{AppState, CliHelp, Msg, OpenPlan, Theme, UiConfig, Units, draw, update};
 use betadeck::vehicle::Vehicle;
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
@@ -43,6 +44,8 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let config = UiConfig {
         theme: Theme::default(),
+        units: Units::default(),
+        keymap: Keymap::default(),
         cli: CliHelp { complete: |line| cli::complete(line).lines(line), hint: |_| None },
         sentence: |event| sentence::text(&event.kind).unwrap_or_default(),
         plan: OpenPlan { name: file.name, plan: file.plan, settings: file.settings },
