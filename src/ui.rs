@@ -43,6 +43,7 @@ mod terminal;
 mod text_field;
 mod text_wrap;
 pub mod theme;
+mod timeline;
 mod track;
 mod transmitter;
 pub mod units;

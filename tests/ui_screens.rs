@@ -56,6 +56,55 @@ fn orbiting_200x60() {
 }
 
 #[test]
+fn rewound_80x24() {
+    let mut state = fixture::state((80, 24), fixture::colour());
+    fixture::rewind(&mut state);
+    insta::assert_snapshot!(screen(&state));
+}
+
+#[test]
+fn rewound_80x24_in_ascii() {
+    let mut state = fixture::state((80, 24), fixture::plain());
+    fixture::rewind(&mut state);
+    insta::assert_snapshot!(screen(&state));
+}
+
+#[test]
+fn rewound_120x40() {
+    let mut state = fixture::state((120, 40), fixture::colour());
+    fixture::rewind(&mut state);
+    insta::assert_snapshot!(screen(&state));
+}
+
+#[test]
+fn a_branch_keeps_the_old_track_faint_and_the_old_log_dimmed_120x40() {
+    use betadeck::ui::theme::Role;
+
+    let mut state = fixture::state((120, 40), fixture::colour());
+    fixture::branch(&mut state);
+    let backend = screen(&state);
+    insta::assert_snapshot!(backend);
+    let buffer = backend.buffer();
+    let braille = |colour| {
+        let is_of = |cell: &&ratatui::buffer::Cell| {
+            cell.fg == colour && cell.symbol().starts_with(|c| ('\u{2801}'..='\u{28ff}').contains(&c))
+        };
+        buffer.content().iter().filter(is_of).count()
+    };
+    let new_track = braille(state.theme.colour(Role::Track));
+    assert!(new_track > 5, "{new_track}");
+    let dim = state.theme.colour(Role::Dim);
+    let row = |text: &str| {
+        let rows = buffer.area.height;
+        let line = |y| (0..buffer.area.width).map(|x| buffer[(x, y)].symbol().to_owned()).collect::<String>();
+        (0..rows).find(|&y| line(y).contains(text)).map(|y| (y, line(y)))
+    };
+    let (y, line) = row("HOLDING → ORBITING").expect("the abandoned line");
+    let x = line.find("WP2").map(|at| line[..at].chars().count()).expect("its text") as u16;
+    assert_eq!(buffer[(x, y)].fg, dim);
+}
+
+#[test]
 fn complete_60x20_shows_the_focused_panel_alone() {
     let mut state = fixture::state((60, 20), fixture::colour());
     fixture::complete(&mut state);
@@ -80,7 +129,7 @@ fn help_80x24() {
 
 #[test]
 fn in_ascii_every_cell_is_ascii_and_the_words_are_all_there() {
-    for fly in [fixture::approach, fixture::orbit, fixture::complete] {
+    for fly in [fixture::approach, fixture::orbit, fixture::complete, fixture::branch] {
         let mut rich = fixture::state((200, 60), fixture::colour());
         let mut plain = fixture::state((200, 60), fixture::plain());
         fly(&mut rich);

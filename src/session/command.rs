@@ -134,3 +134,11 @@ pub struct SessionView {
     /// The recording; `None` when the flight cannot be taken back.
     pub timeline: Option<TimelineView>,
 }
+
+impl SessionView {
+    /// Whether an earlier instant is shown while the flight waits.
+    #[must_use]
+    pub fn is_rewound(&self) -> bool {
+        self.timeline.as_ref().is_some_and(|timeline| timeline.rewound)
+    }
+}

@@ -25,6 +25,7 @@ pub(super) struct Timeline {
     recording: Recording,
     replay: Option<Replay>,
     branch: u32,
+    branched_at: SimTime,
 }
 
 /// What replaying led to.
@@ -47,7 +48,7 @@ impl Timeline {
         if !vehicle.keep_inputs(true) {
             return None;
         }
-        Some(Self { recording: Recording::new(bounds), replay: None, branch: 0 })
+        Some(Self { recording: Recording::new(bounds), replay: None, branch: 0, branched_at: SimTime::ZERO })
     }
 
     /// Records what came from outside since the tick before; to be called right before each tick.
@@ -68,6 +69,11 @@ impl Timeline {
     /// How often the flight was flown on from an earlier instant.
     pub(super) fn branch(&self) -> u32 {
         self.branch
+    }
+
+    /// The instant from which it was last flown on.
+    pub(super) fn branched_at(&self) -> SimTime {
+        self.branched_at
     }
 
     /// Shows the vehicle as it was at `time`, or at the earliest instant; `head` is where the vehicle that flies waits.
@@ -106,6 +112,7 @@ impl Timeline {
         let replay = self.replay.take()?;
         self.recording.forget_after(&replay);
         self.branch += 1;
+        self.branched_at = replay.time();
         let mut vehicle = replay.into_vehicle();
         vehicle.keep_inputs(true);
         // They were told when they happened.

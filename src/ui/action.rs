@@ -45,6 +45,24 @@ pub enum Action {
     Pause,
     /// One step of the navigator.
     Step,
+    /// One tick.
+    Tick,
+    /// Show the event before, or after.
+    EventBack,
+    /// See [`Action::EventBack`].
+    EventForward,
+    /// Show the state of the autopilot before, or after.
+    StateBack,
+    /// See [`Action::StateBack`].
+    StateForward,
+    /// Show an instant some seconds earlier, or later.
+    Earlier,
+    /// See [`Action::Earlier`].
+    Later,
+    /// Fly on from the instant shown.
+    FlyOn,
+    /// Back to the newest instant.
+    Newest,
     /// Half the speed.
     Slower,
     /// Twice the speed.

@@ -15,6 +15,7 @@ use super::layout::Slots;
 use super::panel::Panel;
 use super::popup::{CommandLine, Popup};
 use super::theme::Theme;
+use super::timeline::TimelineState;
 use super::track::Track;
 use super::units::Units;
 use super::viewport::MapState;
@@ -136,6 +137,8 @@ pub struct AppState {
     pub scrolls: Scrolls,
     /// Where the craft has been.
     pub track: Track,
+    /// What is left behind of earlier branches.
+    pub timeline: TimelineState,
     /// The newest notice.
     pub notice: Option<Notice>,
     /// When Ctrl-C was pressed last.
@@ -193,6 +196,7 @@ impl AppState {
             transitions: VecDeque::new(),
             scrolls: Scrolls::default(),
             track: Track::default(),
+            timeline: TimelineState::default(),
             notice: None,
             cancelled: None,
             sticks_sent: None,
@@ -213,6 +217,9 @@ impl AppState {
     pub fn take_event(&mut self, event: &Event) {
         let text = (self.sentence)(event);
         let severity = Severity::of(&event.kind);
+        if let SessionEvent::Branch { .. } = event.kind {
+            self.leave_behind(event.time);
+        }
         if !text.is_empty() {
             self.log.push(event.time, severity, text.clone());
         }
@@ -227,7 +234,10 @@ impl AppState {
     fn follow_vehicle(&mut self, time: SimTime, kind: &EventKind) {
         match kind {
             EventKind::Boot { rate_hz, .. } => self.step_ticks = (rate_hz / 100).max(1),
-            EventKind::Firmware(FirmwareEvent::Armed) => self.track.clear(),
+            EventKind::Firmware(FirmwareEvent::Armed) => {
+                self.track.clear();
+                self.timeline.forget_tracks();
+            }
             EventKind::Firmware(FirmwareEvent::Nav(NavEvent::State { from, to, wp, reason, .. })) => {
                 if self.transitions.len() == MAX_TRANSITIONS {
                     self.transitions.pop_front();

@@ -16,7 +16,8 @@ pub(super) fn replace(buffer: &mut Buffer) {
 /// The nearest ASCII character.
 fn plain(c: char) -> char {
     match c {
-        '─' | '━' | '╌' | '╍' | '—' | '−' | '–' => '-',
+        '━' => '=',
+        '─' | '╌' | '╍' | '—' | '−' | '–' => '-',
         '│' | '┃' | '╎' | '╏' | '▐' | '▌' | '‖' => '|',
         '╱' => '/',
         '╲' => '\\',

@@ -15,7 +15,7 @@ use super::panel::{self, span};
 use super::popup::{Popup, command_line, palette};
 use super::text_wrap::wrapped;
 use super::theme::{Charset, Role};
-use super::{hint_bar, notice, status_bar};
+use super::{hint_bar, notice, status_bar, timeline};
 use crate::printable;
 
 /// Draws the state. Reads only.
@@ -30,7 +30,10 @@ pub fn draw(state: &AppState, frame: &mut Frame<'_>) {
                 cursor = cursor.or(framed_panel(state, panel, area, buffer));
             }
             hint_bar::draw(state, screen.hints, buffer);
-            notice::draw(state, screen.hints, buffer);
+            if let Some(area) = screen.timeline {
+                timeline::draw(state, area, buffer);
+            }
+            notice::draw(state, screen.timeline.unwrap_or(screen.hints), buffer);
             cursor
         }
         None => {

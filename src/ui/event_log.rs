@@ -122,6 +122,8 @@ pub struct LogLine {
     pub severity: Severity,
     /// The sentence.
     pub text: String,
+    /// It belongs to a branch of the flight that was left.
+    pub left_behind: bool,
 }
 
 /// The log, bounded.
@@ -137,7 +139,12 @@ impl LogState {
             self.lines.pop_front();
         }
         let text = if text.contains(char::is_control) { text.replace(char::is_control, " ") } else { text };
-        self.lines.push_back(LogLine { time, severity, text });
+        self.lines.push_back(LogLine { time, severity, text, left_behind: false });
+    }
+
+    /// The flight goes on from `time`: what came after it is left behind.
+    pub fn leave_behind(&mut self, time: SimTime) {
+        self.lines.iter_mut().filter(|line| line.time > time).for_each(|line| line.left_behind = true);
     }
 
     /// The lines, the newest first.

@@ -54,6 +54,18 @@ pub(super) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
 fn hint_actions(state: &AppState) -> Vec<(&'static [Action], &'static str)> {
     let craft = &state.view.vehicle.craft;
     let mut hints: Vec<(&'static [Action], &'static str)> = Vec::new();
+    if state.is_rewound() {
+        hints.extend([
+            (&[Action::FlyOn] as &[_], "fly on"),
+            (&[Action::Newest], "end"),
+            (&[Action::EventBack, Action::EventForward], "event"),
+            (&[Action::Earlier, Action::Later], "10 s"),
+            (&[Action::Pause], if state.view.paused { "play" } else { "stop" }),
+            (&[Action::StateBack, Action::StateForward], "state"),
+            (&[Action::Step], "step"),
+        ]);
+        return hints;
+    }
     match state.focus {
         Panel::Cli => {}
         Panel::Rc => hints.extend([
@@ -110,6 +122,9 @@ fn hint_actions(state: &AppState) -> Vec<(&'static [Action], &'static str)> {
         (&[Action::Pause] as &[_], if state.view.paused { "go on" } else { "pause" }),
         (&[Action::Slower, Action::Faster], "speed"),
     ]);
+    if state.view.paused {
+        hints.extend([(&[Action::EventBack] as &[_], "rewind"), (&[Action::Step], "step")]);
+    }
     if craft.is_armed() && engaged {
         // Last: in the air nobody should press it by mistake.
         hints.push((&[Action::Arm], "disarm"));

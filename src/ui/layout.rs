@@ -10,7 +10,8 @@
 //!  └──────────────┘    └───────────────┘    └─────────┴ plan─┘    └──────┴──────┴───────┘
 //! ```
 //!
-//! Two lines of status stand above, one of hints below.
+//! Two lines of status stand above, one of hints below; above the hints the timeline, on a tall screen or while an earlier
+//! instant is shown.
 
 use ratatui::layout::Rect;
 
@@ -66,9 +67,14 @@ pub struct Screen {
     pub status: Rect,
     /// The visible panels with their frames.
     pub panels: Vec<(Panel, Rect)>,
+    /// One line, if there is one.
+    pub timeline: Option<Rect>,
     /// One line.
     pub hints: Rect,
 }
+
+/// Rows from which the timeline is always there.
+const TIMELINE_ROWS: u16 = 34;
 
 impl Screen {
     /// The place of a panel, if it is visible.
@@ -107,7 +113,9 @@ pub fn divided(state: &AppState, (width, height): (u16, u16)) -> Option<Screen> 
     if width < SMALLEST.0 || height < SMALLEST.1 {
         return None;
     }
-    let body = Rect::new(0, 2, width, height - 3);
+    let has_timeline = state.view.timeline.is_some() && (state.is_rewound() || height >= TIMELINE_ROWS);
+    let timeline = has_timeline.then(|| Rect::new(0, height - 2, width, 1));
+    let body = Rect::new(0, 2, width, height - 3 - u16::from(has_timeline));
     let panels = if state.zoomed || width < 80 || height < 24 {
         vec![(state.focus, body)]
     } else if width >= 180 && height >= 48 {
@@ -117,7 +125,8 @@ pub fn divided(state: &AppState, (width, height): (u16, u16)) -> Option<Screen> 
     } else {
         small(body, state.slots)
     };
-    Some(Screen { status: Rect::new(0, 0, width, 2), panels, hints: Rect::new(0, height - 1, width, 1) })
+    let hints = Rect::new(0, height - 1, width, 1);
+    Some(Screen { status: Rect::new(0, 0, width, 2), panels, timeline, hints })
 }
 
 fn small(body: Rect, slots: Slots) -> Vec<(Panel, Rect)> {

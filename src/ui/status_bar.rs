@@ -212,6 +212,11 @@ fn time(state: &AppState) -> Vec<Span<'static>> {
             span(theme, role, why),
         ];
     }
+    if let Some(rewound_s) = state.rewound_s() {
+        let mark = if view.paused { "◂" } else { "▸" };
+        let text = format!(" {} {mark} REWOUND −{rewound_s:.1} s ", clock_ms(view.vehicle.time));
+        return vec![span(theme, Role::Active, text)];
+    }
     if view.paused {
         return vec![span(theme, Role::Active, format!(" {} ‖ ", clock_ms(view.vehicle.time)))];
     }

@@ -64,6 +64,10 @@ pub fn arming_hint(flag: ArmingFlag) -> String {
 pub fn current(state: &AppState) -> Option<StatusMessage> {
     let vehicle = &state.view.vehicle;
     let craft = &vehicle.craft;
+    if let Some(rewound_s) = state.rewound_s() {
+        let condition = format!("Rewound by {rewound_s:.1} s: the flight waits.");
+        return message(Severity::Info, condition, "b flies on from here, e goes to the end");
+    }
     match state.view.simulator {
         Some(LinkState::Silent) => {
             return message(

@@ -68,6 +68,17 @@ impl Track {
         self.points.push(point);
     }
 
+    /// Cuts off the part after `time_s`, s; gives it, beginning where the rest ends.
+    pub fn cut_after(&mut self, time_s: f64) -> Vec<TrackPoint> {
+        let kept = self.points.partition_point(|point| point.time_s <= time_s);
+        let mut part = self.points.split_off(kept);
+        self.seen = self.points.last().copied();
+        if let (Some(last), false) = (self.seen, part.is_empty()) {
+            part.insert(0, last);
+        }
+        part
+    }
+
     /// Forgets everything.
     pub fn clear(&mut self) {
         *self = Self::default();
@@ -108,6 +119,17 @@ mod tests {
         assert!(track.points().len() <= MAX_POINTS);
         assert_eq!(track.points().first().map(|p| p.n), Some(0.0));
         assert!(track.points().last().is_some_and(|p| p.n > 49_980.0));
+    }
+
+    #[test]
+    fn a_branch_goes_on_from_where_it_was_cut_off() {
+        let mut track = Track::default();
+        let at = |n: f64| TrackPoint { n, e: 0.0, time_s: n, engaged: true };
+        (0..10).for_each(|n| track.push(at(f64::from(n))));
+        assert_eq!(track.cut_after(6.5), [at(6.0), at(7.0), at(8.0), at(9.0)]);
+        assert!(track.cut_after(6.5).is_empty());
+        track.push(TrackPoint { e: 1.0, ..at(7.0) });
+        assert_eq!(track.points().len(), 8, "no jump");
     }
 
     #[test]

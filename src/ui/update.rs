@@ -23,6 +23,7 @@ mod cli;
 mod flight;
 mod mouse;
 mod popup;
+mod timeline;
 mod view;
 
 use cli::{cli_key, paste};
@@ -80,13 +81,17 @@ pub fn update(state: &mut AppState, msg: Msg) -> Vec<Effect> {
 }
 
 fn take_view(state: &mut AppState, view: SessionView) {
-    if view.vehicle.time < state.view.vehicle.time {
-        state.track.clear();
-    }
     if state.sticks_sent.is_some_and(|(frame, _)| frame == view.sticks) {
         state.sticks_sent = None;
     }
+    let left = timeline::follow_branch(state, &view);
+    if !left && !view.is_rewound() && view.vehicle.time < state.view.vehicle.time {
+        state.track.clear();
+    }
     state.view = view;
+    if state.is_rewound() {
+        return;
+    }
     if let Some(place) = map_point::craft(&state.view) {
         let engaged = state.view.vehicle.is_engaged();
         let time_s = state.view.vehicle.time.as_secs_f64();
@@ -162,6 +167,15 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
             effects.push(Effect::Send(Command::Step(state.step_ticks)));
             effects
         }
+        Action::Tick
+        | Action::EventBack
+        | Action::EventForward
+        | Action::StateBack
+        | Action::StateForward
+        | Action::Earlier
+        | Action::Later
+        | Action::FlyOn
+        | Action::Newest => timeline::act(state, action),
         Action::Slower => speed(state, -1),
         Action::Faster => speed(state, 1),
         Action::RealTime => speed(state, 0),

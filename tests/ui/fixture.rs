@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use betadeck::geo::{LatLon, LocalFrame};
 use betadeck::plan::{FlightPlan, HoldPattern, Waypoint, WaypointType};
-use betadeck::session::{Event, SessionEvent, SessionView};
+use betadeck::session::{Event, Mark, MarkKind, SessionEvent, SessionView, TimelineView};
 use betadeck::signals::{RcFrame, RcSource, SimTime};
 use betadeck::telemetry::snapshot::{ModeRange, SettingsView, TruthView};
 use betadeck::telemetry::{
@@ -341,6 +341,72 @@ pub(crate) fn orbit(state: &mut AppState) {
         hold_ds: 184,
     };
     update(state, Msg::View(view(&flight)));
+}
+
+/// Circles at WP2, and looks back at the way to WP0.
+pub(crate) fn rewind(state: &mut AppState) {
+    orbit(state);
+    let mark = |time_s, kind| Mark { time: SimTime::from_secs_f64(time_s), kind };
+    let marks = vec![
+        mark(9.2, MarkKind::Recovery),
+        mark(29.5, MarkKind::Armed),
+        mark(31.02, MarkKind::State(NavState::Approaching)),
+        mark(58.31, MarkKind::State(NavState::Arrived)),
+        mark(58.32, MarkKind::State(NavState::Approaching)),
+        mark(72.0, MarkKind::Alarm),
+        mark(89.9, MarkKind::State(NavState::Holding)),
+        mark(90.0, MarkKind::State(NavState::Orbiting)),
+    ];
+    let flight = SimpleFlight {
+        time_s: 45.21,
+        n: 29.2,
+        e: 31.2,
+        alt: 50.1,
+        heading_deg: 45.0,
+        speed: 5.0,
+        armed: true,
+        fix: true,
+        state: NavState::Approaching,
+        ..SimpleFlight::default()
+    };
+    let timeline = TimelineView {
+        head: SimTime::from_secs_f64(101.6),
+        rewound: true,
+        marks: std::sync::Arc::new(marks),
+        ..TimelineView::default()
+    };
+    update(state, Msg::View(SessionView { paused: true, timeline: Some(timeline), ..view(&flight) }));
+}
+
+/// Flies on from there, somewhere else.
+pub(crate) fn branch(state: &mut AppState) {
+    rewind(state);
+    let rewound = state.view.timeline.clone().expect("a timeline");
+    let time = state.view.vehicle.time;
+    let kind = SessionEvent::Branch { number: 1, left: rewound.head };
+    update(state, Msg::Event(Event { time, kind }));
+    for step in 1..=20 {
+        let t = f64::from(step);
+        let flight = SimpleFlight {
+            time_s: 45.21 + t,
+            n: 29.2 - 1.5 * t,
+            e: 31.2 + 2.0 * t,
+            alt: 50.1,
+            heading_deg: 135.0,
+            speed: 2.5,
+            armed: true,
+            fix: true,
+            ..SimpleFlight::default()
+        };
+        let timeline = TimelineView {
+            head: SimTime::from_secs_f64(45.21 + t),
+            rewound: false,
+            branch: 1,
+            branched_at: time,
+            ..rewound.clone()
+        };
+        update(state, Msg::View(SessionView { timeline: Some(timeline), ..view(&flight) }));
+    }
 }
 
 /// Comes down at WP3.

@@ -40,6 +40,7 @@ impl Session {
             head,
             rewound: timeline.shown().is_some(),
             branch: timeline.branch(),
+            branched_at: timeline.branched_at(),
             marks: self.events.marks().all(),
         })
     }

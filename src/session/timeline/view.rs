@@ -16,6 +16,8 @@ pub struct TimelineView {
     pub rewound: bool,
     /// How often the flight was flown on from an earlier instant.
     pub branch: u32,
+    /// The instant from which it was last flown on.
+    pub branched_at: SimTime,
     /// What happened, the oldest first.
     pub marks: Arc<Vec<Mark>>,
 }

@@ -1,6 +1,6 @@
 //! Which actions make sense now, and why the others do not.
 
-use crate::session::command::{PLACE_IS_EXTERNAL, TIME_IS_EXTERNAL};
+use crate::session::command::{NOT_RECORDED, PLACE_IS_EXTERNAL, REWOUND, TIME_IS_EXTERNAL};
 use crate::telemetry::{LinkState, Mode};
 use crate::ui::app_state::AppState;
 use crate::ui::transmitter;
@@ -14,11 +14,14 @@ use super::Action;
 pub fn enabled(state: &AppState, action: Action) -> Result<(), String> {
     let craft = &state.view.vehicle.craft;
     match action {
-        Action::Pause | Action::Step | Action::Slower | Action::Faster | Action::RealTime
+        Action::Pause | Action::Step | Action::Tick | Action::Slower | Action::Faster | Action::RealTime
             if state.view.simulator.is_some() =>
         {
             Err(TIME_IS_EXTERNAL.to_owned())
         }
+        _ if is_in_recording(action) && state.view.simulator.is_some() => Err(TIME_IS_EXTERNAL.to_owned()),
+        _ if is_in_recording(action) && state.view.timeline.is_none() => Err(NOT_RECORDED.to_owned()),
+        _ if steers(action) && state.is_rewound() => Err(REWOUND.to_owned()),
         Action::ResetCraft if state.view.simulator == Some(LinkState::Flowing) => {
             Err(PLACE_IS_EXTERNAL.to_owned())
         }
@@ -46,6 +49,41 @@ pub fn enabled(state: &AppState, action: Action) -> Result<(), String> {
     }
 }
 
+/// Whether an action moves through the recording of the flight.
+fn is_in_recording(action: Action) -> bool {
+    matches!(
+        action,
+        Action::EventBack
+            | Action::EventForward
+            | Action::StateBack
+            | Action::StateForward
+            | Action::Earlier
+            | Action::Later
+            | Action::FlyOn
+            | Action::Newest
+    )
+}
+
+/// Whether an action would change the flight, which waits while an earlier instant of it is shown.
+fn steers(action: Action) -> bool {
+    matches!(
+        action,
+        Action::Fly
+            | Action::Arm
+            | Action::Throttle
+            | Action::Autopilot
+            | Action::ReturnHome
+            | Action::CutRc
+            | Action::Upload
+            | Action::ResetCraft
+            | Action::Lower
+            | Action::Raise
+            | Action::LowerMuch
+            | Action::RaiseMuch
+            | Action::Flip
+    )
+}
+
 /// Whether the craft lies crashed, so that only a reset helps.
 #[must_use]
 pub(in crate::ui) fn is_wrecked(state: &AppState) -> bool {
@@ -55,18 +93,42 @@ pub(in crate::ui) fn is_wrecked(state: &AppState) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::SessionView;
+    use crate::session::{SessionView, TimelineView};
 
     #[test]
     fn a_simulator_outside_keeps_time_and_place_to_itself() {
         let mut state = AppState::bare((80, 24), SessionView::default());
-        let times = [Action::Pause, Action::Step, Action::Slower, Action::Faster, Action::RealTime];
+        let times = [
+            Action::Pause,
+            Action::Step,
+            Action::Tick,
+            Action::Slower,
+            Action::Faster,
+            Action::RealTime,
+            Action::EventBack,
+            Action::Earlier,
+            Action::FlyOn,
+        ];
         let refused = |state: &AppState| times.iter().all(|&action| enabled(state, action).is_err());
+        state.view.timeline = Some(TimelineView::default());
         assert!(!refused(&state) && enabled(&state, Action::ResetCraft).is_ok());
         state.view.simulator = Some(LinkState::Flowing);
         assert!(refused(&state));
         assert_eq!(enabled(&state, Action::ResetCraft), Err(PLACE_IS_EXTERNAL.to_owned()));
         state.view.simulator = Some(LinkState::Silent);
         assert!(refused(&state) && enabled(&state, Action::ResetCraft).is_ok(), "it disarms at least");
+    }
+
+    #[test]
+    fn nothing_steers_while_an_earlier_instant_is_shown() {
+        let mut state = AppState::bare((80, 24), SessionView::default());
+        assert_eq!(enabled(&state, Action::Earlier), Err(NOT_RECORDED.to_owned()));
+        state.view.timeline = Some(TimelineView { rewound: true, ..TimelineView::default() });
+        for action in [Action::Fly, Action::Arm, Action::CutRc, Action::Upload, Action::Raise] {
+            assert_eq!(enabled(&state, action), Err(REWOUND.to_owned()));
+        }
+        for action in [Action::Pause, Action::Earlier, Action::FlyOn, Action::Zoom, Action::Quit] {
+            assert_eq!(enabled(&state, action), Ok(()));
+        }
     }
 }

@@ -5,6 +5,7 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 use crate::ui::app_state::AppState;
+use crate::ui::event_log::LogLine;
 use crate::ui::formatting::clock_ms;
 use crate::ui::panel::Panel;
 use crate::ui::theme::Role;
@@ -35,6 +36,12 @@ pub(crate) fn last_scroll(state: &AppState, area: Rect) -> usize {
     state.log.len().saturating_sub(fitting(rows, usize::from(area.height)))
 }
 
+/// The newest lines that are left out while an earlier instant is shown: all that came later but one.
+fn later_above(state: &AppState) -> usize {
+    let later = state.log.newest_first().take_while(|entry| state.is_later_than_shown(entry.time)).count();
+    later.saturating_sub(1)
+}
+
 /// Draws the inside.
 pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
@@ -42,13 +49,16 @@ pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
         row(buffer, area, 0, theme, Role::Dim, "Nothing has happened yet.");
         return;
     }
-    let first = state.scrolls.log.min(last_scroll(state, area));
+    let first = (state.scrolls.log + later_above(state)).min(last_scroll(state, area));
     let text_width = text_width(area);
     let mut at = 0;
     for entry in state.log.newest_first().skip(first) {
-        let role = entry.severity.role();
+        let (mut mark, role) = match entry {
+            LogLine { left_behind: true, .. } => ("╎", Role::Dim),
+            later if state.is_later_than_shown(later.time) => (later.severity.glyph(), Role::Dim),
+            LogLine { severity, .. } => (severity.glyph(), severity.role()),
+        };
         let mut stamp = format!("{} ", clock_ms(entry.time));
-        let mut mark = entry.severity.glyph();
         for part in wrapped(&entry.text, text_width) {
             if at == area.height {
                 return;

@@ -7,7 +7,7 @@ use ratatui::layout::Rect;
 use ratatui::text::Line;
 
 use crate::telemetry::{Guard, GuardName};
-use crate::ui::app_state::AppState;
+use crate::ui::app_state::{AppState, Transition};
 use crate::ui::formatting::{clock, cut, fixed, signed, within};
 use crate::ui::panel::Panel;
 use crate::ui::status_message;
@@ -87,11 +87,19 @@ fn draw_machine(state: &AppState, area: Rect, diagram: &Diagram, buffer: &mut Bu
         row(buffer, area, 0, &state.theme, Role::Dim, " — the firmware does not tell its state");
         return 1.min(area.height);
     };
-    let last = state.transitions.back().filter(|last| within(state.now, last.received, LIT_FOR));
+    let last = state.transitions_shown().next_back().filter(|last| is_lit(state, last));
     let left = (area.width.saturating_sub(diagram.width)) / 2;
     let place = Rect { x: area.x + left, width: area.width - left, ..area };
     diagram.draw(&state.theme, nav.state, last.map(|last| (last.from, last.to)), place, buffer);
     diagram.height.min(area.height)
+}
+
+/// Whether the strokes of a transition are lit: it has just come, or it lies just before the earlier instant that is shown.
+fn is_lit(state: &AppState, last: &Transition) -> bool {
+    if state.is_rewound() {
+        return state.view.vehicle.time.seconds_since(last.time) < LIT_FOR.as_secs_f64();
+    }
+    within(state.now, last.received, LIT_FOR)
 }
 
 /// The guards of the active state, and how fast it gets nearer; gives the rows used.
@@ -217,15 +225,16 @@ fn wide_guard(theme: &Theme, units: Units, guard: &Guard) -> Line<'static> {
 
 /// The last transitions, the newest on top.
 fn draw_transitions(state: &AppState, area: Rect, buffer: &mut Buffer) {
-    if area.height < 3 || state.transitions.is_empty() {
+    let transitions = state.transitions_shown();
+    if area.height < 3 || transitions.len() == 0 {
         return;
     }
     let theme = &state.theme;
     let wide = area.width >= 40;
     let rows = usize::from(area.height - 2);
     row(buffer, area, 1, theme, Role::Title, "Transitions");
-    let first = state.scrolls.transitions.min(state.transitions.len().saturating_sub(rows));
-    for (at, step) in state.transitions.iter().rev().skip(first).take(rows).enumerate() {
+    let first = state.scrolls.transitions.min(transitions.len().saturating_sub(rows));
+    for (at, step) in transitions.rev().skip(first).take(rows).enumerate() {
         let spans = if wide {
             let states = format!("{} → {} ", step.from, step.to);
             let room = usize::from(area.width).saturating_sub(8 + states.chars().count());

@@ -12,6 +12,7 @@ use crate::ui::panel::rc;
 use crate::ui::transmitter;
 use crate::ui::viewport::{MapMode, Viewport};
 
+use super::timeline;
 use super::view::{ZOOM_STEP, focus, scroll_panel};
 
 /// Lines a turn of the wheel scrolls.
@@ -21,6 +22,11 @@ const WHEEL_LINES: isize = 3;
 pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
     if !state.popups.is_empty() {
         return Vec::new();
+    }
+    if event.kind == MouseEventKind::Down(MouseButton::Left)
+        && let Some(effects) = timeline::click(state, event.column, event.row)
+    {
+        return effects;
     }
     let Some((panel, area)) = layout::screen(state).and_then(|screen| screen.at(event.column, event.row))
     else {

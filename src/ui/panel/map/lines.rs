@@ -9,6 +9,7 @@ use crate::telemetry::NavTelemetry;
 use crate::ui::app_state::AppState;
 use crate::ui::map_point::{self, MapPoint, to_map};
 use crate::ui::theme::Role;
+use crate::ui::track::TrackPoint;
 
 use super::{PlacedWaypoint, Scene};
 
@@ -28,6 +29,12 @@ impl LinePainter<'_, '_> {
     fn line(&mut self, a: MapPoint, b: MapPoint) {
         if a.n.is_finite() && a.e.is_finite() && b.n.is_finite() && b.e.is_finite() {
             self.context.draw(&CanvasLine::new(a.e, a.n, b.e, b.n, self.colour));
+        }
+    }
+
+    fn track(&mut self, points: &[TrackPoint]) {
+        for pair in points.windows(2) {
+            self.line(MapPoint::new(pair[0].n, pair[0].e), MapPoint::new(pair[1].n, pair[1].e));
         }
     }
 
@@ -79,11 +86,15 @@ pub(super) fn paint(state: &AppState, scene: &Scene, context: &mut Context<'_>) 
             figure(state, scene, at, spot, painter);
         }
     });
-    layer(Role::Track, &mut |painter| {
-        let points = state.track.points();
-        for pair in points.windows(2) {
-            painter.line(MapPoint::new(pair[0].n, pair[0].e), MapPoint::new(pair[1].n, pair[1].e));
+    // Up to the instant that is shown; what comes after it, and what was left behind, is faint.
+    let (points, later) = state.track.points().split_at(state.track_points_shown());
+    layer(Role::Dim, &mut |painter| {
+        for track in state.timeline.tracks().iter().map(Vec::as_slice).chain([later]) {
+            painter.track(track);
         }
+    });
+    layer(Role::Track, &mut |painter| {
+        painter.track(points);
         // From the last point kept to where the craft is.
         if let (Some(last), Some(craft)) = (points.last(), scene.craft) {
             painter.line(MapPoint::new(last.n, last.e), craft);

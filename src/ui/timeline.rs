@@ -1,0 +1,267 @@
+//! The flight as a line: its states, what happened, and where in it the shown instant is.
+//!
+//! ```text
+//!  00:00.0 I────●─A━━━━━━━━━━━━H━━━━┃──────A─────────▲──L──── 03:12.4
+//! ```
+//!
+//! A letter stands where a state begins, thick up to the shown instant; marks tell alarms, arming and touchdown.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::text::{Line, Span};
+use unicode_width::UnicodeWidthStr as _;
+
+use super::app_state::{AppState, Transition};
+use super::formatting::clock;
+use super::panel::span;
+use super::theme::Role;
+use super::track::TrackPoint;
+use crate::session::{Mark, MarkKind, TimelineView};
+use crate::signals::SimTime;
+use crate::telemetry::NavState;
+
+/// Tracks of branches that were left, the newest last.
+const MAX_TRACKS: usize = 4;
+
+/// What is left behind of earlier branches of the flight.
+#[derive(Debug, Default)]
+pub struct TimelineState {
+    tracks: Vec<Vec<TrackPoint>>,
+}
+
+impl TimelineState {
+    /// Keeps the track of a branch that was left.
+    pub(super) fn keep_track(&mut self, track: Vec<TrackPoint>) {
+        if track.len() > 1 {
+            if self.tracks.len() == MAX_TRACKS {
+                self.tracks.remove(0);
+            }
+            self.tracks.push(track);
+        }
+    }
+
+    /// Another flight begins.
+    pub(super) fn forget_tracks(&mut self) {
+        self.tracks.clear();
+    }
+
+    /// The tracks of branches that were left.
+    pub(super) fn tracks(&self) -> &[Vec<TrackPoint>] {
+        &self.tracks
+    }
+}
+
+impl AppState {
+    /// Whether an earlier instant is shown while the flight waits.
+    #[must_use]
+    pub fn is_rewound(&self) -> bool {
+        self.view.is_rewound()
+    }
+
+    /// Whether `time` lies after the earlier instant that is shown.
+    pub(super) fn is_later_than_shown(&self, time: SimTime) -> bool {
+        self.is_rewound() && time > self.view.vehicle.time
+    }
+
+    /// How far before the newest instant the shown one lies, s; `None` when it is the newest.
+    pub(super) fn rewound_s(&self) -> Option<f64> {
+        let timeline = self.view.timeline.as_ref().filter(|timeline| timeline.rewound)?;
+        Some(timeline.head.seconds_since(self.view.vehicle.time))
+    }
+
+    /// How many points of the track lie before the instant that is shown.
+    pub(super) fn track_points_shown(&self) -> usize {
+        let points = self.track.points();
+        if !self.is_rewound() {
+            return points.len();
+        }
+        let shown_s = self.view.vehicle.time.as_secs_f64();
+        points.partition_point(|point| point.time_s <= shown_s)
+    }
+
+    /// The transitions up to the instant that is shown, the oldest first.
+    pub(super) fn transitions_shown(
+        &self,
+    ) -> impl DoubleEndedIterator<Item = &Transition> + ExactSizeIterator {
+        let later = |step: &Transition| self.is_later_than_shown(step.time);
+        let shown = self.transitions.partition_point(|step| !later(step));
+        self.transitions.iter().take(shown)
+    }
+
+    /// The flight goes on from `time`: what was logged after it belongs to a branch that was left.
+    pub(super) fn leave_behind(&mut self, time: SimTime) {
+        self.log.leave_behind(time);
+        let kept = self.transitions.partition_point(|step| step.time <= time);
+        self.transitions.truncate(kept);
+    }
+}
+
+/// The columns of the line between its labels.
+fn bar(timeline: &TimelineView, area: Rect) -> Rect {
+    let label = |time| clock(time).width() as u16 + 2;
+    let (left, right) = (label(timeline.first), label(timeline.head));
+    Rect { x: area.x + left, width: area.width.saturating_sub(left + right), ..area }
+}
+
+/// The instant at a column; `None` beside the line.
+pub(super) fn time_at(timeline: &TimelineView, area: Rect, column: u16) -> Option<SimTime> {
+    let bar = bar(timeline, area);
+    let at = column.checked_sub(bar.x).filter(|at| *at < bar.width)?;
+    Some(start_of(timeline, bar, at))
+}
+
+/// The instant at which a column begins; the last one is the newest instant.
+fn start_of(timeline: &TimelineView, bar: Rect, column: u16) -> SimTime {
+    let span = timeline.head.0.saturating_sub(timeline.first.0);
+    let last = u64::from(bar.width.saturating_sub(1)).max(1);
+    SimTime(timeline.first.0 + (span * u64::from(column)).div_ceil(last))
+}
+
+/// The column of an instant.
+fn column_of(timeline: &TimelineView, bar: Rect, time: SimTime) -> u16 {
+    let span = timeline.head.0.saturating_sub(timeline.first.0).max(1);
+    let last = u64::from(bar.width.saturating_sub(1));
+    let since = time.0.saturating_sub(timeline.first.0).min(span);
+    (since * last / span) as u16
+}
+
+/// Draws the line.
+pub(super) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
+    let Some(timeline) = &state.view.timeline else { return };
+    let theme = &state.theme;
+    let bar = bar(timeline, area);
+    let shown = column_of(timeline, bar, state.view.vehicle.time);
+    let mut spans: Vec<Span<'_>> = vec![span(theme, Role::Dim, format!(" {} ", clock(timeline.first)))];
+    let mut flying = NavState::Idle;
+    let mut marks = timeline.marks.iter().peekable();
+    for column in 0..bar.width {
+        let mut here: Option<Mark> = None;
+        while let Some(mark) = marks.next_if(|mark| column_of(timeline, bar, mark.time) <= column) {
+            if let MarkKind::State(to) = mark.kind {
+                flying = to;
+            }
+            // What ended before the line begins only tells its first state.
+            let recorded = mark.time >= timeline.first;
+            if recorded && here.is_none_or(|other| weight(mark.kind) >= weight(other.kind)) {
+                here = Some(*mark);
+            }
+        }
+        spans.push(if column == shown {
+            span(theme, Role::Active, "┃")
+        } else if let Some(mark) = here {
+            let (glyph, role) = appearance(mark.kind);
+            span(theme, role, glyph)
+        } else if column == 0 {
+            span(theme, role_of(flying), letter(flying))
+        } else {
+            span(theme, role_of(flying), if column < shown { "━" } else { "─" })
+        });
+    }
+    spans.push(span(theme, Role::Dim, format!(" {} ", clock(timeline.head))));
+    buffer.set_line(area.x, area.y, &Line::from(spans), area.width);
+}
+
+/// Which of two marks in one column is shown.
+fn weight(kind: MarkKind) -> u8 {
+    match kind {
+        MarkKind::Recovery => 0,
+        MarkKind::Touchdown => 1,
+        MarkKind::Armed | MarkKind::Disarmed => 2,
+        MarkKind::State(_) => 3,
+        MarkKind::Alarm => 4,
+    }
+}
+
+fn appearance(kind: MarkKind) -> (&'static str, Role) {
+    match kind {
+        MarkKind::Alarm => ("▲", Role::Fault),
+        MarkKind::Armed => ("●", Role::Text),
+        MarkKind::Disarmed => ("○", Role::Text),
+        MarkKind::Touchdown => ("▼", Role::Text),
+        MarkKind::Recovery => ("✓", Role::Ok),
+        MarkKind::State(state) => (letter(state), role_of(state)),
+    }
+}
+
+fn letter(state: NavState) -> &'static str {
+    match state {
+        NavState::Idle => "I",
+        NavState::Approaching => "A",
+        NavState::Arrived => "R",
+        NavState::Holding => "H",
+        NavState::Orbiting => "O",
+        NavState::Figure8 => "8",
+        NavState::Landing => "L",
+        NavState::Complete => "C",
+    }
+}
+
+fn role_of(state: NavState) -> Role {
+    match state {
+        NavState::Idle => Role::Dim,
+        NavState::Approaching => Role::Track,
+        NavState::Arrived => Role::Title,
+        NavState::Holding | NavState::Orbiting | NavState::Figure8 => Role::Key,
+        NavState::Landing => Role::Warn,
+        NavState::Complete => Role::Ok,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::session::SessionView;
+    use crate::telemetry::Snapshot;
+    use std::sync::Arc;
+
+    fn at(seconds: u64) -> SimTime {
+        SimTime(seconds * 1_000_000)
+    }
+
+    fn state(shown_s: u64) -> AppState {
+        let mark = |seconds, kind| Mark { time: at(seconds), kind };
+        let marks = vec![
+            mark(5, MarkKind::State(NavState::Approaching)),
+            mark(20, MarkKind::Armed),
+            mark(40, MarkKind::State(NavState::Holding)),
+            mark(41, MarkKind::Recovery),
+            mark(70, MarkKind::Alarm),
+        ];
+        let timeline = TimelineView {
+            first: at(10),
+            head: at(100),
+            rewound: true,
+            marks: Arc::new(marks),
+            ..TimelineView::default()
+        };
+        let vehicle = Arc::new(Snapshot { time: at(shown_s), ..Snapshot::default() });
+        AppState::bare((80, 24), SessionView { vehicle, timeline: Some(timeline), ..SessionView::default() })
+    }
+
+    const AREA: Rect = Rect { x: 0, y: 0, width: 28, height: 1 };
+
+    fn line(state: &AppState) -> String {
+        let mut buffer = Buffer::empty(AREA);
+        draw(state, AREA, &mut buffer);
+        buffer.content().iter().map(ratatui::buffer::Cell::symbol).collect()
+    }
+
+    #[test]
+    fn a_state_that_began_before_the_line_is_its_first() {
+        assert_eq!(line(&state(55)), " 00:10.0 A●━H┃─▲─── 01:40.0 ");
+    }
+
+    #[test]
+    fn a_column_and_its_instant_belong_together() {
+        let state = state(55);
+        let timeline = state.view.timeline.as_ref().expect("a timeline");
+        let bar = bar(timeline, AREA);
+        for column in 0..bar.width {
+            let time = time_at(timeline, AREA, bar.x + column).expect("an instant");
+            assert_eq!(column_of(timeline, bar, time), column);
+        }
+        assert_eq!(time_at(timeline, AREA, bar.x + bar.width - 1), Some(timeline.head));
+        assert_eq!(time_at(timeline, AREA, bar.x + bar.width), None);
+        assert_eq!(time_at(timeline, AREA, 0), None);
+    }
+}

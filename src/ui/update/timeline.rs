@@ -1,0 +1,52 @@
+//! Moves through the recording of the flight.
+
+use crate::session::command::Seek;
+use crate::session::{Command, SessionView};
+use crate::ui::action::Action;
+use crate::ui::app_state::AppState;
+use crate::ui::layout;
+use crate::ui::message::Effect;
+use crate::ui::timeline;
+
+/// What one press of the keys for earlier and later skips, s.
+const SKIP_S: f64 = 10.0;
+
+/// Carries out an action of the timeline.
+pub(super) fn act(state: &AppState, action: Action) -> Vec<Effect> {
+    let command = match action {
+        Action::Tick => {
+            let pause = (!state.view.paused).then_some(Effect::Send(Command::Pause(true)));
+            return pause.into_iter().chain([Effect::Send(Command::Step(1))]).collect();
+        }
+        Action::EventBack => Command::Seek(Seek::Back { states_only: false }),
+        Action::EventForward => Command::Seek(Seek::Forward { states_only: false }),
+        Action::StateBack => Command::Seek(Seek::Back { states_only: true }),
+        Action::StateForward => Command::Seek(Seek::Forward { states_only: true }),
+        Action::Earlier => Command::Seek(Seek::Seconds(-SKIP_S)),
+        Action::Later => Command::Seek(Seek::Seconds(SKIP_S)),
+        Action::FlyOn => Command::FlyOn,
+        Action::Newest => Command::Seek(Seek::Newest),
+        _ => return Vec::new(),
+    };
+    vec![Effect::Send(command)]
+}
+
+/// A click on the timeline shows that instant; `None` when it is somewhere else.
+pub(super) fn click(state: &AppState, column: u16, row: u16) -> Option<Vec<Effect>> {
+    let area = layout::screen(state)?.timeline.filter(|area| area.contains((column, row).into()))?;
+    let recorded = state.view.timeline.as_ref()?;
+    let time = timeline::time_at(recorded, area, column);
+    Some(time.map_or_else(Vec::new, |time| vec![Effect::Send(Command::Seek(Seek::Time(time)))]))
+}
+
+/// When `view` is of another branch than the one before, the track after the fork is left behind; says so.
+pub(super) fn follow_branch(state: &mut AppState, view: &SessionView) -> bool {
+    let branch = |view: &SessionView| view.timeline.as_ref().map_or(0, |timeline| timeline.branch);
+    let Some(timeline) = view.timeline.as_ref().filter(|timeline| timeline.branch != branch(&state.view))
+    else {
+        return false;
+    };
+    let part = state.track.cut_after(timeline.branched_at.as_secs_f64());
+    state.timeline.keep_track(part);
+    true
+}

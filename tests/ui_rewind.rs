@@ -1,0 +1,329 @@
+//! Keys in, screen out, with a session behind them: rewind, and flying on from an earlier instant.
+
+#![allow(clippy::unwrap_used, clippy::disallowed_methods, reason = "tests may panic and wait")]
+
+use std::sync::Arc;
+use std::time::Duration;
+
+use betadeck::firmware::FirmwareOptions;
+use betadeck::firmware::config::Configuration;
+use betadeck::plan::builtin::{BuiltinPlan, DEMO};
+use betadeck::record::sentence;
+use betadeck::session::command::Seek;
+use betadeck::session::{Command, Handle, SessionConfig, start};
+use betadeck::signals::SimTime;
+use betadeck::sim::{Turbulence, WorldConfig};
+use betadeck::storage::Store;
+use betadeck::telemetry::{NavState, Snapshot};
+use betadeck::ui::theme::{Charset, Palette};
+use betadeck::ui::{AppState, CliHelp, Effect, Msg, OpenPlan, Theme, UiConfig, draw, update};
+use betadeck::vehicle::{Vehicle, VehicleConfig};
+use crossterm::event::{KeyCode, KeyEvent, KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
+use ratatui::Terminal;
+use ratatui::backend::TestBackend;
+use tokio::sync::oneshot;
+
+/// Nothing in these tests takes this long unless it hangs.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// A user interface with a session that flies only when it is told to.
+struct Rig {
+    session: Handle,
+    state: AppState,
+}
+
+impl Rig {
+    async fn new() -> Self {
+        let mut configuration = Configuration::default();
+        configuration.starter_modes();
+        let config = VehicleConfig {
+            world: WorldConfig { turbulence: Turbulence::Light, ..WorldConfig::default() },
+            firmware: FirmwareOptions::default(),
+            configuration,
+            live: false,
+        };
+        let session = start(SessionConfig {
+            vehicle: Vehicle::new(config).unwrap(),
+            store: Store::in_memory(),
+            starter_modes: true,
+            speed: 1.0,
+            takeoff_m: 5.0,
+            endpoints: None,
+            first_events: Vec::new(),
+        })
+        .unwrap();
+        let demo = BuiltinPlan::find(DEMO).unwrap().read().unwrap();
+        let config = UiConfig {
+            theme: Theme { palette: Palette::Mono, charset: Charset::Unicode },
+            cli: CliHelp::default(),
+            sentence: |event| sentence::text(&event.kind).unwrap_or_default(),
+            plan: OpenPlan { name: demo.name, plan: demo.plan, settings: demo.settings },
+            mouse: true,
+        };
+        let view = session.view.borrow().clone();
+        let mut rig = Self { session, state: AppState::new(config, (120, 40), view) };
+        rig.keys(" ").await;
+        rig.until("the pause", |state| state.view.paused).await;
+        rig
+    }
+
+    /// Presses keys one after another.
+    async fn keys(&mut self, keys: &str) {
+        for key in keys.chars() {
+            let event = KeyEvent::new(KeyCode::Char(key), KeyModifiers::NONE);
+            let effects = update(&mut self.state, Msg::Key(event));
+            self.carry_out(effects).await;
+        }
+    }
+
+    async fn carry_out(&mut self, effects: Vec<Effect>) {
+        for effect in effects {
+            match effect {
+                Effect::Send(command) => self.session.commands.send(command).await.unwrap(),
+                Effect::Upload { plan, settings } => {
+                    let (reply, answer) = oneshot::channel();
+                    self.session.commands.send(Command::Upload { plan, settings, reply }).await.unwrap();
+                    let next = update(&mut self.state, Msg::UploadReply(answer.await.unwrap()));
+                    Box::pin(self.carry_out(next)).await;
+                }
+                other => panic!("not expected here: {other:?}"),
+            }
+        }
+    }
+
+    /// Takes pictures and events in until the screen shows this.
+    async fn until(&mut self, what: &str, wanted: impl Fn(&AppState) -> bool) {
+        let seen = async {
+            loop {
+                while let Ok(event) = self.session.events.try_recv() {
+                    update(&mut self.state, Msg::Event(event));
+                }
+                let view = self.session.view.borrow_and_update().clone();
+                update(&mut self.state, Msg::View(view));
+                if wanted(&self.state) {
+                    return;
+                }
+                self.session.view.changed().await.unwrap();
+            }
+        };
+        let in_time = tokio::time::timeout(PATIENCE, seen).await.is_ok();
+        assert!(in_time, "never seen: {what}\n{}", self.screen());
+        // Events come before the picture that shows them.
+        while let Ok(event) = self.session.events.try_recv() {
+            update(&mut self.state, Msg::Event(event));
+        }
+    }
+
+    /// Lets the flight go on to its next transition, which leads to `state`.
+    async fn fly_to(&mut self, state: NavState) {
+        let from = self.time();
+        self.keys("}").await;
+        let arrived = |view: &AppState| view.view.vehicle.time > from && nav_state(view) == Some(state);
+        self.until(state.into(), arrived).await;
+    }
+
+    /// Shows the instant at this time.
+    async fn show(&mut self, time: SimTime) {
+        self.session.commands.send(Command::Seek(Seek::Time(time))).await.unwrap();
+        self.until("an instant", |state| state.view.vehicle.time == time).await;
+    }
+
+    fn time(&self) -> SimTime {
+        self.state.view.vehicle.time
+    }
+
+    fn picture(&self) -> Arc<Snapshot> {
+        Arc::clone(&self.state.view.vehicle)
+    }
+
+    fn screen(&self) -> String {
+        let (width, height) = self.state.size;
+        let mut terminal = Terminal::new(TestBackend::new(width, height)).unwrap();
+        terminal.draw(|frame| draw(&self.state, frame)).unwrap();
+        terminal.backend().to_string()
+    }
+
+    #[track_caller]
+    fn assert_shown(&self, words: &[&str]) {
+        let screen = self.screen();
+        for word in words {
+            assert!(screen.contains(word), "no {word} in\n{screen}");
+        }
+    }
+}
+
+fn nav_state(state: &AppState) -> Option<NavState> {
+    state.view.vehicle.nav.as_ref().map(|nav| nav.state)
+}
+
+fn rewound(state: &AppState) -> bool {
+    state.is_rewound()
+}
+
+#[tokio::test]
+async fn every_instant_shown_again_is_as_it_was_and_the_end_is_where_it_was() {
+    let mut rig = Rig::new().await;
+    rig.keys("F").await;
+    let mut seen = Vec::new();
+    for state in [NavState::Approaching, NavState::Arrived, NavState::Approaching] {
+        rig.fly_to(state).await;
+        assert!(rig.state.view.paused, "time stands still at the transition");
+        seen.push(rig.picture());
+        for _ in 0..3 {
+            let before = rig.time();
+            rig.keys(".").await;
+            rig.until("a step", |state| state.view.vehicle.time > before).await;
+            seen.push(rig.picture());
+        }
+    }
+    let head = rig.picture();
+    for picture in seen.iter().rev().skip(1).chain(&seen[..seen.len() - 1]) {
+        rig.show(picture.time).await;
+        assert_eq!(rig.picture(), *picture);
+    }
+    rig.assert_shown(&["REWOUND −", "b fly on", "e end", "Rewound by"]);
+    rig.keys("e").await;
+    rig.until("the end", |state| !rewound(state)).await;
+    assert_eq!(rig.picture(), head);
+    assert!(rig.state.view.paused, "as before");
+    assert!(!rig.screen().contains("REWOUND"));
+}
+
+#[tokio::test]
+async fn keys_go_back_and_forth_by_events_states_and_seconds() {
+    let mut rig = Rig::new().await;
+    rig.keys("F").await;
+    rig.fly_to(NavState::Approaching).await;
+    let engaged = rig.time();
+    rig.fly_to(NavState::Arrived).await;
+    let arrived = rig.time();
+
+    rig.keys("{").await;
+    rig.until("the state before", |state| state.view.vehicle.time == engaged).await;
+    rig.keys(">").await;
+    rig.until("10 s later", |state| state.view.vehicle.time.0 == engaged.0 + 10_000_000).await;
+    rig.keys("<<").await;
+    rig.until("10 s earlier", |state| state.view.vehicle.time.0 == engaged.0 - 10_000_000).await;
+    rig.keys("}").await;
+    rig.until("the state after", |state| state.view.vehicle.time == engaged).await;
+    let before = |state: &AppState| state.view.vehicle.time < engaged && !state.view.vehicle.is_engaged();
+    rig.keys(",").await;
+    rig.until("the event before", before).await;
+    rig.keys(";").await;
+    rig.until("the event after", |state| state.view.vehicle.time == engaged).await;
+    // One tick, and to where the recording ends: there the flight is again.
+    let tick = KeyEvent::new(KeyCode::Char('.'), KeyModifiers::ALT);
+    let effects = update(&mut rig.state, Msg::Key(tick));
+    rig.carry_out(effects).await;
+    rig.until("a tick", |state| state.view.vehicle.time.0 == engaged.0 + 1000).await;
+    assert!(rewound(&rig.state));
+    rig.keys("}").await;
+    rig.until("the end", |state| !rewound(state)).await;
+    assert_eq!(rig.time(), arrived);
+    // Far before the beginning.
+    rig.session.commands.send(Command::Seek(Seek::Seconds(-1e6))).await.unwrap();
+    rig.until("the beginning", |state| state.view.vehicle.time == SimTime::ZERO).await;
+    rig.keys(",").await;
+    rig.until("a sentence", |state| {
+        state.notice.is_none() && state.log.newest_first().any(|line| line.text.contains("Nothing happened"))
+    })
+    .await;
+}
+
+#[tokio::test]
+async fn space_plays_the_recording_to_its_end_and_waits_there() {
+    let mut rig = Rig::new().await;
+    rig.session.commands.send(Command::Step(3000)).await.unwrap();
+    rig.until("three seconds", |state| state.view.vehicle.time.0 >= 3_000_000).await;
+    let head = rig.picture();
+    rig.keys("<").await;
+    rig.until("the beginning", rewound).await;
+    rig.session.commands.send(Command::Speed(f64::INFINITY)).await.unwrap();
+    rig.keys(" ").await;
+    rig.until("the end", |state| !rewound(state)).await;
+    assert!(rig.state.view.paused);
+    assert_eq!(rig.picture(), head);
+}
+
+#[tokio::test]
+async fn nothing_steers_an_instant_that_is_past() {
+    let mut rig = Rig::new().await;
+    rig.session.commands.send(Command::Step(3000)).await.unwrap();
+    rig.until("three seconds", |state| state.view.vehicle.time.0 >= 3_000_000).await;
+    rig.keys("<").await;
+    rig.until("the rewind", rewound).await;
+    rig.keys("a").await;
+    let refused = rig.state.notice.as_ref().map(|notice| notice.text.clone()).unwrap();
+    assert!(refused.contains("`b`") && refused.contains("`e`"), "{refused}");
+    // The session itself refuses, too.
+    let (reply, answer) = oneshot::channel();
+    let plan = Box::default();
+    rig.session.commands.send(Command::Upload { plan, settings: Vec::new(), reply }).await.unwrap();
+    assert_eq!(answer.await.unwrap(), Err(refused.clone()));
+    let (reply, answer) = oneshot::channel();
+    let line = "wind=5@270".to_owned();
+    rig.session.commands.send(Command::World { line, reply }).await.unwrap();
+    assert_eq!(answer.await.unwrap(), Err(refused));
+    let (reply, answer) = oneshot::channel();
+    let line = "set ap_max_angle = 30".to_owned();
+    rig.session.commands.send(Command::Cli { line, reply }).await.unwrap();
+    assert!(answer.await.unwrap().advice.is_some_and(|advice| advice.contains("`b`")));
+}
+
+#[tokio::test]
+async fn the_flight_goes_on_from_an_earlier_instant_and_the_old_one_is_left_behind() {
+    let mut rig = Rig::new().await;
+    rig.keys("F").await;
+    rig.fly_to(NavState::Approaching).await;
+    rig.fly_to(NavState::Arrived).await;
+    let left = rig.picture();
+    rig.keys("<").await;
+    rig.until("the rewind", rewound).await;
+    let fork = rig.time();
+    rig.keys("b").await;
+    rig.until("the branch", |state| state.view.timeline.as_ref().unwrap().branch == 1).await;
+    assert!(!rig.state.view.paused, "it flies");
+    rig.keys(" ").await;
+    rig.until("the pause", |state| state.view.paused).await;
+    rig.assert_shown(&["Flown on from here", "╎"]);
+    let behind: Vec<bool> = rig.state.log.newest_first().map(|line| line.left_behind).collect();
+    assert!(behind.contains(&true) && behind.contains(&false));
+    // With nothing else done, it is the same flight again.
+    rig.fly_to(NavState::Arrived).await;
+    assert_eq!(rig.picture(), left);
+    // And with another hand on the sticks, another one.
+    rig.keys("<").await;
+    rig.until("the rewind", rewound).await;
+    assert_eq!(rig.time(), fork);
+    rig.keys("b").await;
+    rig.until("the branch", |state| state.view.timeline.as_ref().unwrap().branch == 2).await;
+    rig.keys(" ").await;
+    rig.until("the pause", |state| state.view.paused).await;
+    rig.keys("g").await;
+    rig.fly_to(NavState::Idle).await;
+    assert!(rig.time() < left.time);
+    rig.keys("b").await;
+    rig.until("why not", |state| state.log.newest_first().any(|line| line.text.contains("go back to one")))
+        .await;
+}
+
+#[tokio::test]
+async fn a_click_on_the_timeline_shows_that_instant() {
+    let mut rig = Rig::new().await;
+    rig.session.commands.send(Command::Step(8000)).await.unwrap();
+    rig.until("eight seconds", |state| state.view.vehicle.time.0 >= 8_000_000).await;
+    let click = |column| MouseEvent {
+        kind: MouseEventKind::Down(MouseButton::Left),
+        column,
+        row: 38,
+        modifiers: KeyModifiers::NONE,
+    };
+    let effects = update(&mut rig.state, Msg::Mouse(click(60)));
+    rig.carry_out(effects).await;
+    rig.until("an instant", rewound).await;
+    let shown = rig.time().as_secs_f64();
+    assert!((3.5..4.7).contains(&shown), "{shown}");
+    let effects = update(&mut rig.state, Msg::Mouse(click(110)));
+    rig.carry_out(effects).await;
+    rig.until("the end", |state| !rewound(state)).await;
+}
