@@ -15,7 +15,6 @@ use betadeck::signals::SimTime;
 use betadeck::sim::{Turbulence, WorldConfig};
 use betadeck::storage::Store;
 use betadeck::telemetry::{NavState, Snapshot};
-use betadeck::ui::theme::{Charset, Palette};
 use betadeck::ui::{AppState, CliHelp, Effect, Msg, OpenPlan, Theme, UiConfig, draw, update};
 use betadeck::vehicle::{Vehicle, VehicleConfig};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
@@ -54,7 +53,7 @@ impl Rig {
         .unwrap();
         let demo = BuiltinPlan::find(DEMO).unwrap().read().unwrap();
         let config = UiConfig {
-            theme: Theme { palette: Palette::Mono, charset: Charset::Unicode },
+            theme: Theme::default(),
             cli: CliHelp::default(),
             sentence: |event| sentence::text(&event.kind).unwrap_or_default(),
             plan: OpenPlan { name: demo.name, plan: demo.plan, settings: demo.settings },
