@@ -15,7 +15,8 @@ use betadeck::signals::SimTime;
 use betadeck::sim::{Turbulence, WorldConfig};
 use betadeck::storage::Store;
 use betadeck::telemetry::{NavState, Snapshot};
-use betadeck::ui::{AppState, CliHelp, Effect, Msg, OpenPlan, Theme, UiConfig, draw, update};
+use betadeck::ui::keymap::Keymap;
+use betadeck::ui::{AppState, CliHelp, Effect, Msg, OpenPlan, Theme, UiConfig, Units, draw, update};
 use betadeck::vehicle::{Vehicle, VehicleConfig};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
 use ratatui::Terminal;
@@ -54,6 +55,8 @@ impl Rig {
         let demo = BuiltinPlan::find(DEMO).unwrap().read().unwrap();
         let config = UiConfig {
             theme: Theme::default(),
+            units: Units::default(),
+            keymap: Keymap::default(),
             cli: CliHelp::default(),
             sentence: |event| sentence::text(&event.kind).unwrap_or_default(),
             plan: OpenPlan { name: demo.name, plan: demo.plan, settings: demo.settings },
