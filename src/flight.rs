@@ -3,6 +3,7 @@
 //! Boot, wait for the fix, arm, climb, engage, fly to the end. As the core it is: no clock, no files. The caller gets
 //! events and samples and decides what to do with them.
 
+pub mod forecast;
 mod judge;
 pub mod setup;
 mod truth_check;
@@ -16,6 +17,7 @@ pub use verdict::{FlightResult, Verdict};
 use nalgebra::Vector2;
 use truth_check::{CraftTruth, TruthCheck, agreement};
 
+use crate::firmware::Firmware;
 pub use crate::pilot::StickInput;
 use crate::plan::{FlightPlan, WaypointType};
 use crate::signals::SimTime;
@@ -90,10 +92,25 @@ impl Flight {
     /// The mode that no channel switches.
     pub fn new(mut vehicle: Vehicle, options: &FlightOptions) -> Result<Self, Mode> {
         vehicle.start_pilot(options.takeoff_m)?;
-        let ends_in_land = vehicle.controller().stored_plan().is_some_and(ends_in_land);
+        Ok(Self::go_on(vehicle, options))
+    }
+
+    /// The flight that `vehicle` is on, as things stand: whoever moves the sticks goes on.
+    #[must_use]
+    pub fn go_on(vehicle: Vehicle, options: &FlightOptions) -> Self {
+        let controller = vehicle.controller();
+        let flown = vehicle.embedded().and_then(Firmware::active_plan).or(controller.stored_plan());
+        let ends_in_land = flown.is_some_and(ends_in_land);
         let sample_every_us =
             (options.samples_hz > 0.0).then(|| ((1e6 / options.samples_hz).round() as u64).max(1));
-        Ok(Self {
+        // Of a craft in the air the place of arming is where its own altitude counts from.
+        let armed_alt_m = match (vehicle.embedded(), vehicle.world()) {
+            (Some(firmware), Some(world)) if firmware.is_armed() => {
+                world.truth().pos_enu.z - firmware.altitude_m()
+            }
+            _ => 0.0,
+        };
+        Self {
             vehicle,
             judge: Judge::new(options.timeout),
             sample_every_us,
@@ -102,9 +119,9 @@ impl Flight {
             takeoff_m: options.takeoff_m,
             truth_check: TruthCheck::new(options.tolerance_m),
             nav_events: Vec::with_capacity(8),
-            armed_alt_m: 0.0,
+            armed_alt_m,
             battery_empty_at: None,
-        })
+        }
     }
 
     /// The vehicle.

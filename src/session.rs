@@ -3,6 +3,7 @@
 mod arming;
 pub mod command;
 mod event;
+mod forecaster;
 mod hazards;
 mod late_answers;
 mod links;
@@ -16,8 +17,13 @@ pub mod sitl;
 mod timeline;
 mod upload;
 
+pub use crate::flight::FlightResult as ForecastResult;
+pub use crate::flight::forecast::{
+    Forecast, ForecastEnd, ForecastKind, LegTime, PHYSICS_IS_EXTERNAL, PathPoint, WHAT_IFS, WhatIf, WorstXte,
+};
 pub use command::{Command, Seek, SessionView};
 pub use event::{EndpointAddresses, Event, SessionEvent};
+pub use forecaster::{ForecastJob, ForecastReply, ForecastRequest, Forecaster};
 pub use hazards::hazards;
 pub use links::{Links, MotorTargets, MotorsError};
 pub use pacer::{Pacer, SPEED_RANGE};

@@ -12,6 +12,8 @@
 //! * [`draw`] only reads. What depends on the size of the screen is computed by [`layout`], which both use.
 //! * Every key is a named [`action`]: keymap, hint bar, help, palette and the `:` line are read from one table. What
 //!   takes an argument is a [`command`].
+//! * `panel` has a file a panel, `popup` what lies over them, `keymap` the keys of the configuration file; `transmitter` is
+//!   the RC transmitter in the user's hand, `forecast` what is known of flights flown ahead of time.
 //! * [`run`] is the shell around it: it waits for the terminal, the session and the clock, and carries effects out.
 //!
 //! May use: ratatui, crossterm, the session's snapshots, events and commands, and plans. Never firmware internals,
@@ -25,6 +27,7 @@ mod completion;
 mod console;
 mod draw;
 mod event_log;
+mod forecast;
 mod formatting;
 mod fuzzy;
 mod hint_bar;

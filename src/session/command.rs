@@ -8,6 +8,7 @@ use super::timeline::TimelineView;
 use crate::plan::FlightPlan;
 use crate::signals::{RcFrame, SimTime};
 use crate::telemetry::{EndpointStatus, LinkState, LostTime, Snapshot};
+use crate::vehicle::Vehicle;
 
 /// Why time cannot be paused, stepped or made faster with an external simulator.
 pub const TIME_IS_EXTERNAL: &str = "The simulator sets the time: pause it or change its speed there.";
@@ -91,8 +92,18 @@ pub enum Command {
         /// Gets `Ok` or why not.
         reply: tokio::sync::oneshot::Sender<Result<(), String>>,
     },
+    /// Copy the vehicle as it is shown between two ticks, for a forecast; the reply is the copy, or why there can be none.
+    CopyVehicle(tokio::sync::oneshot::Sender<Result<VehicleCopy, String>>),
     /// End the session.
     Quit,
+}
+
+/// A copy of the vehicle to fly forecasts with.
+#[derive(Debug)]
+pub struct VehicleCopy {
+    pub(super) vehicle: Box<Vehicle>,
+    /// Altitude to which the scripted pilot climbs, m.
+    pub(super) takeoff_m: f64,
 }
 
 /// Output of a CLI line.

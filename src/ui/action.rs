@@ -41,6 +41,10 @@ pub enum Action {
     Upload,
     /// Put the craft back home.
     ResetCraft,
+    /// Fly ahead as things stand, or end that.
+    LookAhead,
+    /// Fly ahead with something going wrong.
+    WhatIf,
     /// Pause or go on.
     Pause,
     /// One step of the navigator.

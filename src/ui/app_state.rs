@@ -10,6 +10,7 @@ use crate::telemetry::{EventKind, FirmwareEvent, NavEvent, NavState, TransitionR
 
 use super::console::{CliHelp, CliState};
 use super::event_log::{LogState, Severity};
+use super::forecast::ForecastState;
 use super::keymap::Keymap;
 use super::layout::Slots;
 use super::panel::Panel;
@@ -149,6 +150,8 @@ pub struct AppState {
     pub fly_after_upload: bool,
     /// Ticks of one navigator update.
     pub step_ticks: u32,
+    /// Flights flown ahead of time.
+    pub forecast: ForecastState,
     /// Where the mouse button went down on the map, and the map's centre (north, east) then.
     pub drag: Option<(u16, u16, f64, f64)>,
 }
@@ -202,6 +205,7 @@ impl AppState {
             sticks_sent: None,
             fly_after_upload: false,
             step_ticks: 10,
+            forecast: ForecastState::default(),
             drag: None,
         }
     }

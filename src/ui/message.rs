@@ -5,8 +5,8 @@ use std::time::Duration;
 use crossterm::event::{KeyEvent, MouseEvent};
 
 use crate::plan::FlightPlan;
-use crate::session::Event;
 use crate::session::command::{CliOutput, Command, SessionView};
+use crate::session::{Event, ForecastJob, ForecastReply};
 
 /// Something that happened outside.
 #[derive(Debug)]
@@ -36,6 +36,8 @@ pub enum Msg {
         /// The sentence of the refusal otherwise.
         result: Result<(), String>,
     },
+    /// A forecast, or why there is none.
+    Forecast(ForecastReply),
     /// A command could not be delivered because the session does not keep up.
     Busy,
 }
@@ -56,6 +58,8 @@ pub enum Effect {
         /// Setting lines that come with it, without `set `.
         settings: Vec<String>,
     },
+    /// Fly ahead on a copy of the vehicle; the forecast comes back as [`Msg::Forecast`].
+    Forecast(ForecastJob),
     /// Give the terminal back until the shell continues the program.
     Suspend,
     /// Give the terminal back and end.

@@ -2,6 +2,7 @@
 
 pub(super) mod command_line;
 pub(super) mod palette;
+pub(super) mod what_if;
 
 pub use command_line::CommandLine;
 pub use palette::Palette;
@@ -13,6 +14,11 @@ pub enum Popup {
     Help {
         /// First line shown.
         scroll: usize,
+    },
+    /// What may go wrong now, to fly ahead with it.
+    WhatIf {
+        /// The row that Enter takes.
+        selected: usize,
     },
     /// "The craft is armed. Quit?"
     Quit,

@@ -12,7 +12,7 @@ use tokio::signal::unix::{SignalKind, signal};
 use tokio::sync::{mpsc, oneshot, watch};
 use tokio::time::sleep;
 
-use crate::session::{Command, Event, SessionView};
+use crate::session::{Command, Event, ForecastReply, Forecaster, SessionView};
 
 use super::app_state::{AppState, UiConfig};
 use super::message::{Effect, Msg};
@@ -99,6 +99,8 @@ async fn run_loop(
 
     let mut keys = EventStream::new();
     let (replies_in, mut replies) = mpsc::unbounded_channel();
+    let forecasts = replies_in.clone();
+    let forecaster = Forecaster::start(move |reply| drop(forecasts.send(Msg::Forecast(reply))))?;
     let mut events = Vec::with_capacity(BATCH);
     let mut drawn = Instant::now();
     // The time of the next frame; none while nothing changed.
@@ -160,7 +162,7 @@ async fn run_loop(
                     let size = tui.terminal().size()?;
                     update(&mut state, Msg::Resize(size.width, size.height));
                 }
-                carry_out(effect, &link, &replies_in);
+                carry_out(effect, &link, &forecaster, &replies_in);
             }
         }
         let wanted = drawn + frame;
@@ -185,7 +187,12 @@ fn terminal_message(event: TerminalEvent) -> Option<Msg> {
 }
 
 /// Does what an effect says; replies come back as messages.
-fn carry_out(effect: Effect, link: &SessionLink, replies: &mpsc::UnboundedSender<Msg>) {
+fn carry_out(
+    effect: Effect,
+    link: &SessionLink,
+    forecaster: &Forecaster,
+    replies: &mpsc::UnboundedSender<Msg>,
+) {
     let sent = match effect {
         Effect::Send(command) => link.commands.try_send(command),
         Effect::Cli(line) => {
@@ -215,6 +222,23 @@ fn carry_out(effect: Effect, link: &SessionLink, replies: &mpsc::UnboundedSender
                 replies.send(Msg::UploadReply(answer)).ok();
             });
             link.commands.try_send(Command::Upload { plan, settings, reply })
+        }
+        Effect::Forecast(job) => {
+            let (reply, answer) = oneshot::channel();
+            let (forecaster, replies) = (forecaster.clone(), replies.clone());
+            tokio::spawn(async move {
+                let (revision, kind) = (job.revision, job.request.kind());
+                match answer.await {
+                    Ok(Ok(copy)) => forecaster.order(job, copy),
+                    Ok(Err(reason)) => {
+                        let refused = ForecastReply { revision, kind, forecast: Err(reason) };
+                        replies.send(Msg::Forecast(refused)).ok();
+                    }
+                    // The session ends.
+                    Err(_) => {}
+                }
+            });
+            link.commands.try_send(Command::CopyVehicle(reply))
         }
         Effect::Suspend | Effect::Quit => Ok(()),
     };

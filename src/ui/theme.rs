@@ -26,6 +26,8 @@ pub enum Role {
     Target,
     /// Where the craft has been.
     Track,
+    /// Where the craft would fly.
+    Predicted,
     /// The craft.
     Craft,
     /// The geofence.
@@ -134,6 +136,7 @@ impl Theme {
                 Role::Active => Color::LightYellow,
                 Role::Target => Color::LightMagenta,
                 Role::Craft => Color::White,
+                Role::Predicted => Color::LightBlue,
             },
             Palette::Light => match role {
                 Role::Text | Role::Selected => Color::Reset,
@@ -148,6 +151,7 @@ impl Theme {
                 Role::Active => Color::Rgb(120, 96, 0),
                 Role::Target => Color::Rgb(150, 50, 110),
                 Role::Craft => Color::Rgb(0, 0, 0),
+                Role::Predicted => Color::Rgb(52, 72, 170),
             },
             Palette::HighContrast => match role {
                 Role::Text | Role::Selected | Role::Craft | Role::Title => Color::Rgb(255, 255, 255),
@@ -158,6 +162,7 @@ impl Theme {
                 Role::Fault => Color::Rgb(255, 130, 70),
                 Role::Active => Color::Rgb(255, 255, 0),
                 Role::Target => Color::Rgb(255, 170, 230),
+                Role::Predicted => Color::Rgb(170, 180, 255),
             },
             Palette::Dark => match role {
                 Role::Text | Role::Selected => Color::Reset,
@@ -172,6 +177,7 @@ impl Theme {
                 Role::Active => Color::Rgb(240, 228, 66),
                 Role::Target => Color::Rgb(214, 140, 186),
                 Role::Craft => Color::Rgb(255, 255, 255),
+                Role::Predicted => Color::Rgb(124, 152, 232),
             },
         }
     }
@@ -186,7 +192,14 @@ impl Theme {
                 style.add_modifier(Modifier::BOLD)
             }
             Role::Dim if self.palette == Palette::Mono => style.add_modifier(Modifier::DIM),
-            Role::Text | Role::Dim | Role::Title | Role::Ok | Role::Warn | Role::Track | Role::Fence => style,
+            Role::Text
+            | Role::Dim
+            | Role::Title
+            | Role::Ok
+            | Role::Warn
+            | Role::Track
+            | Role::Predicted
+            | Role::Fence => style,
         }
     }
 }

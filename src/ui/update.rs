@@ -9,6 +9,7 @@ use crate::session::{Command, SessionView};
 use super::action::{self, Action};
 use super::app_state::AppState;
 use super::event_log::Severity;
+use super::forecast;
 use super::formatting::within;
 use super::keymap::KeyPress;
 use super::map_point;
@@ -38,6 +39,20 @@ const TWICE_WITHIN: Duration = Duration::from_secs(2);
 
 /// Takes a message in and says what is to be done.
 pub fn update(state: &mut AppState, msg: Msg) -> Vec<Effect> {
+    // These ask for nothing: their effects would not be carried out.
+    let is_followed = !matches!(msg, Msg::Clock(_) | Msg::Resize(..));
+    let is_picture = matches!(msg, Msg::View(_));
+    let mut effects = take(state, msg);
+    if is_followed {
+        effects.extend(forecast::follow_plan(state));
+    }
+    if is_picture {
+        effects.extend(forecast::repeat(state));
+    }
+    effects
+}
+
+fn take(state: &mut AppState, msg: Msg) -> Vec<Effect> {
     match msg {
         Msg::Clock(now) => {
             state.now = now;
@@ -63,6 +78,7 @@ pub fn update(state: &mut AppState, msg: Msg) -> Vec<Effect> {
             if let Some((severity, text)) = state.cli.answer(output.as_ref()) {
                 state.notify(severity, text);
             }
+            state.forecast.settings_changed();
             run_cli(state)
         }
         Msg::WorldReply { line, result } => {
@@ -73,6 +89,10 @@ pub fn update(state: &mut AppState, msg: Msg) -> Vec<Effect> {
             Vec::new()
         }
         Msg::UploadReply(result) => uploaded(state, result),
+        Msg::Forecast(reply) => {
+            forecast::take_answer(state, reply);
+            Vec::new()
+        }
         Msg::Busy => {
             state.notify(Severity::Warn, "The simulator does not keep up: the last key was dropped.");
             Vec::new()
@@ -89,6 +109,7 @@ fn take_view(state: &mut AppState, view: SessionView) {
         state.track.clear();
     }
     state.view = view;
+    state.forecast.take_view();
     if state.is_rewound() {
         return;
     }
@@ -158,6 +179,11 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
             state.sticks_sent = None;
             vec![Effect::Send(Command::ResetCraft)]
         }
+        Action::LookAhead => forecast::toggle_look_ahead(state),
+        Action::WhatIf => {
+            state.popups.push(Popup::WhatIf { selected: 0 });
+            Vec::new()
+        }
         Action::Pause => vec![Effect::Send(Command::Pause(!state.view.paused))],
         Action::Step => {
             let mut effects = Vec::new();
@@ -202,7 +228,7 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
             // Out of the text first: keys pressed next must not be typed.
             if state.focus.takes_text() {
                 focus(state, Panel::Map);
-            } else {
+            } else if !state.forecast.dismiss() {
                 state.zoomed = false;
             }
             Vec::new()

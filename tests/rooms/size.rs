@@ -7,7 +7,7 @@ const LONGEST: usize = 500;
 /// Most lines of the file in the middle.
 const MEDIAN: usize = 150;
 /// Lines of the core for each line of the shell.
-const CORE_TO_SHELL: f64 = 2.5;
+const CORE_TO_SHELL: f64 = 2.0;
 /// Files of a room beyond which its first page explains the layers inside.
 const MANY_FILES: usize = 60;
 

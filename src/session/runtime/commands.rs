@@ -5,7 +5,8 @@ use std::task::{Context, Poll};
 use std::time::{Duration, Instant};
 
 use super::Session;
-use crate::session::command::{Command, PLACE_IS_EXTERNAL, TIME_IS_EXTERNAL};
+use crate::flight::forecast;
+use crate::session::command::{Command, PLACE_IS_EXTERNAL, TIME_IS_EXTERNAL, VehicleCopy};
 use crate::session::upload::Upload;
 use crate::sim::WorldCommand;
 use crate::telemetry::LinkState;
@@ -71,6 +72,13 @@ impl Session {
             Command::World { line, reply } => {
                 let changed = self.change_world(&line);
                 drop(reply.send(changed));
+            }
+            Command::CopyVehicle(reply) => {
+                let copy = forecast::check_possible(&self.vehicle).map(|()| VehicleCopy {
+                    vehicle: Box::new(self.shown_vehicle().clone()),
+                    takeoff_m: self.takeoff_m,
+                });
+                drop(reply.send(copy));
             }
             Command::Quit => self.quit = true,
         }

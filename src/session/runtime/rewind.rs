@@ -61,6 +61,7 @@ impl Session {
             | Command::Seek(_)
             | Command::FlyOn
             | Command::Speed(_)
+            | Command::CopyVehicle(_)
             | Command::Quit => return Some(command),
             Command::Cli { reply, .. } => {
                 drop(reply.send(CliOutput { advice: Some(REWOUND.to_owned()), ..CliOutput::default() }));

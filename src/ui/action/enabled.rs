@@ -1,5 +1,6 @@
 //! Which actions make sense now, and why the others do not.
 
+use crate::session::PHYSICS_IS_EXTERNAL;
 use crate::session::command::{NOT_RECORDED, PLACE_IS_EXTERNAL, REWOUND, TIME_IS_EXTERNAL};
 use crate::telemetry::{LinkState, Mode};
 use crate::ui::app_state::AppState;
@@ -24,6 +25,14 @@ pub fn enabled(state: &AppState, action: Action) -> Result<(), String> {
         _ if steers(action) && state.is_rewound() => Err(REWOUND.to_owned()),
         Action::ResetCraft if state.view.simulator == Some(LinkState::Flowing) => {
             Err(PLACE_IS_EXTERNAL.to_owned())
+        }
+        Action::LookAhead if state.forecast.looks_ahead() => Ok(()),
+        Action::LookAhead | Action::WhatIf if state.view.simulator.is_some() => {
+            Err(PHYSICS_IS_EXTERNAL.to_owned())
+        }
+        Action::LookAhead | Action::WhatIf if !craft.is_armed() && state.view.pilot.is_none() => {
+            Err("The craft stands disarmed, so there is no flight to look ahead to: `F` flies the plan."
+                .to_owned())
         }
         Action::Arm => transmitter::can_arm(state),
         Action::Autopilot => transmitter::switch(state, Mode::Autopilot).map(drop),

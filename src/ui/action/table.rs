@@ -61,6 +61,22 @@ pub const ACTIONS: &[Spec] = &[
         &["R"],
         Global,
     ),
+    spec(
+        Action::LookAhead,
+        "forecast.look-ahead",
+        "look ahead",
+        "Fly ahead as things stand: a ghost on the map (again: end it)",
+        &["L"],
+        Global,
+    ),
+    spec(
+        Action::WhatIf,
+        "forecast.what-if",
+        "what if",
+        "Fly ahead with something going wrong, chosen from a list",
+        &["w"],
+        Global,
+    ),
     spec(Action::Pause, "sim.pause", "pause", "Pause, or go on", &["space"], Global),
     spec(
         Action::Step,

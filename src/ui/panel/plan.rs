@@ -6,10 +6,11 @@ use ratatui::layout::Rect;
 use crate::geo::{Degrees7, LatLon, distance_bearing};
 use crate::plan::{FlightPlan, Waypoint, WaypointType};
 use crate::ui::app_state::AppState;
+use crate::ui::forecast;
 use crate::ui::panel::Panel;
 use crate::ui::theme::Role;
 
-use super::row;
+use super::{line, row};
 use crate::ui::text_wrap::wrapped;
 
 /// Rows of problems at most, below the waypoints.
@@ -57,9 +58,9 @@ fn waypoint_problem(plan: &FlightPlan, index: usize, fence: Option<(LatLon, f64)
         .then(|| format!("WP{index} is {distance_m:.0} m from home, the fence is {limit_m:.0} m."))
 }
 
-/// Rows of waypoints: what the head and the problems leave.
+/// Rows of waypoints: what the head, the problems and the estimate leave.
 fn waypoint_rows(area: Rect, problems: &[String]) -> usize {
-    usize::from(area.height).saturating_sub(1 + problems.len().min(PROBLEM_ROWS))
+    usize::from(area.height).saturating_sub(2 + problems.len().min(PROBLEM_ROWS))
 }
 
 /// The furthest that the panel scrolls: then the last waypoint is the last on the screen.
@@ -103,8 +104,9 @@ pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     let width = usize::from(area.width);
     for (at, problem) in problems.iter().take(usize::from(below)).enumerate() {
         let text = wrapped(&format!("✗ {problem}"), width).join(" ");
-        row(buffer, area, area.height - below + at as u16, theme, Role::Fault, &text);
+        row(buffer, area, area.height - 1 - below + at as u16, theme, Role::Fault, &text);
     }
+    line(buffer, area, area.height - 1, &forecast::estimate_line(state, area.width));
 }
 
 fn waypoint_row(index: usize, wp: &Waypoint, wide: bool) -> String {

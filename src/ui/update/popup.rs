@@ -7,14 +7,26 @@ use crate::ui::action::{self, Action};
 use crate::ui::app_state::AppState;
 use crate::ui::command;
 use crate::ui::event_log::Severity;
+use crate::ui::forecast;
 use crate::ui::message::Effect;
 use crate::ui::popup::palette::Entry;
-use crate::ui::popup::{Popup, command_line, palette};
+use crate::ui::popup::{Popup, command_line, palette, what_if};
 
 /// A key for the popup that was opened last; `found` is what it means without one.
 pub(super) fn key(state: &mut AppState, event: KeyEvent, found: Option<Action>) -> Vec<Effect> {
     match state.popups.last_mut() {
         None => Vec::new(),
+        Some(Popup::WhatIf { selected }) => match what_if::key(selected, event) {
+            what_if::Outcome::Choosing => Vec::new(),
+            what_if::Outcome::Left => {
+                state.popups.pop();
+                Vec::new()
+            }
+            what_if::Outcome::Chosen(what_if) => {
+                state.popups.pop();
+                forecast::ask_what_if(state, what_if)
+            }
+        },
         Some(Popup::Quit) => quit_key(state, event),
         Some(Popup::CommandLine) => match command_line::key(state, event) {
             command_line::Outcome::Typing => Vec::new(),

@@ -4,8 +4,12 @@ use ratatui::buffer::Buffer;
 use unicode_width::UnicodeWidthStr as _;
 
 use crate::ui::map_point::MapPoint;
+use crate::ui::text_wrap::wrapped;
 use crate::ui::theme::{Role, Theme};
 use crate::ui::viewport::Viewport;
+
+/// Most lines at the top.
+const TOP_LINES: usize = 3;
 
 /// Writes marks and labels, and remembers which cells are taken.
 pub(super) struct Labels<'a> {
@@ -89,6 +93,15 @@ impl<'a> Labels<'a> {
         let width = text.width() as u16;
         if width <= area.width {
             self.put(area.x + (area.width - width) / 2, area.y + area.height / 2, text, role);
+        }
+    }
+
+    /// Lines at the top, as many as the text takes, at most three.
+    pub(super) fn top(&mut self, text: &str, role: Role) {
+        let area = self.view.area;
+        for (row, line) in (area.y..area.bottom()).zip(wrapped(text, usize::from(area.width))).take(TOP_LINES)
+        {
+            self.put(area.x, row, &line, role);
         }
     }
 

@@ -7,6 +7,7 @@ use crate::geo::GRAVITY;
 use crate::plan::{HoldPattern, Waypoint, WaypointType};
 use crate::telemetry::NavTelemetry;
 use crate::ui::app_state::AppState;
+use crate::ui::forecast;
 use crate::ui::map_point::{self, MapPoint, to_map};
 use crate::ui::theme::Role;
 use crate::ui::track::TrackPoint;
@@ -15,6 +16,8 @@ use super::{PlacedWaypoint, Scene};
 
 /// Dots of a dash and of the gap behind it.
 const DASH_DOTS: f64 = 3.0;
+/// Dots from one dot of a predicted way to the next.
+const DOT_GAP: f64 = 4.0;
 /// A line of more dashes than this is drawn solid: the rest lies outside anyhow.
 const MAX_DASHES: f64 = 400.0;
 
@@ -35,6 +38,26 @@ impl LinePainter<'_, '_> {
     fn track(&mut self, points: &[TrackPoint]) {
         for pair in points.windows(2) {
             self.line(MapPoint::new(pair[0].n, pair[0].e), MapPoint::new(pair[1].n, pair[1].e));
+        }
+    }
+
+    /// A dot every few dots along a way.
+    fn dotted(&mut self, way: impl Iterator<Item = MapPoint>) {
+        let gap_m = DOT_GAP * self.dot_m;
+        let mut last: Option<MapPoint> = None;
+        for place in way {
+            let Some(mut from) = last else {
+                last = Some(place);
+                continue;
+            };
+            let distance_m = from.distance(place);
+            let dots = (distance_m / gap_m).min(MAX_DASHES) as u32;
+            let start = from;
+            for dot in 1..=dots {
+                from = start.towards(place, f64::from(dot) * gap_m / distance_m);
+                self.line(from, from);
+            }
+            last = Some(from);
         }
     }
 
@@ -84,6 +107,11 @@ pub(super) fn paint(state: &AppState, scene: &Scene, context: &mut Context<'_>) 
         legs(scene, painter);
         for (at, spot) in scene.spots.iter().enumerate() {
             figure(state, scene, at, spot, painter);
+        }
+    });
+    layer(Role::Predicted, &mut |painter| {
+        if let Some(ghost) = forecast::ghost(state) {
+            painter.dotted(ghost.path.iter().map(|point| MapPoint::new(point.n, point.e)));
         }
     });
     // Up to the instant that is shown; what comes after it, and what was left behind, is faint.

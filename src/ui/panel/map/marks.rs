@@ -4,6 +4,7 @@ use ratatui::buffer::Buffer;
 
 use crate::plan::WaypointType;
 use crate::ui::app_state::AppState;
+use crate::ui::forecast;
 use crate::ui::map_point::MapPoint;
 use crate::ui::theme::Role;
 use crate::ui::viewport::round_length;
@@ -20,6 +21,9 @@ pub(super) fn write(state: &AppState, scene: &Scene, buffer: &mut Buffer) {
     let vehicle = &state.view.vehicle;
     let mut labels = Labels::new(theme, scene.view, buffer);
     frame_notes(state, &mut labels);
+    if let Some(ghost) = forecast::ghost(state) {
+        labels.top(&format!("··· {}", ghost.line), Role::Predicted);
+    }
     let home_known = vehicle.truth.is_some() || vehicle.craft.home.is_some();
     if home_known {
         labels.mark(scene.home, "⌂", Role::Title);

@@ -1,0 +1,198 @@
+//! Flights flown ahead of time, on a copy of the vehicle: how long, how far beside, with what end.
+//!
+//! A forecast knows no thread and no clock: its owner advances it tick by tick, and drops it when it is not wanted any more.
+//! What it tells follows from the vehicle alone, so the same vehicle gives the same forecast.
+
+mod endless;
+mod observer;
+mod path;
+mod plan_distance;
+mod report;
+mod what_if;
+
+pub use observer::{LegTime, WorstXte};
+pub use path::PathPoint;
+pub use report::{Forecast, ForecastEnd, ForecastKind};
+pub use what_if::{WHAT_IFS, WhatIf};
+
+use super::{Flight, FlightEnd, FlightOptions, FlightResult, Report, Verdict};
+use crate::firmware::Firmware;
+use crate::firmware::cli::Interpreter;
+use crate::plan::{FlightPlan, upload_lines};
+use crate::signals::SimTime;
+use crate::sim::WorldCommand;
+use crate::vehicle::Vehicle;
+use endless::EndlessWatch;
+use observer::Observer;
+use report::Ended;
+
+/// Longest flight that a forecast follows, simulated s.
+pub const LIMIT_S: f64 = 1800.0;
+
+/// A forecast under way.
+#[derive(Debug)]
+pub struct ForecastRun {
+    kind: ForecastKind,
+    flight: Flight,
+    started: SimTime,
+    limit: SimTime,
+    endless: EndlessWatch,
+    observer: Observer,
+}
+
+impl ForecastRun {
+    /// How `plan` with its `settings` would be flown from home by the scripted pilot, who climbs to `takeoff_m` first: in
+    /// the present air, with the present craft, undamaged and without faults.
+    ///
+    /// # Errors
+    /// Why nothing can be flown, as a sentence.
+    pub fn plan_estimate(
+        mut vehicle: Vehicle,
+        plan: &FlightPlan,
+        settings: &[String],
+        takeoff_m: f64,
+    ) -> Result<Self, String> {
+        if plan.waypoints.is_empty() {
+            return Err("No waypoints, so there is nothing to fly.".to_owned());
+        }
+        let Some(firmware) = vehicle.embedded_mut() else { return Err(CONTROLLER_IS_REMOTE.to_owned()) };
+        let mut console = Interpreter::default();
+        for line in upload_lines(plan, settings) {
+            let reply = firmware.run_cli(&mut console, &line);
+            if reply.failed {
+                return Err(format!("The craft refuses `{line}`: {}", reply.text.trim()));
+            }
+        }
+        change(&mut vehicle, WorldCommand::ClearFaults)?;
+        vehicle.transmitter_mut().inputs_mut().clear();
+        vehicle.transmitter_mut().set_cut(false);
+        vehicle.reset_craft();
+        vehicle.start_pilot(takeoff_m).map_err(|mode| {
+            format!("The scripted pilot needs a switch for {mode}: give it one with the CLI command aux.")
+        })?;
+        Self::begin(ForecastKind::PlanEstimate, vehicle, takeoff_m)
+    }
+
+    /// What becomes of the flight of `vehicle` as things stand: the sticks stay where they are, the scripted pilot goes on.
+    ///
+    /// # Errors
+    /// Why there is nothing to look ahead to, as a sentence.
+    pub fn look_ahead(vehicle: Vehicle) -> Result<Self, String> {
+        check_flies(&vehicle)?;
+        Self::begin(ForecastKind::LookAhead, vehicle, FlightOptions::default().takeoff_m)
+    }
+
+    /// As [`Self::look_ahead`], with something going wrong at this instant.
+    ///
+    /// # Errors
+    /// Why there is nothing to look ahead to, as a sentence.
+    pub fn what_if(mut vehicle: Vehicle, what_if: &WhatIf) -> Result<Self, String> {
+        check_flies(&vehicle)?;
+        let wind = vehicle.world().map(|world| world.status().wind).unwrap_or_default();
+        change(&mut vehicle, what_if.command(wind)?)?;
+        Self::begin(ForecastKind::WhatIf, vehicle, FlightOptions::default().takeoff_m)
+    }
+
+    fn begin(kind: ForecastKind, mut vehicle: Vehicle, takeoff_m: f64) -> Result<Self, String> {
+        vehicle.drain_events(drop);
+        let plan = vehicle.embedded().and_then(Firmware::active_plan).or(vehicle.controller().stored_plan());
+        let observer = Observer::new(&vehicle, plan).ok_or(PHYSICS_IS_EXTERNAL)?;
+        let started = vehicle.time();
+        // It is this forecast that ends a flight which takes too long, by its own clock.
+        let timeout = SimTime(u64::MAX);
+        let options = FlightOptions { takeoff_m, timeout, ..FlightOptions::default() };
+        Ok(Self {
+            kind,
+            flight: Flight::go_on(vehicle, &options),
+            started,
+            limit: SimTime(started.0 + SimTime::from_secs_f64(LIMIT_S).0),
+            endless: EndlessWatch::default(),
+            observer,
+        })
+    }
+
+    /// Flies on by at most `ticks`; the forecast when the flight is over.
+    pub fn advance(&mut self, ticks: u32) -> Option<Forecast> {
+        (0..ticks).find_map(|_| self.tick())
+    }
+
+    fn tick(&mut self) -> Option<Forecast> {
+        let mut happened = false;
+        let end = self.flight.tick(|report| happened |= matches!(report, Report::Event(_)));
+        let vehicle = self.flight.vehicle();
+        self.observer.look(vehicle);
+        let (end, reason) = match end {
+            Some(end) => self.flight_end(end),
+            None => self.endless.look(vehicle, happened).or_else(|| self.too_long())?,
+        };
+        let engaged_at = self.flight.engaged_at().filter(|_| self.kind == ForecastKind::PlanEstimate);
+        let vehicle = self.flight.vehicle();
+        let time_s = vehicle.time().seconds_since(engaged_at.unwrap_or(self.started));
+        let ended = Ended { kind: self.kind, end, reason, time_s };
+        Some(self.observer.forecast(ended, vehicle))
+    }
+
+    fn flight_end(&self, end: FlightEnd) -> (ForecastEnd, String) {
+        let Verdict { result, reason } = end.verdict;
+        let nav = self.flight.vehicle().controller().nav();
+        let is_given_up = nav.is_some_and(|nav| nav.refusal.is_some());
+        if result == FlightResult::Aborted && !is_given_up {
+            // Nothing went wrong: the pilot switched the autopilot off.
+            return (ForecastEnd::Endless, endless::LEFT_TO_STICKS.to_owned());
+        }
+        (ForecastEnd::Flight(result), reason)
+    }
+
+    fn too_long(&self) -> Option<(ForecastEnd, String)> {
+        let vehicle = self.flight.vehicle();
+        (vehicle.time() >= self.limit).then(|| {
+            let doing = match vehicle.controller().nav() {
+                Some(nav) if nav.engaged => format!("still {} at waypoint {}", nav.state, nav.wp),
+                _ => "still not flown by the autopilot".to_owned(),
+            };
+            (ForecastEnd::TooLong, format!("not over within {:.0} minutes: {doing}", LIMIT_S / 60.0))
+        })
+    }
+}
+
+/// Why there are no forecasts with a flight controller outside.
+pub const CONTROLLER_IS_REMOTE: &str =
+    "The flight controller is another program, which cannot be copied: there is no forecast of its flight.";
+
+/// Why there are no forecasts with an external simulator.
+pub const PHYSICS_IS_EXTERNAL: &str =
+    "The simulator moves the craft and cannot be copied: there is no forecast of its flight.";
+
+/// Whether there can be forecasts of this vehicle's flights at all.
+///
+/// # Errors
+/// Why not, as a sentence.
+pub fn check_possible(vehicle: &Vehicle) -> Result<(), String> {
+    if vehicle.embedded().is_none() {
+        return Err(CONTROLLER_IS_REMOTE.to_owned());
+    }
+    if vehicle.world().is_none() {
+        return Err(PHYSICS_IS_EXTERNAL.to_owned());
+    }
+    Ok(())
+}
+
+fn check_flies(vehicle: &Vehicle) -> Result<(), String> {
+    check_possible(vehicle)?;
+    if vehicle.crashed() {
+        return Err("The craft crashed, so its flight is over: R puts it back home.".to_owned());
+    }
+    if !vehicle.controller().is_armed() && vehicle.transmitter().pilot_doing().is_none() {
+        return Err(
+            "The craft stands disarmed, so there is no flight to look ahead to: F flies the plan.".to_owned()
+        );
+    }
+    Ok(())
+}
+
+fn change(vehicle: &mut Vehicle, command: WorldCommand) -> Result<(), String> {
+    vehicle.change_world(command).map_err(|error| error.to_string())
+}
+
+#[cfg(test)]
+mod tests;

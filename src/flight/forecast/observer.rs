@@ -1,0 +1,163 @@
+//! What is noted of a forecast's flight on the way.
+
+use super::path::{Path, PathPoint};
+use super::plan_distance::PlanDistance;
+use super::report::{Ended, Forecast};
+use crate::plan::{FlightPlan, MAX_WAYPOINTS};
+use crate::signals::SimTime;
+use crate::telemetry::{L1Mode, NavTelemetry, PlanSource};
+use crate::vehicle::Vehicle;
+
+/// Distance beside a new leg at which it counts as joined, m.
+const JOINED_M: f64 = 1.0;
+/// Interval of observations, µs: that of the navigator's updates.
+const INTERVAL_US: u64 = 10_000;
+
+/// The greatest cross-track error: of a leg from where it was joined, for a corner is not flown along a line; of one that was
+/// never joined the least.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WorstXte {
+    /// Distance beside the leg, m.
+    pub xte_m: f64,
+    /// Waypoint at the end of the leg.
+    pub wp: u8,
+}
+
+/// How long a waypoint took.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LegTime {
+    /// The waypoint.
+    pub wp: u8,
+    /// From the start of its leg to the start of the next, s.
+    pub time_s: f64,
+}
+
+/// How a leg is flown.
+#[derive(Debug, Clone, Copy, Default)]
+struct OnLeg {
+    /// Waypoint at its end.
+    wp: u8,
+    /// The craft has come near its line.
+    joined: bool,
+    /// The least cross-track error so far, m; `None` before the first leg.
+    least_m: Option<f64>,
+}
+
+/// The observations so far.
+#[derive(Debug, Clone)]
+pub(super) struct Observer {
+    seen_at: SimTime,
+    path: Path,
+    distance: PlanDistance,
+    on_leg: OnLeg,
+    worst_xte: Option<WorstXte>,
+    fence_margin_m: Option<f64>,
+    legs: Vec<LegTime>,
+}
+
+impl Observer {
+    /// Of a vehicle about to fly `plan`; `None` without a simulated world.
+    pub(super) fn new(vehicle: &Vehicle, plan: Option<&FlightPlan>) -> Option<Self> {
+        let world = vehicle.world()?;
+        let unknown = FlightPlan::default();
+        let mut distance = PlanDistance::new(plan.unwrap_or(&unknown), world.local_frame());
+        let along_m = vehicle.controller().nav().map_or(0.0, |nav| distance.follow(nav));
+        Some(Self {
+            seen_at: vehicle.time(),
+            path: Path::new(place(vehicle, along_m)?),
+            distance,
+            on_leg: OnLeg::default(),
+            worst_xte: None,
+            fence_margin_m: None,
+            legs: Vec::with_capacity(MAX_WAYPOINTS),
+        })
+    }
+
+    /// Looks at the vehicle after a tick.
+    pub(super) fn look(&mut self, vehicle: &Vehicle) {
+        let now = vehicle.time();
+        if now.0 / INTERVAL_US == self.seen_at.0 / INTERVAL_US {
+            return;
+        }
+        let passed_s = now.seconds_since(std::mem::replace(&mut self.seen_at, now));
+        let Some(nav) = vehicle.controller().nav() else { return };
+        let along_m = self.distance.follow(nav);
+        if let Some(point) = place(vehicle, along_m) {
+            self.path.push(point);
+        }
+        if nav.engaged && nav.source == PlanSource::Stored {
+            self.note_leg(nav, passed_s);
+        }
+    }
+
+    fn note_leg(&mut self, nav: &NavTelemetry, passed_s: f64) {
+        if let Some(leg) = self.legs.last_mut().filter(|leg| leg.wp == nav.wp) {
+            leg.time_s += passed_s;
+        } else if self.legs.len() < MAX_WAYPOINTS {
+            // A craft sent back flies a waypoint again; the list stays as long as a plan can be.
+            self.legs.push(LegTime { wp: nav.wp, time_s: passed_s });
+        }
+        // Only where a line is followed: straight to a point there is none to be beside of.
+        if let Some(xte_m) = nav.xte_m.filter(|_| nav.l1_mode == L1Mode::Track).map(f64::abs) {
+            self.note_xte(xte_m, nav.wp);
+        }
+        if let Some(margin_m) = nav.fence_margin_m {
+            self.fence_margin_m = Some(self.fence_margin_m.map_or(margin_m, |least| least.min(margin_m)));
+        }
+    }
+
+    fn note_xte(&mut self, xte_m: f64, wp: u8) {
+        if self.on_leg.wp != wp {
+            self.end_leg();
+            self.on_leg = OnLeg { wp, ..OnLeg::default() };
+        }
+        let leg = &mut self.on_leg;
+        leg.joined |= xte_m <= JOINED_M;
+        leg.least_m = Some(leg.least_m.map_or(xte_m, |least_m| least_m.min(xte_m)));
+        if leg.joined {
+            self.keep_worst(xte_m, wp);
+        }
+    }
+
+    fn end_leg(&mut self) {
+        if let OnLeg { wp, joined: false, least_m: Some(least_m) } = self.on_leg {
+            self.keep_worst(least_m, wp);
+        }
+    }
+
+    fn keep_worst(&mut self, xte_m: f64, wp: u8) {
+        if self.worst_xte.is_none_or(|worst| xte_m > worst.xte_m) {
+            self.worst_xte = Some(WorstXte { xte_m, wp });
+        }
+    }
+
+    /// The forecast of the flight that ended so, here and now.
+    pub(super) fn forecast(&mut self, ended: Ended, vehicle: &Vehicle) -> Forecast {
+        self.end_leg();
+        let along_m = vehicle.controller().nav().map_or(0.0, |nav| self.distance.follow(nav));
+        if let Some(point) = place(vehicle, along_m) {
+            self.path.push(point);
+        }
+        let battery = vehicle.world().map(|world| world.truth().battery).unwrap_or_default();
+        let used_pct = 100.0 * battery.drawn_mah / battery.capacity_mah;
+        Forecast {
+            kind: ended.kind,
+            end: ended.end,
+            reason: ended.reason,
+            time_s: ended.time_s,
+            battery_used_pct: if used_pct.is_finite() { used_pct.clamp(0.0, 100.0) } else { 0.0 },
+            worst_xte: self.worst_xte,
+            fence_margin_m: self.fence_margin_m,
+            legs: self.legs.clone(),
+            moved_m: self.path.moved_m(),
+            path: self.path.points(),
+        }
+    }
+}
+
+/// Where the craft truly is.
+fn place(vehicle: &Vehicle, along_m: f64) -> Option<PathPoint> {
+    let truth = vehicle.world()?.truth();
+    let (e, n, alt) = (truth.pos_enu.x, truth.pos_enu.y, truth.pos_enu.z);
+    Some(PathPoint { n, e, alt, along_m, time_s: vehicle.time().as_secs_f64() })
+}

@@ -1,0 +1,100 @@
+//! The way of a forecast: a polyline that never grows beyond a bound.
+
+/// Points kept; when full, every second one is dropped and the spacing doubles.
+const MAX_POINTS: usize = 2048;
+/// Spacing of points at first, m.
+const SPACING_M: f64 = 0.5;
+
+/// A point of the way.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PathPoint {
+    /// North of the boot place, m.
+    pub n: f64,
+    /// East of the boot place, m.
+    pub e: f64,
+    /// Above the boot place, m.
+    pub alt: f64,
+    /// Distance flown along the plan, m: legs from home, without holds and detours; never less than before.
+    pub along_m: f64,
+    /// Simulated time since boot, s.
+    pub time_s: f64,
+}
+
+impl PathPoint {
+    fn distance(&self, other: &Self) -> f64 {
+        (self.n - other.n).hypot(self.e - other.e).hypot(self.alt - other.alt)
+    }
+}
+
+/// The points so far.
+#[derive(Debug, Clone)]
+pub(super) struct Path {
+    points: Vec<PathPoint>,
+    spacing_m: f64,
+    /// Where the craft is, though it may be too near the last point to be kept.
+    newest: PathPoint,
+}
+
+impl Path {
+    /// A way that begins here.
+    pub(super) fn new(start: PathPoint) -> Self {
+        Self { points: vec![start], spacing_m: SPACING_M, newest: start }
+    }
+
+    pub(super) fn push(&mut self, point: PathPoint) {
+        self.newest = point;
+        if self.points.last().is_some_and(|last| last.distance(&point) < self.spacing_m) {
+            return;
+        }
+        if self.points.len() == MAX_POINTS {
+            let mut keep = false;
+            self.points.retain(|_| {
+                keep = !keep;
+                keep
+            });
+            self.spacing_m *= 2.0;
+        }
+        self.points.push(point);
+    }
+
+    /// Horizontal distance from the first to the newest point, m.
+    pub(super) fn moved_m(&self) -> f64 {
+        self.points.first().map_or(0.0, |first| (self.newest.n - first.n).hypot(self.newest.e - first.e))
+    }
+
+    /// All points, the place of the end last.
+    pub(super) fn points(&self) -> Vec<PathPoint> {
+        let mut points = self.points.clone();
+        if points.last() != Some(&self.newest) {
+            points.push(self.newest);
+        }
+        points
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_way_stays_bounded_and_keeps_both_ends() {
+        let at = |step: i32| PathPoint { n: f64::from(step), e: 0.0, alt: 10.0, along_m: 0.0, time_s: 0.0 };
+        let mut path = Path::new(at(0));
+        for step in 1..50_000 {
+            path.push(at(step));
+        }
+        let points = path.points();
+        assert!(points.len() <= MAX_POINTS + 1, "{}", points.len());
+        assert_eq!((points.first(), points.last()), (Some(&at(0)), Some(&at(49_999))));
+        assert!((path.moved_m() - 49_999.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_climb_on_the_spot_is_part_of_the_way() {
+        let at = |alt| PathPoint { n: 0.0, e: 0.0, alt, along_m: 0.0, time_s: 0.0 };
+        let mut path = Path::new(at(0.0));
+        path.push(at(5.0));
+        assert_eq!(path.points().len(), 2);
+        assert!(path.moved_m() < 1e-9);
+    }
+}

@@ -1,0 +1,113 @@
+//! What a forecast tells.
+
+use super::observer::{LegTime, WorstXte};
+use super::path::PathPoint;
+use crate::flight::FlightResult;
+
+/// What is flown ahead.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ForecastKind {
+    /// A plan, from home.
+    PlanEstimate,
+    /// The present flight as things stand.
+    LookAhead,
+    /// The present flight with something going wrong.
+    WhatIf,
+}
+
+/// How the flight of a forecast ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ForecastEnd {
+    /// As every headless flight ends.
+    Flight(FlightResult),
+    /// It does not end by itself.
+    Endless,
+    /// The craft never takes off.
+    Grounded,
+    /// It takes longer than a forecast follows.
+    TooLong,
+}
+
+/// The end of a run, without what was observed on the way.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Ended {
+    pub(super) kind: ForecastKind,
+    pub(super) end: ForecastEnd,
+    pub(super) reason: String,
+    pub(super) time_s: f64,
+}
+
+/// A flight flown ahead of time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Forecast {
+    /// What was flown.
+    pub kind: ForecastKind,
+    /// How it ends.
+    pub end: ForecastEnd,
+    /// Why, as a sentence without its full stop.
+    pub reason: String,
+    /// Simulated time to the end, s: of a plan from the engagement (from the start when there is none), else from now.
+    pub time_s: f64,
+    /// Charge drawn at the end since the battery was full, %.
+    pub battery_used_pct: f64,
+    /// The greatest cross-track error on a leg of the plan, if one was flown along a line.
+    pub worst_xte: Option<WorstXte>,
+    /// Nearest approach to the fence from inside, m; negative outside; `None` without a fence or a plan flown.
+    pub fence_margin_m: Option<f64>,
+    /// Time of each waypoint of the plan, with its hold, in flight order.
+    pub legs: Vec<LegTime>,
+    /// How far the craft is at the end from where it was at the start, horizontally, m.
+    pub moved_m: f64,
+    /// The way of the craft in truth.
+    pub path: Vec<PathPoint>,
+}
+
+impl Forecast {
+    /// Whether the plan is flown to its end as it should be.
+    #[must_use]
+    pub fn is_complete(&self) -> bool {
+        self.end == ForecastEnd::Flight(FlightResult::Complete)
+    }
+
+    /// The end in a line: `COMPLETE in 1:52, 41 % left`.
+    #[must_use]
+    pub fn line(&self) -> String {
+        let (time, left) = (minutes(self.time_s), 100.0 - self.battery_used_pct);
+        let left = format!("{left:.0} % left");
+        let (moved, reason) = (self.moved_m, &self.reason);
+        match self.end {
+            ForecastEnd::Flight(FlightResult::Complete) => format!("COMPLETE in {time}, {left}"),
+            ForecastEnd::Flight(FlightResult::Missed) => format!("COMPLETE in {time}, but missed: {reason}"),
+            ForecastEnd::Flight(FlightResult::Landed) => {
+                format!("{reason} in {time}, {moved:.0} m from here, {left}")
+            }
+            ForecastEnd::Flight(FlightResult::Aborted) => {
+                format!("drifts {moved:.0} m in {time}, {left}: {reason}")
+            }
+            ForecastEnd::Flight(FlightResult::Crashed) => {
+                format!("CRASHES in {time}, {moved:.0} m from here: {reason}")
+            }
+            ForecastEnd::Flight(_) => format!("ends in {time}, {moved:.0} m from here: {reason}"),
+            ForecastEnd::Endless => format!("{reason}, {left} after {time}"),
+            ForecastEnd::Grounded | ForecastEnd::TooLong => reason.clone(),
+        }
+    }
+}
+
+/// Minutes and seconds: `1:52`.
+fn minutes(seconds: f64) -> String {
+    // Never negative; more than a day is not followed.
+    let seconds = seconds.round() as u32;
+    format!("{}:{:02}", seconds / 60, seconds % 60)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn minutes_are_short() {
+        assert_eq!((minutes(111.6).as_str(), minutes(0.2).as_str()), ("1:52", "0:00"));
+        assert_eq!(minutes(1800.0), "30:00");
+    }
+}

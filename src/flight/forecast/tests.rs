@@ -1,0 +1,156 @@
+use super::*;
+use crate::flight::FlightSetup;
+use crate::plan::builtin::BuiltinPlan;
+use crate::sim::{Noise, WorldConfig};
+
+/// A vehicle at boot with this built-in plan stored.
+fn vehicle(plan: &str, noise: Noise) -> Vehicle {
+    let plan = BuiltinPlan::find(plan).unwrap().read().unwrap();
+    let world = WorldConfig { noise, ..WorldConfig::default() };
+    let mut setup = FlightSetup { world, plan: plan.clone(), ..FlightSetup::default() };
+    setup.stored.plan = plan.plan;
+    setup.build().unwrap().0
+}
+
+fn plan(name: &str) -> FlightPlan {
+    BuiltinPlan::find(name).unwrap().read().unwrap().plan
+}
+
+fn end(mut run: ForecastRun) -> Forecast {
+    loop {
+        if let Some(forecast) = run.advance(1000) {
+            return forecast;
+        }
+    }
+}
+
+fn estimate(name: &str) -> Forecast {
+    let vehicle = vehicle("square", Noise::None);
+    end(ForecastRun::plan_estimate(vehicle, &plan(name), &[], 10.0).unwrap())
+}
+
+/// Lets the scripted pilot fly until the navigator has been on its way for `seconds`.
+fn in_flight(mut vehicle: Vehicle, seconds: f64) -> Vehicle {
+    vehicle.start_pilot(10.0).unwrap();
+    while vehicle.engaged_at().is_none_or(|at| vehicle.time().seconds_since(at) < seconds) {
+        vehicle.tick();
+        vehicle.drain_events(drop);
+    }
+    vehicle
+}
+
+#[test]
+fn an_estimate_agrees_with_the_flight_of_the_same_plan() {
+    let mut flight = Flight::new(vehicle("square", Noise::None), &FlightOptions::default()).unwrap();
+    let flown = loop {
+        if let Some(end) = flight.tick(|_| {}) {
+            break end;
+        }
+    };
+    let forecast = estimate("square");
+    assert_eq!(forecast.end, ForecastEnd::Flight(flown.verdict.result), "{}", forecast.reason);
+    assert!((forecast.time_s - flown.flown_s).abs() <= 0.001 + 1e-9, "{} {}", forecast.time_s, flown.flown_s);
+    let used_pct = flown.truth.battery_used_pct.unwrap();
+    assert!((forecast.battery_used_pct - used_pct).abs() < 0.1, "{} {used_pct}", forecast.battery_used_pct);
+    assert_eq!(forecast.legs.iter().map(|leg| leg.wp).collect::<Vec<_>>(), [0, 1, 2, 3]);
+    assert!((forecast.legs.iter().map(|leg| leg.time_s).sum::<f64>() - forecast.time_s).abs() < 2.0);
+    // At 10 m/s it flies straight over waypoint 0 and is carried past the corner.
+    let worst = forecast.worst_xte.unwrap();
+    assert!(worst.wp == 1 && (5.0..20.0).contains(&worst.xte_m), "{worst:?}");
+    assert!(forecast.path.windows(2).all(|pair| pair[0].along_m <= pair[1].along_m));
+    let highest = forecast.path.iter().map(|point| point.alt).fold(0.0, f64::max);
+    assert!((highest - 50.0).abs() < 3.0, "{highest}");
+}
+
+#[test]
+fn an_estimate_is_the_same_in_slices_of_any_length() {
+    let whole = estimate("land");
+    let mut run =
+        ForecastRun::plan_estimate(vehicle("square", Noise::None), &plan("land"), &[], 10.0).unwrap();
+    let sliced = loop {
+        if let Some(forecast) = run.advance(7) {
+            break forecast;
+        }
+    };
+    assert_eq!(whole, sliced);
+}
+
+#[test]
+fn an_estimate_from_the_middle_of_another_flight_starts_at_home_without_faults() {
+    let mut flying = in_flight(vehicle("square", Noise::None), 5.0);
+    flying.change_world(WorldCommand::parse("fault=gps-loss").unwrap()).unwrap();
+    let forecast = end(ForecastRun::plan_estimate(flying, &plan("land"), &[], 10.0).unwrap());
+    assert!(forecast.is_complete(), "{}", forecast.reason);
+    assert!(forecast.path[0].n.hypot(forecast.path[0].e) < 0.1);
+}
+
+#[test]
+fn the_settings_of_the_plan_count() {
+    let slow = ["ap_max_velocity = 300".to_owned()];
+    let vehicle = vehicle("square", Noise::None);
+    let slow = end(ForecastRun::plan_estimate(vehicle, &plan("square"), &slow, 10.0).unwrap());
+    assert!(slow.is_complete() && slow.time_s > estimate("square").time_s + 20.0, "{}", slow.time_s);
+}
+
+#[test]
+fn what_the_craft_refuses_is_said() {
+    let lines = ["ap_max_velocity = fast".to_owned()];
+    let refused = ForecastRun::plan_estimate(vehicle("square", Noise::None), &plan("square"), &lines, 10.0)
+        .unwrap_err();
+    assert!(refused.contains("set ap_max_velocity = fast"), "{refused}");
+    let empty = ForecastRun::plan_estimate(vehicle("square", Noise::None), &FlightPlan::default(), &[], 10.0);
+    assert!(empty.unwrap_err().contains("No waypoints"));
+}
+
+#[test]
+fn a_hold_without_end_ends_the_forecast() {
+    let mut endless = plan("hold-none");
+    for waypoint in &mut endless.waypoints {
+        waypoint.duration_ds = 0;
+    }
+    let vehicle = vehicle("square", Noise::None);
+    let forecast = end(ForecastRun::plan_estimate(vehicle, &endless, &[], 10.0).unwrap());
+    assert_eq!(forecast.end, ForecastEnd::Endless, "{}", forecast.reason);
+    assert!(forecast.line().contains("without end"), "{}", forecast.line());
+    assert!(forecast.time_s < 200.0);
+}
+
+#[test]
+fn a_look_ahead_is_what_then_happens() {
+    let mut flying = in_flight(vehicle("land", Noise::Real), 3.0);
+    let started = flying.time();
+    let forecast = end(ForecastRun::look_ahead(flying.clone()).unwrap());
+    assert!(forecast.is_complete(), "{}", forecast.reason);
+    while flying.time().seconds_since(started) < forecast.time_s {
+        flying.tick();
+    }
+    let last = forecast.path.last().unwrap();
+    let truth = flying.world().unwrap().truth();
+    assert_eq!((last.n.to_bits(), last.e.to_bits()), (truth.pos_enu.y.to_bits(), truth.pos_enu.x.to_bits()));
+    assert!(!flying.controller().is_armed());
+}
+
+#[test]
+fn a_lost_fix_makes_another_end() {
+    let flying = in_flight(vehicle("square", Noise::None), 5.0);
+    let forecast = end(ForecastRun::what_if(flying, &WHAT_IFS[0]).unwrap());
+    assert_eq!(forecast.end, ForecastEnd::Flight(FlightResult::Aborted), "{}", forecast.reason);
+    assert!(forecast.line().starts_with("drifts "), "{}", forecast.line());
+}
+
+#[test]
+fn a_craft_that_stands_has_nothing_ahead() {
+    let refused = ForecastRun::look_ahead(vehicle("square", Noise::None)).unwrap_err();
+    assert!(refused.contains("disarmed"), "{refused}");
+}
+
+#[test]
+fn sticks_that_stay_have_an_end_too() {
+    let mut flying = in_flight(vehicle("square", Noise::None), 5.0);
+    flying.transmitter_mut().stop_pilot();
+    flying.transmitter_mut().sticks_mut().channels[5] = 1000;
+    let forecast = end(ForecastRun::look_ahead(flying).unwrap());
+    // Switching the autopilot off counts from here: nothing is flown but the holds of the sticks.
+    assert_eq!(forecast.end, ForecastEnd::Endless, "{}", forecast.reason);
+    assert!(forecast.time_s < 120.0);
+}

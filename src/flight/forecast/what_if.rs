@@ -1,0 +1,74 @@
+//! What may go wrong at this instant.
+
+use crate::sim::{Wind, WorldCommand};
+
+/// By how much the wind freshens, m/s.
+const FRESHER_MPS: f64 = 8.0;
+
+/// Something that may go wrong.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct WhatIf {
+    /// In a few words, for a list and in front of the outcome.
+    pub title: &'static str,
+    change: Change,
+}
+
+/// What happens to the world.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Change {
+    /// A command in the words of [`WorldCommand::parse`].
+    Command(&'static str),
+    /// The mean wind gets stronger; in a calm it comes from the west.
+    FresherWind,
+}
+
+/// All of them, the likely ones first.
+pub const WHAT_IFS: [WhatIf; 9] = [
+    what_if("GPS lost here", "fault=gps-loss"),
+    what_if("RC lost here", "fault=rx-loss"),
+    WhatIf { title: "wind +8 m/s", change: Change::FresherWind },
+    what_if("gust 12 m/s from the north", "gust-now=12@0"),
+    what_if("motor 2 at 70 %", "fault=motor,,2:0.7"),
+    what_if("battery 1.5 V lower", "fault=battery,,-1.5"),
+    what_if("GPS jumps 30 m to the east", "fault=gps-glitch,,30@90"),
+    what_if("compass 45° off", "fault=mag-bias,,45"),
+    what_if("barometer drifts 1 Pa/s", "fault=baro-drift,,1"),
+];
+
+const fn what_if(title: &'static str, command: &'static str) -> WhatIf {
+    WhatIf { title, change: Change::Command(command) }
+}
+
+impl WhatIf {
+    /// The change of a world in which this mean wind blows.
+    pub(super) fn command(&self, wind: Wind) -> Result<WorldCommand, String> {
+        match self.change {
+            Change::Command(text) => WorldCommand::parse(text).map_err(|error| error.to_string()),
+            Change::FresherWind => {
+                let from_deg = if wind.speed_mps > 0.0 { wind.from_deg } else { 270.0 };
+                let speed_mps = (wind.speed_mps + FRESHER_MPS).min(Wind::MAX_MPS);
+                Ok(WorldCommand::SetWind(Wind { speed_mps, from_deg }))
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_world_understands_each_of_them() {
+        for what_if in &WHAT_IFS {
+            assert!(what_if.command(Wind::CALM).is_ok(), "{}", what_if.title);
+        }
+    }
+
+    #[test]
+    fn a_fresher_wind_keeps_its_direction() {
+        let fresher = WHAT_IFS[2].command(Wind { speed_mps: 3.0, from_deg: 120.0 });
+        assert_eq!(fresher, Ok(WorldCommand::SetWind(Wind { speed_mps: 11.0, from_deg: 120.0 })));
+        let calm = WHAT_IFS[2].command(Wind::CALM);
+        assert_eq!(calm, Ok(WorldCommand::SetWind(Wind { speed_mps: 8.0, from_deg: 270.0 })));
+    }
+}

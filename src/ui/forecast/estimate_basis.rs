@@ -1,0 +1,103 @@
+//! What a flown estimate depends on, as far as the screen knows it.
+
+use crate::plan::FlightPlan;
+use crate::session::ForecastRequest;
+use crate::telemetry::Turbulence;
+use crate::telemetry::snapshot::{SettingsView, WindView};
+use crate::ui::app_state::AppState;
+
+/// Changes of the mean wind below these are not worth another estimate.
+const WIND_MPS: f64 = 0.5;
+const WIND_DEG: f64 = 10.0;
+
+/// What an estimate was asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct EstimateBasis {
+    plan: FlightPlan,
+    settings: Vec<String>,
+    craft: Option<SettingsView>,
+    air: Air,
+}
+
+/// The air and the craft in it.
+#[derive(Debug, Clone, PartialEq)]
+struct Air {
+    airframe: String,
+    wind: Option<WindView>,
+    gust_mps: f64,
+    turbulence: Turbulence,
+    noise: bool,
+}
+
+impl EstimateBasis {
+    /// That of the open plan now.
+    pub(super) fn of(state: &AppState) -> Self {
+        let world = &state.view.vehicle.world;
+        Self {
+            plan: state.plan.plan.clone(),
+            settings: state.plan.settings.clone(),
+            craft: state.view.vehicle.settings.map(chosen),
+            air: Air {
+                airframe: world.airframe.clone(),
+                wind: world.wind,
+                gust_mps: world.gust_mps,
+                turbulence: world.turbulence,
+                noise: world.noise,
+            },
+        }
+    }
+
+    /// Whether an estimate for this is still one for the open plan, but for small changes of the wind.
+    pub(super) fn still_holds(&self, state: &AppState) -> bool {
+        let world = &state.view.vehicle.world;
+        self.plan == state.plan.plan
+            && self.settings == state.plan.settings
+            && self.craft == state.view.vehicle.settings.map(chosen)
+            && self.air.airframe == world.airframe
+            && self.air.turbulence == world.turbulence
+            && self.air.noise == world.noise
+            && (self.air.gust_mps - world.gust_mps).abs() < WIND_MPS
+            && is_like(self.air.wind, world.wind)
+    }
+
+    /// Whether there is something to fly.
+    pub(super) fn has_waypoints(&self) -> bool {
+        !self.plan.waypoints.is_empty()
+    }
+
+    /// What to ask for.
+    pub(super) fn request(&self) -> ForecastRequest {
+        ForecastRequest::PlanEstimate { plan: Box::new(self.plan.clone()), settings: self.settings.clone() }
+    }
+}
+
+/// The settings without what the craft learns in flight.
+fn chosen(settings: SettingsView) -> SettingsView {
+    SettingsView { hover_stick_us: 0, raised_stick_us: 0, sink_stick_us: None, ..settings }
+}
+
+fn is_like(old: Option<WindView>, new: Option<WindView>) -> bool {
+    match (old, new) {
+        (Some(old), Some(new)) => {
+            let turn_deg = (old.from_deg - new.from_deg + 180.0).rem_euclid(360.0) - 180.0;
+            let is_calm = old.speed_mps.max(new.speed_mps) < WIND_MPS;
+            (old.speed_mps - new.speed_mps).abs() < WIND_MPS && (is_calm || turn_deg.abs() < WIND_DEG)
+        }
+        (old, new) => old.is_none() == new.is_none(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn small_changes_of_the_wind_do_not_count() {
+        let wind = |speed_mps, from_deg| Some(WindView { speed_mps, from_deg });
+        assert!(is_like(wind(5.0, 355.0), wind(5.3, 2.0)));
+        assert!(!is_like(wind(5.0, 355.0), wind(5.6, 355.0)));
+        assert!(!is_like(wind(5.0, 355.0), wind(5.0, 20.0)));
+        assert!(is_like(wind(0.0, 0.0), wind(0.2, 180.0)));
+        assert!(!is_like(None, wind(0.0, 0.0)));
+    }
+}

@@ -1,0 +1,36 @@
+//! The forecast that the map shows.
+
+use crate::session::{Forecast, PathPoint};
+use crate::ui::app_state::AppState;
+
+/// A way that was not flown yet, and what is said of it.
+#[derive(Debug)]
+pub(in crate::ui) struct Ghost<'a> {
+    /// The way.
+    pub path: &'a [PathPoint],
+    /// What it is, and how it ends, where that is asked for.
+    pub line: String,
+}
+
+/// What the map shows: the what-if or the look-ahead that was asked for, else the estimate of the open plan while no plan is
+/// flown, or another one.
+pub(in crate::ui) fn ghost(state: &AppState) -> Option<Ghost<'_>> {
+    let forecast = &state.forecast;
+    if let Some(chosen) = &forecast.what_if {
+        return Some(asked(chosen.what_if.title, chosen.asked.forecast()));
+    }
+    if let Some(look_ahead) = &forecast.look_ahead {
+        return Some(asked("look-ahead", look_ahead.asked.forecast()));
+    }
+    let is_flown =
+        state.view.vehicle.is_engaged() && state.view.vehicle.active_plan.as_ref() == Some(&state.plan.plan);
+    let estimate = forecast.estimate().filter(|_| !is_flown)?;
+    Some(Ghost { path: &estimate.path, line: "predicted".to_owned() })
+}
+
+fn asked<'a>(what: &str, forecast: Option<&'a Forecast>) -> Ghost<'a> {
+    match forecast {
+        Some(forecast) => Ghost { path: &forecast.path, line: format!("{what}: {}", forecast.line()) },
+        None => Ghost { path: &[], line: format!("{what}: …") },
+    }
+}

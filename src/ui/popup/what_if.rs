@@ -1,0 +1,61 @@
+//! The list of what may go wrong.
+
+use crossterm::event::{KeyCode, KeyEvent};
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::text::Line;
+
+use crate::session::{WHAT_IFS, WhatIf};
+use crate::ui::app_state::AppState;
+use crate::ui::draw::popup;
+use crate::ui::theme::Role;
+
+use crate::ui::panel::{line, row, span};
+
+/// Columns of the inside.
+const WIDTH: u16 = 34;
+
+/// What a key did.
+#[derive(Debug)]
+pub(crate) enum Outcome {
+    /// The choice goes on.
+    Choosing,
+    /// Nothing is chosen.
+    Left,
+    /// This one.
+    Chosen(WhatIf),
+}
+
+/// A key for the list; `selected` is the row that Enter takes.
+pub(crate) fn key(selected: &mut usize, event: KeyEvent) -> Outcome {
+    match event.code {
+        KeyCode::Up | KeyCode::Char('k') => *selected = selected.saturating_sub(1),
+        KeyCode::Down | KeyCode::Char('j') => *selected = (*selected + 1).min(WHAT_IFS.len() - 1),
+        KeyCode::Enter => {
+            return WHAT_IFS.get(*selected).map_or(Outcome::Left, |&chosen| Outcome::Chosen(chosen));
+        }
+        KeyCode::Esc | KeyCode::Char('w' | 'q') => return Outcome::Left,
+        _ => {}
+    }
+    Outcome::Choosing
+}
+
+/// Draws the popup; `selected` is the row that Enter takes.
+pub(crate) fn draw(state: &AppState, selected: usize, area: Rect, buffer: &mut Buffer) {
+    let theme = &state.theme;
+    let height = WHAT_IFS.len() as u16 + 2;
+    let inside = popup(state, area, (WIDTH, height), "What if, from this instant on:", buffer);
+    for (at, what_if) in WHAT_IFS.iter().enumerate() {
+        let (mark, role) = if at == selected { ("▸", Role::Selected) } else { (" ", Role::Text) };
+        row(buffer, inside, at as u16, theme, role, &format!("{mark} {}", what_if.title));
+    }
+    let keys = Line::from(vec![
+        span(theme, Role::Key, " ↑ ↓"),
+        span(theme, Role::Text, " choose  "),
+        span(theme, Role::Key, "Enter"),
+        span(theme, Role::Text, " fly  "),
+        span(theme, Role::Key, "Esc"),
+        span(theme, Role::Text, " close"),
+    ]);
+    line(buffer, inside, height - 1, &keys);
+}
