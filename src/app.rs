@@ -12,6 +12,7 @@ mod layers;
 mod live;
 mod output_file;
 mod plan;
+mod plan_files;
 mod serve;
 mod setup;
 mod sitl;

@@ -9,8 +9,10 @@
 
 use nalgebra::Vector2;
 
+mod ground_plane;
 mod local;
 
+pub use ground_plane::GroundPlane;
 pub use local::LocalFrame;
 
 /// Metres on the firmware's flat earth per 1e-7 degree of latitude.

@@ -4,8 +4,10 @@
 
 pub mod builtin;
 mod cli_lines;
+pub mod edit;
 pub mod estimate;
 pub mod format;
+pub mod generate;
 pub mod review;
 pub mod validate;
 mod waypoint;

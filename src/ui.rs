@@ -16,6 +16,10 @@
 //!   the RC transmitter in the user's hand, `forecast` what is known of flights flown ahead of time.
 //! * [`run`] is the shell around it: it waits for the terminal, the session and the clock, and carries effects out.
 //!
+//! Inside: `action` is what keys can do, `keymap` which key means what, `command` what can be typed behind `:`; `editor` holds the open plans;
+//! `update` is what messages do, one file a subject; `panel` draws, one file a panel, `popup` what lies over them;
+//! `transmitter` moves the virtual sticks.
+//!
 //! May use: ratatui, crossterm, the session's snapshots, events and commands, and plans. Never firmware internals,
 //! the simulator or sockets.
 
@@ -26,6 +30,7 @@ pub mod command;
 mod completion;
 mod console;
 mod draw;
+pub mod editor;
 mod event_log;
 mod forecast;
 mod formatting;
@@ -34,6 +39,7 @@ mod hint_bar;
 mod history;
 pub mod keymap;
 pub mod layout;
+mod map_edit;
 mod map_point;
 mod message;
 mod notice;
@@ -53,14 +59,15 @@ pub mod units;
 mod update;
 mod viewport;
 
-pub use app_state::{AppState, OpenPlan, UiConfig};
+pub use app_state::{AppState, UiConfig};
 pub use console::CliHelp;
 pub use draw::draw;
+pub use editor::OpenPlan;
 pub use event_log::Severity;
 pub use message::{Effect, Msg};
 pub use panel::Panel;
 pub use popup::{CommandLine, Palette, Popup};
-pub use run::{Ending, SessionLink, run};
+pub use run::{Ending, FilesLink, SessionLink, run};
 pub use terminal::{Tui, restore_terminal_modes};
 pub use text_field::TextField;
 pub use theme::Theme;

@@ -8,6 +8,7 @@ use std::time::Duration;
 use betadeck::firmware::FirmwareOptions;
 use betadeck::firmware::config::Configuration;
 use betadeck::plan::builtin::{BuiltinPlan, DEMO};
+use betadeck::plan::edit::History;
 use betadeck::record::sentence;
 use betadeck::session::command::Seek;
 use betadeck::session::{Command, Handle, SessionConfig, start};
@@ -15,6 +16,7 @@ use betadeck::signals::SimTime;
 use betadeck::sim::{Turbulence, WorldConfig};
 use betadeck::storage::Store;
 use betadeck::telemetry::{NavState, Snapshot};
+use betadeck::ui::editor::PlanId;
 use betadeck::ui::keymap::Keymap;
 use betadeck::ui::{AppState, CliHelp, Effect, Msg, OpenPlan, Theme, UiConfig, Units, draw, update};
 use betadeck::vehicle::{Vehicle, VehicleConfig};
@@ -59,7 +61,7 @@ impl Rig {
             keymap: Keymap::default(),
             cli: CliHelp::default(),
             sentence: |event| sentence::text(&event.kind).unwrap_or_default(),
-            plan: OpenPlan { name: demo.name, plan: demo.plan, settings: demo.settings },
+            plan: OpenPlan::new(PlanId(1), None, History::new(demo.into(), true)),
             mouse: true,
         };
         let view = session.view.borrow().clone();

@@ -1,5 +1,6 @@
 //! What the user interface shows: whole screens, and that no size and no picture breaks it.
 
+use betadeck::plan::FlightPlan;
 use betadeck::session::command::CliOutput;
 use betadeck::telemetry::{ArmingFlag, CannotHold, EndpointKind, HoldLimit, NavState};
 use betadeck::ui::{AppState, Msg, Panel, Severity, Theme, draw, update};
@@ -243,21 +244,19 @@ fn long_lines_of_the_cli_wrap_and_scroll_to_the_first() {
 #[test]
 fn a_long_plan_scrolls_to_its_last_waypoint_whatever_stands_below() {
     for far_ones in [0, 1, 3] {
-        let mut state = fixture::state((80, 24), fixture::colour());
-        let waypoints = &mut state.plan.plan.waypoints;
-        let corner = waypoints[0];
-        waypoints.clear();
-        waypoints.extend(std::iter::repeat_n(corner, 30));
+        let corner = fixture::square().waypoints[0];
+        let mut plan = FlightPlan { waypoints: std::iter::repeat_n(corner, 30).collect() };
+        let waypoints = &mut plan.waypoints;
         // Outside the geofence: what is wrong stands below the waypoints.
         waypoints.iter_mut().take(far_ones).for_each(|waypoint| waypoint.position.lat_e7 += 10_000_000);
+        let mut state = fixture::state_with((80, 24), fixture::colour(), plan);
         press(&mut state, '2');
         press(&mut state, 'z');
         update(&mut state, Msg::Key(KeyEvent::new(KeyCode::End, KeyModifiers::NONE)));
         let screen = text(&state);
-        assert!(screen.contains(" 29 FLYOVER") && !screen.contains("  0 FLYOVER"), "{screen}");
-        let end = state.scrolls.plan;
+        assert!(screen.contains("29 [FLYOVER]") && !screen.contains("  0  FLYOVER"), "{screen}");
         press(&mut state, 'k');
-        assert_eq!(state.scrolls.plan, end - 1);
+        assert!(text(&state).contains("28 [FLYOVER]"));
     }
 }
 

@@ -10,10 +10,12 @@ use std::sync::Arc;
 use betadeck::firmware::cli::{self, Interpreter};
 use betadeck::flight::FlightSetup;
 use betadeck::plan::builtin::{BuiltinPlan, DEMO};
+use betadeck::plan::edit::History;
 use betadeck::plan::upload_lines;
 use betadeck::record::sentence;
 use betadeck::session::SessionView;
 use betadeck::sim::WorldConfig;
+use betadeck::ui::editor::PlanId;
 use betadeck::ui::keymap::Keymap;
 use betadeck::ui::{AppState, CliHelp, Msg, OpenPlan, Theme, UiConfig, Units, draw, update};
 use betadeck::vehicle::Vehicle;
@@ -48,7 +50,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         keymap: Keymap::default(),
         cli: CliHelp { complete: |line| cli::complete(line).lines(line), hint: |_| None },
         sentence: |event| sentence::text(&event.kind).unwrap_or_default(),
-        plan: OpenPlan { name: file.name, plan: file.plan, settings: file.settings },
+        plan: OpenPlan::new(PlanId(1), None, History::new(file.into(), true)),
         mouse: true,
     };
     let mut state = AppState::new(config, SIZE, view(&vehicle));

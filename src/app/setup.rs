@@ -142,7 +142,7 @@ fn is_airframe_file(name: &str) -> bool {
 }
 
 /// The directory of `--state-dir`, the user's, or none with `--fresh`.
-fn store_directory(args: &FlightArgs) -> Result<Option<PathBuf>, AppError> {
+pub(super) fn store_directory(args: &FlightArgs) -> Result<Option<PathBuf>, AppError> {
     if args.fresh {
         return Ok(None);
     }

@@ -5,6 +5,7 @@ use std::io::IsTerminal as _;
 
 use super::error::{self, AppError};
 use super::live::{self, LiveArgs};
+use super::plan_files::PlanFiles;
 use super::setup;
 use super::stop_signal;
 use crate::args::{CharsetChoice, DisplayArgs, PlanArg, ThemeChoice, TuiArgs, UnitsChoice};
@@ -12,9 +13,10 @@ use crate::firmware::cli;
 use crate::plan::builtin::{BuiltinPlan, DEMO};
 use crate::plan::format::PlanFile;
 use crate::record::sentence;
+use crate::ui::editor::FileReply;
 use crate::ui::keymap::Keymap;
 use crate::ui::theme::{Charset, Palette};
-use crate::ui::{self, CliHelp, Ending, OpenPlan, SessionLink, Theme, Tui, UiConfig, Units};
+use crate::ui::{self, CliHelp, Ending, FilesLink, OpenPlan, SessionLink, Theme, Tui, UiConfig, Units};
 
 /// Opens the user interface; returns its exit code when the user has left it.
 pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
@@ -39,16 +41,37 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
     let on_the_ground = PlanFile { settings: Vec::new(), ..plan.clone() };
     let setup = setup::for_session(&args.flight, &args.physics, &args.doors, on_the_ground, stored)?;
     let vehicle = setup::build(setup, &mut notices)?;
+    let mut files = PlanFiles::new(setup::store_directory(&args.flight)?.as_deref());
+    let path = match &args.plan {
+        Some(PlanArg::File(path, _)) => Some(path.as_path()),
+        _ => None,
+    };
+    let opened = files.start_with(path, plan.into());
+    notices.extend(opened.notes);
+    if opened.recovered {
+        notices.push("Edits of this plan that were never saved are back: `u` undoes them.".to_owned());
+    }
+    let recovered = files.recovered();
     let config = UiConfig {
         theme: theme(&args.display),
         units: units(&args.display),
         keymap,
         cli: CliHelp { complete: |line| cli::complete(line).lines(line), hint: |line| cli::hint(line, None) },
         sentence: |event| sentence::text(&event.kind).unwrap_or_default(),
-        plan: OpenPlan { name: plan.name, plan: plan.plan, settings: plan.settings },
+        plan: OpenPlan::new(opened.id, opened.file, opened.history),
         mouse: true,
     };
     let problem = |error| AppError::environment(format!("cannot use the terminal: {error}"));
+    let (requests, asked) = std::sync::mpsc::channel();
+    let (answers, replies) = tokio::sync::mpsc::unbounded_channel();
+    for opened in recovered {
+        answers.send(FileReply::Opened(Box::new(opened))).ok();
+    }
+    let files_thread = std::thread::Builder::new()
+        .name("plan-files".to_owned())
+        .spawn(move || files.run(&asked, &answers))
+        .map_err(|error| AppError::environment(format!("cannot start a thread: {error}")))?;
+    let files = FilesLink { requests, replies };
     let runtime = tokio::runtime::Builder::new_multi_thread()
         .worker_threads(1)
         .enable_all()
@@ -61,7 +84,7 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
         // Before the first frame: whoever sees it may already send one.
         let stop = stop_signal::stop_in_time().map_err(problem)?;
         let tui = Tui::enter(config.mouse).map_err(problem)?;
-        let ending = ui::run(tui, link, config, stop).await.map_err(problem);
+        let ending = ui::run(tui, link, files, config, stop).await.map_err(problem);
         // The session ends with its last sender; its thread has nothing left to say.
         drop(session.thread.join());
         if let Some(doors) = doors {
@@ -70,6 +93,8 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
         ending
     })?;
     runtime.shutdown_background();
+    // The last edits are kept before the program ends.
+    drop(files_thread.join());
     match ending {
         Ending::Quit => Ok(0),
         // Closing the terminal also sends a signal; which of the two is seen first is chance.

@@ -16,6 +16,8 @@ use crate::geo::LatLon;
     strum::EnumIter,
     strum::FromRepr,
     strum::IntoStaticStr,
+    serde::Serialize,
+    serde::Deserialize,
 )]
 #[strum(serialize_all = "SCREAMING_SNAKE_CASE", ascii_case_insensitive)]
 #[repr(u8)]
@@ -70,6 +72,8 @@ impl WaypointType {
     strum::EnumIter,
     strum::FromRepr,
     strum::IntoStaticStr,
+    serde::Serialize,
+    serde::Deserialize,
 )]
 #[strum(serialize_all = "UPPERCASE", ascii_case_insensitive)]
 #[repr(u8)]
@@ -84,7 +88,7 @@ pub enum HoldPattern {
 }
 
 /// A waypoint in the units of CLI, MSP and storage.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, serde::Serialize, serde::Deserialize)]
 pub struct Waypoint {
     /// Position, degrees × 10⁷.
     pub position: LatLon,

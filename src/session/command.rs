@@ -77,6 +77,11 @@ pub enum Command {
         /// Gets `Ok` or the sentence of the first refusal.
         reply: tokio::sync::oneshot::Sender<Result<(), String>>,
     },
+    /// Save the configuration of the craft, plan included, without a restart.
+    Save {
+        /// Gets `Ok` or why not, as a sentence.
+        reply: tokio::sync::oneshot::Sender<Result<(), String>>,
+    },
     /// Start (`true`) or stop the scripted pilot that flies the whole mission: arm, climb, engage.
     Pilot(bool),
     /// Fly home and land.

@@ -2,9 +2,11 @@
 
 use super::panel::Panel;
 
+mod edit;
 mod enabled;
 mod table;
 
+pub use edit::EditAction;
 pub use enabled::enabled;
 pub(super) use enabled::is_wrecked;
 pub use table::ACTIONS;
@@ -39,6 +41,8 @@ pub enum Action {
     CutRc,
     /// Hand the plan to the craft.
     Upload,
+    /// Edit the plan.
+    Edit(EditAction),
     /// Put the craft back home.
     ResetCraft,
     /// Fly ahead as things stand, or end that.
@@ -182,8 +186,8 @@ mod tests {
 
     #[test]
     fn every_action_has_a_row_a_key_and_a_name_of_its_own() {
-        let actions =
-            Action::iter().filter(|a| !matches!(a, Action::Show(_))).chain(Panel::ALL.map(Action::Show));
+        let actions = Action::iter().filter(|a| !matches!(a, Action::Show(_) | Action::Edit(_)));
+        let actions = actions.chain(Panel::ALL.map(Action::Show)).chain(EditAction::iter().map(Action::Edit));
         for action in actions {
             let spec = spec_of(action).unwrap_or_else(|| panic!("{action:?} is not in the table"));
             assert!(!spec.keys.is_empty(), "{} has no key", spec.name);

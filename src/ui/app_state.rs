@@ -9,6 +9,7 @@ use crate::signals::{RcFrame, SimTime};
 use crate::telemetry::{EventKind, FirmwareEvent, NavEvent, NavState, TransitionReason};
 
 use super::console::{CliHelp, CliState};
+use super::editor::{Editor, OpenPlan};
 use super::event_log::{LogState, Severity};
 use super::forecast::ForecastState;
 use super::keymap::Keymap;
@@ -24,17 +25,6 @@ use super::viewport::MapState;
 /// Transitions remembered for the state panel.
 const MAX_TRANSITIONS: usize = 200;
 
-/// The plan that is open in the user interface.
-#[derive(Debug, Clone, Default)]
-pub struct OpenPlan {
-    /// Its file or built-in name.
-    pub name: String,
-    /// Its waypoints.
-    pub plan: FlightPlan,
-    /// Setting lines that come with it, without `set `.
-    pub settings: Vec<String>,
-}
-
 /// What the user interface is given at start.
 #[derive(Debug, Clone)]
 pub struct UiConfig {
@@ -48,7 +38,7 @@ pub struct UiConfig {
     pub cli: CliHelp,
     /// An event as a sentence; empty for events that nobody needs to read.
     pub sentence: fn(&Event) -> String,
-    /// The open plan.
+    /// The plan that is open at first.
     pub plan: OpenPlan,
     /// Whether the mouse is used.
     pub mouse: bool,
@@ -89,8 +79,6 @@ pub struct Scrolls {
     pub transitions: usize,
     /// Of the log.
     pub log: usize,
-    /// Of the waypoint table.
-    pub plan: usize,
 }
 
 /// Everything the user interface remembers.
@@ -108,8 +96,8 @@ pub struct AppState {
     pub sentence: fn(&Event) -> String,
     /// Keys.
     pub keymap: Keymap,
-    /// The open plan.
-    pub plan: OpenPlan,
+    /// The plans that are open, and what is being edited.
+    pub editor: Editor,
     /// Columns and rows of the terminal.
     pub size: (u16, u16),
     /// The panel that gets the keys.
@@ -157,6 +145,11 @@ pub struct AppState {
 }
 
 #[cfg(test)]
+use super::editor::PlanId;
+#[cfg(test)]
+use crate::plan::edit::{History, PlanDocument};
+
+#[cfg(test)]
 impl AppState {
     /// A user interface with nothing but a picture.
     pub(super) fn bare(size: (u16, u16), view: SessionView) -> Self {
@@ -166,7 +159,7 @@ impl AppState {
             keymap: Keymap::default(),
             cli: CliHelp::default(),
             sentence: |_| String::new(),
-            plan: OpenPlan::default(),
+            plan: OpenPlan::new(PlanId::default(), None, History::new(PlanDocument::default(), true)),
             mouse: false,
         };
         Self::new(config, size, view)
@@ -184,7 +177,7 @@ impl AppState {
             sentence: config.sentence,
             keymap: config.keymap,
             units: config.units,
-            plan: config.plan,
+            editor: Editor::new(config.plan),
             size,
             focus: Panel::Map,
             zoomed: false,
@@ -264,17 +257,23 @@ impl AppState {
     pub fn shown_plan(&self) -> &FlightPlan {
         let vehicle = &self.view.vehicle;
         match &vehicle.active_plan {
+            // Whoever edits on the map sees what is edited.
+            _ if self.map.edit.is_some() || self.map.moving.is_some() => self.plan(),
             Some(plan) => plan,
-            None if self.plan.plan.waypoints.is_empty() => {
-                vehicle.stored_plan.as_ref().unwrap_or(&self.plan.plan)
-            }
-            None => &self.plan.plan,
+            None if self.plan().waypoints.is_empty() => vehicle.stored_plan.as_ref().unwrap_or(self.plan()),
+            None => self.plan(),
         }
+    }
+
+    /// The waypoints of the open plan.
+    #[must_use]
+    pub fn plan(&self) -> &FlightPlan {
+        &self.editor.document().plan
     }
 
     /// Whether the craft stores the open plan.
     #[must_use]
     pub fn plan_is_on_craft(&self) -> bool {
-        self.view.vehicle.stored_plan.as_ref() == Some(&self.plan.plan)
+        self.view.vehicle.stored_plan.as_ref() == Some(self.plan())
     }
 }

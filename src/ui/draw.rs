@@ -41,7 +41,11 @@ pub fn draw(state: &AppState, frame: &mut Frame<'_>) {
             None
         }
     };
-    let mut cursor = cursor.filter(|_| state.popups.is_empty());
+    let mut cursor = match &state.editor.popup {
+        Some(_) => panel::editor_popup::draw(state, area, buffer),
+        None => cursor,
+    }
+    .filter(|_| state.popups.is_empty());
     for popup in &state.popups {
         cursor = match popup {
             Popup::Help { scroll } => {
@@ -102,10 +106,10 @@ fn framed_panel(state: &AppState, panel: Panel, area: Rect, buffer: &mut Buffer)
     let inner = layout::inner(area);
     match panel {
         Panel::Map => panel::map::draw(state, inner, buffer),
-        Panel::Plan => panel::plan::draw(state, inner, buffer),
         Panel::State => panel::state::draw(state, inner, buffer),
         Panel::Rc => panel::rc::draw(state, inner, buffer),
         Panel::Log => panel::log::draw(state, inner, buffer),
+        Panel::Plan => return panel::plan::draw(state, inner, buffer).filter(|_| focused),
         Panel::Cli => return panel::cli::draw(state, inner, buffer).filter(|_| focused),
     }
     None

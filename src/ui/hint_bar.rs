@@ -7,7 +7,7 @@ use unicode_width::UnicodeWidthStr as _;
 
 use crate::telemetry::{EndpointState, LinkState};
 
-use super::action::{Action, enabled, is_wrecked};
+use super::action::{Action, EditAction, enabled, is_wrecked};
 use super::app_state::AppState;
 use super::panel::Panel;
 use super::panel::span;
@@ -77,7 +77,26 @@ fn hint_actions(state: &AppState) -> Vec<(&'static [Action], &'static str)> {
             (&[Action::Follow], "follow"),
             (&[Action::Fit], "fit"),
         ]),
-        Panel::Map | Panel::Plan | Panel::State | Panel::Log => {}
+        Panel::Map if state.map.edit.is_some() => hints.extend([
+            (
+                &[Action::Edit(EditAction::Pick)] as &[_],
+                if state.map.moving.is_some() { "put down" } else { "pick" },
+            ),
+            (&[Action::Edit(EditAction::AddOnMap)], "insert"),
+            (&[Action::Edit(EditAction::DeleteOnMap)], "delete"),
+            (&[Action::Edit(EditAction::Undo)], "undo"),
+            (&[Action::Edit(EditAction::OnMap)], "done"),
+        ]),
+        Panel::Plan => hints.extend([
+            (&[Action::Edit(EditAction::Cell)] as &[_], "edit"),
+            (&[Action::Edit(EditAction::Insert)], "insert"),
+            (&[Action::Edit(EditAction::Delete)], "delete"),
+            (&[Action::Edit(EditAction::Select)], "select"),
+            (&[Action::Edit(EditAction::Undo)], "undo"),
+            (&[Action::Upload], "upload"),
+            (&[Action::Edit(EditAction::Save)], "save"),
+        ]),
+        Panel::Map | Panel::State | Panel::Log => {}
     }
     let wrecked = is_wrecked(state);
     if wrecked {
@@ -110,7 +129,10 @@ fn hint_actions(state: &AppState) -> Vec<(&'static [Action], &'static str)> {
         if state.view.pilot.is_none() {
             hints.push((&[Action::Fly], "fly"));
         }
-        hints.extend([(&[Action::Arm] as &[_], "arm"), (&[Action::Upload], "upload")]);
+        hints.push((&[Action::Arm], "arm"));
+        if state.focus != Panel::Plan {
+            hints.push((&[Action::Upload], "upload"));
+        }
         if state.view.rc_cut {
             hints.push((&[Action::CutRc], "restore RC"));
         }

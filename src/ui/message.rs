@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use crossterm::event::{KeyEvent, MouseEvent};
 
+use super::editor::{FileReply, FileRequest};
 use crate::plan::FlightPlan;
 use crate::session::command::{CliOutput, Command, SessionView};
 use crate::session::{Event, ForecastJob, ForecastReply};
@@ -38,6 +39,10 @@ pub enum Msg {
     },
     /// A forecast, or why there is none.
     Forecast(ForecastReply),
+    /// The craft saved its configuration: the sentence of why not otherwise.
+    SaveReply(Result<(), String>),
+    /// The files answered.
+    Files(FileReply),
     /// A command could not be delivered because the session does not keep up.
     Busy,
 }
@@ -60,6 +65,12 @@ pub enum Effect {
     },
     /// Fly ahead on a copy of the vehicle; the forecast comes back as [`Msg::Forecast`].
     Forecast(ForecastJob),
+    /// Ask the files.
+    Files(FileRequest),
+    /// Save the configuration in the craft's flash, as a ground station does; a notice tells how it went.
+    SaveToFlash,
+    /// Give text to the terminal's clipboard.
+    Copy(String),
     /// Give the terminal back until the shell continues the program.
     Suspend,
     /// Give the terminal back and end.

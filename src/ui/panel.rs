@@ -2,6 +2,7 @@
 //! the frame.
 
 pub(super) mod cli;
+pub(super) mod editor_popup;
 pub(super) mod help;
 pub(super) mod log;
 pub(super) mod map;

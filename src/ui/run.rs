@@ -5,7 +5,9 @@
 use std::io::{self, IsTerminal as _};
 use std::time::{Duration, Instant};
 
+use crossterm::clipboard::CopyToClipboard;
 use crossterm::event::{Event as TerminalEvent, EventStream};
+use crossterm::execute;
 use futures_util::StreamExt as _;
 use rustix::process::Signal;
 use tokio::signal::unix::{SignalKind, signal};
@@ -15,6 +17,7 @@ use tokio::time::sleep;
 use crate::session::{Command, Event, ForecastReply, Forecaster, SessionView};
 
 use super::app_state::{AppState, UiConfig};
+use super::editor::{FileReply, FileRequest};
 use super::message::{Effect, Msg};
 use super::terminal::Tui;
 use super::update::update;
@@ -37,6 +40,15 @@ pub struct SessionLink {
     pub view: watch::Receiver<SessionView>,
     /// Everything that happens.
     pub events: mpsc::UnboundedReceiver<Event>,
+}
+
+/// The plan files, seen from the user interface.
+#[derive(Debug)]
+pub struct FilesLink {
+    /// Requests.
+    pub requests: std::sync::mpsc::Sender<FileRequest>,
+    /// What comes back.
+    pub replies: mpsc::UnboundedReceiver<FileReply>,
 }
 
 /// How the user interface ended.
@@ -71,10 +83,11 @@ enum Wake {
 pub async fn run(
     tui: Tui,
     link: SessionLink,
+    files: FilesLink,
     config: UiConfig,
     stop: impl Future<Output = ()>,
 ) -> io::Result<Ending> {
-    match run_loop(tui, link, config, stop).await {
+    match run_loop(tui, link, files, config, stop).await {
         // Whatever fails first when it is closed.
         Err(_) if !io::stdout().is_terminal() => Ok(Ending::TerminalLost),
         ended => ended,
@@ -84,6 +97,7 @@ pub async fn run(
 async fn run_loop(
     mut tui: Tui,
     mut link: SessionLink,
+    mut files: FilesLink,
     config: UiConfig,
     stop: impl Future<Output = ()>,
 ) -> io::Result<Ending> {
@@ -120,6 +134,7 @@ async fn run_loop(
                 None => Wake::End(Ending::TerminalLost),
             },
             Some(msg) = replies.recv() => Wake::Msg(msg),
+            Some(reply) = files.replies.recv() => Wake::Msg(Msg::Files(reply)),
             () = sleep(frame_at.saturating_duration_since(Instant::now())) => Wake::Time,
             received = link.events.recv_many(&mut events, BATCH) => match received {
                 0 => Wake::End(Ending::SessionEnded),
@@ -162,7 +177,7 @@ async fn run_loop(
                     let size = tui.terminal().size()?;
                     update(&mut state, Msg::Resize(size.width, size.height));
                 }
-                carry_out(effect, &link, &forecaster, &replies_in);
+                carry_out(effect, &link, &forecaster, &files, &replies_in);
             }
         }
         let wanted = drawn + frame;
@@ -191,9 +206,31 @@ fn carry_out(
     effect: Effect,
     link: &SessionLink,
     forecaster: &Forecaster,
+    files: &FilesLink,
     replies: &mpsc::UnboundedSender<Msg>,
 ) {
     let sent = match effect {
+        Effect::Files(request) => {
+            if files.requests.send(request).is_err() {
+                let gone = "Plan files cannot be read or written any more: restart the program.".to_owned();
+                replies.send(Msg::Files(FileReply::Failed(gone))).ok();
+            }
+            Ok(())
+        }
+        Effect::Copy(text) => {
+            // Terminals that do not know it show nothing; the editor keeps its own copy.
+            execute!(io::stdout(), CopyToClipboard::to_clipboard_from(text)).ok();
+            Ok(())
+        }
+        Effect::SaveToFlash => {
+            let (reply, answer) = oneshot::channel();
+            let replies = replies.clone();
+            tokio::spawn(async move {
+                let answer = answer.await.unwrap_or_else(|_| Err("the session did not answer.".to_owned()));
+                replies.send(Msg::SaveReply(answer)).ok();
+            });
+            link.commands.try_send(Command::Save { reply })
+        }
         Effect::Send(command) => link.commands.try_send(command),
         Effect::Cli(line) => {
             let (reply, answer) = oneshot::channel();

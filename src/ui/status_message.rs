@@ -144,10 +144,10 @@ pub fn current(state: &AppState) -> Option<StatusMessage> {
         return message(Severity::Warn, format!("Arming is blocked: {flag}."), arming_hint(flag));
     }
     if vehicle.stored_plan.as_ref().is_some_and(|plan| plan.waypoints.is_empty()) {
-        let action = if state.plan.plan.waypoints.is_empty() {
+        let action = if state.plan().waypoints.is_empty() {
             "`waypoint insert …` in the CLI (5) adds one".to_owned()
         } else {
-            format!("U uploads {}; F does it and flies", state.plan.name)
+            format!("U uploads {}; F does it and flies", state.editor.plan().title())
         };
         return message(Severity::Warn, "The craft has no plan.", action);
     }

@@ -6,8 +6,9 @@ use crossterm::event::{KeyEvent, KeyEventKind};
 
 use crate::session::{Command, SessionView};
 
-use super::action::{self, Action};
+use super::action::{self, Action, EditAction};
 use super::app_state::AppState;
+use super::editor::FormKind;
 use super::event_log::Severity;
 use super::forecast;
 use super::formatting::within;
@@ -22,14 +23,17 @@ use super::viewport::MapMode;
 
 mod cli;
 mod flight;
+mod map_edit;
 mod mouse;
+mod plan;
+mod plan_popup;
 mod popup;
 mod timeline;
 mod view;
 
 use cli::{cli_key, paste};
 use flight::{fly, speed, upload, uploaded};
-use view::{ZOOM_STEP, follow, neighbour, pan, scroll, zoom_map};
+use view::{ZOOM_STEP, follow, neighbour, scroll, zoom_map};
 
 pub(super) use cli::run_cli;
 pub(super) use view::focus;
@@ -93,6 +97,8 @@ fn take(state: &mut AppState, msg: Msg) -> Vec<Effect> {
             forecast::take_answer(state, reply);
             Vec::new()
         }
+        Msg::SaveReply(result) => plan::saved_to_flash(state, result),
+        Msg::Files(reply) => plan_popup::answered(state, reply),
         Msg::Busy => {
             state.notify(Severity::Warn, "The simulator does not keep up: the last key was dropped.");
             Vec::new()
@@ -133,6 +139,8 @@ fn key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
     match state.popups.last() {
         _ if found == Some(Action::Cancel) => cancel(state),
         Some(_) => popup::key(state, event, found),
+        None if state.editor.popup.is_some() => plan_popup::key(state, event),
+        None if state.focus == Panel::Plan && state.editor.field().is_some() => plan::field_key(state, event),
         None => match found {
             Some(action) => act(state, action),
             None if state.focus == Panel::Cli => cli_key(state, event),
@@ -150,8 +158,61 @@ fn cancel(state: &mut AppState) -> Vec<Effect> {
     let popup = state.popups.pop().is_some();
     let input = state.focus == Panel::Cli && state.cli.cancel();
     let upload = std::mem::take(&mut state.fly_after_upload);
-    let what = if popup || input || upload { "Cancelled. " } else { "" };
+    let edit = state.editor.cancel() | state.map.edit.take().is_some();
+    let what = if popup || input || upload || edit { "Cancelled. " } else { "" };
     state.notify(Severity::Info, format!("{what}Ctrl-C again within 2 s quits."));
+    Vec::new()
+}
+
+/// Carries an action of the plan editor out.
+fn edit(state: &mut AppState, action: EditAction) -> Vec<Effect> {
+    match action {
+        EditAction::Undo => plan::undo(state, false),
+        EditAction::Redo => plan::undo(state, true),
+        EditAction::Open => plan::open_browser(state),
+        EditAction::Save => plan::save(state),
+        EditAction::SaveAs => plan::save_as(state),
+        EditAction::New => plan::new_plan(state),
+        EditAction::Close => plan::close(state),
+        EditAction::NextPlan => plan::show_other(state, 1),
+        EditAction::PreviousPlan => plan::show_other(state, -1),
+        EditAction::Download => plan::download(state),
+        EditAction::SaveToFlash => vec![Effect::SaveToFlash],
+        EditAction::Left => moved(state, -1),
+        EditAction::Right => moved(state, 1),
+        EditAction::Cell => plan::edit_cell(state),
+        EditAction::Raise => plan::nudge(state, 1),
+        EditAction::Lower => plan::nudge(state, -1),
+        EditAction::RaiseMuch => plan::nudge(state, 10),
+        EditAction::LowerMuch => plan::nudge(state, -10),
+        EditAction::Insert => plan::insert(state),
+        EditAction::Duplicate => plan::duplicate(state),
+        EditAction::Delete => state.editor.delete(),
+        EditAction::MoveUp => state.editor.move_waypoints(false),
+        EditAction::MoveDown => state.editor.move_waypoints(true),
+        EditAction::Select => {
+            state.editor.toggle_selection();
+            Vec::new()
+        }
+        EditAction::SelectAll => {
+            state.editor.select_all();
+            Vec::new()
+        }
+        EditAction::Copy => plan::copy(state),
+        EditAction::Paste => plan::paste_copied(state),
+        EditAction::Bulk => plan::open_form(state, FormKind::Bulk),
+        EditAction::Generate => plan::open_form(state, FormKind::Generate),
+        EditAction::Properties => plan::open_form(state, FormKind::Properties),
+        EditAction::Fix => plan::take_fix(state),
+        EditAction::OnMap => map_edit::toggle(state),
+        EditAction::Pick => map_edit::pick(state),
+        EditAction::AddOnMap => map_edit::add(state),
+        EditAction::DeleteOnMap => map_edit::delete(state),
+    }
+}
+
+fn moved(state: &mut AppState, columns: isize) -> Vec<Effect> {
+    state.editor.move_cursor(0, columns);
     Vec::new()
 }
 
@@ -174,6 +235,7 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
         Action::ReturnHome => transmitter::toggle_return(state),
         Action::CutRc => vec![Effect::Send(Command::CutRc(!state.view.rc_cut))],
         Action::Upload => vec![upload(state)],
+        Action::Edit(action) => edit(state, action),
         Action::ResetCraft => {
             state.track.await_reset();
             state.sticks_sent = None;
@@ -228,7 +290,7 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
             // Out of the text first: keys pressed next must not be typed.
             if state.focus.takes_text() {
                 focus(state, Panel::Map);
-            } else if !state.forecast.dismiss() {
+            } else if !state.forecast.dismiss() && !state.editor.cancel() && state.map.edit.take().is_none() {
                 state.zoomed = false;
             }
             Vec::new()
@@ -237,13 +299,13 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
             state.popups.push(Popup::Quit);
             Vec::new()
         }
-        Action::Quit => vec![Effect::Quit],
+        Action::Quit => plan_popup::quit(state),
         Action::Cancel => cancel(state),
         Action::Suspend => vec![Effect::Suspend],
-        Action::PanUp => pan(state, 0.0, -1.0),
-        Action::PanDown => pan(state, 0.0, 1.0),
-        Action::PanLeft => pan(state, -1.0, 0.0),
-        Action::PanRight => pan(state, 1.0, 0.0),
+        Action::PanUp => map_edit::arrow(state, 0.0, -1.0),
+        Action::PanDown => map_edit::arrow(state, 0.0, 1.0),
+        Action::PanLeft => map_edit::arrow(state, -1.0, 0.0),
+        Action::PanRight => map_edit::arrow(state, 1.0, 0.0),
         Action::ZoomIn => zoom_map(state, 1.0 / ZOOM_STEP),
         Action::ZoomOut => zoom_map(state, ZOOM_STEP),
         Action::Follow => follow(state),

@@ -6,6 +6,7 @@
 use ratatui::layout::Rect;
 
 use super::app_state::AppState;
+use super::map_edit::{MapCursor, Moving};
 use super::map_point::{MapPoint, craft, origin, to_map};
 
 /// Metres per column at the closest and the widest.
@@ -37,6 +38,10 @@ pub enum MapMode {
 pub struct MapState {
     /// Its place.
     pub mode: MapMode,
+    /// The cursor, while waypoints are edited with it.
+    pub(super) edit: Option<MapCursor>,
+    /// What is being moved.
+    pub(super) moving: Option<Moving>,
 }
 
 /// The window of the map.
@@ -73,7 +78,7 @@ impl Viewport {
         let home = state.view.vehicle.craft.home;
         let places = origin.iter().flat_map(|frame| {
             // The open plan, too: the map shall not jump when a return home or a landing takes over.
-            let plans = [state.shown_plan(), &state.plan.plan];
+            let plans = [state.shown_plan(), state.plan()];
             let waypoints =
                 plans.into_iter().flat_map(|plan| &plan.waypoints).filter(|wp| wp.kind.uses_position());
             waypoints.map(|wp| wp.position).chain(home).map(|position| to_map(frame, position))
@@ -215,8 +220,10 @@ mod tests {
         let mut state = AppState::bare((80, 24), SessionView::default());
         let far = LatLon::new(470_000_000, 80_000_000);
         for position in [LatLon::new(404_640_000, -795_175_000), far] {
-            state.plan.plan.waypoints.clear();
-            state.plan.plan.waypoints.push(Waypoint { position, ..Waypoint::default() });
+            state.editor.edit("one waypoint", |document| {
+                document.plan.waypoints.clear();
+                document.plan.waypoints.push(Waypoint { position, ..Waypoint::default() });
+            });
             for (n, e) in [(0.0, 0.0), (900.0, -30.0), (-4e6, 3e6), (2e7, 2e7)] {
                 let truth = TruthView { lat_deg: 40.4635, lon_deg: -79.5182, n, e, ..TruthView::default() };
                 std::sync::Arc::make_mut(&mut state.view.vehicle).truth = Some(truth);

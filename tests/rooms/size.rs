@@ -7,15 +7,17 @@ const LONGEST: usize = 500;
 /// Most lines of the file in the middle.
 const MEDIAN: usize = 150;
 /// Lines of the core for each line of the shell.
-const CORE_TO_SHELL: f64 = 2.0;
+const CORE_TO_SHELL: f64 = 2.5;
 /// Files of a room beyond which its first page explains the layers inside.
 const MANY_FILES: usize = 60;
 
-/// What talks to people, sockets, files and the clock; all the rest is the core.
+/// What talks to people, sockets, files and the clock; all the rest is the core, the state of the screen included:
+/// messages in, picture out.
 fn is_shell(file: &SourceFile) -> bool {
     match file.room().as_str() {
         "link" => !file.name.starts_with("link/proto"),
-        "app" | "args" | "session" | "storage" | "ui" => true,
+        "ui" => ["ui/run.rs", "ui/terminal.rs"].contains(&file.name.as_str()),
+        "app" | "args" | "session" | "storage" => true,
         _ => false,
     }
 }

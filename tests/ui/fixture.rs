@@ -5,6 +5,7 @@
 use std::time::Duration;
 
 use betadeck::geo::{LatLon, LocalFrame};
+use betadeck::plan::edit::{History, PlanDocument};
 use betadeck::plan::{FlightPlan, HoldPattern, Waypoint, WaypointType};
 use betadeck::session::{Event, Mark, MarkKind, SessionEvent, SessionView, TimelineView};
 use betadeck::signals::{RcFrame, RcSource, SimTime};
@@ -14,6 +15,7 @@ use betadeck::telemetry::{
     FirmwareEvent, Guard, GuardName, GuardOp, L1Mode, Mode, ModeFlags, NavEvent, NavState, PacketStats,
     Snapshot, TransitionReason,
 };
+use betadeck::ui::editor::PlanId;
 use betadeck::ui::keymap::Keymap;
 use betadeck::ui::theme::{Charset, Palette};
 use betadeck::ui::{AppState, CliHelp, Msg, OpenPlan, Theme, UiConfig, Units, update};
@@ -42,6 +44,12 @@ pub(crate) fn square() -> FlightPlan {
     plan
 }
 
+/// A plan that is open and that a file holds.
+fn open(plan: FlightPlan) -> OpenPlan {
+    let document = PlanDocument { name: "square".to_owned(), plan, ..PlanDocument::default() };
+    OpenPlan::new(PlanId(1), Some("plans/square.toml".into()), History::new(document, true))
+}
+
 /// An event as a short sentence.
 fn sentence(event: &Event) -> String {
     let SessionEvent::Vehicle(kind) = &event.kind else { return format!("{:?}", event.kind) };
@@ -57,6 +65,11 @@ fn sentence(event: &Event) -> String {
 
 /// A user interface at this size, before the first picture.
 pub(crate) fn state(size: (u16, u16), theme: Theme) -> AppState {
+    state_with(size, theme, square())
+}
+
+/// The same with another plan open.
+pub(crate) fn state_with(size: (u16, u16), theme: Theme, plan: FlightPlan) -> AppState {
     let config = UiConfig {
         theme,
         units: Units::default(),
@@ -72,7 +85,7 @@ pub(crate) fn state(size: (u16, u16), theme: Theme) -> AppState {
             hint: |line| line.starts_with("set ap_position_p").then(|| "0 … 200, default 30".to_owned()),
         },
         sentence,
-        plan: OpenPlan { name: "square.toml".to_owned(), plan: square(), settings: Vec::new() },
+        plan: open(plan),
         mouse: true,
     };
     AppState::new(config, size, view(&SimpleFlight::default()))

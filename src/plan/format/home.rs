@@ -7,7 +7,8 @@ use super::field;
 use crate::geo::LatLon;
 
 /// A place to start from: `LAT,LON` or `LAT,LON,AMSL`.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(into = "String", try_from = "String")]
 pub struct HomePosition {
     /// Position.
     pub position: LatLon,
@@ -65,6 +66,20 @@ impl FromStr for HomePosition {
         let position =
             LatLon::new(field::latitude(lat).map_err(value)?, field::longitude(lon).map_err(value)?);
         Ok(Self { position, amsl_m })
+    }
+}
+
+impl TryFrom<String> for HomePosition {
+    type Error = HomeError;
+
+    fn try_from(text: String) -> Result<Self, HomeError> {
+        text.parse()
+    }
+}
+
+impl From<HomePosition> for String {
+    fn from(home: HomePosition) -> Self {
+        home.to_string()
     }
 }
 

@@ -61,6 +61,7 @@ impl Session {
                 let progress = upload.send_lines(self.vehicle.controller_mut());
                 self.report_upload(upload, progress, reply, Instant::now());
             }
+            Command::Save { reply } => drop(reply.send(self.save())),
             Command::Pilot(on) => self.set_pilot(on),
             Command::ReturnHome => {
                 if let Err(refusal) = self.vehicle.controller_mut().return_to_home() {
@@ -99,6 +100,18 @@ impl Session {
         if let Some(endpoints) = &mut self.endpoints {
             endpoints.handler.after_restart(false, self.vehicle.controller_mut());
         }
+    }
+
+    /// As a ground station does it by MSP: the craft goes on without a restart.
+    fn save(&mut self) -> Result<(), String> {
+        let controller = self.vehicle.controller_mut();
+        if controller.configuration().is_none() {
+            return Err("This flight controller saves by itself: `save` in the CLI (5) does it.".to_owned());
+        }
+        if controller.is_armed() {
+            return Err("Not saved while the craft is armed: `a` disarms it on the ground.".to_owned());
+        }
+        self.persistence.save(controller)
     }
 
     fn change_world(&mut self, line: &str) -> Result<(), String> {

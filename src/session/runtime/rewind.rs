@@ -66,7 +66,7 @@ impl Session {
             Command::Cli { reply, .. } => {
                 drop(reply.send(CliOutput { advice: Some(REWOUND.to_owned()), ..CliOutput::default() }));
             }
-            Command::Upload { reply, .. } | Command::World { reply, .. } => {
+            Command::Upload { reply, .. } | Command::World { reply, .. } | Command::Save { reply } => {
                 drop(reply.send(Err(REWOUND.to_owned())));
             }
             Command::Sticks(_)

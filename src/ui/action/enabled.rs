@@ -45,7 +45,7 @@ pub fn enabled(state: &AppState, action: Action) -> Result<(), String> {
         Action::ReturnHome if craft.home.is_none() => {
             Err("Home is unknown: it is the place of arming with a GPS fix.".to_owned())
         }
-        Action::Upload if state.plan.plan.waypoints.is_empty() => {
+        Action::Upload if state.plan().waypoints.is_empty() => {
             Err("No plan is open, so there is nothing to upload.".to_owned())
         }
         Action::Fly if state.view.pilot.is_none() && is_wrecked(state) => {

@@ -34,8 +34,8 @@ impl EstimateBasis {
     pub(super) fn of(state: &AppState) -> Self {
         let world = &state.view.vehicle.world;
         Self {
-            plan: state.plan.plan.clone(),
-            settings: state.plan.settings.clone(),
+            plan: state.plan().clone(),
+            settings: state.editor.document().settings.clone(),
             craft: state.view.vehicle.settings.map(chosen),
             air: Air {
                 airframe: world.airframe.clone(),
@@ -50,8 +50,8 @@ impl EstimateBasis {
     /// Whether an estimate for this is still one for the open plan, but for small changes of the wind.
     pub(super) fn still_holds(&self, state: &AppState) -> bool {
         let world = &state.view.vehicle.world;
-        self.plan == state.plan.plan
-            && self.settings == state.plan.settings
+        self.plan == *state.plan()
+            && self.settings == state.editor.document().settings
             && self.craft == state.view.vehicle.settings.map(chosen)
             && self.air.airframe == world.airframe
             && self.air.turbulence == world.turbulence

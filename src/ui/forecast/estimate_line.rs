@@ -15,7 +15,7 @@ pub(in crate::ui) fn line(state: &AppState, width: u16) -> Line<'static> {
     let theme = &state.theme;
     let width = usize::from(width);
     let forecast = &state.forecast;
-    if state.plan.plan.waypoints.is_empty() {
+    if state.plan().waypoints.is_empty() {
         return Line::default();
     }
     if let Some(reason) = forecast.estimate_refusal() {

@@ -23,7 +23,7 @@ pub(in crate::ui) fn ghost(state: &AppState) -> Option<Ghost<'_>> {
         return Some(asked("look-ahead", look_ahead.asked.forecast()));
     }
     let is_flown =
-        state.view.vehicle.is_engaged() && state.view.vehicle.active_plan.as_ref() == Some(&state.plan.plan);
+        state.view.vehicle.is_engaged() && state.view.vehicle.active_plan.as_ref() == Some(state.plan());
     let estimate = forecast.estimate().filter(|_| !is_flown)?;
     Some(Ghost { path: &estimate.path, line: "predicted".to_owned() })
 }

@@ -9,6 +9,7 @@ use crate::geo::LocalFrame;
 use crate::plan::{FlightPlan, Waypoint, WaypointType};
 use crate::telemetry::PlanSource;
 use crate::ui::app_state::AppState;
+use crate::ui::map_edit::{self, MapItem, Moving};
 use crate::ui::map_point::{self, MapPoint, to_map};
 use crate::ui::panel::Panel;
 use crate::ui::viewport::{MapMode, Viewport};
@@ -45,6 +46,12 @@ pub(crate) fn title(state: &AppState) -> String {
         PlanSource::Stored => String::new(),
         injected => format!(" — {injected} plan"),
     };
+    if state.map.edit.is_some() || state.map.moving.is_some() {
+        let place = state.map.moving.map(|moving| moving.place).or(state.map.edit.map(|cursor| cursor.place));
+        let moving = state.map.moving.map(|moving| moving.item);
+        let measured = place.and_then(|place| map_edit::measured(state, place, moving)).unwrap_or_default();
+        return format!("{name} — edit · {measured}");
+    }
     match state.map.mode {
         MapMode::Fit => format!("{name}{source}"),
         MapMode::Follow(_) => format!("{name}{source} — follows"),
@@ -73,7 +80,17 @@ fn scene(state: &AppState, area: Rect) -> Scene {
     let origin = map_point::origin(state);
     let home =
         origin.zip(vehicle.craft.home).map_or_else(MapPoint::default, |(frame, home)| to_map(&frame, home));
-    let spots = origin.map_or_else(Vec::new, |frame| spots(plan, &frame, home));
+    let mut spots = origin.map_or_else(Vec::new, |frame| spots(plan, &frame, home));
+    let mut home = home;
+    match state.map.moving {
+        Some(Moving { item: MapItem::Waypoint(index), place, .. }) => {
+            for spot in spots.iter_mut().filter(|spot| spot.index == index) {
+                spot.place = place;
+            }
+        }
+        Some(Moving { item: MapItem::Home, place, .. }) => home = place,
+        Some(Moving { item: MapItem::Fence, .. }) | None => {}
+    }
     let estimate = &vehicle.estimate;
     let believed = estimate.n.zip(estimate.e).map(|(n, e)| MapPoint::new(n, e));
     Scene {

@@ -48,8 +48,12 @@ pub(super) fn paste(state: &mut AppState, text: &str) -> Vec<Effect> {
         field.insert(text.lines().next().unwrap_or_default());
         return Vec::new();
     }
-    if state.focus != Panel::Cli || !state.popups.is_empty() {
-        state.notify(Severity::Info, "Pasted text goes to the CLI: press 5 first.");
+    let is_covered = !state.popups.is_empty() || state.editor.popup.is_some();
+    if matches!(state.focus, Panel::Plan | Panel::Map) && !is_covered {
+        return super::plan::paste_text(state, text);
+    }
+    if state.focus != Panel::Cli || is_covered {
+        state.notify(Severity::Info, "Pasted text goes to the CLI (5) or, as waypoints, to the plan (2).");
         return Vec::new();
     }
     state.cli.paste(text);

@@ -17,15 +17,20 @@ pub(super) fn fly(state: &mut AppState) -> Vec<Effect> {
         state.notify(Severity::Info, "The simulation is paused: Space goes on.");
     }
     if state.view.vehicle.stored_plan.as_ref().is_none_or(|plan| !plan.waypoints.is_empty()) {
-        if !state.plan.plan.waypoints.is_empty() && !state.plan_is_on_craft() {
-            let text =
-                format!("Flying the plan in the craft, which is not {}: U uploads it.", state.plan.name);
+        if !state.plan().waypoints.is_empty() && !state.plan_is_on_craft() {
+            let text = format!(
+                "Flying the plan in the craft, which is not {}: U uploads it.",
+                state.editor.plan().title()
+            );
             state.notify(Severity::Info, text);
         }
         return vec![Effect::Send(Command::Pilot(true))];
     }
-    if state.plan.plan.waypoints.is_empty() {
-        state.notify(Severity::Warn, "There is no plan to fly: `waypoint insert …` in the CLI (5) adds one.");
+    if state.plan().waypoints.is_empty() {
+        state.notify(
+            Severity::Warn,
+            "There is no plan to fly: `i` in the Plan panel (2) inserts a waypoint, `o` opens a file.",
+        );
         return Vec::new();
     }
     state.fly_after_upload = true;
@@ -33,15 +38,21 @@ pub(super) fn fly(state: &mut AppState) -> Vec<Effect> {
 }
 
 pub(super) fn upload(state: &AppState) -> Effect {
-    Effect::Upload { plan: Box::new(state.plan.plan.clone()), settings: state.plan.settings.clone() }
+    Effect::Upload {
+        plan: Box::new(state.plan().clone()),
+        settings: state.editor.document().settings.clone(),
+    }
 }
 
 pub(super) fn uploaded(state: &mut AppState, result: Result<(), String>) -> Vec<Effect> {
     let fly = std::mem::take(&mut state.fly_after_upload);
     match result {
         Ok(()) => {
-            let text =
-                format!("Uploaded {}: {} waypoints.", state.plan.name, state.plan.plan.waypoints.len());
+            let text = format!(
+                "Uploaded {}: {} waypoints.",
+                state.editor.plan().title(),
+                state.plan().waypoints.len()
+            );
             state.notify(Severity::Good, text);
             if fly { vec![Effect::Send(Command::Pilot(true))] } else { Vec::new() }
         }

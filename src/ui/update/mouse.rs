@@ -1,10 +1,11 @@
 //! The mouse: click focuses and sets, drag moves, the wheel zooms and scrolls.
 
-use crossterm::event::{MouseButton, MouseEvent, MouseEventKind};
+use crossterm::event::{KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
 use ratatui::layout::Rect;
 
 use crate::ui::app_state::AppState;
 use crate::ui::layout;
+use crate::ui::map_edit::{MapItem, item_at};
 use crate::ui::map_point::MapPoint;
 use crate::ui::message::Effect;
 use crate::ui::panel::Panel;
@@ -12,6 +13,7 @@ use crate::ui::panel::rc;
 use crate::ui::transmitter;
 use crate::ui::viewport::{MapMode, Viewport};
 
+use super::map_edit;
 use super::timeline;
 use super::view::{ZOOM_STEP, focus, scroll_panel};
 
@@ -20,7 +22,7 @@ const WHEEL_LINES: isize = 3;
 
 /// Takes a mouse event in.
 pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
-    if !state.popups.is_empty() {
+    if !state.popups.is_empty() || state.editor.popup.is_some() {
         return Vec::new();
     }
     if event.kind == MouseEventKind::Down(MouseButton::Left)
@@ -36,18 +38,17 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
         MouseEventKind::Down(MouseButton::Left) => {
             focus(state, panel);
             match panel {
-                Panel::Map => {
-                    let centre = Viewport::of(state, layout::inner(area)).centre;
-                    state.drag = Some((event.column, event.row, centre.n, centre.e));
-                    Vec::new()
-                }
+                Panel::Map => press_on_map(state, area, &event),
                 Panel::Rc => set_channel(state, area, &event),
                 Panel::Plan | Panel::State | Panel::Cli | Panel::Log => Vec::new(),
             }
         }
         MouseEventKind::Drag(MouseButton::Left) => match panel {
             Panel::Map => {
-                drag_map(state, area, &event);
+                match &mut state.map.moving {
+                    Some(_) => drag_item(state, area, &event),
+                    None => drag_map(state, area, &event),
+                }
                 Vec::new()
             }
             Panel::Rc => set_channel(state, area, &event),
@@ -55,6 +56,9 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
         },
         MouseEventKind::Up(_) => {
             state.drag = None;
+            if state.map.moving.is_some_and(|moving| moving.by_mouse) {
+                return map_edit::put_down(state);
+            }
             Vec::new()
         }
         MouseEventKind::ScrollUp => {
@@ -80,6 +84,34 @@ fn wheel(state: &mut AppState, panel: Panel, area: Rect, event: &MouseEvent, dir
         MapMode::Follow(scale) => MapMode::Follow(scale * factor),
         MapMode::Fit | MapMode::Free { .. } => view.zoomed(factor, view.place(event.column, event.row)),
     };
+}
+
+/// A waypoint, home or the fence under the mouse is picked up; with the edit cursor a press with control adds a
+/// waypoint. Elsewhere the map is dragged.
+fn press_on_map(state: &mut AppState, area: Rect, event: &MouseEvent) -> Vec<Effect> {
+    let view = Viewport::of(state, layout::inner(area));
+    let place = view.place(event.column, event.row);
+    if event.modifiers.contains(KeyModifiers::CONTROL) {
+        return map_edit::add_at(state, place);
+    }
+    let item = item_at(state, place, view.scale);
+    // Home and fence are only moved by whoever edits: they lie where the map is dragged, too.
+    let item = item.filter(|item| matches!(item, MapItem::Waypoint(_)) || state.map.edit.is_some());
+    match item.filter(|_| state.view.vehicle.active_plan.is_none() || state.map.edit.is_some()) {
+        Some(item) => map_edit::pick_up(state, item, place, true),
+        None => state.drag = Some((event.column, event.row, view.centre.n, view.centre.e)),
+    }
+    Vec::new()
+}
+
+/// Moves what was picked up by the mouse; the window stands still meanwhile.
+fn drag_item(state: &mut AppState, area: Rect, event: &MouseEvent) {
+    let view = Viewport::of(state, layout::inner(area));
+    state.map.mode = MapMode::Free { n: view.centre.n, e: view.centre.e, scale: view.scale };
+    if let Some(moving) = &mut state.map.moving {
+        moving.place = view.place(event.column, event.row);
+        moving.moved = true;
+    }
 }
 
 fn drag_map(state: &mut AppState, area: Rect, event: &MouseEvent) {

@@ -94,7 +94,10 @@ fn run(state: &mut AppState, line: &str) -> Vec<Effect> {
 
 fn quit_key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
     match event.code {
-        KeyCode::Char('y' | 'Y' | 'q') | KeyCode::Enter => vec![Effect::Quit],
+        KeyCode::Char('y' | 'Y' | 'q') | KeyCode::Enter => {
+            state.popups.pop();
+            super::plan_popup::quit(state)
+        }
         KeyCode::Char('n' | 'N') | KeyCode::Esc => {
             state.popups.pop();
             Vec::new()

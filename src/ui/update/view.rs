@@ -25,7 +25,7 @@ pub(super) fn neighbour(state: &AppState, step: isize) -> Panel {
 }
 
 /// The window of the map as it is on the screen.
-fn viewport(state: &AppState) -> Option<Viewport> {
+pub(super) fn viewport(state: &AppState) -> Option<Viewport> {
     let area = layout::screen(state)?.panel(Panel::Map)?;
     Some(Viewport::of(state, layout::inner(area)))
 }
@@ -77,8 +77,8 @@ pub(super) fn scroll_panel(state: &mut AppState, panel: Panel, by: isize) {
             (&mut state.scrolls.log, by, last)
         }
         Panel::Plan => {
-            let last = panel::plan::last_scroll(state, area);
-            (&mut state.scrolls.plan, by, last)
+            state.editor.move_cursor(by, 0);
+            return;
         }
         // The newest line of the CLI is below, so up is forwards in its own count.
         Panel::Cli => {

@@ -8,6 +8,7 @@ use crate::plan::{HoldPattern, Waypoint, WaypointType};
 use crate::telemetry::NavTelemetry;
 use crate::ui::app_state::AppState;
 use crate::ui::forecast;
+use crate::ui::map_edit::{self, MapItem, Moving};
 use crate::ui::map_point::{self, MapPoint, to_map};
 use crate::ui::theme::Role;
 use crate::ui::track::TrackPoint;
@@ -99,7 +100,12 @@ pub(super) fn paint(state: &AppState, scene: &Scene, context: &mut Context<'_>) 
         context.layer();
     };
     layer(Role::Fence, &mut |painter| {
-        if let Some(fence_m) = settings.and_then(|settings| settings.fence_m) {
+        let fence_m = match state.map.moving {
+            Some(Moving { item: MapItem::Fence, place, .. }) => Some(scene.home.distance(place)),
+            _ if state.view.vehicle.active_plan.is_none() => map_edit::fence_m(state),
+            _ => settings.and_then(|settings| settings.fence_m),
+        };
+        if let Some(fence_m) = fence_m {
             painter.circle(scene.home, fence_m, true);
         }
     });

@@ -47,6 +47,9 @@ pub(super) fn write(state: &AppState, scene: &Scene, buffer: &mut Buffer) {
             if crashed { ("✗", Role::Fault) } else { (heading.map_or("●", arrow), Role::Craft) };
         labels.mark(craft, mark, role);
     }
+    if let Some(cursor) = state.map.edit {
+        labels.mark(cursor.place, "┼", Role::Focus);
+    }
     // The current waypoint chooses its place first.
     let mut order: Vec<&PlacedWaypoint> = scene.spots.iter().collect();
     order.sort_by_key(|spot| Some(spot.index) != scene.current);

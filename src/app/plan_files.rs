@@ -1,0 +1,275 @@
+//! Reads, writes and watches plan files for the editor, on a thread of its own, in the order of asking.
+//!
+//! Every edit is appended to a journal in the state directory before the next request is looked at, so that a program
+//! that is killed loses at most the edit of the last key. A journal belongs to the program that has locked it.
+#![allow(clippy::disallowed_methods, reason = "the shell of the editor lives on wall-clock time")]
+
+mod journal_file;
+mod on_disk;
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, RecvTimeoutError};
+use std::time::Duration;
+
+use tokio::sync::mpsc::UnboundedSender;
+
+use crate::plan::edit::{History, Journal, JournalLine, PlanDocument};
+use crate::ui::editor::{FileReply, FileRequest, Opened, PlanId};
+use journal_file::JournalFile;
+use on_disk::Stamp;
+
+/// How often files are looked at, whether somebody else changed them.
+const WATCH: Duration = Duration::from_millis(500);
+
+/// The plan files of a running editor.
+#[derive(Debug)]
+pub(super) struct PlanFiles {
+    /// Where journals are kept; `None` keeps none.
+    journals: Option<PathBuf>,
+    open: BTreeMap<PlanId, OpenFile>,
+    next: u32,
+    /// Where plans were opened or saved last.
+    directory: PathBuf,
+    /// A journal could not be written, and that was told.
+    told: bool,
+}
+
+#[derive(Debug)]
+struct OpenFile {
+    path: Option<PathBuf>,
+    /// What was on disk when it was read or written last.
+    stamp: Option<Stamp>,
+    /// The change was told.
+    told: bool,
+    /// What the journal begins with, until there is something to keep.
+    base: Option<Journal>,
+    journal: Option<JournalFile>,
+}
+
+impl PlanFiles {
+    /// Keeps journals in this directory of the state.
+    pub(super) fn new(state: Option<&Path>) -> Self {
+        let journals = state.map(|state| state.join("plans"));
+        let directory = std::env::current_dir().unwrap_or_else(|_| PathBuf::from("/"));
+        Self { journals, open: BTreeMap::new(), next: 1, directory, told: false }
+    }
+
+    /// Takes in the plan that the program starts with, with the history that its journal has.
+    pub(super) fn start_with(&mut self, path: Option<&Path>, document: PlanDocument) -> Opened {
+        let path = path.and_then(|path| std::path::absolute(path).ok());
+        if let Some(parent) = path.as_deref().and_then(Path::parent) {
+            self.directory = parent.to_owned();
+        }
+        self.take_in(path, document, Vec::new())
+    }
+
+    /// The plans with edits that were never saved, whose program is gone.
+    pub(super) fn recovered(&mut self) -> Vec<Opened> {
+        let Some(directory) = &self.journals else { return Vec::new() };
+        let left = journal_file::left_behind(directory);
+        left.into_iter()
+            .map(|(file, journal)| {
+                let path = journal.file.as_ref().map(PathBuf::from);
+                let history = journal.history;
+                let opened = self.keep(path, history, Some(file), Vec::new());
+                Opened { recovered: true, ..opened }
+            })
+            .collect()
+    }
+
+    /// Carries requests out until nobody asks any more.
+    pub(super) fn run(mut self, requests: &Receiver<FileRequest>, replies: &UnboundedSender<FileReply>) {
+        loop {
+            match requests.recv_timeout(WATCH) {
+                Ok(request) => {
+                    for reply in self.carry_out(request) {
+                        replies.send(reply).ok();
+                    }
+                }
+                Err(RecvTimeoutError::Timeout) => {
+                    for id in self.changed() {
+                        replies.send(FileReply::Changed(id)).ok();
+                    }
+                }
+                Err(RecvTimeoutError::Disconnected) => return,
+            }
+        }
+    }
+
+    fn carry_out(&mut self, request: FileRequest) -> Vec<FileReply> {
+        match request {
+            FileRequest::Open(path) => vec![self.open(&path)],
+            FileRequest::Save { id, path, document, revision, replace } => {
+                vec![self.save(id, path, *document, revision, replace)]
+            }
+            FileRequest::List(directory) => vec![self.list(directory)],
+            FileRequest::Journal(id, line) => self.append(id, &line).into_iter().collect(),
+            FileRequest::Begin(id, document) => {
+                let base = Some(Journal { file: None, history: History::new(*document, false) });
+                self.open.insert(id, OpenFile { path: None, stamp: None, told: false, base, journal: None });
+                Vec::new()
+            }
+            FileRequest::Close { id, discard } => {
+                let journal = self.open.remove(&id).and_then(|file| file.journal);
+                if let Some(journal) = journal.filter(|_| discard) {
+                    journal.remove();
+                }
+                Vec::new()
+            }
+        }
+    }
+
+    fn open(&mut self, path: &Path) -> FileReply {
+        let path = match std::path::absolute(path) {
+            Ok(path) => path,
+            Err(error) => return FileReply::Failed(format!("Cannot open {}: {error}.", path.display())),
+        };
+        let (document, notes) = match on_disk::read(&path) {
+            Ok(read) => read,
+            Err(sentence) => return FileReply::Failed(sentence),
+        };
+        if let Some(parent) = path.parent() {
+            self.directory = parent.to_owned();
+        }
+        let known = self.open.iter().find(|(_, file)| file.path.as_deref() == Some(&path)).map(|(&id, _)| id);
+        let mut opened = self.take_in(Some(path), document, notes);
+        // Read again: what is in the file takes the place of what is open.
+        if let Some(id) = known
+            && let Some(file) = self.open.remove(&opened.id)
+        {
+            self.open.insert(id, file);
+            opened.id = id;
+        }
+        FileReply::Opened(Box::new(opened))
+    }
+
+    /// Takes in a document that was read from `path`, with the history that its journal has.
+    fn take_in(&mut self, path: Option<PathBuf>, document: PlanDocument, mut notes: Vec<String>) -> Opened {
+        let name = path.as_ref().map(|path| path.display().to_string());
+        let own = path.as_deref().and_then(|path| {
+            let known = self.open.values_mut().find(|file| file.path.as_deref() == Some(path));
+            known.and_then(|file| file.journal.take())
+        });
+        let found = match (own, &self.journals, &name) {
+            (Some(journal), ..) => journal.read_again(),
+            (None, Some(directory), Some(name)) => journal_file::find(directory, name),
+            _ => None,
+        };
+        let Some((file, journal)) = found else {
+            return self.keep(path, History::new(document, true), None, notes);
+        };
+        let mut history = journal.history;
+        let mut recovered = false;
+        if history.is_saved() || history.saved_document().is_none() {
+            if history.commit("changed on disk", document).is_some() {
+                notes.push("It was changed by another program: `u` shows what you had.".to_owned());
+            }
+            history.mark_saved();
+        } else if *history.document() == document {
+            history.mark_saved();
+        } else {
+            recovered = true;
+            if history.saved_document() != Some(document) {
+                notes.push("Another program changed the file meanwhile, too.".to_owned());
+            }
+        }
+        let opened = self.keep(path, history, Some(file), notes);
+        Opened { recovered, ..opened }
+    }
+
+    fn keep(
+        &mut self,
+        path: Option<PathBuf>,
+        history: History,
+        journal: Option<JournalFile>,
+        notes: Vec<String>,
+    ) -> Opened {
+        let id = PlanId(self.next);
+        self.next += 1;
+        let name = path.as_ref().map(|path| path.display().to_string());
+        let kept = Journal { file: name, history: history.clone() };
+        // Written anew without what was cut short.
+        let journal = journal.and_then(|file| file.rewrite(&kept).ok());
+        let base = if journal.is_some() { None } else { Some(kept) };
+        let stamp = path.as_deref().and_then(Stamp::of);
+        self.open.insert(id, OpenFile { path: path.clone(), stamp, told: false, base, journal });
+        Opened { id, file: path, history, notes, recovered: false }
+    }
+
+    fn save(
+        &mut self,
+        id: PlanId,
+        path: PathBuf,
+        document: PlanDocument,
+        revision: usize,
+        replace: bool,
+    ) -> FileReply {
+        let Some(file) = self.open.get_mut(&id) else {
+            return FileReply::Failed("This plan is not open any more.".to_owned());
+        };
+        let is_own = file.path.as_deref() == Some(path.as_path());
+        let there = Stamp::of(&path);
+        let is_known = is_own && there == file.stamp;
+        if there.is_some() && !is_known && !replace {
+            return FileReply::Occupied { id, path, changed: is_own };
+        }
+        let lost = match on_disk::write(&path, document) {
+            Ok(lost) => lost,
+            Err(sentence) => return FileReply::Failed(sentence),
+        };
+        file.stamp = Stamp::of(&path);
+        file.told = false;
+        file.path = Some(path.clone());
+        if let Some(parent) = path.parent() {
+            self.directory = parent.to_owned();
+        }
+        self.append(id, &JournalLine::Saved(path.display().to_string()));
+        FileReply::Saved { id, path, revision, lost }
+    }
+
+    /// Appends a line to the journal of a plan; the first failure is told.
+    fn append(&mut self, id: PlanId, line: &JournalLine) -> Option<FileReply> {
+        let directory = self.journals.as_deref()?;
+        let file = self.open.get_mut(&id)?;
+        let written = match (&mut file.journal, file.base.take()) {
+            (Some(journal), _) => journal.append(line),
+            (None, Some(base)) => JournalFile::create(directory, &base).and_then(|mut journal| {
+                journal.append(line)?;
+                file.journal = Some(journal);
+                Ok(())
+            }),
+            (None, None) => return None,
+        };
+        let error = written.err()?;
+        let first = !std::mem::replace(&mut self.told, true);
+        first.then(|| {
+            FileReply::Failed(format!(
+                "Edits cannot be kept in {}: {error}. Save often.",
+                directory.display()
+            ))
+        })
+    }
+
+    fn list(&self, directory: Option<PathBuf>) -> FileReply {
+        on_disk::list(&directory.unwrap_or_else(|| self.directory.clone()))
+            .map_or_else(FileReply::Failed, FileReply::Listed)
+    }
+
+    /// The plans whose file somebody else changed since this was told last.
+    fn changed(&mut self) -> Vec<PlanId> {
+        let mut changed = Vec::new();
+        for (&id, file) in &mut self.open {
+            let Some(path) = &file.path else { continue };
+            let is_other = Stamp::of(path) != file.stamp;
+            if is_other && !file.told {
+                changed.push(id);
+            }
+            file.told = is_other;
+        }
+        changed
+    }
+}
+
+#[cfg(test)]
+mod tests;

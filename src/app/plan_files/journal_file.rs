@@ -1,0 +1,115 @@
+//! A journal as a file that one program has locked.
+
+use std::fs::{File, OpenOptions};
+use std::io::{self, Seek as _, Write as _};
+use std::path::{Path, PathBuf};
+
+use crate::plan::edit::{Journal, JournalLine};
+
+/// Ending of journals.
+const ENDING: &str = "journal";
+/// More journals of one plan than programs have it open.
+const MOST: u32 = 1000;
+
+/// A journal that is being written.
+#[derive(Debug)]
+pub(super) struct JournalFile {
+    path: PathBuf,
+    /// Locked as long as it is open.
+    file: File,
+}
+
+impl JournalFile {
+    /// Begins a journal.
+    pub(super) fn create(directory: &Path, journal: &Journal) -> io::Result<Self> {
+        std::fs::create_dir_all(directory)?;
+        let stem = stem(journal.file.as_deref().unwrap_or("unnamed"));
+        for number in 0..MOST {
+            let path = directory.join(format!("{stem}-{number}.{ENDING}"));
+            match OpenOptions::new().append(true).create_new(true).open(&path) {
+                Ok(file) => {
+                    lock(&file)?;
+                    return Self { path, file }.rewrite(journal);
+                }
+                Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+                Err(error) => return Err(error),
+            }
+        }
+        Err(io::Error::other("too many journals of this plan"))
+    }
+
+    /// Opens a journal that nobody has locked.
+    fn open(path: PathBuf) -> Option<(Self, Journal)> {
+        let file = OpenOptions::new().append(true).read(true).open(&path).ok()?;
+        lock(&file).ok()?;
+        Self { path, file }.read_again()
+    }
+
+    /// What it holds now.
+    pub(super) fn read_again(self) -> Option<(Self, Journal)> {
+        let text = std::fs::read(&self.path).ok()?;
+        let journal = Journal::read(&String::from_utf8_lossy(&text))?;
+        Some((self, journal))
+    }
+
+    /// Writes the whole journal anew.
+    pub(super) fn rewrite(mut self, journal: &Journal) -> io::Result<Self> {
+        let text: String = journal.lines().iter().map(JournalLine::to_text).collect();
+        self.file.set_len(0)?;
+        self.file.rewind()?;
+        self.file.write_all(text.as_bytes())?;
+        Ok(self)
+    }
+
+    /// Appends a line, in one write.
+    pub(super) fn append(&mut self, line: &JournalLine) -> io::Result<()> {
+        self.file.write_all(line.to_text().as_bytes())
+    }
+
+    /// Deletes it.
+    pub(super) fn remove(self) {
+        std::fs::remove_file(&self.path).ok();
+    }
+}
+
+fn lock(file: &File) -> io::Result<()> {
+    match file.try_lock() {
+        Err(std::fs::TryLockError::Error(error)) if error.kind() != io::ErrorKind::Unsupported => Err(error),
+        Err(std::fs::TryLockError::WouldBlock) => Err(io::ErrorKind::WouldBlock.into()),
+        _ => Ok(()),
+    }
+}
+
+/// The journal of a plan that nobody has locked.
+pub(super) fn find(directory: &Path, name: &str) -> Option<(JournalFile, Journal)> {
+    // All of them are looked at: a plan that was saved under another name kept its journal.
+    paths(directory)
+        .into_iter()
+        .filter_map(JournalFile::open)
+        .find(|(_, journal)| journal.file.as_deref() == Some(name))
+}
+
+/// The journals with edits that were never saved, which nobody has locked.
+pub(super) fn left_behind(directory: &Path) -> Vec<(JournalFile, Journal)> {
+    let left = paths(directory).into_iter().filter_map(JournalFile::open);
+    left.filter(|(_, journal)| !journal.history.is_saved() && !journal.history.is_empty()).collect()
+}
+
+fn paths(directory: &Path) -> Vec<PathBuf> {
+    let Ok(entries) = std::fs::read_dir(directory) else { return Vec::new() };
+    let is_journal = |path: &PathBuf| path.extension().is_some_and(|ending| ending == ENDING);
+    let mut paths: Vec<PathBuf> =
+        entries.filter_map(Result::ok).map(|entry| entry.path()).filter(is_journal).collect();
+    paths.sort();
+    paths
+}
+
+/// The name of a plan's journals: the file's own name, and a checksum of its whole path (FNV-1a).
+fn stem(name: &str) -> String {
+    let sum = name.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |sum, byte| {
+        (sum ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
+    });
+    let own = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
+    let own: String = own.chars().filter(char::is_ascii_alphanumeric).take(24).collect();
+    format!("{own}-{sum:016x}")
+}

@@ -1,0 +1,102 @@
+//! Plan files and directories as they are on disk.
+
+use std::fs::{File, OpenOptions};
+use std::io::Write as _;
+use std::os::unix::fs::MetadataExt as _;
+use std::path::Path;
+
+use crate::app::input_file;
+use crate::flight::setup::check_setting;
+use crate::plan::edit::PlanDocument;
+use crate::plan::format::{self, Format, PlanFile};
+use crate::storage::link_target;
+use crate::ui::editor::{Entry, Listing};
+
+/// Tells whether a file is still the one that was seen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Stamp {
+    inode: u64,
+    length: u64,
+    seconds: i64,
+    nanoseconds: i64,
+}
+
+impl Stamp {
+    /// Of what is there; `None` = nothing is.
+    pub(super) fn of(path: &Path) -> Option<Self> {
+        let metadata = path.metadata().ok()?;
+        Some(Self {
+            inode: metadata.ino(),
+            length: metadata.len(),
+            seconds: metadata.mtime(),
+            nanoseconds: metadata.mtime_nsec(),
+        })
+    }
+}
+
+/// Reads a plan; what the reader skipped, as sentences.
+pub(super) fn read(path: &Path) -> Result<(PlanDocument, Vec<String>), String> {
+    let text = input_file::read(path).map_err(|error| format!("{error}."))?;
+    let name = path.display().to_string();
+    let format = Format::from_file_name(&name).unwrap_or_else(|| Format::of_text(&text));
+    let mut file = format::parse_checked(&name, &text, format, check_setting).map_err(|errors| {
+        let more = match errors.len() - 1 {
+            0 => String::new(),
+            more => format!(" ({more} more problems: `betadeck plan show` lists them)"),
+        };
+        errors.first().map_or_else(|| format!("{name} is no plan."), |error| format!("{error}{more}"))
+    })?;
+    let notes = std::mem::take(&mut file.notes).iter().map(ToString::to_string).collect();
+    Ok((file.into(), notes))
+}
+
+/// Writes a plan; what its format cannot carry, as sentences. The file is replaced as a whole.
+pub(super) fn write(path: &Path, document: PlanDocument) -> Result<Vec<String>, String> {
+    let name = path.display().to_string();
+    let Some(format) = Format::from_file_name(&name) else {
+        return Err(format!("{name} has no ending that tells the format: name it {}.", Format::endings()));
+    };
+    let written = format::write(&PlanFile::from(document), format);
+    replace(&link_target(path), &written.text).map_err(|error| format!("Cannot write {name}: {error}."))?;
+    Ok(written.lost)
+}
+
+fn replace(path: &Path, text: &str) -> std::io::Result<()> {
+    let mut temporary = path.file_name().unwrap_or_default().to_owned();
+    temporary.push(format!(".{}.tmp", std::process::id()));
+    let temporary = path.with_file_name(temporary);
+    let write = || {
+        let mut file = OpenOptions::new().write(true).create_new(true).open(&temporary)?;
+        file.write_all(text.as_bytes())?;
+        if let Ok(there) = path.metadata() {
+            file.set_permissions(there.permissions())?;
+        }
+        file.sync_all()?;
+        std::fs::rename(&temporary, path)
+    };
+    let written = write();
+    if written.is_err() {
+        std::fs::remove_file(&temporary).ok();
+    }
+    written?;
+    let directory = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    File::open(directory)?.sync_all()
+}
+
+/// The directories and plan files of a directory.
+pub(super) fn list(directory: &Path) -> Result<Listing, String> {
+    let cannot = |error: std::io::Error| format!("Cannot list {}: {error}.", directory.display());
+    let directory = directory.canonicalize().map_err(cannot)?;
+    let mut entries: Vec<Entry> = std::fs::read_dir(&directory)
+        .map_err(cannot)?
+        .filter_map(Result::ok)
+        .filter_map(|entry| {
+            let name = entry.file_name().into_string().ok()?;
+            let is_directory = entry.path().is_dir();
+            let is_plan = Format::from_file_name(&name).is_some();
+            (!name.starts_with('.') && (is_directory || is_plan)).then_some(Entry { name, is_directory })
+        })
+        .collect();
+    entries.sort_by(|a, b| (!a.is_directory, &a.name).cmp(&(!b.is_directory, &b.name)));
+    Ok(Listing { directory, entries })
+}

@@ -1,0 +1,139 @@
+use super::*;
+use crate::plan::Waypoint;
+
+fn document(alt_cm: i32) -> PlanDocument {
+    let mut document = PlanDocument { name: "test".to_owned(), ..PlanDocument::default() };
+    document.plan.waypoints.push(Waypoint { alt_cm, ..Waypoint::default() });
+    document
+}
+
+/// Edits a plan as the editor does.
+fn edit(files: &mut PlanFiles, opened: &mut Opened, after: PlanDocument) {
+    let change = opened.history.commit("edit", after).expect("a change").change().clone();
+    let change = Box::new(change);
+    let line = JournalLine::Edited { label: "edit".to_owned(), change };
+    assert!(files.carry_out(FileRequest::Journal(opened.id, line)).is_empty());
+}
+
+fn save(files: &mut PlanFiles, opened: &mut Opened, path: &Path, replace: bool) -> FileReply {
+    let document = Box::new(opened.history.document().clone());
+    let revision = opened.history.at();
+    let request = FileRequest::Save { id: opened.id, path: path.to_owned(), document, revision, replace };
+    let reply = files.carry_out(request).remove(0);
+    if matches!(reply, FileReply::Saved { .. }) {
+        opened.history.mark_saved();
+    }
+    reply
+}
+
+fn open(files: &mut PlanFiles, path: &Path) -> Opened {
+    match files.carry_out(FileRequest::Open(path.to_owned())).remove(0) {
+        FileReply::Opened(opened) => *opened,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn edits_survive_a_program_that_is_gone_and_undo_reaches_back_beyond_it() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("plan.toml");
+    let mut files = PlanFiles::new(Some(directory.path()));
+    let mut opened = files.start_with(None, document(1));
+    assert!(matches!(save(&mut files, &mut opened, &path, false), FileReply::Saved { .. }));
+    edit(&mut files, &mut opened, document(2));
+    edit(&mut files, &mut opened, document(3));
+    drop(files);
+
+    let mut files = PlanFiles::new(Some(directory.path()));
+    let mut again = open(&mut files, &path);
+    assert!(again.recovered);
+    assert_eq!(again.history.document(), &document(3));
+    again.history.undo();
+    assert_eq!(again.history.document(), &document(2));
+    assert!(files.recovered().is_empty(), "it is open already");
+}
+
+#[test]
+fn a_plan_without_a_file_is_recovered_and_a_discarded_one_is_not() {
+    let directory = tempfile::tempdir().unwrap();
+    let mut files = PlanFiles::new(Some(directory.path()));
+    let mut first = files.start_with(None, document(1));
+    edit(&mut files, &mut first, document(2));
+    assert!(PlanFiles::new(Some(directory.path())).recovered().is_empty(), "another program has it open");
+    drop(files);
+
+    let mut files = PlanFiles::new(Some(directory.path()));
+    let recovered = files.recovered().remove(0);
+    assert_eq!(recovered.history.document(), &document(2));
+    files.carry_out(FileRequest::Close { id: recovered.id, discard: true });
+    drop(files);
+    assert!(PlanFiles::new(Some(directory.path())).recovered().is_empty());
+}
+
+#[test]
+fn a_file_of_somebody_else_is_never_replaced_unasked() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("plan.txt");
+    std::fs::write(&path, "# theirs\n").unwrap();
+    let mut files = PlanFiles::new(None);
+    let mut opened = files.start_with(None, document(1));
+    assert!(matches!(
+        save(&mut files, &mut opened, &path, false),
+        FileReply::Occupied { changed: false, .. }
+    ));
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), "# theirs\n");
+    assert!(matches!(save(&mut files, &mut opened, &path, true), FileReply::Saved { .. }));
+    assert!(files.changed().is_empty(), "what this program wrote is no news");
+
+    std::fs::write(&path, "waypoint insert 0 1 2 300 0 LAND 0 NONE\n").unwrap();
+    assert_eq!(files.changed(), [opened.id]);
+    assert!(files.changed().is_empty(), "told once");
+    edit(&mut files, &mut opened, document(5));
+    assert!(matches!(save(&mut files, &mut opened, &path, false), FileReply::Occupied { changed: true, .. }));
+    let again = open(&mut files, &path);
+    assert_eq!(again.id, opened.id, "read again in its place");
+}
+
+#[test]
+fn a_file_that_another_program_changed_comes_as_an_edit() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("plan.toml");
+    let mut files = PlanFiles::new(Some(directory.path()));
+    let mut opened = files.start_with(None, document(1));
+    edit(&mut files, &mut opened, document(2));
+    save(&mut files, &mut opened, &path, false);
+    drop(files);
+    let theirs = crate::plan::format::write(&document(9).into(), crate::plan::format::Format::Toml).text;
+    std::fs::write(&path, theirs).unwrap();
+
+    let mut files = PlanFiles::new(Some(directory.path()));
+    let mut again = open(&mut files, &path);
+    assert_eq!(again.history.document(), &document(9));
+    assert!(again.history.is_saved() && again.notes[0].contains("another program"));
+    again.history.undo();
+    assert_eq!(again.history.document(), &document(2));
+}
+
+#[test]
+fn what_is_wrong_is_one_sentence() {
+    let directory = tempfile::tempdir().unwrap();
+    let mut files = PlanFiles::new(None);
+    let mut opened = files.start_with(None, document(1));
+    let bad = directory.path().join("bad.toml");
+    std::fs::write(&bad, "name = 3\n[[waypoint]]\ntype = \"LAMD\"\n").unwrap();
+    for path in [bad, directory.path().join("missing.toml"), directory.path().to_owned()] {
+        let FileReply::Failed(sentence) = files.carry_out(FileRequest::Open(path)).remove(0) else {
+            panic!()
+        };
+        assert!(!sentence.is_empty());
+    }
+    let nameless = directory.path().join("plan");
+    let FileReply::Failed(sentence) = save(&mut files, &mut opened, &nameless, false) else { panic!() };
+    assert!(sentence.contains(".toml"), "{sentence}");
+    let FileReply::Listed(listing) =
+        files.carry_out(FileRequest::List(Some(directory.path().to_owned()))).remove(0)
+    else {
+        panic!()
+    };
+    assert_eq!(listing.entries.iter().map(|entry| entry.name.as_str()).collect::<Vec<_>>(), ["bad.toml"]);
+}

@@ -1,0 +1,161 @@
+//! What takes a finding of the review away.
+
+use nalgebra::Vector2;
+
+use super::PlanDocument;
+use crate::geo::{GroundPlane, LatLon, distance_bearing};
+use crate::plan::review::Finding;
+use crate::plan::validate::{PlanFault, WaypointFault};
+use crate::plan::{Waypoint, WaypointType};
+
+/// How far inside the fence a waypoint is moved, as a share of the fence: room for the turn.
+const INSIDE_FENCE: f64 = 0.95;
+/// Altitude to which a waypoint below the ground is raised, cm.
+const RAISED_CM: i32 = 1000;
+
+/// An edit that is offered.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fix {
+    /// What it does, a few words.
+    pub title: String,
+    /// The document after it.
+    pub document: PlanDocument,
+}
+
+/// The first waypoint that a finding is about.
+#[must_use]
+pub fn waypoint_of(finding: &Finding) -> Option<usize> {
+    match finding {
+        Finding::Fault(PlanFault::BadWaypoint { index, .. }) => Some(usize::from(*index)),
+        Finding::OutsideFence { index, .. }
+        | Finding::NeverFlown { index, .. }
+        | Finding::NothingToModify { index, .. }
+        | Finding::SpeedLimited { index, .. }
+        | Finding::BelowGround { index, .. } => Some(*index),
+        Finding::Fault(PlanFault::Empty | PlanFault::Corrupt(_))
+        | Finding::StaysInTheAir
+        | Finding::OutlastsBattery { .. }
+        | Finding::NoTouchdownThrottle(_) => None,
+    }
+}
+
+/// What takes the finding away, when an edit of the plan can.
+#[must_use]
+pub fn fix(document: &PlanDocument, finding: &Finding, home: LatLon) -> Option<Fix> {
+    let mut fixed = document.clone();
+    let waypoints = &mut fixed.plan.waypoints;
+    let title = match *finding {
+        Finding::OutsideFence { index, limit_m, .. } => {
+            let wp = waypoints.get_mut(index)?;
+            let (_, bearing) = distance_bearing(home, wp.position);
+            let inside = Vector2::new(bearing.cos(), bearing.sin()) * (INSIDE_FENCE * limit_m);
+            wp.position = GroundPlane::new(home).to_position(inside);
+            format!("move WP{index} inside the fence")
+        }
+        Finding::NeverFlown { index, .. } => {
+            let behind = waypoints.len().checked_sub(index + 1)?;
+            waypoints.truncate(index + 1);
+            format!("delete the {behind} behind WP{index}")
+        }
+        Finding::NothingToModify { index, kind } => {
+            waypoints.pop_at(index)?;
+            format!("delete WP{index} {kind}")
+        }
+        Finding::SpeedLimited { index, .. } => {
+            waypoints.get_mut(index)?.speed_cms = 0;
+            format!("fly WP{index} at ap_max_velocity")
+        }
+        Finding::BelowGround { index, .. } => {
+            waypoints.get_mut(index)?.alt_cm = RAISED_CM;
+            format!("raise WP{index} to {} m", RAISED_CM / 100)
+        }
+        Finding::StaysInTheAir => {
+            let last = *waypoints.iter().rev().find(|wp| wp.kind.uses_position())?;
+            let land = Waypoint {
+                kind: WaypointType::Land,
+                position: last.position,
+                alt_cm: last.alt_cm,
+                ..Waypoint::default()
+            };
+            waypoints.try_push(land).ok()?;
+            "add a LAND at the last place".to_owned()
+        }
+        Finding::Fault(PlanFault::BadWaypoint { index, fault }) => {
+            let position = &mut waypoints.get_mut(usize::from(index))?.position;
+            match fault {
+                WaypointFault::Latitude => position.lat_e7 = position.lat_e7.clamp(-900_000_000, 900_000_000),
+                WaypointFault::Longitude => position.lon_e7 = wrapped(position.lon_e7),
+                WaypointFault::Unknown => return None,
+            }
+            format!("bring WP{index} back onto the globe")
+        }
+        Finding::NoTouchdownThrottle(_) => {
+            fixed.settings.retain(|line| !line.starts_with("ap_landing_throttle_threshold"));
+            fixed.settings.push("ap_landing_throttle_threshold = 100".to_owned());
+            "set the threshold to 100".to_owned()
+        }
+        Finding::Fault(PlanFault::Empty | PlanFault::Corrupt(_)) | Finding::OutlastsBattery { .. } => {
+            return None;
+        }
+    };
+    Some(Fix { title, document: fixed })
+}
+
+/// A longitude by whole turns brought to ±180°.
+fn wrapped(lon_e7: i32) -> i32 {
+    let turn = 3_600_000_000_i64;
+    let wrapped = (i64::from(lon_e7) + turn / 2).rem_euclid(turn) - turn / 2;
+    i32::try_from(wrapped).unwrap_or(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::estimate::{Assumptions, TouchdownThrottle};
+    use crate::plan::review::review;
+
+    fn wp(kind: WaypointType, n: f64, alt_cm: i32) -> Waypoint {
+        let position = GroundPlane::new(home()).to_position(Vector2::new(n, 0.0));
+        Waypoint { kind, position, alt_cm, ..Waypoint::default() }
+    }
+
+    fn home() -> LatLon {
+        LatLon::from_degrees(40.4635, -79.5182)
+    }
+
+    #[test]
+    fn every_fix_takes_its_finding_away() {
+        use WaypointType::{Delay, Flyover, Land};
+        let fast = Waypoint { speed_cms: 2000, ..wp(Flyover, 10.0, 2000) };
+        let lost = Waypoint { position: LatLon::new(950_000_000, 0), ..wp(Flyover, 0.0, 2000) };
+        let turned = Waypoint { position: LatLon::new(0, 1_900_000_000), ..wp(Flyover, 0.0, 2000) };
+        let plans: [&[Waypoint]; 8] = [
+            &[wp(Flyover, 700.0, 2000), wp(Land, 0.0, 2000)],
+            &[wp(Land, 0.0, 2000), wp(Flyover, 50.0, 2000)],
+            &[wp(Land, 0.0, 2000), wp(Delay, 0.0, 0)],
+            &[fast, wp(Land, 0.0, 2000)],
+            &[wp(Flyover, 20.0, -300), wp(Land, 0.0, 2000)],
+            &[wp(Flyover, 20.0, 2000)],
+            &[lost],
+            &[turned],
+        ];
+        let assumptions = Assumptions { fence_m: Some(500.0), ..Assumptions::default() };
+        for waypoints in plans {
+            let mut document = PlanDocument::default();
+            document.plan.waypoints = waypoints.iter().copied().collect();
+            let findings = review(&document.plan, home(), &assumptions);
+            assert!(!findings.is_empty(), "{waypoints:?}");
+            for finding in findings {
+                let fixed =
+                    fix(&document, &finding, home()).unwrap_or_else(|| panic!("no fix for {finding}"));
+                let left = review(&fixed.document.plan, home(), &assumptions);
+                assert!(!left.contains(&finding), "{}: {left:?}", fixed.title);
+            }
+        }
+        let throttle =
+            Finding::NoTouchdownThrottle(TouchdownThrottle { threshold_us: 300.0, ..Default::default() });
+        let fixed = fix(&PlanDocument::default(), &throttle, home()).unwrap();
+        let assumed = Assumptions::from_settings(&fixed.document.settings);
+        assert!(!assumed.touchdown_throttle.is_never_met());
+    }
+}

@@ -1,0 +1,77 @@
+//! What can be done to plans.
+
+/// An action of the plan editor.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::EnumIter)]
+pub enum EditAction {
+    /// Take the last edit back.
+    #[default]
+    Undo,
+    /// Make the edit again.
+    Redo,
+    /// Choose a file to open.
+    Open,
+    /// Write the plan to its file.
+    Save,
+    /// Write the plan to another file.
+    SaveAs,
+    /// Begin a new plan.
+    New,
+    /// Close the plan.
+    Close,
+    /// Show the next open plan.
+    NextPlan,
+    /// Show the previous open plan.
+    PreviousPlan,
+    /// Take the plan in the craft.
+    Download,
+    /// Save the configuration of the craft.
+    SaveToFlash,
+    /// The column to the left.
+    Left,
+    /// The column to the right.
+    Right,
+    /// Type the value, or go on to the next name.
+    Cell,
+    /// Raise the value a little.
+    Raise,
+    /// Lower the value a little.
+    Lower,
+    /// Raise the value a lot.
+    RaiseMuch,
+    /// Lower the value a lot.
+    LowerMuch,
+    /// Insert a waypoint.
+    Insert,
+    /// Repeat the waypoint.
+    Duplicate,
+    /// Delete the selected waypoints.
+    Delete,
+    /// Move the selected waypoints up.
+    MoveUp,
+    /// Move the selected waypoints down.
+    MoveDown,
+    /// Begin or end a selection.
+    Select,
+    /// Select all waypoints.
+    SelectAll,
+    /// Copy the selected waypoints.
+    Copy,
+    /// Insert what was copied.
+    Paste,
+    /// Change the selected waypoints at once.
+    Bulk,
+    /// Generate a pattern.
+    Generate,
+    /// Name, home and settings.
+    Properties,
+    /// Take the offered fix.
+    Fix,
+    /// Edit on the map, or stop it.
+    OnMap,
+    /// Pick up or put down a waypoint on the map.
+    Pick,
+    /// Add a waypoint at the map's cursor.
+    AddOnMap,
+    /// Delete the waypoint at the map's cursor.
+    DeleteOnMap,
+}

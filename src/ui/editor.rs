@@ -1,0 +1,497 @@
+//! The plan editor: the plans that are open, the cursor in the waypoint table, and what is being typed.
+//!
+//! Every edit is one revision of a plan's history and one line of its journal; what is to be kept or written leaves as
+//! [`Effect::Files`].
+
+mod browser;
+mod clipboard;
+pub(super) mod column;
+pub(super) mod files;
+pub(super) mod findings;
+mod form;
+mod forms;
+mod open_plan;
+mod popup;
+mod question;
+
+pub(super) use browser::BrowserKey;
+pub use browser::{Browser, Purpose};
+pub use column::Column;
+pub use files::{Entry, FileReply, FileRequest, Listing, Opened};
+pub(super) use form::FormKey;
+pub use form::{Form, FormField, FormKind};
+pub use open_plan::{OpenPlan, PlanId};
+pub use popup::EditorPopup;
+pub use question::Question;
+
+use std::path::PathBuf;
+
+use super::message::Effect;
+use super::text_field::TextField;
+use crate::geo::LatLon;
+use crate::plan::edit::transform::middle;
+use crate::plan::edit::{History, PlanDocument};
+use crate::plan::{MAX_WAYPOINTS, Waypoint};
+
+/// The state of the plan editor.
+#[derive(Debug)]
+pub struct Editor {
+    /// Never empty.
+    plans: Vec<OpenPlan>,
+    current: usize,
+    row: usize,
+    column: Column,
+    anchor: Option<usize>,
+    field: Option<CellField>,
+    register: Vec<Waypoint>,
+    pub(super) popup: Option<EditorPopup>,
+    /// The program ends as soon as every plan is saved or given up.
+    pub(super) quitting: bool,
+}
+
+/// A cell that is being typed.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct CellField {
+    /// What is typed.
+    pub(crate) text: TextField,
+    /// What is wrong with it.
+    pub(crate) problem: Option<String>,
+}
+
+/// First identifier of plans that are made here; those that the files open have lower ones.
+const FIRST_NEW: u32 = 1 << 16;
+
+impl Editor {
+    /// An editor with an open plan.
+    #[must_use]
+    pub fn new(plan: OpenPlan) -> Self {
+        Self {
+            plans: vec![plan],
+            current: 0,
+            row: 0,
+            column: Column::default(),
+            anchor: None,
+            field: None,
+            register: Vec::new(),
+            popup: None,
+            quitting: false,
+        }
+    }
+
+    /// The plan that is shown.
+    #[must_use]
+    pub fn plan(&self) -> &OpenPlan {
+        &self.plans[self.current.min(self.plans.len() - 1)]
+    }
+
+    fn plan_mut(&mut self) -> &mut OpenPlan {
+        let current = self.current.min(self.plans.len() - 1);
+        &mut self.plans[current]
+    }
+
+    /// All open plans.
+    #[must_use]
+    pub fn plans(&self) -> &[OpenPlan] {
+        &self.plans
+    }
+
+    /// Which of them is shown.
+    #[must_use]
+    pub fn current(&self) -> usize {
+        self.current
+    }
+
+    /// The document that is shown.
+    #[must_use]
+    pub fn document(&self) -> &PlanDocument {
+        self.plan().document()
+    }
+
+    /// The waypoint under the cursor; one behind the last when there is none.
+    #[must_use]
+    pub fn row(&self) -> usize {
+        self.row.min(self.document().plan.waypoints.len().saturating_sub(1))
+    }
+
+    /// The column under the cursor.
+    #[must_use]
+    pub fn column(&self) -> Column {
+        self.column
+    }
+
+    /// The selected waypoints, while there is a selection.
+    #[must_use]
+    pub fn selection(&self) -> Option<std::ops::RangeInclusive<usize>> {
+        let anchor = self.anchor?.min(self.document().plan.waypoints.len().saturating_sub(1));
+        Some(anchor.min(self.row())..=anchor.max(self.row()))
+    }
+
+    /// The selected waypoints, else the one under the cursor.
+    fn selected(&self) -> std::ops::RangeInclusive<usize> {
+        self.selection().unwrap_or_else(|| self.row()..=self.row())
+    }
+
+    /// The cell that is being typed.
+    #[must_use]
+    pub(crate) fn field(&self) -> Option<&CellField> {
+        self.field.as_ref()
+    }
+
+    /// Whether letters are text here.
+    #[must_use]
+    pub fn takes_text(&self) -> bool {
+        self.field.is_some() || self.popup.is_some()
+    }
+
+    /// Moves the cursor.
+    pub(super) fn move_cursor(&mut self, rows: isize, columns: isize) {
+        let last = self.document().plan.waypoints.len().saturating_sub(1);
+        self.row = self.row().saturating_add_signed(rows).min(last);
+        self.column = self.column.beside(columns);
+    }
+
+    /// Puts the cursor on a waypoint.
+    pub(super) fn go_to_row(&mut self, row: usize) {
+        self.row = row;
+    }
+
+    /// Begins or ends a selection at the cursor.
+    pub(super) fn toggle_selection(&mut self) {
+        self.anchor = if self.anchor.is_some() { None } else { Some(self.row()) };
+    }
+
+    /// Selects all waypoints.
+    pub(super) fn select_all(&mut self) {
+        self.anchor = Some(0);
+        self.row = self.document().plan.waypoints.len().saturating_sub(1);
+    }
+
+    /// Ends selection and typing; whether there was any.
+    pub(super) fn cancel(&mut self) -> bool {
+        let field = self.field.take().is_some();
+        let popup = self.popup.take().is_some();
+        self.quitting = false;
+        field || popup || self.anchor.take().is_some()
+    }
+
+    /// Makes an edit as one revision; nothing when it changes nothing.
+    pub(super) fn edit(&mut self, label: &str, change: impl FnOnce(&mut PlanDocument)) -> Vec<Effect> {
+        let mut after = self.document().clone();
+        change(&mut after);
+        self.replace_document(label, after)
+    }
+
+    /// Makes the document `after`, as one revision.
+    pub(super) fn replace_document(&mut self, label: &str, after: PlanDocument) -> Vec<Effect> {
+        let plan = self.plan_mut();
+        let id = plan.id();
+        let line = plan.commit(label, after);
+        line.map(|line| Effect::Files(FileRequest::Journal(id, line))).into_iter().collect()
+    }
+
+    /// Takes the last edit back; its label.
+    pub(super) fn undo(&mut self) -> Option<(String, Effect)> {
+        let id = self.plan().id();
+        let (label, line) = self.plan_mut().undo()?;
+        Some((label, Effect::Files(FileRequest::Journal(id, line))))
+    }
+
+    /// Makes the edit again that was taken back.
+    pub(super) fn redo(&mut self) -> Option<(String, Effect)> {
+        let id = self.plan().id();
+        let (label, line) = self.plan_mut().redo()?;
+        Some((label, Effect::Files(FileRequest::Journal(id, line))))
+    }
+
+    /// Inserts waypoints behind the cursor and selects them.
+    pub(super) fn insert(&mut self, label: &str, waypoints: &[Waypoint]) -> Result<Vec<Effect>, String> {
+        let have = self.document().plan.waypoints.len();
+        if have + waypoints.len() > MAX_WAYPOINTS {
+            return Err(format!(
+                "A plan holds {MAX_WAYPOINTS} waypoints: there are {have}, so {} more do not fit.",
+                waypoints.len()
+            ));
+        }
+        let at = if have == 0 { 0 } else { self.row() + 1 };
+        let mut after = self.document().clone();
+        let tail: Vec<Waypoint> = after.plan.waypoints.drain(at..).collect();
+        after.plan.waypoints.extend(waypoints.iter().copied());
+        after.plan.waypoints.extend(tail);
+        let effects = self.replace_document(label, after);
+        self.anchor = None;
+        self.row = at + waypoints.len().saturating_sub(1);
+        Ok(effects)
+    }
+
+    /// Deletes the selected waypoints.
+    pub(super) fn delete(&mut self) -> Vec<Effect> {
+        let selected = self.selected();
+        let label = match selected.clone().count() {
+            1 => format!("delete WP{}", selected.start()),
+            count => format!("delete {count} waypoints"),
+        };
+        let effects = self.edit(&label, |document| {
+            let end = document.plan.waypoints.len().min(selected.end() + 1);
+            document.plan.waypoints.drain(*selected.start().min(&end)..end);
+        });
+        self.anchor = None;
+        self.row = *selected.start();
+        effects
+    }
+
+    /// Moves the selected waypoints up or down in the order of flight.
+    pub(super) fn move_waypoints(&mut self, down: bool) -> Vec<Effect> {
+        let selected = self.selected();
+        let last = self.document().plan.waypoints.len().saturating_sub(1);
+        if if down { *selected.end() >= last } else { *selected.start() == 0 } {
+            return Vec::new();
+        }
+        let effects = self.edit("move in order", |document| {
+            let waypoints = &mut document.plan.waypoints;
+            if down {
+                waypoints[*selected.start()..=selected.end() + 1].rotate_right(1);
+            } else {
+                waypoints[selected.start() - 1..=*selected.end()].rotate_left(1);
+            }
+        });
+        let step = if down { 1 } else { -1 };
+        self.row = self.row().saturating_add_signed(step);
+        self.anchor = self.anchor.map(|anchor| anchor.saturating_add_signed(step));
+        effects
+    }
+
+    /// Changes the value under the cursor, in all selected waypoints that use it.
+    pub(super) fn nudge(&mut self, steps: i32) -> Vec<Effect> {
+        let (column, selected) = (self.column, self.selected());
+        self.edit(&format!("{} of {}", column.name(), which(&selected)), |document| {
+            for index in selected {
+                if let Some(wp) = document.plan.waypoints.get_mut(index).filter(|wp| column.is_used(wp.kind))
+                {
+                    column.nudge(wp, steps);
+                }
+            }
+        })
+    }
+
+    /// Begins typing the value under the cursor.
+    ///
+    /// # Errors
+    /// The waypoint has no such value.
+    pub(super) fn begin_typing(&mut self) -> Result<(), String> {
+        let Some(wp) = self.document().plan.waypoints.get(self.row()) else {
+            return Err("There is no waypoint to edit: `i` inserts one.".to_owned());
+        };
+        if !self.column.is_used(wp.kind) {
+            return Err(format!("A {} has no {}.", wp.kind, self.column.name()));
+        }
+        self.field = Some(CellField { text: TextField::new(self.column.text(wp)), problem: None });
+        Ok(())
+    }
+
+    /// The cell that is being typed, to give it keys.
+    pub(super) fn field_mut(&mut self) -> Option<&mut CellField> {
+        self.field.as_mut()
+    }
+
+    /// Takes what was typed, in all selected waypoints that use it; a wrong value stays with what is wrong with it.
+    pub(super) fn end_typing(&mut self) -> Vec<Effect> {
+        let Some(mut field) = self.field.take() else { return Vec::new() };
+        let (column, selected) = (self.column, self.selected());
+        let mut after = self.document().clone();
+        for index in selected.clone() {
+            let Some(wp) = after.plan.waypoints.get_mut(index) else { continue };
+            if !column.is_used(wp.kind) {
+                continue;
+            }
+            if let Err(problem) = column.set(wp, field.text.value()) {
+                field.problem = Some(problem);
+                self.field = Some(field);
+                return Vec::new();
+            }
+        }
+        self.replace_document(&format!("{} of {}", column.name(), which(&selected)), after)
+    }
+
+    /// Copies the selected waypoints; their CLI lines.
+    pub(super) fn copy(&mut self) -> Option<(usize, String)> {
+        let waypoints = self.document().plan.waypoints.get(self.selected())?.to_vec();
+        let text = clipboard::to_text(&waypoints);
+        let count = waypoints.len();
+        self.register = waypoints;
+        self.anchor = None;
+        (count > 0).then_some((count, text))
+    }
+
+    /// Inserts what was copied last.
+    pub(super) fn paste_copied(&mut self) -> Result<Vec<Effect>, String> {
+        if self.register.is_empty() {
+            return Err("Nothing was copied: `y` copies the selected waypoints.".to_owned());
+        }
+        let waypoints = self.register.clone();
+        self.insert("paste", &waypoints)
+    }
+
+    /// Inserts the waypoints of a pasted text; how many.
+    pub(super) fn paste_text(&mut self, text: &str) -> Result<(usize, Vec<Effect>), String> {
+        let file = clipboard::from_text(text)?;
+        let count = file.plan.waypoints.len();
+        Ok((count, self.insert("paste", &file.plan.waypoints)?))
+    }
+
+    /// Shows the next or the previous open plan.
+    pub(super) fn show_other(&mut self, step: isize) {
+        let count = self.plans.len();
+        self.show((self.current + count).wrapping_add_signed(step) % count);
+    }
+
+    fn show(&mut self, index: usize) {
+        self.current = index.min(self.plans.len() - 1);
+        self.row = 0;
+        self.anchor = None;
+        self.field = None;
+    }
+
+    /// Opens a new plan with this document.
+    pub(super) fn open_new(&mut self, document: PlanDocument) -> Effect {
+        let newest = self.plans.iter().map(|plan| plan.id().0).max().unwrap_or_default();
+        let id = PlanId(newest.max(FIRST_NEW - 1) + 1);
+        let begin = FileRequest::Begin(id, Box::new(document.clone()));
+        self.add(OpenPlan::new(id, None, History::new(document, false)));
+        Effect::Files(begin)
+    }
+
+    /// Shows a plan that was read; one that is open already is replaced by it.
+    pub(super) fn opened(&mut self, opened: Opened) {
+        let plan = OpenPlan::new(opened.id, opened.file, opened.history);
+        match self.plans.iter().position(|other| other.id() == plan.id()) {
+            Some(index) => {
+                self.plans[index] = plan;
+                self.show(index);
+            }
+            None => self.add(plan),
+        }
+    }
+
+    fn add(&mut self, plan: OpenPlan) {
+        self.plans.push(plan);
+        self.show(self.plans.len() - 1);
+    }
+
+    /// Closes a plan; the last one leaves an empty one behind.
+    pub(super) fn close(&mut self, id: PlanId) -> Vec<Effect> {
+        let discard = self.plan_of(id).is_some_and(OpenPlan::is_unsaved);
+        let mut effects = vec![Effect::Files(FileRequest::Close { id, discard })];
+        if self.plans.len() == 1 {
+            effects.push(self.open_new(PlanDocument::default()));
+        }
+        self.plans.retain(|plan| plan.id() != id);
+        self.show(self.current.saturating_sub(1));
+        effects
+    }
+
+    /// The open plan of this identifier.
+    #[must_use]
+    pub fn plan_of(&self, id: PlanId) -> Option<&OpenPlan> {
+        self.plans.iter().find(|plan| plan.id() == id)
+    }
+
+    /// Shows the open plan of this identifier.
+    pub(super) fn show_plan(&mut self, id: PlanId) {
+        if let Some(index) = self.plans.iter().position(|plan| plan.id() == id) {
+            self.show(index);
+        }
+    }
+
+    /// A plan was written.
+    pub(super) fn saved(&mut self, id: PlanId, file: PathBuf, revision: usize) {
+        if let Some(plan) = self.plan_of_mut(id) {
+            plan.saved(file, revision);
+        }
+    }
+
+    /// Somebody else changed the file of a plan; the plan's title, if it is open.
+    pub(super) fn changed_on_disk(&mut self, id: PlanId) -> Option<String> {
+        let plan = self.plan_of_mut(id)?;
+        plan.set_changed_on_disk(true);
+        Some(plan.title())
+    }
+
+    /// Does what the values of a form say; the sentence tells what was done.
+    ///
+    /// # Errors
+    /// What is wrong with a value, as a sentence.
+    pub(super) fn take_form(
+        &mut self,
+        form: &Form,
+        home: Option<LatLon>,
+    ) -> Result<(Vec<Effect>, String), String> {
+        let mut after = self.document().clone();
+        match form.kind {
+            FormKind::Bulk => {
+                let selected = self.selected();
+                let label = format!("change {}", which(&selected));
+                forms::take_bulk(form, &mut after, selected)?;
+                Ok((self.replace_document(&label, after), format!("Done: {label}.")))
+            }
+            FormKind::Properties => {
+                forms::take_properties(form, &mut after)?;
+                Ok((
+                    self.replace_document("properties", after),
+                    "Name, home and settings are taken.".to_owned(),
+                ))
+            }
+            FormKind::Generate => {
+                let generated = self.generated(form, home)?;
+                let have = if form.appends() { after.plan.waypoints.len() } else { 0 };
+                after.plan.waypoints.truncate(have);
+                after
+                    .plan
+                    .waypoints
+                    .extend(generated.plans.iter().flatten().take(MAX_WAYPOINTS - have).copied());
+                let name = after.name.clone();
+                let mut effects = self.replace_document("generate", after);
+                let first = self.current;
+                for (number, waypoints) in generated.plans.iter().enumerate().skip(1) {
+                    let name = format!("{name}-{}", number + 1);
+                    let plan = forms::plan_of(waypoints);
+                    effects.push(self.open_new(PlanDocument { name, plan, ..PlanDocument::default() }));
+                }
+                self.show(first);
+                Ok((effects, generated.told))
+            }
+        }
+    }
+
+    /// What the generator's form would make now: about the middle of the plan, else about home.
+    fn generated(&self, form: &Form, home: Option<LatLon>) -> Result<forms::Generated, String> {
+        let waypoints = &self.document().plan.waypoints;
+        let middle = middle(waypoints).or(home).ok_or("Home is not known yet: wait for the GPS fix.")?;
+        forms::generated(form, middle, waypoints.len())
+    }
+
+    /// The line under a form: what it would make, or what is wrong.
+    ///
+    /// # Errors
+    /// What is wrong with a value, as a sentence.
+    pub(crate) fn form_told(&self, form: &Form, home: Option<LatLon>) -> Result<String, String> {
+        match (&form.problem, form.kind) {
+            (Some(problem), _) => Err(problem.clone()),
+            (None, FormKind::Generate) => self.generated(form, home).map(|generated| generated.told),
+            (None, FormKind::Bulk) => Ok(format!("{} · empty = as it is", which(&self.selected()))),
+            (None, FormKind::Properties) => Ok(String::new()),
+        }
+    }
+
+    fn plan_of_mut(&mut self, id: PlanId) -> Option<&mut OpenPlan> {
+        self.plans.iter_mut().find(|plan| plan.id() == id)
+    }
+}
+
+/// `WP3`, or `WP1…3`.
+fn which(selected: &std::ops::RangeInclusive<usize>) -> String {
+    if selected.start() == selected.end() {
+        format!("WP{}", selected.start())
+    } else {
+        format!("WP{}…{}", selected.start(), selected.end())
+    }
+}

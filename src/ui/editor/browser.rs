@@ -1,0 +1,168 @@
+//! The file browser: a name that is typed above the plan files and directories of a directory.
+
+use std::path::{Path, PathBuf};
+
+use crossterm::event::{KeyCode, KeyEvent};
+
+use super::files::{Entry, Listing};
+use super::open_plan::PlanId;
+use crate::ui::text_field::TextField;
+
+/// What the file is chosen for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Purpose {
+    /// To open a plan.
+    Open,
+    /// To save a plan in it.
+    Save(PlanId),
+}
+
+/// A browser that is open.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Browser {
+    /// What for.
+    pub purpose: Purpose,
+    /// What is typed: a name, the beginning of one, or a path.
+    pub text: TextField,
+    /// The directory; empty until it was read.
+    pub listing: Listing,
+    /// The entry under the cursor among the visible ones; `None` = the typed text counts.
+    pub at: Option<usize>,
+}
+
+/// What a key did.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(in crate::ui) enum BrowserKey {
+    /// It goes on.
+    Edited,
+    /// Show this directory.
+    List(PathBuf),
+    /// This file is meant.
+    Chosen(PathBuf),
+    /// Close it.
+    Cancel,
+}
+
+impl Browser {
+    pub(in crate::ui) fn new(purpose: Purpose, name: &str) -> Self {
+        Self { purpose, text: TextField::new(name), listing: Listing::default(), at: None }
+    }
+
+    /// The entries that the typed text leaves: all while saving.
+    #[must_use]
+    pub fn visible(&self) -> Vec<&Entry> {
+        let typed = self.text.value().to_lowercase();
+        let filters = self.purpose == Purpose::Open && !typed.contains('/');
+        let fits = |entry: &&Entry| !filters || entry.name.to_lowercase().contains(&typed);
+        self.listing.entries.iter().filter(fits).collect()
+    }
+
+    pub(in crate::ui) fn key(&mut self, event: KeyEvent) -> BrowserKey {
+        let last = self.visible().len().checked_sub(1);
+        match event.code {
+            KeyCode::Esc => return BrowserKey::Cancel,
+            KeyCode::Enter => return self.enter(),
+            KeyCode::Down => self.at = last.map(|last| self.at.map_or(0, |at| (at + 1).min(last))),
+            KeyCode::Up => self.at = self.at.and_then(|at| at.checked_sub(1)),
+            KeyCode::PageDown => self.at = last.map(|last| self.at.map_or(0, |at| (at + 10).min(last))),
+            KeyCode::PageUp => self.at = self.at.and_then(|at| at.checked_sub(10)),
+            KeyCode::Backspace if self.text.is_empty() => return self.parent(),
+            KeyCode::Left if self.text.is_empty() => return self.parent(),
+            KeyCode::Tab => {
+                if let Some(name) = self.visible().first().map(|entry| entry.name.clone()) {
+                    self.text = TextField::new(name);
+                    self.at = None;
+                }
+            }
+            _ => {
+                if self.text.key(event) {
+                    self.at = None;
+                }
+            }
+        }
+        BrowserKey::Edited
+    }
+
+    fn parent(&self) -> BrowserKey {
+        let parent = self.listing.directory.parent().unwrap_or(Path::new("/"));
+        BrowserKey::List(parent.to_owned())
+    }
+
+    fn enter(&mut self) -> BrowserKey {
+        let visible = self.visible();
+        let typed = self.text.value().trim().to_owned();
+        // A filter that leaves one entry means that entry, when it is not a file's name itself.
+        let only = match visible[..] {
+            [only] if self.purpose == Purpose::Open && !typed.is_empty() => {
+                Some(0).filter(|_| only.name != typed)
+            }
+            _ => None,
+        };
+        if let Some(entry) = self.at.or(only).and_then(|at| visible.get(at).copied()) {
+            let path = self.listing.directory.join(&entry.name);
+            return if entry.is_directory { self.list(path) } else { BrowserKey::Chosen(path) };
+        }
+        if typed.is_empty() {
+            return BrowserKey::Edited;
+        }
+        let is_directory = self.listing.entries.iter().any(|entry| entry.is_directory && entry.name == typed);
+        // An absolute path replaces the directory.
+        let path = self.listing.directory.join(&typed);
+        if is_directory || typed.ends_with('/') || typed == ".." {
+            return self.list(path);
+        }
+        match (self.purpose, path.extension()) {
+            (Purpose::Save(_), None) => BrowserKey::Chosen(path.with_extension("toml")),
+            _ => BrowserKey::Chosen(path),
+        }
+    }
+
+    fn list(&mut self, path: PathBuf) -> BrowserKey {
+        if self.purpose == Purpose::Open {
+            self.text = TextField::default();
+        }
+        self.at = None;
+        BrowserKey::List(path)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crossterm::event::KeyModifiers;
+
+    fn press(browser: &mut Browser, code: KeyCode) -> BrowserKey {
+        browser.key(KeyEvent::new(code, KeyModifiers::NONE))
+    }
+
+    fn browser(purpose: Purpose, name: &str) -> Browser {
+        let entry = |name: &str, is_directory| Entry { name: name.to_owned(), is_directory };
+        let entries = vec![entry("deep", true), entry("orbit.toml", false), entry("square.toml", false)];
+        Browser { listing: Listing { directory: "/plans".into(), entries }, ..Browser::new(purpose, name) }
+    }
+
+    #[test]
+    fn typing_filters_and_enter_takes_what_is_left() {
+        let mut open = browser(Purpose::Open, "");
+        press(&mut open, KeyCode::Char('q'));
+        assert_eq!(open.visible().len(), 1);
+        assert_eq!(press(&mut open, KeyCode::Enter), BrowserKey::Chosen("/plans/square.toml".into()));
+        let mut open = browser(Purpose::Open, "");
+        press(&mut open, KeyCode::Down);
+        assert_eq!(press(&mut open, KeyCode::Enter), BrowserKey::List("/plans/deep".into()));
+        assert_eq!(press(&mut open, KeyCode::Backspace), BrowserKey::List("/".into()));
+        let mut open = browser(Purpose::Open, "/etc/x.txt");
+        assert_eq!(press(&mut open, KeyCode::Enter), BrowserKey::Chosen("/etc/x.txt".into()));
+    }
+
+    #[test]
+    fn a_name_without_an_ending_is_saved_as_toml() {
+        let mut save = browser(Purpose::Save(PlanId(1)), "mine");
+        assert_eq!(press(&mut save, KeyCode::Enter), BrowserKey::Chosen("/plans/mine.toml".into()));
+        let mut save = browser(Purpose::Save(PlanId(1)), "mine.txt");
+        assert_eq!(press(&mut save, KeyCode::Enter), BrowserKey::Chosen("/plans/mine.txt".into()));
+        let mut save = browser(Purpose::Save(PlanId(1)), "");
+        assert_eq!(press(&mut save, KeyCode::Enter), BrowserKey::Edited, "nothing was typed");
+        assert_eq!(press(&mut save, KeyCode::Esc), BrowserKey::Cancel);
+    }
+}

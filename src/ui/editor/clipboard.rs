@@ -1,0 +1,84 @@
+//! Waypoints as CLI text and back, for the clipboard.
+
+use crate::plan::format::{self, Format, PlanFile};
+use crate::plan::{FlightPlan, Waypoint, plan_lines};
+
+/// The lines that insert these waypoints, numbered from `first`.
+pub(super) fn to_text(waypoints: &[Waypoint]) -> String {
+    let plan = super::forms::plan_of(waypoints);
+    // Without `waypoint clear`: whoever pastes it into a command line keeps what is there.
+    plan_lines(&plan).skip(1).map(|line| line + "\n").collect()
+}
+
+/// The waypoints of a text: CLI lines whatever their numbers, or a whole plan file.
+///
+/// # Errors
+/// Why there are none, in one sentence.
+pub(super) fn from_text(text: &str) -> Result<PlanFile, String> {
+    let text = text.replace("\r\n", "\n").replace('\r', "\n");
+    let format = Format::of_text(&text);
+    let text = if format == Format::CliText { renumbered(&text) } else { text };
+    let file = format::parse("the pasted text", &text, format).map_err(|errors| {
+        errors.first().map_or_else(|| "The pasted text is no plan.".to_owned(), ToString::to_string)
+    })?;
+    if file.plan == FlightPlan::default() {
+        return Err(
+            "The pasted text has no waypoints: `waypoint insert …` lines or a plan file are.".to_owned()
+        );
+    }
+    Ok(file)
+}
+
+/// The lines with the waypoints numbered from 0: a part of a list is pasted as well as a whole one.
+fn renumbered(text: &str) -> String {
+    let mut next = 0;
+    text.lines().fold(String::new(), |mut out, line| {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        match words[..] {
+            [waypoint, insert, _, ref values @ ..]
+                if waypoint.eq_ignore_ascii_case("waypoint") && insert.eq_ignore_ascii_case("insert") =>
+            {
+                out.push_str(&format!("waypoint insert {next} {}\n", values.join(" ")));
+                next += 1;
+            }
+            _ => {
+                out.push_str(line);
+                out.push('\n');
+            }
+        }
+        out
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geo::LatLon;
+
+    #[test]
+    fn what_is_copied_is_pasted_the_same() {
+        let waypoints: Vec<Waypoint> = (0..3)
+            .map(|n| Waypoint {
+                position: LatLon::new(404_640_000 + n, 5),
+                alt_cm: n * 7,
+                ..Waypoint::default()
+            })
+            .collect();
+        let text = to_text(&waypoints);
+        assert_eq!(text.lines().count(), 3);
+        assert_eq!(from_text(&text).unwrap().plan.waypoints.as_slice(), waypoints);
+        let tail: String = text.lines().skip(1).map(|line| format!("{line}\r\n")).collect();
+        assert_eq!(
+            from_text(&tail).unwrap().plan.waypoints.as_slice(),
+            &waypoints[1..],
+            "a part, from a terminal"
+        );
+    }
+
+    #[test]
+    fn what_is_no_plan_says_so() {
+        for text in ["", "hello", "set a = 5", "waypoint insert 0 4O 1 2 3 FLYOVER 0 NONE"] {
+            assert!(!from_text(text).unwrap_err().is_empty(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,230 @@
+//! The columns of the waypoint table: how a value is shown, typed and nudged.
+
+use strum::IntoEnumIterator as _;
+
+use crate::geo::{Degrees7, GroundPlane};
+use crate::plan::format::degrees_e7;
+use crate::plan::{HoldPattern, Waypoint, WaypointType};
+use nalgebra::Vector2;
+
+/// A column.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::EnumIter)]
+pub enum Column {
+    /// What to do there.
+    #[default]
+    Type,
+    /// Latitude, degrees.
+    Latitude,
+    /// Longitude, degrees.
+    Longitude,
+    /// Altitude above home, m.
+    Altitude,
+    /// Leg speed, m/s; of a YAW_RATE the rate, °/s.
+    Speed,
+    /// Hold or delay time, s.
+    Time,
+    /// How to hold.
+    Pattern,
+}
+
+impl Column {
+    /// The column beside this one.
+    #[must_use]
+    pub(crate) fn beside(self, step: isize) -> Self {
+        let columns: Vec<Self> = Self::iter().collect();
+        let at = columns.iter().position(|&column| column == self).unwrap_or(0);
+        columns[at.saturating_add_signed(step).min(columns.len() - 1)]
+    }
+
+    /// What the column is called in sentences.
+    #[must_use]
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Type => "type",
+            Self::Latitude => "latitude",
+            Self::Longitude => "longitude",
+            Self::Altitude => "altitude",
+            Self::Speed => "speed",
+            Self::Time => "time",
+            Self::Pattern => "pattern",
+        }
+    }
+
+    /// What may be typed.
+    #[must_use]
+    pub(crate) fn hint(self, kind: WaypointType) -> String {
+        match self {
+            Self::Type => names(WaypointType::iter()),
+            Self::Latitude => "degrees, -90 to 90".to_owned(),
+            Self::Longitude => "degrees, -180 to 180".to_owned(),
+            Self::Altitude => "metres above home".to_owned(),
+            Self::Speed if kind == WaypointType::YawRate => "degrees per second".to_owned(),
+            Self::Speed => "m/s up to 655.35; 0 = ap_max_velocity".to_owned(),
+            Self::Time if kind == WaypointType::Hold => "seconds up to 6553.5; 0 = endless".to_owned(),
+            Self::Time => "seconds up to 6553.5".to_owned(),
+            Self::Pattern => names(HoldPattern::iter()),
+        }
+    }
+
+    /// Whether a waypoint of this type uses the value.
+    #[must_use]
+    pub(crate) fn is_used(self, kind: WaypointType) -> bool {
+        use WaypointType::{AltChange, Delay, Hold, YawRate};
+        match self {
+            Self::Type => true,
+            Self::Latitude | Self::Longitude => kind.uses_position(),
+            Self::Altitude => kind.is_positional() || kind == AltChange,
+            Self::Speed => kind.is_positional() || kind == YawRate,
+            Self::Time => matches!(kind, Hold | Delay),
+            Self::Pattern => kind == Hold,
+        }
+    }
+
+    /// The value as it is typed.
+    #[must_use]
+    pub(crate) fn text(self, wp: &Waypoint) -> String {
+        match self {
+            Self::Type => wp.kind.to_string(),
+            Self::Latitude => Degrees7(wp.position.lat_e7).to_string(),
+            Self::Longitude => Degrees7(wp.position.lon_e7).to_string(),
+            Self::Altitude => shortest(f64::from(wp.alt_cm) / 100.0),
+            Self::Speed if wp.kind == WaypointType::YawRate => wp.speed_cms.to_string(),
+            Self::Speed => shortest(f64::from(wp.speed_cms) / 100.0),
+            Self::Time => shortest(f64::from(wp.duration_ds) / 10.0),
+            Self::Pattern => wp.pattern.to_string(),
+        }
+    }
+
+    /// Takes a typed value; the beginning of a name will do.
+    ///
+    /// # Errors
+    /// What is wrong and what is allowed, in one sentence.
+    pub(crate) fn set(self, wp: &mut Waypoint, text: &str) -> Result<(), String> {
+        let text = text.trim();
+        let wrong = || format!("{text} is not a {}: {}.", self.name(), self.hint(wp.kind));
+        match self {
+            Self::Type => wp.kind = by_prefix(text, WaypointType::iter()).ok_or_else(wrong)?,
+            Self::Pattern => wp.pattern = by_prefix(text, HoldPattern::iter()).ok_or_else(wrong)?,
+            Self::Latitude => wp.position.lat_e7 = within(text, 900_000_000).ok_or_else(wrong)?,
+            Self::Longitude => wp.position.lon_e7 = within(text, 1_800_000_000).ok_or_else(wrong)?,
+            Self::Altitude => {
+                let cm = scaled(text, 100.0, f64::from(i32::MIN), f64::from(i32::MAX)).ok_or_else(wrong)?;
+                wp.alt_cm = cm as i32;
+            }
+            Self::Speed => {
+                let scale = if wp.kind == WaypointType::YawRate { 1.0 } else { 100.0 };
+                wp.speed_cms = scaled(text, scale, 0.0, f64::from(u16::MAX)).ok_or_else(wrong)? as u16;
+            }
+            Self::Time => {
+                wp.duration_ds = scaled(text, 10.0, 0.0, f64::from(u16::MAX)).ok_or_else(wrong)? as u16;
+            }
+        }
+        Ok(())
+    }
+
+    /// Moves the value by steps: a metre on the ground and in altitude, half a metre per second, a second; names go round.
+    pub(crate) fn nudge(self, wp: &mut Waypoint, steps: i32) {
+        let metres = f64::from(steps);
+        let add = |value: u16, by: i32| (i32::from(value) + by).clamp(0, i32::from(u16::MAX)) as u16;
+        match self {
+            Self::Type => wp.kind = beside(&wp.kind, WaypointType::iter(), steps),
+            Self::Pattern => wp.pattern = beside(&wp.pattern, HoldPattern::iter(), steps),
+            Self::Latitude => {
+                wp.position = GroundPlane::new(wp.position).to_position(Vector2::new(metres, 0.0));
+            }
+            Self::Longitude => {
+                wp.position = GroundPlane::new(wp.position).to_position(Vector2::new(0.0, metres));
+            }
+            Self::Altitude => wp.alt_cm = wp.alt_cm.saturating_add(steps.saturating_mul(100)),
+            Self::Speed if wp.kind == WaypointType::YawRate => wp.speed_cms = add(wp.speed_cms, steps),
+            Self::Speed => wp.speed_cms = add(wp.speed_cms, steps.saturating_mul(50)),
+            Self::Time => wp.duration_ds = add(wp.duration_ds, steps.saturating_mul(10)),
+        }
+    }
+}
+
+/// A number without needless zeros: `50`, `62.5`.
+pub(crate) fn shortest(value: f64) -> String {
+    let text = format!("{value:.2}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+fn names<T: ToString>(all: impl Iterator<Item = T>) -> String {
+    all.map(|name| name.to_string()).collect::<Vec<_>>().join(", ")
+}
+
+fn by_prefix<T: ToString>(text: &str, all: impl Iterator<Item = T>) -> Option<T> {
+    let text = text.to_ascii_uppercase();
+    // `FLY` would be a guess between FLYOVER and FLYBY: the first of them is the usual one.
+    all.into_iter().find(|name| !text.is_empty() && name.to_string().starts_with(&text))
+}
+
+fn within(text: &str, limit_e7: u32) -> Option<i32> {
+    degrees_e7(text).filter(|value| value.unsigned_abs() <= limit_e7)
+}
+
+fn scaled(text: &str, scale: f64, least: f64, most: f64) -> Option<f64> {
+    let value = (text.parse::<f64>().ok()? * scale).round();
+    (value >= least && value <= most).then_some(value)
+}
+
+fn beside<T: PartialEq>(value: &T, all: impl Iterator<Item = T>, steps: i32) -> T {
+    let mut all: Vec<T> = all.collect();
+    let at = all.iter().position(|other| other == value).unwrap_or(0) as i64;
+    let to = (at + i64::from(steps)).rem_euclid(all.len() as i64);
+    all.swap_remove(to as usize)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_shown_can_be_typed() {
+        let wp = Waypoint {
+            position: crate::geo::LatLon::new(404_640_000, -795_175_001),
+            alt_cm: -1250,
+            speed_cms: 333,
+            duration_ds: 305,
+            kind: WaypointType::Hold,
+            pattern: HoldPattern::Figure8,
+        };
+        for column in Column::iter() {
+            let mut typed = Waypoint { kind: WaypointType::Hold, ..Waypoint::default() };
+            let mut expected = typed;
+            column.set(&mut typed, &column.text(&wp)).unwrap();
+            column.set(&mut expected, &column.text(&typed)).unwrap();
+            assert_eq!((column.text(&typed), typed), (column.text(&wp), expected));
+        }
+    }
+
+    #[test]
+    fn wrong_values_say_what_is_allowed_and_change_nothing() {
+        for (column, text) in [
+            (Column::Type, "x"),
+            (Column::Type, ""),
+            (Column::Latitude, "95"),
+            (Column::Longitude, "4O.5"),
+            (Column::Altitude, "nan"),
+            (Column::Speed, "700"),
+            (Column::Speed, "-1"),
+            (Column::Time, "1e9"),
+        ] {
+            let mut wp = Waypoint::default();
+            let said = column.set(&mut wp, text).unwrap_err();
+            assert!(said.starts_with(text) && said.ends_with('.') && said.contains(column.name()), "{said}");
+            assert_eq!(wp, Waypoint::default());
+        }
+    }
+
+    #[test]
+    fn nudges_go_by_a_metre_and_names_go_round() {
+        let mut wp = Waypoint { alt_cm: 1000, ..Waypoint::default() };
+        Column::Altitude.nudge(&mut wp, 3);
+        Column::Speed.nudge(&mut wp, -1);
+        Column::Type.nudge(&mut wp, -1);
+        Column::Latitude.nudge(&mut wp, 10);
+        assert_eq!((wp.alt_cm, wp.speed_cms, wp.kind), (1300, 0, WaypointType::YawRate));
+        assert_eq!(wp.position.lat_e7, 898);
+    }
+}

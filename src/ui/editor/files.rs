@@ -1,0 +1,105 @@
+//! What the editor asks of the file system, and what comes back. Carried out in the order of asking.
+
+use std::path::PathBuf;
+
+use super::open_plan::PlanId;
+use crate::plan::edit::{History, JournalLine, PlanDocument};
+
+/// A request.
+#[derive(Debug, Clone, PartialEq)]
+pub enum FileRequest {
+    /// Read a plan, with the history that its journal has.
+    Open(PathBuf),
+    /// Write a plan.
+    Save {
+        /// The plan.
+        id: PlanId,
+        /// Where.
+        path: PathBuf,
+        /// What.
+        document: Box<PlanDocument>,
+        /// The revision that is written.
+        revision: usize,
+        /// Replace whatever is there. Otherwise only what was read from there or written there by this plan.
+        replace: bool,
+    },
+    /// List a directory for the file browser; `None` = where plans were opened last.
+    List(Option<PathBuf>),
+    /// Keep an action, so that it survives the program. The first line of a plan is kept by whoever opens it.
+    Journal(PlanId, JournalLine),
+    /// A new plan begins its journal.
+    Begin(PlanId, Box<PlanDocument>),
+    /// The plan was closed; its journal goes when edits are given up.
+    Close {
+        /// The plan.
+        id: PlanId,
+        /// Its edits are given up.
+        discard: bool,
+    },
+}
+
+/// What comes back.
+#[derive(Debug, Clone)]
+pub enum FileReply {
+    /// A plan was read.
+    Opened(Box<Opened>),
+    /// A plan was written.
+    Saved {
+        /// The plan.
+        id: PlanId,
+        /// Where.
+        path: PathBuf,
+        /// The revision that was written.
+        revision: usize,
+        /// What the format could not carry, one sentence each.
+        lost: Vec<String>,
+    },
+    /// There is something else in the file: it was not written.
+    Occupied {
+        /// The plan.
+        id: PlanId,
+        /// Where.
+        path: PathBuf,
+        /// This plan had read or written the file, and somebody else changed it since.
+        changed: bool,
+    },
+    /// Somebody else changed or removed the file of a plan.
+    Changed(PlanId),
+    /// A directory.
+    Listed(Listing),
+    /// It did not work: why, in one sentence.
+    Failed(String),
+}
+
+/// A plan that was read.
+#[derive(Debug, Clone)]
+pub struct Opened {
+    /// What it is called from now on.
+    pub id: PlanId,
+    /// Its file, if it has one.
+    pub file: Option<PathBuf>,
+    /// The document with the history that its journal has.
+    pub history: History,
+    /// What is worth knowing about the file, one sentence each.
+    pub notes: Vec<String>,
+    /// Edits that were never saved are in it.
+    pub recovered: bool,
+}
+
+/// A directory as the file browser shows it.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Listing {
+    /// Which.
+    pub directory: PathBuf,
+    /// Directories, then plan files, each by name.
+    pub entries: Vec<Entry>,
+}
+
+/// An entry of a directory.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Entry {
+    /// Its name.
+    pub name: String,
+    /// Whether it is a directory.
+    pub is_directory: bool,
+}

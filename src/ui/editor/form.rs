@@ -1,0 +1,144 @@
+//! A form: a few labelled values that are typed or chosen, then taken together.
+
+use crossterm::event::{KeyCode, KeyEvent};
+
+use super::forms;
+use crate::plan::edit::PlanDocument;
+use crate::ui::text_field::TextField;
+
+/// What a form is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FormKind {
+    /// Edits of the selected waypoints.
+    Bulk,
+    /// A plan from a shape.
+    Generate,
+    /// Name, description, home and settings of the plan.
+    Properties,
+}
+
+/// A labelled value.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FormField {
+    /// What the value is.
+    pub label: String,
+    /// Its unit, or what it may be.
+    pub hint: &'static str,
+    /// The value that is typed; of a choice the chosen word.
+    pub text: TextField,
+    /// The words of a choice; empty = anything is typed.
+    pub choices: &'static [&'static str],
+}
+
+impl FormField {
+    /// A value that is typed.
+    pub(super) fn typed(label: impl Into<String>, hint: &'static str, value: impl Into<String>) -> Self {
+        Self { label: label.into(), hint, text: TextField::new(value), choices: &[] }
+    }
+
+    /// A value that is chosen; the first word stands at first.
+    pub(super) fn choice(label: &'static str, choices: &'static [&'static str]) -> Self {
+        let first = choices.first().copied().unwrap_or_default();
+        Self { label: label.to_owned(), hint: "← →", text: TextField::new(first), choices }
+    }
+
+    fn choose(&mut self, step: isize) {
+        let at = self.choices.iter().position(|choice| *choice == self.text.value()).unwrap_or(0);
+        let count = self.choices.len();
+        if let Some(next) = self.choices.get((at + count).wrapping_add_signed(step) % count.max(1)) {
+            self.text = TextField::new(*next);
+        }
+    }
+}
+
+/// A form that is open.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Form {
+    /// What it is for.
+    pub kind: FormKind,
+    /// Its values.
+    pub fields: Vec<FormField>,
+    /// The value that has the cursor.
+    pub at: usize,
+    /// What is wrong with it, after it was tried.
+    pub problem: Option<String>,
+}
+
+/// What a key did to a form.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::ui) enum FormKey {
+    /// It goes on.
+    Edited,
+    /// Take the values.
+    Accept,
+    /// Close it.
+    Cancel,
+}
+
+impl Form {
+    pub(super) fn new(kind: FormKind, fields: Vec<FormField>) -> Self {
+        Self { kind, fields, at: 0, problem: None }
+    }
+
+    /// The text of the field with this label.
+    #[must_use]
+    pub fn value(&self, label: &str) -> &str {
+        self.fields.iter().find(|field| field.label == label).map_or("", |field| field.text.value().trim())
+    }
+
+    /// The number in the field with this label; `None` when it is empty.
+    ///
+    /// # Errors
+    /// A sentence, when it is not a number.
+    pub(super) fn number(&self, label: &str) -> Result<Option<f64>, String> {
+        let text = self.value(label);
+        if text.is_empty() {
+            return Ok(None);
+        }
+        match text.parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(Some(value)),
+            _ => Err(format!("{label}: {text} is not a number.")),
+        }
+    }
+
+    /// The form of a kind, for this document.
+    pub(in crate::ui) fn of(kind: FormKind, document: &PlanDocument) -> Self {
+        match kind {
+            FormKind::Bulk => forms::bulk(),
+            FormKind::Generate => forms::generate(document.plan.waypoints.is_empty()),
+            FormKind::Properties => forms::properties(document),
+        }
+    }
+
+    /// Whether what is generated comes behind the waypoints that are there.
+    pub(super) fn appends(&self) -> bool {
+        self.value("result").starts_with("append")
+    }
+
+    pub(in crate::ui) fn key(&mut self, event: KeyEvent) -> FormKey {
+        let last = self.fields.len().saturating_sub(1);
+        let is_choice = self.fields.get(self.at).is_some_and(|field| !field.choices.is_empty());
+        self.problem = None;
+        match event.code {
+            KeyCode::Esc => return FormKey::Cancel,
+            KeyCode::Enter => return FormKey::Accept,
+            KeyCode::Up | KeyCode::BackTab => self.at = self.at.checked_sub(1).unwrap_or(last),
+            KeyCode::Down | KeyCode::Tab => self.at = if self.at == last { 0 } else { self.at + 1 },
+            KeyCode::Left if is_choice => self.choose(-1),
+            KeyCode::Right | KeyCode::Char(' ') if is_choice => self.choose(1),
+            _ if is_choice => {}
+            _ => {
+                if let Some(field) = self.fields.get_mut(self.at) {
+                    field.text.key(event);
+                }
+            }
+        }
+        FormKey::Edited
+    }
+
+    fn choose(&mut self, step: isize) {
+        if let Some(field) = self.fields.get_mut(self.at) {
+            field.choose(step);
+        }
+    }
+}

@@ -1,0 +1,251 @@
+//! The forms of the editor: what they ask, and what their values make of the plan.
+
+use nalgebra::Vector2;
+use strum::IntoEnumIterator as _;
+
+use super::column::shortest;
+use super::form::{Form, FormField, FormKind};
+use crate::geo::LatLon;
+use crate::plan::edit::PlanDocument;
+use crate::plan::edit::transform::{Transform, transform};
+use crate::plan::format::setting_line;
+use crate::plan::generate::{Pattern, Shape, split};
+use crate::plan::{FlightPlan, MAX_WAYPOINTS, Waypoint, WaypointType};
+
+const MIRRORS: &[&str] = &["no", "north-south", "east-west"];
+const SHAPES: &[&str] = &["square", "circle", "zig-zag", "survey"];
+const KINDS: &[&str] = &["FLYOVER", "FLYBY"];
+const WHERE: &[&str] = &["replace the plan", "append to it"];
+const TOO_MANY: &[&str] = &["wider spacing", "several plans"];
+
+/// Edits of many waypoints at once; what stays empty stays as it is.
+pub(super) fn bulk() -> Form {
+    Form::new(
+        FormKind::Bulk,
+        vec![
+            FormField::typed("altitude", "m above home", ""),
+            FormField::typed("altitude by", "m", ""),
+            FormField::typed("speed", "m/s, 0 = default", ""),
+            FormField::typed("move north", "m", ""),
+            FormField::typed("move east", "m", ""),
+            FormField::typed("rotate", "° clockwise", ""),
+            FormField::choice("mirror", MIRRORS),
+            FormField::choice("reverse", &["no", "yes"]),
+        ],
+    )
+}
+
+/// Does what a bulk form says to the selected waypoints.
+///
+/// # Errors
+/// What is wrong with a value, as a sentence.
+pub(super) fn take_bulk(
+    form: &Form,
+    document: &mut PlanDocument,
+    selected: std::ops::RangeInclusive<usize>,
+) -> Result<(), String> {
+    let mut edits = Vec::new();
+    if let Some(metres) = form.number("altitude")? {
+        edits.push(Transform::Altitude(centi(metres)?));
+    }
+    if let Some(metres) = form.number("altitude by")? {
+        edits.push(Transform::AltitudeBy(centi(metres)?));
+    }
+    if let Some(speed) = form.number("speed")? {
+        edits.push(Transform::Speed(speed_cms(speed)?));
+    }
+    let moved = Vector2::new(
+        form.number("move north")?.unwrap_or_default(),
+        form.number("move east")?.unwrap_or_default(),
+    );
+    if moved != Vector2::zeros() {
+        edits.push(Transform::Move(moved));
+    }
+    if let Some(degrees) = form.number("rotate")? {
+        edits.push(Transform::Rotate(degrees.to_radians()));
+    }
+    match form.value("mirror") {
+        "north-south" => edits.push(Transform::MirrorNorthSouth),
+        "east-west" => edits.push(Transform::MirrorEastWest),
+        _ => {}
+    }
+    if form.value("reverse") == "yes" {
+        edits.push(Transform::Reverse);
+    }
+    for edit in edits {
+        transform(&mut document.plan, selected.clone(), edit);
+    }
+    Ok(())
+}
+
+/// A plan from a shape.
+pub(super) fn generate(is_empty: bool) -> Form {
+    let usual = Pattern::default();
+    let mut form = Form::new(
+        FormKind::Generate,
+        vec![
+            FormField::choice("shape", SHAPES),
+            FormField::typed("length", "m", shortest(usual.length_m)),
+            FormField::typed("width", "m", shortest(usual.width_m)),
+            FormField::typed("spacing", "m", shortest(usual.spacing_m)),
+            FormField::typed("heading", "°", "0"),
+            FormField::typed("altitude", "m above home", shortest(f64::from(usual.alt_cm) / 100.0)),
+            FormField::typed("speed", "m/s, 0 = default", "0"),
+            FormField::choice("type", KINDS),
+            FormField::choice("result", WHERE),
+            FormField::choice("beyond 30", TOO_MANY),
+        ],
+    );
+    if is_empty {
+        form.fields.retain(|field| field.label != "result");
+    }
+    form
+}
+
+/// The numbers of a generator's form.
+fn pattern(form: &Form) -> Result<Pattern, String> {
+    let needed = |label: &str| form.number(label)?.ok_or_else(|| format!("{label}: a number is needed."));
+    let shape = Shape::iter().find(|shape| shape.to_string() == form.value("shape")).unwrap_or_default();
+    Ok(Pattern {
+        shape,
+        length_m: needed("length")?,
+        width_m: needed("width")?,
+        spacing_m: needed("spacing")?,
+        heading_deg: needed("heading")?,
+        alt_cm: centi(needed("altitude")?)?,
+        speed_cms: speed_cms(needed("speed")?)?,
+        kind: form.value("type").parse().unwrap_or(WaypointType::Flyover),
+    })
+}
+
+/// What a generator's form makes.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Generated {
+    /// One plan, or several that continue each other.
+    pub(super) plans: Vec<Vec<Waypoint>>,
+    /// What it is, for the form's foot.
+    pub(super) told: String,
+}
+
+/// What the form would make now, `taken` waypoints being there already.
+///
+/// # Errors
+/// What is wrong with a value, as a sentence.
+pub(super) fn generated(form: &Form, middle: LatLon, taken: usize) -> Result<Generated, String> {
+    let pattern = pattern(form)?;
+    let taken = if form.value("result") == WHERE[1] { taken } else { 0 };
+    let room = MAX_WAYPOINTS - taken.min(MAX_WAYPOINTS);
+    let waypoints = pattern.waypoints(middle)?;
+    let count = waypoints.len();
+    if count <= room {
+        return Ok(Generated { plans: vec![waypoints], told: format!("{count} waypoints.") });
+    }
+    if form.value("beyond 30") == TOO_MANY[1] && taken == 0 {
+        let plans = split(&waypoints);
+        let told = format!("{count} waypoints, a plan holds {MAX_WAYPOINTS}: {} plans.", plans.len());
+        return Ok(Generated { plans, told });
+    }
+    let Some(spacing_m) = pattern.spacing_that_fits(room) else {
+        return Err(format!("{count} waypoints, there is room for {room}: no spacing makes it fit."));
+    };
+    let wider = Pattern { spacing_m, ..pattern }.waypoints(middle)?;
+    let told = format!(
+        "{count} waypoints, there is room for {room}: a spacing of {spacing_m} m makes {}.",
+        wider.len()
+    );
+    Ok(Generated { plans: vec![wider], told })
+}
+
+/// What a plan has beside waypoints.
+pub(super) fn properties(document: &PlanDocument) -> Form {
+    let home = document.home.map_or_else(String::new, |home| home.to_string());
+    let mut fields = vec![
+        FormField::typed("name", "", &document.name),
+        FormField::typed("description", "", &document.description),
+        FormField::typed("home", "LAT,LON[,AMSL]; empty = none", home),
+    ];
+    let settings = document.settings.iter().map(String::as_str).chain(["", ""]);
+    fields.extend(settings.map(|line| FormField::typed("setting", "name = value; empty = none", line)));
+    Form::new(FormKind::Properties, fields)
+}
+
+/// Takes the values of a properties form.
+///
+/// # Errors
+/// What is wrong with a value, as a sentence.
+pub(super) fn take_properties(form: &Form, document: &mut PlanDocument) -> Result<(), String> {
+    let home = form.value("home");
+    document.home = match home {
+        "" => None,
+        text => Some(text.parse().map_err(|error| format!("home: {error}."))?),
+    };
+    let texts =
+        form.fields.iter().filter(|field| field.label == "setting").map(|field| field.text.value().trim());
+    document.settings = texts
+        .filter(|text| !text.is_empty())
+        .map(|text| setting_line(text).ok_or_else(|| format!("{text} is not a setting: write name = value.")))
+        .collect::<Result<_, _>>()?;
+    document.name = form.value("name").to_owned();
+    document.description = form.value("description").to_owned();
+    Ok(())
+}
+
+/// A plan of these waypoints, or as many of them as it holds.
+pub(super) fn plan_of(waypoints: &[Waypoint]) -> FlightPlan {
+    FlightPlan { waypoints: waypoints.iter().copied().take(MAX_WAYPOINTS).collect() }
+}
+
+fn centi(metres: f64) -> Result<i32, String> {
+    let cm = (metres * 100.0).round();
+    if cm.abs() < f64::from(i32::MAX) { Ok(cm as i32) } else { Err(format!("{metres} m is out of range.")) }
+}
+
+fn speed_cms(mps: f64) -> Result<u16, String> {
+    let cms = (mps * 100.0).round();
+    if (0.0..=f64::from(u16::MAX)).contains(&cms) {
+        Ok(cms as u16)
+    } else {
+        Err(format!("{mps} m/s is out of range: 0 to 655.35 m/s is allowed."))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ui::text_field::TextField;
+
+    fn fill(form: &mut Form, label: &str, text: &str) {
+        form.fields.iter_mut().rfind(|field| field.label == label).unwrap().text = TextField::new(text);
+    }
+
+    #[test]
+    fn a_survey_beyond_thirty_waypoints_is_told_and_either_spaced_wider_or_split() {
+        let mut form = generate(true);
+        fill(&mut form, "shape", "survey");
+        fill(&mut form, "width", "200");
+        fill(&mut form, "spacing", "5");
+        let wider = generated(&form, LatLon::default(), 0).unwrap();
+        assert!(wider.told.starts_with("82 waypoints, there is room for 30: a spacing of"), "{}", wider.told);
+        assert!(wider.plans.len() == 1 && wider.plans[0].len() <= 30);
+        fill(&mut form, "beyond 30", "several plans");
+        assert_eq!(generated(&form, LatLon::default(), 0).unwrap().plans.len(), 3);
+        fill(&mut form, "spacing", "wide");
+        assert_eq!(generated(&form, LatLon::default(), 0).unwrap_err(), "spacing: wide is not a number.");
+    }
+
+    #[test]
+    fn properties_take_home_and_settings_or_say_what_is_wrong() {
+        let mut document =
+            PlanDocument { settings: vec!["ap_max_angle = 30".to_owned()], ..Default::default() };
+        let mut form = properties(&document);
+        fill(&mut form, "home", "40,-79");
+        fill(&mut form, "setting", "set ap_max_velocity=500");
+        take_properties(&form, &mut document).unwrap();
+        assert_eq!(document.settings, ["ap_max_angle = 30", "ap_max_velocity = 500"]);
+        assert!(document.home.is_some());
+        fill(&mut form, "setting", "what");
+        assert!(take_properties(&form, &mut document).unwrap_err().contains("name = value"));
+        fill(&mut form, "home", "north");
+        assert!(take_properties(&form, &mut document).unwrap_err().starts_with("home: north is not a place"));
+    }
+}

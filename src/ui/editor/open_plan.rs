@@ -1,0 +1,105 @@
+//! A plan that is open: its document with the history, and the file it came from.
+
+use std::path::{Path, PathBuf};
+
+use crate::plan::edit::{History, JournalLine, PlanDocument};
+
+/// Identifies an open plan towards the files.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
+pub struct PlanId(pub u32);
+
+/// A plan that is open.
+#[derive(Debug, Clone)]
+pub struct OpenPlan {
+    id: PlanId,
+    file: Option<PathBuf>,
+    history: History,
+    /// The file holds something else than was read or written last.
+    changed_on_disk: bool,
+}
+
+impl OpenPlan {
+    /// A plan with its history, as the files gave it.
+    #[must_use]
+    pub fn new(id: PlanId, file: Option<PathBuf>, history: History) -> Self {
+        Self { id, file, history, changed_on_disk: false }
+    }
+
+    /// Identifies it.
+    #[must_use]
+    pub fn id(&self) -> PlanId {
+        self.id
+    }
+
+    /// The document as it is now.
+    #[must_use]
+    pub fn document(&self) -> &PlanDocument {
+        self.history.document()
+    }
+
+    /// Its edits.
+    #[must_use]
+    pub fn history(&self) -> &History {
+        &self.history
+    }
+
+    /// Its file, if it has one.
+    #[must_use]
+    pub fn file(&self) -> Option<&Path> {
+        self.file.as_deref()
+    }
+
+    /// The file's name, else the plan's.
+    #[must_use]
+    pub fn title(&self) -> String {
+        let file =
+            self.file.as_deref().and_then(Path::file_name).map(|name| name.to_string_lossy().into_owned());
+        let name = &self.document().name;
+        file.unwrap_or_else(|| if name.is_empty() { "unnamed".to_owned() } else { name.clone() })
+    }
+
+    /// Whether leaving loses an edit: there is one that no file holds.
+    #[must_use]
+    pub fn is_unsaved(&self) -> bool {
+        !self.history.is_saved() && (self.file.is_some() || !self.history.is_empty())
+    }
+
+    /// Whether somebody else wrote the file meanwhile.
+    #[must_use]
+    pub fn is_changed_on_disk(&self) -> bool {
+        self.changed_on_disk
+    }
+
+    pub(super) fn set_changed_on_disk(&mut self, changed: bool) {
+        self.changed_on_disk = changed;
+    }
+
+    /// Makes an edit; the line is for the journal.
+    pub(super) fn commit(&mut self, label: &str, after: PlanDocument) -> Option<JournalLine> {
+        let revision = self.history.commit(label, after)?;
+        Some(JournalLine::Edited { label: label.to_owned(), change: Box::new(revision.change().clone()) })
+    }
+
+    /// Takes the last edit back; its label, and the line for the journal.
+    pub(super) fn undo(&mut self) -> Option<(String, JournalLine)> {
+        let label = self.history.undo()?.to_owned();
+        Some((label, JournalLine::Moved(self.history.at())))
+    }
+
+    /// Makes the edit again that was taken back.
+    pub(super) fn redo(&mut self) -> Option<(String, JournalLine)> {
+        let label = self.history.redo()?.to_owned();
+        Some((label, JournalLine::Moved(self.history.at())))
+    }
+
+    /// The file was written with the document of this revision.
+    pub(super) fn saved(&mut self, file: PathBuf, revision: usize) {
+        self.changed_on_disk = false;
+        self.file = Some(file);
+        if self.history.at() == revision {
+            self.history.mark_saved();
+        } else {
+            self.history.mark_unsaved();
+        }
+    }
+}

@@ -1,0 +1,42 @@
+//! What the editor asks before an edit or a file is lost.
+
+use std::path::PathBuf;
+
+use super::open_plan::PlanId;
+
+/// A question.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Question {
+    /// There is something else in the file that is to be written.
+    Replace {
+        /// The plan.
+        id: PlanId,
+        /// The file.
+        path: PathBuf,
+        /// It was this plan's file, and somebody else changed it since.
+        changed: bool,
+    },
+    /// The plan is to be closed, and has edits that no file holds.
+    Unsaved {
+        /// The plan.
+        id: PlanId,
+        /// The program ends when all plans are answered for.
+        quits: bool,
+    },
+}
+
+impl Question {
+    /// The answers: key and what it does.
+    #[must_use]
+    pub fn answers(&self) -> &'static [(char, &'static str)] {
+        match self {
+            Self::Replace { changed: true, .. } => {
+                &[('y', "replace it"), ('r', "read it again"), ('o', "other name"), ('n', "leave it")]
+            }
+            Self::Replace { changed: false, .. } => {
+                &[('y', "replace it"), ('o', "other name"), ('n', "leave it")]
+            }
+            Self::Unsaved { .. } => &[('s', "save"), ('d', "discard"), ('n', "stay")],
+        }
+    }
+}

@@ -1,0 +1,98 @@
+//! What of a plan is edited on the map: waypoints, home and the fence, by a cursor or by the mouse.
+
+use super::app_state::AppState;
+use super::map_point::{MapPoint, origin, to_map};
+use crate::geo::{LatLon, LocalFrame, distance_bearing};
+use nalgebra::Vector3;
+
+/// How far a thing may be from the cursor to be meant, columns of the map.
+const REACH_COLUMNS: f64 = 2.5;
+
+/// Something of the plan that has a place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum MapItem {
+    /// A waypoint.
+    Waypoint(usize),
+    /// Home of the plan.
+    Home,
+    /// The fence, by its ring.
+    Fence,
+}
+
+/// What is being moved, and where it is now.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Moving {
+    /// What.
+    pub item: MapItem,
+    /// Where, m.
+    pub place: MapPoint,
+    /// It was moved from where it was picked up.
+    pub moved: bool,
+    /// By the mouse: it is put down when the button is released.
+    pub by_mouse: bool,
+}
+
+/// The keyboard's cursor on the map.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct MapCursor {
+    /// Where, m.
+    pub place: MapPoint,
+}
+
+/// Where home of the plan is on the map: the plan's, else the craft's, else the boot place.
+pub(super) fn home(state: &AppState) -> Option<MapPoint> {
+    let frame = origin(state)?;
+    let planned = state.editor.document().home.map(|home| home.position);
+    Some(
+        planned.or(state.view.vehicle.craft.home).map_or_else(MapPoint::default, |home| to_map(&frame, home)),
+    )
+}
+
+/// Radius of the fence that the plan or the craft asks for, m.
+pub(super) fn fence_m(state: &AppState) -> Option<f64> {
+    super::editor::findings::assumptions(state, state.editor.document()).fence_m
+}
+
+/// The place as latitude and longitude.
+pub(super) fn position(frame: &LocalFrame, place: MapPoint) -> LatLon {
+    let (lat, lon, _) = frame.to_geodetic(Vector3::new(place.e, place.n, 0.0));
+    LatLon::from_degrees(lat, lon)
+}
+
+/// What is meant by a place on the map at this scale: the nearest waypoint, else home, else the fence.
+pub(super) fn item_at(state: &AppState, place: MapPoint, metres_per_column: f64) -> Option<MapItem> {
+    let frame = origin(state)?;
+    let reach = REACH_COLUMNS * metres_per_column;
+    let waypoints = state.plan().waypoints.iter().enumerate().filter(|(_, wp)| wp.kind.uses_position());
+    let nearest = waypoints
+        .map(|(index, wp)| (index, to_map(&frame, wp.position).distance(place)))
+        .min_by(|a, b| a.1.total_cmp(&b.1));
+    if let Some((index, _)) = nearest.filter(|(_, distance)| *distance <= reach) {
+        return Some(MapItem::Waypoint(index));
+    }
+    let from_home = home(state)?.distance(place);
+    if from_home <= reach {
+        return Some(MapItem::Home);
+    }
+    fence_m(state).filter(|fence_m| (from_home - fence_m).abs() <= reach).map(|_| MapItem::Fence)
+}
+
+/// Metres and bearings of a place, for whoever is about to put something there.
+pub(super) fn measured(state: &AppState, place: MapPoint, moving: Option<MapItem>) -> Option<String> {
+    let frame = origin(state)?;
+    let here = position(&frame, place);
+    let from = |name: &str, there: LatLon| {
+        let (distance_m, bearing) = distance_bearing(there, here);
+        format!("{distance_m:.1} m {:03.0}° from {name}", bearing.to_degrees())
+    };
+    let waypoints = &state.plan().waypoints;
+    let before = match moving {
+        Some(MapItem::Waypoint(index)) => index,
+        Some(MapItem::Home | MapItem::Fence) => 0,
+        None => (state.editor.row() + 1).min(waypoints.len()),
+    };
+    let last = waypoints[..before].iter().enumerate().rev().find(|(_, wp)| wp.kind.uses_position());
+    let leg = last.map(|(index, wp)| from(&format!("WP{index}"), wp.position) + " · ").unwrap_or_default();
+    let home = position(&frame, home(state)?);
+    Some(leg + &from("home", home))
+}

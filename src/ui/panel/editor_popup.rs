@@ -1,0 +1,142 @@
+//! The popups of the plan editor: forms, the file browser, questions.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+use ratatui::text::Line;
+
+use super::{line, row, span};
+use crate::ui::app_state::AppState;
+use crate::ui::draw::popup;
+use crate::ui::editor::{Browser, EditorPopup, Form, FormKind, OpenPlan, Purpose, Question, findings};
+use crate::ui::text_wrap::wrapped;
+use crate::ui::theme::Role;
+
+/// Columns of a form: labels, values, hints.
+const LABEL: u16 = 14;
+const VALUE: u16 = 30;
+const WIDTH: u16 = 72;
+
+/// Draws the popup that is open; gives the place of the cursor.
+pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+    match state.editor.popup.as_ref()? {
+        EditorPopup::Form(open) => form(state, open, area, buffer),
+        EditorPopup::Browser(open) => browser(state, open, area, buffer),
+        EditorPopup::Question(asked) => {
+            question(state, asked, area, buffer);
+            None
+        }
+    }
+}
+
+fn form(state: &AppState, form: &Form, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+    let theme = &state.theme;
+    let title = match form.kind {
+        FormKind::Bulk => "Change waypoints",
+        FormKind::Generate => "Generate a pattern",
+        FormKind::Properties => "Name, home, settings",
+    };
+    let told = state.editor.form_told(form, findings::home(state));
+    let (role, text) = match &told {
+        Ok(text) => (Role::Dim, text.clone()),
+        Err(problem) => (Role::Fault, format!("✗ {problem}")),
+    };
+    let foot = wrapped(&text, usize::from(WIDTH));
+    let height = form.fields.len() as u16 + foot.len() as u16 + 2;
+    let inside = popup(state, area, (WIDTH, height), title, buffer);
+    let rows = inside.height.saturating_sub(foot.len() as u16 + 2);
+    let first = (form.at as u16 + 1).saturating_sub(rows);
+    let mut cursor = None;
+    for (at, field) in form.fields.iter().enumerate().skip(usize::from(first)).take(usize::from(rows)) {
+        let y = at as u16 - first;
+        let here = at == form.at;
+        let role = if here { Role::Focus } else { Role::Text };
+        row(buffer, inside, y, theme, role, &format!("{} {}", if here { "▸" } else { " " }, field.label));
+        let place = Rect {
+            x: inside.x + LABEL,
+            y: inside.y + y,
+            width: VALUE.min(inside.width.saturating_sub(LABEL)),
+            height: 1,
+        };
+        if field.choices.is_empty() {
+            let position = field.text.draw(theme, place, buffer);
+            cursor = if here { position } else { cursor };
+        } else {
+            let text = format!("◂ {} ▸", field.text.value());
+            row(buffer, place, 0, theme, role, &text);
+        }
+        let hint = Rect {
+            x: place.x + place.width,
+            width: inside.width.saturating_sub(LABEL + place.width),
+            ..place
+        };
+        row(buffer, hint, 0, theme, Role::Dim, &format!(" {}", field.hint));
+    }
+    for (at, text) in foot.iter().enumerate() {
+        row(buffer, inside, rows + at as u16, theme, role, text);
+    }
+    let keys = keys(state, &[("Enter", "take"), ("↑ ↓", "next value"), ("Esc", "close")]);
+    line(buffer, inside, inside.height.saturating_sub(1), &keys);
+    cursor
+}
+
+fn browser(state: &AppState, browser: &Browser, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+    let theme = &state.theme;
+    let title = match browser.purpose {
+        Purpose::Open => "Open a plan",
+        Purpose::Save(_) => "Save as",
+    };
+    let inside = popup(state, area, (WIDTH, area.height.saturating_sub(6).min(22)), title, buffer);
+    let directory = browser.listing.directory.display().to_string();
+    row(buffer, inside, 0, theme, Role::Dim, &format!(" {directory}/"));
+    row(buffer, inside, 1, theme, Role::Title, " name ");
+    let name = Rect { x: inside.x + 6, y: inside.y + 1, width: inside.width.saturating_sub(6), height: 1 };
+    let cursor = browser.text.draw(theme, name, buffer);
+    let rows = usize::from(inside.height.saturating_sub(4));
+    let visible = browser.visible();
+    let first = browser.at.unwrap_or(0).saturating_sub(rows.saturating_sub(1));
+    if visible.is_empty() {
+        row(buffer, inside, 2, theme, Role::Dim, " No plan (.toml, .txt) and no directory here.");
+    }
+    for (at, entry) in visible.iter().enumerate().skip(first).take(rows) {
+        let here = browser.at == Some(at);
+        let (mark, role) = if here { ("▸", Role::Focus) } else { (" ", Role::Text) };
+        let slash = if entry.is_directory { "/" } else { "" };
+        row(buffer, inside, 2 + (at - first) as u16, theme, role, &format!("{mark}{}{slash}", entry.name));
+    }
+    let action = if browser.purpose == Purpose::Open { "open" } else { "save" };
+    let keys =
+        keys(state, &[("Enter", action), ("↑ ↓", "choose"), ("←", "directory above"), ("Esc", "close")]);
+    line(buffer, inside, inside.height.saturating_sub(1), &keys);
+    cursor
+}
+
+fn question(state: &AppState, question: &Question, area: Rect, buffer: &mut Buffer) {
+    let theme = &state.theme;
+    let title_of = |id| state.editor.plan_of(id).map_or_else(String::new, OpenPlan::title);
+    let (title, text) = match question {
+        Question::Replace { path, changed: true, .. } => {
+            ("Changed on disk", format!("{} was changed by somebody else since it was read.", path.display()))
+        }
+        Question::Replace { path, changed: false, .. } => ("Replace?", format!("{} exists.", path.display())),
+        Question::Unsaved { id, .. } => {
+            ("Unsaved", format!("{} has edits that no file holds.", title_of(*id)))
+        }
+    };
+    let lines = wrapped(&format!("▲ {text}"), 58);
+    let inside = popup(state, area, (60, lines.len() as u16 + 2), title, buffer);
+    for (at, text) in lines.iter().enumerate() {
+        row(buffer, inside, at as u16, theme, Role::Warn, &format!(" {text}"));
+    }
+    let answers: Vec<(String, &str)> =
+        question.answers().iter().map(|(key, what)| (key.to_string(), *what)).collect();
+    let answers: Vec<(&str, &str)> = answers.iter().map(|(key, what)| (key.as_str(), *what)).collect();
+    line(buffer, inside, lines.len() as u16 + 1, &keys(state, &answers));
+}
+
+fn keys(state: &AppState, keys: &[(&str, &str)]) -> Line<'static> {
+    let theme = &state.theme;
+    let spans = keys.iter().flat_map(|(key, what)| {
+        [span(theme, Role::Key, format!(" {key}")), span(theme, Role::Text, format!(" {what} "))]
+    });
+    Line::from(spans.collect::<Vec<_>>())
+}

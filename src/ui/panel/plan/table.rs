@@ -1,0 +1,176 @@
+//! The waypoint table.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+use strum::IntoEnumIterator as _;
+
+use crate::plan::edit::fix::waypoint_of;
+use crate::plan::review::Finding;
+use crate::plan::{FlightPlan, Waypoint, WaypointType};
+use crate::ui::app_state::AppState;
+use crate::ui::editor::Column;
+use crate::ui::formatting::cut;
+use crate::ui::panel::{Panel, row};
+use crate::ui::theme::Role;
+
+/// Width from which all columns have room.
+const WIDE: u16 = 74;
+/// Mark and number before the first column.
+const NUMBER: u16 = 4;
+
+/// Head and width of a column.
+fn column(column: Column, wide: bool) -> (&'static str, u16) {
+    match (column, wide) {
+        (Column::Type, _) => ("type", 10),
+        (Column::Latitude, _) => ("latitude", 12),
+        (Column::Longitude, _) => ("longitude", 13),
+        (Column::Altitude, true) => ("alt m", 9),
+        (Column::Altitude, false) => ("alt m", 7),
+        (Column::Speed, true) => ("m/s", 7),
+        (Column::Speed, false) => ("m/s", 5),
+        (Column::Time, true) => ("time s", 8),
+        (Column::Time, false) => ("s", 5),
+        (Column::Pattern, _) => (" pattern", 9),
+    }
+}
+
+/// The columns that fit, with their first cell: the one with the cursor always does.
+fn columns(state: &AppState, width: u16) -> Vec<(Column, &'static str, u16, u16)> {
+    let wide = width >= WIDE;
+    let mut shown: Vec<Column> = Column::iter().collect();
+    let total = |shown: &[Column]| NUMBER + shown.iter().map(|&c| column(c, wide).1).sum::<u16>();
+    // Pattern and speed are the ones that most plans can be read without.
+    for spare in [Column::Pattern, Column::Speed, Column::Time, Column::Latitude, Column::Longitude] {
+        if total(&shown) > width && state.editor.column() != spare {
+            shown.retain(|&column| column != spare);
+        }
+    }
+    let mut at = NUMBER;
+    shown
+        .into_iter()
+        .map(|shown| {
+            let (head, width) = column(shown, wide);
+            at += width;
+            (shown, head, at - width, width)
+        })
+        .collect()
+}
+
+/// How many waypoints differ between two plans.
+pub(super) fn differences(plan: &FlightPlan, other: &FlightPlan) -> usize {
+    let (a, b) = (&plan.waypoints, &other.waypoints);
+    std::iter::zip(a, b).filter(|(a, b)| a != b).count() + a.len().abs_diff(b.len())
+}
+
+/// Draws the table; gives the place of the cursor while a cell is typed.
+pub(super) fn draw(
+    state: &AppState,
+    findings: &[Finding],
+    area: Rect,
+    buffer: &mut Buffer,
+) -> Option<Position> {
+    let theme = &state.theme;
+    let waypoints = &state.plan().waypoints;
+    let columns = columns(state, area.width);
+    row(buffer, area, 0, theme, Role::Title, "  #");
+    for &(_, head, x, width) in &columns {
+        let text = aligned(head, width, head == "type" || head == " pattern");
+        buffer.set_string(
+            area.x + x,
+            area.y,
+            cut(&text, usize::from(area.width.saturating_sub(x))),
+            theme.style(Role::Title),
+        );
+    }
+    let rows = usize::from(area.height.saturating_sub(1));
+    let focused = state.focus == Panel::Plan;
+    let cursor_row = state.editor.row();
+    let first = cursor_row.saturating_sub(rows / 2).min(waypoints.len().saturating_sub(rows));
+    let mut cursor = None;
+    for (at, (index, wp)) in waypoints.iter().enumerate().skip(first).take(rows).enumerate() {
+        let y = area.y + 1 + at as u16;
+        let selected = state.editor.selection().is_some_and(|selection| selection.contains(&index));
+        let (mark, role) = mark(state, findings, index, wp);
+        let role = if selected { Role::Selected } else { role };
+        row(buffer, Rect { y, height: 1, ..area }, 0, theme, role, &format!("{mark}{index:>2} "));
+        for &(column, _, x, width) in &columns {
+            let left = matches!(column, Column::Type | Column::Pattern);
+            let here = focused && index == cursor_row && column == state.editor.column();
+            let cell = Rect { x: area.x + x, y, width: width.min(area.width.saturating_sub(x)), height: 1 };
+            if let Some(field) = state.editor.field().filter(|_| here) {
+                let bad = field.problem.is_some();
+                buffer.set_style(cell, theme.style(if bad { Role::Fault } else { Role::Focus }));
+                let inside = Rect { x: cell.x + 1, width: cell.width.saturating_sub(1), ..cell };
+                cursor = field.text.draw(theme, inside, buffer);
+                continue;
+            }
+            let mut text = aligned(&value(column, wp), width, left);
+            if here {
+                text = in_brackets(&text, left);
+            }
+            let role = if here { Role::Focus } else { role };
+            buffer.set_string(cell.x, y, cut(&text, usize::from(cell.width)), theme.style(role));
+        }
+    }
+    cursor
+}
+
+/// What stands before a waypoint: it is wrong, flown now, or not as on the craft.
+fn mark(state: &AppState, findings: &[Finding], index: usize, wp: &Waypoint) -> (char, Role) {
+    let vehicle = &state.view.vehicle;
+    let wrong = findings.iter().find(|finding| waypoint_of(finding) == Some(index));
+    let flying =
+        vehicle.nav.as_ref().filter(|nav| nav.engaged && vehicle.active_plan.as_ref() == Some(state.plan()));
+    let stored = vehicle.stored_plan.as_ref().filter(|plan| !plan.waypoints.is_empty());
+    match wrong {
+        Some(finding) if finding.is_refusal() => ('✗', Role::Fault),
+        Some(_) => ('▲', Role::Warn),
+        None if flying.is_some_and(|nav| usize::from(nav.wp) == index) => ('▸', Role::Target),
+        None if stored.is_some_and(|plan| plan.waypoints.get(index) != Some(wp)) => ('●', Role::Text),
+        None => (' ', Role::Text),
+    }
+}
+
+/// The value as the table shows it.
+fn value(column: Column, wp: &Waypoint) -> String {
+    if !column.is_used(wp.kind) {
+        return "—".to_owned();
+    }
+    match column {
+        Column::Altitude => format!("{:.1}", f64::from(wp.alt_cm) / 100.0),
+        Column::Speed if wp.kind == WaypointType::YawRate => format!("{}°", wp.speed_cms),
+        Column::Speed if wp.speed_cms == 0 => "—".to_owned(),
+        Column::Speed => format!("{:.1}", f64::from(wp.speed_cms) / 100.0),
+        Column::Time if wp.duration_ds == 0 && wp.kind == WaypointType::Hold => "∞".to_owned(),
+        Column::Time => format!("{:.1}", f64::from(wp.duration_ds) / 10.0),
+        _ => column.text(wp),
+    }
+}
+
+fn aligned(text: &str, width: u16, left: bool) -> String {
+    let width = usize::from(width);
+    if left { format!(" {text:<0$}", width.saturating_sub(1)) } else { format!("{text:>width$}") }
+}
+
+/// The value under the cursor in brackets, in the room it has.
+fn in_brackets(text: &str, left: bool) -> String {
+    let inside = text.trim();
+    let blank = text.chars().count().saturating_sub(inside.chars().count() + 2);
+    if left { format!("[{inside}]{}", " ".repeat(blank)) } else { format!("{}[{inside}]", " ".repeat(blank)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::HoldPattern;
+
+    #[test]
+    fn what_a_waypoint_does_not_use_is_a_dash() {
+        let takeoff = Waypoint { kind: WaypointType::Takeoff, ..Waypoint::default() };
+        assert_eq!(value(Column::Latitude, &takeoff), "—");
+        let hold = Waypoint { kind: WaypointType::Hold, pattern: HoldPattern::Orbit, ..Waypoint::default() };
+        assert_eq!((value(Column::Time, &hold), value(Column::Pattern, &hold)), ("∞".into(), "ORBIT".into()));
+        let rate = Waypoint { kind: WaypointType::YawRate, speed_cms: 20, ..Waypoint::default() };
+        assert_eq!(value(Column::Speed, &rate), "20°");
+    }
+}

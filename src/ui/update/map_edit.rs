@@ -1,0 +1,133 @@
+//! Editing on the map: the cursor, picking up and putting down.
+
+use super::{plan, view};
+use crate::plan::Waypoint;
+use crate::plan::format::HomePosition;
+use crate::ui::app_state::AppState;
+use crate::ui::event_log::Severity;
+use crate::ui::map_edit::{self, MapCursor, MapItem, Moving};
+use crate::ui::map_point::{self, MapPoint};
+use crate::ui::message::Effect;
+use crate::ui::viewport::MapMode;
+
+/// Shows or hides the cursor.
+pub(super) fn toggle(state: &mut AppState) -> Vec<Effect> {
+    state.map.moving = None;
+    if state.map.edit.take().is_some() {
+        return Vec::new();
+    }
+    let Some(view) = view::viewport(state) else { return Vec::new() };
+    state.map.edit = Some(MapCursor { place: view.centre });
+    // A map that follows or fits would move under the cursor.
+    state.map.mode = MapMode::Free { n: view.centre.n, e: view.centre.e, scale: view.scale };
+    Vec::new()
+}
+
+/// An arrow key: moves the cursor by a cell while there is one, else the map.
+pub(super) fn arrow(state: &mut AppState, columns: f64, rows: f64) -> Vec<Effect> {
+    let (Some(cursor), Some(view)) = (state.map.edit, view::viewport(state)) else {
+        return view::pan(state, columns, rows);
+    };
+    let place =
+        MapPoint::new(cursor.place.n - rows * 2.0 * view.scale, cursor.place.e + columns * view.scale);
+    state.map.edit = Some(MapCursor { place });
+    if let Some(moving) = &mut state.map.moving {
+        moving.place = place;
+        moving.moved = true;
+    }
+    if view.screen_cell(place).is_none() {
+        return view::pan(state, columns, rows);
+    }
+    Vec::new()
+}
+
+/// Picks up what is at the cursor, or puts down what was picked up.
+pub(super) fn pick(state: &mut AppState) -> Vec<Effect> {
+    let Some(cursor) = state.map.edit else {
+        state.notify(Severity::Info, "`p` shows a cursor with which waypoints are picked, added and moved.");
+        return Vec::new();
+    };
+    if state.map.moving.is_some() {
+        return put_down(state);
+    }
+    let Some(view) = view::viewport(state) else { return Vec::new() };
+    match map_edit::item_at(state, cursor.place, view.scale) {
+        Some(item) => pick_up(state, item, cursor.place, false),
+        None => state.notify(Severity::Info, "Nothing is here: `i` adds a waypoint at the cursor."),
+    }
+    Vec::new()
+}
+
+/// Picks an item up.
+pub(super) fn pick_up(state: &mut AppState, item: MapItem, place: MapPoint, by_mouse: bool) {
+    if let MapItem::Waypoint(index) = item {
+        state.editor.go_to_row(index);
+    }
+    state.map.moving = Some(Moving { item, place, moved: false, by_mouse });
+}
+
+/// Puts down what is being moved, as one edit.
+pub(super) fn put_down(state: &mut AppState) -> Vec<Effect> {
+    let (Some(moving), Some(frame)) = (state.map.moving.take(), map_point::origin(state)) else {
+        return Vec::new();
+    };
+    if !moving.moved {
+        return Vec::new();
+    }
+    let position = map_edit::position(&frame, moving.place);
+    match moving.item {
+        MapItem::Waypoint(index) => plan::place_waypoint(state, index, position),
+        MapItem::Home => {
+            state.notify(
+                Severity::Info,
+                "Home of the plan: the craft stands there at the next start with it.",
+            );
+            state.editor.edit("move home", |document| {
+                let amsl_m = document.home.and_then(|home| home.amsl_m);
+                document.home = Some(HomePosition { position, amsl_m });
+            })
+        }
+        MapItem::Fence => {
+            let Some(home) = map_edit::home(state) else { return Vec::new() };
+            let metres = home.distance(moving.place).round().max(1.0);
+            state.editor.edit("fence", |document| {
+                document.settings.retain(|line| !line.starts_with("ap_max_distance_from_home"));
+                document.settings.push(format!("ap_max_distance_from_home = {metres:.0}"));
+            })
+        }
+    }
+}
+
+/// Adds a waypoint at the cursor.
+pub(super) fn add(state: &mut AppState) -> Vec<Effect> {
+    let Some(cursor) = state.map.edit else {
+        toggle(state);
+        state.notify(Severity::Info, "Move the cursor with the arrow keys; `i` adds a waypoint there.");
+        return Vec::new();
+    };
+    add_at(state, cursor.place)
+}
+
+/// Adds a waypoint at a place.
+pub(super) fn add_at(state: &mut AppState, place: MapPoint) -> Vec<Effect> {
+    let Some(frame) = map_point::origin(state) else { return Vec::new() };
+    let position = map_edit::position(&frame, place);
+    let like = plan::next_waypoint(state).unwrap_or_default();
+    plan::insert_waypoint(state, Waypoint { position, ..like })
+}
+
+/// Deletes the waypoint at the cursor.
+pub(super) fn delete(state: &mut AppState) -> Vec<Effect> {
+    let (Some(cursor), Some(view)) = (state.map.edit, view::viewport(state)) else {
+        state.notify(Severity::Info, "`p` shows a cursor: `d` deletes the waypoint under it.");
+        return Vec::new();
+    };
+    let Some(MapItem::Waypoint(index)) = map_edit::item_at(state, cursor.place, view.scale) else {
+        state.notify(Severity::Info, "No waypoint is here.");
+        return Vec::new();
+    };
+    state.map.moving = None;
+    state.editor.cancel();
+    state.editor.go_to_row(index);
+    state.editor.delete()
+}

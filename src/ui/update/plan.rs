@@ -1,0 +1,297 @@
+//! The actions of the plan editor.
+
+use crossterm::event::{KeyCode, KeyEvent};
+use nalgebra::Vector2;
+
+use crate::geo::{GroundPlane, LatLon, distance_bearing};
+use crate::plan::edit::PlanDocument;
+use crate::plan::{HoldPattern, Waypoint, WaypointType};
+use crate::ui::app_state::AppState;
+use crate::ui::editor::findings;
+use crate::ui::editor::{Browser, Column, EditorPopup, FileRequest, Form, FormKind, Purpose, Question};
+use crate::ui::event_log::Severity;
+use crate::ui::message::Effect;
+
+/// How far behind the last waypoint a new one stands, m.
+const NEXT_LEG_M: f64 = 50.0;
+/// Altitude of the first waypoint, cm.
+const FIRST_ALT_CM: i32 = 2000;
+
+/// A key while a cell is typed.
+pub(super) fn field_key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
+    match event.code {
+        KeyCode::Enter => return state.editor.end_typing(),
+        KeyCode::Esc => {
+            state.editor.cancel();
+        }
+        KeyCode::Tab | KeyCode::BackTab => {
+            let effects = state.editor.end_typing();
+            if state.editor.field().is_none() {
+                state.editor.move_cursor(0, if event.code == KeyCode::Tab { 1 } else { -1 });
+                state.editor.begin_typing().ok();
+            }
+            return effects;
+        }
+        _ => {
+            if let Some(field) = state.editor.field_mut() {
+                field.text.key(event);
+                field.problem = None;
+            }
+        }
+    }
+    Vec::new()
+}
+
+/// Enter on a cell: names go on to the next, numbers are typed.
+pub(super) fn edit_cell(state: &mut AppState) -> Vec<Effect> {
+    match state.editor.column() {
+        Column::Type | Column::Pattern => nudge(state, 1),
+        _ => {
+            if let Err(sentence) = state.editor.begin_typing() {
+                state.notify(Severity::Warn, sentence);
+            }
+            Vec::new()
+        }
+    }
+}
+
+pub(super) fn nudge(state: &mut AppState, steps: i32) -> Vec<Effect> {
+    let column = state.editor.column();
+    let kind = state.editor.document().plan.waypoints.get(state.editor.row()).map(|wp| wp.kind);
+    match kind {
+        Some(kind) if !column.is_used(kind) => {
+            state.notify(Severity::Warn, format!("A {kind} has no {}.", column.name()));
+            Vec::new()
+        }
+        _ => state.editor.nudge(steps),
+    }
+}
+
+/// The waypoint that `i` inserts: as the one under the cursor, a leg farther on.
+pub(super) fn next_waypoint(state: &AppState) -> Option<Waypoint> {
+    let waypoints = &state.editor.document().plan.waypoints;
+    let row = state.editor.row();
+    let placed = |wp: &&Waypoint| wp.kind.uses_position();
+    let Some(last) = waypoints.get(..=row).and_then(|before| before.iter().rev().find(placed)) else {
+        let home = findings::home(state)?;
+        return Some(Waypoint { position: home, alt_cm: FIRST_ALT_CM, ..Waypoint::default() });
+    };
+    let at = waypoints.iter().position(|wp| wp == last).unwrap_or(0);
+    let from =
+        waypoints[..at].iter().rev().find(placed).map(|wp| wp.position).or_else(|| findings::home(state));
+    let bearing = from.map_or(0.0, |from| distance_bearing(from, last.position).1);
+    let onward = Vector2::new(bearing.cos(), bearing.sin()) * NEXT_LEG_M;
+    let kind = if last.kind == WaypointType::Flyby { WaypointType::Flyby } else { WaypointType::Flyover };
+    Some(Waypoint {
+        position: GroundPlane::new(last.position).to_position(onward),
+        duration_ds: 0,
+        pattern: HoldPattern::None,
+        kind,
+        ..*last
+    })
+}
+
+pub(super) fn insert(state: &mut AppState) -> Vec<Effect> {
+    match next_waypoint(state) {
+        Some(waypoint) => insert_waypoint(state, waypoint),
+        None => {
+            state.notify(Severity::Warn, "Home is not known yet: wait for the GPS fix, or paste a waypoint.");
+            Vec::new()
+        }
+    }
+}
+
+/// Inserts a waypoint behind the cursor.
+pub(super) fn insert_waypoint(state: &mut AppState, waypoint: Waypoint) -> Vec<Effect> {
+    let inserted = state.editor.insert("insert a waypoint", &[waypoint]);
+    told(state, inserted)
+}
+
+pub(super) fn duplicate(state: &mut AppState) -> Vec<Effect> {
+    let Some(waypoint) = state.editor.document().plan.waypoints.get(state.editor.row()).copied() else {
+        return Vec::new();
+    };
+    let inserted = state.editor.insert("duplicate", &[waypoint]);
+    told(state, inserted)
+}
+
+pub(super) fn copy(state: &mut AppState) -> Vec<Effect> {
+    let Some((count, text)) = state.editor.copy() else { return Vec::new() };
+    let noun = if count == 1 { "waypoint" } else { "waypoints" };
+    state.notify(Severity::Info, format!("Copied {count} {noun} as CLI lines; `p` inserts them."));
+    vec![Effect::Copy(text)]
+}
+
+pub(super) fn paste_copied(state: &mut AppState) -> Vec<Effect> {
+    let pasted = state.editor.paste_copied();
+    told(state, pasted)
+}
+
+/// Text pasted by the terminal.
+pub(super) fn paste_text(state: &mut AppState, text: &str) -> Vec<Effect> {
+    if let Some(field) = state.editor.field_mut() {
+        field.text.insert(text.trim());
+        return Vec::new();
+    }
+    match state.editor.paste_text(text) {
+        Ok((count, effects)) => {
+            state.notify(Severity::Good, format!("Pasted {count} waypoints; `u` takes them out again."));
+            effects
+        }
+        Err(sentence) => {
+            state.notify(Severity::Warn, sentence);
+            Vec::new()
+        }
+    }
+}
+
+fn told(state: &mut AppState, done: Result<Vec<Effect>, String>) -> Vec<Effect> {
+    done.unwrap_or_else(|sentence| {
+        state.notify(Severity::Warn, sentence);
+        Vec::new()
+    })
+}
+
+pub(super) fn undo(state: &mut AppState, redo: bool) -> Vec<Effect> {
+    let done = if redo { state.editor.redo() } else { state.editor.undo() };
+    let Some((label, effect)) = done else {
+        let nothing = if redo { "Nothing to redo." } else { "Nothing to undo." };
+        state.notify(Severity::Info, nothing);
+        return Vec::new();
+    };
+    let verb = if redo { "Redone" } else { "Undone" };
+    state.notify(Severity::Info, format!("{verb}: {label}."));
+    vec![effect]
+}
+
+/// Takes the edit that is offered for the finding that is shown.
+pub(super) fn take_fix(state: &mut AppState) -> Vec<Effect> {
+    let found = findings::findings(state);
+    match findings::shown(state, &found) {
+        None => {
+            state.notify(Severity::Good, "Nothing is wrong with this plan.");
+            Vec::new()
+        }
+        Some((finding, None)) => {
+            state.notify(Severity::Warn, format!("No edit takes this away: {finding}."));
+            Vec::new()
+        }
+        Some((_, Some(fix))) => state.editor.replace_document(&fix.title, fix.document),
+    }
+}
+
+pub(super) fn open_form(state: &mut AppState, kind: FormKind) -> Vec<Effect> {
+    let document = state.editor.document();
+    if kind == FormKind::Bulk && document.plan.waypoints.is_empty() {
+        state.notify(Severity::Warn, "There is no waypoint to change: `i` inserts one.");
+        return Vec::new();
+    }
+    state.editor.popup = Some(EditorPopup::Form(Form::of(kind, document)));
+    Vec::new()
+}
+
+pub(super) fn open_browser(state: &mut AppState) -> Vec<Effect> {
+    state.editor.popup = Some(EditorPopup::Browser(Browser::new(Purpose::Open, "")));
+    let beside = state.editor.plan().file().and_then(std::path::Path::parent).map(std::path::Path::to_owned);
+    vec![Effect::Files(FileRequest::List(beside))]
+}
+
+/// Saves the plan in its file; one without a file asks for a name.
+pub(super) fn save(state: &mut AppState) -> Vec<Effect> {
+    let plan = state.editor.plan();
+    match plan.file().map(std::path::Path::to_owned) {
+        Some(path) => vec![write(state, state.editor.plan().id(), path, false)],
+        None => save_as(state),
+    }
+}
+
+pub(super) fn save_as(state: &mut AppState) -> Vec<Effect> {
+    let plan = state.editor.plan();
+    let name = plan.title();
+    let name = if plan.file().is_some() { name } else { format!("{}.toml", name.replace(['/', ' '], "-")) };
+    let beside = plan.file().and_then(std::path::Path::parent).map(std::path::Path::to_owned);
+    state.editor.popup = Some(EditorPopup::Browser(Browser::new(Purpose::Save(plan.id()), &name)));
+    vec![Effect::Files(FileRequest::List(beside))]
+}
+
+pub(super) fn write(
+    state: &AppState,
+    id: crate::ui::editor::PlanId,
+    path: std::path::PathBuf,
+    replace: bool,
+) -> Effect {
+    let plan = state.editor.plan_of(id).unwrap_or_else(|| state.editor.plan());
+    Effect::Files(FileRequest::Save {
+        id,
+        path,
+        document: Box::new(plan.document().clone()),
+        revision: plan.history().at(),
+        replace,
+    })
+}
+
+pub(super) fn new_plan(state: &mut AppState) -> Vec<Effect> {
+    let effect = state.editor.open_new(PlanDocument { name: "new".to_owned(), ..PlanDocument::default() });
+    state.notify(
+        Severity::Info,
+        "A new plan: `i` inserts a waypoint, `P` generates a pattern, `(` goes back.",
+    );
+    vec![effect]
+}
+
+/// Closes the plan that is shown; unsaved edits are asked about.
+pub(super) fn close(state: &mut AppState) -> Vec<Effect> {
+    let id = state.editor.plan().id();
+    if state.editor.plan().is_unsaved() {
+        state.editor.popup = Some(EditorPopup::Question(Question::Unsaved { id, quits: false }));
+        return Vec::new();
+    }
+    state.editor.close(id)
+}
+
+pub(super) fn show_other(state: &mut AppState, step: isize) -> Vec<Effect> {
+    if state.editor.plans().len() == 1 {
+        state.notify(Severity::Info, "One plan is open: `o` opens another, `n` makes a new one.");
+    } else {
+        state.editor.show_other(step);
+    }
+    Vec::new()
+}
+
+/// Takes the plan in the craft into the editor, as one edit.
+pub(super) fn download(state: &mut AppState) -> Vec<Effect> {
+    let Some(stored) = state.view.vehicle.stored_plan.clone() else {
+        state.notify(Severity::Warn, "The craft has not told its plan yet.");
+        return Vec::new();
+    };
+    if stored == state.editor.document().plan {
+        state.notify(Severity::Info, "The craft has this very plan.");
+        return Vec::new();
+    }
+    let count = stored.waypoints.len();
+    let effects = state.editor.edit("download from the craft", |document| document.plan = stored);
+    state.notify(Severity::Good, format!("Downloaded {count} waypoints; `u` brings the others back."));
+    effects
+}
+
+/// Moves a waypoint to a place, as one edit.
+pub(super) fn place_waypoint(state: &mut AppState, index: usize, position: LatLon) -> Vec<Effect> {
+    state.editor.edit(&format!("move WP{index}"), |document| {
+        if let Some(wp) = document.plan.waypoints.get_mut(index).filter(|wp| wp.kind.uses_position()) {
+            wp.position = position;
+        }
+    })
+}
+
+/// The craft saved its configuration, or says why not.
+pub(super) fn saved_to_flash(state: &mut AppState, result: Result<(), String>) -> Vec<Effect> {
+    match result {
+        Ok(()) => {
+            let stored = state.view.vehicle.stored_plan.as_ref().map_or(0, |plan| plan.waypoints.len());
+            let text = format!("Saved in the craft's flash: {stored} waypoints and the settings.");
+            state.notify(Severity::Good, text);
+        }
+        Err(sentence) => state.notify(Severity::Fault, sentence),
+    }
+    Vec::new()
+}

@@ -1,0 +1,168 @@
+//! Keys for the editor's popups, and what comes back from the files.
+
+use std::path::Path;
+
+use crossterm::event::{KeyCode, KeyEvent};
+
+use super::plan;
+use crate::ui::app_state::AppState;
+use crate::ui::editor::findings;
+use crate::ui::editor::{
+    Browser, BrowserKey, EditorPopup, FileReply, FileRequest, Form, FormKey, PlanId, Purpose, Question,
+};
+use crate::ui::event_log::Severity;
+use crate::ui::message::Effect;
+
+/// A key while a popup of the editor is open.
+pub(super) fn key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
+    match state.editor.popup.take() {
+        Some(EditorPopup::Form(form)) => form_key(state, form, event),
+        Some(EditorPopup::Browser(browser)) => browser_key(state, browser, event),
+        Some(EditorPopup::Question(question)) => question_key(state, question, event),
+        None => Vec::new(),
+    }
+}
+
+fn form_key(state: &mut AppState, mut form: Form, event: KeyEvent) -> Vec<Effect> {
+    match form.key(event) {
+        FormKey::Cancel => return Vec::new(),
+        FormKey::Edited => {}
+        FormKey::Accept => match state.editor.take_form(&form, findings::home(state)) {
+            Ok((effects, told)) => {
+                state.notify(Severity::Good, told);
+                return effects;
+            }
+            Err(problem) => form.problem = Some(problem),
+        },
+    }
+    state.editor.popup = Some(EditorPopup::Form(form));
+    Vec::new()
+}
+
+fn browser_key(state: &mut AppState, mut browser: Browser, event: KeyEvent) -> Vec<Effect> {
+    let key = browser.key(event);
+    match key {
+        BrowserKey::Cancel => {
+            state.editor.quitting = false;
+            return Vec::new();
+        }
+        BrowserKey::Chosen(path) => {
+            return match browser.purpose {
+                Purpose::Open => vec![Effect::Files(FileRequest::Open(path))],
+                Purpose::Save(id) => vec![plan::write(state, id, path, false)],
+            };
+        }
+        BrowserKey::Edited | BrowserKey::List(_) => {}
+    }
+    state.editor.popup = Some(EditorPopup::Browser(browser));
+    match key {
+        BrowserKey::List(directory) => vec![Effect::Files(FileRequest::List(Some(directory)))],
+        _ => Vec::new(),
+    }
+}
+
+fn question_key(state: &mut AppState, question: Question, event: KeyEvent) -> Vec<Effect> {
+    let answer = match event.code {
+        KeyCode::Esc => 'n',
+        KeyCode::Char(c) => c.to_ascii_lowercase(),
+        _ => ' ',
+    };
+    match (question, answer) {
+        (_, 'n') => {
+            state.editor.quitting = false;
+            Vec::new()
+        }
+        (Question::Replace { id, path, .. }, 'y') => vec![plan::write(state, id, path, true)],
+        (Question::Replace { path, changed: true, .. }, 'r') => vec![Effect::Files(FileRequest::Open(path))],
+        (Question::Replace { .. }, 'o') => plan::save_as(state),
+        (Question::Unsaved { id, quits }, 's') => {
+            state.editor.quitting = quits;
+            save_plan(state, id)
+        }
+        (Question::Unsaved { id, quits }, 'd') => {
+            let mut effects = state.editor.close(id);
+            if quits {
+                effects.extend(quit(state));
+            }
+            effects
+        }
+        (question, _) => {
+            state.editor.popup = Some(EditorPopup::Question(question));
+            Vec::new()
+        }
+    }
+}
+
+fn save_plan(state: &mut AppState, id: PlanId) -> Vec<Effect> {
+    state.editor.show_plan(id);
+    plan::save(state)
+}
+
+/// Quits when no plan has an edit that nobody saved; else asks about the first of them.
+pub(super) fn quit(state: &mut AppState) -> Vec<Effect> {
+    match state.editor.plans().iter().find(|plan| plan.is_unsaved()).map(super::super::editor::OpenPlan::id) {
+        Some(id) => {
+            state.editor.popup = Some(EditorPopup::Question(Question::Unsaved { id, quits: true }));
+            Vec::new()
+        }
+        None => vec![Effect::Quit],
+    }
+}
+
+/// Takes an answer of the files in.
+pub(super) fn answered(state: &mut AppState, reply: FileReply) -> Vec<Effect> {
+    match reply {
+        FileReply::Opened(opened) => {
+            for note in &opened.notes {
+                state.notify(Severity::Info, note.clone());
+            }
+            let name = opened.file.as_ref().map_or_else(String::new, |file| shown(file.as_path()));
+            let told = if opened.recovered {
+                Some(format!(
+                    "Edits of {name} that were never saved are back: `u` undoes them, `s` saves them."
+                ))
+            } else {
+                Some(format!("Opened {name}.")).filter(|_| opened.notes.is_empty())
+            };
+            state.editor.opened(*opened);
+            if let Some(told) = told {
+                state.notify(Severity::Good, told);
+            }
+        }
+        FileReply::Saved { id, path, revision, lost } => {
+            let name = shown(&path);
+            state.editor.saved(id, path, revision);
+            state.notify(Severity::Good, format!("Saved {name}."));
+            for sentence in lost {
+                state.notify(Severity::Warn, sentence);
+            }
+            if std::mem::take(&mut state.editor.quitting) {
+                return quit(state);
+            }
+        }
+        FileReply::Occupied { id, path, changed } => {
+            state.editor.popup = Some(EditorPopup::Question(Question::Replace { id, path, changed }));
+        }
+        FileReply::Changed(id) => {
+            if let Some(title) = state.editor.changed_on_disk(id) {
+                let text = format!("{title} changed on disk: `s` asks before it replaces it.");
+                state.notify(Severity::Warn, text);
+            }
+        }
+        FileReply::Listed(listing) => {
+            if let Some(EditorPopup::Browser(browser)) = &mut state.editor.popup {
+                browser.listing = listing;
+                browser.at = None;
+            }
+        }
+        FileReply::Failed(sentence) => {
+            state.editor.quitting = false;
+            state.notify(Severity::Fault, sentence);
+        }
+    }
+    Vec::new()
+}
+
+fn shown(path: &Path) -> String {
+    path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned())
+}
