@@ -22,6 +22,6 @@ pub mod sim;
 pub mod source_snippet;
 pub mod storage;
 pub mod telemetry;
-
+pub mod timeline;
 pub mod ui;
 pub mod vehicle;

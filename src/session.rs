@@ -14,7 +14,6 @@ mod request_handler;
 mod runtime;
 mod simulator;
 pub mod sitl;
-mod timeline;
 mod upload;
 
 pub use crate::flight::FlightResult as ForecastResult;
@@ -31,5 +30,4 @@ pub use persistence::Persistence;
 pub use request_handler::{Handled, RequestHandler};
 pub use runtime::{Endpoints, Handle, SessionConfig, start};
 pub use simulator::SimulatorNotice;
-pub use timeline::{Mark, MarkKind, TimelineView};
 pub use upload::upload;

@@ -9,13 +9,14 @@ use betadeck::firmware::FirmwareOptions;
 use betadeck::firmware::config::Configuration;
 use betadeck::link::proto::command_line::LineSource;
 use betadeck::link::{ClientId, ListenConfig, Listeners, Request};
+use betadeck::session::command::Seek;
 use betadeck::session::{
     Command, Endpoints, Event, Handle, RequestHandler, SessionConfig, SessionEvent, SessionView, start,
 };
 use betadeck::signals::RcFrame;
 use betadeck::sim::WorldConfig;
 use betadeck::storage::Store;
-use betadeck::telemetry::{ArmingFlag, EndpointKind};
+use betadeck::telemetry::{ArmingFlag, EndpointKind, Snapshot};
 use betadeck::vehicle::{Vehicle, VehicleConfig};
 use tokio::io::{AsyncReadExt, AsyncWriteExt};
 use tokio::net::TcpStream;
@@ -219,4 +220,71 @@ async fn sticks_are_cut_while_a_script_flies_and_after_it_until_they_are_taken_b
     rig.picture("half a second", |view| view.vehicle.time.as_secs_f64() > then).await;
     assert!(!rig.session.view.borrow().rc_cut && is_on(&rig.session.view.borrow(), STICKS));
     running.abort();
+}
+
+#[tokio::test]
+async fn flying_on_from_an_earlier_instant_closes_the_links_and_is_told() {
+    let mut rig = rig().await;
+    let mut person = rig.person().await;
+    rig.picture("the block", is_blocked_by_cli).await;
+    let blocked = rig.session.view.borrow().vehicle.time;
+    rig.session.commands.send(Command::Seek(Seek::Seconds(-1000.0))).await.unwrap();
+    rig.picture("the beginning", |view| view.is_rewound() && view.vehicle.time < blocked).await;
+    assert!(!is_blocked_by_cli(&rig.session.view.borrow()), "as it was then");
+    // While an earlier instant is shown clients talk to the vehicle that waits.
+    person.write_all(b"version\n").await.unwrap();
+    let mut said = Vec::new();
+    while !said.ends_with(b"\r\n# ") {
+        said.push(person.read_u8().await.unwrap());
+    }
+    rig.session.commands.send(Command::FlyOn).await.unwrap();
+    let mut rest = Vec::new();
+    tokio::time::timeout(PATIENCE, person.read_to_end(&mut rest)).await.unwrap().unwrap();
+    rig.picture("the branch", |view| view.timeline.as_ref().is_some_and(|timeline| timeline.branch == 1))
+        .await;
+    let told = async {
+        while let Some(event) = rig.session.events.recv().await {
+            if let SessionEvent::Branch { number, left } = event.kind {
+                return Some((number, left > event.time));
+            }
+        }
+        None
+    };
+    assert_eq!(tokio::time::timeout(PATIENCE, told).await.unwrap(), Some((1, true)));
+}
+
+#[tokio::test]
+async fn what_a_script_flew_is_shown_again_as_it_was() {
+    let mut rig = rig().await;
+    rig.session.commands.send(Command::Speed(8.0)).await.unwrap();
+    let requests = rig.requests.clone();
+    let script = tokio::spawn(async move {
+        let from = "127.0.0.1:9".parse().unwrap();
+        for step in 0.. {
+            let mut frame = RcFrame::SAFE;
+            frame.channels[0] = 1400 + step % 200;
+            let sent = requests.send(Request::Rc { stamp_s: 0.0, frame, from, at: Instant::now() }).await;
+            if sent.is_err() {
+                return;
+            }
+            tokio::time::sleep(Duration::from_millis(10)).await;
+        }
+    });
+    let heard = |picture: &Snapshot| picture.craft.channels.map(|channels| channels[0]);
+    let mut seen: Vec<std::sync::Arc<Snapshot>> = Vec::new();
+    let mut values = std::collections::BTreeSet::new();
+    while values.len() < 12 {
+        rig.session.view.changed().await.unwrap();
+        let picture = rig.session.view.borrow_and_update().vehicle.clone();
+        values.insert(heard(&picture));
+        seen.push(picture);
+    }
+    script.abort();
+    rig.session.commands.send(Command::Pause(true)).await.unwrap();
+    // The last may be the newest instant.
+    for picture in seen.iter().rev().skip(1).filter(|picture| picture.time.0 > 0) {
+        rig.session.commands.send(Command::Seek(Seek::Time(picture.time))).await.unwrap();
+        rig.picture("that instant", |view| view.is_rewound() && view.vehicle.time == picture.time).await;
+        assert_eq!(rig.session.view.borrow().vehicle, *picture);
+    }
 }

@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 pub use crate::sim::{COMMAND_WORDS as WORLD_WORDS, FAULTS, FaultInfo, SWITCHES as WORLD_SWITCHES};
 
-use super::timeline::TimelineView;
 use crate::plan::FlightPlan;
 use crate::signals::{RcFrame, SimTime};
 use crate::telemetry::{EndpointStatus, LinkState, LostTime, Snapshot};
+use crate::timeline::TimelineView;
 use crate::vehicle::Vehicle;
 
 /// Why time cannot be paused, stepped or made faster with an external simulator.

@@ -5,9 +5,9 @@ use std::net::SocketAddr;
 use tokio::sync::mpsc;
 
 use super::simulator::SimulatorNotice;
-use super::timeline::Marks;
 use crate::signals::{RcFrame, SimTime};
 use crate::telemetry::{self, EventKind};
+use crate::timeline::Marks;
 use crate::vehicle::Vehicle;
 
 /// An event of the session and when it happened.

@@ -28,12 +28,12 @@ use super::persistence::Persistence;
 use super::real_time::RealTime;
 use super::request_handler::RequestHandler;
 use super::simulator::Simulator;
-use super::timeline::Timeline;
 use crate::firmware::cli::Interpreter;
 use crate::link::{ExternalSimulator, ImpairedLink, Request};
 use crate::sim::Stream;
 use crate::storage::Store;
 use crate::telemetry::{BadPackets, EndpointStatus, LinkState};
+use crate::timeline::Timeline;
 use crate::vehicle::Vehicle;
 use late::WaitingInterface;
 use rewind::RunOn;
@@ -227,7 +227,10 @@ impl Session {
             self.real_time.advance(wall, simulated);
         }
         let wanted = if self.simulator.is_some() { 1.0 } else { self.pacer.speed() };
-        if let Some(notice) = self.real_time.notice(now, wanted, self.pacer.achieved()) {
+        // While time stands still there is no speed to tell.
+        if !self.pacer.is_paused()
+            && let Some(notice) = self.real_time.notice(now, wanted, self.pacer.achieved())
+        {
             self.notice(notice.to_string());
         }
     }

@@ -16,9 +16,9 @@ use super::formatting::clock;
 use super::panel::span;
 use super::theme::Role;
 use super::track::TrackPoint;
-use crate::session::{Mark, MarkKind, TimelineView};
 use crate::signals::SimTime;
 use crate::telemetry::NavState;
+use crate::timeline::{Mark, MarkKind, TimelineView};
 
 /// Tracks of branches that were left, the newest last.
 const MAX_TRACKS: usize = 4;

@@ -347,3 +347,30 @@ fn a_second_one_in_the_same_directory_says_that_it_cannot_save() {
     terminal.send("q");
     assert_eq!(terminal.end(), 0);
 }
+
+#[test]
+fn the_flight_is_rewound_and_flown_on_by_keys() {
+    for (columns, rows) in [(80, 24), (120, 40)] {
+        let mut terminal = started(columns, rows, &["--fresh"]);
+        terminal.send("F]]]]]");
+        terminal.until("the mission", |terminal| state(terminal) == "APPROACHING");
+        terminal.send(",");
+        terminal.until_shown("REWOUND −");
+        // Before the engagement, which is a state and an event.
+        terminal.send(",");
+        terminal.until("before the mission", |terminal| state(terminal) == "IDLE");
+        let timeline = terminal.row(usize::from(rows) - 2);
+        assert!(timeline.starts_with(" 00:00.0 I") && timeline.contains("━┃─"), "{timeline}");
+        terminal.send("a");
+        terminal.until_shown("An earlier instant is shown");
+        terminal.send("eq");
+        // The craft at the end is armed.
+        terminal.until_shown("Quit?");
+        terminal.send("n,b");
+        terminal.until_shown("Flown on from here");
+        terminal.until("the flight", |terminal| !terminal.screen().contains("REWOUND"));
+        terminal.send("qy");
+        assert_eq!(terminal.end(), 0);
+        terminal.assert_given_back();
+    }
+}

@@ -7,7 +7,7 @@ use std::time::Duration;
 use betadeck::geo::{LatLon, LocalFrame};
 use betadeck::plan::edit::{History, PlanDocument};
 use betadeck::plan::{FlightPlan, HoldPattern, Waypoint, WaypointType};
-use betadeck::session::{Event, Mark, MarkKind, SessionEvent, SessionView, TimelineView};
+use betadeck::session::{Event, SessionEvent, SessionView};
 use betadeck::signals::{RcFrame, RcSource, SimTime};
 use betadeck::telemetry::snapshot::{ModeRange, SettingsView, TruthView};
 use betadeck::telemetry::{
@@ -15,6 +15,7 @@ use betadeck::telemetry::{
     FirmwareEvent, Guard, GuardName, GuardOp, L1Mode, Mode, ModeFlags, NavEvent, NavState, PacketStats,
     Snapshot, TransitionReason,
 };
+use betadeck::timeline::{Mark, MarkKind, TimelineView};
 use betadeck::ui::editor::PlanId;
 use betadeck::ui::keymap::Keymap;
 use betadeck::ui::theme::{Charset, Palette};

@@ -7,8 +7,8 @@ use crate::firmware::cli::Interpreter;
 use crate::session::arming::ArmingWatch;
 use crate::session::command::{CliOutput, Command, NOT_RECORDED, REWOUND, Seek};
 use crate::session::pacer::SPEED_RANGE;
-use crate::session::timeline::{Shown, Timeline, TimelineView};
 use crate::signals::SimTime;
+use crate::timeline::{Shown, Timeline, TimelineView};
 use crate::vehicle::Vehicle;
 
 /// How long the flight goes on at most until something happens, µs.
@@ -163,6 +163,9 @@ impl Session {
             }
         };
         match (target, seek) {
+            (None, Seek::Back { states_only: true }) => {
+                self.notice("The autopilot was in no other state before this instant.");
+            }
             (None, _) => self.notice("Nothing happened before this instant."),
             (Some(time), Seek::Forward { states_only }) if time >= head && !self.is_rewound() => {
                 self.pacer.set_paused(true, now);

@@ -102,7 +102,8 @@ pub(in crate::ui) fn is_wrecked(state: &AppState) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::session::{SessionView, TimelineView};
+    use crate::session::SessionView;
+    use crate::timeline::TimelineView;
 
     #[test]
     fn a_simulator_outside_keeps_time_and_place_to_itself() {

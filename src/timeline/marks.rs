@@ -90,11 +90,11 @@ impl MarkKind {
 
 /// The marks of the flight, the oldest first. Views share them.
 #[derive(Debug, Default)]
-pub(in crate::session) struct Marks(Arc<Vec<Mark>>);
+pub struct Marks(Arc<Vec<Mark>>);
 
 impl Marks {
     /// Notes an event that has happened.
-    pub(in crate::session) fn note(&mut self, event: &Event) {
+    pub fn note(&mut self, event: &Event) {
         let Some(kind) = MarkKind::of(&event.kind) else { return };
         let marks = Arc::make_mut(&mut self.0);
         if marks.len() == MOST {
@@ -104,22 +104,22 @@ impl Marks {
     }
 
     /// Forgets what happened after `time`.
-    pub(in crate::session) fn forget_after(&mut self, time: SimTime) {
+    pub fn forget_after(&mut self, time: SimTime) {
         Arc::make_mut(&mut self.0).retain(|mark| mark.time <= time);
     }
 
     /// All of them.
-    pub(in crate::session) fn all(&self) -> Arc<Vec<Mark>> {
+    pub fn all(&self) -> Arc<Vec<Mark>> {
         Arc::clone(&self.0)
     }
 
     /// The latest before `time`, of all or of the states alone.
-    pub(in crate::session) fn before(&self, time: SimTime, states_only: bool) -> Option<Mark> {
+    pub fn before(&self, time: SimTime, states_only: bool) -> Option<Mark> {
         self.0.iter().rfind(|mark| mark.time < time && (!states_only || mark.kind.is_state())).copied()
     }
 
     /// The earliest after `time`, of all or of the states alone.
-    pub(in crate::session) fn after(&self, time: SimTime, states_only: bool) -> Option<Mark> {
+    pub fn after(&self, time: SimTime, states_only: bool) -> Option<Mark> {
         self.0.iter().find(|mark| mark.time > time && (!states_only || mark.kind.is_state())).copied()
     }
 }

@@ -2,6 +2,8 @@
 //!
 //! `recording` keeps frozen vehicles and the inputs between them, `replay` flies from one of them to an earlier instant,
 //! `marks` knows when something happened. While an earlier instant is shown, the vehicle that flies waits where it is.
+//!
+//! Nothing here reads a clock: whoever owns the vehicle says when to record and what to show.
 
 mod marks;
 mod recording;
@@ -15,13 +17,12 @@ use crate::vehicle::Vehicle;
 use recording::{Bounds, Recording};
 use replay::Replay;
 
-pub(super) use marks::Marks;
-pub use marks::{Mark, MarkKind};
+pub use marks::{Mark, MarkKind, Marks};
 pub use view::TimelineView;
 
 /// The recording of a flight, and the earlier instant of it that is shown.
 #[derive(Debug)]
-pub(super) struct Timeline {
+pub struct Timeline {
     recording: Recording,
     replay: Option<Replay>,
     branch: u32,
@@ -30,7 +31,7 @@ pub(super) struct Timeline {
 
 /// What replaying led to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Shown {
+pub enum Shown {
     /// An earlier instant is shown.
     Earlier,
     /// It has come to where the vehicle that flies waits.
@@ -40,7 +41,7 @@ pub(super) enum Shown {
 impl Timeline {
     /// Records `vehicle` from now on; `None` when it cannot be flown again, because its time or its flight controller
     /// is not ours.
-    pub(super) fn new(vehicle: &mut Vehicle) -> Option<Self> {
+    pub fn new(vehicle: &mut Vehicle) -> Option<Self> {
         Self::within(Bounds::default(), vehicle)
     }
 
@@ -52,32 +53,32 @@ impl Timeline {
     }
 
     /// Records what came from outside since the tick before; to be called right before each tick.
-    pub(super) fn record(&mut self, vehicle: &mut Vehicle) {
+    pub fn record(&mut self, vehicle: &mut Vehicle) {
         self.recording.record(vehicle);
     }
 
     /// The vehicle at the earlier instant that is shown, if one is.
-    pub(super) fn shown(&self) -> Option<&Vehicle> {
+    pub fn shown(&self) -> Option<&Vehicle> {
         self.replay.as_ref().map(Replay::vehicle)
     }
 
     /// The earliest instant that can be shown.
-    pub(super) fn first(&self) -> Option<SimTime> {
+    pub fn first(&self) -> Option<SimTime> {
         self.recording.first()
     }
 
     /// How often the flight was flown on from an earlier instant.
-    pub(super) fn branch(&self) -> u32 {
+    pub fn branch(&self) -> u32 {
         self.branch
     }
 
     /// The instant from which it was last flown on.
-    pub(super) fn branched_at(&self) -> SimTime {
+    pub fn branched_at(&self) -> SimTime {
         self.branched_at
     }
 
     /// Shows the vehicle as it was at `time`, or at the earliest instant; `head` is where the vehicle that flies waits.
-    pub(super) fn show(&mut self, time: SimTime, head: SimTime) -> Shown {
+    pub fn show(&mut self, time: SimTime, head: SimTime) -> Shown {
         if time >= head {
             self.replay = None;
             return Shown::Newest;
@@ -95,20 +96,20 @@ impl Timeline {
     }
 
     /// Flies the replay on by some ticks, at most to `head`.
-    pub(super) fn play(&mut self, ticks: u64, head: SimTime) -> Shown {
+    pub fn play(&mut self, ticks: u64, head: SimTime) -> Shown {
         let Some(replay) = &self.replay else { return Shown::Newest };
         let to = SimTime(replay.time().0 + ticks * replay.vehicle().step_us());
         self.show(to, head)
     }
 
     /// Back to the vehicle that flies.
-    pub(super) fn leave(&mut self) {
+    pub fn leave(&mut self) {
         self.replay = None;
     }
 
     /// Makes the shown vehicle the one that flies, on a new branch: what was recorded after it is forgotten. `None` when
     /// no earlier instant is shown.
-    pub(super) fn fly_on(&mut self) -> Option<Vehicle> {
+    pub fn fly_on(&mut self) -> Option<Vehicle> {
         let replay = self.replay.take()?;
         self.recording.forget_after(&replay);
         self.branch += 1;
