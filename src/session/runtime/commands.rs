@@ -76,7 +76,7 @@ impl Session {
             }
             Command::CopyVehicle(reply) => {
                 let copy = forecast::check_possible(&self.vehicle).map(|()| VehicleCopy {
-                    vehicle: Box::new(self.shown_vehicle().clone()),
+                    vehicle: Box::new(self.copy_of_shown()),
                     takeoff_m: self.takeoff_m,
                 });
                 drop(reply.send(copy));

@@ -14,7 +14,7 @@ impl Session {
         let vehicle = self.shown_vehicle();
         SessionView {
             vehicle: Arc::new(vehicle.snapshot()),
-            paused: self.pacer.is_paused(),
+            paused: self.pacer.is_paused() && !self.is_running_on(),
             speed_wanted: match self.simulator {
                 Some(_) => f64::INFINITY,
                 None => self.pacer.speed(),

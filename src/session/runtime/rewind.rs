@@ -27,9 +27,21 @@ impl Session {
         self.timeline.as_ref().and_then(Timeline::shown).unwrap_or(&self.vehicle)
     }
 
+    /// A copy of the vehicle that is shown, to fly it somewhere else.
+    pub(super) fn copy_of_shown(&self) -> Vehicle {
+        let mut copy = self.shown_vehicle().clone();
+        copy.keep_inputs(false);
+        copy
+    }
+
     /// Whether an earlier instant is shown.
     pub(super) fn is_rewound(&self) -> bool {
         self.timeline.as_ref().is_some_and(|timeline| timeline.shown().is_some())
+    }
+
+    /// Whether the flight goes on until something happens.
+    pub(super) fn is_running_on(&self) -> bool {
+        self.run_on.is_some()
     }
 
     pub(super) fn timeline_view(&self) -> Option<TimelineView> {
