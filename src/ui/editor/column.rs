@@ -101,7 +101,7 @@ impl Column {
     /// What is wrong and what is allowed, in one sentence.
     pub(crate) fn set(self, wp: &mut Waypoint, text: &str) -> Result<(), String> {
         let text = text.trim();
-        let wrong = || format!("{text} is not a {}: {}.", self.name(), self.hint(wp.kind));
+        let wrong = || format!("{text} is no {}: {}.", self.name(), self.hint(wp.kind));
         match self {
             Self::Type => wp.kind = by_prefix(text, WaypointType::iter()).ok_or_else(wrong)?,
             Self::Pattern => wp.pattern = by_prefix(text, HoldPattern::iter()).ok_or_else(wrong)?,

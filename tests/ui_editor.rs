@@ -1,0 +1,315 @@
+//! The plan editor by keys, mouse and paste: messages in, screen and effects out.
+
+use betadeck::plan::{FlightPlan, WaypointType};
+use betadeck::ui::editor::{Entry, FileReply, FileRequest, Listing};
+use betadeck::ui::keymap::KeyPress;
+use betadeck::ui::{AppState, Effect, Msg, draw, update};
+use crossterm::event::{KeyCode, KeyEvent, KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
+use ratatui::Terminal;
+use ratatui::backend::TestBackend;
+
+#[path = "ui/fixture.rs"]
+mod fixture;
+
+fn state(size: (u16, u16)) -> AppState {
+    let mut state = fixture::state(size, fixture::colour());
+    let flight = fixture::SimpleFlight { time_s: 8.0, fix: true, ..fixture::SimpleFlight::default() };
+    update(&mut state, Msg::View(fixture::view(&flight)));
+    state
+}
+
+/// Presses keys by their names in the keymap, apart by blanks; `'text` is typed.
+fn keys(state: &mut AppState, keys: &str) -> Vec<Effect> {
+    let mut effects = Vec::new();
+    for name in keys.split_whitespace() {
+        if let Some(text) = name.strip_prefix('\'') {
+            for c in text.chars() {
+                effects.extend(press(state, KeyCode::Char(c), KeyModifiers::NONE));
+            }
+            continue;
+        }
+        assert!(KeyPress::parse(name).is_some(), "{name}");
+        let (modifiers, rest) = match name.split_once('-') {
+            Some(("ctrl", rest)) => (KeyModifiers::CONTROL, rest),
+            Some(("alt", rest)) => (KeyModifiers::ALT, rest),
+            Some(("shift", rest)) => (KeyModifiers::SHIFT, rest),
+            _ => (KeyModifiers::NONE, name),
+        };
+        let code = match rest {
+            "up" => KeyCode::Up,
+            "down" => KeyCode::Down,
+            "left" => KeyCode::Left,
+            "right" => KeyCode::Right,
+            "enter" => KeyCode::Enter,
+            "esc" => KeyCode::Esc,
+            "tab" => KeyCode::Tab,
+            "backspace" => KeyCode::Backspace,
+            c => KeyCode::Char(c.chars().next().unwrap()),
+        };
+        effects.extend(press(state, code, modifiers));
+    }
+    effects
+}
+
+fn press(state: &mut AppState, code: KeyCode, modifiers: KeyModifiers) -> Vec<Effect> {
+    update(state, Msg::Key(KeyEvent::new(code, modifiers)))
+}
+
+fn screen(state: &AppState) -> String {
+    let mut terminal = Terminal::new(TestBackend::new(state.size.0, state.size.1)).unwrap();
+    terminal.draw(|frame| draw(state, frame)).unwrap();
+    terminal.backend().to_string()
+}
+
+/// The request to write a plan among the effects.
+fn save_of(effects: Vec<Effect>) -> FileRequest {
+    let requests = effects.into_iter().filter_map(|effect| match effect {
+        Effect::Files(request @ FileRequest::Save { .. }) => Some(request),
+        _ => None,
+    });
+    requests.last().expect("a plan to write")
+}
+
+fn journal_lines(effects: &[Effect]) -> usize {
+    effects.iter().filter(|effect| matches!(effect, Effect::Files(FileRequest::Journal(..)))).count()
+}
+
+fn altitudes(plan: &FlightPlan) -> Vec<i32> {
+    plan.waypoints.iter().map(|wp| wp.alt_cm).collect()
+}
+
+#[test]
+fn a_value_is_typed_undone_and_redone() {
+    let mut state = state((80, 24));
+    let effects = keys(&mut state, "2 down right right right enter backspace backspace '62.5 enter");
+    assert_eq!(altitudes(state.plan()), [5000, 6250, 5000, 5000]);
+    assert_eq!(journal_lines(&effects), 1, "one edit, one line");
+    assert!(screen(&state).contains("[62.5]") && screen(&state).contains("unsaved"));
+    keys(&mut state, "u");
+    assert_eq!(altitudes(state.plan()), [5000; 4]);
+    assert!(!screen(&state).contains("unsaved"), "back at what the file holds");
+    keys(&mut state, "ctrl-r");
+    assert_eq!(altitudes(state.plan()), [5000, 6250, 5000, 5000]);
+}
+
+#[test]
+fn a_wrong_value_stays_in_its_field_with_what_is_allowed() {
+    let mut state = state((80, 24));
+    keys(&mut state, "2 right right right enter backspace backspace 'x enter");
+    let seen = screen(&state);
+    assert!(seen.contains("x is no altitude: metres above home"), "{seen}");
+    assert_eq!(altitudes(state.plan()), [5000; 4]);
+    keys(&mut state, "esc");
+    assert!(!screen(&state).contains("x is no"));
+}
+
+#[test]
+fn many_waypoints_are_selected_and_turned_by_one_edit() {
+    let mut state = state((120, 40));
+    let before = state.plan().clone();
+    let effects = keys(&mut state, "2 ctrl-a m down down down down down '90 enter");
+    assert_eq!(journal_lines(&effects), 1);
+    assert_ne!(*state.plan(), before);
+    for _ in 0..3 {
+        keys(&mut state, "ctrl-a m down down down down down '90 enter");
+    }
+    for (turned, place) in std::iter::zip(&state.plan().waypoints, &before.waypoints) {
+        let (distance_m, _) = betadeck::geo::distance_bearing(turned.position, place.position);
+        assert!(distance_m < 0.1, "four quarter turns bring {distance_m} m");
+    }
+    keys(&mut state, "u u u u");
+    assert_eq!(*state.plan(), before);
+}
+
+#[test]
+fn waypoints_are_inserted_repeated_moved_and_deleted() {
+    let mut state = state((80, 24));
+    keys(&mut state, "2 i");
+    assert_eq!(state.plan().waypoints.len(), 5);
+    let inserted = state.plan().waypoints[1];
+    assert_eq!((inserted.kind, inserted.alt_cm), (WaypointType::Flyover, 5000));
+    keys(&mut state, "alt-down alt-down");
+    assert_eq!(state.plan().waypoints[3], inserted);
+    keys(&mut state, "c v up d");
+    assert_eq!(state.plan().waypoints.len(), 4);
+    keys(&mut state, "u u u u u");
+    assert_eq!(*state.plan(), fixture::square());
+    for _ in 0..40 {
+        keys(&mut state, "c");
+    }
+    assert_eq!(state.plan().waypoints.len(), 30);
+    assert!(screen(&state).contains("A plan holds 30 waypoints"));
+}
+
+#[test]
+fn a_waypoint_outside_the_fence_says_why_and_one_key_takes_the_fix() {
+    let mut state = state((120, 40));
+    keys(
+        &mut state,
+        "2 z right enter backspace backspace backspace backspace backspace backspace backspace '9 enter",
+    );
+    let seen = screen(&state);
+    assert!(
+        seen.contains("✗ refused: waypoint 0 is") && seen.contains("f: move WP0 inside the"),
+        "{seen}"
+    );
+    keys(&mut state, "f");
+    assert!(!screen(&state).contains("refused: waypoint 0"));
+}
+
+#[test]
+fn waypoints_go_out_as_cli_lines_and_come_back_by_paste() {
+    let mut state = state((80, 24));
+    let effects = keys(&mut state, "2 down v down y");
+    let copied = effects.into_iter().find_map(|effect| match effect {
+        Effect::Copy(text) => Some(text),
+        _ => None,
+    });
+    let text = copied.expect("copied text");
+    assert_eq!(text.lines().count(), 2);
+    assert!(text.starts_with("waypoint insert 0 40.4630000 -79.5175000 5000 0 FLYBY"), "{text}");
+    update(&mut state, Msg::Paste(text));
+    assert_eq!(state.plan().waypoints.len(), 6);
+    assert_eq!(state.plan().waypoints[3], state.plan().waypoints[1]);
+    keys(&mut state, "u p");
+    assert_eq!(state.plan().waypoints.len(), 6, "the copy is kept");
+    update(&mut state, Msg::Paste("no plan at all".to_owned()));
+    assert_eq!(state.plan().waypoints.len(), 6);
+}
+
+#[test]
+fn a_waypoint_is_dragged_on_the_map_by_the_mouse_as_one_edit() {
+    let mut state = state((120, 40));
+    keys(&mut state, "z");
+    let seen = screen(&state);
+    let (row, line) = seen.lines().enumerate().find(|(_, line)| line.contains("1 FLYBY")).unwrap();
+    let column = line.chars().position(|c| c == '◇').expect("the mark") as u16 - 1;
+    let mouse =
+        |kind, column, row| Msg::Mouse(MouseEvent { kind, column, row, modifiers: KeyModifiers::NONE });
+    let before = state.plan().waypoints[1].position;
+    let row = row as u16;
+    update(&mut state, mouse(MouseEventKind::Down(MouseButton::Left), column, row));
+    update(&mut state, mouse(MouseEventKind::Up(MouseButton::Left), column, row));
+    assert_eq!(state.plan().waypoints[1].position, before, "a click moves nothing");
+    update(&mut state, mouse(MouseEventKind::Down(MouseButton::Left), column, row));
+    for step in 1..6 {
+        let effects = update(&mut state, mouse(MouseEventKind::Drag(MouseButton::Left), column - step, row));
+        assert!(effects.is_empty());
+    }
+    assert!(screen(&state).contains("from WP0"), "metres and bearing while it moves");
+    let effects = update(&mut state, mouse(MouseEventKind::Up(MouseButton::Left), column - 5, row));
+    assert_eq!(journal_lines(&effects), 1);
+    let after = state.plan().waypoints[1].position;
+    assert!(after.lon_e7 < before.lon_e7, "{after} is not west of {before}");
+    keys(&mut state, "u");
+    assert_eq!(state.plan().waypoints[1].position, before);
+}
+
+#[test]
+fn waypoints_are_added_picked_and_deleted_with_the_cursor_on_the_map() {
+    let mut state = state((80, 24));
+    keys(&mut state, "p left left i");
+    assert_eq!(state.plan().waypoints.len(), 5);
+    let added = state.editor.row();
+    keys(&mut state, "enter right right right enter");
+    let place = state.plan().waypoints[added].position;
+    assert!(screen(&state).contains("edit ·"));
+    keys(&mut state, "u");
+    assert!(state.plan().waypoints[added].position.lon_e7 < place.lon_e7, "it was moved east");
+    keys(&mut state, "left left left d");
+    assert_eq!(state.plan().waypoints.len(), 4);
+    keys(&mut state, "u");
+    assert_eq!(state.plan().waypoints.len(), 5);
+    keys(&mut state, "esc");
+    assert!(!screen(&state).contains("edit ·"));
+}
+
+#[test]
+fn a_survey_beyond_thirty_waypoints_is_told_before_it_is_made() {
+    let mut state = state((120, 40));
+    keys(&mut state, "2 P right right right down down backspace backspace '300 down backspace backspace '5");
+    let seen = screen(&state);
+    assert!(seen.contains("122 waypoints, there is room for 30: a spacing of"), "{seen}");
+    keys(&mut state, "enter");
+    assert!(state.plan().waypoints.len() <= 30 && state.plan().waypoints.len() > 20);
+    keys(&mut state, "u");
+    assert_eq!(*state.plan(), fixture::square());
+}
+
+#[test]
+fn a_new_plan_is_saved_under_a_name_and_nothing_is_replaced_unasked() {
+    let mut state = state((80, 24));
+    let effects = keys(&mut state, "2 n i S");
+    assert!(effects.iter().any(|effect| matches!(effect, Effect::Files(FileRequest::List(_)))));
+    let entries = vec![Entry { name: "old.toml".to_owned(), is_directory: false }];
+    let listing = Listing { directory: "/plans".into(), entries };
+    update(&mut state, Msg::Files(FileReply::Listed(listing)));
+    assert!(screen(&state).contains("old.toml"));
+    let effects = keys(&mut state, "down enter");
+    let FileRequest::Save { id, path, replace: false, revision, .. } = save_of(effects) else {
+        unreachable!()
+    };
+    update(&mut state, Msg::Files(FileReply::Occupied { id, path: path.clone(), changed: false }));
+    assert!(screen(&state).contains("/plans/old.toml exists."));
+    let effects = keys(&mut state, "y");
+    assert!(matches!(save_of(effects), FileRequest::Save { replace: true, .. }));
+    update(&mut state, Msg::Files(FileReply::Saved { id, path, revision, lost: Vec::new() }));
+    assert!(!state.editor.plan().is_unsaved());
+    assert!(screen(&state).contains("Saved old.toml."));
+}
+
+#[test]
+fn quitting_asks_for_every_unsaved_plan() {
+    let mut state = state((80, 24));
+    keys(&mut state, "2 + n i");
+    assert!(!keys(&mut state, "q").iter().any(|effect| matches!(effect, Effect::Quit)));
+    assert!(screen(&state).contains("square.toml has edits that no file holds"));
+    assert!(keys(&mut state, "esc").is_empty(), "Esc stays");
+    let effects = keys(&mut state, "q s");
+    let FileRequest::Save { id, path, revision, .. } = save_of(effects) else { unreachable!() };
+    let saved = FileReply::Saved { id, path, revision, lost: Vec::new() };
+    update(&mut state, Msg::Files(saved));
+    assert!(screen(&state).contains("new has edits that no file holds"), "{}", screen(&state));
+    let effects = keys(&mut state, "d");
+    assert!(effects.iter().any(|effect| matches!(effect, Effect::Quit)));
+    assert!(
+        effects
+            .iter()
+            .any(|effect| matches!(effect, Effect::Files(FileRequest::Close { discard: true, .. })))
+    );
+}
+
+#[test]
+fn a_plan_that_somebody_else_changed_says_so() {
+    let mut state = state((80, 24));
+    let id = state.editor.plan().id();
+    keys(&mut state, "2");
+    update(&mut state, Msg::Files(FileReply::Changed(id)));
+    assert!(screen(&state).contains("changed on disk"));
+}
+
+#[test]
+fn name_home_and_settings_are_edited_in_a_form() {
+    let mut state = state((80, 24));
+    keys(&mut state, "2 E 'x down down '40.5,-79.5 down 'ap_max_angle=20 enter");
+    let document = state.editor.document();
+    assert_eq!(
+        (document.name.as_str(), document.settings.as_slice()),
+        ("squarex", &["ap_max_angle = 20".to_owned()][..])
+    );
+    assert!(document.home.is_some());
+    keys(&mut state, "u");
+    assert_eq!(state.editor.document().name, "square");
+}
+
+#[test]
+fn the_editor_and_its_popups_draw_at_every_size() {
+    for open in ["2", "2 P", "2 m", "2 E", "2 o", "2 right enter", "p"] {
+        let mut state = state((120, 40));
+        keys(&mut state, open);
+        for size in [(1, 1), (20, 5), (60, 20), (61, 21), (80, 24), (119, 33), (120, 40), (250, 80)] {
+            update(&mut state, Msg::Resize(size.0, size.1));
+            screen(&state);
+        }
+    }
+}
