@@ -149,10 +149,7 @@ fn a_waypoint_outside_the_fence_says_why_and_one_key_takes_the_fix() {
         "2 z right enter backspace backspace backspace backspace backspace backspace backspace '9 enter",
     );
     let seen = screen(&state);
-    assert!(
-        seen.contains("✗ refused: waypoint 0 is") && seen.contains("f: move WP0 inside the"),
-        "{seen}"
-    );
+    assert!(seen.contains("✗ refused: waypoint 0 is") && seen.contains("f: move WP0 inside the"), "{seen}");
     keys(&mut state, "f");
     assert!(!screen(&state).contains("refused: waypoint 0"));
 }

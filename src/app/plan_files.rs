@@ -13,6 +13,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::Duration;
 
 use tokio::sync::mpsc::UnboundedSender;
+use tokio::sync::watch;
 
 use crate::plan::edit::{History, Journal, JournalLine, PlanDocument};
 use crate::ui::editor::{FileReply, FileRequest, Opened, PlanId};
@@ -78,14 +79,20 @@ impl PlanFiles {
             .collect()
     }
 
-    /// Carries requests out until nobody asks any more.
-    pub(super) fn run(mut self, requests: &Receiver<FileRequest>, replies: &UnboundedSender<FileReply>) {
+    /// Carries requests out until nobody asks any more, and counts in `done` how many.
+    pub(super) fn run(
+        mut self,
+        requests: &Receiver<FileRequest>,
+        replies: &UnboundedSender<FileReply>,
+        done: &watch::Sender<u64>,
+    ) {
         loop {
             match requests.recv_timeout(WATCH) {
                 Ok(request) => {
                     for reply in self.carry_out(request) {
                         replies.send(reply).ok();
                     }
+                    done.send_modify(|done| *done += 1);
                 }
                 Err(RecvTimeoutError::Timeout) => {
                     for id in self.changed() {

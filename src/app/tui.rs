@@ -63,15 +63,16 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
     };
     let problem = |error| AppError::environment(format!("cannot use the terminal: {error}"));
     let (requests, asked) = std::sync::mpsc::channel();
+    let (done, kept) = tokio::sync::watch::channel(0);
     let (answers, replies) = tokio::sync::mpsc::unbounded_channel();
     for opened in recovered {
         answers.send(FileReply::Opened(Box::new(opened))).ok();
     }
     let files_thread = std::thread::Builder::new()
         .name("plan-files".to_owned())
-        .spawn(move || files.run(&asked, &answers))
+        .spawn(move || files.run(&asked, &answers, &done))
         .map_err(|error| AppError::environment(format!("cannot start a thread: {error}")))?;
-    let files = FilesLink { requests, replies };
+    let files = FilesLink::new(requests, replies, kept);
     let runtime = tokio::runtime::Builder::new_multi_thread()
         .worker_threads(1)
         .enable_all()

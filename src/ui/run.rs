@@ -17,7 +17,8 @@ use tokio::time::sleep;
 use crate::session::{Command, Event, ForecastReply, Forecaster, SessionView};
 
 use super::app_state::{AppState, UiConfig};
-use super::editor::{FileReply, FileRequest};
+use super::editor::FileReply;
+use super::files_link::FilesLink;
 use super::message::{Effect, Msg};
 use super::terminal::Tui;
 use super::update::update;
@@ -40,15 +41,6 @@ pub struct SessionLink {
     pub view: watch::Receiver<SessionView>,
     /// Everything that happens.
     pub events: mpsc::UnboundedReceiver<Event>,
-}
-
-/// The plan files, seen from the user interface.
-#[derive(Debug)]
-pub struct FilesLink {
-    /// Requests.
-    pub requests: std::sync::mpsc::Sender<FileRequest>,
-    /// What comes back.
-    pub replies: mpsc::UnboundedReceiver<FileReply>,
 }
 
 /// How the user interface ended.
@@ -177,12 +169,13 @@ async fn run_loop(
                     let size = tui.terminal().size()?;
                     update(&mut state, Msg::Resize(size.width, size.height));
                 }
-                carry_out(effect, &link, &forecaster, &files, &replies_in);
+                carry_out(effect, &link, &forecaster, &mut files, &replies_in);
             }
         }
         let wanted = drawn + frame;
         due = Some(due.map_or(wanted, |due| due.min(wanted)));
         if due.is_some_and(|due| due <= now) {
+            files.keep_edits().await;
             tui.draw(&state)?;
             drawn = Instant::now();
             due = None;
@@ -206,12 +199,12 @@ fn carry_out(
     effect: Effect,
     link: &SessionLink,
     forecaster: &Forecaster,
-    files: &FilesLink,
+    files: &mut FilesLink,
     replies: &mpsc::UnboundedSender<Msg>,
 ) {
     let sent = match effect {
         Effect::Files(request) => {
-            if files.requests.send(request).is_err() {
+            if !files.ask(request) {
                 let gone = "Plan files cannot be read or written any more: restart the program.".to_owned();
                 replies.send(Msg::Files(FileReply::Failed(gone))).ok();
             }

@@ -4,6 +4,8 @@
 mod cli;
 #[cfg(unix)]
 mod docs;
+#[cfg(unix)]
+mod editor;
 mod fly;
 mod inputs;
 mod lines;

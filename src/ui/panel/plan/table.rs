@@ -14,14 +14,14 @@ use crate::ui::panel::{Panel, row};
 use crate::ui::theme::Role;
 
 /// Width from which all columns have room.
-const WIDE: u16 = 74;
+const WIDE: u16 = 75;
 /// Mark and number before the first column.
 const NUMBER: u16 = 4;
 
 /// Head and width of a column.
 fn column(column: Column, wide: bool) -> (&'static str, u16) {
     match (column, wide) {
-        (Column::Type, _) => ("type", 10),
+        (Column::Type, _) => ("type", 11),
         (Column::Latitude, _) => ("latitude", 12),
         (Column::Longitude, _) => ("longitude", 13),
         (Column::Altitude, true) => ("alt m", 9),
