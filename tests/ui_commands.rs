@@ -229,11 +229,11 @@ fn the_line_and_the_palette_look_right_at_80x24() {
     let mut state = fixture::state((80, 24), fixture::colour());
     fixture::approach(&mut state);
     key(&mut state, KeyCode::Char(':'));
-    type_text(&mut state, "f");
+    type_text(&mut state, "turbulence ");
     insta::assert_snapshot!("command_line_80x24", screen(&state));
     key(&mut state, KeyCode::Esc);
     ctrl(&mut state, 'p');
-    type_text(&mut state, "ret");
+    type_text(&mut state, "return home");
     insta::assert_snapshot!("palette_80x24", screen(&state));
 }
 
@@ -252,7 +252,7 @@ fn imperial_units_are_shown_and_nothing_else_changes() {
     for part in ["204.", " ft", "11.2 mph", "164.7 ft", "wind ↘  7.1 mph", "17.9 ft"] {
         assert!(shown.contains(part), "{part}\n{shown}");
     }
-    assert!(!shown.contains("m/s  ") && !shown.contains(" m   N"), "{shown}");
+    assert!(!shown.contains("5.0 m/s") && !shown.contains(" m   N"), "{shown}");
     enter(&mut state, "units metric");
     assert_eq!(screen(&state), metric);
 }

@@ -129,6 +129,28 @@ pub enum Action {
     RaiseMuch,
     /// Centre a stick or flip a switch.
     Flip,
+    /// Select the knob above.
+    KnobUp,
+    /// Select the knob below.
+    KnobDown,
+    /// Less of the selected knob.
+    KnobLess,
+    /// More of the selected knob.
+    KnobMore,
+    /// Change the selected knob, or type its value.
+    KnobEnter,
+    /// Type the value of the selected knob.
+    KnobEdit,
+    /// The selected knob to its default.
+    KnobDefault,
+    /// Search in the log.
+    Search,
+    /// To the next older match.
+    NextMatch,
+    /// To the next newer match.
+    PreviousMatch,
+    /// Show only what is serious.
+    Filter,
     /// Scroll up a line.
     ScrollUp,
     /// Scroll down a line.

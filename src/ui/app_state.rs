@@ -13,7 +13,9 @@ use super::editor::{Editor, OpenPlan};
 use super::event_log::{LogState, Severity};
 use super::forecast::ForecastState;
 use super::keymap::Keymap;
+use super::knobs::KnobsState;
 use super::layout::Slots;
+use super::log_view::LogView;
 use super::panel::Panel;
 use super::popup::{CommandLine, Popup};
 use super::theme::Theme;
@@ -120,6 +122,10 @@ pub struct AppState {
     pub command_line: CommandLine,
     /// The log.
     pub log: LogState,
+    /// Search and filter of the Log panel.
+    pub log_view: LogView,
+    /// The World panel.
+    pub knobs: KnobsState,
     /// Transitions, the newest last.
     pub transitions: VecDeque<Transition>,
     /// First visible lines.
@@ -189,6 +195,8 @@ impl AppState {
             cli: CliState::default(),
             command_line: CommandLine::default(),
             log: LogState::default(),
+            log_view: LogView::default(),
+            knobs: KnobsState::default(),
             transitions: VecDeque::new(),
             scrolls: Scrolls::default(),
             track: Track::default(),
@@ -208,6 +216,11 @@ impl AppState {
         let text = text.into();
         self.log.push(self.view.vehicle.time, severity, text.clone());
         self.notice = Some(Notice { text, severity, at: self.now });
+    }
+
+    /// Says something to the user for a moment that does not belong in the log.
+    pub(super) fn say(&mut self, severity: Severity, text: impl Into<String>) {
+        self.notice = Some(Notice { text: text.into(), severity, at: self.now });
     }
 
     /// Takes an event in.

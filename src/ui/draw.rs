@@ -93,6 +93,7 @@ fn framed_panel(state: &AppState, panel: Panel, area: Rect, buffer: &mut Buffer)
         Panel::State => panel::state::title(state),
         Panel::Rc => panel::rc::title(state),
         Panel::Cli => panel::cli::title(state),
+        Panel::World => panel::world::title(state),
         Panel::Log => panel::log::title(state),
     };
     let title = formatting::cut(&title, usize::from(area.width.saturating_sub(4)));
@@ -108,8 +109,9 @@ fn framed_panel(state: &AppState, panel: Panel, area: Rect, buffer: &mut Buffer)
         Panel::Map => panel::map::draw(state, inner, buffer),
         Panel::State => panel::state::draw(state, inner, buffer),
         Panel::Rc => panel::rc::draw(state, inner, buffer),
-        Panel::Log => panel::log::draw(state, inner, buffer),
         Panel::Plan => return panel::plan::draw(state, inner, buffer).filter(|_| focused),
+        Panel::World => return panel::world::draw(state, inner, buffer).filter(|_| focused),
+        Panel::Log => return panel::log::draw(state, inner, buffer).filter(|_| focused),
         Panel::Cli => return panel::cli::draw(state, inner, buffer).filter(|_| focused),
     }
     None

@@ -12,7 +12,7 @@ use super::theme::Role;
 const MAX_LINES: usize = 5000;
 
 /// How serious a line is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
     /// For the record.
     Info,
@@ -116,6 +116,8 @@ impl Severity {
 /// A line of the log.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LogLine {
+    /// Its number, counted from the first line ever.
+    pub number: u64,
     /// Simulated time.
     pub time: SimTime,
     /// How serious.
@@ -130,6 +132,7 @@ pub struct LogLine {
 #[derive(Debug, Default)]
 pub struct LogState {
     lines: VecDeque<LogLine>,
+    count: u64,
 }
 
 impl LogState {
@@ -139,7 +142,8 @@ impl LogState {
             self.lines.pop_front();
         }
         let text = if text.contains(char::is_control) { text.replace(char::is_control, " ") } else { text };
-        self.lines.push_back(LogLine { time, severity, text, left_behind: false });
+        self.lines.push_back(LogLine { number: self.count, time, severity, text, left_behind: false });
+        self.count += 1;
     }
 
     /// The flight goes on from `time`: what came after it is left behind.
@@ -148,13 +152,8 @@ impl LogState {
     }
 
     /// The lines, the newest first.
-    pub fn newest_first(&self) -> impl Iterator<Item = &LogLine> {
+    pub fn newest_first(&self) -> impl DoubleEndedIterator<Item = &LogLine> {
         self.lines.iter().rev()
-    }
-
-    /// The lines, the oldest first.
-    pub fn oldest_first(&self) -> impl Iterator<Item = &LogLine> {
-        self.lines.iter()
     }
 
     /// How many lines there are.

@@ -96,7 +96,13 @@ fn hint_actions(state: &AppState) -> Vec<(&'static [Action], &'static str)> {
             (&[Action::Upload], "upload"),
             (&[Action::Edit(EditAction::Save)], "save"),
         ]),
-        Panel::Map | Panel::State | Panel::Log => {}
+        Panel::World => hints.extend([
+            (&[Action::KnobUp, Action::KnobDown] as &[_], "knob"),
+            (&[Action::KnobLess, Action::KnobMore], "value"),
+            (&[Action::KnobEnter], "change"),
+        ]),
+        Panel::Log => hints.extend([(&[Action::Search] as &[_], "search"), (&[Action::Filter], "filter")]),
+        Panel::Map | Panel::State => {}
     }
     let wrecked = is_wrecked(state);
     if wrecked {

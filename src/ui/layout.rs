@@ -10,6 +10,8 @@
 //!  └──────────────┘    └───────────────┘    └─────────┴ plan─┘    └──────┴──────┴───────┘
 //! ```
 //!
+//! World takes the place of RC when it is shown.
+//!
 //! Two lines of status stand above, one of hints below; above the hints the timeline, on a tall screen or while an earlier
 //! instant is shown.
 
@@ -24,11 +26,11 @@ pub const SMALLEST: (u16, u16) = (60, 20);
 /// What the places that several panels share show: the one that had the focus last.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Slots {
-    /// 80x24: map (with the log below), or one of RC, CLI, plan instead of both.
+    /// 80x24: map (with the log below), or one of RC, CLI, plan, world instead of both.
     main: Panel,
     /// 120x40, bottom left: log or CLI.
     left: Panel,
-    /// 120x40, bottom right: RC or plan.
+    /// 120x40, bottom right, and 200x60, top right: RC, plan or world.
     right: Panel,
 }
 
@@ -51,7 +53,7 @@ impl Slots {
                 self.main = Panel::Cli;
                 self.left = Panel::Cli;
             }
-            Panel::Rc | Panel::Plan => {
+            Panel::Rc | Panel::Plan | Panel::World => {
                 self.main = panel;
                 self.right = panel;
             }
@@ -119,7 +121,7 @@ pub fn divided(state: &AppState, (width, height): (u16, u16)) -> Option<Screen> 
     let panels = if state.zoomed || width < 80 || height < 24 {
         vec![(state.focus, body)]
     } else if width >= 180 && height >= 48 {
-        large(body)
+        large(body, state.slots)
     } else if width >= 120 && height >= 34 {
         medium(body, state.slots)
     } else {
@@ -151,7 +153,7 @@ fn medium(body: Rect, slots: Slots) -> Vec<(Panel, Rect)> {
     vec![(Panel::Map, map), (Panel::State, state), (slots.left, left), (slots.right, right)]
 }
 
-fn large(body: Rect) -> Vec<(Panel, Rect)> {
+fn large(body: Rect, slots: Slots) -> Vec<(Panel, Rect)> {
     let bottom = body.height * 36 / 100;
     let [top, bottom] = rows(body, [body.height - bottom, bottom]);
     let [map, state, rc] = columns(top, [top.width - 96, 48, 48]);
@@ -160,7 +162,7 @@ fn large(body: Rect) -> Vec<(Panel, Rect)> {
     vec![
         (Panel::Map, map),
         (Panel::State, state),
-        (Panel::Rc, rc),
+        (if slots.right == Panel::World { Panel::World } else { Panel::Rc }, rc),
         (Panel::Log, log),
         (Panel::Plan, plan),
         (Panel::Cli, cli),

@@ -10,6 +10,7 @@ pub(super) mod plan;
 pub(super) mod rc;
 pub(super) mod state;
 pub(super) mod state_diagram;
+pub(super) mod world;
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -32,13 +33,16 @@ pub enum Panel {
     Rc,
     /// The firmware's command line.
     Cli,
+    /// The air and the faults.
+    World,
     /// Events and notices.
     Log,
 }
 
 impl Panel {
     /// All panels in the order of their numbers.
-    pub const ALL: [Self; 6] = [Self::Map, Self::Plan, Self::State, Self::Rc, Self::Cli, Self::Log];
+    pub const ALL: [Self; 7] =
+        [Self::Map, Self::Plan, Self::State, Self::Rc, Self::Cli, Self::World, Self::Log];
 
     /// Number and name.
     #[must_use]
@@ -49,6 +53,7 @@ impl Panel {
             Self::State => "3 State",
             Self::Rc => "4 RC",
             Self::Cli => "5 CLI",
+            Self::World => "7 World",
             Self::Log => "8 Log",
         }
     }

@@ -13,6 +13,8 @@ use super::event_log::Severity;
 use super::forecast;
 use super::formatting::within;
 use super::keymap::KeyPress;
+use super::knobs;
+use super::log_view;
 use super::map_point;
 use super::message::{Effect, Msg};
 use super::panel::Panel;
@@ -22,6 +24,7 @@ use super::transmitter;
 use super::viewport::MapMode;
 
 mod cli;
+mod fields;
 mod flight;
 mod map_edit;
 mod mouse;
@@ -87,7 +90,8 @@ fn take(state: &mut AppState, msg: Msg) -> Vec<Effect> {
         }
         Msg::WorldReply { line, result } => {
             match result {
-                Ok(()) => state.notify(Severity::Good, format!("World: {line}.")),
+                // The log has the faults from the craft itself.
+                Ok(()) => state.say(Severity::Good, format!("World: {line}.")),
                 Err(sentence) => state.notify(Severity::Fault, sentence),
             }
             Vec::new()
@@ -136,17 +140,24 @@ fn key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
         state.cancelled = None;
     }
     state.notice = None;
+    let types = fields::open(state).is_some();
     match state.popups.last() {
         _ if found == Some(Action::Cancel) => cancel(state),
         Some(_) => popup::key(state, event, found),
         None if state.editor.popup.is_some() => plan_popup::key(state, event),
         None if state.focus == Panel::Plan && state.editor.field().is_some() => plan::field_key(state, event),
+        None if types && takes_as_text(found) => fields::key(state, event),
         None => match found {
             Some(action) => act(state, action),
             None if state.focus == Panel::Cli => cli_key(state, event),
             None => Vec::new(),
         },
     }
+}
+
+/// Whether an open text field gets a key that means this elsewhere: what leaves the field does not belong to it.
+fn takes_as_text(found: Option<Action>) -> bool {
+    !matches!(found, Some(Action::Palette | Action::Suspend | Action::Previous))
 }
 
 /// Ctrl-C: once cancels, twice quits.
@@ -156,7 +167,8 @@ fn cancel(state: &mut AppState) -> Vec<Effect> {
     }
     state.cancelled = Some(state.now);
     let popup = state.popups.pop().is_some();
-    let input = state.focus == Panel::Cli && state.cli.cancel();
+    let field = fields::close(state);
+    let input = field || state.focus == Panel::Cli && state.cli.cancel();
     let upload = std::mem::take(&mut state.fly_after_upload);
     let edit = state.editor.cancel() | state.map.edit.take().is_some();
     let what = if popup || input || upload || edit { "Cancelled. " } else { "" };
@@ -290,6 +302,8 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
             // Out of the text first: keys pressed next must not be typed.
             if state.focus.takes_text() {
                 focus(state, Panel::Map);
+            } else if state.focus == Panel::Log && !state.log_view.search.is_empty() {
+                log_view::end_search(state);
             } else if !state.forecast.dismiss() && !state.editor.cancel() && state.map.edit.take().is_none() {
                 state.zoomed = false;
             }
@@ -326,6 +340,27 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
         Action::LowerMuch => transmitter::nudge(state, state.channel, -100),
         Action::RaiseMuch => transmitter::nudge(state, state.channel, 100),
         Action::Flip => transmitter::flip(state, state.channel),
+        Action::KnobUp => {
+            state.knobs.selected = state.knobs.selected.saturating_sub(1);
+            Vec::new()
+        }
+        Action::KnobDown => {
+            let last = knobs::knobs(state).len().saturating_sub(1);
+            state.knobs.selected = (state.knobs.selected + 1).min(last);
+            Vec::new()
+        }
+        Action::KnobLess => knobs::turn(state, -1),
+        Action::KnobMore => knobs::turn(state, 1),
+        Action::KnobEnter => knobs::enter(state),
+        Action::KnobEdit => knobs::edit(state),
+        Action::KnobDefault => knobs::reset(state),
+        Action::Search => {
+            focus(state, Panel::Log);
+            log_view::begin_search(state)
+        }
+        Action::NextMatch => log_view::next_match(state, false),
+        Action::PreviousMatch => log_view::next_match(state, true),
+        Action::Filter => log_view::cycle_filter(state),
         Action::ScrollUp => scroll(state, -1),
         Action::ScrollDown => scroll(state, 1),
         Action::PageUp => scroll(state, -10),

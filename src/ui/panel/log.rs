@@ -1,12 +1,13 @@
-//! 8 Log: every event and notice, the newest on top.
+//! 8 Log: every event and notice, the newest on top, with search and filter.
 
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
-use ratatui::text::Line;
+use ratatui::layout::{Position, Rect};
+use ratatui::text::{Line, Span};
 
 use crate::ui::app_state::AppState;
 use crate::ui::event_log::LogLine;
 use crate::ui::formatting::clock_ms;
+use crate::ui::log_view::{later_above, newest_first};
 use crate::ui::panel::Panel;
 use crate::ui::theme::Role;
 
@@ -16,13 +17,26 @@ use crate::ui::text_wrap::{fitting, wrapped};
 /// Columns of time and mark in front of the text.
 const STAMP: usize = 12;
 
-/// The title: how many lines are above the first one shown.
+/// The title: how many lines are above the first one shown, what is left out and what is searched.
 pub(crate) fn title(state: &AppState) -> String {
-    let name = Panel::Log.title();
-    match state.scrolls.log {
-        0 => name.to_owned(),
-        newer => format!("{name} — {newer} newer above"),
+    let mut title = Panel::Log.title().to_owned();
+    let view = &state.log_view;
+    let newer = match state.scrolls.log {
+        0 => String::new(),
+        newer => format!("{newer} newer above"),
+    };
+    let search = if view.search.is_empty() || view.typing {
+        String::new()
+    } else {
+        format!("/{}", view.search.value())
+    };
+    for part in [view.filter_name(), &search, &newer] {
+        if !part.is_empty() {
+            title.push_str(" — ");
+            title.push_str(part);
+        }
     }
+    title
 }
 
 /// Columns of the text.
@@ -30,47 +44,75 @@ fn text_width(area: Rect) -> usize {
     usize::from(area.width).saturating_sub(STAMP)
 }
 
+/// The rows of the lines, without the one of a search that is typed.
+fn list(state: &AppState, area: Rect) -> Rect {
+    let search = u16::from(state.log_view.typing && state.focus == Panel::Log);
+    Rect { height: area.height.saturating_sub(search), ..area }
+}
+
 /// The furthest that the panel scrolls: then its oldest line is the last on the screen.
 pub(crate) fn last_scroll(state: &AppState, area: Rect) -> usize {
-    let rows = state.log.oldest_first().map(|entry| wrapped(&entry.text, text_width(area)).len());
-    state.log.len().saturating_sub(fitting(rows, usize::from(area.height)))
+    let rows = newest_first(state).rev().map(|entry| wrapped(&entry.text, text_width(area)).len());
+    let fitting = fitting(rows, usize::from(list(state, area).height));
+    newest_first(state).count().saturating_sub(fitting)
 }
 
-/// The newest lines that are left out while an earlier instant is shown: all that came later but one.
-fn later_above(state: &AppState) -> usize {
-    let later = state.log.newest_first().take_while(|entry| state.is_later_than_shown(entry.time)).count();
-    later.saturating_sub(1)
-}
-
-/// Draws the inside.
-pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
+/// Draws the inside; gives the place of the cursor while a search is typed.
+pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     let theme = &state.theme;
-    if state.log.len() == 0 {
-        row(buffer, area, 0, theme, Role::Dim, "Nothing has happened yet.");
+    let list = list(state, area);
+    draw_lines(state, list, buffer);
+    if list.height == area.height {
+        return None;
+    }
+    row(buffer, area, list.height, theme, Role::Key, "/");
+    let field = Rect { x: area.x + 1, y: area.y + list.height, width: area.width.checked_sub(1)?, height: 1 };
+    state.log_view.search.draw(theme, field, buffer)
+}
+
+fn draw_lines(state: &AppState, area: Rect, buffer: &mut Buffer) {
+    let theme = &state.theme;
+    let mut entries = newest_first(state).peekable();
+    if entries.peek().is_none() {
+        let text = match (state.log.len(), state.log_view.filter_name()) {
+            (0, _) => "Nothing has happened yet.".to_owned(),
+            (_, filter) => format!("No {filter}: `f` shows everything."),
+        };
+        row(buffer, area, 0, theme, Role::Dim, &text);
         return;
     }
     let first = (state.scrolls.log + later_above(state)).min(last_scroll(state, area));
     let text_width = text_width(area);
     let mut at = 0;
-    for entry in state.log.newest_first().skip(first) {
+    for entry in entries.skip(first) {
         let (mut mark, role) = match entry {
             LogLine { left_behind: true, .. } => ("╎", Role::Dim),
             later if state.is_later_than_shown(later.time) => (later.severity.glyph(), Role::Dim),
             LogLine { severity, .. } => (severity.glyph(), severity.role()),
         };
         let mut stamp = format!("{} ", clock_ms(entry.time));
+        let is_found = state.log_view.found == Some(entry.number);
         for part in wrapped(&entry.text, text_width) {
             if at == area.height {
                 return;
             }
-            let spans = vec![
-                span(theme, Role::Dim, stamp),
+            let mut spans = vec![
+                span(theme, if is_found { Role::Focus } else { Role::Dim }, stamp),
                 span(theme, role, format!("{mark} ")),
-                span(theme, role, part),
             ];
+            spans.extend(highlighted(state, role, &part));
             line(buffer, area, at, &Line::from(spans));
             at += 1;
             (stamp, mark) = (" ".repeat(STAMP - 2), " ");
         }
     }
+}
+
+/// A text with what is searched marked in it.
+fn highlighted(state: &AppState, role: Role, text: &str) -> Vec<Span<'static>> {
+    let theme = &state.theme;
+    let Some(found) = state.log_view.find_in(text) else { return vec![span(theme, role, text)] };
+    let (before, rest) = text.split_at(found.start);
+    let (hit, after) = rest.split_at(found.len());
+    vec![span(theme, role, before), span(theme, Role::Selected, hit), span(theme, role, after)]
 }

@@ -20,7 +20,7 @@ use crate::ui::theme::Role;
 /// Suggestions shown at most.
 const MOST: usize = 8;
 /// Columns of a suggested word.
-const WORD: usize = 18;
+const WORD: usize = 21;
 
 /// The line, and what was entered before.
 #[derive(Debug, Default)]

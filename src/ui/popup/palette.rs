@@ -18,7 +18,7 @@ use crate::ui::theme::Role;
 /// Inner size on a screen that has room for it.
 const SIZE: (u16, u16) = (72, 16);
 /// Columns of a name.
-const NAME: usize = 18;
+const NAME: usize = 21;
 /// Rows of the search line above the list, and of the reason below it.
 const AROUND: u16 = 2;
 /// Weight of letters found in the title or the name.

@@ -9,7 +9,7 @@ use crate::ui::map_edit::{MapItem, item_at};
 use crate::ui::map_point::MapPoint;
 use crate::ui::message::Effect;
 use crate::ui::panel::Panel;
-use crate::ui::panel::rc;
+use crate::ui::panel::{rc, world};
 use crate::ui::transmitter;
 use crate::ui::viewport::{MapMode, Viewport};
 
@@ -40,6 +40,12 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
             match panel {
                 Panel::Map => press_on_map(state, area, &event),
                 Panel::Rc => set_channel(state, area, &event),
+                Panel::World => {
+                    if let Some(knob) = world::knob_at(state, layout::inner(area), event.row) {
+                        state.knobs.selected = knob;
+                    }
+                    Vec::new()
+                }
                 Panel::Plan | Panel::State | Panel::Cli | Panel::Log => Vec::new(),
             }
         }
@@ -52,7 +58,7 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
                 Vec::new()
             }
             Panel::Rc => set_channel(state, area, &event),
-            Panel::Plan | Panel::State | Panel::Cli | Panel::Log => Vec::new(),
+            Panel::Plan | Panel::State | Panel::Cli | Panel::World | Panel::Log => Vec::new(),
         },
         MouseEventKind::Up(_) => {
             state.drag = None;

@@ -1,6 +1,7 @@
 //! What the screen shows: focus, window of the map, scrolling.
 
 use crate::ui::app_state::AppState;
+use crate::ui::knobs;
 use crate::ui::layout;
 use crate::ui::message::Effect;
 use crate::ui::panel;
@@ -84,6 +85,10 @@ pub(super) fn scroll_panel(state: &mut AppState, panel: Panel, by: isize) {
         Panel::Cli => {
             let last = panel::cli::last_scroll(state, area);
             (&mut state.cli.scroll, by.saturating_neg(), last)
+        }
+        Panel::World => {
+            let last = knobs::knobs(state).len().saturating_sub(1);
+            (&mut state.knobs.selected, by, last)
         }
         Panel::Map | Panel::Rc => return,
     };

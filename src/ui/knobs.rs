@@ -1,0 +1,284 @@
+//! The knobs of the world: air, noise and faults, and what turning one asks of the session.
+
+use crossterm::event::{KeyCode, KeyEvent};
+use strum::IntoEnumIterator as _;
+
+use super::app_state::AppState;
+use super::formatting::fixed;
+use super::message::Effect;
+use super::text_field::TextField;
+use crate::session::command::{FAULTS, FaultInfo};
+use crate::telemetry::snapshot::{FaultView, WindView, WorldView};
+use crate::telemetry::{FaultValue, Turbulence};
+
+/// A step of the wind's speed and of gusts, m/s.
+const SPEED_STEP: f64 = 0.5;
+/// The strongest wind that can be asked for, m/s.
+const MOST_MPS: f64 = 60.0;
+/// A step of the wind's direction, degrees.
+const DIRECTION_STEP: f64 = 15.0;
+
+/// What the World panel remembers.
+#[derive(Debug, Default)]
+pub struct KnobsState {
+    /// Index of the selected knob.
+    pub selected: usize,
+    /// The value that is being typed.
+    pub field: Option<TextField>,
+}
+
+/// Something in the world that can be changed in flight.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Knob {
+    WindSpeed,
+    WindFrom,
+    Gust,
+    Turbulence,
+    Noise,
+    Fault(&'static FaultInfo),
+}
+
+/// The knobs that have something to act on, in the order in which they are shown.
+pub(super) fn knobs(state: &AppState) -> Vec<Knob> {
+    let external = state.view.simulator.is_some();
+    let faults = FAULTS.iter().filter(|fault| external || !fault.needs_link()).map(Knob::Fault);
+    [Knob::WindSpeed, Knob::WindFrom, Knob::Gust, Knob::Turbulence, Knob::Noise]
+        .into_iter()
+        .chain(faults)
+        .collect()
+}
+
+/// The selected knob.
+fn selected(state: &AppState) -> Option<Knob> {
+    knobs(state).get(state.knobs.selected).copied()
+}
+
+/// The fault of this kind that is on, if one is.
+pub(super) fn active(world: &WorldView, fault: &FaultInfo) -> Option<FaultView> {
+    world.faults.iter().find(|active| active.kind == fault.kind).copied()
+}
+
+impl Knob {
+    /// Its name.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::WindSpeed => "wind speed",
+            Self::WindFrom => "wind from",
+            Self::Gust => "gusts",
+            Self::Turbulence => "turbulence",
+            Self::Noise => "sensor noise",
+            Self::Fault(fault) => fault.name(),
+        }
+    }
+
+    /// Its value with the unit; a dash when nobody tells it.
+    pub(super) fn value(self, state: &AppState) -> String {
+        let world = &state.view.vehicle.world;
+        let speed = |speed: Option<f64>| {
+            let shown = speed.map(|speed| state.units.speed(speed));
+            format!("{} {}", fixed(shown, 6, 1), state.units.speed_unit())
+        };
+        match self {
+            Self::WindSpeed => speed(world.wind.map(|wind| wind.speed_mps)),
+            Self::WindFrom => format!("{}°", fixed(world.wind.map(|wind| wind.from_deg), 6, 0)),
+            Self::Gust => speed(world.wind.map(|_| world.gust_mps)),
+            Self::Turbulence if world.wind.is_some() => world.turbulence.to_string(),
+            Self::Noise if world.wind.is_some() => if world.noise { "real" } else { "none" }.to_owned(),
+            Self::Turbulence | Self::Noise => "—".to_owned(),
+            Self::Fault(fault) => match active(world, fault) {
+                None => "—".to_owned(),
+                Some(FaultView { value, left_s, .. }) => {
+                    let value = if value == FaultValue::None { String::new() } else { format!(" {value}") };
+                    let left = left_s.map_or_else(String::new, |left| format!(" for {left:.1} s"));
+                    format!("on{value}{left}")
+                }
+            },
+        }
+    }
+
+    /// Whether it stands where it is when nobody asks for anything.
+    pub(super) fn is_default(self, world: &WorldView) -> bool {
+        let Some(wind) = world.wind else {
+            return !matches!(self, Self::Fault(fault) if active(world, fault).is_some());
+        };
+        match self {
+            Self::WindSpeed => wind.speed_mps == 0.0,
+            Self::WindFrom => wind.speed_mps == 0.0 || wind.from_deg == 0.0,
+            Self::Gust => world.gust_mps == 0.0,
+            Self::Turbulence => world.turbulence == Turbulence::None,
+            Self::Noise => world.noise,
+            Self::Fault(fault) => active(world, fault).is_none(),
+        }
+    }
+
+    /// What its value means, or how it is written.
+    pub(super) fn help(self) -> String {
+        match self {
+            Self::WindSpeed => "the mean wind, 0 to 60 m/s, over two seconds".to_owned(),
+            Self::WindFrom => "the direction it blows from, degrees".to_owned(),
+            Self::Gust => "strength of random gusts, 0 to 60 m/s".to_owned(),
+            Self::Turbulence => "none, light, moderate, severe".to_owned(),
+            Self::Noise => "whether sensors err: real, none".to_owned(),
+            Self::Fault(fault) if fault.value.is_empty() => format!("{}; = types SECONDS", fault.help),
+            Self::Fault(fault) => format!("{}; = types [SECONDS],VALUE: {}", fault.help, fault.value),
+        }
+    }
+}
+
+/// Turns the selected knob by steps; a fault goes on or off.
+pub(super) fn turn(state: &mut AppState, steps: i32) -> Vec<Effect> {
+    let Some(knob) = selected(state) else { return Vec::new() };
+    let world = &state.view.vehicle.world;
+    let wind = world.wind.unwrap_or(WindView { speed_mps: 0.0, from_deg: 0.0 });
+    let step = f64::from(steps);
+    let stepped = |speed: f64| (speed + step * SPEED_STEP).clamp(0.0, MOST_MPS);
+    match knob {
+        Knob::WindSpeed => set_wind(state, WindView { speed_mps: stepped(wind.speed_mps), ..wind }),
+        Knob::WindFrom => {
+            let from_deg = (wind.from_deg + step * DIRECTION_STEP).rem_euclid(360.0);
+            set_wind(state, WindView { from_deg, ..wind })
+        }
+        Knob::Gust => set_gust(state, stepped(world.gust_mps)),
+        Knob::Turbulence => {
+            let levels: Vec<Turbulence> = Turbulence::iter().collect();
+            let at = levels.iter().position(|level| *level == world.turbulence).unwrap_or(0);
+            let next = at.saturating_add_signed(steps as isize).min(levels.len() - 1);
+            levels.get(next).map_or_else(Vec::new, |level| set_turbulence(state, *level))
+        }
+        Knob::Noise => set_noise(state, steps > 0),
+        Knob::Fault(fault) => match (active(world, fault).is_some(), steps > 0) {
+            (false, true) => begin(state, fault),
+            (true, false) => end(fault),
+            _ => Vec::new(),
+        },
+    }
+}
+
+/// Enter: a level or a fault changes at once, a number is typed.
+pub(super) fn enter(state: &mut AppState) -> Vec<Effect> {
+    match selected(state) {
+        Some(Knob::Noise) => {
+            let on = !state.view.vehicle.world.noise;
+            set_noise(state, on)
+        }
+        Some(Knob::Turbulence) => {
+            let levels: Vec<Turbulence> = Turbulence::iter().collect();
+            let now = state.view.vehicle.world.turbulence;
+            let next = levels.iter().position(|level| *level == now).map_or(0, |at| (at + 1) % levels.len());
+            levels.get(next).map_or_else(Vec::new, |level| set_turbulence(state, *level))
+        }
+        Some(Knob::Fault(fault)) if active(&state.view.vehicle.world, fault).is_some() => end(fault),
+        Some(Knob::Fault(fault)) => begin(state, fault),
+        Some(_) => edit(state),
+        None => Vec::new(),
+    }
+}
+
+/// Opens the field for a value of the selected knob.
+pub(super) fn edit(state: &mut AppState) -> Vec<Effect> {
+    state.knobs.field = Some(TextField::default());
+    Vec::new()
+}
+
+/// Puts the selected knob to its default.
+pub(super) fn reset(state: &mut AppState) -> Vec<Effect> {
+    let Some(knob) = selected(state) else { return Vec::new() };
+    if knob.is_default(&state.view.vehicle.world) {
+        return Vec::new();
+    }
+    match knob {
+        Knob::WindSpeed | Knob::WindFrom => set_wind(state, WindView { speed_mps: 0.0, from_deg: 0.0 }),
+        Knob::Gust => set_gust(state, 0.0),
+        Knob::Turbulence => set_turbulence(state, Turbulence::None),
+        Knob::Noise => set_noise(state, true),
+        Knob::Fault(fault) => end(fault),
+    }
+}
+
+/// A key while a value is typed.
+pub(super) fn field_key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
+    let Some(field) = &mut state.knobs.field else { return Vec::new() };
+    match event.code {
+        KeyCode::Esc => {
+            state.knobs.field = None;
+            Vec::new()
+        }
+        KeyCode::Enter => {
+            let typed = field.take();
+            state.knobs.field = None;
+            take_typed(state, typed.trim())
+        }
+        _ => {
+            field.key(event);
+            Vec::new()
+        }
+    }
+}
+
+/// Asks for what was typed. A speed is typed in the units that are shown.
+fn take_typed(state: &mut AppState, typed: &str) -> Vec<Effect> {
+    let Some(knob) = selected(state).filter(|_| !typed.is_empty()) else { return Vec::new() };
+    let wind = state.view.vehicle.world.wind.unwrap_or(WindView { speed_mps: 0.0, from_deg: 0.0 });
+    let number: Result<f64, _> = typed.parse();
+    let speed = number.as_ref().map(|number| number / state.units.speed(1.0));
+    match (knob, speed) {
+        (Knob::WindSpeed, Ok(speed_mps)) => world(format!("wind={}@{}", tidy(speed_mps), wind.from_deg)),
+        (Knob::WindFrom, _) => world(format!("wind={}@{typed}", wind.speed_mps)),
+        (Knob::WindSpeed, Err(_)) => world(format!("wind={typed}")),
+        (Knob::Gust, Ok(speed)) => world(format!("gust={}", tidy(speed))),
+        (Knob::Gust, Err(_)) => world(format!("gust={typed}")),
+        (Knob::Turbulence, _) => world(format!("turbulence={typed}")),
+        (Knob::Noise, _) => world(format!("noise={typed}")),
+        (Knob::Fault(fault), _) => world(format!("fault={},{typed}", fault.name())),
+    }
+}
+
+/// A number without the noise of a conversion.
+fn tidy(speed_mps: f64) -> f64 {
+    (speed_mps * 1000.0).round() / 1000.0
+}
+
+fn begin(state: &mut AppState, fault: &FaultInfo) -> Vec<Effect> {
+    if fault.value.is_empty() || !fault.default.is_empty() {
+        return world(format!("fault={}", fault.name()));
+    }
+    // It needs a value.
+    state.knobs.field = Some(TextField::new(","));
+    Vec::new()
+}
+
+fn end(fault: &FaultInfo) -> Vec<Effect> {
+    world(format!("end={}", fault.name()))
+}
+
+// Until the session confirms, a second press counts from what the first one asked for.
+
+fn set_wind(state: &mut AppState, wind: WindView) -> Vec<Effect> {
+    if let Some(shown) = &mut shown(state).wind {
+        *shown = wind;
+    }
+    world(format!("wind={}@{}", wind.speed_mps, wind.from_deg))
+}
+
+fn set_gust(state: &mut AppState, speed_mps: f64) -> Vec<Effect> {
+    shown(state).gust_mps = speed_mps;
+    world(format!("gust={speed_mps}"))
+}
+
+fn set_turbulence(state: &mut AppState, level: Turbulence) -> Vec<Effect> {
+    shown(state).turbulence = level;
+    world(format!("turbulence={level}"))
+}
+
+fn set_noise(state: &mut AppState, on: bool) -> Vec<Effect> {
+    shown(state).noise = on;
+    world(format!("noise={}", if on { "real" } else { "none" }))
+}
+
+fn shown(state: &mut AppState) -> &mut WorldView {
+    &mut std::sync::Arc::make_mut(&mut state.view.vehicle).world
+}
+
+fn world(line: String) -> Vec<Effect> {
+    vec![Effect::World(line)]
+}

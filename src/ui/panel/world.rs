@@ -1,0 +1,82 @@
+//! 7 World: wind, turbulence, noise and faults as a list of knobs, and a mark where one is not at its default.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+
+use crate::ui::app_state::AppState;
+use crate::ui::formatting::cut;
+use crate::ui::knobs::{Knob, knobs};
+use crate::ui::panel::Panel;
+use crate::ui::theme::Role;
+
+use super::row;
+
+/// Columns of a name with its mark.
+const NAME: usize = 18;
+
+/// The title: what flies.
+pub(crate) fn title(state: &AppState) -> String {
+    let name = Panel::World.title();
+    match state.view.vehicle.world.airframe.as_str() {
+        "" => name.to_owned(),
+        airframe => format!("{name} — airframe {airframe}"),
+    }
+}
+
+/// First knob shown, so that the selected one is visible.
+fn first(state: &AppState, rows: usize) -> usize {
+    let last = knobs(state).len().saturating_sub(rows);
+    state.knobs.selected.saturating_sub(rows / 2).min(last)
+}
+
+/// The knob at a row of the inside.
+pub(crate) fn knob_at(state: &AppState, area: Rect, line: u16) -> Option<usize> {
+    let rows = usize::from(area.height.saturating_sub(1));
+    let at = usize::from(line.checked_sub(area.y)?);
+    let index = first(state, rows) + at;
+    (at < rows && index < knobs(state).len()).then_some(index)
+}
+
+/// Draws the inside; gives the place of the cursor while a value is typed.
+pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+    let theme = &state.theme;
+    let rows = usize::from(area.height.checked_sub(1)?);
+    let all = knobs(state);
+    let focused = state.focus == Panel::World;
+    let mut cursor = None;
+    for (at, knob) in all.iter().enumerate().skip(first(state, rows)).take(rows) {
+        let is_selected = focused && at == state.knobs.selected;
+        let is_default = knob.is_default(&state.view.vehicle.world);
+        let role = match (is_selected, is_default, knob) {
+            (true, ..) => Role::Focus,
+            (false, false, Knob::Fault(_)) => Role::Warn,
+            (false, false, _) => Role::Text,
+            (false, true, Knob::Fault(_)) => Role::Dim,
+            (false, true, _) => Role::Text,
+        };
+        let pointer = if is_selected { '▸' } else { ' ' };
+        let mark = match (is_default, knob) {
+            (true, _) => ' ',
+            (false, Knob::Fault(_)) => '▲',
+            (false, _) => '●',
+        };
+        let line = (at - first(state, rows)) as u16;
+        let name = format!("{pointer}{mark} {:<15}", cut(knob.name(), 15));
+        let typed = state.knobs.field.as_ref().filter(|_| is_selected);
+        match typed {
+            Some(field) => {
+                row(buffer, area, line, theme, role, &name);
+                let width = area.width.saturating_sub(NAME as u16);
+                let place = Rect::new(area.x + NAME as u16, area.y + line, width, 1);
+                cursor = field.draw(theme, place, buffer);
+            }
+            None => row(buffer, area, line, theme, role, &format!("{name}{}", knob.value(state))),
+        }
+    }
+    let help = match all.get(state.knobs.selected) {
+        Some(knob) if focused => knob.help(),
+        _ => "wind, noise and faults, changed while it flies: 7".to_owned(),
+    };
+    row(buffer, area, area.height - 1, theme, Role::Dim, &help);
+    cursor
+}

@@ -1,0 +1,37 @@
+//! The text fields inside panels: while one is open in the focused panel, letters are text there.
+
+use crossterm::event::KeyEvent;
+
+use crate::ui::app_state::AppState;
+use crate::ui::message::Effect;
+use crate::ui::panel::Panel;
+use crate::ui::text_field::TextField;
+use crate::ui::{knobs, log_view};
+
+/// The field that takes letters, if one does.
+pub(super) fn open(state: &mut AppState) -> Option<&mut TextField> {
+    match state.focus {
+        Panel::Log if state.log_view.typing => Some(&mut state.log_view.search),
+        Panel::World => state.knobs.field.as_mut(),
+        _ => None,
+    }
+}
+
+/// A key while a field is open.
+pub(super) fn key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
+    match state.focus {
+        Panel::Log => log_view::search_key(state, event),
+        Panel::World => knobs::field_key(state, event),
+        _ => Vec::new(),
+    }
+}
+
+/// Closes the open field; whether there was one.
+pub(super) fn close(state: &mut AppState) -> bool {
+    let was_open = open(state).is_some();
+    if was_open {
+        log_view::end_search(state);
+        state.knobs.field = None;
+    }
+    was_open
+}

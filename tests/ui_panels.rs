@@ -1,0 +1,184 @@
+//! The panels World and Log: what their keys do, and what they look like at four sizes.
+
+use betadeck::session::SessionView;
+use betadeck::telemetry::snapshot::{FaultView, WindView};
+use betadeck::telemetry::{FaultKind, FaultValue, Turbulence};
+use betadeck::ui::{AppState, Effect, Msg, Panel, Severity, draw, update};
+use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
+use ratatui::Terminal;
+use ratatui::backend::TestBackend;
+
+#[path = "ui/fixture.rs"]
+mod fixture;
+
+/// The sizes that the layouts are designed for.
+const SIZES: [(u16, u16); 4] = [(60, 20), (80, 24), (120, 40), (200, 60)];
+
+fn key(state: &mut AppState, code: KeyCode) -> Vec<Effect> {
+    update(state, Msg::Key(KeyEvent::new(code, KeyModifiers::NONE)))
+}
+
+fn press(state: &mut AppState, c: char) -> Vec<Effect> {
+    key(state, KeyCode::Char(c))
+}
+
+fn type_text(state: &mut AppState, text: &str) {
+    for c in text.chars() {
+        assert!(press(state, c).is_empty(), "{c} of {text} is text");
+    }
+}
+
+fn screen(state: &AppState) -> String {
+    let (width, height) = state.size;
+    let mut terminal = Terminal::new(TestBackend::new(width, height)).expect("a test terminal");
+    terminal.draw(|frame| draw(state, frame)).expect("drawing in memory");
+    terminal.backend().to_string()
+}
+
+/// What the effects ask of the world.
+fn asked(effects: &[Effect]) -> Vec<&str> {
+    // The plan is flown ahead again in the air that is asked for.
+    let others = effects.iter().filter(|effect| !matches!(effect, Effect::World(_) | Effect::Forecast(_)));
+    assert_eq!(others.count(), 0, "{effects:?}");
+    effects
+        .iter()
+        .filter_map(|effect| if let Effect::World(line) = effect { Some(line.as_str()) } else { None })
+        .collect()
+}
+
+fn windy(size: (u16, u16)) -> AppState {
+    let mut state = fixture::state(size, fixture::colour());
+    fixture::approach(&mut state);
+    let mut view: SessionView = state.view.clone();
+    let world = &mut std::sync::Arc::make_mut(&mut view.vehicle).world;
+    world.airframe = "iris".to_owned();
+    world.wind = Some(WindView { speed_mps: 3.0, from_deg: 270.0 });
+    world.turbulence = Turbulence::Light;
+    world.noise = true;
+    world.faults = vec![FaultView { kind: FaultKind::GpsLoss, value: FaultValue::None, left_s: Some(4.2) }];
+    update(&mut state, Msg::View(view));
+    press(&mut state, '7');
+    state
+}
+
+#[test]
+fn arrows_turn_the_knobs_of_the_air_and_count_from_what_was_asked_for() {
+    let mut state = windy((120, 40));
+    assert_eq!(state.focus, Panel::World);
+    assert_eq!(asked(&key(&mut state, KeyCode::Right)), ["wind=3.5@270"]);
+    assert_eq!(asked(&key(&mut state, KeyCode::Right)), ["wind=4@270"]);
+    press(&mut state, 'j');
+    assert_eq!(asked(&key(&mut state, KeyCode::Left)), ["wind=4@255"]);
+    press(&mut state, 'j');
+    assert_eq!(asked(&key(&mut state, KeyCode::Left)), ["gust=0"], "not below nothing");
+    press(&mut state, 'j');
+    assert_eq!(asked(&key(&mut state, KeyCode::Enter)), ["turbulence=moderate"]);
+    press(&mut state, 'j');
+    assert_eq!(asked(&key(&mut state, KeyCode::Enter)), ["noise=none"]);
+    assert_eq!(asked(&key(&mut state, KeyCode::Delete)), ["noise=real"]);
+    assert!(key(&mut state, KeyCode::Delete).is_empty(), "it is at its default");
+}
+
+#[test]
+fn numbers_are_typed_in_the_units_that_are_shown() {
+    let mut state = windy((120, 40));
+    assert!(key(&mut state, KeyCode::Enter).is_empty());
+    type_text(&mut state, "7.5");
+    assert!(screen(&state).contains("wind speed     7.5"), "{}", screen(&state));
+    assert_eq!(asked(&key(&mut state, KeyCode::Enter)), ["wind=7.5@270"]);
+    state.units = betadeck::ui::Units::Imperial;
+    key(&mut state, KeyCode::Enter);
+    type_text(&mut state, "10");
+    assert_eq!(asked(&key(&mut state, KeyCode::Enter)), ["wind=4.47@270"]);
+    // What is no number goes to who can say why not.
+    key(&mut state, KeyCode::Enter);
+    type_text(&mut state, "calm");
+    assert_eq!(asked(&key(&mut state, KeyCode::Enter)), ["wind=calm"]);
+    key(&mut state, KeyCode::Enter);
+    type_text(&mut state, "q");
+    key(&mut state, KeyCode::Esc);
+    assert!(state.knobs.field.is_none() && state.focus == Panel::World);
+}
+
+/// Moves to the fault of this name.
+fn select(state: &mut AppState, name: &str) {
+    for _ in 0..40 {
+        if screen(state).contains(&format!("▸  {name}")) || screen(state).contains(&format!("▸▲ {name}"))
+        {
+            return;
+        }
+        key(state, KeyCode::Down);
+    }
+    panic!("no {name}\n{}", screen(state));
+}
+
+#[test]
+fn faults_begin_and_end_with_their_values() {
+    let mut state = windy((120, 40));
+    select(&mut state, "gps-loss");
+    assert!(screen(&state).contains("on for 4.2 s"), "{}", screen(&state));
+    assert_eq!(asked(&key(&mut state, KeyCode::Enter)), ["end=gps-loss"]);
+    select(&mut state, "motor");
+    assert_eq!(asked(&key(&mut state, KeyCode::Right)), ["fault=motor"]);
+    press(&mut state, '=');
+    type_text(&mut state, "5,2:0.7");
+    assert_eq!(asked(&key(&mut state, KeyCode::Enter)), ["fault=motor,5,2:0.7"]);
+    select(&mut state, "payload");
+    assert!(key(&mut state, KeyCode::Enter).is_empty(), "it needs a value");
+    type_text(&mut state, "0.3");
+    assert_eq!(asked(&key(&mut state, KeyCode::Enter)), ["fault=payload,,0.3"]);
+}
+
+#[test]
+fn ctrl_c_takes_back_what_is_typed() {
+    let mut state = windy((120, 40));
+    key(&mut state, KeyCode::Enter);
+    type_text(&mut state, "99");
+    update(&mut state, Msg::Key(KeyEvent::new(KeyCode::Char('c'), KeyModifiers::CONTROL)));
+    assert!(state.knobs.field.is_none());
+    assert!(state.notice.is_some_and(|notice| notice.text.starts_with("Cancelled.")));
+}
+
+#[test]
+fn the_log_is_searched_and_filtered_by_keys() {
+    let mut state = fixture::state((120, 40), fixture::colour());
+    fixture::approach(&mut state);
+    state.notify(Severity::Warn, "the wind grows");
+    state.notify(Severity::Info, "nothing of note");
+    press(&mut state, '8');
+    press(&mut state, '/');
+    type_text(&mut state, "wind");
+    key(&mut state, KeyCode::Enter);
+    assert!(screen(&state).contains("8 Log — /wind"), "{}", screen(&state));
+    press(&mut state, 'n');
+    assert!(state.notice.as_ref().is_some_and(|notice| notice.text.contains("No older line")));
+    press(&mut state, 'f');
+    let shown = screen(&state);
+    assert!(shown.contains("warnings and faults") && !shown.contains("nothing of note"), "{shown}");
+    key(&mut state, KeyCode::Esc);
+    assert!(!screen(&state).contains("/wind"));
+    assert_eq!(state.focus, Panel::Log);
+}
+
+#[test]
+fn world_at_four_sizes() {
+    for size in SIZES {
+        let mut state = windy(size);
+        for _ in 0..7 {
+            key(&mut state, KeyCode::Down);
+        }
+        insta::assert_snapshot!(format!("world_{}x{}", size.0, size.1), screen(&state));
+    }
+}
+
+#[test]
+fn a_searched_log_at_four_sizes() {
+    for size in SIZES {
+        let mut state = fixture::state(size, fixture::colour());
+        fixture::complete(&mut state);
+        press(&mut state, '8');
+        press(&mut state, '/');
+        type_text(&mut state, "wp1");
+        insta::assert_snapshot!(format!("log_search_{}x{}", size.0, size.1), screen(&state));
+    }
+}
