@@ -1,5 +1,5 @@
-//! Speed of the whole vehicle: nanoseconds per tick of world, firmware and both, and how many times faster than real
-//! time a whole mission is flown.
+//! Speed of the whole vehicle: nanoseconds per tick of world, firmware and both, how many times faster than real time a
+//! whole mission is flown, and how long the flown estimate of a plan takes.
 //!
 //! `cargo bench --bench vehicle`. The mission is the demo square from engagement to disarm, with real noise and light
 //! turbulence, no samples; each figure is the median of several runs on one core. World and firmware alone replay what
@@ -17,6 +17,7 @@ use std::time::Instant;
 
 use betadeck::firmware::Firmware;
 use betadeck::firmware::cli::Interpreter;
+use betadeck::flight::forecast::ForecastRun;
 use betadeck::flight::{Flight, FlightOptions, FlightResult, FlightSetup};
 use betadeck::plan::builtin::{BuiltinPlan, DEMO};
 use betadeck::plan::upload_lines;
@@ -38,6 +39,9 @@ fn main() {
             flown_s / wall_s
         );
     }
+    let mut estimates: Vec<f64> = (0..RUNS).map(|_| estimate()).collect();
+    estimates.sort_by(f64::total_cmp);
+    println!("flown estimate of the demo plan: {:.3} s", estimates[RUNS / 2]);
     let recording = record();
     let world = median(|| recording.replay_world());
     let firmware = median(|| recording.replay_firmware());
@@ -73,6 +77,21 @@ fn mission(rate_hz: u32) -> (f64, f64) {
         }) {
             assert_eq!(end.verdict.result, FlightResult::Complete, "{}", end.verdict.reason);
             return (end.flown_s, started.elapsed().as_secs_f64());
+        }
+    }
+}
+
+/// Wall seconds from the copy of a vehicle to the flown estimate of the demo plan.
+fn estimate() -> f64 {
+    let file = BuiltinPlan::find(DEMO).expect("the demo is built in").read().expect("the demo reads");
+    let craft = vehicle(1000);
+    let started = Instant::now();
+    let mut run =
+        ForecastRun::plan_estimate(craft.clone(), &file.plan, &file.settings, 10.0).expect("a plan to fly");
+    loop {
+        if let Some(forecast) = run.advance(100) {
+            assert!(forecast.is_complete(), "{}", forecast.reason);
+            return started.elapsed().as_secs_f64();
         }
     }
 }

@@ -87,6 +87,8 @@ pub struct Facts {
     pub climb: Option<(f64, f64)>,
     /// The progress monitors, unless paused.
     pub progress: Option<ProgressFacts>,
+    /// The hold was commanded: only a command ends it.
+    pub held_by_command: bool,
     /// Time since HOLDING was entered, µs.
     pub hold_elapsed_us: u64,
     /// The conditions of a touchdown.
@@ -130,6 +132,7 @@ impl Default for Facts {
             },
             climb: None,
             progress: None,
+            held_by_command: false,
             hold_elapsed_us: 0,
             touchdown: TouchdownGuards::new(&TouchdownFacts::default(), &GroundFacts::CERTAIN),
             touchdown_held_us: None,

@@ -12,6 +12,7 @@ mod entry;
 mod facts;
 mod fly;
 mod hold;
+mod in_flight;
 mod inputs;
 mod leg;
 mod observed;

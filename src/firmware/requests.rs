@@ -1,7 +1,9 @@
 //! What the owner of the firmware can ask of it: command line, plans, return home, restart.
 
 use crate::signals::{RcFrame, RcSource};
-use crate::telemetry::{BadPackets, DisarmReason, FirmwareEvent, LostTime, NavEvent, Refusal};
+use crate::telemetry::{
+    BadPackets, DisarmReason, FirmwareEvent, InFlightCommand, InFlightRefusal, LostTime, NavEvent, Refusal,
+};
 
 use super::Firmware;
 use super::cli::{BuildInfo, CliAction, CliContext, CliFacts, CliReply, Interpreter, StorageFacts};
@@ -99,6 +101,15 @@ impl Firmware {
     pub fn return_to_home(&mut self) -> Result<(), Refusal> {
         let done = self.navigation.return_to_home(self.setup.parameters());
         self.answer(done)
+    }
+
+    /// Has the navigator that flies the stored plan do something else: go to a waypoint, hold here, go on.
+    ///
+    /// # Errors
+    /// Why not; then nothing has changed.
+    pub fn command(&mut self, command: InFlightCommand) -> Result<(), InFlightRefusal> {
+        let stored = &self.setup.configuration().plan;
+        self.navigation.command(command, self.setup.parameters(), stored)
     }
 
     /// Lands here, whatever the AUTOPILOT switch says.

@@ -95,6 +95,7 @@ impl ForecastRun {
 
     fn begin(kind: ForecastKind, mut vehicle: Vehicle, takeoff_m: f64) -> Result<Self, String> {
         vehicle.drain_events(drop);
+        vehicle.keep_inputs(false);
         let plan = vehicle.embedded().and_then(Firmware::active_plan).or(vehicle.controller().stored_plan());
         let observer = Observer::new(&vehicle, plan).ok_or(PHYSICS_IS_EXTERNAL)?;
         let started = vehicle.time();
@@ -129,7 +130,7 @@ impl ForecastRun {
         let vehicle = self.flight.vehicle();
         let time_s = vehicle.time().seconds_since(engaged_at.unwrap_or(self.started));
         let ended = Ended { kind: self.kind, end, reason, time_s };
-        Some(self.observer.forecast(ended, vehicle))
+        Some(self.observer.forecast(&ended, vehicle))
     }
 
     fn flight_end(&self, end: FlightEnd) -> (ForecastEnd, String) {

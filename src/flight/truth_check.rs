@@ -145,6 +145,8 @@ impl TruthCheck {
                     self.keep(truth);
                 }
             }
+            // A waypoint left by a command does not count.
+            NavState::Holding if reason == TransitionReason::HoldHere => self.run = None,
             NavState::Holding => self.hold(Pattern::Point, craft),
             NavState::Orbiting => self.hold(Pattern::Orbit(settings.orbit_radius_m), craft),
             NavState::Figure8 => self.hold(Pattern::Figure8(settings.figure8_width_m / 2.0), craft),

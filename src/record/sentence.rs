@@ -149,6 +149,7 @@ fn cause(reason: TransitionReason, to: NavState) -> &'static str {
         TransitionReason::Reset => "the mission starts",
         TransitionReason::Resume => "the mission goes on",
         TransitionReason::SetCurrent => "sent there",
+        TransitionReason::HoldHere => "told to hold here",
         TransitionReason::Arrival => "reached",
         TransitionReason::Plane => "passed",
         TransitionReason::TurnRadius => "the turn begins",

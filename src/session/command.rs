@@ -6,7 +6,7 @@ pub use crate::sim::{COMMAND_WORDS as WORLD_WORDS, FAULTS, FaultInfo, SWITCHES a
 
 use crate::plan::FlightPlan;
 use crate::signals::{RcFrame, SimTime};
-use crate::telemetry::{EndpointStatus, LinkState, LostTime, Snapshot};
+use crate::telemetry::{EndpointStatus, InFlightCommand, LinkState, LostTime, Snapshot};
 use crate::timeline::TimelineView;
 use crate::vehicle::Vehicle;
 
@@ -84,6 +84,8 @@ pub enum Command {
     },
     /// Start (`true`) or stop the scripted pilot that flies the whole mission: arm, climb, engage.
     Pilot(bool),
+    /// Go to a waypoint, hold here, go on.
+    InFlight(InFlightCommand),
     /// Fly home and land.
     ReturnHome,
     /// Take [`Command::ReturnHome`] back: the AUTOPILOT switch decides again.

@@ -226,6 +226,8 @@ pub struct NavTelemetry {
     pub pattern_angle_rad: Option<f64>,
     /// Hold time left, ds; 65535 = endless, 0 outside a hold.
     pub hold_remaining_ds: u16,
+    /// The hold was commanded, not planned.
+    pub held_by_command: bool,
     /// Distance from home, m.
     pub home_distance_m: Option<f64>,
     /// Distance left to the fence, m.

@@ -13,6 +13,8 @@ pub enum TransitionReason {
     Resume,
     /// Sent to a waypoint.
     SetCurrent,
+    /// Ordered to hold here.
+    HoldHere,
     /// Ordered to land here.
     Emergency,
     /// Ordered to return home.
@@ -61,6 +63,7 @@ impl TransitionReason {
             Self::Reset => "reset",
             Self::Resume => "resume",
             Self::SetCurrent => "set_current",
+            Self::HoldHere => "hold here",
             Self::Emergency => "emergency",
             Self::ReturnHome => "return to home",
             Self::Disengage => "disengage",

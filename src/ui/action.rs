@@ -37,6 +37,12 @@ pub enum Action {
     Autopilot,
     /// Fly home and land, or take that back.
     ReturnHome,
+    /// Go to a waypoint of the plan, now.
+    GoTo,
+    /// Hold this place and altitude.
+    HoldHere,
+    /// Go on after such a hold.
+    Resume,
     /// Cut or restore the RC link.
     CutRc,
     /// Hand the plan to the craft.

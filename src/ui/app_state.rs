@@ -6,7 +6,7 @@ use std::time::Duration;
 use crate::plan::FlightPlan;
 use crate::session::{Event, SessionEvent, SessionView};
 use crate::signals::{RcFrame, SimTime};
-use crate::telemetry::{EventKind, FirmwareEvent, NavEvent, NavState, TransitionReason};
+use crate::telemetry::{EventKind, FirmwareEvent, NavEvent, NavState, PlanSource, TransitionReason};
 
 use super::console::{CliHelp, CliState};
 use super::editor::{Editor, OpenPlan};
@@ -276,6 +276,27 @@ impl AppState {
             None if self.plan().waypoints.is_empty() => vehicle.stored_plan.as_ref().unwrap_or(self.plan()),
             None => self.plan(),
         }
+    }
+
+    /// Whether the autopilot flies a stored plan, not one of its own.
+    #[must_use]
+    pub fn flies_stored_plan(&self) -> bool {
+        let nav = self.view.vehicle.nav.as_ref();
+        nav.is_some_and(|nav| nav.engaged && nav.source == PlanSource::Stored)
+    }
+
+    /// Whether the autopilot flies this plan.
+    #[must_use]
+    pub fn flies(&self, plan: &FlightPlan) -> bool {
+        self.view.vehicle.active_plan.as_ref() == Some(plan)
+    }
+
+    /// Whether the craft has stored another plan than the one it flies, which takes effect at the next engagement.
+    #[must_use]
+    pub fn flies_older_plan(&self) -> bool {
+        let stored = self.view.vehicle.stored_plan.as_ref();
+        self.flies_stored_plan()
+            && stored.is_some_and(|stored| !stored.waypoints.is_empty() && !self.flies(stored))
     }
 
     /// The waypoints of the open plan.

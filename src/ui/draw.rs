@@ -12,7 +12,7 @@ use super::formatting;
 use super::layout::{self, SMALLEST};
 use super::panel::Panel;
 use super::panel::{self, span};
-use super::popup::{Popup, command_line, palette, what_if};
+use super::popup::{Popup, command_line, go_to, palette, what_if};
 use super::text_wrap::wrapped;
 use super::theme::{Charset, Role};
 use super::{hint_bar, notice, status_bar, timeline};
@@ -50,6 +50,10 @@ pub fn draw(state: &AppState, frame: &mut Frame<'_>) {
         cursor = match popup {
             Popup::Help { scroll } => {
                 panel::help::draw(state, *scroll, area, buffer);
+                None
+            }
+            Popup::GoTo(question) => {
+                go_to::draw(state, question, area, buffer);
                 None
             }
             Popup::WhatIf { selected } => {

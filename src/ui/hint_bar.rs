@@ -117,6 +117,12 @@ fn hint_actions(state: &AppState) -> Vec<(&'static [Action], &'static str)> {
         let home = if craft.is_commanded() { "stop return" } else { "home" };
         let rc = if state.view.rc_cut { "restore RC" } else { "cut RC" };
         if engaged {
+            if vehicle_is_held(state) {
+                hints.push((&[Action::Resume], "go on"));
+            }
+            if state.flies_older_plan() {
+                hints.push((&[Action::GoTo], "new plan"));
+            }
             hints.extend([
                 (&[Action::Autopilot] as &[_], autopilot),
                 (&[Action::ReturnHome], home),
@@ -154,6 +160,7 @@ fn hint_actions(state: &AppState) -> Vec<(&'static [Action], &'static str)> {
         hints.extend([(&[Action::EventBack] as &[_], "rewind"), (&[Action::Step], "step")]);
     }
     if craft.is_armed() && engaged {
+        hints.extend([(&[Action::HoldHere] as &[_], "hold here"), (&[Action::GoTo], "go to")]);
         // Last: in the air nobody should press it by mistake.
         hints.push((&[Action::Arm], "disarm"));
     }
@@ -163,6 +170,11 @@ fn hint_actions(state: &AppState) -> Vec<(&'static [Action], &'static str)> {
     hints.push((&[Action::CommandLine], "command"));
     hints.retain(|(actions, _)| actions.iter().all(|&action| enabled(state, action).is_ok()));
     hints
+}
+
+/// Whether a hold was commanded.
+fn vehicle_is_held(state: &AppState) -> bool {
+    state.view.vehicle.nav.as_ref().is_some_and(|nav| nav.held_by_command)
 }
 
 /// What the throttle key does here and now.

@@ -1,10 +1,12 @@
 //! The popups.
 
 pub(super) mod command_line;
+pub(super) mod go_to;
 pub(super) mod palette;
 pub(super) mod what_if;
 
 pub use command_line::CommandLine;
+pub(super) use go_to::GoTo;
 pub use palette::Palette;
 
 /// What lies over the panels; the last one opened gets the keys first.
@@ -15,6 +17,8 @@ pub enum Popup {
         /// First line shown.
         scroll: usize,
     },
+    /// Which waypoint to go to.
+    GoTo(GoTo),
     /// What may go wrong now, to fly ahead with it.
     WhatIf {
         /// The row that Enter takes.

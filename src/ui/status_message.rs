@@ -95,7 +95,7 @@ pub fn current(state: &AppState) -> Option<StatusMessage> {
         }
     }
     if vehicle.is_engaged() {
-        return vehicle.nav.as_ref().and_then(|nav| nav.cannot_hold).and_then(cannot_hold_message);
+        return in_flight(state);
     }
     let switched_on = transmitter::switch_is_on(state, Mode::Autopilot);
     if state.view.rc_cut {
@@ -155,6 +155,23 @@ pub fn current(state: &AppState) -> Option<StatusMessage> {
         return message(Severity::Warn, "AUTOPILOT is on while disarmed.", "g switches it off, then a arms");
     }
     message(Severity::Good, "Ready.", "F flies the plan; by hand: a, t, g")
+}
+
+/// What to know of a mission that is flown.
+fn in_flight(state: &AppState) -> Option<StatusMessage> {
+    let nav = state.view.vehicle.nav.as_ref()?;
+    if let Some(deviation) = nav.cannot_hold {
+        return cannot_hold_message(deviation);
+    }
+    if nav.held_by_command {
+        let action = format!("C goes on to WP{}, G to another", nav.wp);
+        return message(Severity::Info, "Holds here by command.", action);
+    }
+    if state.flies_older_plan() {
+        let condition = "The craft has a new plan, for the next engagement.";
+        return message(Severity::Info, condition, "G continues on it from a waypoint");
+    }
+    None
 }
 
 /// A craft that is blown off its place, or cannot keep its altitude.

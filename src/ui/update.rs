@@ -5,6 +5,7 @@ use std::time::Duration;
 use crossterm::event::{KeyEvent, KeyEventKind};
 
 use crate::session::{Command, SessionView};
+use crate::telemetry::InFlightCommand;
 
 use super::action::{self, Action, EditAction};
 use super::app_state::AppState;
@@ -35,7 +36,7 @@ mod timeline;
 mod view;
 
 use cli::{cli_key, paste};
-use flight::{fly, speed, upload, uploaded};
+use flight::{ask_where_to_go, fly, speed, upload, uploaded};
 use view::{ZOOM_STEP, follow, neighbour, scroll, zoom_map};
 
 pub(super) use cli::run_cli;
@@ -245,6 +246,9 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
         Action::Throttle => transmitter::move_throttle(state),
         Action::Autopilot => transmitter::toggle_autopilot(state),
         Action::ReturnHome => transmitter::toggle_return(state),
+        Action::GoTo => ask_where_to_go(state),
+        Action::HoldHere => vec![Effect::Send(Command::InFlight(InFlightCommand::HoldHere))],
+        Action::Resume => vec![Effect::Send(Command::InFlight(InFlightCommand::Resume))],
         Action::CutRc => vec![Effect::Send(Command::CutRc(!state.view.rc_cut))],
         Action::Upload => vec![upload(state)],
         Action::Edit(action) => edit(state, action),

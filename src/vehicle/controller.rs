@@ -16,7 +16,8 @@ use crate::plan::FlightPlan;
 use crate::signals::{MotorCommand, RcFrame, RcSource, SensorFrame, SimTime};
 use crate::telemetry::snapshot::{CraftView, EstimateView, ModeRange, SettingsView};
 use crate::telemetry::{
-    BadPackets, DisarmReason, FirmwareEvent, LostTime, Mode, ModeFlags, NavTelemetry, Refusal,
+    BadPackets, DisarmReason, FirmwareEvent, InFlightCommand, InFlightRefusal, LostTime, Mode, ModeFlags,
+    NavTelemetry, Refusal,
 };
 
 /// Identifies a request to a remote flight controller until its answer comes.
@@ -206,6 +207,17 @@ impl FlightController {
                 remote.ask(RemoteRequest::ReturnHome);
                 Ok(())
             }
+        }
+    }
+
+    /// Has the navigator that flies the stored plan do something else; a remote one has no such commands.
+    ///
+    /// # Errors
+    /// Why not; then nothing has changed.
+    pub fn command(&mut self, command: InFlightCommand) -> Result<(), InFlightRefusal> {
+        match self {
+            Self::Embedded(embedded) => embedded.command(command),
+            Self::Remote(_) => Err(InFlightRefusal::Remote),
         }
     }
 

@@ -11,6 +11,7 @@ use crate::firmware::msp::UtcTime;
 use crate::pilot::RcTransmitter;
 use crate::signals::{RcFrame, RcSource};
 use crate::sim::WorldCommand;
+use crate::telemetry::InFlightCommand;
 
 /// Something that came from outside between two ticks.
 #[derive(Debug, Clone)]
@@ -31,6 +32,8 @@ pub enum Input {
     Restart(Box<Configuration>),
     /// The command to fly home and land.
     ReturnHome,
+    /// A command to the navigator that flies the stored plan.
+    InFlight(InFlightCommand),
     /// That command taken back.
     CancelReturn,
     /// The transmitter as it was set: sticks, link, pilot.
@@ -65,6 +68,7 @@ impl Input {
             | Self::CliOpened
             | Self::CliClosed
             | Self::ReturnHome
+            | Self::InFlight(_)
             | Self::CancelReturn
             | Self::ResetCraft => 0,
         }
@@ -155,6 +159,9 @@ impl Vehicle {
             Input::Restart(configuration) => self.controller.restart(|| Configuration::clone(configuration)),
             Input::ReturnHome => {
                 let _told = self.controller.return_to_home();
+            }
+            Input::InFlight(command) => {
+                let _told = self.controller.command(*command);
             }
             Input::CancelReturn => self.controller.cancel_command(),
             Input::Transmitter(transmitter) => self.transmitter.clone_from(transmitter),

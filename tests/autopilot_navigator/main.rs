@@ -8,6 +8,7 @@
 mod fence;
 #[path = "../autopilot_support/flight.rs"]
 mod flight;
+mod in_flight;
 mod landing;
 mod legs;
 mod losses;

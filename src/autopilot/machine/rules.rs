@@ -173,6 +173,9 @@ fn arrived(facts: &Facts, list: &mut Rules) {
 }
 
 fn holding(facts: &Facts, list: &mut Rules) {
+    if facts.held_by_command {
+        return;
+    }
     match facts.waypoint.kind {
         WaypointType::Hold => match facts.waypoint.pattern {
             HoldPattern::Orbit => list.push(rule([], Outcome::Orbit, TransitionReason::Pattern)),

@@ -334,7 +334,7 @@ impl Navigator {
         self.begin_first_leg_with_guard(0, false, reason, guard, inputs, params);
     }
 
-    fn announce_plan(&mut self) {
+    pub(super) fn announce_plan(&mut self) {
         self.push(NavEvent::Plan {
             source: self.cursor.source(),
             plan: Box::new(self.cursor.plan().clone()),

@@ -60,6 +60,7 @@ impl Navigator {
             },
             climb: self.climb.is_on().then(|| (now.alt_m, self.climb_goal_m(params))),
             progress: self.progress.facts(self.progress_distance_m(now, seen), now.time),
+            held_by_command: self.hold.is_by_command(),
             hold_elapsed_us: self.hold.elapsed_us(now.time),
             touchdown: TouchdownGuards::new(
                 &touchdown_facts(now, params, seen, &controllers.altitude),

@@ -7,12 +7,24 @@ use crate::signals::SimTime;
 pub(super) struct Hold {
     began: SimTime,
     phase_rad: f64,
+    by_command: bool,
 }
 
 impl Hold {
     /// HOLDING is entered.
     pub(super) fn begin(&mut self, time: SimTime) {
         self.began = time;
+    }
+
+    /// HOLDING is entered by a command: its time does not end.
+    pub(super) fn begin_by_command(&mut self, time: SimTime) {
+        self.begin(time);
+        self.by_command = true;
+    }
+
+    /// Whether the hold was commanded.
+    pub(super) fn is_by_command(&self) -> bool {
+        self.by_command
     }
 
     /// Time since HOLDING was entered, µs.

@@ -57,6 +57,7 @@ impl Navigator {
                 pattern_angle_rad: matches!(self.state, NavState::Orbiting | NavState::Figure8)
                     .then(|| self.hold.phase_rad()),
                 hold_remaining_ds: self.hold_remaining_ds(now),
+                held_by_command: self.hold.is_by_command(),
                 eta_s: (on_leg && speed >= ETA_MIN_MPS).then(|| seen.distance_m / speed),
                 stick_override: seen.stick_override,
                 cannot_hold: self.station.told(),
@@ -87,6 +88,7 @@ impl Navigator {
 
     fn hold_remaining_ds(&self, now: &NavInputs) -> u16 {
         match self.state {
+            NavState::Holding if self.hold.is_by_command() => hold_remaining_ds(0, 0),
             NavState::Holding | NavState::Orbiting | NavState::Figure8 => {
                 let duration = self.cursor.current().unwrap_or_default().duration_ds;
                 hold_remaining_ds(duration, self.hold.elapsed_us(now.time))

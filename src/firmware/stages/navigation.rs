@@ -18,7 +18,8 @@ use crate::firmware::throttle_takeover::ThrottleTakeover;
 use crate::plan::FlightPlan;
 use crate::signals::SimTime;
 use crate::telemetry::{
-    FirmwareEvent, FirmwareNotice, Mode, ModeFlags, NavEvent, NavOutput, NavTelemetry, Refusal,
+    FirmwareEvent, FirmwareNotice, InFlightCommand, InFlightRefusal, Mode, ModeFlags, NavEvent, NavOutput,
+    NavTelemetry, Refusal,
 };
 
 use super::flight_control::Demand;
@@ -342,6 +343,16 @@ impl Navigation {
     /// Flies home and lands, by command.
     pub(in crate::firmware) fn return_to_home(&mut self, parameters: &Parameters) -> Result<(), Refusal> {
         self.orders.return_to_home(&mut self.navigator, &self.inputs, &parameters.nav, None)
+    }
+
+    /// Carries out a command to the navigator that flies the stored plan.
+    pub(in crate::firmware) fn command(
+        &mut self,
+        command: InFlightCommand,
+        parameters: &Parameters,
+        stored: &FlightPlan,
+    ) -> Result<(), InFlightRefusal> {
+        self.navigator.command(command, &self.inputs, &parameters.nav, stored)
     }
 
     /// Lands here, by command.

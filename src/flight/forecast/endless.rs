@@ -40,8 +40,11 @@ impl EndlessWatch {
                 return None;
             }
             let since = *self.hold_since.get_or_insert(now);
-            return (now.seconds_since(since) >= HOLD_S)
-                .then(|| (ForecastEnd::Endless, format!("holds at waypoint {} without end", nav.wp)));
+            return (now.seconds_since(since) >= HOLD_S).then(|| {
+                let place =
+                    if nav.held_by_command { "here".to_owned() } else { format!("at waypoint {}", nav.wp) };
+                (ForecastEnd::Endless, format!("holds {place} without end"))
+            });
         }
         self.hold_since = None;
         let alt_m = vehicle.world()?.truth().pos_enu.z;

@@ -132,7 +132,7 @@ impl Observer {
     }
 
     /// The forecast of the flight that ended so, here and now.
-    pub(super) fn forecast(&mut self, ended: Ended, vehicle: &Vehicle) -> Forecast {
+    pub(super) fn forecast(&mut self, ended: &Ended, vehicle: &Vehicle) -> Forecast {
         self.end_leg();
         let along_m = vehicle.controller().nav().map_or(0.0, |nav| self.distance.follow(nav));
         if let Some(point) = place(vehicle, along_m) {
@@ -143,7 +143,7 @@ impl Observer {
         Forecast {
             kind: ended.kind,
             end: ended.end,
-            reason: ended.reason,
+            reason: ended.reason.trim_end_matches('.').to_owned(),
             time_s: ended.time_s,
             battery_used_pct: if used_pct.is_finite() { used_pct.clamp(0.0, 100.0) } else { 0.0 },
             worst_xte: self.worst_xte,

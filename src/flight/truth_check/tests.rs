@@ -113,6 +113,22 @@ fn a_waypoint_that_is_left_by_a_command_does_not_count() {
 }
 
 #[test]
+fn a_hold_by_command_is_not_one_of_the_waypoint() {
+    let mut bench = Bench::new(WaypointType::Hold);
+    bench.enter(NavState::Approaching, TransitionReason::Reset, None);
+    bench.fly_to(60.0);
+    bench.enter(NavState::Holding, TransitionReason::HoldHere, None);
+    bench.fly_to(80.0);
+    assert!(bench.waypoints().is_empty());
+    bench.enter(NavState::Approaching, TransitionReason::Resume, None);
+    bench.fly_to(1.0);
+    bench.enter(NavState::Arrived, TransitionReason::Arrival, None);
+    bench.enter(NavState::Holding, TransitionReason::Hold, None);
+    bench.fly_to(1.0);
+    assert!((bench.waypoints()[0].miss_m - 1.0).abs() < 1e-9);
+}
+
+#[test]
 fn the_last_run_of_a_waypoint_counts() {
     let mut bench = Bench::new(WaypointType::Flyover);
     for closest_m in [40.0, 3.0] {

@@ -68,6 +68,11 @@ impl Session {
                     self.notice(format!("No return home: {}", refusal.sentence()));
                 }
             }
+            Command::InFlight(command) => {
+                if let Err(refusal) = self.vehicle.controller_mut().command(command) {
+                    self.notice(refusal.sentence());
+                }
+            }
             Command::CancelReturn => self.vehicle.controller_mut().cancel_command(),
             Command::ResetCraft => self.reset_craft(),
             Command::World { line, reply } => {

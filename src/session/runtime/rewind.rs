@@ -85,6 +85,7 @@ impl Session {
             | Command::CutRc(_)
             | Command::Pilot(_)
             | Command::ReturnHome
+            | Command::InFlight(_)
             | Command::CancelReturn
             | Command::ResetCraft => self.notice(REWOUND),
         }

@@ -2,7 +2,7 @@
 
 use crate::session::PHYSICS_IS_EXTERNAL;
 use crate::session::command::{NOT_RECORDED, PLACE_IS_EXTERNAL, REWOUND, TIME_IS_EXTERNAL};
-use crate::telemetry::{LinkState, Mode};
+use crate::telemetry::{LinkState, Mode, NavState};
 use crate::ui::app_state::AppState;
 use crate::ui::transmitter;
 
@@ -26,6 +26,7 @@ pub fn enabled(state: &AppState, action: Action) -> Result<(), String> {
         Action::ResetCraft if state.view.simulator == Some(LinkState::Flowing) => {
             Err(PLACE_IS_EXTERNAL.to_owned())
         }
+        Action::GoTo | Action::HoldHere | Action::Resume => can_command(state, action),
         Action::LookAhead if state.forecast.looks_ahead() => Ok(()),
         Action::LookAhead | Action::WhatIf if state.view.simulator.is_some() => {
             Err(PHYSICS_IS_EXTERNAL.to_owned())
@@ -58,6 +59,29 @@ pub fn enabled(state: &AppState, action: Action) -> Result<(), String> {
     }
 }
 
+/// Whether the navigator takes a command in flight.
+fn can_command(state: &AppState, action: Action) -> Result<(), String> {
+    let vehicle = &state.view.vehicle;
+    let Some(nav) = vehicle.nav.as_ref().filter(|nav| nav.engaged) else {
+        return Err("The autopilot does not fly: `g` engages it, `F` flies the plan.".to_owned());
+    };
+    let stored = vehicle.stored_plan.as_ref();
+    match action {
+        _ if !state.flies_stored_plan() => {
+            Err("The autopilot flies home or lands by a plan of its own: `H` takes a return home back."
+                .to_owned())
+        }
+        Action::GoTo if stored.is_none_or(|plan| plan.waypoints.is_empty()) => {
+            Err("The craft has no plan: `U` uploads one.".to_owned())
+        }
+        Action::HoldHere if nav.state == NavState::Complete => {
+            Err("The plan is complete and the craft keeps its place: `G` goes to a waypoint.".to_owned())
+        }
+        Action::Resume if !nav.held_by_command => Err("Nothing is held: `K` holds here.".to_owned()),
+        _ => Ok(()),
+    }
+}
+
 /// Whether an action moves through the recording of the flight.
 fn is_in_recording(action: Action) -> bool {
     matches!(
@@ -82,6 +106,9 @@ fn steers(action: Action) -> bool {
             | Action::Throttle
             | Action::Autopilot
             | Action::ReturnHome
+            | Action::GoTo
+            | Action::HoldHere
+            | Action::Resume
             | Action::CutRc
             | Action::Upload
             | Action::ResetCraft

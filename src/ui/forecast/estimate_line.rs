@@ -1,6 +1,6 @@
 //! The numbers of the flown estimate in a line, for the foot of the Plan panel.
 
-use ratatui::text::{Line, Span};
+use ratatui::text::Line;
 use unicode_width::UnicodeWidthStr as _;
 
 use crate::session::{Forecast, ForecastEnd, ForecastResult};
@@ -33,37 +33,34 @@ pub(in crate::ui) fn line(state: &AppState, width: u16) -> Line<'static> {
     if !mark.is_empty() {
         return Line::from(span(theme, role, cut(&format!("{mark}flown: {}", estimate.line()), width)));
     }
-    let mut spans: Vec<Span<'static>> = Vec::new();
-    let mut used = 0;
-    let waiting = if forecast.is_estimating() { "…" } else { "" };
-    for (long, short) in numbers(estimate, waiting) {
-        let gap = if spans.is_empty() { "" } else { "   " };
-        let text = [long, short].into_iter().find(|text| used + gap.len() + text.width() <= width);
-        let Some(text) = text else { break };
-        used += gap.len() + text.width();
-        spans.push(span(theme, role, format!("{gap}{text}")));
-    }
-    Line::from(spans)
+    let numbers = numbers(estimate, if forecast.is_estimating() { "…" } else { "" });
+    let long = numbers.each_ref().map(|(long, _)| long.as_str()).join("   ");
+    let text = if long.width() <= width {
+        long
+    } else {
+        numbers.each_ref().map(|(_, short)| short.as_str()).join("  ")
+    };
+    Line::from(span(theme, role, cut(&text, width)))
 }
 
-/// The numbers, each in a long and a short form, the most important ones first.
-fn numbers(estimate: &Forecast, waiting: &str) -> Vec<(String, String)> {
+/// The numbers, each in a long and a short form, the most important ones first; `waiting` marks those of an older plan.
+fn numbers(estimate: &Forecast, waiting: &str) -> [(String, String); 5] {
     let along_m = estimate.path.last().map_or(0.0, |end| end.along_m);
     let seconds = estimate.time_s.round() as u32;
     let time = format!("{:02}:{:02}{waiting}", seconds / 60, seconds % 60);
     let used_pct = estimate.battery_used_pct;
-    let metres = |name: &str, value: Option<f64>, decimals: usize| match value {
-        Some(value) => format!("{name} {value:.decimals$} m"),
-        None => format!("{name} —"),
+    let metres = |value: Option<f64>, decimals: usize| match value {
+        Some(value) => format!("{value:.decimals$} m"),
+        None => "—".to_owned(),
     };
-    let xte_m = estimate.worst_xte.map(|worst| worst.xte_m);
-    let (xte, short_xte) = (metres("worst xte", xte_m, 1), metres("xte", xte_m, 1));
-    let fence = metres("fence", estimate.fence_margin_m, 0);
-    vec![
-        (format!("{along_m:.0} m"), format!("{along_m:.0} m")),
-        (format!("flown estimate {time}"), time),
-        (format!("battery {used_pct:.0} %"), format!("{used_pct:.0} %")),
-        (xte, short_xte),
+    let xte = metres(estimate.worst_xte.map(|worst| worst.xte_m), 1);
+    let fence = format!("fence {}", metres(estimate.fence_margin_m, 0));
+    let length = format!("{along_m:.0} m");
+    [
+        (length.clone(), length),
+        (format!("flown estimate {time}"), format!("flown {time}")),
+        (format!("battery {used_pct:.0} %"), format!("bat {used_pct:.0} %")),
+        (format!("worst xte {xte}"), format!("xte {xte}")),
         (fence.clone(), fence),
     ]
 }

@@ -4,9 +4,13 @@ use crate::session::Command;
 use crate::ui::app_state::AppState;
 use crate::ui::event_log::Severity;
 use crate::ui::message::Effect;
+use crate::ui::popup::{GoTo, Popup};
 
 /// The speeds `[` and `]` go through.
 const SPEEDS: [f64; 12] = [0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, f64::INFINITY];
+
+/// What an upload in flight does.
+const NEXT_ENGAGEMENT: &str = " It takes effect at the next engagement; `G` continues on it now.";
 
 /// Starts or stops the scripted pilot; a craft without a plan gets the open one first.
 pub(super) fn fly(state: &mut AppState) -> Vec<Effect> {
@@ -48,11 +52,12 @@ pub(super) fn uploaded(state: &mut AppState, result: Result<(), String>) -> Vec<
     let fly = std::mem::take(&mut state.fly_after_upload);
     match result {
         Ok(()) => {
-            let text = format!(
-                "Uploaded {}: {} waypoints.",
-                state.editor.plan().title(),
-                state.plan().waypoints.len()
-            );
+            let count = state.plan().waypoints.len();
+            // The next picture shows the new plan; whether another one flies is known already.
+            let then =
+                if state.flies_stored_plan() && !state.flies(state.plan()) { NEXT_ENGAGEMENT } else { "" };
+            let title = state.editor.plan().title();
+            let text = format!("Uploaded {title}: {count} waypoints.{then}");
             state.notify(Severity::Good, text);
             if fly { vec![Effect::Send(Command::Pilot(true))] } else { Vec::new() }
         }
@@ -61,6 +66,17 @@ pub(super) fn uploaded(state: &mut AppState, result: Result<(), String>) -> Vec<
             Vec::new()
         }
     }
+}
+
+/// Opens the list of the waypoints to go to.
+pub(super) fn ask_where_to_go(state: &mut AppState) -> Vec<Effect> {
+    let vehicle = &state.view.vehicle;
+    let current = vehicle.nav.as_ref().map_or(0, |nav| nav.wp);
+    if let Some(stored) = &vehicle.stored_plan {
+        let question = GoTo::new(stored, current);
+        state.popups.push(Popup::GoTo(question));
+    }
+    Vec::new()
 }
 
 /// Steps through the speeds; 0 = real time.

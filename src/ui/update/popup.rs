@@ -3,6 +3,8 @@
 use crossterm::event::{KeyCode, KeyEvent};
 
 use super::act;
+use crate::session::Command;
+use crate::telemetry::InFlightCommand;
 use crate::ui::action::{self, Action};
 use crate::ui::app_state::AppState;
 use crate::ui::command;
@@ -10,12 +12,23 @@ use crate::ui::event_log::Severity;
 use crate::ui::forecast;
 use crate::ui::message::Effect;
 use crate::ui::popup::palette::Entry;
-use crate::ui::popup::{Popup, command_line, palette, what_if};
+use crate::ui::popup::{Popup, command_line, go_to, palette, what_if};
 
 /// A key for the popup that was opened last; `found` is what it means without one.
 pub(super) fn key(state: &mut AppState, event: KeyEvent, found: Option<Action>) -> Vec<Effect> {
     match state.popups.last_mut() {
         None => Vec::new(),
+        Some(Popup::GoTo(question)) => match question.key(event) {
+            go_to::Outcome::Choosing => Vec::new(),
+            go_to::Outcome::Left => {
+                state.popups.pop();
+                Vec::new()
+            }
+            go_to::Outcome::Chosen(index) => {
+                state.popups.pop();
+                vec![Effect::Send(Command::InFlight(InFlightCommand::GoTo(index)))]
+            }
+        },
         Some(Popup::WhatIf { selected }) => match what_if::key(selected, event) {
             what_if::Outcome::Choosing => Vec::new(),
             what_if::Outcome::Left => {

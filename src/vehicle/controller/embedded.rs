@@ -5,7 +5,7 @@ use crate::firmware::cli::{CliReply, Interpreter};
 use crate::firmware::config::Configuration;
 use crate::firmware::msp::{Access, MESSAGES, MspAction, Outcome, UtcTime};
 use crate::signals::{RcFrame, RcSource};
-use crate::telemetry::Refusal;
+use crate::telemetry::{InFlightCommand, InFlightRefusal, Refusal};
 use crate::vehicle::input::{Input, InputLog, Message};
 
 /// The firmware and the inputs since the last step.
@@ -70,6 +70,11 @@ impl EmbeddedController {
     pub(super) fn return_to_home(&mut self) -> Result<(), Refusal> {
         self.inputs.note(|| Input::ReturnHome);
         self.firmware.return_to_home()
+    }
+
+    pub(super) fn command(&mut self, command: InFlightCommand) -> Result<(), InFlightRefusal> {
+        self.inputs.note(|| Input::InFlight(command));
+        self.firmware.command(command)
     }
 
     pub(super) fn cancel_command(&mut self) {

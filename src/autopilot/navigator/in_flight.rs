@@ -1,0 +1,101 @@
+//! Commands while the stored plan is flown: to a waypoint, hold here, go on.
+
+use super::Navigator;
+use super::entry::here;
+use super::leg::Leg;
+use crate::autopilot::engage::{self, EngageFacts};
+use crate::autopilot::io::NavInputs;
+use crate::autopilot::params::Params;
+use crate::plan::FlightPlan;
+use crate::telemetry::{InFlightCommand, InFlightRefusal, NavState, PlanSource, TransitionReason};
+
+impl Navigator {
+    /// Carries out a command between two updates.
+    ///
+    /// # Errors
+    /// Why not; then nothing has changed.
+    pub fn command(
+        &mut self,
+        command: InFlightCommand,
+        inputs: &NavInputs,
+        params: &Params,
+        stored: &FlightPlan,
+    ) -> Result<(), InFlightRefusal> {
+        let inputs = &self.inputs.apply(inputs);
+        if !self.is_flying() {
+            return Err(InFlightRefusal::NotFlying);
+        }
+        if inputs.failsafe {
+            return Err(InFlightRefusal::Failsafe);
+        }
+        if self.cursor.source() != PlanSource::Stored {
+            return Err(InFlightRefusal::Injected(self.cursor.source()));
+        }
+        match command {
+            InFlightCommand::GoTo(index) => self.go_to(index, inputs, params, stored),
+            InFlightCommand::HoldHere => self.hold_here(inputs),
+            InFlightCommand::Resume => self.resume_held(inputs, params),
+        }
+    }
+
+    /// A leg from here to waypoint `index`, with the modifiers before it; a delay is not repeated.
+    fn go_to(
+        &mut self,
+        index: u8,
+        inputs: &NavInputs,
+        params: &Params,
+        stored: &FlightPlan,
+    ) -> Result<(), InFlightRefusal> {
+        // A plan holds at most 30 waypoints.
+        let count = stored.waypoints.len() as u8;
+        let following = stored.waypoints.iter().skip(usize::from(index));
+        let Some((positional, _)) =
+            (index..).zip(following).find(|(_, waypoint)| waypoint.kind.is_positional())
+        else {
+            return Err(InFlightRefusal::NoWaypoint { wp: index, count });
+        };
+        if *self.cursor.plan() != *stored {
+            let (plan, fence) = EngageFacts::plan_facts(stored, inputs.home, params);
+            engage::check(&EngageFacts {
+                armed: true,
+                throttle_raised: true,
+                fix: true,
+                altitude_valid: true,
+                heading_valid: true,
+                plan,
+                fence,
+                failsafe: false,
+                aborted: None,
+            })
+            .map_err(InFlightRefusal::Plan)?;
+            self.cursor.load(stored);
+            self.announce_plan();
+        }
+        // So that it can be resumed when the switch is cycled, also after it was complete.
+        self.cursor.begin_mission(stored);
+        self.yaw_cap_dps = None;
+        self.begin_first_leg(positional, true, TransitionReason::SetCurrent, inputs, params);
+        Ok(())
+    }
+
+    fn hold_here(&mut self, inputs: &NavInputs) -> Result<(), InFlightRefusal> {
+        if self.state == NavState::Complete {
+            return Err(InFlightRefusal::Parked);
+        }
+        let here = here(inputs);
+        self.clear_clocks();
+        self.leg = Leg { waypoint: here, altitude_m: inputs.alt_m, start: here, ..Leg::default() };
+        self.hold.begin_by_command(inputs.time);
+        self.enter(NavState::Holding, TransitionReason::HoldHere, None);
+        Ok(())
+    }
+
+    fn resume_held(&mut self, inputs: &NavInputs, params: &Params) -> Result<(), InFlightRefusal> {
+        if !self.hold.is_by_command() {
+            return Err(InFlightRefusal::NotHeld);
+        }
+        let index = self.cursor.index();
+        self.begin_first_leg(index, true, TransitionReason::Resume, inputs, params);
+        Ok(())
+    }
+}

@@ -1,0 +1,70 @@
+//! Commands to the navigator while it flies a plan, and why it does not take one.
+
+use super::nav::PlanSource;
+use super::refusal::Refusal;
+
+/// A command to a navigator that flies the stored plan.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum InFlightCommand {
+    /// To this waypoint of the stored plan, now. When another plan has been stored meanwhile, that one is flown from here
+    /// on.
+    GoTo(u8),
+    /// Hold this place and altitude until another command.
+    HoldHere,
+    /// Go on to the current waypoint after a hold.
+    Resume,
+}
+
+/// Why such a command is not taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum InFlightRefusal {
+    /// Nothing is flown.
+    NotFlying,
+    /// A procedure of the receiver failsafe runs.
+    Failsafe,
+    /// A return home or an emergency landing is flown.
+    Injected(PlanSource),
+    /// The stored plan has no waypoint of this index to fly to.
+    NoWaypoint {
+        /// The index.
+        wp: u8,
+        /// Waypoints in the plan.
+        count: u8,
+    },
+    /// The plan that was stored meanwhile cannot be flown.
+    Plan(Refusal),
+    /// The plan is flown and the craft parked.
+    Parked,
+    /// Nothing is held by command.
+    NotHeld,
+    /// The flight controller is another program, which has no such commands.
+    Remote,
+}
+
+impl InFlightRefusal {
+    /// One sentence: why not, and what to do.
+    #[must_use]
+    pub fn sentence(&self) -> String {
+        match self {
+            Self::NotFlying => "The autopilot does not fly: engage it first.".to_owned(),
+            Self::Failsafe => "The receiver failsafe flies: restore the link first.".to_owned(),
+            Self::Injected(PlanSource::Rth) => "A return home is flown: take it back first.".to_owned(),
+            Self::Injected(_) => "An emergency landing is flown: cycle the AUTOPILOT switch.".to_owned(),
+            Self::NoWaypoint { wp, count: 0 } => {
+                format!("There is no waypoint {wp} to fly to: the stored plan is empty, upload one.")
+            }
+            Self::NoWaypoint { wp, count } if wp >= count => {
+                format!("There is no waypoint {wp}: the stored plan has 0 to {}.", count - 1)
+            }
+            Self::NoWaypoint { wp, .. } => {
+                format!("Nothing to fly to at waypoint {wp}: no place follows, choose an earlier one.")
+            }
+            Self::Plan(refusal) => format!("The new plan cannot be flown. {}", refusal.sentence()),
+            Self::Parked => {
+                "The plan is complete and the craft keeps its place: go to a waypoint.".to_owned()
+            }
+            Self::NotHeld => "Nothing is held by command, so there is nothing to resume.".to_owned(),
+            Self::Remote => "The flight controller is another program, which has no such command.".to_owned(),
+        }
+    }
+}

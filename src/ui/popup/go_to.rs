@@ -1,0 +1,130 @@
+//! The question which waypoint to go to.
+
+use crossterm::event::{KeyCode, KeyEvent};
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::text::Line;
+
+use crate::plan::FlightPlan;
+use crate::ui::app_state::AppState;
+use crate::ui::draw::popup;
+use crate::ui::panel::{line, row, span};
+use crate::ui::theme::Role;
+
+/// Columns of the inside.
+const WIDTH: u16 = 40;
+/// Most rows of waypoints.
+const ROWS: usize = 12;
+
+/// The waypoints that can be gone to, and the one that Enter takes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct GoTo {
+    /// Index and type of those with a place.
+    waypoints: Vec<(u8, String)>,
+    selected: usize,
+    /// The digits typed so far.
+    typed: String,
+}
+
+/// What a key did.
+#[derive(Debug)]
+pub(crate) enum Outcome {
+    /// The choice goes on.
+    Choosing,
+    /// None is chosen.
+    Left,
+    /// This one.
+    Chosen(u8),
+}
+
+impl GoTo {
+    /// The question for `plan`; the waypoint `current` is selected first.
+    pub(crate) fn new(plan: &FlightPlan, current: u8) -> Self {
+        let placed = (0..).zip(&plan.waypoints).filter(|(_, waypoint)| waypoint.kind.is_positional());
+        let waypoints: Vec<_> = placed.map(|(index, waypoint)| (index, waypoint.kind.to_string())).collect();
+        let selected = waypoints.iter().position(|(index, _)| *index >= current).unwrap_or(0);
+        Self { waypoints, selected, typed: String::new() }
+    }
+
+    pub(crate) fn key(&mut self, event: KeyEvent) -> Outcome {
+        match event.code {
+            KeyCode::Up | KeyCode::Char('k') => self.selected = self.selected.saturating_sub(1),
+            KeyCode::Down | KeyCode::Char('j') => {
+                self.selected = (self.selected + 1).min(self.waypoints.len().saturating_sub(1));
+            }
+            KeyCode::Char(digit @ '0'..='9') => self.type_digit(digit),
+            KeyCode::Enter => {
+                let chosen = self.waypoints.get(self.selected);
+                return chosen.map_or(Outcome::Left, |(index, _)| Outcome::Chosen(*index));
+            }
+            KeyCode::Esc | KeyCode::Char('G' | 'q') => return Outcome::Left,
+            _ => {}
+        }
+        Outcome::Choosing
+    }
+
+    /// Selects by number; digits that lead nowhere begin a new one.
+    fn type_digit(&mut self, digit: char) {
+        self.typed.push(digit);
+        for _ in 0..2 {
+            let found = self.waypoints.iter().position(|(index, _)| index.to_string() == self.typed);
+            if let Some(found) = found {
+                self.selected = found;
+                return;
+            }
+            self.typed = digit.to_string();
+        }
+    }
+}
+
+/// Draws the popup.
+pub(crate) fn draw(state: &AppState, question: &GoTo, area: Rect, buffer: &mut Buffer) {
+    let theme = &state.theme;
+    let shown = question.waypoints.len().min(ROWS);
+    let first = question.selected.saturating_sub(ROWS - 1);
+    let title = if state.flies_older_plan() { "Continue on the new plan from" } else { "Go now to" };
+    let inside = popup(state, area, (WIDTH, shown as u16 + 2), title, buffer);
+    for (at, (index, kind)) in question.waypoints.iter().skip(first).take(shown).enumerate() {
+        let (mark, role) =
+            if first + at == question.selected { ("▸", Role::Selected) } else { (" ", Role::Text) };
+        row(buffer, inside, at as u16, theme, role, &format!("{mark} waypoint {index:>2}  {kind}"));
+    }
+    let keys = Line::from(vec![
+        span(theme, Role::Key, " ↑ ↓ 0…9"),
+        span(theme, Role::Text, " choose  "),
+        span(theme, Role::Key, "Enter"),
+        span(theme, Role::Text, " go  "),
+        span(theme, Role::Key, "Esc"),
+        span(theme, Role::Text, " close"),
+    ]);
+    line(buffer, inside, shown as u16 + 1, &keys);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::{Waypoint, WaypointType};
+    use crossterm::event::KeyModifiers;
+
+    fn press(question: &mut GoTo, code: KeyCode) -> Outcome {
+        question.key(KeyEvent::new(code, KeyModifiers::NONE))
+    }
+
+    #[test]
+    fn a_waypoint_is_chosen_by_arrows_or_by_its_number() {
+        let mut plan = FlightPlan::default();
+        for _ in 0..14 {
+            plan.waypoints.push(Waypoint { kind: WaypointType::Flyover, ..Waypoint::default() });
+        }
+        plan.waypoints[1].kind = WaypointType::YawRate;
+        let mut question = GoTo::new(&plan, 2);
+        assert!(matches!(press(&mut question, KeyCode::Up), Outcome::Choosing));
+        assert!(matches!(press(&mut question, KeyCode::Enter), Outcome::Chosen(0)), "1 has no place");
+        for (digit, chosen) in [('1', 0), ('2', 12), ('3', 3), ('9', 9)] {
+            press(&mut question, KeyCode::Char(digit));
+            let Outcome::Chosen(index) = press(&mut question, KeyCode::Enter) else { panic!("{digit}") };
+            assert_eq!(index, chosen, "after {digit}");
+        }
+        assert!(matches!(press(&mut question, KeyCode::Esc), Outcome::Left));
+    }
+}
