@@ -44,7 +44,7 @@ fn keys(state: &mut AppState, keys: &str) -> Vec<Effect> {
             "esc" => KeyCode::Esc,
             "tab" => KeyCode::Tab,
             "backspace" => KeyCode::Backspace,
-            c => KeyCode::Char(c.chars().next().unwrap()),
+            c => KeyCode::Char(c.chars().next().expect("a key")),
         };
         effects.extend(press(state, code, modifiers));
     }
@@ -274,6 +274,30 @@ fn quitting_asks_for_every_unsaved_plan() {
             .iter()
             .any(|effect| matches!(effect, Effect::Files(FileRequest::Close { discard: true, .. })))
     );
+}
+
+#[test]
+fn the_plan_of_the_craft_is_compared_downloaded_and_watched() {
+    let mut state = state((120, 40));
+    keys(&mut state, "2 right right right + + left left +");
+    let seen = screen(&state);
+    assert!(seen.contains("● On the craft WP0 is: 1.0 m 180° from here, altitude"), "{seen}");
+    let effects = keys(&mut state, "D");
+    assert!(effects.iter().any(|effect| matches!(effect, Effect::Download)));
+    update(&mut state, Msg::DownloadReply(Ok(Box::new(fixture::square()))));
+    assert_eq!(*state.plan(), fixture::square());
+
+    // The App changes a waypoint.
+    let mut view = state.view.clone();
+    let stored = &mut std::sync::Arc::make_mut(&mut view.vehicle).stored_plan;
+    stored.as_mut().unwrap().waypoints[2].alt_cm = 7000;
+    update(&mut state, Msg::View(view.clone()));
+    assert!(screen(&state).contains("The plan in the craft was changed: WP2."), "{}", screen(&state));
+    // What this screen uploads is no news.
+    keys(&mut state, "+ U");
+    std::sync::Arc::make_mut(&mut view.vehicle).stored_plan = Some(state.plan().clone());
+    update(&mut state, Msg::View(view));
+    assert!(state.notice.as_ref().is_none_or(|notice| !notice.text.contains("was changed")));
 }
 
 #[test]

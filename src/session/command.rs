@@ -77,6 +77,11 @@ pub enum Command {
         /// Gets `Ok` or the sentence of the first refusal.
         reply: tokio::sync::oneshot::Sender<Result<(), String>>,
     },
+    /// Read the plan of the craft the way a ground station does.
+    Download {
+        /// Gets the plan, or the sentence of the refusal.
+        reply: tokio::sync::oneshot::Sender<Result<Box<FlightPlan>, String>>,
+    },
     /// Save the configuration of the craft, plan included, without a restart.
     Save {
         /// Gets `Ok` or why not, as a sentence.

@@ -1,6 +1,7 @@
-//! Uploads a plan as a ground station does: through the command line.
+//! Uploads a plan as a ground station does, through the command line, and reads it back; downloads one the same way.
 
 use crate::firmware::cli::{CliReply, Interpreter};
+use crate::plan::format::{self, Format};
 use crate::plan::{FlightPlan, upload_lines};
 use crate::vehicle::{Answer, FlightController, Ticket};
 
@@ -21,9 +22,27 @@ pub fn upload(
     }
 }
 
+/// What prints the plan in the craft.
+pub(super) const LIST: &str = "waypoint list";
+
+/// The plan that an answer to [`LIST`] shows.
+///
+/// # Errors
+/// A sentence, when it is none.
+pub(super) fn plan_of_list(reply: &CliReply) -> Result<FlightPlan, String> {
+    if reply.failed {
+        return Err(format!("the craft refused `{LIST}`: {}", reply.text.trim()));
+    }
+    format::parse("the craft", &reply.text, Format::CliText).map(|file| file.plan).map_err(|errors| {
+        errors.first().map_or_else(String::new, |error| format!("the craft's plan cannot be read: {error}"))
+    })
+}
+
 /// An upload under way.
 #[derive(Debug)]
 pub(super) struct Upload {
+    /// What the craft is to hold at the end.
+    plan: FlightPlan,
     /// The lines that were not sent yet.
     lines: std::vec::IntoIter<String>,
     /// The line that was sent last.
@@ -42,8 +61,13 @@ pub(super) enum UploadProgress {
 
 impl Upload {
     pub(super) fn new(plan: &FlightPlan, settings: &[String]) -> Self {
-        let lines: Vec<String> = upload_lines(plan, settings).collect();
-        Self { lines: lines.into_iter(), sent: String::new(), interpreter: Interpreter::default() }
+        let lines: Vec<String> = upload_lines(plan, settings).chain([LIST.to_owned()]).collect();
+        Self {
+            plan: plan.clone(),
+            lines: lines.into_iter(),
+            sent: String::new(),
+            interpreter: Interpreter::default(),
+        }
     }
 
     /// Sends lines until one is refused or its answer comes later.
@@ -51,6 +75,7 @@ impl Upload {
         while let Some(line) = self.lines.next() {
             self.sent = line;
             match controller.run_cli(&mut self.interpreter, &self.sent) {
+                Answer::Now(reply) if self.is_last() => return self.read_back(&reply),
                 Answer::Now(reply) if reply.failed => return self.refused(&reply),
                 Answer::Now(_) => {}
                 Answer::Later(ticket) => return UploadProgress::Waiting(ticket),
@@ -65,7 +90,37 @@ impl Upload {
         reply: &CliReply,
         controller: &mut FlightController,
     ) -> UploadProgress {
-        if reply.failed { self.refused(reply) } else { self.send_lines(controller) }
+        match reply.failed {
+            _ if self.is_last() => self.read_back(reply),
+            true => self.refused(reply),
+            false => self.send_lines(controller),
+        }
+    }
+
+    /// Whether the line that was sent last reads the plan back.
+    fn is_last(&self) -> bool {
+        self.lines.as_slice().is_empty()
+    }
+
+    /// Compares what the craft holds with what it was sent.
+    fn read_back(&self, reply: &CliReply) -> UploadProgress {
+        UploadProgress::Done(plan_of_list(reply).and_then(|held| {
+            if held == self.plan {
+                return Ok(());
+            }
+            let (sent, held) = (&self.plan.waypoints, &held.waypoints);
+            let differs = std::iter::zip(sent, held).position(|(sent, held)| sent != held);
+            Err(match differs {
+                Some(index) => {
+                    format!("the craft holds another waypoint {index} than was sent: upload again")
+                }
+                None => format!(
+                    "the craft holds {} waypoints, {} were sent: upload again",
+                    held.len(),
+                    sent.len()
+                ),
+            })
+        }))
     }
 
     fn refused(&self, reply: &CliReply) -> UploadProgress {
@@ -76,7 +131,7 @@ impl Upload {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::plan::Waypoint;
+    use crate::plan::{Waypoint, plan_lines};
     use crate::vehicle::RemoteRequest;
 
     /// What the remote flight controller was asked since.
@@ -93,9 +148,15 @@ mod tests {
     #[test]
     fn a_remote_flight_controller_gets_each_line_after_the_answer_to_the_one_before() {
         let plan = FlightPlan { waypoints: std::iter::once(Waypoint::default()).collect() };
-        let lines = ["set ap_max_angle = 33", "waypoint clear", "waypoint insert"];
+        let lines = ["set ap_max_angle = 33", "waypoint clear", "waypoint insert", "waypoint list"];
         let (taken, refused) = (CliReply::default(), CliReply { failed: true, ..CliReply::default() });
-        for answers in [[&taken, &taken, &taken], [&taken, &refused, &taken]] {
+        let list: String = plan_lines(&plan).map(|line| line + "\r\n").collect();
+        let (held, lost) = (CliReply { text: list, ..CliReply::default() }, CliReply::default());
+        for answers in [
+            [&taken, &taken, &taken, &held],
+            [&taken, &refused, &taken, &held],
+            [&taken, &taken, &taken, &lost],
+        ] {
             let mut controller = FlightController::Remote(Box::default());
             let mut upload = Upload::new(&plan, &["ap_max_angle = 33".to_owned()]);
             let mut progress = upload.send_lines(&mut controller);
@@ -109,7 +170,7 @@ mod tests {
                 }
             }
             let UploadProgress::Done(result) = progress else { panic!("{progress:?}") };
-            assert_eq!(result.is_ok(), !answers[1].failed, "{result:?}");
+            assert_eq!(result.is_ok(), !answers[1].failed && !answers[3].text.is_empty(), "{result:?}");
             assert!(asked(&mut controller).is_empty());
         }
     }

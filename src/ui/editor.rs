@@ -9,6 +9,7 @@ pub(super) mod column;
 pub(super) mod files;
 pub(super) mod findings;
 mod form;
+mod form_edits;
 mod forms;
 mod open_plan;
 mod popup;
@@ -28,10 +29,8 @@ use std::path::PathBuf;
 
 use super::message::Effect;
 use super::text_field::TextField;
-use crate::geo::LatLon;
-use crate::plan::edit::transform::middle;
 use crate::plan::edit::{History, PlanDocument};
-use crate::plan::{MAX_WAYPOINTS, Waypoint};
+use crate::plan::{FlightPlan, MAX_WAYPOINTS, Waypoint};
 
 /// The state of the plan editor.
 #[derive(Debug)]
@@ -44,6 +43,8 @@ pub struct Editor {
     anchor: Option<usize>,
     field: Option<CellField>,
     register: Vec<Waypoint>,
+    /// What was handed to the craft last.
+    uploaded: Option<FlightPlan>,
     pub(super) popup: Option<EditorPopup>,
     /// The program ends as soon as every plan is saved or given up.
     pub(super) quitting: bool,
@@ -73,6 +74,7 @@ impl Editor {
             anchor: None,
             field: None,
             register: Vec::new(),
+            uploaded: None,
             popup: None,
             quitting: false,
         }
@@ -87,6 +89,16 @@ impl Editor {
     fn plan_mut(&mut self) -> &mut OpenPlan {
         let current = self.current.min(self.plans.len() - 1);
         &mut self.plans[current]
+    }
+
+    /// The plan that is shown is about to be handed to the craft.
+    pub(super) fn remember_upload(&mut self) {
+        self.uploaded = Some(self.document().plan.clone());
+    }
+
+    /// Whether a plan of the craft is there because this editor handed it over.
+    pub(super) fn has_uploaded(&self, plan: &FlightPlan) -> bool {
+        self.uploaded.as_ref() == Some(plan)
     }
 
     /// All open plans.
@@ -414,72 +426,6 @@ impl Editor {
         let plan = self.plan_of_mut(id)?;
         plan.set_changed_on_disk(true);
         Some(plan.title())
-    }
-
-    /// Does what the values of a form say; the sentence tells what was done.
-    ///
-    /// # Errors
-    /// What is wrong with a value, as a sentence.
-    pub(super) fn take_form(
-        &mut self,
-        form: &Form,
-        home: Option<LatLon>,
-    ) -> Result<(Vec<Effect>, String), String> {
-        let mut after = self.document().clone();
-        match form.kind {
-            FormKind::Bulk => {
-                let selected = self.selected();
-                let label = format!("change {}", which(&selected));
-                forms::take_bulk(form, &mut after, selected)?;
-                Ok((self.replace_document(&label, after), format!("Done: {label}.")))
-            }
-            FormKind::Properties => {
-                forms::take_properties(form, &mut after)?;
-                Ok((
-                    self.replace_document("properties", after),
-                    "Name, home and settings are taken.".to_owned(),
-                ))
-            }
-            FormKind::Generate => {
-                let generated = self.generated(form, home)?;
-                let have = if form.appends() { after.plan.waypoints.len() } else { 0 };
-                after.plan.waypoints.truncate(have);
-                after
-                    .plan
-                    .waypoints
-                    .extend(generated.plans.iter().flatten().take(MAX_WAYPOINTS - have).copied());
-                let name = after.name.clone();
-                let mut effects = self.replace_document("generate", after);
-                let first = self.current;
-                for (number, waypoints) in generated.plans.iter().enumerate().skip(1) {
-                    let name = format!("{name}-{}", number + 1);
-                    let plan = forms::plan_of(waypoints);
-                    effects.push(self.open_new(PlanDocument { name, plan, ..PlanDocument::default() }));
-                }
-                self.show(first);
-                Ok((effects, generated.told))
-            }
-        }
-    }
-
-    /// What the generator's form would make now: about the middle of the plan, else about home.
-    fn generated(&self, form: &Form, home: Option<LatLon>) -> Result<forms::Generated, String> {
-        let waypoints = &self.document().plan.waypoints;
-        let middle = middle(waypoints).or(home).ok_or("Home is not known yet: wait for the GPS fix.")?;
-        forms::generated(form, middle, waypoints.len())
-    }
-
-    /// The line under a form: what it would make, or what is wrong.
-    ///
-    /// # Errors
-    /// What is wrong with a value, as a sentence.
-    pub(crate) fn form_told(&self, form: &Form, home: Option<LatLon>) -> Result<String, String> {
-        match (&form.problem, form.kind) {
-            (Some(problem), _) => Err(problem.clone()),
-            (None, FormKind::Generate) => self.generated(form, home).map(|generated| generated.told),
-            (None, FormKind::Bulk) => Ok(format!("{} · empty = as it is", which(&self.selected()))),
-            (None, FormKind::Properties) => Ok(String::new()),
-        }
     }
 
     fn plan_of_mut(&mut self, id: PlanId) -> Option<&mut OpenPlan> {

@@ -39,6 +39,8 @@ pub enum Msg {
     },
     /// A forecast, or why there is none.
     Forecast(ForecastReply),
+    /// The plan of the craft, or the sentence of the refusal.
+    DownloadReply(Result<Box<FlightPlan>, String>),
     /// The craft saved its configuration: the sentence of why not otherwise.
     SaveReply(Result<(), String>),
     /// The files answered.
@@ -67,6 +69,8 @@ pub enum Effect {
     Forecast(ForecastJob),
     /// Ask the files.
     Files(FileRequest),
+    /// Read the plan of the craft; it comes back as [`Msg::DownloadReply`].
+    Download,
     /// Save the configuration in the craft's flash, as a ground station does; a notice tells how it went.
     SaveToFlash,
     /// Give text to the terminal's clipboard.

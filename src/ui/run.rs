@@ -215,6 +215,15 @@ fn carry_out(
             execute!(io::stdout(), CopyToClipboard::to_clipboard_from(text)).ok();
             Ok(())
         }
+        Effect::Download => {
+            let (reply, answer) = oneshot::channel();
+            let replies = replies.clone();
+            tokio::spawn(async move {
+                let answer = answer.await.unwrap_or_else(|_| Err("the session did not answer.".to_owned()));
+                replies.send(Msg::DownloadReply(answer)).ok();
+            });
+            link.commands.try_send(Command::Download { reply })
+        }
         Effect::SaveToFlash => {
             let (reply, answer) = oneshot::channel();
             let replies = replies.clone();

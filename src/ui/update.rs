@@ -102,6 +102,7 @@ fn take(state: &mut AppState, msg: Msg) -> Vec<Effect> {
             forecast::take_answer(state, reply);
             Vec::new()
         }
+        Msg::DownloadReply(result) => plan::downloaded(state, result),
         Msg::SaveReply(result) => plan::saved_to_flash(state, result),
         Msg::Files(reply) => plan_popup::answered(state, reply),
         Msg::Busy => {
@@ -119,7 +120,17 @@ fn take_view(state: &mut AppState, view: SessionView) {
     if !left && !view.is_rewound() && view.vehicle.time < state.view.vehicle.time {
         state.track.clear();
     }
-    state.view = view;
+    let before = std::mem::replace(&mut state.view, view);
+    if !left
+        && !state.is_rewound()
+        && !before.is_rewound()
+        && let (Some(was), Some(now)) = (&before.vehicle.stored_plan, state.view.vehicle.stored_plan.clone())
+        && *was != now
+        && !state.editor.has_uploaded(&now)
+        && !state.cli.waiting
+    {
+        plan::craft_plan_changed(state, was, &now);
+    }
     state.forecast.take_view();
     if state.is_rewound() {
         return;
@@ -189,7 +200,7 @@ fn edit(state: &mut AppState, action: EditAction) -> Vec<Effect> {
         EditAction::Close => plan::close(state),
         EditAction::NextPlan => plan::show_other(state, 1),
         EditAction::PreviousPlan => plan::show_other(state, -1),
-        EditAction::Download => plan::download(state),
+        EditAction::Download => vec![Effect::Download],
         EditAction::SaveToFlash => vec![Effect::SaveToFlash],
         EditAction::Left => moved(state, -1),
         EditAction::Right => moved(state, 1),

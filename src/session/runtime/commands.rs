@@ -5,11 +5,14 @@ use std::task::{Context, Poll};
 use std::time::{Duration, Instant};
 
 use super::Session;
+use super::late::WaitingInterface;
+use crate::firmware::cli::Interpreter;
 use crate::flight::forecast;
 use crate::session::command::{Command, PLACE_IS_EXTERNAL, TIME_IS_EXTERNAL, VehicleCopy};
-use crate::session::upload::Upload;
+use crate::session::upload::{LIST, Upload, plan_of_list};
 use crate::sim::WorldCommand;
 use crate::telemetry::LinkState;
+use crate::vehicle::Answer;
 
 impl Session {
     pub(super) fn take_commands(&mut self, now: Duration, context: &mut Context<'_>) {
@@ -57,9 +60,18 @@ impl Session {
             }
             Command::Cli { line, reply } => self.run_cli(line, reply),
             Command::Upload { plan, settings, reply } => {
-                let mut upload = Upload::new(&plan, &settings);
+                let mut upload = Box::new(Upload::new(&plan, &settings));
                 let progress = upload.send_lines(self.vehicle.controller_mut());
                 self.report_upload(upload, progress, reply, Instant::now());
+            }
+            Command::Download { reply } => {
+                match self.vehicle.controller_mut().run_cli(&mut Interpreter::default(), LIST) {
+                    Answer::Now(answer) => drop(reply.send(plan_of_list(&answer).map(Box::new))),
+                    Answer::Later(ticket) => {
+                        let waiting = WaitingInterface::Download { reply };
+                        self.late_answers.expect(ticket, waiting, Instant::now());
+                    }
+                }
             }
             Command::Save { reply } => drop(reply.send(self.save())),
             Command::Pilot(on) => self.set_pilot(on),

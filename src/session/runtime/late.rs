@@ -7,10 +7,11 @@ use tokio::sync::oneshot;
 use super::Session;
 use super::console::output;
 use crate::firmware::cli::CliAction;
+use crate::plan::FlightPlan;
 use crate::session::command::CliOutput;
 use crate::session::hazards;
 use crate::session::late_answers::{NO_ANSWER, no_answer_line};
-use crate::session::upload::{Upload, UploadProgress};
+use crate::session::upload::{Upload, UploadProgress, plan_of_list};
 use crate::vehicle::LateAnswer;
 
 /// A part of the user interface that awaits the answer of a remote flight controller.
@@ -23,10 +24,15 @@ pub(super) enum WaitingInterface {
         /// Gets its output.
         reply: oneshot::Sender<CliOutput>,
     },
+    /// A download.
+    Download {
+        /// Gets the plan.
+        reply: oneshot::Sender<Result<Box<FlightPlan>, String>>,
+    },
     /// An upload, which goes on with the answer.
     Upload {
         /// What is left of it.
-        upload: Upload,
+        upload: Box<Upload>,
         /// Gets its result.
         reply: oneshot::Sender<Result<(), String>>,
     },
@@ -48,6 +54,9 @@ impl Session {
                     let progress = upload.take_answer(&said, self.vehicle.controller_mut());
                     self.report_upload(upload, progress, reply, now);
                 }
+                (Some(WaitingInterface::Download { reply }), LateAnswer::Cli(said)) => {
+                    drop(reply.send(plan_of_list(&said).map(Box::new)));
+                }
                 (_, answer) => {
                     if let Some(endpoints) = &mut self.endpoints {
                         endpoints.handler.deliver(ticket, answer);
@@ -60,6 +69,7 @@ impl Session {
                 WaitingInterface::Line { reply, .. } => {
                     drop(reply.send(CliOutput { text: no_answer_line(), ..CliOutput::default() }));
                 }
+                WaitingInterface::Download { reply } => drop(reply.send(Err(NO_ANSWER.to_owned()))),
                 WaitingInterface::Upload { reply, .. } => drop(reply.send(Err(NO_ANSWER.to_owned()))),
             }
         }
@@ -71,7 +81,7 @@ impl Session {
     /// Reports the result of an upload, once there is one.
     pub(super) fn report_upload(
         &mut self,
-        upload: Upload,
+        upload: Box<Upload>,
         progress: UploadProgress,
         reply: oneshot::Sender<Result<(), String>>,
         now: Instant,

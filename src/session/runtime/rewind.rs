@@ -81,6 +81,7 @@ impl Session {
             Command::Upload { reply, .. } | Command::World { reply, .. } | Command::Save { reply } => {
                 drop(reply.send(Err(REWOUND.to_owned())));
             }
+            Command::Download { reply } => drop(reply.send(Err(REWOUND.to_owned()))),
             Command::Sticks(_)
             | Command::CutRc(_)
             | Command::Pilot(_)

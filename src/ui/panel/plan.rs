@@ -87,7 +87,10 @@ fn below(state: &AppState, findings: &[Finding], width: usize) -> Vec<Line<'stat
             None => said(Role::Dim, &state.editor.column().hint(kind)),
         };
     }
-    let Some((finding, fix)) = findings::shown(state, findings) else { return Vec::new() };
+    let Some((finding, fix)) = findings::shown(state, findings) else {
+        let difference = table::difference(state, state.editor.row());
+        return difference.map_or_else(Vec::new, |text| said(Role::Dim, &text));
+    };
     let (mark, role) = if finding.is_refusal() { ("✗", Role::Fault) } else { ("▲", Role::Warn) };
     let more = match findings.len() - 1 {
         0 => String::new(),

@@ -41,7 +41,8 @@ pub(super) fn fly(state: &mut AppState) -> Vec<Effect> {
     vec![upload(state)]
 }
 
-pub(super) fn upload(state: &AppState) -> Effect {
+pub(super) fn upload(state: &mut AppState) -> Effect {
+    state.editor.remember_upload();
     Effect::Upload {
         plan: Box::new(state.plan().clone()),
         settings: state.editor.document().settings.clone(),

@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 
 use crate::geo::{GroundPlane, LatLon, distance_bearing};
 use crate::plan::edit::PlanDocument;
-use crate::plan::{HoldPattern, Waypoint, WaypointType};
+use crate::plan::{FlightPlan, HoldPattern, Waypoint, WaypointType};
 use crate::ui::app_state::AppState;
 use crate::ui::editor::findings;
 use crate::ui::editor::{Browser, Column, EditorPopup, FileRequest, Form, FormKind, Purpose, Question};
@@ -258,20 +258,43 @@ pub(super) fn show_other(state: &mut AppState, step: isize) -> Vec<Effect> {
     Vec::new()
 }
 
-/// Takes the plan in the craft into the editor, as one edit.
-pub(super) fn download(state: &mut AppState) -> Vec<Effect> {
-    let Some(stored) = state.view.vehicle.stored_plan.clone() else {
-        state.notify(Severity::Warn, "The craft has not told its plan yet.");
-        return Vec::new();
-    };
-    if stored == state.editor.document().plan {
-        state.notify(Severity::Info, "The craft has this very plan.");
-        return Vec::new();
+/// Takes the plan of the craft into the editor, as one edit.
+pub(super) fn downloaded(state: &mut AppState, result: Result<Box<FlightPlan>, String>) -> Vec<Effect> {
+    match result {
+        Err(sentence) => {
+            state.notify(Severity::Fault, format!("Not downloaded: {sentence}"));
+            Vec::new()
+        }
+        Ok(held) if *held == *state.plan() => {
+            state.notify(Severity::Info, "The craft has this very plan.");
+            Vec::new()
+        }
+        Ok(held) => {
+            let count = held.waypoints.len();
+            let effects = state.editor.edit("download from the craft", |document| document.plan = *held);
+            state
+                .notify(Severity::Good, format!("Downloaded {count} waypoints; `u` brings the others back."));
+            effects
+        }
     }
-    let count = stored.waypoints.len();
-    let effects = state.editor.edit("download from the craft", |document| document.plan = stored);
-    state.notify(Severity::Good, format!("Downloaded {count} waypoints; `u` brings the others back."));
-    effects
+}
+
+/// Tells that somebody else changed the plan in the craft: the App, a script, a line of the CLI.
+pub(super) fn craft_plan_changed(state: &mut AppState, before: &FlightPlan, now: &FlightPlan) {
+    let (a, b) = (&before.waypoints, &now.waypoints);
+    let mut differs: Vec<String> = std::iter::zip(a, b)
+        .enumerate()
+        .filter(|(_, (a, b))| a != b)
+        .map(|(index, _)| format!("WP{index}"))
+        .collect();
+    match b.len() as i64 - a.len() as i64 {
+        0 => {}
+        more @ 1.. => differs.push(format!("{more} more")),
+        fewer => differs.push(format!("{} fewer", -fewer)),
+    }
+    let text =
+        format!("The plan in the craft was changed: {}. `D` takes it into the editor.", differs.join(", "));
+    state.notify(Severity::Warn, text);
 }
 
 /// Moves a waypoint to a place, as one edit.

@@ -4,6 +4,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use strum::IntoEnumIterator as _;
 
+use crate::geo::distance_bearing;
 use crate::plan::edit::fix::waypoint_of;
 use crate::plan::review::Finding;
 use crate::plan::{FlightPlan, Waypoint, WaypointType};
@@ -60,6 +61,31 @@ fn columns(state: &AppState, width: u16) -> Vec<(Column, &'static str, u16, u16)
 pub(super) fn differences(plan: &FlightPlan, other: &FlightPlan) -> usize {
     let (a, b) = (&plan.waypoints, &other.waypoints);
     std::iter::zip(a, b).filter(|(a, b)| a != b).count() + a.len().abs_diff(b.len())
+}
+
+/// How a waypoint of the craft's plan differs from the one that is open, if it does.
+pub(super) fn difference(state: &AppState, index: usize) -> Option<String> {
+    let stored = state.view.vehicle.stored_plan.as_ref().filter(|plan| !plan.waypoints.is_empty())?;
+    let ours = state.plan().waypoints.get(index)?;
+    let Some(theirs) = stored.waypoints.get(index) else {
+        return Some(format!("● The craft has no WP{index}."));
+    };
+    if ours == theirs {
+        return None;
+    }
+    let mut parts = Vec::new();
+    if ours.kind.uses_position() && theirs.kind.uses_position() {
+        let (distance_m, bearing) = distance_bearing(ours.position, theirs.position);
+        if distance_m > 0.05 {
+            parts.push(format!("{distance_m:.1} m {:03.0}° from here", bearing.to_degrees()));
+        }
+    }
+    for column in Column::iter().filter(|column| !matches!(column, Column::Latitude | Column::Longitude)) {
+        if column.is_used(theirs.kind) && value(column, theirs) != value(column, ours) {
+            parts.push(format!("{} {}", column.name(), value(column, theirs)));
+        }
+    }
+    Some(format!("● On the craft WP{index} is: {}.", parts.join(", ")))
 }
 
 /// Draws the table; gives the place of the cursor while a cell is typed.
