@@ -13,7 +13,8 @@
 //! * Every key is a named [`action`]: keymap, hint bar, help, palette and the `:` line are read from one table. What
 //!   takes an argument is a [`command`].
 //! * `panel` has a file a panel, `popup` what lies over them, `keymap` the keys of the configuration file; `transmitter` is
-//!   the RC transmitter in the user's hand, `forecast` what is known of flights flown ahead of time.
+//!   the RC transmitter in the user's hand, `forecast` what is known of flights flown ahead of
+//!   time, `graphs` the history of its signals.
 //! * [`run`] is the shell around it: it waits for the terminal, the session and the clock, and carries effects out.
 //!
 //! Inside: `action` is what keys can do, `keymap` which key means what, `command` what can be typed behind `:`; `editor` holds the open plans;
@@ -36,6 +37,7 @@ mod files_link;
 mod forecast;
 mod formatting;
 mod fuzzy;
+mod graphs;
 mod hint_bar;
 mod history;
 pub mod keymap;
@@ -51,6 +53,7 @@ mod popup;
 mod run;
 mod status_bar;
 pub mod status_message;
+mod stick_recording;
 mod terminal;
 mod text_field;
 mod text_wrap;

@@ -219,7 +219,7 @@ fn tab_completes_in_the_cli_and_moves_on_when_there_is_nothing_to_complete() {
     assert_eq!(state.cli.input.value(), "set ap_position_");
     ctrl_c(&mut state);
     key(&mut state, KeyCode::Tab);
-    assert_eq!(state.focus, Panel::World);
+    assert_eq!(state.focus, Panel::Graphs);
 }
 
 #[test]

@@ -182,3 +182,92 @@ fn a_searched_log_at_four_sizes() {
         insta::assert_snapshot!(format!("log_search_{}x{}", size.0, size.1), screen(&state));
     }
 }
+
+#[test]
+fn the_cursor_of_the_graphs_stands_on_the_map_too_and_time_is_scaled() {
+    let mut state = fixture::state((200, 60), fixture::colour());
+    fixture::approach(&mut state);
+    press(&mut state, '6');
+    let live = screen(&state);
+    assert!(
+        live.contains("6 Graphs — 60 s") && live.contains("altitude m") && live.contains("50.2"),
+        "{live}"
+    );
+    for _ in 0..20 {
+        key(&mut state, KeyCode::Left);
+    }
+    let back = screen(&state);
+    assert!(back.contains("6 Graphs — 60 s — at 00:4"), "{back}");
+    assert!(back.contains('╋'), "the craft's place at the cursor is on the map\n{back}");
+    press(&mut state, '-');
+    press(&mut state, '-');
+    assert!(screen(&state).contains("6 Graphs — 5 min"));
+    key(&mut state, KeyCode::Esc);
+    assert!(!screen(&state).contains('╋'));
+
+    key(&mut state, KeyCode::Enter);
+    for _ in 0..5 {
+        key(&mut state, KeyCode::Down);
+    }
+    key(&mut state, KeyCode::Enter);
+    key(&mut state, KeyCode::Esc);
+    press(&mut state, 'z');
+    assert!(screen(&state).contains("throttle µs"), "{}", screen(&state));
+}
+
+#[test]
+fn recorded_sticks_are_played_again_in_their_time() {
+    use betadeck::session::Command;
+    let at = |state: &mut AppState, time_s: f64, throttle_us: u16| -> Vec<u16> {
+        let mut view = fixture::view(&fixture::SimpleFlight { time_s, fix: true, ..Default::default() });
+        view.sticks.channels[2] = throttle_us;
+        let effects = update(state, Msg::View(view));
+        let sticks = effects.iter().filter_map(|effect| match effect {
+            Effect::Send(Command::Sticks(frame)) => Some(frame.channels[2]),
+            _ => None,
+        });
+        sticks.collect()
+    };
+    let mut state = fixture::state((80, 24), fixture::colour());
+    at(&mut state, 10.0, 1000);
+    press(&mut state, '4');
+    press(&mut state, 'p');
+    assert!(state.notice.as_ref().is_some_and(|notice| notice.text.contains("`r`")), "nothing to play yet");
+    press(&mut state, 'r');
+    at(&mut state, 11.0, 1000);
+    at(&mut state, 12.0, 1400);
+    assert!(screen(&state).contains("● REC 2.0 s"), "{}", screen(&state));
+    at(&mut state, 14.0, 1100);
+    at(&mut state, 15.0, 1100);
+    press(&mut state, 'r');
+
+    at(&mut state, 100.0, 1100);
+    let first = press(&mut state, 'p');
+    assert!(
+        first.iter().any(
+            |effect| matches!(effect, Effect::Send(Command::Sticks(frame)) if frame.channels[2] == 1000)
+        )
+    );
+    assert_eq!(at(&mut state, 101.9, 1000), Vec::<u16>::new());
+    assert_eq!(at(&mut state, 102.0, 1000), [1400]);
+    assert!(screen(&state).contains("► PLAY 2.0 of 5.0 s"), "{}", screen(&state));
+    assert_eq!(at(&mut state, 104.1, 1400), [1100]);
+    assert_eq!(at(&mut state, 105.1, 1100), Vec::<u16>::new());
+    assert!(!screen(&state).contains("PLAY"));
+
+    // The hand wins.
+    press(&mut state, 'p');
+    key(&mut state, KeyCode::Right);
+    assert_eq!(at(&mut state, 108.0, 1010), Vec::<u16>::new());
+}
+
+#[test]
+fn graphs_at_four_sizes() {
+    for size in SIZES {
+        let mut state = fixture::state(size, fixture::colour());
+        fixture::approach(&mut state);
+        press(&mut state, '6');
+        key(&mut state, KeyCode::Left);
+        insta::assert_snapshot!(format!("graphs_{}x{}", size.0, size.1), screen(&state));
+    }
+}

@@ -135,6 +135,22 @@ pub enum Action {
     RaiseMuch,
     /// Centre a stick or flip a switch.
     Flip,
+    /// The cursor of the graphs to an earlier instant.
+    CursorBack,
+    /// The cursor of the graphs to a later instant.
+    CursorOn,
+    /// A shorter time in the graphs.
+    SpanLess,
+    /// A longer time in the graphs.
+    SpanMore,
+    /// Choose what the graphs show.
+    ChoosePlots,
+    /// The graphs show the newest instant.
+    CursorOff,
+    /// Record the sticks, or end that.
+    Record,
+    /// Play the recorded sticks, or stop.
+    Play,
     /// Select the knob above.
     KnobUp,
     /// Select the knob below.

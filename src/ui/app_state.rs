@@ -12,12 +12,14 @@ use super::console::{CliHelp, CliState};
 use super::editor::{Editor, OpenPlan};
 use super::event_log::{LogState, Severity};
 use super::forecast::ForecastState;
+use super::graphs::GraphsState;
 use super::keymap::Keymap;
 use super::knobs::KnobsState;
 use super::layout::Slots;
 use super::log_view::LogView;
 use super::panel::Panel;
 use super::popup::{CommandLine, Popup};
+use super::stick_recording::StickRecording;
 use super::theme::Theme;
 use super::timeline::TimelineState;
 use super::track::Track;
@@ -126,6 +128,10 @@ pub struct AppState {
     pub log_view: LogView,
     /// The World panel.
     pub knobs: KnobsState,
+    /// The Graphs panel.
+    pub graphs: GraphsState,
+    /// Recorded stick movements.
+    pub stick_recording: StickRecording,
     /// Transitions, the newest last.
     pub transitions: VecDeque<Transition>,
     /// First visible lines.
@@ -197,6 +203,8 @@ impl AppState {
             log: LogState::default(),
             log_view: LogView::default(),
             knobs: KnobsState::default(),
+            graphs: GraphsState::default(),
+            stick_recording: StickRecording::default(),
             transitions: VecDeque::new(),
             scrolls: Scrolls::default(),
             track: Track::default(),

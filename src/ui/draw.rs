@@ -64,6 +64,10 @@ pub fn draw(state: &AppState, frame: &mut Frame<'_>) {
                 quit_question(state, area, buffer);
                 None
             }
+            Popup::Plots { selected } => {
+                panel::graphs::draw_choice(state, *selected, area, buffer);
+                None
+            }
             Popup::CommandLine => command_line::draw(state, area, buffer),
             Popup::Palette(palette) => palette::draw(state, palette, area, buffer),
         };
@@ -97,6 +101,7 @@ fn framed_panel(state: &AppState, panel: Panel, area: Rect, buffer: &mut Buffer)
         Panel::State => panel::state::title(state),
         Panel::Rc => panel::rc::title(state),
         Panel::Cli => panel::cli::title(state),
+        Panel::Graphs => panel::graphs::title(state),
         Panel::World => panel::world::title(state),
         Panel::Log => panel::log::title(state),
     };
@@ -113,6 +118,7 @@ fn framed_panel(state: &AppState, panel: Panel, area: Rect, buffer: &mut Buffer)
         Panel::Map => panel::map::draw(state, inner, buffer),
         Panel::State => panel::state::draw(state, inner, buffer),
         Panel::Rc => panel::rc::draw(state, inner, buffer),
+        Panel::Graphs => panel::graphs::draw(state, inner, buffer),
         Panel::Plan => return panel::plan::draw(state, inner, buffer).filter(|_| focused),
         Panel::World => return panel::world::draw(state, inner, buffer).filter(|_| focused),
         Panel::Log => return panel::log::draw(state, inner, buffer).filter(|_| focused),

@@ -96,6 +96,11 @@ fn hint_actions(state: &AppState) -> Vec<(&'static [Action], &'static str)> {
             (&[Action::Upload], "upload"),
             (&[Action::Edit(EditAction::Save)], "save"),
         ]),
+        Panel::Graphs => hints.extend([
+            (&[Action::CursorBack, Action::CursorOn] as &[_], "cursor"),
+            (&[Action::SpanLess, Action::SpanMore], "time"),
+            (&[Action::ChoosePlots], "choose"),
+        ]),
         Panel::World => hints.extend([
             (&[Action::KnobUp, Action::KnobDown] as &[_], "knob"),
             (&[Action::KnobLess, Action::KnobMore], "value"),

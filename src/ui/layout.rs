@@ -10,7 +10,7 @@
 //!  └──────────────┘    └───────────────┘    └─────────┴ plan─┘    └──────┴──────┴───────┘
 //! ```
 //!
-//! World takes the place of RC when it is shown.
+//! World takes the place of RC when it is shown, and Graphs that of the log.
 //!
 //! Two lines of status stand above, one of hints below; above the hints the timeline, on a tall screen or while an earlier
 //! instant is shown.
@@ -26,9 +26,9 @@ pub const SMALLEST: (u16, u16) = (60, 20);
 /// What the places that several panels share show: the one that had the focus last.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Slots {
-    /// 80x24: map (with the log below), or one of RC, CLI, plan, world instead of both.
+    /// 80x24: map (with the log below), or one of RC, CLI, plan, graphs, world instead of both.
     main: Panel,
-    /// 120x40, bottom left: log or CLI.
+    /// 120x40, bottom left: log, CLI or graphs; 200x60: log or graphs.
     left: Panel,
     /// 120x40, bottom right, and 200x60, top right: RC, plan or world.
     right: Panel,
@@ -49,9 +49,9 @@ impl Slots {
                 self.main = Panel::Map;
                 self.left = Panel::Log;
             }
-            Panel::Cli => {
-                self.main = Panel::Cli;
-                self.left = Panel::Cli;
+            Panel::Cli | Panel::Graphs => {
+                self.main = panel;
+                self.left = panel;
             }
             Panel::Rc | Panel::Plan | Panel::World => {
                 self.main = panel;
@@ -163,7 +163,7 @@ fn large(body: Rect, slots: Slots) -> Vec<(Panel, Rect)> {
         (Panel::Map, map),
         (Panel::State, state),
         (if slots.right == Panel::World { Panel::World } else { Panel::Rc }, rc),
-        (Panel::Log, log),
+        (if slots.left == Panel::Graphs { Panel::Graphs } else { Panel::Log }, log),
         (Panel::Plan, plan),
         (Panel::Cli, cli),
     ]

@@ -3,7 +3,9 @@
 
 pub(super) mod cli;
 pub(super) mod editor_popup;
+pub(super) mod graphs;
 pub(super) mod help;
+mod horizon;
 pub(super) mod log;
 pub(super) mod map;
 pub(super) mod plan;
@@ -33,6 +35,8 @@ pub enum Panel {
     Rc,
     /// The firmware's command line.
     Cli,
+    /// Signals over time.
+    Graphs,
     /// The air and the faults.
     World,
     /// Events and notices.
@@ -41,8 +45,8 @@ pub enum Panel {
 
 impl Panel {
     /// All panels in the order of their numbers.
-    pub const ALL: [Self; 7] =
-        [Self::Map, Self::Plan, Self::State, Self::Rc, Self::Cli, Self::World, Self::Log];
+    pub const ALL: [Self; 8] =
+        [Self::Map, Self::Plan, Self::State, Self::Rc, Self::Cli, Self::Graphs, Self::World, Self::Log];
 
     /// Number and name.
     #[must_use]
@@ -53,6 +57,7 @@ impl Panel {
             Self::State => "3 State",
             Self::Rc => "4 RC",
             Self::Cli => "5 CLI",
+            Self::Graphs => "6 Graphs",
             Self::World => "7 World",
             Self::Log => "8 Log",
         }

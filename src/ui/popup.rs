@@ -26,6 +26,11 @@ pub enum Popup {
     },
     /// "The craft is armed. Quit?"
     Quit,
+    /// The plots that can be shown.
+    Plots {
+        /// Index of the selected one.
+        selected: usize,
+    },
     /// The `:` line.
     CommandLine,
     /// All commands, to be searched.

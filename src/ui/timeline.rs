@@ -13,6 +13,7 @@ use unicode_width::UnicodeWidthStr as _;
 
 use super::app_state::{AppState, Transition};
 use super::formatting::clock;
+use super::graphs;
 use super::panel::span;
 use super::theme::Role;
 use super::track::TrackPoint;
@@ -131,6 +132,9 @@ pub(super) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     let bar = bar(timeline, area);
     let shown = column_of(timeline, bar, state.view.vehicle.time);
+    // The cursor of the graphs, where the recording reaches.
+    let pointed_at = graphs::pointed_at(state).filter(|time| *time >= timeline.first);
+    let pointed_at = pointed_at.map(|time| column_of(timeline, bar, time));
     let mut spans: Vec<Span<'_>> = vec![span(theme, Role::Dim, format!(" {} ", clock(timeline.first)))];
     let mut flying = NavState::Idle;
     let mut marks = timeline.marks.iter().peekable();
@@ -148,6 +152,8 @@ pub(super) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
         }
         spans.push(if column == shown {
             span(theme, Role::Active, "┃")
+        } else if Some(column) == pointed_at {
+            span(theme, Role::Focus, "╋")
         } else if let Some(mark) = here {
             let (glyph, role) = appearance(mark.kind);
             span(theme, role, glyph)

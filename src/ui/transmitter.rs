@@ -291,6 +291,9 @@ pub(super) fn flip(state: &mut AppState, channel: usize) -> Vec<Effect> {
 /// Sends a frame; the keys take over from the scripted pilot.
 fn send(state: &mut AppState, next: RcFrame) -> Vec<Effect> {
     let mut effects = Vec::new();
+    if state.stick_recording.stop_playing() {
+        state.notify(Severity::Info, "Playing stopped: the sticks are yours.");
+    }
     if state.view.pilot.is_some() {
         effects.push(Effect::Send(Command::Pilot(false)));
         state.notify(Severity::Info, "The pilot let go: the sticks are yours.");

@@ -13,6 +13,7 @@ use super::editor::FormKind;
 use super::event_log::Severity;
 use super::forecast;
 use super::formatting::within;
+use super::graphs;
 use super::keymap::KeyPress;
 use super::knobs;
 use super::log_view;
@@ -20,6 +21,7 @@ use super::map_point;
 use super::message::{Effect, Msg};
 use super::panel::Panel;
 use super::popup::{Palette, Popup};
+use super::stick_recording;
 use super::track::TrackPoint;
 use super::transmitter;
 use super::viewport::MapMode;
@@ -76,7 +78,11 @@ fn take(state: &mut AppState, msg: Msg) -> Vec<Effect> {
         }
         Msg::View(view) => {
             take_view(state, view);
-            Vec::new()
+            if state.is_rewound() {
+                return Vec::new();
+            }
+            graphs::record(state);
+            stick_recording::advance(state)
         }
         Msg::Event(event) => {
             state.take_event(&event);
@@ -317,6 +323,8 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
             // Out of the text first: keys pressed next must not be typed.
             if state.focus.takes_text() {
                 focus(state, Panel::Map);
+            } else if state.focus == Panel::Graphs && state.graphs.leave_cursor() {
+                // That was the step.
             } else if state.focus == Panel::Log && !state.log_view.search.is_empty() {
                 log_view::end_search(state);
             } else if !state.forecast.dismiss() && !state.editor.cancel() && state.map.edit.take().is_none() {
@@ -355,6 +363,32 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
         Action::LowerMuch => transmitter::nudge(state, state.channel, -100),
         Action::RaiseMuch => transmitter::nudge(state, state.channel, 100),
         Action::Flip => transmitter::flip(state, state.channel),
+        Action::Record => stick_recording::toggle_recording(state),
+        Action::Play => stick_recording::toggle_playing(state),
+        Action::CursorBack => {
+            state.graphs.move_cursor(-1.0);
+            Vec::new()
+        }
+        Action::CursorOn => {
+            state.graphs.move_cursor(1.0);
+            Vec::new()
+        }
+        Action::SpanLess => {
+            state.graphs.change_span(-1);
+            Vec::new()
+        }
+        Action::SpanMore => {
+            state.graphs.change_span(1);
+            Vec::new()
+        }
+        Action::ChoosePlots => {
+            state.popups.push(Popup::Plots { selected: 0 });
+            Vec::new()
+        }
+        Action::CursorOff => {
+            state.graphs.leave_cursor();
+            Vec::new()
+        }
         Action::KnobUp => {
             state.knobs.selected = state.knobs.selected.saturating_sub(1);
             Vec::new()

@@ -4,6 +4,7 @@ use crate::session::PHYSICS_IS_EXTERNAL;
 use crate::session::command::{NOT_RECORDED, PLACE_IS_EXTERNAL, REWOUND, TIME_IS_EXTERNAL};
 use crate::telemetry::{LinkState, Mode, NavState};
 use crate::ui::app_state::AppState;
+use crate::ui::stick_recording;
 use crate::ui::transmitter;
 
 use super::Action;
@@ -37,6 +38,7 @@ pub fn enabled(state: &AppState, action: Action) -> Result<(), String> {
         }
         Action::Arm => transmitter::can_arm(state),
         Action::Autopilot => transmitter::switch(state, Mode::Autopilot).map(drop),
+        Action::Play => stick_recording::can_play(state),
         Action::Throttle if state.view.vehicle.is_engaged() => {
             Err("The autopilot has the throttle: `g` switches it off.".to_owned())
         }

@@ -14,6 +14,7 @@ use crate::ui::status_message;
 use crate::ui::theme::{Role, Theme};
 use crate::ui::units::Units;
 
+use super::horizon;
 use super::state_diagram::{COMPACT, Diagram, FULL, LOW};
 use super::{line, row, span};
 use crate::ui::text_wrap::wrapped;
@@ -27,6 +28,8 @@ const NEAR: f64 = 0.75;
 const FLYAWAY_LEFT_M: f64 = 10.0;
 /// Width from which a guard is shown with its margin.
 const WIDE: u16 = 36;
+/// Room below the guards from which it takes the artificial horizon, too.
+const HORIZON_ROOM: (u16, u16) = (42, 9);
 /// Rows that guards need below the machine.
 const GUARD_ROWS: u16 = 8;
 
@@ -46,7 +49,13 @@ pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     let mut top = draw_status_message(state, area, diagram, buffer);
     top += draw_machine(state, below(area, top), diagram, buffer);
     top += draw_guards(state, below(area, top), buffer);
-    draw_transitions(state, below(area, top), buffer);
+    let mut rest = below(area, top);
+    if rest.width >= HORIZON_ROOM.0 && rest.height >= HORIZON_ROOM.1 {
+        rest.height -= horizon::SIZE.1;
+        let place = Rect { y: rest.bottom(), height: horizon::SIZE.1, ..rest };
+        horizon::draw(state, Rect { x: place.x + 1, width: place.width - 1, ..place }, buffer);
+    }
+    draw_transitions(state, rest, buffer);
 }
 
 /// The drawing that leaves room for the guards.

@@ -42,7 +42,9 @@ pub(super) fn paste(state: &mut AppState, text: &str) -> Vec<Effect> {
     let field = match state.popups.last_mut() {
         Some(Popup::CommandLine) => Some(&mut state.command_line.field),
         Some(Popup::Palette(palette)) => Some(&mut palette.query),
-        Some(Popup::Help { .. } | Popup::GoTo(_) | Popup::WhatIf { .. } | Popup::Quit) => None,
+        Some(
+            Popup::Help { .. } | Popup::GoTo(_) | Popup::Plots { .. } | Popup::WhatIf { .. } | Popup::Quit,
+        ) => None,
         None => super::fields::open(state),
     };
     if let Some(field) = field {

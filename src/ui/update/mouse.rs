@@ -46,7 +46,7 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
                     }
                     Vec::new()
                 }
-                Panel::Plan | Panel::State | Panel::Cli | Panel::Log => Vec::new(),
+                Panel::Plan | Panel::State | Panel::Cli | Panel::Graphs | Panel::Log => Vec::new(),
             }
         }
         MouseEventKind::Drag(MouseButton::Left) => match panel {
@@ -58,7 +58,7 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
                 Vec::new()
             }
             Panel::Rc => set_channel(state, area, &event),
-            Panel::Plan | Panel::State | Panel::Cli | Panel::World | Panel::Log => Vec::new(),
+            Panel::Plan | Panel::State | Panel::Cli | Panel::Graphs | Panel::World | Panel::Log => Vec::new(),
         },
         MouseEventKind::Up(_) => {
             state.drag = None;

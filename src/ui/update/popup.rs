@@ -10,6 +10,7 @@ use crate::ui::app_state::AppState;
 use crate::ui::command;
 use crate::ui::event_log::Severity;
 use crate::ui::forecast;
+use crate::ui::graphs::PLOTS;
 use crate::ui::message::Effect;
 use crate::ui::popup::palette::Entry;
 use crate::ui::popup::{Popup, command_line, go_to, palette, what_if};
@@ -41,6 +42,18 @@ pub(super) fn key(state: &mut AppState, event: KeyEvent, found: Option<Action>) 
             }
         },
         Some(Popup::Quit) => quit_key(state, event),
+        Some(Popup::Plots { selected }) => {
+            match event.code {
+                KeyCode::Up | KeyCode::Char('k') => *selected = selected.saturating_sub(1),
+                KeyCode::Down | KeyCode::Char('j') => *selected = (*selected + 1).min(PLOTS.len() - 1),
+                KeyCode::Enter | KeyCode::Char(' ') => state.graphs.toggle(*selected),
+                KeyCode::Esc => {
+                    state.popups.pop();
+                }
+                _ => {}
+            }
+            Vec::new()
+        }
         Some(Popup::CommandLine) => match command_line::key(state, event) {
             command_line::Outcome::Typing => Vec::new(),
             command_line::Outcome::Left => {

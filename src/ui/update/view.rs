@@ -90,7 +90,7 @@ pub(super) fn scroll_panel(state: &mut AppState, panel: Panel, by: isize) {
             let last = knobs::knobs(state).len().saturating_sub(1);
             (&mut state.knobs.selected, by, last)
         }
-        Panel::Map | Panel::Rc => return,
+        Panel::Map | Panel::Rc | Panel::Graphs => return,
     };
     *at = (*at).min(last).saturating_add_signed(by).min(last);
 }

@@ -149,6 +149,7 @@ pub(super) const ROWS: &[Spec] = &[
     spec(Action::Show(Panel::State), "view.state", "state", "State panel", &["3", "f3"], Global),
     spec(Action::Show(Panel::Rc), "view.rc", "RC", "RC panel", &["4", "f4"], Global),
     spec(Action::Show(Panel::Cli), "view.cli", "CLI", "CLI panel", &["5", "f5"], Global),
+    spec(Action::Show(Panel::Graphs), "view.graphs", "graphs", "Graphs panel", &["6", "f6"], Global),
     spec(Action::Show(Panel::World), "view.world", "world", "World panel", &["7", "f7"], Global),
     spec(Action::Show(Panel::Log), "view.log", "log", "Log panel", &["8", "f8"], Global),
     spec(Action::Next, "view.next", "next panel", "Focus the next panel", &["tab"], Global),

@@ -5,6 +5,7 @@ use ratatui::buffer::Buffer;
 use crate::plan::WaypointType;
 use crate::ui::app_state::AppState;
 use crate::ui::forecast;
+use crate::ui::graphs;
 use crate::ui::map_point::MapPoint;
 use crate::ui::theme::Role;
 use crate::ui::viewport::round_length;
@@ -39,6 +40,9 @@ pub(super) fn write(state: &AppState, scene: &Scene, buffer: &mut Buffer) {
         && believed.distance(craft) > 2.0
     {
         labels.mark(believed, "+", Role::Warn);
+    }
+    if let Some(place) = graphs::cursor_place(state) {
+        labels.mark(place, "╋", Role::Focus);
     }
     if let Some(craft) = scene.craft {
         let heading = vehicle.truth.map(|truth| truth.heading_deg).or(vehicle.estimate.heading_deg);
