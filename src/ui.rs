@@ -61,6 +61,7 @@ pub mod theme;
 mod timeline;
 mod track;
 mod transmitter;
+mod tutorial;
 pub mod units;
 mod update;
 mod viewport;

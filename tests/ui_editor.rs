@@ -334,3 +334,52 @@ fn the_editor_and_its_popups_draw_at_every_size() {
         }
     }
 }
+
+#[test]
+fn the_tutorial_waits_for_what_the_user_does() {
+    let mut state = state((80, 24));
+    keys(&mut state, ":");
+    keys(&mut state, "'app.tutorial enter");
+    assert!(screen(&state).contains("1/5 Press F"), "{}", screen(&state));
+    let flight =
+        fixture::SimpleFlight { time_s: 40.0, fix: true, armed: true, ..fixture::SimpleFlight::default() };
+    let mut view = fixture::view(&flight);
+    std::sync::Arc::make_mut(&mut view.vehicle).nav.as_mut().unwrap().engaged = true;
+    update(&mut state, Msg::View(view.clone()));
+    assert!(screen(&state).contains("2/5") && screen(&state).contains("Press ] some times"));
+    view.speed_wanted = 4.0;
+    update(&mut state, Msg::View(view.clone()));
+    keys(&mut state, "2 +");
+    assert!(screen(&state).contains("4/5"), "{}", screen(&state));
+    std::sync::Arc::make_mut(&mut view.vehicle).stored_plan = Some(state.plan().clone());
+    update(&mut state, Msg::View(view));
+    keys(&mut state, "1");
+    assert!(screen(&state).contains("5/5 Press , to go back in time"), "{}", screen(&state));
+    keys(&mut state, ":");
+    keys(&mut state, "'app.tutorial enter");
+    assert!(!screen(&state).contains("5/5"));
+}
+
+#[test]
+fn plans_are_opened_and_saved_by_name() {
+    let mut state = state((80, 24));
+    let requests = |effects: Vec<Effect>| {
+        let files = effects.into_iter().filter_map(|effect| match effect {
+            Effect::Files(request) => Some(request),
+            _ => None,
+        });
+        files.collect::<Vec<_>>()
+    };
+    let mut line = |text: &str| {
+        keys(&mut state, ":");
+        for c in text.chars() {
+            press(&mut state, KeyCode::Char(c), KeyModifiers::NONE);
+        }
+        requests(keys(&mut state, "enter"))
+    };
+    assert_eq!(line("open plans/orbit.toml"), [FileRequest::Open("plans/orbit.toml".into())]);
+    assert!(
+        matches!(&line("save /tmp/a.txt")[..], [FileRequest::Save { path, .. }] if path.ends_with("a.txt"))
+    );
+    assert!(matches!(line("open")[..], [FileRequest::List(_)]));
+}

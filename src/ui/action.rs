@@ -91,6 +91,8 @@ pub enum Action {
     Previous,
     /// The focused panel alone.
     Zoom,
+    /// The first minutes, step by step.
+    Tutorial,
     /// Help.
     Help,
     /// A command by its name.

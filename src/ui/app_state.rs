@@ -23,6 +23,7 @@ use super::stick_recording::StickRecording;
 use super::theme::Theme;
 use super::timeline::TimelineState;
 use super::track::Track;
+use super::tutorial::Tutorial;
 use super::units::Units;
 use super::viewport::MapState;
 
@@ -114,6 +115,8 @@ pub struct AppState {
     pub popups: Vec<Popup>,
     /// Wall-clock time since start.
     pub now: Duration,
+    /// The first minutes, while they are shown.
+    pub tutorial: Option<Tutorial>,
     /// The map.
     pub map: MapState,
     /// Selected channel of the RC panel.
@@ -196,6 +199,7 @@ impl AppState {
             slots: Slots::default(),
             popups: Vec::new(),
             now: Duration::ZERO,
+            tutorial: None,
             map: MapState::default(),
             channel: 0,
             cli: CliState::default(),

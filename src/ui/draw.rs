@@ -15,7 +15,7 @@ use super::panel::{self, span};
 use super::popup::{Popup, command_line, go_to, palette, what_if};
 use super::text_wrap::wrapped;
 use super::theme::{Charset, Role};
-use super::{hint_bar, notice, status_bar, timeline};
+use super::{hint_bar, notice, status_bar, timeline, tutorial};
 use crate::printable;
 
 /// Draws the state. Reads only.
@@ -33,6 +33,7 @@ pub fn draw(state: &AppState, frame: &mut Frame<'_>) {
             if let Some(area) = screen.timeline {
                 timeline::draw(state, area, buffer);
             }
+            tutorial::draw(state, screen.timeline.unwrap_or(screen.hints), buffer);
             notice::draw(state, screen.timeline.unwrap_or(screen.hints), buffer);
             cursor
         }

@@ -145,7 +145,7 @@ pub fn current(state: &AppState) -> Option<StatusMessage> {
     }
     if vehicle.stored_plan.as_ref().is_some_and(|plan| plan.waypoints.is_empty()) {
         let action = if state.plan().waypoints.is_empty() {
-            "`waypoint insert …` in the CLI (5) adds one".to_owned()
+            "2 opens the plan editor: `i` inserts a waypoint".to_owned()
         } else {
             format!("U uploads {}; F does it and flies", state.editor.plan().title())
         };

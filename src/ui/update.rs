@@ -24,6 +24,7 @@ use super::popup::{Palette, Popup};
 use super::stick_recording;
 use super::track::TrackPoint;
 use super::transmitter;
+use super::tutorial;
 use super::viewport::MapMode;
 
 mod cli;
@@ -42,6 +43,7 @@ use flight::{ask_where_to_go, fly, speed, upload, uploaded};
 use view::{ZOOM_STEP, follow, neighbour, scroll, zoom_map};
 
 pub(super) use cli::run_cli;
+pub(super) use plan::write_shown as write_plan;
 pub(super) use view::focus;
 
 /// Two Ctrl-C within this time quit.
@@ -54,6 +56,7 @@ pub fn update(state: &mut AppState, msg: Msg) -> Vec<Effect> {
     let is_picture = matches!(msg, Msg::View(_));
     let mut effects = take(state, msg);
     if is_followed {
+        tutorial::follow(state);
         effects.extend(forecast::follow_plan(state));
     }
     if is_picture {
@@ -305,6 +308,10 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
         Action::Previous => focus(state, neighbour(state, -1)),
         Action::Zoom => {
             state.zoomed = !state.zoomed;
+            Vec::new()
+        }
+        Action::Tutorial => {
+            tutorial::toggle(state);
             Vec::new()
         }
         Action::Help => {

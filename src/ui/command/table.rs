@@ -1,6 +1,6 @@
 //! The commands that take an argument. To add one: a row here, its function in the file of its subject.
 
-use super::{display, time, vehicle, world};
+use super::{display, plan, time, vehicle, world};
 use crate::session::command::WORLD_WORDS;
 use crate::ui::app_state::AppState;
 use crate::ui::message::Effect;
@@ -35,6 +35,20 @@ const COMMANDS: &[Command] = &[
         help: "A line for the firmware's command line",
         run: vehicle::cli,
         complete: vehicle::complete_cli,
+    },
+    Command {
+        name: "open",
+        argument: "FILE",
+        help: "Open a plan file; without a name: choose one",
+        run: plan::open,
+        complete: plan::complete,
+    },
+    Command {
+        name: "save",
+        argument: "FILE",
+        help: "Save the plan in this file; without a name: in its own",
+        run: plan::save,
+        complete: plan::complete,
     },
     Command {
         name: "speed",

@@ -318,3 +318,8 @@ pub(super) fn saved_to_flash(state: &mut AppState, result: Result<(), String>) -
     }
     Vec::new()
 }
+
+/// Writes the plan that is shown to a file.
+pub(in crate::ui) fn write_shown(state: &AppState, path: std::path::PathBuf) -> Effect {
+    write(state, state.editor.plan().id(), path, false)
+}

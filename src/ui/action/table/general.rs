@@ -162,6 +162,14 @@ pub(super) const ROWS: &[Spec] = &[
         Always,
     ),
     spec(Action::Zoom, "view.zoom", "zoom", "The focused panel alone, or all again", &["z"], Global),
+    spec(
+        Action::Tutorial,
+        "app.tutorial",
+        "tutorial",
+        "Five steps through the first minutes, or end them",
+        &["f12"],
+        Global,
+    ),
     spec(Action::Help, "app.help", "help", "The keys of this place", &["?"], Global),
     spec(
         Action::CommandLine,

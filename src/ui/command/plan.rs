@@ -1,0 +1,27 @@
+//! Commands for plan files; without a name they do what the keys do.
+
+use crate::ui::action::{Action, EditAction};
+use crate::ui::app_state::AppState;
+use crate::ui::editor::FileRequest;
+use crate::ui::message::Effect;
+use crate::ui::update;
+
+pub(super) fn open(state: &mut AppState, _: &str, file: &str) -> Result<Vec<Effect>, String> {
+    if file.is_empty() {
+        return Ok(update::perform(state, Action::Edit(EditAction::Open)));
+    }
+    Ok(vec![Effect::Files(FileRequest::Open(file.into()))])
+}
+
+pub(super) fn save(state: &mut AppState, _: &str, file: &str) -> Result<Vec<Effect>, String> {
+    if file.is_empty() {
+        return Ok(update::perform(state, Action::Edit(EditAction::Save)));
+    }
+    let path = std::path::absolute(file).map_err(|error| format!("{file}: {error}."))?;
+    Ok(vec![update::write_plan(state, path)])
+}
+
+/// Files are not completed here: `:open` alone shows them.
+pub(super) fn complete(_: &AppState, _: &str, _: &str) -> Vec<String> {
+    Vec::new()
+}

@@ -1,0 +1,106 @@
+//! The first minutes: five steps, each of which waits for what the user does.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+
+use super::action::{Action, EditAction};
+use super::app_state::AppState;
+use super::event_log::Severity;
+use super::formatting::cut;
+use super::panel::Panel;
+use super::theme::Role;
+
+/// A tutorial that is under way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Tutorial {
+    step: usize,
+    /// Where the history of the plan stood when the step began.
+    revision: usize,
+    /// An earlier instant was shown.
+    rewound: bool,
+}
+
+/// A step: what to do, the keys of these actions in place of `{}`; and when it is done.
+struct Step {
+    text: &'static str,
+    actions: &'static [Action],
+    is_done: fn(&AppState, &Tutorial) -> bool,
+}
+
+const STEPS: [Step; 5] = [
+    Step {
+        text: "Press {}: a pilot arms the craft, climbs and engages the autopilot on the plan of the map.",
+        actions: &[Action::Fly],
+        is_done: |state, _| state.view.vehicle.is_engaged(),
+    },
+    Step {
+        text: "The State panel says what ends the leg. Press {} some times: time goes faster; {} is real time.",
+        actions: &[Action::Faster, Action::RealTime],
+        is_done: |state, _| state.view.speed_wanted >= 4.0,
+    },
+    Step {
+        text: "Press {} for the plan and change a value: arrows choose it, {} and {} nudge it, {} types it.",
+        actions: &[
+            Action::Show(Panel::Plan),
+            Action::Edit(EditAction::Raise),
+            Action::Edit(EditAction::Lower),
+            Action::Edit(EditAction::Cell),
+        ],
+        is_done: |state, tutorial| state.editor.plan().history().at() != tutorial.revision,
+    },
+    Step {
+        text: "The craft has the old plan: {} uploads yours ({} would take the edit back).",
+        actions: &[Action::Upload, Action::Edit(EditAction::Undo)],
+        is_done: |state, _| state.plan_is_on_craft(),
+    },
+    Step {
+        text: "Press {} to go back in time, event by event, and {} to come back to now.",
+        actions: &[Action::EventBack, Action::Newest],
+        is_done: |state, tutorial| tutorial.rewound && !state.is_rewound(),
+    },
+];
+
+/// Begins the tutorial, or ends it.
+pub(super) fn toggle(state: &mut AppState) {
+    if state.tutorial.take().is_some() {
+        state.notify(Severity::Info, "The tutorial is over; `:tutorial` begins it again.");
+    } else {
+        state.tutorial =
+            Some(Tutorial { revision: state.editor.plan().history().at(), ..Tutorial::default() });
+    }
+}
+
+/// Goes on to the next step when the user has done this one.
+pub(super) fn follow(state: &mut AppState) {
+    let Some(mut tutorial) = state.tutorial else { return };
+    tutorial.rewound |= state.is_rewound();
+    if STEPS.get(tutorial.step).is_some_and(|step| (step.is_done)(state, &tutorial)) {
+        let revision = state.editor.plan().history().at();
+        tutorial = Tutorial { step: tutorial.step + 1, revision, rewound: false };
+    }
+    state.tutorial = Some(tutorial);
+    if tutorial.step == STEPS.len() {
+        state.tutorial = None;
+        let text =
+            "That was the tutorial: ? shows the keys of the focused panel, : takes every action by name.";
+        state.notify(Severity::Good, text);
+    }
+}
+
+/// What to do now, with the keys as they are.
+fn text(state: &AppState, tutorial: Tutorial) -> String {
+    let Some(step) = STEPS.get(tutorial.step) else { return String::new() };
+    let keys = step.actions.iter().map(|&action| {
+        state.keymap.shown_keys(action).into_iter().next().unwrap_or_else(|| "(no key)".to_owned())
+    });
+    let text = keys.fold(step.text.to_owned(), |text, key| text.replacen("{}", &key, 1));
+    format!("{}/{} {text}", tutorial.step + 1, STEPS.len())
+}
+
+/// Draws the step in the frame above the hints, unless a notice stands there.
+pub(super) fn draw(state: &AppState, hints: Rect, buffer: &mut Buffer) {
+    let Some(tutorial) = state.tutorial else { return };
+    let text = format!(" ▸ {} ", text(state, tutorial));
+    let text = cut(&text, usize::from(hints.width.saturating_sub(2)));
+    buffer.set_string(hints.x + 1, hints.y.saturating_sub(1), text, state.theme.style(Role::Active));
+}
