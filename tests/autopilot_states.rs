@@ -14,7 +14,7 @@ use std::collections::BTreeSet;
 
 use betadeck::autopilot::{Params, Rescue};
 use betadeck::plan::{FlightPlan, HoldPattern, Waypoint, WaypointType};
-use betadeck::telemetry::{NavEvent, NavState, TransitionReason};
+use betadeck::telemetry::{InFlightCommand, NavEvent, NavState, TransitionReason};
 use flight::{Flight, plan, waypoint};
 use nalgebra::Vector2;
 use proptest::prelude::*;
@@ -43,6 +43,7 @@ enum Happening {
     EmergencyLand,
     Reset,
     SetCurrent(u8),
+    Command(InFlightCommand),
     Teleport(f64, f64),
     Parameter(usize, f64),
     Wind(f64, f64),
@@ -88,6 +89,9 @@ fn any_happening() -> impl Strategy<Value = Happening> {
         1 => Just(H::EmergencyLand),
         1 => Just(H::Reset),
         2 => (0..32_u8).prop_map(H::SetCurrent),
+        1 => (0..32_u8).prop_map(|index| H::Command(InFlightCommand::GoTo(index))),
+        1 => Just(H::Command(InFlightCommand::HoldHere)),
+        1 => Just(H::Command(InFlightCommand::Resume)),
         1 => (-200.0..200.0, -200.0..200.0).prop_map(|(north, east)| H::Teleport(north, east)),
         3 => (0..Params::FIELDS.len(), 0.0..=1.0).prop_map(|(field, share)| H::Parameter(field, share)),
         1 => (-8.0..8.0, -8.0..8.0).prop_map(|(north, east)| H::Wind(north, east)),
@@ -196,6 +200,9 @@ impl Run {
             Happening::SetCurrent(index) => {
                 flight.nav.set_current(*index, &flight.inputs, &flight.params, &flight.plan);
             }
+            Happening::Command(command) => {
+                let _ = flight.nav.command(*command, &flight.inputs, &flight.params, &flight.plan);
+            }
             Happening::Teleport(north, east) => flight.plant.pos = Vector2::new(*north, *east),
             Happening::Parameter(field, share) => {
                 if update > self.limits_changed_at + SETTLE {
@@ -253,7 +260,11 @@ impl Run {
                 prop_assert_eq!(*from, self.last, "a state changed without an event");
                 // A plan of modifiers alone is complete as soon as it is reset.
                 let at_once = *to == NavState::Complete && *reason == TransitionReason::Reset;
-                prop_assert!(legal(*from, *to) || at_once, "{} -> {}", from, to);
+                // A command holds the craft wherever it is on its way.
+                let held = *reason == TransitionReason::HoldHere
+                    && *to == NavState::Holding
+                    && !matches!(from, NavState::Idle | NavState::Complete);
+                prop_assert!(legal(*from, *to) || at_once || held, "{} -> {}", from, to);
                 prop_assert!(guard.is_none_or(|guard| guard.holds()), "{:?} fired", guard);
                 prop_assert!(target_alt_m.is_finite());
                 self.last = *to;

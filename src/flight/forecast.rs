@@ -21,6 +21,7 @@ use crate::firmware::cli::Interpreter;
 use crate::plan::{FlightPlan, upload_lines};
 use crate::signals::SimTime;
 use crate::sim::WorldCommand;
+use crate::telemetry::{AbortReason, Refusal};
 use crate::vehicle::Vehicle;
 use endless::EndlessWatch;
 use observer::Observer;
@@ -135,13 +136,18 @@ impl ForecastRun {
 
     fn flight_end(&self, end: FlightEnd) -> (ForecastEnd, String) {
         let Verdict { result, reason } = end.verdict;
-        let nav = self.flight.vehicle().controller().nav();
-        let is_given_up = nav.is_some_and(|nav| nav.refusal.is_some());
-        if result == FlightResult::Aborted && !is_given_up {
-            // Nothing went wrong: the pilot switched the autopilot off.
-            return (ForecastEnd::Endless, endless::LEFT_TO_STICKS.to_owned());
+        if result != FlightResult::Aborted {
+            return (ForecastEnd::Flight(result), reason);
         }
-        (ForecastEnd::Flight(result), reason)
+        let why = match self.flight.vehicle().controller().nav().and_then(|nav| nav.refusal) {
+            // Nothing went wrong: the pilot switched the autopilot off.
+            None => return (ForecastEnd::Endless, endless::LEFT_TO_STICKS.to_owned()),
+            Some(Refusal::Aborted(AbortReason::GpsLost)) => "the GPS fix is lost",
+            Some(Refusal::Aborted(AbortReason::Stalled)) => "no progress",
+            Some(Refusal::Aborted(AbortReason::Flyaway)) => "blown away from its waypoint",
+            Some(_) => return (ForecastEnd::Flight(result), reason),
+        };
+        (ForecastEnd::Flight(result), format!("mission given up, {why}"))
     }
 
     fn too_long(&self) -> Option<(ForecastEnd, String)> {

@@ -8,6 +8,7 @@ use crate::plan::builtin::{BuiltinPlan, DEMO};
 use crate::plan::upload_lines;
 use crate::signals::{RcFrame, RcSource};
 use crate::sim::{Turbulence, WorldCommand, WorldConfig};
+use crate::telemetry::InFlightCommand;
 use crate::vehicle::{FlightController, VehicleConfig};
 
 /// Key frames every two seconds, so that a short flight has many.
@@ -62,6 +63,8 @@ fn happen(tick: u64, vehicle: &mut Vehicle, session: &mut Interpreter) {
         1300 => world(vehicle, "wind=4@270"),
         // Until the fix.
         1500 => vehicle.start_pilot(3.0).unwrap(),
+        15_300 => vehicle.controller_mut().command(InFlightCommand::HoldHere).unwrap(),
+        15_800 => vehicle.controller_mut().command(InFlightCommand::GoTo(2)).unwrap(),
         16_000 => world(vehicle, "fault=gps-loss,2"),
         17_000 => {
             vehicle.transmitter_mut().stop_pilot();

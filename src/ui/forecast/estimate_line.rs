@@ -8,6 +8,7 @@ use crate::ui::app_state::AppState;
 use crate::ui::formatting::cut;
 use crate::ui::panel::span;
 use crate::ui::theme::Role;
+use crate::ui::units::Units;
 
 /// `612 m   flown estimate 03:41   battery 38 %   worst xte 0.9 m   fence 58 m`, as much of it as `width` columns take;
 /// first of all why the plan would not be flown to its end.
@@ -33,7 +34,7 @@ pub(in crate::ui) fn line(state: &AppState, width: u16) -> Line<'static> {
     if !mark.is_empty() {
         return Line::from(span(theme, role, cut(&format!("{mark}flown: {}", estimate.line()), width)));
     }
-    let numbers = numbers(estimate, if forecast.is_estimating() { "…" } else { "" });
+    let numbers = numbers(estimate, state.units, if forecast.is_estimating() { "…" } else { "" });
     let long = numbers.each_ref().map(|(long, _)| long.as_str()).join("   ");
     let text = if long.width() <= width {
         long
@@ -44,18 +45,18 @@ pub(in crate::ui) fn line(state: &AppState, width: u16) -> Line<'static> {
 }
 
 /// The numbers, each in a long and a short form, the most important ones first; `waiting` marks those of an older plan.
-fn numbers(estimate: &Forecast, waiting: &str) -> [(String, String); 5] {
+fn numbers(estimate: &Forecast, units: Units, waiting: &str) -> [(String, String); 5] {
     let along_m = estimate.path.last().map_or(0.0, |end| end.along_m);
     let seconds = estimate.time_s.round() as u32;
     let time = format!("{:02}:{:02}{waiting}", seconds / 60, seconds % 60);
     let used_pct = estimate.battery_used_pct;
     let metres = |value: Option<f64>, decimals: usize| match value {
-        Some(value) => format!("{value:.decimals$} m"),
+        Some(value) => format!("{:.decimals$} {}", units.length(value), units.length_unit()),
         None => "—".to_owned(),
     };
     let xte = metres(estimate.worst_xte.map(|worst| worst.xte_m), 1);
     let fence = format!("fence {}", metres(estimate.fence_margin_m, 0));
-    let length = format!("{along_m:.0} m");
+    let length = metres(Some(along_m), 0);
     [
         (length.clone(), length),
         (format!("flown estimate {time}"), format!("flown {time}")),

@@ -22,8 +22,9 @@ pub(super) fn write(state: &AppState, scene: &Scene, buffer: &mut Buffer) {
     let vehicle = &state.view.vehicle;
     let mut labels = Labels::new(theme, scene.view, buffer);
     frame_notes(state, &mut labels);
-    if let Some(ghost) = forecast::ghost(state) {
-        labels.top(&format!("··· {}", ghost.line), Role::Predicted);
+    let ghost_line = forecast::ghost(state).map(|ghost| format!("··· {}", ghost.line));
+    if let Some(line) = &ghost_line {
+        labels.top(line, Role::Predicted);
     }
     let home_known = vehicle.truth.is_some() || vehicle.craft.home.is_some();
     if home_known {
@@ -67,6 +68,10 @@ pub(super) fn write(state: &AppState, scene: &Scene, buffer: &mut Buffer) {
     }
     if scene.craft.is_none() && scene.spots.is_empty() {
         labels.middle("No position yet: waiting for GPS.", Role::Dim);
+    }
+    // Again, over the marks: it stays readable.
+    if let Some(line) = &ghost_line {
+        labels.top(line, Role::Predicted);
     }
 }
 
