@@ -51,7 +51,10 @@ fn session() -> Handle {
     let world = WorldConfig { turbulence: Turbulence::Light, ..WorldConfig::default() };
     let setup = FlightSetup { world, ..FlightSetup::default() };
     let (mut vehicle, _) = setup.build().expect("the default world is sound");
-    let plan = BuiltinPlan::find(DEMO).unwrap().read().unwrap();
+    let mut plan = BuiltinPlan::find(DEMO).unwrap().read().unwrap();
+    // The hold, without end.
+    plan.plan.waypoints.truncate(3);
+    plan.plan.waypoints[2].duration_ds = 0;
     upload(vehicle.controller_mut(), &plan.plan, &plan.settings).unwrap();
     start(SessionConfig {
         vehicle,

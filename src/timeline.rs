@@ -52,7 +52,8 @@ impl Timeline {
         Some(Self { recording: Recording::new(bounds), replay: None, branch: 0, branched_at: SimTime::ZERO })
     }
 
-    /// Records what came from outside since the tick before; to be called right before each tick.
+    /// Records what came from outside since the tick before; to be called right before each tick, and when much has
+    /// come while time stands still.
     pub fn record(&mut self, vehicle: &mut Vehicle) {
         self.recording.record(vehicle);
     }
@@ -84,7 +85,9 @@ impl Timeline {
             return Shown::Newest;
         }
         // Forwards by a little from where it is, else from a frozen vehicle.
-        let shown = self.replay.take().filter(|replay| replay.time() <= time);
+        let oldest = self.recording.first_input();
+        let shown =
+            self.replay.take().filter(|replay| replay.time() <= time && replay.next_input() >= oldest);
         let frozen = self.recording.latest_before(time);
         let newer = |replay: &Replay| frozen.as_ref().is_none_or(|frozen| frozen.time() <= replay.time());
         let start = if shown.as_ref().is_some_and(newer) { shown } else { frozen.map(Replay::new) };

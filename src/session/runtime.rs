@@ -184,6 +184,7 @@ impl Session {
             self.take_late_answers(Instant::now());
             let flown = self.handle_requests(&mut context);
             let now = start.elapsed();
+            self.record_flood();
             let due = if self.follows_wall_clock() { self.pacer.due(now, SLICE) } else { 0 };
             let ticks = flown + self.advance(due, now);
             let after = start.elapsed();

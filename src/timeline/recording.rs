@@ -22,13 +22,13 @@ pub(super) struct Bounds {
     pub(super) sparse_interval_us: u64,
     /// How far the recording reaches back, µs.
     pub(super) reach_us: u64,
-    /// What the inputs may take, bytes.
+    /// What the inputs may take, bytes; an eighth more until the next key frame.
     pub(super) input_bytes: usize,
 }
 
 impl Default for Bounds {
-    /// An hour, of which half an hour can be sought at once: some 14 MB of key frames. Two scripts at 50 Hz take two
-    /// thirds of what inputs may take.
+    /// An hour, of which half an hour can be sought at once: some 14 MB of key frames. A script at 50 Hz takes three
+    /// quarters of what inputs may take; at 100 Hz the recording still reaches back 40 minutes.
     fn default() -> Self {
         const MINUTE_US: u64 = 60_000_000;
         Self {
@@ -36,7 +36,7 @@ impl Default for Bounds {
             dense_us: 31 * MINUTE_US,
             sparse_interval_us: MINUTE_US,
             reach_us: 60 * MINUTE_US,
-            input_bytes: 24 << 20,
+            input_bytes: 11 << 20,
         }
     }
 }
@@ -72,7 +72,7 @@ struct TimedInput {
 
 impl TimedInput {
     fn bytes(&self) -> usize {
-        size_of::<Self>() + self.input.heap_bytes()
+        size_of::<SimTime>() + self.input.bytes()
     }
 }
 
@@ -85,6 +85,7 @@ pub(super) struct Recording {
     /// The number of the oldest input.
     first_input: u64,
     input_bytes: usize,
+    bytes_since_key_frame: usize,
 }
 
 impl Recording {
@@ -99,15 +100,20 @@ impl Recording {
             vehicle.take_inputs(|input| {
                 let input = TimedInput { at, input };
                 self.input_bytes += input.bytes();
+                self.bytes_since_key_frame += input.bytes();
                 self.inputs.push_back(input);
             });
         }
-        if self.key_frames.back().is_none_or(|newest| at.0 >= newest.time().0 + self.bounds.interval_us) {
+        let is_due = |newest: &KeyFrame| at.0 >= newest.time().0 + self.bounds.interval_us;
+        // From a new key frame on none of the inputs so far is needed.
+        let is_flooded = self.bytes_since_key_frame > self.bounds.input_bytes / 8;
+        if self.key_frames.back().is_none_or(is_due) || is_flooded {
             let mut frozen = Box::new(vehicle.clone());
             frozen.keep_inputs(false);
             frozen.drain_events(drop);
             let next_input = self.first_input + self.inputs.len() as u64;
             self.key_frames.push_back(KeyFrame { vehicle: frozen, next_input });
+            self.bytes_since_key_frame = 0;
             self.stay_within_bounds(at);
         }
     }
@@ -129,6 +135,11 @@ impl Recording {
         self.inputs.get(index).filter(|input| input.at <= time).map(|input| &input.input)
     }
 
+    /// The number of the oldest input that is kept.
+    pub(super) fn first_input(&self) -> u64 {
+        self.first_input
+    }
+
     /// Forgets what came after the instant of a replay.
     pub(super) fn forget_after(&mut self, replay: &Replay) {
         let stays =
@@ -143,9 +154,9 @@ impl Recording {
         }
     }
 
-    /// Thins the older key frames out and drops the oldest, with the inputs before them.
+    /// Thins the older key frames out and drops the oldest.
     fn stay_within_bounds(&mut self, now: SimTime) {
-        let Bounds { dense_us, sparse_interval_us, reach_us, input_bytes, .. } = self.bounds;
+        let Bounds { dense_us, sparse_interval_us, .. } = self.bounds;
         let dense_from = now.0.saturating_sub(dense_us);
         let old = self.key_frames.partition_point(|frame| frame.time().0 < dense_from);
         // The newest of the old ones has just become one; those before it are thinned out already.
@@ -156,6 +167,12 @@ impl Recording {
         {
             self.key_frames.remove(newest_old);
         }
+        self.drop_oldest(now);
+    }
+
+    /// Drops the oldest key frames that are beyond the reach or whose inputs take too much.
+    fn drop_oldest(&mut self, now: SimTime) {
+        let Bounds { reach_us, input_bytes, .. } = self.bounds;
         let too_old = |frame: &KeyFrame| frame.time().0 < now.0.saturating_sub(reach_us);
         while self.key_frames.len() > 1
             && (self.key_frames.front().is_some_and(too_old) || self.input_bytes > input_bytes)
@@ -191,14 +208,17 @@ mod tests {
         input_bytes: 2000 * size_of::<TimedInput>(),
     };
 
-    fn recorded(bounds: Bounds, ticks: u64, frames_a_tick: u16) -> Recording {
-        let config = VehicleConfig {
+    fn config() -> VehicleConfig {
+        VehicleConfig {
             world: crate::sim::WorldConfig::default(),
             firmware: crate::firmware::FirmwareOptions::default(),
             configuration: crate::firmware::config::Configuration::default(),
             live: true,
-        };
-        let mut vehicle = Vehicle::new(config).unwrap();
+        }
+    }
+
+    fn recorded(bounds: Bounds, ticks: u64, frames_a_tick: u16) -> Recording {
+        let mut vehicle = Vehicle::new(config()).unwrap();
         assert!(vehicle.keep_inputs(true));
         let mut recording = Recording::new(bounds);
         for _ in 0..ticks {
@@ -232,6 +252,25 @@ mod tests {
             panic!("a frame a tick");
         };
         assert_eq!(frame.channels[0], RcFrame::SAFE.channels[0] + 4);
+    }
+
+    #[test]
+    fn a_flood_of_lines_while_time_stands_still_is_bounded() {
+        let mut vehicle = Vehicle::new(config()).unwrap();
+        assert!(vehicle.keep_inputs(true));
+        let mut recording = Recording::new(BOUNDS);
+        let mut session = crate::firmware::cli::Interpreter::default();
+        let line = "x".repeat(10_000);
+        for _ in 0..100 {
+            let _told = vehicle.controller_mut().run_cli(&mut session, &line);
+            assert!(vehicle.input_bytes() > line.len());
+            recording.record(&mut vehicle);
+            // Until the next key frame.
+            let most = BOUNDS.input_bytes + BOUNDS.input_bytes / 8 + 2 * line.len();
+            assert!(recording.input_bytes <= most, "{}", recording.input_bytes);
+        }
+        assert_eq!(vehicle.input_bytes(), 0);
+        assert!(recording.first_input() > 80, "{}", recording.first_input());
     }
 
     #[test]

@@ -53,10 +53,10 @@ pub struct Message {
 }
 
 impl Input {
-    /// About how much memory it takes beyond its own size, bytes.
+    /// About how much memory it takes, bytes.
     #[must_use]
-    pub fn heap_bytes(&self) -> usize {
-        match self {
+    pub fn bytes(&self) -> usize {
+        let heap = match self {
             Self::Line(line) => size_of_val(&**line) + line.1.len(),
             Self::Message(message) => size_of::<Message>() + message.payload.len(),
             // Its tables lie on the heap.
@@ -71,30 +71,34 @@ impl Input {
             | Self::InFlight(_)
             | Self::CancelReturn
             | Self::ResetCraft => 0,
-        }
+        };
+        size_of::<Self>() + heap
     }
 }
 
 /// The inputs since the last tick, if they are wanted.
 #[derive(Debug, Clone, Default)]
-pub(super) struct InputLog(Option<Vec<Input>>);
+pub(super) struct InputLog {
+    inputs: Option<Vec<Input>>,
+    bytes: usize,
+}
 
 impl InputLog {
     pub(super) fn set_wanted(&mut self, wanted: bool) {
-        self.0 = wanted.then(Vec::new);
+        *self = Self { inputs: wanted.then(Vec::new), bytes: 0 };
     }
 
     pub(super) fn is_wanted(&self) -> bool {
-        self.0.is_some()
+        self.inputs.is_some()
     }
 
     pub(super) fn is_empty(&self) -> bool {
-        self.0.as_ref().is_none_or(Vec::is_empty)
+        self.inputs.as_ref().is_none_or(Vec::is_empty)
     }
 
     /// Notes an input that has been carried out.
     pub(super) fn note(&mut self, input: impl FnOnce() -> Input) {
-        let Some(inputs) = &mut self.0 else { return };
+        let Some(inputs) = &mut self.inputs else { return };
         let input = input();
         // Of one source only the newest frame counts; while time stands still a script goes on sending.
         if let Input::Rc(frame, source) = input
@@ -103,12 +107,14 @@ impl InputLog {
         {
             *earlier = frame;
         } else {
+            self.bytes += input.bytes();
             inputs.push(input);
         }
     }
 
     pub(super) fn drain(&mut self) -> impl Iterator<Item = Input> {
-        self.0.iter_mut().flat_map(|inputs| inputs.drain(..))
+        self.bytes = 0;
+        self.inputs.iter_mut().flat_map(|inputs| inputs.drain(..))
     }
 }
 
@@ -128,6 +134,12 @@ impl Vehicle {
     #[must_use]
     pub fn has_inputs(&self) -> bool {
         self.transmitter_set || self.controller.input_log().is_some_and(|log| !log.is_empty())
+    }
+
+    /// About how much memory the inputs since the last call of [`Self::take_inputs`] take, bytes.
+    #[must_use]
+    pub fn input_bytes(&self) -> usize {
+        self.controller.input_log().map_or(0, |log| log.bytes)
     }
 
     /// Moves the inputs since the last call into `sink`, oldest first. Carrying them out again in front of the same tick

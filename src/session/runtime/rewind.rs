@@ -14,6 +14,9 @@ use crate::vehicle::Vehicle;
 /// How long the flight goes on at most until something happens, µs.
 const RUN_ON_US: u64 = 600_000_000;
 
+/// What may come from outside while time stands still before it is recorded, bytes.
+const FLOOD_BYTES: usize = 1 << 20;
+
 /// Until when the flight goes on as fast as it goes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct RunOn {
@@ -76,7 +79,8 @@ impl Session {
             | Command::CopyVehicle(_)
             | Command::Quit => return Some(command),
             Command::Cli { reply, .. } => {
-                drop(reply.send(CliOutput { advice: Some(REWOUND.to_owned()), ..CliOutput::default() }));
+                let (text, advice) = ("###ERROR: REWOUND###".to_owned(), Some(REWOUND.to_owned()));
+                drop(reply.send(CliOutput { text, advice, restarted: false }));
             }
             Command::Upload { reply, .. } | Command::World { reply, .. } | Command::Save { reply } => {
                 drop(reply.send(Err(REWOUND.to_owned())));
@@ -120,6 +124,15 @@ impl Session {
             timeline.record(&mut self.vehicle);
         }
         self.vehicle.tick();
+    }
+
+    /// Records what comes while time stands still, when it is much.
+    pub(super) fn record_flood(&mut self) {
+        if let Some(timeline) = &mut self.timeline
+            && self.vehicle.input_bytes() > FLOOD_BYTES
+        {
+            timeline.record(&mut self.vehicle);
+        }
     }
 
     /// Flies on until something happens, for a slice.
