@@ -86,10 +86,10 @@ fn an_estimate_from_the_middle_of_another_flight_starts_at_home_without_faults()
 
 #[test]
 fn the_settings_of_the_plan_count() {
-    let slow = ["ap_max_velocity = 300".to_owned()];
+    let fast = ["ap_landing_descent_rate = 150".to_owned()];
     let vehicle = vehicle("square", Noise::None);
-    let slow = end(ForecastRun::plan_estimate(vehicle, &plan("square"), &slow, 10.0).unwrap());
-    assert!(slow.is_complete() && slow.time_s > estimate("square").time_s + 20.0, "{}", slow.time_s);
+    let fast = end(ForecastRun::plan_estimate(vehicle, &plan("land"), &fast, 10.0).unwrap());
+    assert!(fast.is_complete() && fast.time_s < estimate("land").time_s - 5.0, "{}", fast.time_s);
 }
 
 #[test]
@@ -117,7 +117,7 @@ fn a_hold_without_end_ends_the_forecast() {
 
 #[test]
 fn a_look_ahead_is_what_then_happens() {
-    let mut flying = in_flight(vehicle("land", Noise::Real), 3.0);
+    let mut flying = in_flight(vehicle("land", Noise::Real), 8.0);
     let started = flying.time();
     let forecast = end(ForecastRun::look_ahead(flying.clone()).unwrap());
     assert!(forecast.is_complete(), "{}", forecast.reason);
