@@ -68,6 +68,12 @@ pub struct TuiArgs {
     /// Plan to load: a built-in plan's name or a file (*.toml, *.txt, - for standard input) [default: square]
     pub plan: Option<PlanArg>,
 
+    /// No screen: what happens as sentences, commands of the `:` line on standard input
+    ///
+    /// Needs no terminal. When the input ends the flight goes on, until `quit` or a signal ends it.
+    #[arg(long, help_heading = "Screen")]
+    pub plain: bool,
+
     /// The screen.
     #[command(flatten)]
     pub display: DisplayArgs,

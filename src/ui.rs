@@ -75,7 +75,7 @@ pub use files_link::FilesLink;
 pub use message::{Effect, Msg};
 pub use panel::Panel;
 pub use popup::{CommandLine, Palette, Popup};
-pub use run::{Ending, SessionLink, run};
+pub use run::{Ending, SessionLink, run, run_plain};
 pub use terminal::{Tui, restore_terminal_modes};
 pub use text_field::TextField;
 pub use theme::Theme;

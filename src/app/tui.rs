@@ -20,10 +20,10 @@ use crate::ui::{self, CliHelp, Ending, FilesLink, OpenPlan, SessionLink, Theme, 
 
 /// Opens the user interface; returns its exit code when the user has left it.
 pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
-    if !std::io::stdout().is_terminal() || !std::io::stdin().is_terminal() {
+    if !args.plain && (!std::io::stdout().is_terminal() || !std::io::stdin().is_terminal()) {
         return Err(AppError::environment(
             "the user interface needs a terminal: run betadeck in one, or fly without a screen with \
-             `betadeck fly PLAN`",
+             `betadeck --plain` or `betadeck fly PLAN`",
         ));
     }
     let plan = match &args.plan {
@@ -84,8 +84,14 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
         let link = SessionLink { commands: session.commands, view: session.view, events: session.events };
         // Before the first frame: whoever sees it may already send one.
         let stop = stop_signal::stop_in_time().map_err(problem)?;
-        let tui = Tui::enter(config.mouse).map_err(problem)?;
-        let ending = ui::run(tui, link, files, config, stop).await.map_err(problem);
+        let ending = if args.plain {
+            let input = input_lines()?;
+            let cannot_write = |error| AppError::environment(format!("cannot write the output: {error}"));
+            ui::run_plain(link, files, config, input, std::io::stdout(), stop).await.map_err(cannot_write)
+        } else {
+            let tui = Tui::enter(config.mouse).map_err(problem)?;
+            ui::run(tui, link, files, config, stop).await.map_err(problem)
+        };
         // The session ends with its last sender; its thread has nothing left to say.
         drop(session.thread.join());
         if let Some(doors) = doors {
@@ -102,6 +108,24 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
         Ending::Signal | Ending::TerminalLost => Ok(error::INTERRUPTED),
         Ending::SessionEnded => Err(AppError::internal("the session ended by itself")),
     }
+}
+
+/// The lines of standard input as they come, until it ends. The thread that waits for them ends with the program.
+fn input_lines() -> Result<tokio::sync::mpsc::UnboundedReceiver<String>, AppError> {
+    let (sender, lines) = tokio::sync::mpsc::unbounded_channel();
+    let read = move || {
+        for line in std::io::stdin().lines() {
+            let Ok(line) = line else { return };
+            if sender.send(line).is_err() {
+                return;
+            }
+        }
+    };
+    std::thread::Builder::new()
+        .name("input".to_owned())
+        .spawn(read)
+        .map_err(|error| AppError::environment(format!("cannot start a thread: {error}")))?;
+    Ok(lines)
 }
 
 /// What the environment says, but for what was asked for; `NO_COLOR` wins.

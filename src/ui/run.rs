@@ -23,6 +23,10 @@ use super::message::{Effect, Msg};
 use super::terminal::Tui;
 use super::update::update;
 
+mod plain;
+
+pub use plain::run_plain;
+
 /// Shortest time between two frames after a key.
 const KEY_FRAME: Duration = Duration::from_millis(16);
 /// Shortest time between two frames when only the flight went on.

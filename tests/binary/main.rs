@@ -9,6 +9,7 @@ mod editor;
 mod fly;
 mod inputs;
 mod lines;
+mod plain;
 mod plans;
 #[cfg(unix)]
 mod pty;
