@@ -271,3 +271,72 @@ fn graphs_at_four_sizes() {
         insta::assert_snapshot!(format!("graphs_{}x{}", size.0, size.1), screen(&state));
     }
 }
+
+#[test]
+fn the_whole_screen_in_dark_mono_and_ascii() {
+    use betadeck::ui::Theme;
+    use betadeck::ui::theme::Palette;
+    use ratatui::style::Color;
+    let drawn = |theme: Theme| {
+        let mut state = fixture::state((120, 40), theme);
+        fixture::approach(&mut state);
+        let mut terminal = Terminal::new(TestBackend::new(120, 40)).expect("a test terminal");
+        terminal.draw(|frame| draw(&state, frame)).expect("drawing in memory");
+        terminal.backend().clone()
+    };
+    let coloured = |backend: &TestBackend| {
+        backend
+            .buffer()
+            .content()
+            .iter()
+            .filter(|cell| (cell.fg, cell.bg) != (Color::Reset, Color::Reset))
+            .count()
+    };
+    let dark = drawn(fixture::colour());
+    insta::assert_snapshot!("dark_120x40", dark);
+    assert!(coloured(&dark) > 500, "{}", coloured(&dark));
+    let mono = drawn(Theme { palette: Palette::Mono, ..Theme::default() });
+    assert_eq!(coloured(&mono), 0);
+    assert_eq!(mono.to_string(), dark.to_string(), "no word or mark is lost with the colours");
+    let ascii = drawn(fixture::plain());
+    assert!(ascii.to_string().is_ascii());
+    insta::assert_snapshot!("ascii_120x40", ascii);
+}
+
+#[test]
+fn every_popup_and_panel_is_drawn_at_every_size() {
+    let mut state = windy((80, 24));
+    let popups: Vec<Vec<betadeck::ui::Popup>> = [":", "ctrl-p", "6", "/"]
+        .into_iter()
+        .map(|keys| {
+            match keys {
+                "ctrl-p" => {
+                    update(&mut state, Msg::Key(KeyEvent::new(KeyCode::Char('p'), KeyModifiers::CONTROL)));
+                }
+                ":" => {
+                    press(&mut state, ':');
+                    type_text(&mut state, "w");
+                }
+                "6" => {
+                    press(&mut state, '6');
+                    key(&mut state, KeyCode::Enter);
+                }
+                _ => {}
+            }
+            std::mem::take(&mut state.popups)
+        })
+        .collect();
+    assert!(popups.iter().take(3).all(|popups| popups.len() == 1));
+    for width in (1..=250).step_by(11) {
+        for height in (1..=80).step_by(5) {
+            update(&mut state, Msg::Resize(width, height));
+            for (at, panel) in Panel::ALL.into_iter().enumerate() {
+                state.focus = panel;
+                state.slots.visit(panel);
+                state.zoomed = (width + height) % 2 == 0;
+                state.popups.clone_from(&popups[(usize::from(width + height) + at) % popups.len()]);
+                screen(&state);
+            }
+        }
+    }
+}
