@@ -383,3 +383,31 @@ fn plans_are_opened_and_saved_by_name() {
     );
     assert!(matches!(line("open")[..], [FileRequest::List(_)]));
 }
+
+#[test]
+fn the_mouse_chooses_values_and_drags_altitudes_in_the_profile() {
+    let mut state = state((120, 40));
+    keys(&mut state, "2 z");
+    let find = |state: &AppState, text: &str| {
+        let seen = screen(state);
+        let (row, line) = seen.lines().enumerate().filter(|(_, line)| line.contains(text)).last().unwrap();
+        let at = line.find(text).unwrap();
+        (line[..at].chars().count() as u16 - 1, row as u16)
+    };
+    let mouse = |kind, (column, row): (u16, u16)| {
+        Msg::Mouse(MouseEvent { kind, column, row, modifiers: KeyModifiers::NONE })
+    };
+    let left = MouseButton::Left;
+    let speed = find(&state, "30.0 ORBIT");
+    update(&mut state, mouse(MouseEventKind::Down(left), speed));
+    update(&mut state, mouse(MouseEventKind::Up(left), speed));
+    keys(&mut state, "+");
+    assert_eq!(state.plan().waypoints[2].duration_ds, 310);
+    let number = find(&state, "···3");
+    let number = (number.0 + 3, number.1);
+    update(&mut state, mouse(MouseEventKind::Down(left), number));
+    assert!(update(&mut state, mouse(MouseEventKind::Drag(left), (number.0, number.1 + 2))).is_empty());
+    let effects = update(&mut state, mouse(MouseEventKind::Up(left), (number.0, number.1 + 2)));
+    assert_eq!(journal_lines(&effects), 1);
+    assert!((2000..4500).contains(&state.plan().waypoints[3].alt_cm), "{:?}", altitudes(state.plan()));
+}

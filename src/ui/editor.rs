@@ -46,6 +46,8 @@ pub struct Editor {
     /// What was handed to the craft last.
     uploaded: Option<FlightPlan>,
     pub(super) popup: Option<EditorPopup>,
+    /// A waypoint whose altitude is dragged in the profile, and the altitude now, cm.
+    pub(super) dragged_altitude: Option<(usize, i32)>,
     /// The program ends as soon as every plan is saved or given up.
     pub(super) quitting: bool,
 }
@@ -76,6 +78,7 @@ impl Editor {
             register: Vec::new(),
             uploaded: None,
             popup: None,
+            dragged_altitude: None,
             quitting: false,
         }
     }
@@ -153,6 +156,20 @@ impl Editor {
     #[must_use]
     pub fn takes_text(&self) -> bool {
         self.field.is_some() || self.popup.is_some()
+    }
+
+    /// A waypoint whose altitude is dragged in the profile, and the altitude now, cm.
+    #[must_use]
+    pub(crate) fn dragged_altitude(&self) -> Option<(usize, i32)> {
+        self.dragged_altitude
+    }
+
+    /// Puts the cursor on a value.
+    pub(super) fn go_to_cell(&mut self, row: usize, column: Column) {
+        self.row = row;
+        self.column = column;
+        self.anchor = None;
+        self.field = None;
     }
 
     /// Moves the cursor.

@@ -10,14 +10,13 @@ use ratatui::text::Line;
 use super::{line, row, span};
 use crate::plan::review::Finding;
 use crate::ui::app_state::AppState;
-use crate::ui::editor::findings;
+use crate::ui::editor::{Column, findings};
 use crate::ui::forecast;
 use crate::ui::panel::Panel;
 use crate::ui::text_wrap::wrapped;
 use crate::ui::theme::Role;
 
-/// Rows of the altitude profile, and the height of the panel from which it is there.
-const PROFILE_ROWS: u16 = 6;
+/// The height of the panel from which the altitude profile is there.
 const PROFILE_FROM: u16 = 16;
 
 /// The title: name of the plan, what of it is unsaved and what of it the craft does not have.
@@ -38,6 +37,41 @@ pub(crate) fn title(state: &AppState) -> String {
     format!("{}{which} — {}{unsaved}{disk}{craft}", Panel::Plan.title(), plan.title())
 }
 
+/// What is under the mouse in the panel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum PlanTarget {
+    /// A value of the table.
+    Cell(usize, Column),
+    /// A waypoint of the altitude profile.
+    Altitude(usize),
+}
+
+/// What is under a cell of the screen.
+pub(crate) fn target_at(state: &AppState, area: Rect, at: (u16, u16)) -> Option<PlanTarget> {
+    if state.plan().waypoints.is_empty() {
+        return None;
+    }
+    let (table, _, profile) = divided(area, below(state, &findings::findings(state), area).len());
+    let cell = table::cell_at(state, table, at).map(|(row, column)| PlanTarget::Cell(row, column));
+    cell.or_else(|| profile::waypoint_at(state, profile?, at).map(PlanTarget::Altitude))
+}
+
+/// What a row of the altitude profile is worth, m.
+pub(crate) fn metres_per_row(state: &AppState, area: Rect) -> Option<f64> {
+    let (_, _, profile) = divided(area, below(state, &findings::findings(state), area).len());
+    profile::metres_per_row(state, profile?)
+}
+
+/// Table, what stands below it, and profile.
+fn divided(area: Rect, below_rows: usize) -> (Rect, Rect, Option<Rect>) {
+    let profile = if area.height >= PROFILE_FROM { (area.height / 4).clamp(6, 12) } else { 0 };
+    let below_rows = (below_rows as u16).min(area.height.saturating_sub(2));
+    let table = Rect { height: area.height.saturating_sub(below_rows + profile), ..area };
+    let foot = Rect { y: area.y + table.height, height: below_rows, ..area };
+    let bottom = Rect { y: area.y + area.height - profile, height: profile, ..area };
+    (table, foot, (profile > 0).then_some(bottom))
+}
+
 /// Draws the inside; gives the place of the cursor while a cell is typed.
 pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     let theme = &state.theme;
@@ -52,29 +86,29 @@ pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<
         }
         return None;
     }
-    let profile = if area.height >= PROFILE_FROM { PROFILE_ROWS } else { 0 };
     let findings = findings::findings(state);
-    let below = below(state, &findings, usize::from(area.width));
-    let mut below = below;
-    if state.editor.field().is_none() {
-        below.push(forecast::estimate_line(state, area.width));
-    }
-    let below_rows = (below.len() as u16).min(area.height.saturating_sub(2));
-    let table = Rect { height: area.height.saturating_sub(below_rows + profile), ..area };
+    let below = below(state, &findings, area);
+    let (table, foot, profile) = divided(area, below.len());
     let cursor = table::draw(state, &findings, table, buffer);
-    let foot = Rect { y: area.y + table.height, height: below_rows, ..area };
     for (at, text) in below.iter().enumerate() {
         line(buffer, foot, at as u16, text);
     }
-    if profile > 0 {
-        let area = Rect { y: area.y + area.height - profile, height: profile, ..area };
+    if let Some(area) = profile {
         profile::draw(state, area, buffer);
     }
     cursor
 }
 
 /// What stands below the table: what is wrong with the value being typed, or the finding with its fix.
-fn below(state: &AppState, findings: &[Finding], width: usize) -> Vec<Line<'static>> {
+fn below(state: &AppState, findings: &[Finding], area: Rect) -> Vec<Line<'static>> {
+    let mut lines = said_below(state, findings, usize::from(area.width));
+    if state.editor.field().is_none() {
+        lines.push(forecast::estimate_line(state, area.width));
+    }
+    lines
+}
+
+fn said_below(state: &AppState, findings: &[Finding], width: usize) -> Vec<Line<'static>> {
     let theme = &state.theme;
     let said = |role, text: &str| {
         let lines = wrapped(text, width);

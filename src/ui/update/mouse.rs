@@ -4,11 +4,13 @@ use crossterm::event::{KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
 use ratatui::layout::Rect;
 
 use crate::ui::app_state::AppState;
+use crate::ui::editor::Column;
 use crate::ui::layout;
 use crate::ui::map_edit::{MapItem, item_at};
 use crate::ui::map_point::MapPoint;
 use crate::ui::message::Effect;
 use crate::ui::panel::Panel;
+use crate::ui::panel::plan::{self as plan_panel, PlanTarget};
 use crate::ui::panel::{rc, world};
 use crate::ui::transmitter;
 use crate::ui::viewport::{MapMode, Viewport};
@@ -46,7 +48,11 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
                     }
                     Vec::new()
                 }
-                Panel::Plan | Panel::State | Panel::Cli | Panel::Graphs | Panel::Log => Vec::new(),
+                Panel::Plan => {
+                    press_on_plan(state, area, &event);
+                    Vec::new()
+                }
+                Panel::State | Panel::Cli | Panel::Graphs | Panel::Log => Vec::new(),
             }
         }
         MouseEventKind::Drag(MouseButton::Left) => match panel {
@@ -58,10 +64,21 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
                 Vec::new()
             }
             Panel::Rc => set_channel(state, area, &event),
-            Panel::Plan | Panel::State | Panel::Cli | Panel::Graphs | Panel::World | Panel::Log => Vec::new(),
+            Panel::Plan => {
+                drag_altitude(state, area, &event);
+                Vec::new()
+            }
+            Panel::State | Panel::Cli | Panel::Graphs | Panel::World | Panel::Log => Vec::new(),
         },
         MouseEventKind::Up(_) => {
             state.drag = None;
+            if let Some((index, alt_cm)) = state.editor.dragged_altitude.take() {
+                return state.editor.edit(&format!("altitude of WP{index}"), |document| {
+                    if let Some(wp) = document.plan.waypoints.get_mut(index) {
+                        wp.alt_cm = alt_cm;
+                    }
+                });
+            }
             if state.map.moving.is_some_and(|moving| moving.by_mouse) {
                 return map_edit::put_down(state);
             }
@@ -108,6 +125,32 @@ fn press_on_map(state: &mut AppState, area: Rect, event: &MouseEvent) -> Vec<Eff
         None => state.drag = Some((event.column, event.row, view.centre.n, view.centre.e)),
     }
     Vec::new()
+}
+
+/// The cursor goes to the value under the mouse; a waypoint of the altitude profile is picked up.
+fn press_on_plan(state: &mut AppState, area: Rect, event: &MouseEvent) {
+    match plan_panel::target_at(state, layout::inner(area), (event.column, event.row)) {
+        Some(PlanTarget::Cell(row, column)) => state.editor.go_to_cell(row, column),
+        Some(PlanTarget::Altitude(index)) => {
+            state.editor.go_to_cell(index, Column::Altitude);
+            let altitude = state.plan().waypoints.get(index).map(|wp| wp.alt_cm);
+            state.editor.dragged_altitude = altitude.map(|alt_cm| (index, alt_cm));
+            state.drag = Some((event.column, event.row, 0.0, f64::from(altitude.unwrap_or_default())));
+        }
+        None => {}
+    }
+}
+
+/// Drags an altitude of the profile, by whole metres.
+fn drag_altitude(state: &mut AppState, area: Rect, event: &MouseEvent) {
+    let (Some((index, _)), Some((_, from_row, _, from_cm))) = (state.editor.dragged_altitude, state.drag)
+    else {
+        return;
+    };
+    let Some(metres) = plan_panel::metres_per_row(state, layout::inner(area)) else { return };
+    let rows = f64::from(from_row) - f64::from(event.row);
+    let altitude_m = (from_cm / 100.0 + rows * metres).round();
+    state.editor.dragged_altitude = Some((index, (altitude_m * 100.0) as i32));
 }
 
 /// Moves what was picked up by the mouse; the window stands still meanwhile.

@@ -88,6 +88,24 @@ pub(super) fn difference(state: &AppState, index: usize) -> Option<String> {
     Some(format!("● On the craft WP{index} is: {}.", parts.join(", ")))
 }
 
+/// The first waypoint that is shown, of as many rows as there are.
+fn first_row(state: &AppState, rows: usize) -> usize {
+    let count = state.plan().waypoints.len();
+    state.editor.row().saturating_sub(rows / 2).min(count.saturating_sub(rows))
+}
+
+/// The waypoint and the column at a cell of the screen.
+pub(super) fn cell_at(state: &AppState, area: Rect, (x, y): (u16, u16)) -> Option<(usize, Column)> {
+    let rows = area.height.saturating_sub(1);
+    let row = y.checked_sub(area.y + 1).filter(|&row| row < rows)?;
+    let index = first_row(state, usize::from(rows)) + usize::from(row);
+    let inside = x.checked_sub(area.x)?;
+    let hit = columns(state, area.width)
+        .into_iter()
+        .find(|&(_, _, from, width)| (from..from + width).contains(&inside));
+    (index < state.plan().waypoints.len()).then(|| (index, hit.map_or(Column::Type, |(column, ..)| column)))
+}
+
 /// Draws the table; gives the place of the cursor while a cell is typed.
 pub(super) fn draw(
     state: &AppState,
@@ -111,7 +129,7 @@ pub(super) fn draw(
     let rows = usize::from(area.height.saturating_sub(1));
     let focused = state.focus == Panel::Plan;
     let cursor_row = state.editor.row();
-    let first = cursor_row.saturating_sub(rows / 2).min(waypoints.len().saturating_sub(rows));
+    let first = first_row(state, rows);
     let mut cursor = None;
     for (at, (index, wp)) in waypoints.iter().enumerate().skip(first).take(rows).enumerate() {
         let y = area.y + 1 + at as u16;
