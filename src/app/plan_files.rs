@@ -43,9 +43,11 @@ struct OpenFile {
     stamp: Option<Stamp>,
     /// The change was told.
     told: bool,
-    /// What the journal begins with, until there is something to keep.
-    base: Option<Journal>,
+    /// What the journal's file holds, or is to hold as soon as there is something to keep.
+    kept: Journal,
     journal: Option<JournalFile>,
+    /// A line could not be written: the file is written anew before the next one counts.
+    is_behind: bool,
 }
 
 impl PlanFiles {
@@ -113,8 +115,10 @@ impl PlanFiles {
             FileRequest::List(directory) => vec![self.list(directory)],
             FileRequest::Journal(id, line) => self.append(id, &line).into_iter().collect(),
             FileRequest::Begin(id, document) => {
-                let base = Some(Journal { file: None, history: History::new(*document, false) });
-                self.open.insert(id, OpenFile { path: None, stamp: None, told: false, base, journal: None });
+                let kept = Journal { file: None, history: History::new(*document, false) };
+                let (path, stamp, journal) = (None, None, None);
+                let file = OpenFile { path, stamp, told: false, kept, journal, is_behind: false };
+                self.open.insert(id, file);
                 Vec::new()
             }
             FileRequest::Close { id, discard } => {
@@ -197,10 +201,11 @@ impl PlanFiles {
         let name = path.as_ref().map(|path| path.display().to_string());
         let kept = Journal { file: name, history: history.clone() };
         // Written anew without what was cut short.
-        let journal = journal.and_then(|file| file.rewrite(&kept).ok());
-        let base = if journal.is_some() { None } else { Some(kept) };
+        let mut journal = journal;
+        let is_behind = journal.as_mut().is_some_and(|journal| journal.rewrite(&kept).is_err());
         let stamp = path.as_deref().and_then(Stamp::of);
-        self.open.insert(id, OpenFile { path: path.clone(), stamp, told: false, base, journal });
+        let file = OpenFile { path: path.clone(), stamp, told: false, kept, journal, is_behind };
+        self.open.insert(id, file);
         Opened { id, file: path, history, notes, recovered: false }
     }
 
@@ -239,15 +244,13 @@ impl PlanFiles {
     fn append(&mut self, id: PlanId, line: &JournalLine) -> Option<FileReply> {
         let directory = self.journals.as_deref()?;
         let file = self.open.get_mut(&id)?;
-        let written = match (&mut file.journal, file.base.take()) {
-            (Some(journal), _) => journal.append(line),
-            (None, Some(base)) => JournalFile::create(directory, &base).and_then(|mut journal| {
-                journal.append(line)?;
-                file.journal = Some(journal);
-                Ok(())
-            }),
-            (None, None) => return None,
+        file.kept.take(line.clone());
+        let written = match &mut file.journal {
+            None => JournalFile::create(directory, &file.kept).map(|journal| file.journal = Some(journal)),
+            Some(journal) if file.is_behind => journal.rewrite(&file.kept),
+            Some(journal) => journal.append(line),
         };
+        file.is_behind = written.is_err();
         let error = written.err()?;
         let first = !std::mem::replace(&mut self.told, true);
         first.then(|| {

@@ -1,13 +1,15 @@
 //! A journal as a file that one program has locked.
 
 use std::fs::{File, OpenOptions};
-use std::io::{self, Seek as _, Write as _};
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 use crate::plan::edit::{Journal, JournalLine};
 
 /// Ending of journals.
 const ENDING: &str = "journal";
+/// Largest journal that is read, bytes: some hundred thousand edits.
+const LARGEST: u64 = 64 << 20;
 /// More journals of one plan than programs have it open.
 const MOST: u32 = 1000;
 
@@ -28,8 +30,14 @@ impl JournalFile {
             let path = directory.join(format!("{stem}-{number}.{ENDING}"));
             match OpenOptions::new().append(true).create_new(true).open(&path) {
                 Ok(file) => {
-                    lock(&file)?;
-                    return Self { path, file }.rewrite(journal);
+                    let mut created = Self { path, file };
+                    return match lock(&created.file).and_then(|()| created.rewrite(journal)) {
+                        Ok(()) => Ok(created),
+                        Err(error) => {
+                            created.remove();
+                            Err(error)
+                        }
+                    };
                 }
                 Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
                 Err(error) => return Err(error),
@@ -52,18 +60,35 @@ impl JournalFile {
         Some((self, journal))
     }
 
-    /// Writes the whole journal anew.
-    pub(super) fn rewrite(mut self, journal: &Journal) -> io::Result<Self> {
+    /// Writes the whole journal anew; what is there stays until the new one is complete.
+    pub(super) fn rewrite(&mut self, journal: &Journal) -> io::Result<()> {
         let text: String = journal.lines().iter().map(JournalLine::to_text).collect();
-        self.file.set_len(0)?;
-        self.file.rewind()?;
-        self.file.write_all(text.as_bytes())?;
-        Ok(self)
+        if std::fs::read(&self.path).is_ok_and(|there| there == text.as_bytes()) {
+            return Ok(());
+        }
+        let temporary = self.path.with_extension("tmp");
+        let write = || -> io::Result<File> {
+            let mut file = OpenOptions::new().append(true).create(true).open(&temporary)?;
+            lock(&file)?;
+            file.set_len(0)?;
+            file.write_all(text.as_bytes())?;
+            std::fs::rename(&temporary, &self.path)?;
+            Ok(file)
+        };
+        let written = write();
+        if written.is_err() {
+            std::fs::remove_file(&temporary).ok();
+        }
+        self.file = written?;
+        Ok(())
     }
 
-    /// Appends a line, in one write.
+    /// Appends a line; a part of one does not stay.
     pub(super) fn append(&mut self, line: &JournalLine) -> io::Result<()> {
-        self.file.write_all(line.to_text().as_bytes())
+        let length = self.file.metadata()?.len();
+        self.file.write_all(line.to_text().as_bytes()).inspect_err(|_| {
+            self.file.set_len(length).ok();
+        })
     }
 
     /// Deletes it.
@@ -97,7 +122,11 @@ pub(super) fn left_behind(directory: &Path) -> Vec<(JournalFile, Journal)> {
 
 fn paths(directory: &Path) -> Vec<PathBuf> {
     let Ok(entries) = std::fs::read_dir(directory) else { return Vec::new() };
-    let is_journal = |path: &PathBuf| path.extension().is_some_and(|ending| ending == ENDING);
+    let is_journal = |path: &PathBuf| {
+        // Only what this program wrote: a FIFO would make it wait, a huge file fill the memory.
+        let is_sound = path.symlink_metadata().is_ok_and(|there| there.is_file() && there.len() <= LARGEST);
+        is_sound && path.extension().is_some_and(|ending| ending == ENDING)
+    };
     let mut paths: Vec<PathBuf> =
         entries.filter_map(Result::ok).map(|entry| entry.path()).filter(is_journal).collect();
     paths.sort();

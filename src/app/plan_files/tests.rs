@@ -137,3 +137,36 @@ fn what_is_wrong_is_one_sentence() {
     };
     assert_eq!(listing.entries.iter().map(|entry| entry.name.as_str()).collect::<Vec<_>>(), ["bad.toml"]);
 }
+
+#[test]
+fn edits_that_a_full_disk_refused_are_kept_as_soon_as_there_is_room() {
+    let directory = tempfile::tempdir().unwrap();
+    let mut files = PlanFiles::new(Some(directory.path()));
+    let mut opened = files.start_with(None, document(1));
+    edit(&mut files, &mut opened, document(2));
+    // As after a write that failed half way.
+    let file = files.open.get_mut(&opened.id).unwrap();
+    file.is_behind = true;
+    let path = std::fs::read_dir(directory.path().join("plans")).unwrap().next().unwrap().unwrap().path();
+    let text = std::fs::read_to_string(&path).unwrap();
+    std::fs::write(&path, format!("{text}{{\"edited\":")).unwrap();
+    edit(&mut files, &mut opened, document(3));
+    edit(&mut files, &mut opened, document(4));
+    drop(files);
+    let recovered = PlanFiles::new(Some(directory.path())).recovered().remove(0);
+    assert_eq!(recovered.history.document(), &document(4));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_journal_that_is_a_pipe_or_nonsense_does_not_hold_the_program_up() {
+    let directory = tempfile::tempdir().unwrap();
+    let plans = directory.path().join("plans");
+    std::fs::create_dir(&plans).unwrap();
+    let fifo = plans.join("fifo.journal");
+    assert!(std::process::Command::new("mkfifo").arg(&fifo).status().unwrap().success());
+    std::fs::write(plans.join("noise.journal"), [0xff; 4096]).unwrap();
+    std::fs::create_dir(plans.join("directory.journal")).unwrap();
+    std::fs::File::create(plans.join("huge.journal")).unwrap().set_len(1 << 40).unwrap();
+    assert!(PlanFiles::new(Some(directory.path())).recovered().is_empty());
+}

@@ -98,8 +98,8 @@ impl Journal {
         Some(journal)
     }
 
-    /// Whether the line fits.
-    fn take(&mut self, line: JournalLine) -> bool {
+    /// Takes a line in; whether it fits.
+    pub fn take(&mut self, line: JournalLine) -> bool {
         match line {
             JournalLine::Opened { .. } => return false,
             JournalLine::Edited { label, change } => {
