@@ -19,13 +19,22 @@ fn start() -> (Forecaster, mpsc::Receiver<ForecastReply>) {
     (Forecaster::start(move |reply| drop(answers.send(reply))).unwrap(), answered)
 }
 
+/// A worker that finds all of these jobs when it begins, so that none is flown before the next one comes.
+fn start_on(jobs: Vec<ForecastJob>) -> (Forecaster, mpsc::Receiver<ForecastReply>) {
+    let (orders, incoming) = mpsc::channel();
+    let (answers, answered) = mpsc::channel();
+    for job in jobs {
+        orders.send(Order { job, copy: copy() }).unwrap();
+    }
+    thread::spawn(move || {
+        Worker { answer: move |reply| drop(answers.send(reply)), flying: Vec::new() }.run(&incoming);
+    });
+    (Forecaster { orders }, answered)
+}
+
 #[test]
 fn a_newer_job_takes_the_place_of_an_older_one() {
-    let (forecaster, answered) = start();
-    let orders: Vec<_> = (1..=5).map(|revision| (estimate(revision, "land"), copy())).collect();
-    for (job, copy) in orders {
-        forecaster.order(job, copy);
-    }
+    let (forecaster, answered) = start_on((1..=5).map(|revision| estimate(revision, "land")).collect());
     let reply = answered.recv().unwrap();
     assert_eq!((reply.revision, reply.kind), (5, ForecastKind::PlanEstimate));
     assert!(reply.forecast.unwrap().is_complete());
@@ -43,9 +52,8 @@ fn a_copy_that_comes_late_does_not_take_the_place_of_a_newer_one() {
 
 #[test]
 fn kinds_do_not_wait_for_each_other() {
-    let (forecaster, answered) = start();
-    forecaster.order(estimate(1, "land"), copy());
-    forecaster.order(ForecastJob { revision: 2, request: ForecastRequest::LookAhead }, copy());
+    let look_ahead = ForecastJob { revision: 2, request: ForecastRequest::LookAhead };
+    let (_forecaster, answered) = start_on(vec![estimate(1, "land"), look_ahead]);
     let refused = answered.recv().unwrap();
     assert_eq!((refused.revision, refused.kind), (2, ForecastKind::LookAhead));
     assert!(refused.forecast.unwrap_err().contains("disarmed"));
