@@ -130,6 +130,11 @@ impl Flight {
         &self.vehicle
     }
 
+    /// The vehicle, to act on it between two ticks.
+    pub fn vehicle_mut(&mut self) -> &mut Vehicle {
+        &mut self.vehicle
+    }
+
     /// When the autopilot engaged for the first time.
     #[must_use]
     pub fn engaged_at(&self) -> Option<SimTime> {

@@ -16,6 +16,7 @@ pub mod pilot;
 pub mod plan;
 pub mod printable;
 pub mod record;
+pub mod scenario;
 pub mod session;
 pub mod signals;
 pub mod sim;

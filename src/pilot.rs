@@ -7,9 +7,11 @@
 //!
 //! It sees what a pilot sees (the OSD), and touches nothing but the sixteen channels.
 
+mod stick_input;
 mod transmitter;
 
-pub use transmitter::{FRAME_US, RcTransmitter, StickInput};
+pub use stick_input::{StickInput, channel_index, channel_name, pulse_us};
+pub use transmitter::{FRAME_US, RcTransmitter};
 
 use crate::signals::{RcFrame, SimTime};
 use crate::telemetry::Mode;

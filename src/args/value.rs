@@ -1,14 +1,10 @@
 //! Values of options, with the sentences for wrong ones.
 
-use std::fmt;
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use crate::did_you_mean;
-use crate::flight::StickInput;
 use crate::flight::setup::check_setting;
 use crate::plan::format::{Format, setting_line};
-use crate::signals::RC_CHANNELS;
 use crate::sim::{Noise, ParseError, ScheduledFault, Switches, Turbulence, Wind, step_us};
 
 /// A switch.
@@ -80,70 +76,6 @@ impl FromStr for OutputFile {
             file => Ok(Self::File(file.into())),
         }
     }
-}
-
-/// The names of the first channels, in wire order.
-const STICKS: [&str; 4] = ["roll", "pitch", "throttle", "yaw"];
-
-impl FromStr for StickInput {
-    type Err = String;
-
-    /// `CH=VALUE@T[,FOR]`: CH a name or a number from 1, VALUE in µs, T and FOR in seconds.
-    fn from_str(text: &str) -> Result<Self, String> {
-        let usage = "write CH=VALUE@T[,FOR], such as pitch=2000@30,2 or aux2=1000@boot+60";
-        let (channel, rest) = text.split_once('=').ok_or(usage)?;
-        let channel = channel_index(channel)?;
-        let (value, times) = rest.split_once('@').ok_or(usage)?;
-        let value_us = value
-            .parse()
-            .ok()
-            .filter(|us| (750..=2250).contains(us))
-            .ok_or_else(|| format!("value {value} is not a pulse length; allowed are 750 to 2250 µs"))?;
-        let (start, for_s) =
-            times.split_once(',').map_or((times, None), |(start, for_s)| (start, Some(for_s)));
-        let from_boot = start.strip_prefix("boot+");
-        Ok(Self {
-            channel,
-            value_us,
-            at_s: seconds(from_boot.unwrap_or(start))?,
-            for_s: for_s.map(seconds).transpose()?,
-            from_boot: from_boot.is_some(),
-        })
-    }
-}
-
-impl fmt::Display for StickInput {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let channel = usize::from(self.channel);
-        match STICKS.get(channel) {
-            Some(name) => f.write_str(name)?,
-            None => write!(f, "aux{}", channel - STICKS.len() + 1)?,
-        }
-        let from_boot = if self.from_boot { "boot+" } else { "" };
-        write!(f, "={}@{from_boot}{}", self.value_us, self.at_s)?;
-        self.for_s.map_or(Ok(()), |for_s| write!(f, ",{for_s}"))
-    }
-}
-
-/// A channel by name (`roll`, `aux2`) or number from 1.
-fn channel_index(text: &str) -> Result<u8, String> {
-    let name = text.to_ascii_lowercase();
-    let number = |digits: &str, first: usize| {
-        digits.parse::<usize>().ok().filter(|&n| n > 0).map(|n| n - 1 + first).filter(|&n| n < RC_CHANNELS)
-    };
-    let index = STICKS.iter().position(|&stick| stick == name).or_else(|| match name.strip_prefix("aux") {
-        Some(digits) => number(digits, STICKS.len()),
-        None => number(&name, 0),
-    });
-    index.and_then(|index| u8::try_from(index).ok()).ok_or_else(|| {
-        let guess = did_you_mean::suffix(&name, STICKS);
-        format!("{text} is not a channel{guess} (roll, pitch, throttle, yaw, aux1 to aux12, or 1 to 16)")
-    })
-}
-
-/// A number of seconds from zero up.
-fn seconds(text: &str) -> Result<f64, String> {
-    bounded(text, 0.0, 1e9, "s")
 }
 
 /// A finite number in a range.
@@ -262,36 +194,6 @@ mod tests {
         assert_eq!("MAX".parse(), Ok(Speed(f64::INFINITY)));
         for wrong in ["0", "-1", "inf", "NaN", "fast", ""] {
             assert!(wrong.parse::<Speed>().is_err(), "{wrong}");
-        }
-    }
-
-    #[test]
-    fn sticks_read_and_print() {
-        for text in ["roll=1000@0", "pitch=2000@30,2", "aux2=1000@boot+60.5", "aux12=2000@1"] {
-            assert_eq!(text.parse::<StickInput>().unwrap().to_string(), text);
-        }
-        assert_eq!("6=2000@1".parse::<StickInput>().unwrap().channel, 5);
-        assert_eq!("AUX1=2000@1".parse::<StickInput>().unwrap().channel, 4);
-    }
-
-    #[test]
-    fn wrong_sticks_say_why() {
-        for (text, part) in [
-            ("roll", "write CH=VALUE@T[,FOR]"),
-            ("foo=x@3", "foo is not a channel"),
-            ("foo=", "foo is not a channel"),
-            ("roll=1500", "write CH=VALUE@T[,FOR]"),
-            ("rol=1500@1", "did you mean roll?"),
-            ("aux13=1500@1", "is not a channel"),
-            ("0=1500@1", "is not a channel"),
-            ("17=1500@1", "is not a channel"),
-            ("roll=5@1", "allowed are 750 to 2250"),
-            ("roll=1500@x", "x is not a number"),
-            ("roll=1500@1,-2", "-2 is out of range"),
-            ("roll=1500@nan", "nan is not a number"),
-        ] {
-            let error = text.parse::<StickInput>().unwrap_err();
-            assert!(error.contains(part), "{text}: {error}");
         }
     }
 

@@ -1,35 +1,10 @@
 //! The RC transmitter: fifty frames a simulated second from the virtual sticks or the scripted pilot.
 
-use super::{Pilot, PilotFacts};
+use super::{Pilot, PilotFacts, StickInput};
 use crate::signals::{RC_CHANNELS, RcFrame, SimTime};
 
 /// Interval of RC frames, µs.
 pub const FRAME_US: u64 = 20_000;
-
-/// A channel forced to a value for a while.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct StickInput {
-    /// Channel index, 0…15.
-    pub channel: u8,
-    /// Value, µs.
-    pub value_us: u16,
-    /// When it begins, counted from `from_boot` or from the engagement.
-    pub at_s: f64,
-    /// How long it lasts, s; `None` = to the end.
-    pub for_s: Option<f64>,
-    /// `at_s` counts from boot instead of from the engagement.
-    pub from_boot: bool,
-}
-
-impl StickInput {
-    fn is_active(&self, now: SimTime, engaged_at: Option<SimTime>) -> bool {
-        let origin = if self.from_boot { Some(SimTime::ZERO) } else { engaged_at };
-        origin.is_some_and(|origin| {
-            let t = now.as_secs_f64() - origin.as_secs_f64();
-            t >= self.at_s && self.for_s.is_none_or(|length| t < self.at_s + length)
-        })
-    }
-}
 
 /// The transmitter: who moves its sticks, and what is done to its link.
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -14,6 +14,7 @@ mod note;
 mod problem;
 mod setting;
 mod table;
+mod toml_table;
 
 use strum::IntoEnumIterator as _;
 
@@ -25,6 +26,7 @@ pub use note::{Note, NoteKind};
 pub use problem::{PlanError, Problems, report};
 pub use setting::{SettingCheck, SettingFault, SettingPart, setting_line};
 pub use table::table;
+pub use toml_table::{TomlTable, Value};
 
 /// A file format for plans. `Display` and `FromStr` use the names of `convert --from` and `--to`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::EnumString, strum::EnumIter)]

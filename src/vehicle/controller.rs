@@ -341,7 +341,9 @@ impl FlightController {
         }
     }
 
-    pub(super) fn craft_view(&self) -> CraftView {
+    /// Modes, arming, receiver, battery.
+    #[must_use]
+    pub fn craft_view(&self) -> CraftView {
         match self {
             Self::Embedded(embedded) => embedded.firmware.craft_view(),
             Self::Remote(remote) => {
@@ -366,7 +368,9 @@ impl FlightController {
         }
     }
 
-    pub(super) fn mode_ranges(&self) -> Vec<ModeRange> {
+    /// The mode conditions in force.
+    #[must_use]
+    pub fn mode_ranges(&self) -> Vec<ModeRange> {
         match self {
             Self::Embedded(embedded) => embedded.firmware.mode_ranges(),
             Self::Remote(remote) => remote.telemetry().craft.mode_ranges().to_vec(),

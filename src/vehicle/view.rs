@@ -37,7 +37,9 @@ impl Vehicle {
         Vector2::new(enu.y, enu.x)
     }
 
-    fn nav_view(&self) -> Option<NavTelemetry> {
+    /// The navigator with its points counted from the boot place; `None` when a remote one does not tell.
+    #[must_use]
+    pub fn nav_view(&self) -> Option<NavTelemetry> {
         let mut nav = self.controller.nav()?.clone();
         for point in [&mut nav.aim_ne, &mut nav.target_ne].into_iter().flatten() {
             *point = self.count_from_boot_place(*point);
@@ -45,7 +47,9 @@ impl Vehicle {
         Some(nav)
     }
 
-    fn estimate_view(&self) -> EstimateView {
+    /// What the estimator believes, counted from the boot place.
+    #[must_use]
+    pub fn estimate_view(&self) -> EstimateView {
         let mut view = self.controller.estimate_view();
         if let (Some(n), Some(e)) = (view.n, view.e) {
             let ne = self.count_from_boot_place(Vector2::new(n, e));

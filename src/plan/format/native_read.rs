@@ -3,12 +3,12 @@
 
 use std::ops::Range;
 
-use toml::Spanned;
-use toml::de::{DeString, DeTable, DeValue};
+use toml::de::{DeTable, DeValue};
 
 use super::field::{self, FieldError};
 use super::home::{self, HomePosition};
 use super::setting::{SettingCheck, SettingPart, setting_line};
+use super::toml_table::{TomlTable, Value};
 use super::{PlanFile, Problems};
 use crate::geo::LatLon;
 use crate::plan::{FlightPlan, HoldPattern, MAX_WAYPOINTS, Waypoint, WaypointType};
@@ -23,17 +23,6 @@ const HOME_KEYS: &[&str] = &["lat_deg", "lon_deg", "alt_amsl_m"];
 const WAYPOINT_KEYS: &[&str] =
     &["type", "lat_deg", "lon_deg", "alt_m", "speed_mps", "yaw_rate_dps", "duration_s", "pattern"];
 
-/// A value with its place.
-type Value<'i> = Spanned<DeValue<'i>>;
-
-/// A table being read: which keys it may have, and where it is.
-struct Table<'t, 'i> {
-    /// What it is, for messages: `waypoint 3`.
-    what: String,
-    entries: &'t DeTable<'i>,
-    span: Range<usize>,
-}
-
 /// Reads the text; problems are added to `problems`.
 pub(super) fn read(text: &str, check: SettingCheck, problems: &mut Problems<'_>) -> PlanFile {
     let (document, syntax) = DeTable::parse_recoverable(text);
@@ -46,7 +35,7 @@ pub(super) fn read(text: &str, check: SettingCheck, problems: &mut Problems<'_>)
         return PlanFile::default();
     }
     let span = document.span();
-    let file = Table { what: "the plan file".to_owned(), entries: document.get_ref(), span };
+    let file = TomlTable::of_document("the plan file", document.get_ref(), span);
     file.refuse_unknown(FILE_KEYS, problems);
     PlanFile {
         name: file.string("name", problems).unwrap_or_default(),
@@ -62,7 +51,7 @@ pub(super) fn read(text: &str, check: SettingCheck, problems: &mut Problems<'_>)
 }
 
 fn read_home(value: &Value<'_>, problems: &mut Problems<'_>) -> Option<HomePosition> {
-    let table = Table::new("home".to_owned(), value, problems)?;
+    let table = TomlTable::new("home".to_owned(), value, problems)?;
     table.refuse_unknown(HOME_KEYS, problems);
     let lat = table.required("lat_deg", problems).and_then(|v| number(v, field::latitude, problems));
     let lon = table.required("lon_deg", problems).and_then(|v| number(v, field::longitude, problems));
@@ -128,7 +117,7 @@ fn read_waypoints(value: &Value<'_>, problems: &mut Problems<'_>) -> FlightPlan 
                 format!("a plan holds at most {MAX_WAYPOINTS} waypoints"),
             );
         }
-        if let Some(table) = Table::new(format!("waypoint {index}"), value, problems) {
+        if let Some(table) = TomlTable::new(format!("waypoint {index}"), value, problems) {
             let waypoint = read_waypoint(&table, problems);
             // Full: the problem above stands for all that follow.
             let _ = plan.waypoints.try_push(waypoint);
@@ -137,7 +126,7 @@ fn read_waypoints(value: &Value<'_>, problems: &mut Problems<'_>) -> FlightPlan 
     plan
 }
 
-fn read_waypoint(table: &Table<'_, '_>, problems: &mut Problems<'_>) -> Waypoint {
+fn read_waypoint(table: &TomlTable<'_, '_>, problems: &mut Problems<'_>) -> Waypoint {
     table.refuse_unknown(WAYPOINT_KEYS, problems);
     let kind = table.required("type", problems).and_then(|value| word(value, field::waypoint_type, problems));
     let is_yaw_rate = kind == Some(WaypointType::YawRate);
@@ -250,60 +239,6 @@ fn word<T>(
         return None;
     };
     read(text).map_err(|error| problems.add(value.span(), error.message, error.hint)).ok()
-}
-
-impl<'t, 'i> Table<'t, 'i> {
-    fn new(what: String, value: &'t Value<'i>, problems: &mut Problems<'_>) -> Option<Self> {
-        match value.get_ref() {
-            DeValue::Table(entries) => Some(Self { what, entries, span: value.span() }),
-            other => {
-                problems.add(value.span(), format!("{what} is a {}, not a table", other.type_str()), "");
-                None
-            }
-        }
-    }
-
-    fn entry(&self, key: &str) -> Option<(&'t Spanned<DeString<'i>>, &'t Value<'i>)> {
-        self.entries.iter().find(|(name, _)| name.get_ref() == key)
-    }
-
-    fn get(&self, key: &str) -> Option<&'t Value<'i>> {
-        self.entry(key).map(|(_, value)| value)
-    }
-
-    fn required(&self, key: &str, problems: &mut Problems<'_>) -> Option<&'t Value<'i>> {
-        let value = self.get(key);
-        if value.is_none() {
-            problems.add(
-                self.span.clone(),
-                format!("{key} is missing in {}", self.what),
-                format!("add {key} = …"),
-            );
-        }
-        value
-    }
-
-    fn string(&self, key: &str, problems: &mut Problems<'_>) -> Option<String> {
-        let value = self.get(key)?;
-        let text = value.get_ref().as_str();
-        if text.is_none() {
-            problems.add(value.span(), format!("{key} is not a text"), format!("write {key} = \"…\""));
-        }
-        text.map(str::to_owned)
-    }
-
-    fn refuse_unknown(&self, known: &'static [&'static str], problems: &mut Problems<'_>) {
-        for (key, _) in self.entries.iter() {
-            let name = key.get_ref();
-            if !known.contains(&name.as_ref()) {
-                problems.add(
-                    key.span(),
-                    format!("{name} is not a key of {}", self.what),
-                    field::words_hint(name, known.iter().copied()),
-                );
-            }
-        }
-    }
 }
 
 #[cfg(test)]

@@ -1,0 +1,105 @@
+//! TOML tables with the places of their keys and values, read strictly: what is not known is a problem.
+
+use std::ops::Range;
+
+use toml::Spanned;
+use toml::de::{DeString, DeTable, DeValue};
+
+use super::Problems;
+use super::field::words_hint;
+
+/// A value with its place.
+pub type Value<'i> = Spanned<DeValue<'i>>;
+
+/// A table being read: which keys it may have, and where it is.
+#[derive(Debug)]
+pub struct TomlTable<'t, 'i> {
+    /// What it is, for messages: `waypoint 3`.
+    what: String,
+    entries: &'t DeTable<'i>,
+    span: Range<usize>,
+}
+
+impl<'t, 'i> TomlTable<'t, 'i> {
+    /// The table of a whole file.
+    #[must_use]
+    pub fn of_document(what: &str, entries: &'t DeTable<'i>, span: Range<usize>) -> Self {
+        Self { what: what.to_owned(), entries, span }
+    }
+
+    /// What it is, for messages.
+    #[must_use]
+    pub fn what(&self) -> &str {
+        &self.what
+    }
+
+    /// Where it is.
+    #[must_use]
+    pub fn span(&self) -> Range<usize> {
+        self.span.clone()
+    }
+
+    /// The keys with their places, in the order of the alphabet.
+    pub fn keys(&self) -> impl Iterator<Item = (&'t str, Range<usize>, &'t Value<'i>)> {
+        self.entries.iter().map(|(key, value)| (key.get_ref().as_ref(), key.span(), value))
+    }
+
+    /// A value that should be a table.
+    pub fn new(what: String, value: &'t Value<'i>, problems: &mut Problems<'_>) -> Option<Self> {
+        match value.get_ref() {
+            DeValue::Table(entries) => Some(Self { what, entries, span: value.span() }),
+            other => {
+                problems.add(value.span(), format!("{what} is a {}, not a table", other.type_str()), "");
+                None
+            }
+        }
+    }
+
+    /// A key and its value.
+    fn entry(&self, key: &str) -> Option<(&'t Spanned<DeString<'i>>, &'t Value<'i>)> {
+        self.entries.iter().find(|(name, _)| name.get_ref() == key)
+    }
+
+    /// The value of a key.
+    #[must_use]
+    pub fn get(&self, key: &str) -> Option<&'t Value<'i>> {
+        self.entry(key).map(|(_, value)| value)
+    }
+
+    /// The value of a key that must be there.
+    pub fn required(&self, key: &str, problems: &mut Problems<'_>) -> Option<&'t Value<'i>> {
+        let value = self.get(key);
+        if value.is_none() {
+            problems.add(
+                self.span.clone(),
+                format!("{key} is missing in {}", self.what),
+                format!("add {key} = …"),
+            );
+        }
+        value
+    }
+
+    /// The text of a key.
+    pub fn string(&self, key: &str, problems: &mut Problems<'_>) -> Option<String> {
+        let value = self.get(key)?;
+        let text = value.get_ref().as_str();
+        if text.is_none() {
+            problems.add(value.span(), format!("{key} is not a text"), format!("write {key} = \"…\""));
+        }
+        text.map(str::to_owned)
+    }
+
+    /// Finds keys that are none of these.
+    pub fn refuse_unknown(&self, known: &'static [&'static str], problems: &mut Problems<'_>) {
+        for (key, _) in self.entries.iter() {
+            let name = key.get_ref();
+            if !known.contains(&name.as_ref()) {
+                problems.add(
+                    key.span(),
+                    format!("{name} is not a key of {}", self.what),
+                    words_hint(name, known.iter().copied()),
+                );
+            }
+        }
+    }
+}

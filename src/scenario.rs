@@ -1,0 +1,36 @@
+//! Scenarios: a flight plan as a test. A file says what is flown in which air, what is done to it, and what is expected.
+//!
+//! ```text
+//! text ── file ──▶ Scenario { cases: plan, air, inputs, expectations }
+//!                     │ run: one case and seed, a headless flight
+//!                     ▼
+//!                  Trace: samples, happenings, guards ── judge ──▶ a Judgement for each expectation
+//! ```
+//!
+//! Nothing here does I/O: whoever reads a scenario says how the files it names are read.
+
+mod allowance;
+mod case;
+pub mod expression;
+mod file;
+pub mod happening;
+mod input;
+mod judge;
+pub mod quantity;
+mod run;
+mod sampling;
+pub mod signal;
+mod trace;
+
+pub use case::{
+    Air, Allowance, Case, Compare, Expectation, Expected, Measure, Measured, Scenario, StateStep, Statistic,
+    Window,
+};
+pub use file::{FORMAT, Files, TABLES, read, seed_range};
+pub use input::{Action, FORMS, TimedInput};
+pub use judge::{Judgement, Margin, Outcome, compare, judge};
+pub use run::{CaseFlight, Flown};
+pub use trace::{NearestGuard, Sample, Stay, Trace};
+
+#[cfg(test)]
+mod tests;

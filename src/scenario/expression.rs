@@ -1,0 +1,224 @@
+//! What a pilot writes about a flight: expressions with units, conditions, places and instants.
+//!
+//! `cursor` walks over the text, `number`, `place`, `condition` and `instant` read their parts of the grammar and check
+//! dimensions while they read, so that what was read can be judged. `evaluate` gives values of a recorded flight.
+//! `docs/scenarios.md` is the reference.
+
+mod condition;
+mod cursor;
+mod evaluate;
+mod instant;
+mod number;
+mod place;
+
+use super::happening::{Field, Pattern};
+use super::quantity::{Dimension, Unit};
+use super::signal::{Flag, Signal};
+use crate::telemetry::{Mode, NavState, PlanSource};
+
+pub use condition::read_condition;
+pub use cursor::{Cursor, SyntaxError};
+pub use evaluate::{Evaluator, Verdict};
+pub(super) use instant::mode_of as read_mode;
+pub use instant::{Search, read_instant, read_pattern, read_span_from};
+pub use number::{read_number, read_quantity};
+
+/// What names may mean while an expression is read.
+#[derive(Debug, Clone, Default)]
+pub struct Scope {
+    /// Parameters and measures with their dimension.
+    pub names: Vec<(String, Dimension)>,
+    /// Names of inputs.
+    pub inputs: Vec<String>,
+    /// Waypoints of the plan.
+    pub waypoints: usize,
+    /// Numbers of the happening that is looked at.
+    pub fields: &'static [Field],
+}
+
+/// A number of a flight.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Number {
+    /// A literal, in SI units and degrees, with the unit it was written in.
+    Literal(f64, Option<&'static Unit>),
+    /// A signal.
+    Signal(Signal),
+    /// A number of the happening that is looked at.
+    Field(Field),
+    /// A parameter or a measure.
+    Name(String),
+    /// The other sign.
+    Negative(Box<Number>),
+    /// Two numbers joined.
+    Join(Operator, Box<Number>, Box<Number>),
+    /// A function of numbers.
+    Call(Function, Vec<Number>),
+    /// Horizontal distance of the craft from a place.
+    Distance(Place),
+    /// Direction from a place to the craft, degrees clockwise from north.
+    Bearing(Place),
+    /// Horizontal distance between two places.
+    Apart(Place, Place),
+    /// Distance of the craft along a line from its beginning.
+    Along(Place, Place),
+    /// Distance of the craft beside a line, right positive.
+    Across(Place, Place),
+    /// Distance of the craft beyond the end of a line, before it negative.
+    Past(Place, Place),
+    /// Time since an instant.
+    Since(Box<Instant>),
+    /// A number as it was at an instant.
+    At(Box<Number>, Box<Instant>),
+    /// How fast a number changes, a second.
+    Rate(Box<Number>),
+}
+
+/// An arithmetic operator.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Operator {
+    /// Sum.
+    Add,
+    /// Difference.
+    Subtract,
+    /// Product.
+    Multiply,
+    /// Quotient.
+    Divide,
+    /// Remainder.
+    Remainder,
+}
+
+/// A function of numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::EnumString, strum::EnumIter, strum::IntoStaticStr)]
+#[strum(serialize_all = "lowercase")]
+pub enum Function {
+    /// Size.
+    Abs,
+    /// The smaller of two.
+    Min,
+    /// The greater of two.
+    Max,
+    /// Length of the hypotenuse.
+    Hypot,
+    /// An angle as −180…180.
+    Wrap,
+}
+
+/// A place on the ground.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Place {
+    /// The boot place.
+    Home,
+    /// North and east of the boot place, m.
+    Offset(f64, f64),
+    /// A waypoint of the scenario's plan, or of the first plan of another origin.
+    Waypoint(u8, PlanSource),
+    /// The navigator's target.
+    Target,
+    /// Where the craft truly was at an instant.
+    CraftAt(Box<Instant>),
+}
+
+/// A yes or no of a flight.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Condition {
+    /// A number compared.
+    Compare(Comparison),
+    /// A flag.
+    Flag(Flag),
+    /// The state machine is in this state, perhaps with this waypoint.
+    State(NavState, Option<u8>),
+    /// A mode is active.
+    Mode(Mode),
+    /// A plan of this origin is flown.
+    Flying(PlanSource),
+    /// The opposite.
+    Not(Box<Condition>),
+    /// All of them.
+    All(Vec<Condition>),
+    /// At least one of them.
+    Any(Vec<Condition>),
+}
+
+/// A number and what it may be.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Comparison {
+    /// What is compared.
+    pub left: Number,
+    /// What it measures.
+    pub dimension: Dimension,
+    /// What it may be.
+    pub bound: Bound,
+}
+
+/// What a number may be.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Bound {
+    /// At most, or (`true`) below.
+    AtMost(Number, bool),
+    /// At least, or (`true`) above.
+    AtLeast(Number, bool),
+    /// Between two numbers, these included.
+    Between(Number, Number),
+    /// A number with a tolerance to both sides.
+    Around(Number, Number),
+    /// Exactly.
+    Equal(Number),
+}
+
+/// An instant of a flight.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Instant {
+    /// What happens then.
+    pub anchor: Anchor,
+    /// Which of several.
+    pub occurrence: Occurrence,
+    /// Only what happens after this counts.
+    pub after: Option<Box<Instant>>,
+    /// Seconds later, or earlier.
+    pub offset_s: f64,
+}
+
+/// What happens at an instant.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Anchor {
+    /// Boot.
+    Boot,
+    /// The end of the recording.
+    Last,
+    /// Something happens.
+    Happening(Pattern),
+    /// A condition becomes true.
+    When(Condition),
+}
+
+/// Which of several happenings.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Occurrence {
+    /// The nth, from 1.
+    Nth(usize),
+    /// The last.
+    Last,
+}
+
+impl Instant {
+    /// The first such happening.
+    #[must_use]
+    pub fn first(pattern: Pattern) -> Self {
+        Self {
+            anchor: Anchor::Happening(pattern),
+            occurrence: Occurrence::Nth(1),
+            after: None,
+            offset_s: 0.0,
+        }
+    }
+
+    /// An anchor without an offset.
+    #[must_use]
+    pub fn of(anchor: Anchor) -> Self {
+        Self { anchor, occurrence: Occurrence::Nth(1), after: None, offset_s: 0.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests;

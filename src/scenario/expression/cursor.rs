@@ -1,0 +1,238 @@
+//! The place in a text where an expression is being read, and what is wrong there.
+
+use std::ops::Range;
+
+use crate::did_you_mean;
+
+/// What is wrong with an expression, and where in its text.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SyntaxError {
+    /// Bytes of the text.
+    pub span: Range<usize>,
+    /// What is wrong.
+    pub message: String,
+    /// What is allowed.
+    pub hint: String,
+}
+
+/// A place in a text.
+#[derive(Debug, Clone)]
+pub struct Cursor<'a> {
+    text: &'a str,
+    at: usize,
+    depth: usize,
+}
+
+/// Deepest nesting of an expression.
+const MAX_DEPTH: usize = 40;
+
+impl<'a> Cursor<'a> {
+    /// At the beginning of a text.
+    #[must_use]
+    pub fn new(text: &'a str) -> Self {
+        let mut cursor = Self { text, at: 0, depth: 0 };
+        cursor.skip_space();
+        cursor
+    }
+
+    /// Bytes read so far, the space behind them included.
+    #[must_use]
+    pub fn at(&self) -> usize {
+        self.at
+    }
+
+    /// What is left.
+    #[must_use]
+    pub fn rest(&self) -> &'a str {
+        &self.text[self.at..]
+    }
+
+    /// Whether nothing is left.
+    #[must_use]
+    pub fn is_done(&self) -> bool {
+        self.rest().is_empty()
+    }
+
+    fn skip_space(&mut self) {
+        let rest = self.rest();
+        self.at += rest.len() - rest.trim_start().len();
+    }
+
+    fn advance(&mut self, bytes: usize) {
+        self.at += bytes;
+        self.skip_space();
+    }
+
+    /// Takes these characters if they stand here.
+    pub(super) fn take(&mut self, symbol: &str) -> bool {
+        let found = self.rest().starts_with(symbol);
+        if found {
+            self.advance(symbol.len());
+        }
+        found
+    }
+
+    /// Demands these characters.
+    pub(super) fn expect(&mut self, symbol: &str) -> Result<(), SyntaxError> {
+        if self.take(symbol) { Ok(()) } else { Err(self.error(format!("{symbol} is expected here"), "")) }
+    }
+
+    /// The word that stands here: letters, digits and `_`, a letter first.
+    #[must_use]
+    pub fn peek_word(&self) -> Option<&'a str> {
+        self.word_of(|c| c.is_alphanumeric() || c == '_')
+            .filter(|word| !word.starts_with(|c: char| c.is_ascii_digit()))
+    }
+
+    /// The word of an argument: also with digits first, and with `-` inside.
+    #[must_use]
+    pub(super) fn peek_argument(&self) -> Option<&'a str> {
+        self.word_of(|c| c.is_alphanumeric() || c == '_' || c == '-').filter(|word| !word.starts_with('-'))
+    }
+
+    fn word_of(&self, is_part: impl Fn(char) -> bool) -> Option<&'a str> {
+        let rest = self.rest();
+        let length = rest.find(|c| !is_part(c)).unwrap_or(rest.len());
+        (length > 0).then(|| &rest[..length])
+    }
+
+    /// Takes the word that was peeked.
+    pub(super) fn take_word(&mut self, word: &str) {
+        self.advance(word.len());
+    }
+
+    /// Takes this word if it stands here.
+    pub(super) fn take_keyword(&mut self, keyword: &str) -> bool {
+        let found = self.peek_word() == Some(keyword);
+        if found {
+            self.advance(keyword.len());
+        }
+        found
+    }
+
+    /// Takes a decimal number without a sign.
+    pub(super) fn take_decimal(&mut self) -> Option<f64> {
+        let rest = self.rest();
+        let digits = |text: &str| text.bytes().take_while(u8::is_ascii_digit).count();
+        let whole = digits(rest);
+        if whole == 0 {
+            return None;
+        }
+        let mut length = whole;
+        // `1..2` is a range.
+        if rest[whole..].starts_with('.') && !rest[whole..].starts_with("..") {
+            length += 1 + digits(&rest[whole + 1..]);
+        }
+        let value = rest[..length].parse().ok()?;
+        self.advance(length);
+        Some(value)
+    }
+
+    /// Takes a whole number that is an index.
+    pub(super) fn take_index(&mut self) -> Option<u8> {
+        let rest = self.rest();
+        let length = rest.bytes().take_while(u8::is_ascii_digit).count();
+        let value = rest[..length].parse().ok()?;
+        if rest[length..].starts_with('.') {
+            return None;
+        }
+        self.advance(length);
+        Some(value)
+    }
+
+    /// Takes a text in single or double quotes.
+    pub(super) fn take_quoted(&mut self) -> Result<Option<&'a str>, SyntaxError> {
+        let rest = self.rest();
+        let Some(quote) = rest.chars().next().filter(|c| matches!(c, '"' | '\'')) else { return Ok(None) };
+        let Some(length) = rest[1..].find(quote) else {
+            return Err(self.error("the closing quote is missing", ""));
+        };
+        self.advance(length + 2);
+        Ok(Some(&rest[1..=length]))
+    }
+
+    /// Takes everything that is left.
+    pub fn take_all(&mut self) {
+        self.at = self.text.len();
+    }
+
+    /// Takes a comma if one stands here.
+    pub fn comma(&mut self) -> bool {
+        self.take(",")
+    }
+
+    /// Takes `...` if it stands here.
+    pub fn ellipsis(&mut self) -> bool {
+        self.take("...") || self.take("…")
+    }
+
+    /// Demands an arrow.
+    ///
+    /// # Errors
+    /// When there is none.
+    pub fn arrow(&mut self, hint: &str) -> Result<(), SyntaxError> {
+        if self.take("->") { Ok(()) } else { Err(self.error("-> is expected here", hint)) }
+    }
+
+    /// Something is wrong with what stands here.
+    #[must_use]
+    pub fn error(&self, message: impl Into<String>, hint: impl Into<String>) -> SyntaxError {
+        let rest = self.rest();
+        let word =
+            self.peek_argument().map_or_else(|| rest.chars().next().map_or(0, char::len_utf8), str::len);
+        SyntaxError { span: self.at..self.at + word, message: message.into(), hint: hint.into() }
+    }
+
+    /// Something is wrong with what was read since `start`.
+    #[must_use]
+    pub fn error_since(
+        &self,
+        start: usize,
+        message: impl Into<String>,
+        hint: impl Into<String>,
+    ) -> SyntaxError {
+        let end = start + self.text[start..self.at].trim_end().len();
+        SyntaxError { span: start..end, message: message.into(), hint: hint.into() }
+    }
+
+    /// The word that stands here is none of these.
+    #[must_use]
+    pub(super) fn unknown<'w>(
+        &self,
+        what: &str,
+        words: impl Iterator<Item = &'w str> + Clone,
+    ) -> SyntaxError {
+        let found = self.peek_argument().unwrap_or_else(|| self.rest());
+        let shown = if found.is_empty() { "the end".to_owned() } else { found.to_owned() };
+        let guess = did_you_mean::closest(found, words.clone());
+        let guess = guess.map_or_else(String::new, |word| format!("did you mean {word}? "));
+        let all: Vec<&str> = words.collect();
+        self.error(format!("{shown} is not {what}"), format!("{guess}allowed: {}", all.join(", ")))
+    }
+
+    /// Demands the end of the text.
+    ///
+    /// # Errors
+    /// When something is left.
+    pub fn finish(&self) -> Result<(), SyntaxError> {
+        if self.is_done() {
+            Ok(())
+        } else {
+            Err(self.error(format!("{} is not understood here", self.rest()), ""))
+        }
+    }
+
+    /// Reads something nested.
+    pub(super) fn nested<T>(
+        &mut self,
+        read: impl FnOnce(&mut Self) -> Result<T, SyntaxError>,
+    ) -> Result<T, SyntaxError> {
+        if self.depth >= MAX_DEPTH {
+            return Err(self.error("this is nested too deeply", "use a measure for a part of it"));
+        }
+        self.depth += 1;
+        let result = read(self);
+        self.depth -= 1;
+        result
+    }
+}

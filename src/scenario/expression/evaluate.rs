@@ -1,0 +1,342 @@
+//! Values of numbers, conditions and instants in a recorded flight.
+
+use std::cell::RefCell;
+
+use super::instant::Search;
+use super::{Bound, Comparison, Condition, Function, Instant, Number, Place};
+use crate::scenario::happening::Happening;
+use crate::scenario::quantity::Dimension;
+use crate::scenario::trace::{Sample, Trace};
+use crate::signals::SimTime;
+
+/// Interval over which a rate is taken, µs.
+const RATE_US: u64 = 100_000;
+
+/// A value, what it may be, and how far inside it is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Verdict {
+    /// The value.
+    pub value: f64,
+    /// The smallest that is allowed.
+    pub low: f64,
+    /// The greatest that is allowed.
+    pub high: f64,
+    /// What it measures.
+    pub dimension: Dimension,
+    /// The bounds themselves are not allowed.
+    pub strict: bool,
+}
+
+impl Verdict {
+    /// Distance to the nearer bound, negative outside.
+    #[must_use]
+    pub fn margin(&self) -> f64 {
+        (self.value - self.low).min(self.high - self.value)
+    }
+
+    /// Whether the value is allowed.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        if self.strict { self.margin() > 0.0 } else { self.margin() >= 0.0 }
+    }
+
+    /// The margin as a share of the allowed range: of its half width, or of the limit.
+    #[must_use]
+    pub fn share(&self) -> f64 {
+        let room = match (self.low.is_finite(), self.high.is_finite()) {
+            (true, true) => (self.high - self.low) / 2.0,
+            (true, false) => self.low.abs(),
+            (false, _) => self.high.abs(),
+        };
+        let margin = self.margin();
+        if room > 1e-9 { margin / room } else { margin.clamp(-1.0, 1.0) }
+    }
+}
+
+/// Evaluates expressions over a flight.
+#[derive(Debug)]
+pub struct Evaluator<'a> {
+    trace: &'a Trace,
+    /// Parameters and measures.
+    names: &'a [(String, f64)],
+    /// Instants that were looked up.
+    found: RefCell<Vec<(*const Instant, Option<i64>)>>,
+}
+
+impl<'a> Evaluator<'a> {
+    /// Over this flight, with these parameters and measures.
+    #[must_use]
+    pub fn new(trace: &'a Trace, names: &'a [(String, f64)]) -> Self {
+        Self { trace, names, found: RefCell::default() }
+    }
+
+    /// The flight.
+    #[must_use]
+    pub fn trace(&self) -> &'a Trace {
+        self.trace
+    }
+
+    /// When an instant is, µs since boot; `None` when it did not come.
+    #[must_use]
+    pub fn instant(&self, instant: &Instant) -> Option<i64> {
+        let key = std::ptr::from_ref(instant);
+        if let Some(&(_, found)) = self.found.borrow().iter().find(|(known, _)| *known == key) {
+            return found;
+        }
+        let found = Search::new(instant).to_end(self);
+        self.found.borrow_mut().push((key, found));
+        found
+    }
+
+    /// When an instant is, as a time; not before boot.
+    #[must_use]
+    pub fn time(&self, instant: &Instant) -> Option<SimTime> {
+        self.instant(instant).map(|us| SimTime(us.max(0) as u64))
+    }
+
+    /// A number at a sample; NaN = unknown.
+    #[must_use]
+    pub fn number(&self, number: &Number, index: usize) -> f64 {
+        self.number_of(number, index, None)
+    }
+
+    /// A number at a sample, with those of a happening.
+    #[must_use]
+    pub fn number_of(&self, number: &Number, index: usize, happening: Option<&Happening>) -> f64 {
+        let Some(sample) = self.trace.samples.get(index) else { return f64::NAN };
+        let at = |number| self.number_of(number, index, happening);
+        match number {
+            Number::Literal(value, _) => *value,
+            Number::Signal(signal) => sample.value(*signal),
+            Number::Field(field) => {
+                happening.and_then(|happening| happening.field(*field)).unwrap_or(f64::NAN)
+            }
+            Number::Name(name) => {
+                self.names.iter().find(|(known, _)| known == name).map_or(f64::NAN, |&(_, value)| value)
+            }
+            Number::Negative(inner) => -at(inner),
+            Number::Join(operator, left, right) => operator.apply(at(left), at(right)),
+            Number::Call(function, arguments) => {
+                let first = arguments.first().map_or(f64::NAN, at);
+                let second = arguments.get(1).map_or(f64::NAN, at);
+                function.apply(first, second)
+            }
+            Number::Distance(place) => self.offset(place, sample).map_or(f64::NAN, |[n, e]| n.hypot(e)),
+            Number::Bearing(place) => self
+                .offset(place, sample)
+                .map_or(f64::NAN, |[n, e]| e.atan2(n).to_degrees().rem_euclid(360.0)),
+            Number::Apart(from, to) => match (self.place(from, sample), self.place(to, sample)) {
+                (Some(from), Some(to)) => (to[0] - from[0]).hypot(to[1] - from[1]),
+                _ => f64::NAN,
+            },
+            Number::Along(from, to) => self.on_line(from, to, sample).map_or(f64::NAN, |line| line.along),
+            Number::Across(from, to) => self.on_line(from, to, sample).map_or(f64::NAN, |line| line.across),
+            Number::Past(from, to) => {
+                self.on_line(from, to, sample).map_or(f64::NAN, |line| line.along - line.length)
+            }
+            Number::Since(instant) => {
+                self.instant(instant).map_or(f64::NAN, |us| (sample.time.0 as i64 - us) as f64 * 1e-6)
+            }
+            Number::At(inner, instant) => {
+                let index = self.instant(instant).and_then(|us| self.trace.index_at(us));
+                index.map_or(f64::NAN, |index| self.number_of(inner, index, happening))
+            }
+            Number::Rate(inner) => self.rate(inner, index, happening),
+        }
+    }
+
+    fn rate(&self, inner: &Number, index: usize, happening: Option<&Happening>) -> f64 {
+        let samples = &self.trace.samples;
+        let now = samples[index].time.0;
+        let Some(before) = now.checked_sub(RATE_US).and_then(|time| self.trace.index_at(time as i64)) else {
+            return f64::NAN;
+        };
+        let before = before.min(index.saturating_sub(1));
+        let seconds = (now - samples[before].time.0) as f64 * 1e-6;
+        let value = |index| self.number_of(inner, index, happening);
+        let difference = value(index) - value(before);
+        // A direction that passes north has not turned by a whole circle.
+        let is_direction = matches!(inner, Number::Bearing(_))
+            || matches!(inner, Number::Signal(signal) if signal.info().name == "heading" || signal.info().name == "course");
+        if is_direction { wrap(difference) / seconds } else { difference / seconds }
+    }
+
+    /// A place at a sample, m north and east of the boot place.
+    fn place(&self, place: &Place, sample: &Sample) -> Option<[f64; 2]> {
+        match place {
+            Place::Home => Some([0.0, 0.0]),
+            Place::Offset(north, east) => Some([*north, *east]),
+            Place::Waypoint(index, source) => self.trace.waypoint(*index, *source),
+            Place::Target => {
+                let [north, east] = sample.target_ne.map(f64::from);
+                (north.is_finite() && east.is_finite()).then_some([north, east])
+            }
+            Place::CraftAt(instant) => {
+                let index = self.instant(instant).and_then(|us| self.trace.index_at(us))?;
+                Some(self.trace.samples[index].place())
+            }
+        }
+    }
+
+    /// The craft from a place, m north and east.
+    fn offset(&self, place: &Place, sample: &Sample) -> Option<[f64; 2]> {
+        let [north, east] = self.place(place, sample)?;
+        let craft = sample.place();
+        Some([craft[0] - north, craft[1] - east])
+    }
+
+    fn on_line(&self, from: &Place, to: &Place, sample: &Sample) -> Option<OnLine> {
+        let (from, to) = (self.place(from, sample)?, self.place(to, sample)?);
+        let (north, east) = (to[0] - from[0], to[1] - from[1]);
+        let length = north.hypot(east);
+        if length < 1e-6 {
+            return None;
+        }
+        let craft = sample.place();
+        let (n, e) = (craft[0] - from[0], craft[1] - from[1]);
+        Some(OnLine {
+            along: (n * north + e * east) / length,
+            // Right of the line is clockwise of its direction.
+            across: (e * north - n * east) / length,
+            length,
+        })
+    }
+
+    /// Whether a condition holds at a sample; `None` when that is unknown.
+    #[must_use]
+    pub fn holds(&self, condition: &Condition, index: usize) -> Option<bool> {
+        self.holds_of(condition, index, None)
+    }
+
+    /// Whether a condition holds at a sample, with the numbers of a happening.
+    #[must_use]
+    pub fn holds_of(
+        &self,
+        condition: &Condition,
+        index: usize,
+        happening: Option<&Happening>,
+    ) -> Option<bool> {
+        let sample = self.trace.samples.get(index)?;
+        Some(match condition {
+            Condition::Compare(comparison) => self.compare(comparison, index, happening)?.holds(),
+            Condition::Flag(flag) => sample.has(*flag),
+            Condition::State(state, wp) => sample.state == *state && wp.is_none_or(|wp| wp == sample.wp),
+            Condition::Mode(mode) => sample.modes.has(*mode),
+            Condition::Flying(source) => {
+                sample.has(crate::scenario::signal::Flag::Engaged) && sample.source == *source
+            }
+            Condition::Not(inner) => !self.holds_of(inner, index, happening)?,
+            Condition::All(all) => {
+                let mut unknown = false;
+                for inner in all {
+                    match self.holds_of(inner, index, happening) {
+                        Some(false) => return Some(false),
+                        Some(true) => {}
+                        None => unknown = true,
+                    }
+                }
+                return (!unknown).then_some(true);
+            }
+            Condition::Any(any) => {
+                let mut unknown = false;
+                for inner in any {
+                    match self.holds_of(inner, index, happening) {
+                        Some(true) => return Some(true),
+                        Some(false) => {}
+                        None => unknown = true,
+                    }
+                }
+                return (!unknown).then_some(false);
+            }
+        })
+    }
+
+    /// The comparison of a condition that decides at a sample: of several that must hold the tightest, of alternatives the
+    /// widest. `None` when none is known.
+    #[must_use]
+    pub fn deciding(
+        &self,
+        condition: &Condition,
+        index: usize,
+        happening: Option<&Happening>,
+    ) -> Option<Verdict> {
+        let tighter = |a: &Verdict, b: &Verdict| a.share().total_cmp(&b.share());
+        match condition {
+            Condition::Compare(comparison) => self.compare(comparison, index, happening),
+            Condition::All(all) => {
+                all.iter().filter_map(|inner| self.deciding(inner, index, happening)).min_by(tighter)
+            }
+            Condition::Any(any) => {
+                any.iter().filter_map(|inner| self.deciding(inner, index, happening)).max_by(tighter)
+            }
+            Condition::Flag(_)
+            | Condition::State(..)
+            | Condition::Mode(_)
+            | Condition::Flying(_)
+            | Condition::Not(_) => None,
+        }
+    }
+
+    /// A comparison at a sample; `None` when a number is unknown.
+    #[must_use]
+    pub fn compare(
+        &self,
+        comparison: &Comparison,
+        index: usize,
+        happening: Option<&Happening>,
+    ) -> Option<Verdict> {
+        let value = self.number_of(&comparison.left, index, happening);
+        self.bound(comparison, value, index, happening)
+    }
+
+    /// A value against the bound of a comparison.
+    #[must_use]
+    pub fn bound(
+        &self,
+        comparison: &Comparison,
+        value: f64,
+        index: usize,
+        happening: Option<&Happening>,
+    ) -> Option<Verdict> {
+        let at = |number| self.number_of(number, index, happening);
+        let (low, high, strict) = match &comparison.bound {
+            Bound::AtMost(limit, strict) => (f64::NEG_INFINITY, at(limit), *strict),
+            Bound::AtLeast(limit, strict) => (at(limit), f64::INFINITY, *strict),
+            Bound::Between(low, high) => (at(low), at(high), false),
+            Bound::Around(middle, tolerance) => {
+                let (middle, tolerance) = (at(middle), at(tolerance));
+                (middle - tolerance, middle + tolerance, false)
+            }
+            Bound::Equal(number) => (at(number), at(number), false),
+        };
+        let known = !(value.is_nan() || low.is_nan() || high.is_nan());
+        known.then_some(Verdict { value, low, high, dimension: comparison.dimension, strict })
+    }
+}
+
+/// The craft seen from a line, m.
+struct OnLine {
+    along: f64,
+    across: f64,
+    length: f64,
+}
+
+/// An angle as −180…180.
+fn wrap(degrees: f64) -> f64 {
+    (degrees + 180.0).rem_euclid(360.0) - 180.0
+}
+
+impl Function {
+    fn apply(self, first: f64, second: f64) -> f64 {
+        match self {
+            Self::Abs => first.abs(),
+            // Of an unknown number the smaller is unknown, too.
+            Self::Min if second < first => second,
+            Self::Max if second > first => second,
+            Self::Min | Self::Max if second.is_nan() => second,
+            Self::Min | Self::Max => first,
+            Self::Hypot => first.hypot(second),
+            Self::Wrap => wrap(first),
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! Places on the ground and lines between them.
+
+use super::cursor::{Cursor, SyntaxError};
+use super::instant::{read_instant, read_source};
+use super::{Place, Scope};
+use crate::telemetry::PlanSource;
+
+/// What a place may be, for messages.
+const PLACES: &str = "write home, wp 2, 60 N 0 E, target, or place at ARRIVED 1";
+
+/// Reads a place.
+pub(super) fn read_place(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<Place, SyntaxError> {
+    if cursor.take_keyword("home") {
+        return Ok(Place::Home);
+    }
+    if cursor.take_keyword("target") {
+        return Ok(Place::Target);
+    }
+    if cursor.take_keyword("place") {
+        if !cursor.take_keyword("at") {
+            return Err(cursor.error("at is expected here", "write place at ARRIVED 1"));
+        }
+        return cursor.nested(|cursor| Ok(Place::CraftAt(Box::new(read_instant(cursor, scope)?))));
+    }
+    if cursor.take_keyword("wp") {
+        let start = cursor.at();
+        let Some(index) = cursor.take_index() else {
+            return Err(cursor.error("the number of a waypoint is expected here", "write wp 2"));
+        };
+        let source = read_source(cursor)?.unwrap_or(PlanSource::Stored);
+        if source == PlanSource::Stored && usize::from(index) >= scope.waypoints {
+            return Err(cursor.error_since(
+                start,
+                format!("the plan has no waypoint {index}"),
+                waypoints(scope),
+            ));
+        }
+        return Ok(Place::Waypoint(index, source));
+    }
+    let start = cursor.at();
+    let north = read_offset(cursor, "N", "S")?;
+    let east = read_offset(cursor, "E", "W")?;
+    if !north.is_finite() || !east.is_finite() {
+        return Err(cursor.error_since(start, "this place is too far away", PLACES));
+    }
+    Ok(Place::Offset(north, east))
+}
+
+/// What indices a plan has, for messages.
+pub(super) fn waypoints(scope: &Scope) -> String {
+    match scope.waypoints {
+        0 => "it is empty".to_owned(),
+        count => format!("allowed: 0 to {}", count - 1),
+    }
+}
+
+/// Reads `60 N` or `60 S`.
+fn read_offset(cursor: &mut Cursor<'_>, positive: &str, negative: &str) -> Result<f64, SyntaxError> {
+    let minus = cursor.take("-");
+    let Some(size) = cursor.take_decimal() else {
+        return Err(cursor.error("a place is expected here", PLACES));
+    };
+    let size = if minus { -size } else { size };
+    let _metres = cursor.take_keyword("m");
+    if cursor.take_keyword(positive) {
+        Ok(size)
+    } else if cursor.take_keyword(negative) {
+        Ok(-size)
+    } else {
+        Err(cursor.error(
+            format!("{positive} or {negative} is expected here"),
+            "write 60 N 0 E, metres from the boot place",
+        ))
+    }
+}
+
+/// Reads a line from a place to another.
+pub(super) fn read_line(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<(Place, Place), SyntaxError> {
+    let from = read_place(cursor, scope)?;
+    if !cursor.take("->") {
+        return Err(cursor.error("-> is expected here", "write the line as wp 0 -> wp 1"));
+    }
+    Ok((from, read_place(cursor, scope)?))
+}

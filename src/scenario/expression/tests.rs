@@ -1,0 +1,1 @@
+//! What pilots write, and what is wrong with it.

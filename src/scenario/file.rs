@@ -1,0 +1,333 @@
+//! Reads a scenario's file: TOML, strict, all problems with their places.
+
+mod air;
+mod craft;
+mod expect;
+mod keys;
+mod measure;
+mod plan;
+mod reader;
+mod vary;
+
+use super::case::{Air, Allowance, Case, Compare, Scenario};
+use super::expression::{Scope, read_condition, read_instant, read_quantity};
+use super::input::{TimedInput, read_action};
+use crate::flight::FlightSetup;
+use crate::plan::format::{PlanError, PlanFile, Problems, TomlTable};
+use crate::sim::Noise;
+use keys::{ALLOW_KEYS, CASE_KEYS, COMPARE_KEYS, FILE_KEYS, INPUT_KEYS};
+use reader::{Layers, Reader};
+use vary::Variant;
+
+pub use air::seed_range;
+pub use keys::TABLES;
+
+/// The version of the file format.
+pub const FORMAT: i64 = 1;
+
+/// Longest scenario file, bytes.
+const MAX_BYTES: usize = 512 << 10;
+/// Most flights of a scenario: cases times seeds.
+const MAX_FLIGHTS: usize = 10_000;
+/// How long a scenario flies at most unless it says otherwise, s after the engagement.
+const TIME_LIMIT_S: f64 = 600.0;
+/// Samples a second unless the scenario says otherwise.
+const SAMPLE_HZ: f64 = 100.0;
+
+/// The files that a scenario names; their names count from the scenario's own place.
+pub trait Files {
+    /// Reads a plan file.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    fn plan(&mut self, name: &str) -> Result<PlanFile, String>;
+
+    /// Reads a text: settings or an airframe.
+    ///
+    /// # Errors
+    /// Why it cannot be read.
+    fn text(&mut self, name: &str) -> Result<String, String>;
+}
+
+/// Reads a scenario. `file` is the name that its user gave.
+///
+/// # Errors
+/// All problems, in the order of their places.
+pub fn read(file: &str, text: &str, files: &mut dyn Files) -> Result<Scenario, Vec<PlanError>> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut problems = Problems::new(file, text);
+    let scenario = if text.len() > MAX_BYTES {
+        let message =
+            format!("the file has {} KiB, a scenario at most {} KiB", text.len() >> 10, MAX_BYTES >> 10);
+        problems.add(0..0, message, "is this another file?");
+        None
+    } else {
+        read_text(file, text, files, &mut problems)
+    };
+    match scenario {
+        Some(scenario) if problems.is_empty() => Ok(scenario),
+        _ => Err(problems.into_errors()),
+    }
+}
+
+fn read_text(file: &str, text: &str, files: &mut dyn Files, problems: &mut Problems<'_>) -> Option<Scenario> {
+    let (document, syntax) = toml::de::DeTable::parse_recoverable(text);
+    for error in &syntax {
+        let message = error.message().replace('\n', ", ");
+        problems.add(error.span().unwrap_or(0..0), message, "this is not valid TOML");
+    }
+    if !syntax.is_empty() {
+        return None;
+    }
+    let span = document.span();
+    let top = TomlTable::of_document("the scenario", document.get_ref(), span);
+    let mut reader = Reader::new(text, files, problems);
+    reader.refuse_unknown(&top, FILE_KEYS);
+    check_format(&top, &mut reader);
+    let case_tables = reader.tables(&top, "case", "case");
+    let case_names = case_names(&case_tables, &mut reader);
+    let variants = vary::read(&top, &mut reader);
+    let mut cases = Vec::new();
+    let undivided = [None];
+    let tables: Vec<Option<&TomlTable<'_, '_>>> =
+        if case_tables.is_empty() { undivided.to_vec() } else { case_tables.iter().map(Some).collect() };
+    for (index, table) in tables.into_iter().enumerate() {
+        if let Some(table) = table {
+            reader.refuse_unknown(table, CASE_KEYS);
+        }
+        for variant in &variants {
+            let base = case_names.get(index).cloned().unwrap_or_default();
+            let layers = Layers { top: &top, case: table, variant };
+            cases.push(read_case(&base, &case_names, &layers, &mut reader));
+        }
+    }
+    let flights: usize = cases.iter().map(|case| case.airs.len()).sum();
+    if flights > MAX_FLIGHTS {
+        reader.problem(
+            0..0,
+            format!("the scenario has {flights} flights"),
+            format!("allowed: {MAX_FLIGHTS}"),
+        );
+    }
+    let compares = read_compares(&top, &cases, &mut reader);
+    let name = reader.string(&top, "name").unwrap_or_else(|| stem(file).to_owned());
+    Some(Scenario {
+        file: file.to_owned(),
+        name,
+        description: reader.string(&top, "description").unwrap_or_default(),
+        slow: reader.boolean(&top, "slow").unwrap_or(false),
+        cases,
+        compares,
+    })
+}
+
+/// `guide-1` of `plans/scenarios/guide-1.toml`.
+fn stem(file: &str) -> &str {
+    let name = file.rsplit(['/', '\\']).next().unwrap_or(file);
+    name.strip_suffix(".toml").unwrap_or(name)
+}
+
+fn check_format(top: &TomlTable<'_, '_>, reader: &mut Reader<'_, '_>) {
+    let Some(value) = reader.required(top, "format") else { return };
+    match reader.integer(value) {
+        Some(FORMAT) | None => {}
+        Some(other) => {
+            reader.problem(
+                value.span(),
+                format!("format {other} is not known"),
+                format!("write format = {FORMAT}"),
+            );
+        }
+    }
+}
+
+fn case_names(tables: &[TomlTable<'_, '_>], reader: &mut Reader<'_, '_>) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for table in tables {
+        let name = reader.required(table, "name").and_then(|value| reader.text(value)).unwrap_or_default();
+        if names.contains(&name) {
+            reader.problem(table.span(), format!("there are two cases {name}"), "each case has its own name");
+        }
+        names.push(name);
+    }
+    names
+}
+
+fn read_case(base: &str, all: &[String], layers: &Layers<'_, '_>, reader: &mut Reader<'_, '_>) -> Case {
+    let plan = plan::read(layers, reader);
+    let craft = craft::read(layers, plan, reader);
+    let airs = air::read(layers, reader);
+    let parameters = read_parameters(layers, reader);
+    let real = airs.first().is_some_and(|air| air.noise == Noise::Real);
+    let allowance = if real { read_allowance(layers, reader) } else { Allowance::default() };
+    let mut scope = Scope {
+        names: parameters.iter().map(|(name, _, dimension)| (name.clone(), *dimension)).collect(),
+        inputs: Vec::new(),
+        waypoints: craft.setup.plan.plan.waypoints.len(),
+        fields: &[],
+    };
+    let belongs = Belongs { base, all };
+    scope.inputs = input_names(layers, &belongs, reader);
+    let inputs = read_inputs(layers, &belongs, &scope, reader);
+    let ends = layers
+        .value("ends")
+        .and_then(|value| reader.expression(value, |cursor| read_instant(cursor, &scope)));
+    let measures = measure::read(layers, &belongs, &mut scope, reader);
+    let mut expectations = expect::read(layers, &belongs, &scope, &allowance, reader);
+    let says_result =
+        expectations.iter().any(|expected| matches!(expected.expected, super::case::Expected::Result(_)));
+    if !says_result {
+        expectations.insert(0, expect::usual_result(ends.is_some()));
+    }
+    Case {
+        name: layers.variant.name_of(base),
+        airs,
+        setup: craft.setup,
+        options: craft.options,
+        pilot: craft.pilot,
+        time_limit_s: reader.number_in(layers.value("time_limit_s"), 1.0, 1e6, "s").unwrap_or(TIME_LIMIT_S),
+        watch_s: reader.number_in(layers.value("watch_s"), 0.0, 1e6, "s").unwrap_or(0.0),
+        ends,
+        sample_hz: reader.number_in(layers.value("sample_hz"), 0.1, 1000.0, "Hz").unwrap_or(SAMPLE_HZ),
+        parameters: parameters.into_iter().map(|(name, value, _)| (name, value)).collect(),
+        inputs,
+        measures,
+        expectations,
+    }
+}
+
+/// Which case is read, to choose what is for it.
+struct Belongs<'a> {
+    base: &'a str,
+    all: &'a [String],
+}
+
+impl Belongs<'_> {
+    /// Whether a table is for this case: without `cases` it is for all.
+    fn includes(&self, table: &TomlTable<'_, '_>, reader: &mut Reader<'_, '_>) -> bool {
+        let Some(names) = reader.texts(table, "cases") else { return true };
+        for (name, span) in &names {
+            if !self.all.contains(name) {
+                let guess = crate::did_you_mean::suffix(name, self.all.iter().map(String::as_str));
+                let message = format!("there is no case {name}{guess}");
+                reader.problem(span.clone(), message, format!("allowed: {}", self.all.join(", ")));
+            }
+        }
+        names.iter().any(|(name, _)| name == self.base)
+    }
+}
+
+fn read_parameters(
+    layers: &Layers<'_, '_>,
+    reader: &mut Reader<'_, '_>,
+) -> Vec<(String, f64, super::quantity::Dimension)> {
+    let mut parameters: Vec<(String, f64, super::quantity::Dimension)> = Vec::new();
+    for table in layers.tables("parameters", reader) {
+        for (name, span, value) in table.keys() {
+            let Some((number, dimension)) = reader.expression(value, |cursor| {
+                let (number, dimension) = read_quantity(cursor.rest())?;
+                cursor.take_all();
+                Ok((number, dimension))
+            }) else {
+                continue;
+            };
+            if let Some(known) = parameters.iter_mut().find(|(known, ..)| known == name) {
+                if known.2 != dimension {
+                    reader.problem(
+                        span,
+                        format!("{name} is {} elsewhere", known.2),
+                        "all cases need the same unit",
+                    );
+                }
+                *known = (name.to_owned(), number, dimension);
+            } else {
+                parameters.push((name.to_owned(), number, dimension));
+            }
+        }
+    }
+    parameters
+}
+
+fn read_allowance(layers: &Layers<'_, '_>, reader: &mut Reader<'_, '_>) -> Allowance {
+    let mut allowance = Allowance::default();
+    for table in layers.tables("allow", reader) {
+        reader.refuse_unknown(&table, ALLOW_KEYS);
+        let mut read = |key: &str, into: &mut f64| {
+            if let Some(number) = reader.number_in(table.get(key), 0.0, 1e6, "") {
+                *into = number;
+            }
+        };
+        read("horizontal_m", &mut allowance.horizontal_m);
+        read("vertical_m", &mut allowance.vertical_m);
+        read("speed_mps", &mut allowance.speed_mps);
+        read("angle_deg", &mut allowance.angle_deg);
+    }
+    allowance
+}
+
+/// The names of the inputs, before they are read: instants may name them.
+fn input_names(layers: &Layers<'_, '_>, belongs: &Belongs<'_>, reader: &mut Reader<'_, '_>) -> Vec<String> {
+    let mut names = Vec::new();
+    for table in layers.lists("input", reader) {
+        if belongs.includes(&table, reader) {
+            let usual = format!("input{}", names.len() + 1);
+            names.push(reader.string(&table, "name").unwrap_or(usual));
+        }
+    }
+    names
+}
+
+fn read_inputs(
+    layers: &Layers<'_, '_>,
+    belongs: &Belongs<'_>,
+    scope: &Scope,
+    reader: &mut Reader<'_, '_>,
+) -> Vec<TimedInput> {
+    let mut inputs = Vec::new();
+    for table in layers.lists("input", reader) {
+        reader.refuse_unknown(&table, INPUT_KEYS);
+        if !belongs.includes(&table, reader) {
+            continue;
+        }
+        let name = scope.inputs.get(inputs.len()).cloned().unwrap_or_default();
+        let at = reader
+            .required(&table, "at")
+            .and_then(|value| reader.expression(value, |cursor| read_instant(cursor, scope)));
+        let told = reader.required(&table, "do").and_then(|value| Some((value, reader.text(value)?)));
+        let Some((value, text)) = told else { continue };
+        let action = read_action(&text, &mut |plan| reader.plan(plan));
+        match (action, at) {
+            (Ok(action), Some(at)) => inputs.push(TimedInput { name, at, action, text }),
+            (Err(error), _) => reader.syntax(value, error),
+            (Ok(_), None) => {}
+        }
+    }
+    inputs
+}
+
+fn read_compares(top: &TomlTable<'_, '_>, cases: &[Case], reader: &mut Reader<'_, '_>) -> Vec<Compare> {
+    let mut names = Vec::new();
+    for case in cases {
+        for measure in &case.measures {
+            names.push((format!("{}.{}", case.name, measure.name), measure.dimension));
+        }
+    }
+    let scope = Scope { names, ..Scope::default() };
+    let mut compares = Vec::new();
+    for table in reader.tables(top, "compare", "compare") {
+        reader.refuse_unknown(&table, COMPARE_KEYS);
+        let Some(value) = reader.required(&table, "that") else { continue };
+        let label = reader.string(&table, "name").or_else(|| reader.text(value)).unwrap_or_default();
+        if let Some(that) = reader.expression(value, |cursor| read_condition(cursor, &scope)) {
+            compares.push(Compare { label, line: reader.line(value.span()), that });
+        }
+    }
+    compares
+}
+
+/// What is flown of a case, without the air.
+struct Craft {
+    setup: FlightSetup,
+    options: crate::flight::FlightOptions,
+    pilot: bool,
+}

@@ -1,0 +1,133 @@
+//! The keys of a scenario's tables.
+
+/// Keys of the whole file.
+pub(super) const FILE_KEYS: &[&str] = &[
+    "format",
+    "name",
+    "description",
+    "slow",
+    "seeds",
+    "time_limit_s",
+    "watch_s",
+    "ends",
+    "sample_hz",
+    "plan",
+    "craft",
+    "air",
+    "parameters",
+    "allow",
+    "vary",
+    "input",
+    "measure",
+    "expect",
+    "case",
+    "compare",
+];
+
+/// Keys of `[[case]]`.
+pub(super) const CASE_KEYS: &[&str] = &[
+    "name",
+    "seeds",
+    "time_limit_s",
+    "watch_s",
+    "ends",
+    "sample_hz",
+    "plan",
+    "craft",
+    "air",
+    "parameters",
+    "allow",
+    "input",
+    "measure",
+    "expect",
+];
+
+/// Keys of `[plan]`.
+pub(super) const PLAN_KEYS: &[&str] = &["builtin", "file", "waypoints"];
+
+/// Keys of `[craft]`.
+pub(super) const CRAFT_KEYS: &[&str] = &[
+    "home",
+    "heading_deg",
+    "airframe",
+    "takeoff_m",
+    "tolerance_m",
+    "pilot",
+    "settings",
+    "settings_file",
+    "lines",
+    "attitude",
+    "rate_hz",
+];
+
+/// Keys of `[air]`.
+pub(super) const AIR_KEYS: &[&str] = &["wind", "gust_mps", "turbulence", "noise", "world"];
+
+/// Keys of `[vary]`.
+pub(super) const VARY_KEYS: &[&str] = &[
+    "wind",
+    "gust_mps",
+    "turbulence",
+    "noise",
+    "world",
+    "airframe",
+    "takeoff_m",
+    "heading_deg",
+    "rate_hz",
+    "settings",
+];
+
+/// Keys of `[allow]`.
+pub(super) const ALLOW_KEYS: &[&str] = &["horizontal_m", "vertical_m", "speed_mps", "angle_deg"];
+
+/// Keys of `[[input]]`.
+pub(super) const INPUT_KEYS: &[&str] = &["name", "cases", "at", "do"];
+
+/// Keys of `[[measure]]`.
+pub(super) const MEASURE_KEYS: &[&str] =
+    &["name", "cases", "from", "until", "mean", "rms", "max", "min", "at", "value", "time"];
+
+/// Keys of `[[expect]]`.
+pub(super) const EXPECT_KEYS: &[&str] = &[
+    "name",
+    "cases",
+    "exact",
+    "from",
+    "until",
+    "result",
+    "states",
+    "event",
+    "count",
+    "within",
+    "with",
+    "no_event",
+    "always",
+    "never",
+    "eventually",
+    "mostly",
+    "share",
+    "mean",
+    "rms",
+    "max",
+    "min",
+    "at",
+    "that",
+];
+
+/// Keys of `[[compare]]`.
+pub(super) const COMPARE_KEYS: &[&str] = &["name", "that"];
+
+/// All tables with their keys, for the reference.
+pub const TABLES: &[(&str, &[&str])] = &[
+    ("the file", FILE_KEYS),
+    ("[plan]", PLAN_KEYS),
+    ("[craft]", CRAFT_KEYS),
+    ("[air]", AIR_KEYS),
+    ("[vary]", VARY_KEYS),
+    ("[allow]", ALLOW_KEYS),
+    ("[[input]]", INPUT_KEYS),
+    ("[[measure]]", MEASURE_KEYS),
+    ("[[expect]]", EXPECT_KEYS),
+    ("[[case]]", CASE_KEYS),
+    ("[[compare]]", COMPARE_KEYS),
+];

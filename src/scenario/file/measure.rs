@@ -1,0 +1,80 @@
+//! `[[measure]]`: numbers taken from the flight, to be compared with each other.
+
+use strum::IntoEnumIterator as _;
+
+use super::Belongs;
+use super::keys::MEASURE_KEYS;
+use super::reader::{Layers, Reader};
+use crate::plan::format::TomlTable;
+use crate::scenario::case::{Measure, Measured, Statistic, Window};
+use crate::scenario::expression::{Scope, read_instant, read_number};
+use crate::scenario::quantity::Dimension;
+
+/// Reads the measures of a case; later ones may use earlier ones.
+pub(super) fn read(
+    layers: &Layers<'_, '_>,
+    belongs: &Belongs<'_>,
+    scope: &mut Scope,
+    reader: &mut Reader<'_, '_>,
+) -> Vec<Measure> {
+    let mut measures = Vec::new();
+    for table in layers.lists("measure", reader) {
+        reader.refuse_unknown(&table, MEASURE_KEYS);
+        if !belongs.includes(&table, reader) {
+            continue;
+        }
+        let Some(value) = reader.required(&table, "name") else { continue };
+        let Some(name) = reader.text(value) else { continue };
+        let is_name = name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
+            && name.starts_with(|c: char| c.is_ascii_alphabetic());
+        if !is_name {
+            reader.problem(value.span(), format!("{name} is no name of a measure"), "letters, digits and _");
+            continue;
+        }
+        if let Some((measured, dimension)) = read_measured(&table, scope, reader) {
+            scope.names.push((name.clone(), dimension));
+            measures.push(Measure { name, dimension, measured });
+        }
+    }
+    measures
+}
+
+/// The window of a table.
+pub(super) fn window(table: &TomlTable<'_, '_>, scope: &Scope, reader: &mut Reader<'_, '_>) -> Window {
+    let mut instant =
+        |key| table.get(key).and_then(|value| reader.expression(value, |cursor| read_instant(cursor, scope)));
+    Window { from: instant("from"), until: instant("until") }
+}
+
+fn read_measured(
+    table: &TomlTable<'_, '_>,
+    scope: &Scope,
+    reader: &mut Reader<'_, '_>,
+) -> Option<(Measured, Dimension)> {
+    for statistic in Statistic::iter() {
+        if let Some(value) = table.get(statistic.into()) {
+            let window = window(table, scope, reader);
+            let (number, dimension) = reader.expression(value, |cursor| read_number(cursor, scope))?;
+            return Some((Measured::Over(window, statistic, number), dimension));
+        }
+    }
+    if let Some(value) = table.get("time") {
+        let (from, to) = reader.expression(value, |cursor| {
+            let from = read_instant(cursor, scope)?;
+            cursor.arrow("write engaged -> ARRIVED 1")?;
+            Ok((from, read_instant(cursor, scope)?))
+        })?;
+        return Some((Measured::Time(from, to), Dimension::TIME));
+    }
+    let value = table.get("value");
+    let Some(value) = value else {
+        reader.problem(table.span(), "the measure says nothing", "add mean, rms, max, min, time or value");
+        return None;
+    };
+    let (number, dimension) = reader.expression(value, |cursor| read_number(cursor, scope))?;
+    let measured = match table.get("at") {
+        None => Measured::Of(number),
+        Some(at) => Measured::At(reader.expression(at, |cursor| read_instant(cursor, scope))?, number),
+    };
+    Some((measured, dimension))
+}

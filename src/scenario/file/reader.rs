@@ -1,0 +1,285 @@
+//! Values of a scenario's tables with their places, and what is wrong with them.
+
+use std::ops::Range;
+
+use toml::de::DeValue;
+
+use super::{Files, Variant};
+use crate::plan::FlightPlan;
+use crate::plan::builtin::BuiltinPlan;
+use crate::plan::format::{PlanFile, Problems, TomlTable, Value};
+use crate::scenario::expression::{Cursor, SyntaxError};
+
+/// Reads values; what is wrong is noted once, however many cases read it.
+pub(super) struct Reader<'r, 'p> {
+    text: &'r str,
+    files: &'r mut dyn Files,
+    problems: &'r mut Problems<'p>,
+    noted: Vec<(Range<usize>, String)>,
+}
+
+/// Where the values of a case come from: what is varied, the case, the file.
+pub(super) struct Layers<'l, 't> {
+    pub(super) top: &'l TomlTable<'l, 't>,
+    pub(super) case: Option<&'l TomlTable<'l, 't>>,
+    pub(super) variant: &'l Variant<'l, 't>,
+}
+
+impl<'l, 't> Layers<'l, 't> {
+    /// A value of the case, or of the file.
+    pub(super) fn value(&self, key: &str) -> Option<&'l Value<'t>> {
+        self.case.and_then(|case| case.get(key)).or_else(|| self.top.get(key))
+    }
+
+    /// A table of the file and that of the case, as far as they are there, the file's first.
+    pub(super) fn tables(&self, key: &str, reader: &mut Reader<'_, '_>) -> Vec<TomlTable<'l, 't>> {
+        let both = [self.top.get(key), self.case.and_then(|case| case.get(key))];
+        both.into_iter().flatten().filter_map(|value| reader.table(key, value)).collect()
+    }
+
+    /// The tables of a list of the file, then those of the case.
+    pub(super) fn lists(&self, key: &str, reader: &mut Reader<'_, '_>) -> Vec<TomlTable<'l, 't>> {
+        let mut tables = reader.tables(self.top, key, key);
+        if let Some(case) = self.case {
+            tables.extend(reader.tables(case, key, key));
+        }
+        tables
+    }
+
+    /// A value of a section: what is varied, else the case's, else the file's.
+    pub(super) fn of_section(&self, section: &[TomlTable<'l, 't>], key: &str) -> Option<&'l Value<'t>> {
+        self.variant.get(key).or_else(|| section.iter().rev().find_map(|table| table.get(key)))
+    }
+
+    /// The texts of a list of a section: those of the file, of the case and of what is varied.
+    pub(super) fn lines(
+        &self,
+        section: &[TomlTable<'l, 't>],
+        key: &str,
+        reader: &mut Reader<'_, '_>,
+    ) -> Vec<(String, Range<usize>)> {
+        let mut lines = Vec::new();
+        for table in section {
+            lines.extend(reader.texts(table, key).unwrap_or_default());
+        }
+        if let Some(value) = self.variant.get(key)
+            && let Some(text) = reader.text(value)
+        {
+            lines.push((text, value.span()));
+        }
+        lines
+    }
+}
+
+impl<'r, 'p> Reader<'r, 'p> {
+    pub(super) fn new(text: &'r str, files: &'r mut dyn Files, problems: &'r mut Problems<'p>) -> Self {
+        Self { text, files, problems, noted: Vec::new() }
+    }
+
+    /// Notes a problem at a place.
+    pub(super) fn problem(
+        &mut self,
+        span: Range<usize>,
+        message: impl Into<String>,
+        hint: impl Into<String>,
+    ) {
+        let noted = (span, message.into());
+        if !self.noted.contains(&noted) {
+            self.problems.add(noted.0.clone(), noted.1.clone(), hint);
+            self.noted.push(noted);
+        }
+    }
+
+    /// Notes a problem inside the text of a value.
+    pub(super) fn syntax(&mut self, value: &Value<'_>, error: SyntaxError) {
+        let span = self.place_inside(value, &error.span);
+        self.problem(span, error.message, error.hint);
+    }
+
+    /// A part of a value's text in the file; all of the value when escapes hide the part.
+    fn place_inside(&self, value: &Value<'_>, part: &Range<usize>) -> Range<usize> {
+        let (whole, Some(text)) = (value.span(), value.get_ref().as_str()) else { return value.span() };
+        let raw = self.text.get(whole.clone()).unwrap_or_default();
+        match raw.find(text) {
+            Some(at) if !text.is_empty() => {
+                let start = whole.start + at;
+                start + part.start..start + part.end.max(part.start)
+            }
+            _ => whole,
+        }
+    }
+
+    pub(super) fn refuse_unknown(&mut self, table: &TomlTable<'_, '_>, known: &'static [&'static str]) {
+        for (name, span, _) in table.keys() {
+            if !known.contains(&name) {
+                let guess = crate::did_you_mean::closest(name, known.iter().copied());
+                let guess = guess.map_or_else(String::new, |word| format!("did you mean {word}? "));
+                let hint = format!("{guess}allowed: {}", known.join(", "));
+                self.problem(span, format!("{name} is not a key of {}", table.what()), hint);
+            }
+        }
+    }
+
+    pub(super) fn required<'t, 'i>(&mut self, table: &TomlTable<'t, 'i>, key: &str) -> Option<&'t Value<'i>> {
+        let value = table.get(key);
+        if value.is_none() {
+            let message = format!("{key} is missing in {}", table.what());
+            self.problem(table.span(), message, format!("add {key} = …"));
+        }
+        value
+    }
+
+    /// A value that should be a table.
+    pub(super) fn table<'t, 'i>(&mut self, what: &str, value: &'t Value<'i>) -> Option<TomlTable<'t, 'i>> {
+        if value.get_ref().is_table() {
+            return TomlTable::new(what.to_owned(), value, self.problems);
+        }
+        self.problem(value.span(), format!("{what} is not a table"), format!("head it with [{what}]"));
+        None
+    }
+
+    /// The tables of a list `[[key]]`.
+    pub(super) fn tables<'t, 'i>(
+        &mut self,
+        table: &TomlTable<'t, 'i>,
+        key: &str,
+        what: &str,
+    ) -> Vec<TomlTable<'t, 'i>> {
+        let Some(value) = table.get(key) else { return Vec::new() };
+        let DeValue::Array(values) = value.get_ref() else {
+            self.problem(
+                value.span(),
+                format!("{key} is not a list of tables"),
+                format!("head each with [[{key}]]"),
+            );
+            return Vec::new();
+        };
+        values.iter().filter_map(|value| self.table(what, value)).collect()
+    }
+
+    pub(super) fn text(&mut self, value: &Value<'_>) -> Option<String> {
+        let text = value.get_ref().as_str().map(str::to_owned);
+        if text.is_none() {
+            self.problem(value.span(), "a text is expected here", "write it in quotes");
+        }
+        text
+    }
+
+    pub(super) fn string(&mut self, table: &TomlTable<'_, '_>, key: &str) -> Option<String> {
+        self.text(table.get(key)?)
+    }
+
+    /// The texts of a list, or one text, with their places.
+    pub(super) fn texts(
+        &mut self,
+        table: &TomlTable<'_, '_>,
+        key: &str,
+    ) -> Option<Vec<(String, Range<usize>)>> {
+        let value = table.get(key)?;
+        match value.get_ref() {
+            DeValue::Array(values) => {
+                Some(values.iter().filter_map(|value| Some((self.text(value)?, value.span()))).collect())
+            }
+            _ => self.text(value).map(|text| vec![(text, value.span())]),
+        }
+    }
+
+    pub(super) fn boolean(&mut self, table: &TomlTable<'_, '_>, key: &str) -> Option<bool> {
+        let value = table.get(key)?;
+        let truth = value.get_ref().as_bool();
+        if truth.is_none() {
+            self.problem(value.span(), format!("{key} is true or false"), "without quotes");
+        }
+        truth
+    }
+
+    pub(super) fn integer(&mut self, value: &Value<'_>) -> Option<i64> {
+        let number = match value.get_ref() {
+            DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix()).ok(),
+            _ => None,
+        };
+        if number.is_none() {
+            self.problem(value.span(), "a whole number is expected here", "write 5");
+        }
+        number
+    }
+
+    /// A number, whole or not.
+    pub(super) fn number(&mut self, value: &Value<'_>) -> Option<f64> {
+        let number = match value.get_ref() {
+            DeValue::Integer(integer) if integer.radix() == 10 => integer.as_str().parse().ok(),
+            DeValue::Float(float) => float.as_str().parse().ok(),
+            _ => None,
+        };
+        let number = number.filter(|number: &f64| number.is_finite());
+        if number.is_none() {
+            self.problem(value.span(), "a number is expected here", "write 12.5, without quotes");
+        }
+        number
+    }
+
+    pub(super) fn number_in(
+        &mut self,
+        value: Option<&Value<'_>>,
+        low: f64,
+        high: f64,
+        unit: &str,
+    ) -> Option<f64> {
+        let value = value?;
+        let number = self.number(value)?;
+        if (low..=high).contains(&number) {
+            return Some(number);
+        }
+        self.problem(
+            value.span(),
+            format!("{number} is out of range"),
+            format!("allowed: {low} to {high} {unit}"),
+        );
+        None
+    }
+
+    /// Reads the text of a value by a grammar, to its end.
+    pub(super) fn expression<T>(
+        &mut self,
+        value: &Value<'_>,
+        read: impl FnOnce(&mut Cursor<'_>) -> Result<T, SyntaxError>,
+    ) -> Option<T> {
+        let text = self.text(value)?;
+        let mut cursor = Cursor::new(&text);
+        let result = read(&mut cursor).and_then(|read| cursor.finish().map(|()| read));
+        match result {
+            Ok(read) => Some(read),
+            Err(error) => {
+                self.syntax(value, error);
+                None
+            }
+        }
+    }
+
+    /// The plan that a name stands for: a built-in one, or a file.
+    pub(super) fn plan(&mut self, name: &str) -> Result<FlightPlan, String> {
+        self.plan_file(name).map(|file| file.plan)
+    }
+
+    pub(super) fn plan_file(&mut self, name: &str) -> Result<PlanFile, String> {
+        match BuiltinPlan::find(name) {
+            Some(plan) => plan.read().map_err(|errors| crate::plan::format::report(&errors)),
+            None => self.files.plan(name),
+        }
+    }
+
+    /// The plan in a file.
+    pub(super) fn plan_from_file(&mut self, name: &str) -> Result<PlanFile, String> {
+        self.files.plan(name)
+    }
+
+    /// The text of a file.
+    pub(super) fn file(&mut self, name: &str) -> Result<String, String> {
+        self.files.text(name)
+    }
+
+    /// Line of a place, from 1.
+    pub(super) fn line(&self, span: Range<usize>) -> usize {
+        self.text.get(..span.start).map_or(1, |before| before.matches('\n').count() + 1)
+    }
+}

@@ -1,0 +1,74 @@
+//! What is varied: every combination of the listed values is a case of its own.
+
+use toml::de::DeValue;
+
+use super::keys::VARY_KEYS;
+use super::reader::Reader;
+use crate::plan::format::{TomlTable, Value};
+
+/// Most combinations.
+const MAX_VARIANTS: usize = 1000;
+
+/// One combination.
+#[derive(Debug, Default)]
+pub(super) struct Variant<'l, 't> {
+    values: Vec<(&'l str, &'l Value<'t>)>,
+}
+
+impl<'l, 't> Variant<'l, 't> {
+    /// What is varied of this key.
+    pub(super) fn get(&self, key: &str) -> Option<&'l Value<'t>> {
+        self.values.iter().find(|(name, _)| *name == key).map(|&(_, value)| value)
+    }
+
+    /// The name of a case with this combination.
+    pub(super) fn name_of(&self, base: &str) -> String {
+        let parts = self.values.iter().map(|(key, value)| {
+            let shown = match value.get_ref() {
+                DeValue::String(text) => text.to_string(),
+                DeValue::Integer(integer) => integer.as_str().to_owned(),
+                DeValue::Float(float) => float.as_str().to_owned(),
+                _ => String::new(),
+            };
+            if *key == "settings" { shown } else { format!("{key} {shown}") }
+        });
+        std::iter::once(base.to_owned())
+            .filter(|base| !base.is_empty())
+            .chain(parts)
+            .collect::<Vec<_>>()
+            .join(", ")
+    }
+}
+
+/// All combinations; one without anything when nothing is varied.
+pub(super) fn read<'l, 't>(top: &TomlTable<'l, 't>, reader: &mut Reader<'_, '_>) -> Vec<Variant<'l, 't>> {
+    let mut variants = vec![Variant::default()];
+    let Some(table) = top.get("vary").and_then(|value| reader.table("vary", value)) else { return variants };
+    reader.refuse_unknown(&table, VARY_KEYS);
+    for (key, span, value) in table.keys().filter(|(key, ..)| VARY_KEYS.contains(key)) {
+        let DeValue::Array(values) = value.get_ref() else {
+            reader.problem(
+                value.span(),
+                format!("{key} is not a list"),
+                format!("write {key} = [\"…\", \"…\"]"),
+            );
+            continue;
+        };
+        if values.is_empty() || variants.len() * values.len() > MAX_VARIANTS {
+            let message = format!("{} values cannot be combined", values.len());
+            reader.problem(span, message, format!("allowed: 1 to {MAX_VARIANTS} combinations in all"));
+            continue;
+        }
+        variants = variants
+            .iter()
+            .flat_map(|variant| {
+                values.iter().map(move |value| {
+                    let mut values = variant.values.clone();
+                    values.push((key, value));
+                    Variant { values }
+                })
+            })
+            .collect();
+    }
+    variants
+}

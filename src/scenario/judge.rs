@@ -1,0 +1,200 @@
+//! Judges a recorded flight by the expectations of its case.
+
+mod measures;
+mod order;
+mod outcome;
+mod samples;
+
+use super::case::{Case, Compare, Expectation, Expected, Window};
+use super::expression::{Condition, Evaluator, Instant};
+use super::happening::{Happening, Pattern};
+use super::run::Flown;
+use super::trace::Trace;
+use crate::signals::SimTime;
+
+pub use outcome::{Judgement, Margin, Outcome};
+use outcome::{failed, met, unjudged};
+
+/// Judges a flight: a judgement for each expectation, in their order, and the measures that were taken.
+#[must_use]
+pub fn judge(case: &Case, flown: &Flown) -> (Vec<Judgement>, Vec<(String, f64)>) {
+    let mut names = case.parameters.clone();
+    for measure in &case.measures {
+        let value = measures::take(&measure.measured, &Evaluator::new(&flown.trace, &names));
+        names.push((measure.name.clone(), value));
+    }
+    let evaluator = Evaluator::new(&flown.trace, &names);
+    let judgements = case
+        .expectations
+        .iter()
+        .map(|expectation| Judgement {
+            label: expectation.label.clone(),
+            line: expectation.line,
+            outcome: judge_one(expectation, flown, &evaluator),
+        })
+        .collect();
+    (judgements, names)
+}
+
+/// Judges what is expected of several flights together: `names` are their measures as `CASE.MEASURE`.
+#[must_use]
+pub fn compare(compare: &Compare, names: &[(String, f64)], trace: &Trace) -> Judgement {
+    let evaluator = Evaluator::new(trace, names);
+    let outcome = that(&compare.that, &evaluator);
+    Judgement { label: compare.label.clone(), line: compare.line, outcome }
+}
+
+fn judge_one(expectation: &Expectation, flown: &Flown, evaluator: &Evaluator<'_>) -> Outcome {
+    let trace = evaluator.trace();
+    match &expectation.expected {
+        Expected::Result(allowed) if allowed.iter().any(|word| *word == flown.result) => met(None),
+        Expected::Result(allowed) => {
+            let sentence = format!(
+                "the flight was to end {}, it ended {}: {}",
+                allowed.join(" or "),
+                flown.result,
+                flown.reason
+            );
+            failed(sentence, Some(flown.ended_at)).with_guard(trace, flown.ended_at)
+        }
+        Expected::States(steps) => order::judge(steps, evaluator),
+        Expected::Event { pattern, count, within, with } => {
+            let range = match Range::of(&expectation.window, evaluator) {
+                Ok(range) => range,
+                Err(outcome) => return outcome,
+            };
+            let found = range.happenings(pattern, trace);
+            judge_event(&found, *count, within.as_ref(), with.as_ref(), evaluator)
+        }
+        Expected::NoEvent(pattern) => match Range::of(&expectation.window, evaluator) {
+            Ok(range) => match range.happenings(pattern, trace).first() {
+                None => met(None),
+                Some(happening) => failed(
+                    format!("{happening} came at {}", trace.shown_time(happening.time)),
+                    Some(happening.time),
+                ),
+            },
+            Err(outcome) => outcome,
+        },
+        Expected::Always(..) | Expected::Eventually(_) | Expected::Mostly(..) | Expected::Statistic(..) => {
+            match Range::of(&expectation.window, evaluator) {
+                Ok(range) => samples::judge(&expectation.expected, range, evaluator),
+                Err(outcome) => outcome,
+            }
+        }
+        Expected::At(instant, condition) => at(instant, condition, evaluator),
+        Expected::That(condition) => that(condition, evaluator),
+    }
+}
+
+fn judge_event(
+    found: &[&Happening],
+    count: Option<usize>,
+    within: Option<&(f64, f64, Instant)>,
+    with: Option<&Condition>,
+    evaluator: &Evaluator<'_>,
+) -> Outcome {
+    let trace = evaluator.trace();
+    let Some(first) = found.first() else {
+        if count == Some(0) {
+            return met(None);
+        }
+        let end = trace.end();
+        return failed("it did not happen".to_owned(), Some(end)).with_guard(trace, end);
+    };
+    if let Some(count) = count.filter(|&count| count != found.len()) {
+        let times: Vec<String> =
+            found.iter().take(5).map(|happening| trace.shown_time(happening.time)).collect();
+        let sentence =
+            format!("it happened {} times instead of {count}: at {}", found.len(), times.join(", "));
+        return failed(sentence, found.get(count).or(found.last()).map(|happening| happening.time));
+    }
+    let mut outcome = met(None);
+    if let Some((from_s, to_s, instant)) = within {
+        let Some(origin) = evaluator.instant(instant) else {
+            return unjudged("what its time counts from did not happen");
+        };
+        let seconds = (first.time.0 as i64 - origin) as f64 * 1e-6;
+        let verdict = outcome::time_verdict(seconds, *from_s, *to_s);
+        outcome = outcome.and(outcome::of_verdict(&verdict, first.time, trace));
+    }
+    if let Some(condition) = with {
+        for happening in found {
+            let Some(index) = trace.index_at(happening.time.0 as i64).or(trace.samples.len().checked_sub(1))
+            else {
+                return unjudged("nothing was recorded then");
+            };
+            let one = samples::instant(condition, index, Some(happening), happening.time, evaluator);
+            outcome = outcome.and(one);
+        }
+    }
+    outcome
+}
+
+fn at(instant: &Instant, condition: &Condition, evaluator: &Evaluator<'_>) -> Outcome {
+    let Some(us) = evaluator.instant(instant) else { return unjudged("its instant did not come") };
+    let trace = evaluator.trace();
+    let Some(index) = trace.index_at(us) else {
+        return unjudged("its instant lies behind the end of the record; let the flight be watched longer");
+    };
+    samples::instant(condition, index, None, trace.samples[index].time, evaluator)
+}
+
+fn that(condition: &Condition, evaluator: &Evaluator<'_>) -> Outcome {
+    let trace = evaluator.trace();
+    let Some(index) = trace.samples.len().checked_sub(1) else {
+        return unjudged("nothing was recorded");
+    };
+    samples::instant(condition, index, None, trace.samples[index].time, evaluator)
+}
+
+/// A part of a flight.
+#[derive(Debug, Clone, Copy)]
+struct Range {
+    from_us: i64,
+    to_us: i64,
+}
+
+impl Range {
+    /// The part that a window names, or why there is none.
+    fn of(window: &Window, evaluator: &Evaluator<'_>) -> Result<Self, Outcome> {
+        let trace = evaluator.trace();
+        let from_us = match &window.from {
+            None => trace.engaged_at.map_or(0, |time| time.0 as i64),
+            Some(instant) => evaluator
+                .instant(instant)
+                .ok_or_else(|| unjudged("the instant from which it holds did not come"))?,
+        };
+        let to_us = match &window.until {
+            None => trace.end().0 as i64,
+            Some(instant) => evaluator
+                .instant(instant)
+                .ok_or_else(|| unjudged("the instant until which it holds did not come"))?,
+        };
+        if to_us < from_us {
+            let time = |us: i64| trace.shown_time(SimTime(us.max(0) as u64));
+            return Err(unjudged(&format!(
+                "its time ends at {}, before it begins at {}",
+                time(to_us),
+                time(from_us)
+            )));
+        }
+        Ok(Self { from_us, to_us })
+    }
+
+    fn happenings<'t>(&self, pattern: &Pattern, trace: &'t Trace) -> Vec<&'t Happening> {
+        trace
+            .happenings
+            .iter()
+            .filter(|happening| (self.from_us..=self.to_us).contains(&(happening.time.0 as i64)))
+            .filter(|happening| pattern.matches(happening))
+            .collect()
+    }
+
+    /// Indices of the samples in it.
+    fn samples(&self, trace: &Trace) -> std::ops::Range<usize> {
+        let from = trace.samples.partition_point(|sample| (sample.time.0 as i64) < self.from_us);
+        let to = trace.samples.partition_point(|sample| sample.time.0 as i64 <= self.to_us);
+        from..to.max(from)
+    }
+}

@@ -1,0 +1,145 @@
+//! What became of an expectation.
+
+use crate::scenario::expression::Verdict;
+use crate::scenario::quantity::{Dimension, shown};
+use crate::scenario::trace::Trace;
+use crate::signals::SimTime;
+
+/// A judged expectation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Judgement {
+    /// What was expected.
+    pub label: String,
+    /// Line in the scenario's file, from 1.
+    pub line: usize,
+    /// What became of it.
+    pub outcome: Outcome,
+}
+
+/// What became of an expectation.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Outcome {
+    /// It was met, with the tightest number if it has one.
+    Met(Option<Margin>),
+    /// It was not.
+    Failed {
+        /// What was seen.
+        sentence: String,
+        /// The worst moment.
+        at: Option<SimTime>,
+        /// Of the guards that did not fire then, the one that came closest.
+        guard: Option<String>,
+    },
+    /// What it waits for did not happen.
+    NeverJudged(String),
+}
+
+/// How far a number was from its bound.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Margin {
+    /// The number and its bounds.
+    pub verdict: Verdict,
+    /// When.
+    pub time: SimTime,
+}
+
+impl Outcome {
+    /// Whether it was met.
+    #[must_use]
+    pub fn is_met(&self) -> bool {
+        matches!(self, Self::Met(_))
+    }
+
+    /// The tightest number, if it was met and has one.
+    #[must_use]
+    pub fn margin(&self) -> Option<&Margin> {
+        match self {
+            Self::Met(margin) => margin.as_ref(),
+            Self::Failed { .. } | Self::NeverJudged(_) => None,
+        }
+    }
+
+    /// Both: the first that failed, or the tighter of two that were met.
+    #[must_use]
+    pub(super) fn and(self, other: Self) -> Self {
+        match (&self, &other) {
+            (Self::Met(Some(a)), Self::Met(Some(b))) if b.verdict.share() < a.verdict.share() => other,
+            (Self::Met(Some(_)), Self::Met(_)) => self,
+            (Self::Met(_), _) => other,
+            _ => self,
+        }
+    }
+
+    /// Adds the guard that came closest to firing at the time.
+    #[must_use]
+    pub(super) fn with_guard(mut self, trace: &Trace, time: SimTime) -> Self {
+        if let Self::Failed { guard, .. } = &mut self {
+            let stay = trace.stays.iter().rev().find(|stay| stay.since <= time);
+            *guard = stay.and_then(|stay| {
+                let nearest = Trace::nearest_guard(stay)?;
+                let firing = &nearest.guard;
+                Some(format!(
+                    "in {} {} since {} the guard {} came closest at {}: {:.2} {} {:.2} {}",
+                    stay.state,
+                    stay.wp,
+                    trace.shown_time(stay.since),
+                    firing.name,
+                    trace.shown_time(nearest.time),
+                    firing.value,
+                    firing.op,
+                    firing.limit,
+                    firing.unit()
+                ))
+            });
+        }
+        self
+    }
+}
+
+impl Margin {
+    /// `1.82 m, at most 2.00 m`.
+    #[must_use]
+    pub fn shown(&self) -> String {
+        describe(&self.verdict)
+    }
+}
+
+/// A number and what it may be: `2.13 m, at most 2.00 m`.
+pub(super) fn describe(verdict: &Verdict) -> String {
+    let Verdict { value, low, high, dimension, strict } = *verdict;
+    let show = |number| shown(number, dimension);
+    let allowed = match (low.is_finite(), high.is_finite()) {
+        (true, true) if low < high => format!("{} to {}", show(low), show(high)),
+        (true, true) => format!("exactly {}", show(low)),
+        (false, true) if strict => format!("below {}", show(high)),
+        (false, _) => format!("at most {}", show(high)),
+        (true, false) if strict => format!("above {}", show(low)),
+        (true, false) => format!("at least {}", show(low)),
+    };
+    format!("{}, {allowed}", show(value))
+}
+
+pub(super) fn met(margin: Option<Margin>) -> Outcome {
+    Outcome::Met(margin)
+}
+
+pub(super) fn failed(sentence: String, at: Option<SimTime>) -> Outcome {
+    Outcome::Failed { sentence, at, guard: None }
+}
+
+pub(super) fn unjudged(why: &str) -> Outcome {
+    Outcome::NeverJudged(why.to_owned())
+}
+
+/// A time that must lie between two.
+pub(super) fn time_verdict(seconds: f64, low: f64, high: f64) -> Verdict {
+    Verdict { value: seconds, low, high, dimension: Dimension::TIME, strict: false }
+}
+
+/// The outcome of one number.
+pub(super) fn of_verdict(verdict: &Verdict, time: SimTime, trace: &Trace) -> Outcome {
+    if verdict.holds() {
+        return met(Some(Margin { verdict: *verdict, time }));
+    }
+    failed(format!("{} (at {})", describe(verdict), trace.shown_time(time)), Some(time))
+}

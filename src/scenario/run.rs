@@ -1,0 +1,225 @@
+//! Flies a case: the headless flight, its inputs at their instants, and the record.
+
+mod inputs;
+mod log;
+
+use super::case::{Air, Case};
+use super::expression::{Evaluator, Search};
+use super::happening::{EventName, Happening};
+use super::sampling::{Origin, sample};
+use super::trace::Trace;
+use crate::flight::{Flight, FlightEnd, FlightOptions, FlightResult, Report};
+use crate::signals::SimTime;
+use crate::telemetry::FlightTruth;
+use crate::vehicle::Vehicle;
+use inputs::Inputs;
+use log::Log;
+
+/// What a case's flight came to.
+#[derive(Debug, Clone)]
+pub struct Flown {
+    /// What happened.
+    pub trace: Trace,
+    /// How it ended: one of [`RESULTS`](super::happening::RESULTS).
+    pub result: String,
+    /// Why, as a sentence.
+    pub reason: String,
+    /// What really happened to the waypoints.
+    pub truth: FlightTruth,
+    /// When the flight ended; the record may go on.
+    pub ended_at: SimTime,
+}
+
+/// The flight of a case under way.
+#[derive(Debug)]
+pub struct CaseFlight<'a> {
+    case: &'a Case,
+    flight: Flight,
+    inputs: Inputs<'a>,
+    log: Log,
+    trace: Trace,
+    ends: Option<Search<'a>>,
+    end: Option<FlightEnd>,
+    /// The scenario ended the flight: its word for the result and the reason.
+    stopped: Option<(&'static str, String)>,
+    sample_us: u64,
+    standing_m: f64,
+    is_over: bool,
+}
+
+impl<'a> CaseFlight<'a> {
+    /// The flight of a case in an air, at boot.
+    ///
+    /// # Errors
+    /// A sentence, when no vehicle can be made or nobody can switch what the pilot needs.
+    pub fn new(case: &'a Case, air: &Air) -> Result<Self, String> {
+        let mut setup = case.setup_in(air);
+        setup.stored.plan = setup.plan.plan.clone();
+        let (vehicle, _) = setup.build().map_err(|error| error.to_string())?;
+        let standing_m = vehicle.world().map_or(0.0, |world| world.truth().pos_enu.z);
+        let trace = Trace::new(case.setup.plan.plan.clone(), vehicle.local_frame().copied());
+        // The limits of the scenario decide when to give up.
+        let options = FlightOptions { timeout: SimTime(u64::MAX), ..case.options };
+        let flight = if case.pilot {
+            Flight::new(vehicle, &options).map_err(|mode| {
+                format!("no channel switches {mode}: the pilot needs one; set it with an aux line")
+            })?
+        } else {
+            Flight::go_on(vehicle, &options)
+        };
+        let step_us = flight.vehicle().step_us();
+        let sample_us = ((1e6 / case.sample_hz).round() as u64).div_ceil(step_us).max(1) * step_us;
+        Ok(Self {
+            case,
+            flight,
+            inputs: Inputs::new(&case.inputs),
+            log: Log::default(),
+            trace,
+            ends: case.ends.as_ref().map(Search::new),
+            end: None,
+            stopped: None,
+            sample_us,
+            standing_m,
+            is_over: false,
+        })
+    }
+
+    /// The vehicle.
+    #[must_use]
+    pub fn vehicle(&self) -> &Vehicle {
+        self.flight.vehicle()
+    }
+
+    /// The vehicle, for those who record it.
+    pub fn vehicle_mut(&mut self) -> &mut Vehicle {
+        self.flight.vehicle_mut()
+    }
+
+    /// What was recorded so far.
+    #[must_use]
+    pub fn trace(&self) -> &Trace {
+        &self.trace
+    }
+
+    /// Flies to the end.
+    #[must_use]
+    pub fn fly(mut self) -> Flown {
+        while !self.is_over {
+            self.prepare();
+            self.tick(|_| {});
+        }
+        self.finish()
+    }
+
+    /// Whether the flight and what is to be watched after it are over.
+    #[must_use]
+    pub fn is_over(&self) -> bool {
+        self.is_over
+    }
+
+    /// Carries out the inputs that are due before the next tick.
+    pub fn prepare(&mut self) {
+        if self.inputs.is_due(self.flight.vehicle().time()) {
+            let (trace, names) = (&mut self.trace, self.case.parameters.as_slice());
+            self.inputs.carry_out(self.flight.vehicle_mut(), trace, names);
+        }
+    }
+
+    /// Flies one tick; `report` gets what happens in it.
+    pub fn tick(&mut self, mut report: impl FnMut(&crate::telemetry::Event)) {
+        let (log, trace) = (&mut self.log, &mut self.trace);
+        let before = trace.happenings.len();
+        let end = self.flight.tick(|reported| {
+            if let Report::Event(event) = reported {
+                log.note(&event, trace);
+                report(&event);
+            }
+        });
+        let now = self.flight.vehicle().time();
+        trace.engaged_at = self.flight.engaged_at().or(trace.engaged_at);
+        if let Some(end) = end
+            && self.end.is_none()
+        {
+            self.note_end(end);
+        }
+        let has_news = self.trace.happenings.len() != before;
+        let is_sample = now.0.is_multiple_of(self.sample_us);
+        if is_sample {
+            self.sample();
+        }
+        if has_news || is_sample {
+            let names = self.case.parameters.as_slice();
+            self.inputs.look(&Evaluator::new(&self.trace, names));
+            self.check_end(now);
+        }
+    }
+
+    fn sample(&mut self) {
+        let origin = Origin { standing_m: self.standing_m, engaged_at: self.trace.engaged_at };
+        let vehicle = self.flight.vehicle();
+        let sample = sample(vehicle, origin);
+        if let Some(nav) = vehicle.controller().nav()
+            && nav.engaged
+        {
+            self.trace.note_guards(sample.time, nav.state, nav.wp, &nav.guards);
+        }
+        self.trace.samples.push(sample);
+    }
+
+    fn note_end(&mut self, end: FlightEnd) {
+        let word = end.verdict.result.to_string();
+        self.trace
+            .happenings
+            .push(Happening::event(end.time, EventName::End, &[&word]).saying(&end.verdict.reason));
+        self.end = Some(end);
+    }
+
+    /// Whether it is time to end the record.
+    fn check_end(&mut self, now: SimTime) {
+        if let Some(end) = &self.end {
+            let is_lost = matches!(end.verdict.result, FlightResult::Diverged);
+            let watched_s = now.seconds_since(end.time);
+            self.is_over = is_lost || watched_s >= self.case.watch_s && self.ends.is_none();
+        }
+        let names = self.case.parameters.as_slice();
+        if let Some(search) = &mut self.ends
+            && let Some(due) = search.advance(&Evaluator::new(&self.trace, names))
+            && now.0 as i64 >= due
+        {
+            self.is_over = true;
+            self.stop("stopped", "the scenario ended the flight");
+        }
+        if !self.is_over && self.trace.seconds(now) >= self.case.time_limit_s {
+            self.is_over = true;
+            let limit = self.case.time_limit_s;
+            let doing = match (self.end.is_some(), self.ends.is_some()) {
+                (_, true) => "what ends it did not come",
+                (true, false) => "still watched",
+                (false, false) => "not over",
+            };
+            let after = if self.trace.engaged_at.is_some() { "the engagement" } else { "boot" };
+            self.stop("timeout", &format!("{doing} {limit} s after {after}"));
+        }
+    }
+
+    fn stop(&mut self, word: &'static str, reason: &str) {
+        if self.end.is_none() || word == "timeout" {
+            self.stopped = Some((word, reason.to_owned()));
+        }
+        if self.end.is_none() {
+            let now = self.flight.vehicle().time();
+            self.trace.happenings.push(Happening::event(now, EventName::End, &[word]).saying(reason));
+        }
+    }
+
+    /// What it came to.
+    #[must_use]
+    pub fn finish(self) -> Flown {
+        let end = self.end.unwrap_or_else(|| self.flight.interrupt("the scenario ended the flight"));
+        let (result, reason) = match self.stopped {
+            Some((word, reason)) => (word.to_owned(), reason),
+            None => (end.verdict.result.to_string(), end.verdict.reason),
+        };
+        Flown { trace: self.trace, result, reason, truth: end.truth, ended_at: end.time }
+    }
+}

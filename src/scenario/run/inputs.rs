@@ -1,0 +1,181 @@
+//! Carries out the inputs of a case at their instants.
+
+use crate::firmware::cli::Interpreter;
+use crate::pilot::StickInput;
+use crate::plan::upload_lines;
+use crate::scenario::expression::{Evaluator, Search};
+use crate::scenario::happening::{EventName, Happening};
+use crate::scenario::input::{Action, TimedInput};
+use crate::scenario::trace::Trace;
+use crate::signals::SimTime;
+use crate::telemetry::Mode;
+use crate::telemetry::switch::Switch;
+use crate::vehicle::{Answer, Vehicle};
+
+/// The inputs that are still to come.
+#[derive(Debug)]
+pub(super) struct Inputs<'a> {
+    waiting: Vec<Waiting<'a>>,
+    /// When the transmitter is restored.
+    restore_at: Option<SimTime>,
+    command_line: Interpreter,
+}
+
+/// An input that waits for its instant.
+#[derive(Debug)]
+struct Waiting<'a> {
+    input: &'a TimedInput,
+    search: Search<'a>,
+    due_us: Option<i64>,
+}
+
+impl<'a> Inputs<'a> {
+    pub(super) fn new(inputs: &'a [TimedInput]) -> Self {
+        let waiting = inputs
+            .iter()
+            .map(|input| Waiting { input, search: Search::new(&input.at), due_us: None })
+            .collect();
+        Self { waiting, restore_at: None, command_line: Interpreter::default() }
+    }
+
+    /// Looks whether instants have come.
+    pub(super) fn look(&mut self, evaluator: &Evaluator<'_>) {
+        for waiting in self.waiting.iter_mut().filter(|waiting| waiting.due_us.is_none()) {
+            waiting.due_us = waiting.search.advance(evaluator);
+        }
+    }
+
+    /// Whether something is to be done before the tick at this time.
+    pub(super) fn is_due(&self, now: SimTime) -> bool {
+        self.restore_at.is_some_and(|at| now >= at)
+            || self.waiting.iter().any(|waiting| waiting.is_due(now))
+            // Instants that do not wait for anything are looked at before the first tick.
+            || now == SimTime::ZERO
+    }
+
+    /// Does what is due, in the order of the file.
+    pub(super) fn carry_out(&mut self, vehicle: &mut Vehicle, trace: &mut Trace, names: &[(String, f64)]) {
+        let now = vehicle.time();
+        if now == SimTime::ZERO {
+            self.look(&Evaluator::new(trace, names));
+        }
+        if self.restore_at.is_some_and(|at| now >= at) {
+            self.restore_at = None;
+            vehicle.transmitter_mut().set_cut(false);
+        }
+        let mut due: Vec<(i64, &TimedInput)> = Vec::new();
+        self.waiting.retain(|waiting| {
+            if let (true, Some(us)) = (waiting.is_due(now), waiting.due_us) {
+                due.push((us, waiting.input));
+            }
+            !waiting.is_due(now)
+        });
+        due.sort_by_key(|&(us, _)| us);
+        for (_, input) in due {
+            trace
+                .happenings
+                .push(Happening::event(now, EventName::Input, &[&input.name]).saying(&input.text));
+            let said = self.act(&input.action, vehicle);
+            trace
+                .happenings
+                .extend(said.into_iter().map(|(name, text)| Happening::event(now, name, &[]).saying(text)));
+        }
+    }
+
+    /// Does it; what was answered is returned.
+    fn act(&mut self, action: &Action, vehicle: &mut Vehicle) -> Vec<(EventName, String)> {
+        let refused = |text: String| vec![(EventName::Refusal, text)];
+        match action {
+            Action::World(command) => match vehicle.change_world(command.clone()) {
+                Ok(()) => Vec::new(),
+                Err(error) => refused(error.to_string()),
+            },
+            Action::Stick { channel, value_us, for_s } => {
+                hold_channel(vehicle, *channel, *value_us, *for_s);
+                Vec::new()
+            }
+            Action::Release(channel) => {
+                vehicle.transmitter_mut().inputs_mut().retain(|input| input.channel != *channel);
+                Vec::new()
+            }
+            Action::Sticks(frame) => {
+                *vehicle.transmitter_mut().sticks_mut() = *frame;
+                Vec::new()
+            }
+            Action::Switch(mode, on) => match switch_value(vehicle, *mode, *on) {
+                Some((channel, value_us)) => {
+                    vehicle.transmitter_mut().inputs_mut().retain(|input| input.channel != channel);
+                    hold_channel(vehicle, channel, value_us, None);
+                    Vec::new()
+                }
+                None => refused(format!("no channel switches {mode}")),
+            },
+            Action::CutRc(for_s) => {
+                self.restore_at = for_s.map(|for_s| SimTime(vehicle.time().0 + (for_s * 1e6).round() as u64));
+                vehicle.transmitter_mut().set_cut(true);
+                Vec::new()
+            }
+            Action::RestoreRc => {
+                self.restore_at = None;
+                vehicle.transmitter_mut().set_cut(false);
+                Vec::new()
+            }
+            Action::Cli(line) => self.type_line(line, vehicle),
+            Action::Upload(plan) => {
+                let lines: Vec<String> = upload_lines(plan, &[]).collect();
+                lines.iter().flat_map(|line| self.type_line(line, vehicle)).collect()
+            }
+            Action::ReturnHome => match vehicle.controller_mut().return_to_home() {
+                Ok(()) => Vec::new(),
+                Err(refusal) => refused(refusal.sentence().into_owned()),
+            },
+            Action::CancelReturn => {
+                vehicle.controller_mut().cancel_command();
+                Vec::new()
+            }
+            Action::InFlight(command) => match vehicle.controller_mut().command(*command) {
+                Ok(()) => Vec::new(),
+                Err(refusal) => refused(refusal.sentence()),
+            },
+            Action::Pilot(takeoff_m) => match vehicle.start_pilot(*takeoff_m) {
+                Ok(()) => Vec::new(),
+                Err(mode) => refused(format!("no channel switches {mode}")),
+            },
+            Action::PilotOff => {
+                vehicle.transmitter_mut().stop_pilot();
+                Vec::new()
+            }
+        }
+    }
+
+    fn type_line(&mut self, line: &str, vehicle: &mut Vehicle) -> Vec<(EventName, String)> {
+        let Answer::Now(reply) = vehicle.controller_mut().run_cli(&mut self.command_line, line) else {
+            return Vec::new();
+        };
+        let text = reply.text.trim().to_owned();
+        let mut said = vec![(EventName::Reply, text.clone())];
+        if reply.failed {
+            said.push((EventName::Refusal, format!("the craft refused `{line}`: {text}")));
+        }
+        said
+    }
+}
+
+impl Waiting<'_> {
+    fn is_due(&self, now: SimTime) -> bool {
+        self.due_us.is_some_and(|us| now.0 as i64 >= us)
+    }
+}
+
+fn hold_channel(vehicle: &mut Vehicle, channel: u8, value_us: u16, for_s: Option<f64>) {
+    let at_s = vehicle.time().as_secs_f64();
+    let input = StickInput { channel, value_us, at_s, for_s, from_boot: true };
+    vehicle.transmitter_mut().inputs_mut().push(input);
+}
+
+/// The channel that switches a mode, and its value for on or off.
+fn switch_value(vehicle: &Vehicle, mode: Mode, on: bool) -> Option<(u8, u16)> {
+    let switch = Switch::of(mode, &vehicle.controller().mode_ranges())?;
+    let value = if on { switch.on_us } else { switch.off_us };
+    Some((u8::try_from(switch.channel).ok()?, value))
+}

@@ -1,0 +1,193 @@
+//! What is recorded of a flight: samples, happenings, guards and plans.
+
+use std::hash::{DefaultHasher, Hash as _, Hasher as _};
+
+use super::happening::Happening;
+use super::signal::{Flag, Signal};
+use crate::geo::LocalFrame;
+use crate::plan::FlightPlan;
+use crate::signals::SimTime;
+use crate::telemetry::{Guard, GuardName, ModeFlags, NavState, PlanSource};
+
+/// One sample.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sample {
+    /// The instant.
+    pub time: SimTime,
+    /// The signals, SI and degrees; NaN = unknown at the moment.
+    pub values: [f32; Signal::COUNT],
+    /// The flags, a bit each.
+    pub flags: u16,
+    /// State of the machine.
+    pub state: NavState,
+    /// Index of the current waypoint.
+    pub wp: u8,
+    /// Origin of the active plan.
+    pub source: PlanSource,
+    /// Active modes.
+    pub modes: ModeFlags,
+    /// The navigator's target, m north and east of the boot place; NaN = none.
+    pub target_ne: [f32; 2],
+}
+
+impl Sample {
+    /// A signal.
+    #[must_use]
+    pub fn value(&self, signal: Signal) -> f64 {
+        f64::from(self.values[signal as usize])
+    }
+
+    /// A flag.
+    #[must_use]
+    pub fn has(&self, flag: Flag) -> bool {
+        self.flags & (1 << flag as u8) != 0
+    }
+
+    /// True place north and east of the boot place, m.
+    #[must_use]
+    pub fn place(&self) -> [f64; 2] {
+        [self.value(Signal::North), self.value(Signal::East)]
+    }
+}
+
+/// How near a guard came to firing while a state lasted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NearestGuard {
+    /// The guard at its best.
+    pub guard: Guard,
+    /// When that was.
+    pub time: SimTime,
+}
+
+/// A stay in a state, with the guards that were looked at.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stay {
+    /// When it began.
+    pub since: SimTime,
+    /// The state.
+    pub state: NavState,
+    /// The waypoint.
+    pub wp: u8,
+    /// The guards at their best.
+    pub guards: Vec<NearestGuard>,
+}
+
+/// The record of a flight.
+#[derive(Debug, Clone)]
+pub struct Trace {
+    /// Samples, oldest first, at equal intervals.
+    pub samples: Vec<Sample>,
+    /// Happenings, oldest first.
+    pub happenings: Vec<Happening>,
+    /// Stays in states, oldest first.
+    pub stays: Vec<Stay>,
+    /// Plans: the scenario's own, then those that became active.
+    pub plans: Vec<(PlanSource, FlightPlan)>,
+    /// Counts north and east from the boot place.
+    pub frame: Option<LocalFrame>,
+    /// The first engagement.
+    pub engaged_at: Option<SimTime>,
+}
+
+impl Trace {
+    /// Nothing recorded yet of a flight of this plan.
+    #[must_use]
+    pub fn new(plan: FlightPlan, frame: Option<LocalFrame>) -> Self {
+        Self {
+            samples: Vec::new(),
+            happenings: Vec::new(),
+            stays: Vec::new(),
+            plans: vec![(PlanSource::Stored, plan)],
+            frame,
+            engaged_at: None,
+        }
+    }
+
+    /// The first sample at or after a time, µs since boot.
+    #[must_use]
+    pub fn index_at(&self, time_us: i64) -> Option<usize> {
+        let index = self.samples.partition_point(|sample| (sample.time.0 as i64) < time_us);
+        (index < self.samples.len()).then_some(index)
+    }
+
+    /// When the record ends.
+    #[must_use]
+    pub fn end(&self) -> SimTime {
+        self.samples.last().map_or(SimTime::ZERO, |sample| sample.time)
+    }
+
+    /// Place of a waypoint of the first plan of an origin, m north and east of the boot place.
+    #[must_use]
+    pub fn waypoint(&self, index: u8, source: PlanSource) -> Option<[f64; 2]> {
+        let (_, plan) = self.plans.iter().find(|(known, _)| *known == source)?;
+        let position = plan.waypoints.get(usize::from(index))?.position;
+        let frame = self.frame?;
+        let enu = frame.to_enu(position.lat_deg(), position.lon_deg(), frame.alt_amsl_m);
+        Some([enu.y, enu.x])
+    }
+
+    /// Seconds since the first engagement, or since boot when there was none.
+    #[must_use]
+    pub fn seconds(&self, time: SimTime) -> f64 {
+        time.as_secs_f64() - self.engaged_at.map_or(0.0, SimTime::as_secs_f64)
+    }
+
+    /// A time as people read it: `34.2 s`, counted as [`Self::seconds`], with `after boot` when that is so.
+    #[must_use]
+    pub fn shown_time(&self, time: SimTime) -> String {
+        let from = if self.engaged_at.is_some() { "" } else { " after boot" };
+        format!("{:.2} s{from}", self.seconds(time))
+    }
+
+    /// Notes how near the guards of a state came.
+    pub fn note_guards(&mut self, time: SimTime, state: NavState, wp: u8, guards: &[Guard]) {
+        if self.stays.last().is_none_or(|stay| stay.state != state || stay.wp != wp) {
+            self.stays.push(Stay { since: time, state, wp, guards: Vec::new() });
+        }
+        let Some(stay) = self.stays.last_mut() else { return };
+        for guard in guards.iter().filter(|guard| guard.value.is_finite() && guard.limit.is_finite()) {
+            let same = |nearest: &&mut NearestGuard| nearest.guard.name == guard.name;
+            match stay.guards.iter_mut().find(same) {
+                Some(nearest) if guard.margin() > nearest.guard.margin() => {
+                    *nearest = NearestGuard { guard: *guard, time };
+                }
+                Some(_) => {}
+                None => stay.guards.push(NearestGuard { guard: *guard, time }),
+            }
+        }
+    }
+
+    /// Of the guards that did not fire in a stay, the one that would have ended it in the usual way, at its best.
+    #[must_use]
+    pub fn nearest_guard(stay: &Stay) -> Option<&NearestGuard> {
+        /// Guards that end a mission early: that they did not fire is no news.
+        const PROTECTION: [GuardName; 5] =
+            [GuardName::Fix, GuardName::Plan, GuardName::Fence, GuardName::NoProgress, GuardName::Flyaway];
+        stay.guards
+            .iter()
+            .filter(|nearest| !PROTECTION.contains(&nearest.guard.name) && nearest.guard.margin() < 0.0)
+            .max_by(|a, b| share(&a.guard).total_cmp(&share(&b.guard)))
+    }
+
+    /// A number that two flights share when all samples and happenings are the same to the last bit. It is compared within
+    /// a run only: processors differ.
+    #[must_use]
+    pub fn hash(&self) -> u64 {
+        let mut hasher = DefaultHasher::new();
+        for sample in &self.samples {
+            sample.time.0.hash(&mut hasher);
+            sample.values.iter().chain(&sample.target_ne).for_each(|value| value.to_bits().hash(&mut hasher));
+            (sample.flags, sample.state, sample.wp, sample.source, sample.modes).hash(&mut hasher);
+        }
+        for happening in &self.happenings {
+            happening.time.0.hash(&mut hasher);
+            happening.to_string().hash(&mut hasher);
+        }
+        hasher.finish()
+    }
+}
+
+/// How far a guard is from firing, as a share of its limit.
+fn share(guard: &Guard) -> f64 {
+    guard.margin() / guard.limit.abs().max(1e-3)
+}
