@@ -1,5 +1,6 @@
 //! From arguments to the tasks of one mode.
 
+mod check;
 mod config;
 mod convert;
 mod doctor;
@@ -7,6 +8,7 @@ mod doors;
 mod error;
 mod fly;
 mod input_file;
+mod interrupt;
 mod keys;
 mod layers;
 mod live;
@@ -67,7 +69,8 @@ fn reads_layers(command: Option<&Command>) -> bool {
     match command {
         None | Some(Command::Fly(_) | Command::Serve(_) | Command::Sitl(_)) => true,
         Some(
-            Command::Plan(_)
+            Command::Check(_)
+            | Command::Plan(_)
             | Command::Convert(_)
             | Command::Config(_)
             | Command::Doctor
@@ -81,6 +84,7 @@ fn dispatch(cli: Cli, keymap: Keymap) -> Result<u8, AppError> {
     match cli.command {
         None => tui::run(&cli.tui, keymap),
         Some(Command::Fly(args)) => fly::run(&args),
+        Some(Command::Check(args)) => check::run(&args),
         Some(Command::Sitl(args)) => sitl::run(&args),
         Some(Command::Serve(args)) => serve::run(&args),
         Some(Command::Plan(PlanCommand::Show { plan })) => plan::show(&plan),

@@ -3,6 +3,7 @@
 //! A value comes from the first of: the command line, the environment (`BETADECK_…`), the configuration file, the
 //! default. This module only turns texts into values: it reads no file, no environment and no clock.
 
+mod check;
 mod config_file;
 mod convert;
 mod display;
@@ -23,6 +24,7 @@ use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 
 use crate::did_you_mean;
 
+pub use check::CheckArgs;
 pub use config_file::{ConfigCommand, KeyHelp, Origin, origins, template};
 pub use convert::ConvertArgs;
 pub use display::{CharsetChoice, DisplayArgs, ThemeChoice, UnitsChoice};
@@ -33,7 +35,7 @@ pub use generate::{completions, man_page};
 pub use layers::{ENVIRONMENT_PREFIX, Layers};
 pub use physics::{FdmDialect, PhysicsArgs, PhysicsChoice, SimulatorArgs};
 pub use plan_arg::{PlanArg, PlanArgError, is_descriptor};
-pub use value::{AttitudeChoice, OnOff, OutputFile, Speed};
+pub use value::{AttitudeChoice, OnOff, OutputFile, Seeds, Speed};
 
 /// Flies the Betaflight waypoint autopilot in a simulated quadcopter
 ///
@@ -102,6 +104,15 @@ pub enum Command {
         ("betadeck fly square --rx-loss-at 20 --set ap_rx_loss_policy=LAND", "lose the radio after 20 s"),
     ]), after_help = help::FLY)]
     Fly(Box<FlyArgs>),
+
+    /// Flies scenarios without a screen and judges them: a flight plan is a test
+    #[command(before_help = help::examples(&[
+        ("betadeck check", "the guide's scenarios and all others that are built in"),
+        ("betadeck check tests/ --junit report.xml", "your own, for CI"),
+        ("betadeck check guide-7 --seeds 1..20", "one of them in twenty kinds of luck"),
+        ("betadeck check --new plan.toml > plan-test.toml", "a scenario from a flight of your plan"),
+    ]))]
+    Check(Box<CheckArgs>),
 
     /// Firmware and physics in real time with all doors open, without a screen
     #[command(before_help = help::examples(&[
@@ -187,6 +198,7 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>, layers: &Layers) -> 
         Some(
             Command::Serve(_)
             | Command::Sitl(_)
+            | Command::Check(_)
             | Command::Plan(_)
             | Command::Config(_)
             | Command::Doctor

@@ -2,6 +2,7 @@
 //!
 //! Everything here turns events and snapshots into text; where the text goes is the caller's affair.
 
+pub mod check;
 pub mod end;
 pub mod gpx;
 pub mod json;

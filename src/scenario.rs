@@ -16,6 +16,7 @@ mod file;
 pub mod happening;
 mod input;
 mod judge;
+mod library;
 pub mod quantity;
 mod run;
 mod sampling;
@@ -29,6 +30,7 @@ pub use case::{
 pub use file::{FORMAT, Files, TABLES, read, seed_range};
 pub use input::{Action, FORMS, TimedInput};
 pub use judge::{Judgement, Margin, Outcome, compare, judge};
+pub use library::{BuiltinFiles, BuiltinScenario, SCENARIOS};
 pub use run::{CaseFlight, Flown};
 pub use trace::{NearestGuard, Sample, Stay, Trace};
 

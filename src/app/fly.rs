@@ -3,11 +3,11 @@
 
 mod output;
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use super::error::{self, AppError};
+use super::interrupt::interrupt_flag;
 use super::setup;
 use crate::args::FlyArgs;
 use crate::flight::setup::{BootLines, PhysicsSource};
@@ -142,31 +142,4 @@ fn fly(mut flight: Flight, speed: f64, output: &mut Output) -> Result<(FlightEnd
             std::thread::sleep(Duration::from_millis(2));
         }
     }
-}
-
-/// A flag that SIGINT, SIGTERM and SIGHUP set. A second signal ends the program at once: the flight may be waiting for a
-/// reader that does not read.
-fn interrupt_flag() -> Result<Arc<AtomicBool>, AppError> {
-    let deaf = |error| AppError::environment(format!("cannot listen for signals: {error}"));
-    let flag = Arc::new(AtomicBool::new(false));
-    let raised = Arc::clone(&flag);
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(deaf)?;
-    let stop = {
-        let _inside = runtime.enter();
-        super::stop_signal::stop().map_err(deaf)?
-    };
-    std::thread::Builder::new()
-        .name("signals".to_owned())
-        .spawn(move || {
-            runtime.block_on(stop);
-            raised.store(true, Ordering::Relaxed);
-            runtime.block_on(async {
-                if let Ok(again) = super::stop_signal::stop() {
-                    again.await;
-                    std::process::exit(i32::from(error::INTERRUPTED));
-                }
-            });
-        })
-        .map_err(|error| AppError::environment(format!("cannot start a thread: {error}")))?;
-    Ok(flag)
 }

@@ -17,6 +17,13 @@ Exit codes: 0 the mission truly completed, 1 it did not, 2 wrong usage or input,
 Each option can also be set in the configuration file (wind = \"5@270\") and in the environment
 (BETADECK_WIND=5@270); the command line wins over the environment, that over the file.";
 
+/// The end of the help of `check`.
+pub(super) const CHECK: &str = "\
+docs/scenarios.md says how a scenario is written.
+
+Exit codes: 0 every expectation was met, 1 one was not, 2 wrong usage or scenario, 3 file trouble,
+4 internal error, 130 interrupted.";
+
 /// The examples of a command, for the top of its help: what to type and what it does.
 pub(super) fn examples(examples: &[(&str, &str)]) -> String {
     let mut text = String::from("Examples:");

@@ -177,6 +177,17 @@ pub(super) fn output_path(text: &str) -> Result<PathBuf, String> {
     }
 }
 
+/// Seeds of flights.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Seeds(pub Vec<u64>);
+
+/// Seeds, `A..B`.
+pub(super) fn seeds(text: &str) -> Result<Seeds, String> {
+    crate::scenario::seed_range(text)
+        .map(|seeds| Seeds(seeds.collect()))
+        .map_err(|problem| format!("{problem}; write 1..20, both included"))
+}
+
 /// A plan format.
 pub(super) fn format(text: &str) -> Result<Format, String> {
     text.trim_start_matches('.')

@@ -30,6 +30,10 @@ pub struct Scenario {
 pub struct Case {
     /// What tells it from the other cases; empty when there is only one.
     pub name: String,
+    /// The name that the file gives.
+    pub base: String,
+    /// What is varied.
+    pub variant: String,
     /// The air of each seed.
     pub airs: Vec<Air>,
     /// What the flight starts from, but for the air.

@@ -49,11 +49,16 @@ pub trait Files {
     fn text(&mut self, name: &str) -> Result<String, String>;
 }
 
-/// Reads a scenario. `file` is the name that its user gave.
+/// Reads a scenario. `file` is the name that its user gave; `seeds` take the place of its own.
 ///
 /// # Errors
 /// All problems, in the order of their places.
-pub fn read(file: &str, text: &str, files: &mut dyn Files) -> Result<Scenario, Vec<PlanError>> {
+pub fn read(
+    file: &str,
+    text: &str,
+    seeds: Option<&[u64]>,
+    files: &mut dyn Files,
+) -> Result<Scenario, Vec<PlanError>> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut problems = Problems::new(file, text);
     let scenario = if text.len() > MAX_BYTES {
@@ -62,7 +67,7 @@ pub fn read(file: &str, text: &str, files: &mut dyn Files) -> Result<Scenario, V
         problems.add(0..0, message, "is this another file?");
         None
     } else {
-        read_text(file, text, files, &mut problems)
+        read_text(file, text, seeds, files, &mut problems)
     };
     match scenario {
         Some(scenario) if problems.is_empty() => Ok(scenario),
@@ -70,7 +75,13 @@ pub fn read(file: &str, text: &str, files: &mut dyn Files) -> Result<Scenario, V
     }
 }
 
-fn read_text(file: &str, text: &str, files: &mut dyn Files, problems: &mut Problems<'_>) -> Option<Scenario> {
+fn read_text(
+    file: &str,
+    text: &str,
+    seeds: Option<&[u64]>,
+    files: &mut dyn Files,
+    problems: &mut Problems<'_>,
+) -> Option<Scenario> {
     let (document, syntax) = toml::de::DeTable::parse_recoverable(text);
     for error in &syntax {
         let message = error.message().replace('\n', ", ");
@@ -97,7 +108,7 @@ fn read_text(file: &str, text: &str, files: &mut dyn Files, problems: &mut Probl
         }
         for variant in &variants {
             let base = case_names.get(index).cloned().unwrap_or_default();
-            let layers = Layers { top: &top, case: table, variant };
+            let layers = Layers { top: &top, case: table, variant, seeds };
             cases.push(read_case(&base, &case_names, &layers, &mut reader));
         }
     }
@@ -181,6 +192,8 @@ fn read_case(base: &str, all: &[String], layers: &Layers<'_, '_>, reader: &mut R
     }
     Case {
         name: layers.variant.name_of(base),
+        base: base.to_owned(),
+        variant: layers.variant.name_of(""),
         airs,
         setup: craft.setup,
         options: craft.options,
@@ -309,7 +322,10 @@ fn read_compares(top: &TomlTable<'_, '_>, cases: &[Case], reader: &mut Reader<'_
     let mut names = Vec::new();
     for case in cases {
         for measure in &case.measures {
-            names.push((format!("{}.{}", case.name, measure.name), measure.dimension));
+            let name = format!("{}.{}", case.base, measure.name);
+            if !names.iter().any(|(known, _)| *known == name) {
+                names.push((name, measure.dimension));
+            }
         }
     }
     let scope = Scope { names, ..Scope::default() };

@@ -17,7 +17,7 @@ impl Files for NoFiles {
 }
 
 fn scenario(text: &str) -> Scenario {
-    read("test.toml", text, &mut NoFiles).unwrap_or_else(|errors| panic!("{}", report(&errors)))
+    read("test.toml", text, None, &mut BuiltinFiles).unwrap_or_else(|errors| panic!("{}", report(&errors)))
 }
 
 #[test]

@@ -103,6 +103,22 @@ impl Trace {
         }
     }
 
+    /// One sample in which nothing is known: measures of several flights are compared on it.
+    #[must_use]
+    pub(super) fn of_nothing() -> Self {
+        let sample = Sample {
+            time: SimTime::ZERO,
+            values: [f32::NAN; Signal::COUNT],
+            flags: 0,
+            state: NavState::Idle,
+            wp: 0,
+            source: PlanSource::Stored,
+            modes: ModeFlags::NONE,
+            target_ne: [f32::NAN; 2],
+        };
+        Self { samples: vec![sample], ..Self::new(FlightPlan::default(), None) }
+    }
+
     /// The first sample at or after a time, µs since boot.
     #[must_use]
     pub fn index_at(&self, time_us: i64) -> Option<usize> {

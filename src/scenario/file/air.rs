@@ -26,7 +26,8 @@ pub(super) fn read(layers: &Layers<'_, '_>, reader: &mut Reader<'_, '_>) -> Vec<
     let noise = word(get("noise"), reader, |text| Noise::parse(text).map_err(|e| e.problem().to_owned()));
     let noise = noise.unwrap_or(usual.noise);
     let turbulence = turbulence.unwrap_or_default();
-    let mut seeds = layers.value("seeds").map_or_else(|| vec![usual.seed], |value| read_seeds(value, reader));
+    let of_file = layers.value("seeds").map_or_else(|| vec![usual.seed], |value| read_seeds(value, reader));
+    let mut seeds = layers.seeds.map_or(of_file, <[u64]>::to_vec);
     // Without anything random one flight is as good as many.
     let has_template =
         get("wind").and_then(|value| value.get_ref().as_str()).is_some_and(|text| text.contains('{'));

@@ -23,6 +23,8 @@ pub(super) struct Layers<'l, 't> {
     pub(super) top: &'l TomlTable<'l, 't>,
     pub(super) case: Option<&'l TomlTable<'l, 't>>,
     pub(super) variant: &'l Variant<'l, 't>,
+    /// Seeds that take the place of those of the file.
+    pub(super) seeds: Option<&'l [u64]>,
 }
 
 impl<'l, 't> Layers<'l, 't> {

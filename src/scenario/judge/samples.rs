@@ -170,7 +170,8 @@ fn mostly(
         return unjudged(NOTHING_KNOWN);
     }
     let value = held as f64 / known as f64;
-    let verdict = Verdict { value, low: share, high: 1.0, dimension: Dimension::NONE, strict: false };
+    let verdict =
+        Verdict { value, low: share, high: f64::INFINITY, dimension: Dimension::NONE, strict: false };
     let time = first.unwrap_or_else(|| trace.end());
     if verdict.holds() {
         return met(Some(Margin { verdict, time }));

@@ -1,0 +1,99 @@
+//! `betadeck check`: scenarios flown on all processors and judged.
+
+mod load;
+mod output;
+mod progress;
+mod run;
+mod watch;
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::error::{self, AppError};
+use super::interrupt::interrupt_flag;
+use crate::args::CheckArgs;
+use crate::record::check::{CheckedFlight, Compared, Summary};
+use load::Loaded;
+use output::Output;
+
+/// Flies and judges; the exit code says whether every expectation was met.
+pub(super) fn run(args: &CheckArgs) -> Result<u8, AppError> {
+    if args.list {
+        return list(args);
+    }
+    let interrupted = interrupt_flag()?;
+    if args.watch {
+        return watch::run(args, &interrupted);
+    }
+    let loaded = load::load(args)?;
+    fly(&loaded, args, &interrupted)
+}
+
+/// Flies what was loaded, once.
+fn fly(loaded: &Loaded, args: &CheckArgs, interrupted: &Arc<AtomicBool>) -> Result<u8, AppError> {
+    let jobs = run::jobs(loaded, args);
+    if jobs.is_empty() {
+        return Err(AppError::input(match &args.filter {
+            Some(filter) => {
+                format!("no flight has {filter} in its name: betadeck check --list shows the names")
+            }
+            None => "there is nothing to fly: name a slow scenario, or add --slow".to_owned(),
+        }));
+    }
+    let mut output = Output::open(args, loaded)?;
+    let mut problem = None;
+    let mut flights: Vec<CheckedFlight> = Vec::new();
+    let stop = AtomicBool::new(false);
+    let started = run::Stopwatch::start();
+    run::all(loaded, &jobs, args, interrupted, &stop, |flight, done| {
+        if let Err(error) = output.flight(&flight, done, jobs.len()) {
+            problem.get_or_insert(error);
+            stop.store(true, Ordering::Relaxed);
+        }
+        if args.fail_fast && !flight.passed() {
+            stop.store(true, Ordering::Relaxed);
+        }
+        flights.push(flight);
+    })?;
+    if let Some(problem) = problem {
+        return Err(problem);
+    }
+    let is_interrupted = interrupted.load(Ordering::Relaxed);
+    let whole = flights.len() == jobs.len();
+    let compared = if whole { run::compared(loaded, &flights) } else { Vec::new() };
+    let summary = Summary::new(flights, compared, jobs.len(), loaded.left_out, started.seconds());
+    output.finish(&summary)?;
+    Ok(if is_interrupted {
+        error::INTERRUPTED
+    } else if summary.passed() {
+        0
+    } else {
+        error::FAILED
+    })
+}
+
+/// Names and cases, without flying.
+fn list(args: &CheckArgs) -> Result<u8, AppError> {
+    let loaded = load::load(&CheckArgs { slow: true, ..args.clone() })?;
+    let mut text = String::new();
+    for scenario in &loaded.scenarios {
+        let slow = if scenario.slow { " (slow)" } else { "" };
+        let cases: Vec<String> = scenario
+            .cases
+            .iter()
+            .filter(|case| run::is_wanted(scenario, case, args))
+            .map(|case| {
+                let seeds = case.airs.len();
+                let name = if case.name.is_empty() { "one case" } else { &case.name };
+                if seeds == 1 { format!("    {name}\n") } else { format!("    {name} ({seeds} seeds)\n") }
+            })
+            .collect();
+        if !cases.is_empty() {
+            text.push_str(&format!("{}{slow}: {}\n{}", scenario.name, scenario.description, cases.concat()));
+        }
+    }
+    error::print(&text)
+}
+
+/// What was expected of several flights together.
+type Comparisons = Vec<Compared>;

@@ -1,0 +1,152 @@
+//! Reads the scenarios that were named.
+
+use std::path::{Path, PathBuf};
+
+use crate::app::{AppError, input_file};
+use crate::args::CheckArgs;
+use crate::flight::setup::check_setting;
+use crate::plan::format::{self, Format, PlanFile};
+use crate::scenario::{self, BuiltinFiles, BuiltinScenario, Files, SCENARIOS, Scenario};
+
+/// What was read.
+#[derive(Debug)]
+pub(super) struct Loaded {
+    /// The scenarios in the order in which they were named.
+    pub(super) scenarios: Vec<Scenario>,
+    /// The files that were read.
+    pub(super) files: Vec<PathBuf>,
+    /// Slow scenarios that were left out.
+    pub(super) left_out: usize,
+}
+
+/// Where a scenario comes from.
+enum Source {
+    Builtin(BuiltinScenario),
+    File(PathBuf),
+    Stdin,
+}
+
+/// Reads what the arguments name; all problems of all files are reported together.
+pub(super) fn load(args: &CheckArgs) -> Result<Loaded, AppError> {
+    let mut loaded = Loaded { scenarios: Vec::new(), files: Vec::new(), left_out: 0 };
+    let mut problems = Vec::new();
+    let seeds = args.seeds.as_ref().map(|seeds| seeds.0.as_slice());
+    for (source, is_named) in sources(args)? {
+        match read(&source, seeds, &mut loaded.files) {
+            Ok(scenario) if scenario.slow && !args.slow && !is_named => loaded.left_out += 1,
+            Ok(scenario) => loaded.scenarios.push(scenario),
+            Err(error) if error.code == crate::app::error::USAGE => problems.push(error.message),
+            Err(error) => return Err(error),
+        }
+    }
+    if problems.is_empty() { Ok(loaded) } else { Err(AppError::input(problems.join("\n"))) }
+}
+
+/// Reads the scenario of a name, as `open` takes it.
+pub(in crate::app) fn load_one(name: &str) -> Result<Scenario, AppError> {
+    let (source, _) = source(name)?;
+    read(&source, None, &mut Vec::new())
+}
+
+/// What the arguments name, and whether a scenario itself was named.
+fn sources(args: &CheckArgs) -> Result<Vec<(Source, bool)>, AppError> {
+    if args.what.is_empty() {
+        return Ok(SCENARIOS.iter().map(|&scenario| (Source::Builtin(scenario), false)).collect());
+    }
+    let mut sources = Vec::new();
+    for name in &args.what {
+        if Path::new(name).is_dir() {
+            sources
+                .extend(in_directory(Path::new(name))?.into_iter().map(|file| (Source::File(file), false)));
+        } else {
+            sources.push(source(name)?);
+        }
+    }
+    Ok(sources)
+}
+
+fn source(name: &str) -> Result<(Source, bool), AppError> {
+    if name == "-" {
+        return Ok((Source::Stdin, true));
+    }
+    if let Some(scenario) = BuiltinScenario::find(name) {
+        return Ok((Source::Builtin(scenario), true));
+    }
+    let path = PathBuf::from(name);
+    if path.exists() || name.contains('/') || name.ends_with(".toml") {
+        return Ok((Source::File(path), true));
+    }
+    let guess = BuiltinScenario::suggest(name);
+    let guess = guess.map_or_else(String::new, |name| format!("; did you mean {name}?"));
+    Err(AppError::input(format!(
+        "{name} is neither a built-in scenario nor a file{guess} (betadeck check --list shows the built-in ones)"
+    )))
+}
+
+/// The scenarios of a directory, in the order of their names; plans and other TOML files beside them are passed over.
+fn in_directory(directory: &Path) -> Result<Vec<PathBuf>, AppError> {
+    let name = directory.display();
+    let cannot = |error: std::io::Error| AppError::environment(format!("cannot read {name}: {error}"));
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(directory).map_err(cannot)? {
+        let path = entry.map_err(cannot)?.path();
+        let is_toml = path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
+        if is_toml && path.is_file() && is_scenario(&input_file::read_small(&path)?) {
+            files.push(path);
+        }
+    }
+    files.sort();
+    if files.is_empty() {
+        return Err(AppError::input(format!(
+            "{name} has no scenario: a scenario is a *.toml file with format = {}",
+            scenario::FORMAT
+        )));
+    }
+    Ok(files)
+}
+
+/// Whether a TOML file says that it is a scenario.
+fn is_scenario(text: &str) -> bool {
+    text.lines().take_while(|line| !line.trim_start().starts_with('[')).any(|line| {
+        line.trim_start().strip_prefix("format").is_some_and(|rest| rest.trim_start().starts_with('='))
+    })
+}
+
+fn read(source: &Source, seeds: Option<&[u64]>, read: &mut Vec<PathBuf>) -> Result<Scenario, AppError> {
+    let scenario = match source {
+        Source::Builtin(builtin) => scenario::read(builtin.name, builtin.text, seeds, &mut BuiltinFiles),
+        Source::Stdin => {
+            let text = input_file::read_stdin()?;
+            scenario::read("standard input", &text, seeds, &mut Beside { place: PathBuf::new(), read })
+        }
+        Source::File(path) => {
+            let text = input_file::read_small(path)?;
+            read.push(path.clone());
+            let place = path.parent().map(Path::to_owned).unwrap_or_default();
+            scenario::read(&path.display().to_string(), &text, seeds, &mut Beside { place, read })
+        }
+    };
+    scenario.map_err(|errors| AppError::input(format::report(&errors).trim_end().to_owned()))
+}
+
+/// Files that are named from beside a scenario.
+struct Beside<'f> {
+    place: PathBuf,
+    read: &'f mut Vec<PathBuf>,
+}
+
+impl Files for Beside<'_> {
+    fn plan(&mut self, name: &str) -> Result<PlanFile, String> {
+        let text = self.text(name)?;
+        let format = Format::from_file_name(name).unwrap_or_else(|| Format::of_text(&text));
+        format::parse_checked(name, &text, format, check_setting)
+            .map_err(|errors| format::report(&errors).trim_end().to_owned())
+    }
+
+    fn text(&mut self, name: &str) -> Result<String, String> {
+        let path = self.place.join(name);
+        let text = input_file::read_small(&path).map_err(|error| error.message)?;
+        self.read.push(path);
+        Ok(text)
+    }
+}

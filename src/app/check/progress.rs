@@ -1,0 +1,39 @@
+//! How far the run is, on a terminal only.
+
+use std::io::{IsTerminal as _, Write as _};
+
+/// Width of the bar, characters.
+const WIDTH: usize = 24;
+
+/// The bar on standard error.
+pub(super) struct Progress {
+    is_wanted: bool,
+    is_shown: bool,
+}
+
+impl Progress {
+    pub(super) fn new() -> Self {
+        Self { is_wanted: std::io::stderr().is_terminal(), is_shown: false }
+    }
+
+    /// Takes the bar away, so that lines can be printed.
+    pub(super) fn clear(&mut self) {
+        if self.is_shown {
+            write!(std::io::stderr(), "\r\x1b[K").ok();
+            self.is_shown = false;
+        }
+    }
+
+    /// Shows how many of all flights are flown.
+    pub(super) fn show(&mut self, done: usize, all: usize, scenario: &str) {
+        if !self.is_wanted || done >= all {
+            return;
+        }
+        let filled = WIDTH * done / all.max(1);
+        let bar = "█".repeat(filled) + &"░".repeat(WIDTH - filled);
+        let mut stderr = std::io::stderr();
+        write!(stderr, "\r\x1b[K{bar} {done} of {all} flights, {scenario}").ok();
+        stderr.flush().ok();
+        self.is_shown = true;
+    }
+}

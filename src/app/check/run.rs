@@ -1,0 +1,220 @@
+//! Flies the cases on several threads and hands on the results in their order.
+#![allow(clippy::disallowed_methods, reason = "measures the wall time of flights, on threads of its own")]
+
+use std::collections::BTreeMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc;
+use std::time::Instant;
+
+use super::{Comparisons, Loaded};
+use crate::app::AppError;
+use crate::args::CheckArgs;
+use crate::record::check::{CheckedFlight, Compared};
+use crate::scenario::{self, Case, CaseFlight, Scenario};
+
+/// A flight to be flown: indices of its scenario, case and air, and which repetition it is.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Job {
+    scenario: usize,
+    case: usize,
+    air: usize,
+    repetition: u32,
+}
+
+/// Time that passes.
+#[derive(Debug)]
+pub(super) struct Stopwatch(Instant);
+
+impl Stopwatch {
+    pub(super) fn start() -> Self {
+        Self(Instant::now())
+    }
+
+    /// Since the start.
+    pub(super) fn seconds(&self) -> f64 {
+        self.0.elapsed().as_secs_f64()
+    }
+}
+
+/// All flights that the arguments ask for, in the order in which they are told.
+pub(super) fn jobs(loaded: &Loaded, args: &CheckArgs) -> Vec<Job> {
+    let mut jobs = Vec::new();
+    for (scenario, read) in loaded.scenarios.iter().enumerate() {
+        for (case, one) in read.cases.iter().enumerate() {
+            if !is_wanted(read, one, args) {
+                continue;
+            }
+            for air in 0..one.airs.len() {
+                let repetitions = 0..args.repeat.unwrap_or(1);
+                jobs.extend(repetitions.map(|repetition| Job { scenario, case, air, repetition }));
+            }
+        }
+    }
+    jobs
+}
+
+/// Whether the filter takes a case.
+pub(super) fn is_wanted(scenario: &Scenario, case: &Case, args: &CheckArgs) -> bool {
+    args.filter.as_ref().is_none_or(|text| format!("{} {}", scenario.name, case.name).contains(text.as_str()))
+}
+
+/// Flies all of them; `told` gets each result in the order of the jobs, with how many are flown.
+pub(super) fn all(
+    loaded: &Loaded,
+    jobs: &[Job],
+    args: &CheckArgs,
+    interrupted: &AtomicBool,
+    stop: &AtomicBool,
+    mut told: impl FnMut(CheckedFlight, usize),
+) -> Result<(), AppError> {
+    let threads = args.jobs.map_or_else(
+        || std::thread::available_parallelism().map_or(1, std::num::NonZero::get),
+        |jobs| jobs as usize,
+    );
+    let next = AtomicUsize::new(0);
+    let (results, arrived) = mpsc::channel();
+    let is_stopped = || interrupted.load(Ordering::Relaxed) || stop.load(Ordering::Relaxed);
+    std::thread::scope(|scope| {
+        for _ in 0..threads.min(jobs.len()) {
+            let (results, next, is_stopped) = (results.clone(), &next, &is_stopped);
+            scope.spawn(move || {
+                while !is_stopped() {
+                    let index = next.fetch_add(1, Ordering::Relaxed);
+                    let Some(job) = jobs.get(index) else { return };
+                    let flown = catch_unwind(AssertUnwindSafe(|| one(loaded, *job, &is_stopped)));
+                    if results.send((index, flown)).is_err() {
+                        return;
+                    }
+                }
+            });
+        }
+        drop(results);
+        let mut early = BTreeMap::new();
+        let (mut told_up_to, mut arrived_count) = (0, 0);
+        let mut repetitions = Repetitions::default();
+        for (index, flown) in arrived {
+            arrived_count += 1;
+            early.insert(index, flown);
+            while let Some(flown) = early.remove(&told_up_to) {
+                told_up_to += 1;
+                match flown {
+                    Err(_) => return Err(AppError::internal("a flight panicked")),
+                    // Interrupted in the air: it says nothing.
+                    Ok(None) => {}
+                    Ok(Some(flown)) => told(repetitions.compare(flown), arrived_count),
+                }
+            }
+        }
+        Ok(())
+    })
+}
+
+/// Flies and judges one; `None` when it was interrupted.
+fn one(loaded: &Loaded, job: Job, is_stopped: &impl Fn() -> bool) -> Option<CheckedFlight> {
+    /// Ticks between two looks at the interrupt.
+    const SLICE: u32 = 4096;
+    let scenario = loaded.scenarios.get(job.scenario)?;
+    let case = scenario.cases.get(job.case)?;
+    let air = case.airs.get(job.air)?;
+    let started = Instant::now();
+    let mut checked = CheckedFlight {
+        scenario: scenario.name.clone(),
+        file: scenario.file.clone(),
+        case: case.name.clone(),
+        base: case.base.clone(),
+        variant: case.variant.clone(),
+        seed: air.seed,
+        seeds: case.airs.len(),
+        repetition: job.repetition,
+        ..CheckedFlight::default()
+    };
+    let mut flight = match CaseFlight::new(case, air) {
+        Ok(flight) => flight,
+        Err(problem) => {
+            checked.problem = Some(problem);
+            return Some(checked);
+        }
+    };
+    while !flight.is_over() {
+        for _ in 0..SLICE {
+            if flight.is_over() {
+                break;
+            }
+            flight.prepare();
+            flight.tick(|_| {});
+        }
+        if is_stopped() {
+            return None;
+        }
+    }
+    let flown = flight.finish();
+    let (judgements, measures) = scenario::judge(case, &flown);
+    checked.judgements = judgements;
+    checked.measures = measures;
+    checked.hash = flown.trace.hash();
+    checked.engaged_at = flown.trace.engaged_at;
+    checked.flown_s = flown.trace.end().as_secs_f64();
+    checked.ended_at = flown.ended_at;
+    checked.result = flown.result;
+    checked.reason = flown.reason;
+    checked.wall_s = started.elapsed().as_secs_f64();
+    Some(checked)
+}
+
+/// What the first repetition of a flight was like.
+#[derive(Debug, Default)]
+struct Repetitions {
+    first: Option<(u64, Vec<scenario::Judgement>)>,
+}
+
+impl Repetitions {
+    /// Says of a repetition whether it differs from the first.
+    fn compare(&mut self, mut flight: CheckedFlight) -> CheckedFlight {
+        if flight.repetition == 0 {
+            self.first = Some((flight.hash, flight.judgements.clone()));
+        } else if let Some((hash, judgements)) = &self.first
+            && (*hash != flight.hash || *judgements != flight.judgements)
+        {
+            flight.problem = Some(format!(
+                "repetition {} differs from the first flight: the same flight must be the same to the last bit",
+                flight.repetition + 1
+            ));
+        }
+        flight
+    }
+}
+
+/// What is expected of several flights together, for each combination of what is varied and each seed. Where a filter has
+/// left out one of them, nothing is compared.
+pub(super) fn compared(loaded: &Loaded, flights: &[CheckedFlight]) -> Comparisons {
+    let mut compared = Vec::new();
+    for scenario in loaded.scenarios.iter().filter(|scenario| !scenario.compares.is_empty()) {
+        let own = || flights.iter().filter(|flight| flight.file == scenario.file && flight.repetition == 0);
+        let mut groups: Vec<(&str, u64)> =
+            own().map(|flight| (flight.variant.as_str(), flight.seed)).collect();
+        groups.sort_unstable();
+        groups.dedup();
+        for (variant, seed) in groups {
+            let group = || own().filter(move |flight| flight.variant == variant && flight.seed == seed);
+            let wanted = scenario.cases.iter().filter(|case| case.variant == variant).count();
+            if group().count() < wanted {
+                continue;
+            }
+            let names: Vec<(String, f64)> = group()
+                .flat_map(|flight| {
+                    flight.measures.iter().map(|(name, value)| (format!("{}.{name}", flight.base), *value))
+                })
+                .collect();
+            for compare in &scenario.compares {
+                compared.push(Compared {
+                    scenario: scenario.name.clone(),
+                    variant: variant.to_owned(),
+                    seed,
+                    judgement: scenario::compare(compare, &names),
+                });
+            }
+        }
+    }
+    compared
+}

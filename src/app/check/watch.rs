@@ -1,0 +1,58 @@
+//! Flies again when one of the files changes.
+#![allow(clippy::disallowed_methods, reason = "looks at files from time to time")]
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, SystemTime};
+
+use super::{fly, load};
+use crate::app::error::{self, AppError};
+use crate::args::CheckArgs;
+
+/// How often the files are looked at.
+const INTERVAL: Duration = Duration::from_millis(200);
+
+/// Flies, waits for a change, and flies again, until a signal.
+pub(super) fn run(args: &CheckArgs, interrupted: &Arc<AtomicBool>) -> Result<u8, AppError> {
+    if args.what.is_empty() {
+        return Err(AppError::input("--watch needs files: built-in scenarios do not change"));
+    }
+    // What was read last: a file that cannot be read now is waited for all the same.
+    let mut files: Vec<PathBuf> = args.what.iter().map(PathBuf::from).collect();
+    loop {
+        let seen = stamps(&files);
+        match load::load(args) {
+            Ok(loaded) => {
+                for file in &loaded.files {
+                    if !files.contains(file) {
+                        files.push(file.clone());
+                    }
+                }
+                fly(&loaded, args, interrupted)?;
+            }
+            Err(error) => error::tell(&error.message),
+        }
+        let seen = if seen.len() == files.len() { seen } else { stamps(&files) };
+        error::tell("Waiting for a change of the files; Ctrl-C ends.");
+        while stamps(&files) == seen {
+            if interrupted.load(Ordering::Relaxed) {
+                return Ok(error::INTERRUPTED);
+            }
+            std::thread::sleep(INTERVAL);
+        }
+        if interrupted.load(Ordering::Relaxed) {
+            return Ok(error::INTERRUPTED);
+        }
+    }
+}
+
+/// When the files were written last, and how large they are.
+fn stamps(files: &[PathBuf]) -> Vec<Option<(SystemTime, u64)>> {
+    files
+        .iter()
+        .map(|file| {
+            file.metadata().ok().and_then(|metadata| Some((metadata.modified().ok()?, metadata.len())))
+        })
+        .collect()
+}

@@ -1,0 +1,63 @@
+//! The options of `check`.
+
+use std::path::PathBuf;
+
+use super::value::{self, OutputFile};
+use super::{PlanArg, help};
+
+/// The options of `check`.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[command(after_help = help::CHECK)]
+pub struct CheckArgs {
+    /// Scenarios: built-in names, files, directories, - for standard input [default: all built-in ones but the slow]
+    #[arg(value_name = "NAME|FILE|DIR|-")]
+    pub what: Vec<String>,
+
+    /// Lists the scenarios and their cases instead of flying them
+    #[arg(long, help_heading = "Which")]
+    pub list: bool,
+
+    /// Only flights with this text in `SCENARIO CASE`
+    #[arg(long, value_name = "TEXT", help_heading = "Which")]
+    pub filter: Option<String>,
+
+    /// Flies the scenarios marked slow, too
+    #[arg(long, help_heading = "Which")]
+    pub slow: bool,
+
+    /// Flies each case with these seeds instead of its own, such as 1..20
+    #[arg(long, value_name = "A..B", value_parser = value::seeds, help_heading = "Which")]
+    pub seeds: Option<value::Seeds>,
+
+    /// Flies each flight this often and compares the outcomes to the last bit [default: 1]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000), help_heading = "How")]
+    pub repeat: Option<u32>,
+
+    /// Flights at the same time [default: one a processor]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256), help_heading = "How")]
+    pub jobs: Option<u32>,
+
+    /// Ends at the first flight that fails
+    #[arg(long, help_heading = "How")]
+    pub fail_fast: bool,
+
+    /// Flies again whenever one of the files changes, until Ctrl-C
+    #[arg(long, conflicts_with_all = ["list", "new"], help_heading = "How")]
+    pub watch: bool,
+
+    /// Writes a line of JSON a flight; - is standard output
+    #[arg(long, value_name = "FILE|-", help_heading = "Output")]
+    pub json: Option<OutputFile>,
+
+    /// Writes a JUnit file, one testcase a case and seed
+    #[arg(long, value_name = "FILE", value_parser = value::output_path, help_heading = "Output")]
+    pub junit: Option<PathBuf>,
+
+    /// Writes a summary in Markdown, for a pull request
+    #[arg(long, value_name = "FILE", value_parser = value::output_path, help_heading = "Output")]
+    pub markdown: Option<PathBuf>,
+
+    /// Flies this plan and prints a scenario that expects what was seen, with sensible margins
+    #[arg(long, value_name = "PLAN", conflicts_with_all = ["what", "list", "filter", "json", "junit", "markdown"], help_heading = "Output")]
+    pub new: Option<PlanArg>,
+}

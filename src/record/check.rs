@@ -1,0 +1,223 @@
+//! Checked scenarios as text: sentences, JSON lines, JUnit and Markdown.
+
+mod json;
+mod junit;
+mod markdown;
+mod sentences;
+
+use crate::scenario::{Judgement, Outcome};
+use crate::signals::SimTime;
+
+pub use json::{flight_line, summary_line};
+pub use junit::junit;
+pub use markdown::markdown;
+pub use sentences::{flight_lines, summary_lines};
+
+/// A flight that was flown and judged.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct CheckedFlight {
+    /// Name of the scenario.
+    pub scenario: String,
+    /// Its file, as its user named it.
+    pub file: String,
+    /// Name of the case; empty when there is only one.
+    pub case: String,
+    /// The name that the file gives the case.
+    pub base: String,
+    /// What is varied.
+    pub variant: String,
+    /// Seed of all randomness.
+    pub seed: u64,
+    /// Seeds of the case.
+    pub seeds: usize,
+    /// Which flight of the same, from 0.
+    pub repetition: u32,
+    /// What keeps the flight from being judged, or from being believed.
+    pub problem: Option<String>,
+    /// How the flight ended.
+    pub result: String,
+    /// Why, as a sentence.
+    pub reason: String,
+    /// What became of the expectations.
+    pub judgements: Vec<Judgement>,
+    /// Numbers taken from the flight.
+    pub measures: Vec<(String, f64)>,
+    /// The first engagement.
+    pub engaged_at: Option<SimTime>,
+    /// When the flight ended.
+    pub ended_at: SimTime,
+    /// Simulated seconds.
+    pub flown_s: f64,
+    /// Seconds that it took.
+    pub wall_s: f64,
+    /// Equal for flights that are the same to the last bit.
+    pub hash: u64,
+}
+
+impl CheckedFlight {
+    /// Whether every expectation was met.
+    #[must_use]
+    pub fn passed(&self) -> bool {
+        self.problem.is_none() && self.judgements.iter().all(|judgement| judgement.outcome.is_met())
+    }
+
+    /// The expectations that were not met.
+    pub fn failures(&self) -> impl Iterator<Item = &Judgement> {
+        self.judgements.iter().filter(|judgement| !judgement.outcome.is_met())
+    }
+
+    /// The expectation with the smallest margin, as a share of what it allows.
+    #[must_use]
+    pub fn tightest(&self) -> Option<&Judgement> {
+        let share = |judgement: &Judgement| judgement.outcome.margin().map(|margin| margin.verdict.share());
+        self.judgements
+            .iter()
+            .filter(|judgement| share(judgement).is_some())
+            .min_by(|a, b| share(a).unwrap_or(1.0).total_cmp(&share(b).unwrap_or(1.0)))
+    }
+
+    /// `guide-7 · crosswind · seed 3`.
+    #[must_use]
+    pub fn title(&self) -> String {
+        let mut title = self.scenario.clone();
+        if !self.case.is_empty() {
+            title.push_str(&format!(" · {}", self.case));
+        }
+        if self.seeds > 1 {
+            title.push_str(&format!(" · seed {}", self.seed));
+        }
+        if self.repetition > 0 {
+            title.push_str(&format!(" · repetition {}", self.repetition + 1));
+        }
+        title
+    }
+
+    /// A time as people read it: seconds after the engagement, or after boot when there was none.
+    #[must_use]
+    pub fn seconds(&self, time: SimTime) -> f64 {
+        time.as_secs_f64() - self.engaged_at.map_or(0.0, SimTime::as_secs_f64)
+    }
+
+    /// The command that opens an instant of the flight in the screen.
+    #[must_use]
+    pub fn open_command(&self, time: SimTime) -> String {
+        let case = if self.case.is_empty() { String::new() } else { format!(" --case '{}'", self.case) };
+        let seed = if self.seeds > 1 { format!(" --seed {}", self.seed) } else { String::new() };
+        let boot = if self.engaged_at.is_some() { "" } else { "boot+" };
+        let file = if self.file.contains([' ', '\'']) {
+            format!("'{}'", self.file.replace('\'', r"'\''"))
+        } else {
+            self.file.clone()
+        };
+        format!("betadeck open {file}{case}{seed} --at {boot}{:.2}", self.seconds(time))
+    }
+}
+
+/// What was expected of several flights together.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Compared {
+    /// Name of the scenario.
+    pub scenario: String,
+    /// What is varied.
+    pub variant: String,
+    /// The seed that all of them had.
+    pub seed: u64,
+    /// What became of it.
+    pub judgement: Judgement,
+}
+
+impl Compared {
+    /// `guide-2 · noise real · seed 3: all FLYBY is faster`.
+    #[must_use]
+    pub fn title(&self) -> String {
+        let variant = if self.variant.is_empty() { String::new() } else { format!(" · {}", self.variant) };
+        format!("{}{variant} · seed {}", self.scenario, self.seed)
+    }
+}
+
+/// All flights of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Summary {
+    /// The flights, in their order.
+    pub flights: Vec<CheckedFlight>,
+    /// What was expected of several together.
+    pub compared: Vec<Compared>,
+    /// Flights that were asked for.
+    pub wanted: usize,
+    /// Slow scenarios that were left out.
+    pub left_out: usize,
+    /// Seconds that it took.
+    pub wall_s: f64,
+}
+
+impl Summary {
+    /// Of these flights.
+    #[must_use]
+    pub fn new(
+        flights: Vec<CheckedFlight>,
+        compared: Vec<Compared>,
+        wanted: usize,
+        left_out: usize,
+        wall_s: f64,
+    ) -> Self {
+        Self { flights, compared, wanted, left_out, wall_s }
+    }
+
+    /// Whether everything that was asked for was flown and every expectation met.
+    #[must_use]
+    pub fn passed(&self) -> bool {
+        self.flights.len() == self.wanted
+            && self.flights.iter().all(CheckedFlight::passed)
+            && self.compared.iter().all(|compared| compared.judgement.outcome.is_met())
+    }
+
+    /// Flights that passed.
+    #[must_use]
+    pub fn passed_flights(&self) -> usize {
+        self.flights.iter().filter(|flight| flight.passed()).count()
+    }
+
+    /// Simulated seconds of all flights.
+    #[must_use]
+    pub fn flown_s(&self) -> f64 {
+        self.flights.iter().map(|flight| flight.flown_s).sum()
+    }
+
+    /// The cases with several seeds or repetitions: name, flights that passed, flights.
+    #[must_use]
+    pub fn cases(&self) -> Vec<(String, usize, usize)> {
+        let mut cases: Vec<(String, usize, usize)> = Vec::new();
+        for flight in &self.flights {
+            let name = if flight.case.is_empty() {
+                flight.scenario.clone()
+            } else {
+                format!("{} · {}", flight.scenario, flight.case)
+            };
+            let passed = usize::from(flight.passed());
+            match cases.last_mut() {
+                Some((known, good, all)) if *known == name => {
+                    *good += passed;
+                    *all += 1;
+                }
+                _ => cases.push((name, passed, 1)),
+            }
+        }
+        cases
+    }
+}
+
+/// What was seen instead of what was expected, as one sentence.
+#[must_use]
+pub fn complaint(judgement: &Judgement) -> String {
+    match &judgement.outcome {
+        Outcome::Met(_) => format!("{}: met", judgement.label),
+        Outcome::Failed { sentence, guard: None, .. } => format!("{}: {sentence}", judgement.label),
+        Outcome::Failed { sentence, guard: Some(guard), .. } => {
+            format!("{}: {sentence}; {guard}", judgement.label)
+        }
+        Outcome::NeverJudged(why) => format!("{}: never judged, {why}", judgement.label),
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,98 @@
+//! Checked flights as a JUnit file: a testsuite a scenario, a testcase a case and seed.
+
+use super::{CheckedFlight, Compared, Summary, complaint};
+
+/// The whole file.
+#[must_use]
+pub fn junit(summary: &Summary) -> String {
+    let mut scenarios: Vec<&str> = summary.flights.iter().map(|flight| flight.scenario.as_str()).collect();
+    scenarios.dedup();
+    let failures = summary.flights.len() - summary.passed_flights()
+        + summary.compared.iter().filter(|compared| !compared.judgement.outcome.is_met()).count();
+    let tests = summary.flights.len() + summary.compared.len();
+    let mut text = format!(
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"betadeck\" tests=\"{tests}\" failures=\"{failures}\" time=\"{:.3}\">\n",
+        summary.wall_s
+    );
+    for scenario in scenarios {
+        let flights: Vec<&CheckedFlight> =
+            summary.flights.iter().filter(|flight| flight.scenario == scenario).collect();
+        let compared: Vec<&Compared> =
+            summary.compared.iter().filter(|compared| compared.scenario == scenario).collect();
+        let failed = flights.iter().filter(|flight| !flight.passed()).count()
+            + compared.iter().filter(|compared| !compared.judgement.outcome.is_met()).count();
+        let time: f64 = flights.iter().map(|flight| flight.wall_s).sum();
+        text.push_str(&format!(
+            "  <testsuite name=\"{}\" tests=\"{}\" failures=\"{failed}\" time=\"{time:.3}\">\n",
+            escaped(scenario),
+            flights.len() + compared.len()
+        ));
+        flights.iter().for_each(|flight| text.push_str(&testcase(flight)));
+        compared.iter().for_each(|compared| text.push_str(&comparison(compared)));
+        text.push_str("  </testsuite>\n");
+    }
+    text.push_str("</testsuites>\n");
+    text
+}
+
+fn testcase(flight: &CheckedFlight) -> String {
+    let case = if flight.case.is_empty() { "flight" } else { &flight.case };
+    let repetition =
+        if flight.repetition > 0 { format!(" repetition {}", flight.repetition + 1) } else { String::new() };
+    let head = format!(
+        "    <testcase classname=\"{}\" name=\"{} seed {}{repetition}\" time=\"{:.3}\"",
+        escaped(&flight.scenario),
+        escaped(case),
+        flight.seed,
+        flight.wall_s
+    );
+    if flight.passed() {
+        return format!("{head}/>\n");
+    }
+    let mut lines: Vec<String> = flight.problem.iter().cloned().collect();
+    lines.extend(flight.failures().map(complaint));
+    let open = flight.open_command(flight.ended_at);
+    failure(&head, &lines, &open)
+}
+
+fn comparison(compared: &Compared) -> String {
+    let head = format!(
+        "    <testcase classname=\"{}\" name=\"{} ({} seed {})\" time=\"0\"",
+        escaped(&compared.scenario),
+        escaped(&compared.judgement.label),
+        escaped(&compared.variant),
+        compared.seed
+    );
+    if compared.judgement.outcome.is_met() {
+        return format!("{head}/>\n");
+    }
+    failure(&head, &[complaint(&compared.judgement)], "")
+}
+
+fn failure(head: &str, lines: &[String], open: &str) -> String {
+    let message = lines.first().map_or("", String::as_str);
+    let mut body = lines.join("\n");
+    if !open.is_empty() {
+        body.push_str(&format!("\n{open}"));
+    }
+    format!(
+        "{head}>\n      <failure message=\"{}\">{}</failure>\n    </testcase>\n",
+        escaped(message),
+        escaped(&body)
+    )
+}
+
+/// Text inside XML; characters that XML does not know are left out.
+fn escaped(text: &str) -> String {
+    text.chars()
+        .filter(|&c| !c.is_control() || c == '\n' || c == '\t')
+        .map(|c| match c {
+            '&' => "&amp;".to_owned(),
+            '<' => "&lt;".to_owned(),
+            '>' => "&gt;".to_owned(),
+            '"' => "&quot;".to_owned(),
+            '\u{fffe}' | '\u{ffff}' => String::new(),
+            other => other.to_string(),
+        })
+        .collect()
+}

@@ -1,0 +1,75 @@
+//! Checked flights as a summary that reads well in a pull request.
+
+use super::{Summary, complaint};
+use crate::scenario::Outcome;
+
+/// The whole summary.
+#[must_use]
+pub fn markdown(summary: &Summary) -> String {
+    let word = if summary.passed() { "✅ All flights passed" } else { "❌ Some flights failed" };
+    let mut text = format!(
+        "### {word}\n\n{} of {} flights passed; {:.0} s flown in {:.1} s.\n\n| scenario | passed | tightest expectation | left |\n| --- | --- | --- | --- |\n",
+        summary.passed_flights(),
+        summary.wanted,
+        summary.flown_s(),
+        summary.wall_s
+    );
+    let mut index = 0;
+    for (name, passed, all) in summary.cases() {
+        let flights = &summary.flights[index..index + all];
+        index += all;
+        let share = |flight: &super::CheckedFlight| {
+            let margin = flight.tightest().and_then(|tightest| tightest.outcome.margin().copied());
+            margin.map_or(f64::INFINITY, |margin| margin.verdict.share())
+        };
+        let tightest =
+            flights.iter().min_by(|a, b| share(a).total_cmp(&share(b))).and_then(|flight| flight.tightest());
+        let mark = if passed == all { "✅" } else { "❌" };
+        let (label, left) = match tightest.and_then(|tightest| Some((tightest, tightest.outcome.margin()?))) {
+            Some((tightest, margin)) => (
+                format!("{} ({})", tightest.label, margin.shown()),
+                format!("{:.0} %", 100.0 * margin.verdict.share()),
+            ),
+            None => (String::new(), String::new()),
+        };
+        text.push_str(&format!(
+            "| {mark} {} | {passed} of {all} | {} | {left} |\n",
+            cell(&name),
+            cell(&label)
+        ));
+    }
+    let failed: Vec<_> = summary.flights.iter().filter(|flight| !flight.passed()).collect();
+    if !failed.is_empty() {
+        text.push_str("\n#### What was seen\n\n");
+    }
+    for flight in failed {
+        text.push_str(&format!("- **{}**\n", line(&flight.title())));
+        if let Some(problem) = &flight.problem {
+            text.push_str(&format!("  - {}\n", line(problem)));
+        }
+        for judgement in flight.failures() {
+            text.push_str(&format!("  - {}\n", line(&complaint(judgement))));
+            if let Outcome::Failed { at: Some(at), .. } = judgement.outcome {
+                text.push_str(&format!("    `{}`\n", flight.open_command(at)));
+            }
+        }
+    }
+    for compared in summary.compared.iter().filter(|compared| !compared.judgement.outcome.is_met()) {
+        text.push_str(&format!(
+            "- **{}**\n  - {}\n",
+            line(&compared.title()),
+            line(&complaint(&compared.judgement))
+        ));
+    }
+    text
+}
+
+/// Text in a cell of a table.
+fn cell(text: &str) -> String {
+    line(text).replace('|', "\\|")
+}
+
+/// Text that Markdown takes for text.
+fn line(text: &str) -> String {
+    text.replace('\n', " ").replace('*', "\\*").replace('_', "\\_").replace('<', "&lt;")
+}

@@ -1,0 +1,84 @@
+//! Checked flights as sentences.
+
+use super::{CheckedFlight, Summary, complaint};
+use crate::scenario::Outcome;
+
+/// The lines of a flight: one when it passed; else what was seen, and how to open the worst moment.
+#[must_use]
+pub fn flight_lines(flight: &CheckedFlight) -> Vec<String> {
+    let mark = if flight.passed() { "✓" } else { "✗" };
+    let title = flight.title();
+    let first = match (flight.passed(), flight.tightest()) {
+        (true, Some(tightest)) => match tightest.outcome.margin() {
+            Some(margin) => format!(
+                "{mark} {title}: {}, tightest: {} ({}, {:.0} % left)",
+                flight.result,
+                tightest.label,
+                margin.shown(),
+                100.0 * margin.verdict.share()
+            ),
+            None => format!("{mark} {title}: {}", flight.result),
+        },
+        (true, None) => format!("{mark} {title}: {}", flight.result),
+        (false, _) if flight.result.is_empty() => format!("{mark} {title}"),
+        (false, _) => format!("{mark} {title}: {}, {}", flight.result, flight.reason),
+    };
+    let mut lines = vec![first];
+    lines.extend(flight.problem.iter().map(|problem| format!("    {problem}")));
+    for judgement in flight.failures() {
+        lines.push(format!("    line {}: {}", judgement.line, complaint(judgement)));
+        if let Outcome::Failed { at: Some(at), .. } = judgement.outcome {
+            lines.push(format!("      {}", flight.open_command(at)));
+        }
+    }
+    lines
+}
+
+/// The last lines of a run.
+#[must_use]
+pub fn summary_lines(summary: &Summary) -> Vec<String> {
+    let mut lines = Vec::new();
+    for (name, passed, all) in summary.cases() {
+        if all > 1 && passed < all {
+            lines.push(format!("{name}: {passed} of {all}"));
+        }
+    }
+    for compared in &summary.compared {
+        let mark = if compared.judgement.outcome.is_met() { "✓" } else { "✗" };
+        match compared.judgement.outcome.margin() {
+            Some(margin) => lines.push(format!(
+                "{mark} {}: {} ({}, {:.0} % left)",
+                compared.title(),
+                compared.judgement.label,
+                margin.shown(),
+                100.0 * margin.verdict.share()
+            )),
+            None => lines.push(format!("{mark} {}: {}", compared.title(), complaint(&compared.judgement))),
+        }
+    }
+    let flown = summary.flown_s();
+    let flights = if summary.flights.len() == 1 { "flight" } else { "flights" };
+    let mut last = format!("{} of {} {flights} passed", summary.passed_flights(), summary.flights.len());
+    let failed = summary.compared.iter().filter(|compared| !compared.judgement.outcome.is_met()).count();
+    if failed > 0 {
+        last.push_str(&format!(", {failed} comparisons failed"));
+    }
+    if summary.flights.len() < summary.wanted {
+        last.push_str(&format!(", {} were not flown", summary.wanted - summary.flights.len()));
+    }
+    last.push_str(&format!(
+        "; {flown:.1} s flown in {:.2} s ({:.0}x real time)",
+        summary.wall_s,
+        flown / summary.wall_s.max(1e-6)
+    ));
+    if summary.left_out > 0 {
+        let slow = if summary.left_out == 1 {
+            "1 slow scenario"
+        } else {
+            &format!("{} slow scenarios", summary.left_out)
+        };
+        last.push_str(&format!("; {slow} left out (--slow)"));
+    }
+    lines.push(last);
+    lines
+}

@@ -1,0 +1,89 @@
+//! The scenarios that travel with the executable: the same files as in `plans/scenarios/`.
+
+use super::Files;
+use crate::did_you_mean;
+use crate::plan::format::PlanFile;
+
+macro_rules! scenarios {
+    ($($name:literal)*) => {
+        /// All built-in scenarios, in the order in which they are flown.
+        pub const SCENARIOS: &[BuiltinScenario] = &[
+            $(BuiltinScenario {
+                name: $name,
+                text: include_str!(concat!("../../plans/scenarios/", $name, ".toml")),
+            },)*
+        ];
+    };
+}
+
+scenarios! {
+    "guide-1"
+}
+
+/// Settings that several of them share.
+const TEXTS: &[(&str, &str)] = &[("guide.txt", include_str!("../../plans/scenarios/guide.txt"))];
+
+/// A scenario that is part of the executable.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct BuiltinScenario {
+    /// Its name, as given on the command line.
+    pub name: &'static str,
+    /// Its text.
+    pub text: &'static str,
+}
+
+impl BuiltinScenario {
+    /// The built-in scenario of this name.
+    #[must_use]
+    pub fn find(name: &str) -> Option<Self> {
+        SCENARIOS.iter().copied().find(|scenario| scenario.name == name)
+    }
+
+    /// The name of a built-in scenario that `name` may stand for.
+    #[must_use]
+    pub fn suggest(name: &str) -> Option<&'static str> {
+        did_you_mean::closest(name, SCENARIOS.iter().map(|scenario| scenario.name))
+    }
+}
+
+/// The files that built-in scenarios name.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct BuiltinFiles;
+
+impl Files for BuiltinFiles {
+    fn plan(&mut self, name: &str) -> Result<PlanFile, String> {
+        Err(format!("{name} is not part of this executable: name a built-in plan"))
+    }
+
+    fn text(&mut self, name: &str) -> Result<String, String> {
+        let found = TEXTS.iter().find(|(known, _)| *known == name);
+        found
+            .map(|(_, text)| (*text).to_owned())
+            .ok_or_else(|| format!("{name} is not part of this executable"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::format::report;
+
+    #[test]
+    fn every_file_of_the_folder_is_built_in_and_reads() {
+        let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("plans/scenarios");
+        let mut names: Vec<String> = std::fs::read_dir(folder)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .filter_map(|name| name.strip_suffix(".toml").map(str::to_owned))
+            .collect();
+        names.sort();
+        let mut built_in: Vec<&str> = SCENARIOS.iter().map(|scenario| scenario.name).collect();
+        built_in.sort_unstable();
+        assert_eq!(names, built_in);
+        for scenario in SCENARIOS {
+            let read = crate::scenario::read(scenario.name, scenario.text, None, &mut BuiltinFiles)
+                .unwrap_or_else(|errors| panic!("{}", report(&errors)));
+            assert!(!read.description.is_empty(), "{}", scenario.name);
+        }
+    }
+}
