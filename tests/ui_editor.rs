@@ -2,64 +2,15 @@
 
 use betadeck::plan::{FlightPlan, WaypointType};
 use betadeck::ui::editor::{Entry, FileReply, FileRequest, Listing};
-use betadeck::ui::keymap::KeyPress;
-use betadeck::ui::{AppState, Effect, Msg, draw, update};
-use crossterm::event::{KeyCode, KeyEvent, KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
-use ratatui::Terminal;
-use ratatui::backend::TestBackend;
+use betadeck::ui::{Effect, Msg, update};
+use crossterm::event::{KeyCode, KeyModifiers, MouseEventKind};
 
 #[path = "ui/fixture.rs"]
 mod fixture;
+#[path = "ui/hands.rs"]
+mod hands;
 
-fn state(size: (u16, u16)) -> AppState {
-    let mut state = fixture::state(size, fixture::colour());
-    let flight = fixture::SimpleFlight { time_s: 8.0, fix: true, ..fixture::SimpleFlight::default() };
-    update(&mut state, Msg::View(fixture::view(&flight)));
-    state
-}
-
-/// Presses keys by their names in the keymap, apart by blanks; `'text` is typed.
-fn keys(state: &mut AppState, keys: &str) -> Vec<Effect> {
-    let mut effects = Vec::new();
-    for name in keys.split_whitespace() {
-        if let Some(text) = name.strip_prefix('\'') {
-            for c in text.chars() {
-                effects.extend(press(state, KeyCode::Char(c), KeyModifiers::NONE));
-            }
-            continue;
-        }
-        assert!(KeyPress::parse(name).is_some(), "{name}");
-        let (modifiers, rest) = match name.split_once('-') {
-            Some(("ctrl", rest)) => (KeyModifiers::CONTROL, rest),
-            Some(("alt", rest)) => (KeyModifiers::ALT, rest),
-            Some(("shift", rest)) => (KeyModifiers::SHIFT, rest),
-            _ => (KeyModifiers::NONE, name),
-        };
-        let code = match rest {
-            "up" => KeyCode::Up,
-            "down" => KeyCode::Down,
-            "left" => KeyCode::Left,
-            "right" => KeyCode::Right,
-            "enter" => KeyCode::Enter,
-            "esc" => KeyCode::Esc,
-            "tab" => KeyCode::Tab,
-            "backspace" => KeyCode::Backspace,
-            c => KeyCode::Char(c.chars().next().expect("a key")),
-        };
-        effects.extend(press(state, code, modifiers));
-    }
-    effects
-}
-
-fn press(state: &mut AppState, code: KeyCode, modifiers: KeyModifiers) -> Vec<Effect> {
-    update(state, Msg::Key(KeyEvent::new(code, modifiers)))
-}
-
-fn screen(state: &AppState) -> String {
-    let mut terminal = Terminal::new(TestBackend::new(state.size.0, state.size.1)).unwrap();
-    terminal.draw(|frame| draw(state, frame)).unwrap();
-    terminal.backend().to_string()
-}
+use hands::{journal_lines, keys, mouse, place_of, press, screen, state_with_fix as state};
 
 /// The request to write a plan among the effects.
 fn save_of(effects: Vec<Effect>) -> FileRequest {
@@ -68,10 +19,6 @@ fn save_of(effects: Vec<Effect>) -> FileRequest {
         _ => None,
     });
     requests.last().expect("a plan to write")
-}
-
-fn journal_lines(effects: &[Effect]) -> usize {
-    effects.iter().filter(|effect| matches!(effect, Effect::Files(FileRequest::Journal(..)))).count()
 }
 
 fn altitudes(plan: &FlightPlan) -> Vec<i32> {
@@ -181,20 +128,18 @@ fn a_waypoint_is_dragged_on_the_map_by_the_mouse_as_one_edit() {
     let seen = screen(&state);
     let (row, line) = seen.lines().enumerate().find(|(_, line)| line.contains("1 FLYBY")).unwrap();
     let column = line.chars().position(|c| c == '◇').expect("the mark") as u16 - 1;
-    let mouse =
-        |kind, column, row| Msg::Mouse(MouseEvent { kind, column, row, modifiers: KeyModifiers::NONE });
     let before = state.plan().waypoints[1].position;
     let row = row as u16;
-    update(&mut state, mouse(MouseEventKind::Down(MouseButton::Left), column, row));
-    update(&mut state, mouse(MouseEventKind::Up(MouseButton::Left), column, row));
+    mouse(&mut state, MouseEventKind::Down, (column, row));
+    mouse(&mut state, MouseEventKind::Up, (column, row));
     assert_eq!(state.plan().waypoints[1].position, before, "a click moves nothing");
-    update(&mut state, mouse(MouseEventKind::Down(MouseButton::Left), column, row));
+    mouse(&mut state, MouseEventKind::Down, (column, row));
     for step in 1..6 {
-        let effects = update(&mut state, mouse(MouseEventKind::Drag(MouseButton::Left), column - step, row));
+        let effects = mouse(&mut state, MouseEventKind::Drag, (column - step, row));
         assert!(effects.is_empty());
     }
     assert!(screen(&state).contains("from WP0"), "metres and bearing while it moves");
-    let effects = update(&mut state, mouse(MouseEventKind::Up(MouseButton::Left), column - 5, row));
+    let effects = mouse(&mut state, MouseEventKind::Up, (column - 5, row));
     assert_eq!(journal_lines(&effects), 1);
     let after = state.plan().waypoints[1].position;
     assert!(after.lon_e7 < before.lon_e7, "{after} is not west of {before}");
@@ -388,26 +333,16 @@ fn plans_are_opened_and_saved_by_name() {
 fn the_mouse_chooses_values_and_drags_altitudes_in_the_profile() {
     let mut state = state((120, 40));
     keys(&mut state, "2 z");
-    let find = |state: &AppState, text: &str| {
-        let seen = screen(state);
-        let (row, line) = seen.lines().enumerate().filter(|(_, line)| line.contains(text)).last().unwrap();
-        let at = line.find(text).unwrap();
-        (line[..at].chars().count() as u16 - 1, row as u16)
-    };
-    let mouse = |kind, (column, row): (u16, u16)| {
-        Msg::Mouse(MouseEvent { kind, column, row, modifiers: KeyModifiers::NONE })
-    };
-    let left = MouseButton::Left;
-    let speed = find(&state, "30.0 ORBIT");
-    update(&mut state, mouse(MouseEventKind::Down(left), speed));
-    update(&mut state, mouse(MouseEventKind::Up(left), speed));
+    let speed = place_of(&state, "30.0 ORBIT");
+    mouse(&mut state, MouseEventKind::Down, speed);
+    mouse(&mut state, MouseEventKind::Up, speed);
     keys(&mut state, "+");
     assert_eq!(state.plan().waypoints[2].duration_ds, 310);
-    let number = find(&state, "···3");
+    let number = place_of(&state, "···3");
     let number = (number.0 + 3, number.1);
-    update(&mut state, mouse(MouseEventKind::Down(left), number));
-    assert!(update(&mut state, mouse(MouseEventKind::Drag(left), (number.0, number.1 + 2))).is_empty());
-    let effects = update(&mut state, mouse(MouseEventKind::Up(left), (number.0, number.1 + 2)));
+    mouse(&mut state, MouseEventKind::Down, number);
+    assert!(mouse(&mut state, MouseEventKind::Drag, (number.0, number.1 + 2)).is_empty());
+    let effects = mouse(&mut state, MouseEventKind::Up, (number.0, number.1 + 2));
     assert_eq!(journal_lines(&effects), 1);
     assert!((2000..4500).contains(&state.plan().waypoints[3].alt_cm), "{:?}", altitudes(state.plan()));
 }

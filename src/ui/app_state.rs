@@ -277,13 +277,18 @@ impl AppState {
         }
     }
 
+    /// Whether the map shows what is edited rather than what is flown.
+    pub(super) fn edits_on_map(&self) -> bool {
+        self.map.edit.is_some() || self.map.moving.is_some()
+    }
+
     /// The plan the map shows: the one being flown, else the open one, else the craft's.
     #[must_use]
     pub fn shown_plan(&self) -> &FlightPlan {
         let vehicle = &self.view.vehicle;
         match &vehicle.active_plan {
             // Whoever edits on the map sees what is edited.
-            _ if self.map.edit.is_some() || self.map.moving.is_some() => self.plan(),
+            _ if self.edits_on_map() => self.plan(),
             Some(plan) => plan,
             None if self.plan().waypoints.is_empty() => vehicle.stored_plan.as_ref().unwrap_or(self.plan()),
             None => self.plan(),

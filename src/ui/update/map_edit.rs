@@ -10,6 +10,9 @@ use crate::ui::map_point::{self, MapPoint};
 use crate::ui::message::Effect;
 use crate::ui::viewport::MapMode;
 
+/// The greatest radius of the fence that the craft takes, m.
+const WIDEST_FENCE_M: f64 = 10_000.0;
+
 /// Shows or hides the cursor.
 pub(super) fn toggle(state: &mut AppState) -> Vec<Effect> {
     state.map.moving = None;
@@ -89,7 +92,11 @@ pub(super) fn put_down(state: &mut AppState) -> Vec<Effect> {
         }
         MapItem::Fence => {
             let Some(home) = map_edit::home(state) else { return Vec::new() };
-            let metres = home.distance(moving.place).round().max(1.0);
+            let metres = home.distance(moving.place).round().clamp(1.0, WIDEST_FENCE_M);
+            state.notify(
+                Severity::Info,
+                format!("Fence of the plan: {} around home.", state.units.length_text(metres, 0)),
+            );
             state.editor.edit("fence", |document| {
                 document.settings.retain(|line| !line.starts_with("ap_max_distance_from_home"));
                 document.settings.push(format!("ap_max_distance_from_home = {metres:.0}"));

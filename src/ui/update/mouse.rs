@@ -24,6 +24,9 @@ const WHEEL_LINES: isize = 3;
 
 /// Takes a mouse event in.
 pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
+    if let MouseEventKind::Up(_) = event.kind {
+        return release(state);
+    }
     if !state.popups.is_empty() || state.editor.popup.is_some() {
         return Vec::new();
     }
@@ -70,20 +73,6 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
             }
             Panel::State | Panel::Cli | Panel::Graphs | Panel::World | Panel::Log => Vec::new(),
         },
-        MouseEventKind::Up(_) => {
-            state.drag = None;
-            if let Some((index, alt_cm)) = state.editor.dragged_altitude.take() {
-                return state.editor.edit(&format!("altitude of WP{index}"), |document| {
-                    if let Some(wp) = document.plan.waypoints.get_mut(index) {
-                        wp.alt_cm = alt_cm;
-                    }
-                });
-            }
-            if state.map.moving.is_some_and(|moving| moving.by_mouse) {
-                return map_edit::put_down(state);
-            }
-            Vec::new()
-        }
         MouseEventKind::ScrollUp => {
             wheel(state, panel, area, &event, -1);
             Vec::new()
@@ -94,6 +83,22 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
         }
         _ => Vec::new(),
     }
+}
+
+/// Ends a drag, wherever the mouse is by then.
+fn release(state: &mut AppState) -> Vec<Effect> {
+    state.drag = None;
+    if let Some((index, alt_cm)) = state.editor.dragged_altitude.take() {
+        return state.editor.edit(&format!("altitude of WP{index}"), |document| {
+            if let Some(wp) = document.plan.waypoints.get_mut(index) {
+                wp.alt_cm = alt_cm;
+            }
+        });
+    }
+    if state.map.moving.is_some_and(|moving| moving.by_mouse) {
+        return map_edit::put_down(state);
+    }
+    Vec::new()
 }
 
 fn wheel(state: &mut AppState, panel: Panel, area: Rect, event: &MouseEvent, direction: isize) {
