@@ -29,6 +29,7 @@ use std::path::PathBuf;
 
 use super::message::Effect;
 use super::text_field::TextField;
+use super::units::Units;
 use crate::plan::edit::{History, PlanDocument};
 use crate::plan::{FlightPlan, MAX_WAYPOINTS, Waypoint};
 
@@ -290,13 +291,13 @@ impl Editor {
     }
 
     /// Changes the value under the cursor, in all selected waypoints that use it.
-    pub(super) fn nudge(&mut self, steps: i32) -> Vec<Effect> {
+    pub(super) fn nudge(&mut self, steps: i32, units: Units) -> Vec<Effect> {
         let (column, selected) = (self.column, self.selected());
         self.edit(&format!("{} of {}", column.name(), which(&selected)), |document| {
             for index in selected {
                 if let Some(wp) = document.plan.waypoints.get_mut(index).filter(|wp| column.is_used(wp.kind))
                 {
-                    column.nudge(wp, steps);
+                    column.nudge(wp, steps, units);
                 }
             }
         })
@@ -306,14 +307,14 @@ impl Editor {
     ///
     /// # Errors
     /// The waypoint has no such value.
-    pub(super) fn begin_typing(&mut self) -> Result<(), String> {
+    pub(super) fn begin_typing(&mut self, units: Units) -> Result<(), String> {
         let Some(wp) = self.document().plan.waypoints.get(self.row()) else {
             return Err("There is no waypoint to edit: `i` inserts one.".to_owned());
         };
         if !self.column.is_used(wp.kind) {
             return Err(format!("A {} has no {}.", wp.kind, self.column.name()));
         }
-        self.field = Some(CellField { text: TextField::new(self.column.text(wp)), problem: None });
+        self.field = Some(CellField { text: TextField::new(self.column.text(wp, units)), problem: None });
         Ok(())
     }
 
@@ -323,7 +324,7 @@ impl Editor {
     }
 
     /// Takes what was typed, in all selected waypoints that use it; a wrong value stays with what is wrong with it.
-    pub(super) fn end_typing(&mut self) -> Vec<Effect> {
+    pub(super) fn end_typing(&mut self, units: Units) -> Vec<Effect> {
         let Some(mut field) = self.field.take() else { return Vec::new() };
         let (column, selected) = (self.column, self.selected());
         let mut after = self.document().clone();
@@ -332,7 +333,7 @@ impl Editor {
             if !column.is_used(wp.kind) {
                 continue;
             }
-            if let Err(problem) = column.set(wp, field.text.value()) {
+            if let Err(problem) = column.set(wp, field.text.value(), units) {
                 field.problem = Some(problem);
                 self.field = Some(field);
                 return Vec::new();

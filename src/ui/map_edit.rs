@@ -77,13 +77,13 @@ pub(super) fn item_at(state: &AppState, place: MapPoint, metres_per_column: f64)
     fence_m(state).filter(|fence_m| (from_home - fence_m).abs() <= reach).map(|_| MapItem::Fence)
 }
 
-/// Metres and bearings of a place, for whoever is about to put something there.
+/// Distances and bearings of a place, for whoever is about to put something there.
 pub(super) fn measured(state: &AppState, place: MapPoint, moving: Option<MapItem>) -> Option<String> {
     let frame = origin(state)?;
     let here = position(&frame, place);
     let from = |name: &str, there: LatLon| {
         let (distance_m, bearing) = distance_bearing(there, here);
-        format!("{distance_m:.1} m {:03.0}° from {name}", bearing.to_degrees())
+        format!("{} {:03.0}° from {name}", state.units.length_text(distance_m, 1), bearing.to_degrees())
     };
     let waypoints = &state.plan().waypoints;
     let before = match moving {

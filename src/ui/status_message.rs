@@ -6,6 +6,7 @@ use super::app_state::AppState;
 use super::event_log::Severity;
 use super::transmitter;
 use super::transmitter::ThrottleMove;
+use super::units::Units;
 
 /// The state of the craft as a sentence, and what to do.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -161,7 +162,7 @@ pub fn current(state: &AppState) -> Option<StatusMessage> {
 fn in_flight(state: &AppState) -> Option<StatusMessage> {
     let nav = state.view.vehicle.nav.as_ref()?;
     if let Some(deviation) = nav.cannot_hold {
-        return cannot_hold_message(deviation);
+        return cannot_hold_message(deviation, state.units);
     }
     if nav.held_by_command {
         let action = format!("C goes on to WP{}, G to another", nav.wp);
@@ -175,10 +176,11 @@ fn in_flight(state: &AppState) -> Option<StatusMessage> {
 }
 
 /// A craft that is blown off its place, or cannot keep its altitude.
-fn cannot_hold_message(deviation: CannotHold) -> Option<StatusMessage> {
+fn cannot_hold_message(deviation: CannotHold, units: Units) -> Option<StatusMessage> {
     let CannotHold { distance_m, vertical_m, limit } = deviation;
     let side = if vertical_m < 0.0 { "low" } else { "high" };
-    let condition = format!("Cannot hold: {distance_m:.0} m off, {:.0} m too {side}.", vertical_m.abs());
+    let (off, vertical) = (units.length_text(distance_m, 0), units.length_text(vertical_m.abs(), 0));
+    let condition = format!("Cannot hold: {off} off, {vertical} too {side}.");
     let action = match limit {
         HoldLimit::Lean => "the lean is at its limit: raise ap_max_angle, or land",
         HoldLimit::Throttle => "the throttle is at its limit: land",

@@ -60,6 +60,25 @@ impl Units {
         format!("{:.digits$} {}", self.speed(metres_a_second), self.speed_unit())
     }
 
+    /// A length moved by whole steps of what is shown: metres or feet.
+    #[must_use]
+    pub(super) fn step_length(self, metres: f64, steps: i32) -> f64 {
+        match self {
+            Self::Metric => metres + f64::from(steps),
+            // What is stored is whole centimetres: without rounding, steps of a foot would drift.
+            Self::Imperial => self.metres(tenths(self.length(metres)) + f64::from(steps)),
+        }
+    }
+
+    /// A speed moved by steps of half a metre a second, or of a mile an hour.
+    #[must_use]
+    pub(super) fn step_speed(self, metres_a_second: f64, steps: i32) -> f64 {
+        match self {
+            Self::Metric => metres_a_second + 0.5 * f64::from(steps),
+            Self::Imperial => self.metres_per_second(tenths(self.speed(metres_a_second)) + f64::from(steps)),
+        }
+    }
+
     /// What a guard's values are multiplied by, and the unit they are then in.
     #[must_use]
     pub fn of_guard(self, unit: GuardUnit) -> (f64, &'static str) {
@@ -69,6 +88,15 @@ impl Units {
             GuardUnit::None | GuardUnit::Waypoints | GuardUnit::Seconds | GuardUnit::Microseconds => {
                 (1.0, unit.into())
             }
+        }
+    }
+
+    /// Name of the unit of lengths in sentences.
+    #[must_use]
+    pub(super) fn length_name(self) -> &'static str {
+        match self {
+            Self::Metric => "metres",
+            Self::Imperial => "feet",
         }
     }
 
@@ -89,6 +117,10 @@ impl Units {
             Self::Imperial => "mph",
         }
     }
+}
+
+fn tenths(value: f64) -> f64 {
+    (value * 10.0).round() / 10.0
 }
 
 #[cfg(test)]

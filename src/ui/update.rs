@@ -145,12 +145,16 @@ fn take_view(state: &mut AppState, view: SessionView) {
         return;
     }
     if let Some(place) = map_point::craft(&state.view) {
-        let engaged = state.view.vehicle.is_engaged();
-        let time_s = state.view.vehicle.time.as_secs_f64();
+        let vehicle = &state.view.vehicle;
+        let engaged = vehicle.is_engaged();
+        let time_s = vehicle.time.as_secs_f64();
+        let alt_m =
+            vehicle.truth.as_ref().map(|truth| truth.alt).or(vehicle.estimate.alt).unwrap_or_default();
+        let wp = vehicle.nav.as_ref().filter(|_| state.flies_stored_plan()).map(|nav| nav.wp);
         if state.view.vehicle.craft.armed == Some(false) {
             state.track.disarmed_at(place.n, place.e);
         }
-        state.track.push(TrackPoint { n: place.n, e: place.e, time_s, engaged });
+        state.track.push(TrackPoint { n: place.n, e: place.e, alt_m, time_s, engaged, wp });
     }
 }
 

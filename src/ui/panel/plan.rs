@@ -118,7 +118,7 @@ fn said_below(state: &AppState, findings: &[Finding], width: usize) -> Vec<Line<
         let kind = state.plan().waypoints.get(state.editor.row()).map(|wp| wp.kind).unwrap_or_default();
         return match &field.problem {
             Some(problem) => said(Role::Fault, &format!("✗ {problem}")),
-            None => said(Role::Dim, &state.editor.column().hint(kind)),
+            None => said(Role::Dim, &state.editor.column().hint(kind, state.units)),
         };
     }
     let Some((finding, fix)) = findings::shown(state, findings) else {

@@ -74,7 +74,7 @@ pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<
         }
     }
     let help = match all.get(state.knobs.selected) {
-        Some(knob) if focused => knob.help(),
+        Some(knob) if focused => knob.help(state.units),
         _ => "wind, noise and faults, changed while it flies: 7".to_owned(),
     };
     row(buffer, area, area.height - 1, theme, Role::Dim, &help);

@@ -146,7 +146,7 @@ fn press_on_plan(state: &mut AppState, area: Rect, event: &MouseEvent) {
     }
 }
 
-/// Drags an altitude of the profile, by whole metres.
+/// Drags an altitude of the profile, by whole metres or feet.
 fn drag_altitude(state: &mut AppState, area: Rect, event: &MouseEvent) {
     let (Some((index, _)), Some((_, from_row, _, from_cm))) = (state.editor.dragged_altitude, state.drag)
     else {
@@ -154,8 +154,9 @@ fn drag_altitude(state: &mut AppState, area: Rect, event: &MouseEvent) {
     };
     let Some(metres) = plan_panel::metres_per_row(state, layout::inner(area)) else { return };
     let rows = f64::from(from_row) - f64::from(event.row);
-    let altitude_m = (from_cm / 100.0 + rows * metres).round();
-    state.editor.dragged_altitude = Some((index, (altitude_m * 100.0) as i32));
+    let shown = state.units.length(from_cm / 100.0 + rows * metres).round();
+    let altitude_m = state.units.metres(shown);
+    state.editor.dragged_altitude = Some((index, (altitude_m * 100.0).round() as i32));
 }
 
 /// Moves what was picked up by the mouse; the window stands still meanwhile.

@@ -20,15 +20,15 @@ const FIRST_ALT_CM: i32 = 2000;
 /// A key while a cell is typed.
 pub(super) fn field_key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
     match event.code {
-        KeyCode::Enter => return state.editor.end_typing(),
+        KeyCode::Enter => return state.editor.end_typing(state.units),
         KeyCode::Esc => {
             state.editor.cancel();
         }
         KeyCode::Tab | KeyCode::BackTab => {
-            let effects = state.editor.end_typing();
+            let effects = state.editor.end_typing(state.units);
             if state.editor.field().is_none() {
                 state.editor.move_cursor(0, if event.code == KeyCode::Tab { 1 } else { -1 });
-                state.editor.begin_typing().ok();
+                state.editor.begin_typing(state.units).ok();
             }
             return effects;
         }
@@ -47,7 +47,7 @@ pub(super) fn edit_cell(state: &mut AppState) -> Vec<Effect> {
     match state.editor.column() {
         Column::Type | Column::Pattern => nudge(state, 1),
         _ => {
-            if let Err(sentence) = state.editor.begin_typing() {
+            if let Err(sentence) = state.editor.begin_typing(state.units) {
                 state.notify(Severity::Warn, sentence);
             }
             Vec::new()
@@ -63,7 +63,7 @@ pub(super) fn nudge(state: &mut AppState, steps: i32) -> Vec<Effect> {
             state.notify(Severity::Warn, format!("A {kind} has no {}.", column.name()));
             Vec::new()
         }
-        _ => state.editor.nudge(steps),
+        _ => state.editor.nudge(steps, state.units),
     }
 }
 
@@ -186,7 +186,7 @@ pub(super) fn open_form(state: &mut AppState, kind: FormKind) -> Vec<Effect> {
         state.notify(Severity::Warn, "There is no waypoint to change: `i` inserts one.");
         return Vec::new();
     }
-    state.editor.popup = Some(EditorPopup::Form(Form::of(kind, document)));
+    state.editor.popup = Some(EditorPopup::Form(Form::of(kind, document, state.units)));
     Vec::new()
 }
 
