@@ -155,6 +155,8 @@ pub struct AppState {
     pub step_ticks: u32,
     /// Flights flown ahead of time.
     pub forecast: ForecastState,
+    /// The panel on which the mouse button went down, as long as it is.
+    pub pressed: Option<Panel>,
     /// Where the mouse button went down on the map, and the map's centre (north, east) then.
     pub drag: Option<(u16, u16, f64, f64)>,
 }
@@ -219,6 +221,7 @@ impl AppState {
             fly_after_upload: false,
             step_ticks: 10,
             forecast: ForecastState::default(),
+            pressed: None,
             drag: None,
         }
     }

@@ -35,18 +35,23 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
     {
         return effects;
     }
-    let Some((panel, area)) = layout::screen(state).and_then(|screen| screen.at(event.column, event.row))
-    else {
-        return Vec::new();
+    let Some(screen) = layout::screen(state) else { return Vec::new() };
+    let at = match event.kind {
+        // A drag belongs to the panel where it began, whatever it comes across.
+        MouseEventKind::Drag(_) => state.pressed.and_then(|panel| Some((panel, screen.panel(panel)?))),
+        _ => screen.at(event.column, event.row),
     };
+    let Some((panel, area)) = at else { return Vec::new() };
     match event.kind {
         MouseEventKind::Down(MouseButton::Left) => {
             focus(state, panel);
+            state.pressed = Some(panel);
             match panel {
                 Panel::Map => press_on_map(state, area, &event),
                 Panel::Rc => set_channel(state, area, &event),
                 Panel::World => {
                     if let Some(knob) = world::knob_at(state, layout::inner(area), event.row) {
+                        state.knobs.field = None;
                         state.knobs.selected = knob;
                     }
                     Vec::new()
@@ -66,7 +71,9 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
                 }
                 Vec::new()
             }
-            Panel::Rc => set_channel(state, area, &event),
+            // The slider that was pressed, though the mouse may slip to the one below.
+            Panel::Rc => rc::value_at(layout::inner(area), state.channel, event.column)
+                .map_or_else(Vec::new, |us| transmitter::set(state, state.channel, us)),
             Panel::Plan => {
                 drag_altitude(state, area, &event);
                 Vec::new()
@@ -88,6 +95,7 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
 /// Ends a drag, wherever the mouse is by then.
 fn release(state: &mut AppState) -> Vec<Effect> {
     state.drag = None;
+    state.pressed = None;
     if let Some((index, alt_cm)) = state.editor.dragged_altitude.take() {
         return state.editor.edit(&format!("altitude of WP{index}"), |document| {
             if let Some(wp) = document.plan.waypoints.get_mut(index) {
