@@ -10,7 +10,7 @@ mod fixture;
 #[path = "ui/hands.rs"]
 mod hands;
 
-use hands::{journal_lines, keys, mouse, place_of, press, screen, state_with_fix as state};
+use hands::{journal_lines, keys, mouse, mouse_button, place_of, press, screen, state_with_fix as state};
 
 /// The request to write a plan among the effects.
 fn save_of(effects: Vec<Effect>) -> FileRequest {
@@ -345,4 +345,121 @@ fn the_mouse_chooses_values_and_drags_altitudes_in_the_profile() {
     let effects = mouse(&mut state, MouseEventKind::Up, (number.0, number.1 + 2));
     assert_eq!(journal_lines(&effects), 1);
     assert!((2000..4500).contains(&state.plan().waypoints[3].alt_cm), "{:?}", altitudes(state.plan()));
+}
+
+#[test]
+fn a_waypoint_dropped_beside_the_map_is_put_down() {
+    let mut state = state((120, 40));
+    let mark = place_of(&state, "◇");
+    mouse(&mut state, MouseEventKind::Down, mark);
+    mouse(&mut state, MouseEventKind::Drag, (mark.0 - 4, mark.1));
+    // On the hint bar there is no panel.
+    let effects = mouse(&mut state, MouseEventKind::Up, (mark.0 - 4, 39));
+    assert_eq!(journal_lines(&effects), 1);
+    assert!(mouse(&mut state, MouseEventKind::Up, mark).is_empty());
+}
+
+#[test]
+fn a_picked_waypoint_is_put_down_in_no_other_plan_and_in_no_other_place_of_the_list() {
+    for change in ["u", "2 ) 1", "2 ( 1", "2 d 1"] {
+        let mut state = state((80, 24));
+        keys(&mut state, "2 n i i i ( 1 p left left i enter right right");
+        assert!(screen(&state).contains("from WP"), "{}", screen(&state));
+        keys(&mut state, change);
+        let plans = |state: &betadeck::ui::AppState| -> Vec<FlightPlan> {
+            state.editor.plans().iter().map(|plan| plan.document().plan.clone()).collect()
+        };
+        let before = plans(&state);
+        keys(&mut state, "enter");
+        assert_eq!(plans(&state), before, "{change}");
+        assert!(screen(&state).contains("nothing was moved"), "{change}: {}", screen(&state));
+    }
+}
+
+#[test]
+fn escape_leaves_a_picked_waypoint_where_it_was_and_the_map_can_be_dragged() {
+    for way_out in ["esc esc", "ctrl-c ctrl-l ctrl-c", "esc p"] {
+        let mut state = state((80, 24));
+        keys(&mut state, "p left left i enter right right");
+        let before = state.plan().clone();
+        keys(&mut state, way_out);
+        let mode = state.map.mode;
+        mouse(&mut state, MouseEventKind::Down, (4, 10));
+        mouse(&mut state, MouseEventKind::Drag, (9, 11));
+        mouse(&mut state, MouseEventKind::Up, (9, 11));
+        assert_ne!(state.map.mode, mode, "{way_out}");
+        assert!(!screen(&state).contains("from WP"), "{way_out}: {}", screen(&state));
+        assert_eq!(*state.plan(), before);
+    }
+}
+
+#[test]
+fn what_is_typed_goes_into_the_value_where_it_was_begun() {
+    let mut state = state((120, 40));
+    keys(&mut state, "2 z right right right enter backspace backspace '77");
+    let place = place_of(&state, "FLYBY");
+    mouse_button(&mut state, MouseEventKind::ScrollDown, place);
+    keys(&mut state, "enter");
+    assert_eq!(altitudes(state.plan()), [7700, 5000, 5000, 5000]);
+}
+
+#[test]
+fn a_value_that_is_typed_is_given_up_when_a_waypoint_is_chosen_on_the_map() {
+    let mut state = state((120, 40));
+    keys(&mut state, "2 right right right enter backspace backspace '77");
+    let mark = place_of(&state, "◇");
+    mouse(&mut state, MouseEventKind::Down, mark);
+    mouse(&mut state, MouseEventKind::Up, mark);
+    keys(&mut state, "2 enter");
+    assert_eq!(altitudes(state.plan()), [5000; 4]);
+}
+
+#[test]
+fn every_plan_of_a_generated_survey_is_asked_for_at_the_end_and_survives_a_kill() {
+    let mut state = state((120, 40));
+    let effects = keys(
+        &mut state,
+        "2 P right right right down down backspace backspace '300 down backspace backspace '5 \
+         down down down down down down right enter",
+    );
+    let made = state.editor.plans().len();
+    assert!(made > 2, "{}", screen(&state));
+    assert_eq!(journal_lines(&effects), made, "a line for each");
+    assert!(state.editor.plans().iter().all(|plan| plan.is_unsaved()));
+    keys(&mut state, ") u");
+    assert!(state.plan().waypoints.is_empty(), "undo reaches before the generator");
+}
+
+#[test]
+fn text_is_pasted_into_the_fields_of_forms_and_of_the_file_browser() {
+    let mut state = state((80, 24));
+    keys(&mut state, "2 o");
+    update(&mut state, Msg::Paste("/plans/mine.toml\n".to_owned()));
+    let effects = keys(&mut state, "enter");
+    let asked = |effect: &Effect| matches!(effect, Effect::Files(FileRequest::Open(path)) if path.ends_with("mine.toml"));
+    assert!(effects.iter().any(asked), "{effects:?}");
+    keys(&mut state, "E");
+    update(&mut state, Msg::Paste(" of mine\nand more".to_owned()));
+    keys(&mut state, "enter");
+    assert_eq!(state.editor.document().name, "square of mine");
+}
+
+#[test]
+fn a_huge_paste_into_a_field_is_cut() {
+    let mut state = state((80, 24));
+    keys(&mut state, "ctrl-p");
+    update(&mut state, Msg::Paste("x".repeat(1 << 20)));
+    keys(&mut state, "esc :");
+    update(&mut state, Msg::Paste("x".repeat(1 << 20)));
+    assert!(state.command_line.field.value().len() <= 4096);
+}
+
+#[test]
+fn a_waypoint_inserted_behind_the_end_of_a_closed_square_goes_on_in_its_direction() {
+    let mut state = state((120, 40));
+    keys(&mut state, "2 n P enter down down down down i");
+    let [.., before, last, next] = state.plan().waypoints.as_slice() else { panic!("six") };
+    let (_, leg) = betadeck::geo::distance_bearing(before.position, last.position);
+    let (_, onward) = betadeck::geo::distance_bearing(last.position, next.position);
+    assert!((leg - onward).abs() < 0.01, "{leg} {onward}");
 }

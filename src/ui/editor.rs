@@ -173,8 +173,11 @@ impl Editor {
         self.field = None;
     }
 
-    /// Moves the cursor.
+    /// Moves the cursor, unless a value is typed under it.
     pub(super) fn move_cursor(&mut self, rows: isize, columns: isize) {
+        if self.field.is_some() {
+            return;
+        }
         let last = self.document().plan.waypoints.len().saturating_sub(1);
         self.row = self.row().saturating_add_signed(rows).min(last);
         self.column = self.column.beside(columns);
@@ -183,6 +186,7 @@ impl Editor {
     /// Puts the cursor on a waypoint.
     pub(super) fn go_to_row(&mut self, row: usize) {
         self.row = row;
+        self.field = None;
     }
 
     /// Begins or ends a selection at the cursor.
@@ -211,8 +215,9 @@ impl Editor {
         self.replace_document(label, after)
     }
 
-    /// Makes the document `after`, as one revision.
+    /// Makes the document `after`, as one revision. What is typed is given up: its waypoint may be another now.
     pub(super) fn replace_document(&mut self, label: &str, after: PlanDocument) -> Vec<Effect> {
+        self.field = None;
         let plan = self.plan_mut();
         let id = plan.id();
         let line = plan.commit(label, after);
@@ -223,6 +228,7 @@ impl Editor {
     pub(super) fn undo(&mut self) -> Option<(String, Effect)> {
         let id = self.plan().id();
         let (label, line) = self.plan_mut().undo()?;
+        self.field = None;
         Some((label, Effect::Files(FileRequest::Journal(id, line))))
     }
 
@@ -230,6 +236,7 @@ impl Editor {
     pub(super) fn redo(&mut self) -> Option<(String, Effect)> {
         let id = self.plan().id();
         let (label, line) = self.plan_mut().redo()?;
+        self.field = None;
         Some((label, Effect::Files(FileRequest::Journal(id, line))))
     }
 

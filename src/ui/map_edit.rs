@@ -1,6 +1,7 @@
 //! What of a plan is edited on the map: waypoints, home and the fence, by a cursor or by the mouse.
 
 use super::app_state::AppState;
+use super::editor::PlanId;
 use super::map_point::{MapPoint, origin, to_map};
 use crate::geo::{LatLon, LocalFrame, distance_bearing};
 use nalgebra::Vector3;
@@ -30,6 +31,8 @@ pub(super) struct Moving {
     pub moved: bool,
     /// By the mouse: it is put down when the button is released.
     pub by_mouse: bool,
+    /// Plan and revision in which it was picked up.
+    pub of: (PlanId, usize),
 }
 
 /// The keyboard's cursor on the map.

@@ -195,7 +195,7 @@ fn cancel(state: &mut AppState) -> Vec<Effect> {
     let field = fields::close(state);
     let input = field || state.focus == Panel::Cli && state.cli.cancel();
     let upload = std::mem::take(&mut state.fly_after_upload);
-    let edit = state.editor.cancel() | state.map.edit.take().is_some();
+    let edit = state.editor.cancel() | map_edit::leave(state);
     let what = if popup || input || upload || edit { "Cancelled. " } else { "" };
     state.notify(Severity::Info, format!("{what}Ctrl-C again within 2 s quits."));
     Vec::new()
@@ -338,7 +338,7 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
                 // That was the step.
             } else if state.focus == Panel::Log && !state.log_view.search.is_empty() {
                 log_view::end_search(state);
-            } else if !state.forecast.dismiss() && !state.editor.cancel() && state.map.edit.take().is_none() {
+            } else if !state.forecast.dismiss() && !state.editor.cancel() && !map_edit::leave(state) {
                 state.zoomed = false;
             }
             Vec::new()

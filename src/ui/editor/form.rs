@@ -155,6 +155,17 @@ impl Form {
         FormKey::Edited
     }
 
+    /// Inserts pasted text into the value that has the cursor; whether it is typed.
+    pub(super) fn paste(&mut self, text: &str) -> bool {
+        let typed = self.fields.get_mut(self.at).filter(|field| field.choices.is_empty());
+        if let Some(field) = typed {
+            field.text.insert(text);
+            self.problem = None;
+            return true;
+        }
+        false
+    }
+
     fn choose(&mut self, step: isize) {
         if let Some(field) = self.fields.get_mut(self.at) {
             field.choose(step);

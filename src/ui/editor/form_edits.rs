@@ -45,8 +45,11 @@ impl Editor {
                 let first = self.current;
                 for (number, waypoints) in generated.plans.iter().enumerate().skip(1) {
                     let name = format!("{name}-{}", number + 1);
+                    let empty = PlanDocument { name, ..PlanDocument::default() };
+                    effects.push(self.open_new(empty.clone()));
+                    // As an edit, so that it is kept and asked for.
                     let plan = forms::plan_of(waypoints);
-                    effects.push(self.open_new(PlanDocument { name, plan, ..PlanDocument::default() }));
+                    effects.extend(self.replace_document("generate", PlanDocument { plan, ..empty }));
                 }
                 self.show(first);
                 Ok((effects, generated.told))

@@ -51,6 +51,10 @@ pub(super) fn paste(state: &mut AppState, text: &str) -> Vec<Effect> {
         field.insert(text.lines().next().unwrap_or_default());
         return Vec::new();
     }
+    let first_line = text.lines().next().unwrap_or_default();
+    if state.popups.is_empty() && state.editor.popup.as_mut().is_some_and(|popup| popup.paste(first_line)) {
+        return Vec::new();
+    }
     let is_covered = !state.popups.is_empty() || state.editor.popup.is_some();
     if matches!(state.focus, Panel::Plan | Panel::Map) && !is_covered {
         return super::plan::paste_text(state, text);

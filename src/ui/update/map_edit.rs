@@ -4,6 +4,7 @@ use super::{plan, view};
 use crate::plan::Waypoint;
 use crate::plan::format::HomePosition;
 use crate::ui::app_state::AppState;
+use crate::ui::editor::PlanId;
 use crate::ui::event_log::Severity;
 use crate::ui::map_edit::{self, MapCursor, MapItem, Moving};
 use crate::ui::map_point::{self, MapPoint};
@@ -66,7 +67,18 @@ pub(super) fn pick_up(state: &mut AppState, item: MapItem, place: MapPoint, by_m
     if let MapItem::Waypoint(index) = item {
         state.editor.go_to_row(index);
     }
-    state.map.moving = Some(Moving { item, place, moved: false, by_mouse });
+    state.map.moving = Some(Moving { item, place, moved: false, by_mouse, of: revision(state) });
+}
+
+/// Which plan is shown, and in which revision.
+fn revision(state: &AppState) -> (PlanId, usize) {
+    let plan = state.editor.plan();
+    (plan.id(), plan.history().at())
+}
+
+/// Leaves what was picked up where it was, else hides the cursor; whether there was one.
+pub(super) fn leave(state: &mut AppState) -> bool {
+    state.map.moving.take().is_some() || state.map.edit.take().is_some()
 }
 
 /// Puts down what is being moved, as one edit.
@@ -75,6 +87,13 @@ pub(super) fn put_down(state: &mut AppState) -> Vec<Effect> {
         return Vec::new();
     };
     if !moving.moved {
+        return Vec::new();
+    }
+    if moving.of != revision(state) {
+        state.notify(
+            Severity::Warn,
+            "The plan was changed meanwhile, so nothing was moved: pick it up again.",
+        );
         return Vec::new();
     }
     let position = map_edit::position(&frame, moving.place);

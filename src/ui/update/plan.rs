@@ -72,11 +72,11 @@ pub(super) fn next_waypoint(state: &AppState) -> Option<Waypoint> {
     let waypoints = &state.editor.document().plan.waypoints;
     let row = state.editor.row();
     let placed = |wp: &&Waypoint| wp.kind.uses_position();
-    let Some(last) = waypoints.get(..=row).and_then(|before| before.iter().rev().find(placed)) else {
+    let at = waypoints.get(..=row).and_then(|before| before.iter().rposition(|wp| placed(&wp)));
+    let Some((at, last)) = at.and_then(|at| Some((at, waypoints.get(at)?))) else {
         let home = findings::home(state)?;
         return Some(Waypoint { position: home, alt_cm: FIRST_ALT_CM, ..Waypoint::default() });
     };
-    let at = waypoints.iter().position(|wp| wp == last).unwrap_or(0);
     let from =
         waypoints[..at].iter().rev().find(placed).map(|wp| wp.position).or_else(|| findings::home(state));
     let bearing = from.map_or(0.0, |from| distance_bearing(from, last.position).1);
