@@ -2,6 +2,7 @@
 
 use super::app_state::AppState;
 use super::editor::PlanId;
+use super::formatting::compass;
 use super::map_point::{MapPoint, origin, to_map};
 use crate::geo::{LatLon, LocalFrame, distance_bearing};
 use nalgebra::Vector3;
@@ -86,7 +87,11 @@ pub(super) fn measured(state: &AppState, place: MapPoint, moving: Option<MapItem
     let here = position(&frame, place);
     let from = |name: &str, there: LatLon| {
         let (distance_m, bearing) = distance_bearing(there, here);
-        format!("{} {:03.0}° from {name}", state.units.length_text(distance_m, 1), bearing.to_degrees())
+        format!(
+            "{} {:03.0}° from {name}",
+            state.units.length_text(distance_m, 1),
+            compass(bearing.to_degrees())
+        )
     };
     let waypoints = &state.plan().waypoints;
     let before = match moving {

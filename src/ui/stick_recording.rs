@@ -41,6 +41,18 @@ impl StickRecording {
         }
     }
 
+    /// The flight goes on from this earlier instant, s: what was recorded after it is forgotten, and playing ends.
+    pub(super) fn go_back_to(&mut self, time_s: f64) {
+        match self.activity {
+            Activity::Recording(since) if since <= time_s => {
+                self.frames.retain(|(at_s, _)| *at_s <= time_s - since);
+            }
+            Activity::Recording(_) => *self = Self::default(),
+            Activity::Playing(..) => self.activity = Activity::Idle,
+            Activity::Idle => {}
+        }
+    }
+
     /// The hand takes the sticks: playing ends. Whether it was on.
     pub(super) fn stop_playing(&mut self) -> bool {
         let was_on = matches!(self.activity, Activity::Playing(..));

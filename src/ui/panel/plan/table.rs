@@ -10,7 +10,7 @@ use crate::plan::review::Finding;
 use crate::plan::{FlightPlan, Waypoint, WaypointType};
 use crate::ui::app_state::AppState;
 use crate::ui::editor::Column;
-use crate::ui::formatting::cut;
+use crate::ui::formatting::{compass, cut};
 use crate::ui::panel::{Panel, row};
 use crate::ui::theme::Role;
 use crate::ui::units::Units;
@@ -81,7 +81,7 @@ pub(super) fn difference(state: &AppState, index: usize) -> Option<String> {
         let (distance_m, bearing) = distance_bearing(ours.position, theirs.position);
         if distance_m > 0.05 {
             let distance = state.units.length_text(distance_m, 1);
-            parts.push(format!("{distance} {:03.0}° from here", bearing.to_degrees()));
+            parts.push(format!("{distance} {:03.0}° from here", compass(bearing.to_degrees())));
         }
     }
     for column in Column::iter().filter(|column| !matches!(column, Column::Latitude | Column::Longitude)) {
