@@ -269,6 +269,16 @@ fn name_home_and_settings_are_edited_in_a_form() {
 }
 
 #[test]
+fn a_setting_with_which_the_file_could_not_be_read_again_is_refused() {
+    for (typed, why) in [("foo=1", "foo is not a setting"), ("ap_max_angle=900", "ap_max_angle")] {
+        let mut state = state((80, 24));
+        keys(&mut state, &format!("2 E down down down '{typed} enter"));
+        assert!(screen(&state).contains(why), "{typed}: {}", screen(&state));
+        assert!(state.editor.document().settings.is_empty());
+    }
+}
+
+#[test]
 fn the_editor_and_its_popups_draw_at_every_size() {
     for open in ["2", "2 P", "2 m", "2 E", "2 o", "2 right enter", "p"] {
         let mut state = state((120, 40));
@@ -425,7 +435,7 @@ fn every_plan_of_a_generated_survey_is_asked_for_at_the_end_and_survives_a_kill(
     let made = state.editor.plans().len();
     assert!(made > 2, "{}", screen(&state));
     assert_eq!(journal_lines(&effects), made, "a line for each");
-    assert!(state.editor.plans().iter().all(|plan| plan.is_unsaved()));
+    assert!(state.editor.plans().iter().all(betadeck::ui::OpenPlan::is_unsaved));
     keys(&mut state, ") u");
     assert!(state.plan().waypoints.is_empty(), "undo reaches before the generator");
 }

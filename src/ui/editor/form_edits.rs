@@ -5,6 +5,7 @@ use crate::geo::LatLon;
 use crate::plan::MAX_WAYPOINTS;
 use crate::plan::edit::PlanDocument;
 use crate::plan::edit::transform::middle;
+use crate::plan::format::SettingCheck;
 use crate::ui::message::Effect;
 
 impl Editor {
@@ -16,6 +17,7 @@ impl Editor {
         &mut self,
         form: &Form,
         home: Option<LatLon>,
+        check: SettingCheck,
     ) -> Result<(Vec<Effect>, String), String> {
         let mut after = self.document().clone();
         match form.kind {
@@ -26,7 +28,7 @@ impl Editor {
                 Ok((self.replace_document(&label, after), format!("Done: {label}.")))
             }
             FormKind::Properties => {
-                forms::take_properties(form, &mut after)?;
+                forms::take_properties(form, &mut after, check)?;
                 Ok((
                     self.replace_document("properties", after),
                     "Name, home and settings are taken.".to_owned(),

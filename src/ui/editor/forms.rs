@@ -8,7 +8,7 @@ use super::form::{Form, FormField, FormKind};
 use crate::geo::LatLon;
 use crate::plan::edit::PlanDocument;
 use crate::plan::edit::transform::{Transform, transform};
-use crate::plan::format::setting_line;
+use crate::plan::format::{SettingCheck, setting_line};
 use crate::plan::generate::{Pattern, Shape, split};
 use crate::plan::{FlightPlan, MAX_WAYPOINTS, Waypoint, WaypointType};
 use crate::ui::units::Units;
@@ -190,7 +190,11 @@ pub(super) fn properties(document: &PlanDocument, units: Units) -> Form {
 ///
 /// # Errors
 /// What is wrong with a value, as a sentence.
-pub(super) fn take_properties(form: &Form, document: &mut PlanDocument) -> Result<(), String> {
+pub(super) fn take_properties(
+    form: &Form,
+    document: &mut PlanDocument,
+    check: SettingCheck,
+) -> Result<(), String> {
     let home = form.value("home");
     document.home = match home {
         "" => None,
@@ -200,11 +204,20 @@ pub(super) fn take_properties(form: &Form, document: &mut PlanDocument) -> Resul
         form.fields.iter().filter(|field| field.label == "setting").map(|field| field.text.value().trim());
     document.settings = texts
         .filter(|text| !text.is_empty())
-        .map(|text| setting_line(text).ok_or_else(|| format!("{text} is not a setting: write name = value.")))
+        .map(|text| checked_setting(text, check))
         .collect::<Result<_, _>>()?;
     document.name = form.value("name").to_owned();
     document.description = form.value("description").to_owned();
     Ok(())
+}
+
+/// A setting that the plan's file can be read with again.
+fn checked_setting(text: &str, check: SettingCheck) -> Result<String, String> {
+    let line = setting_line(text).ok_or_else(|| format!("{text} is not a setting: write name = value."))?;
+    if let Some((name, value)) = line.split_once(" = ") {
+        check(name, value).map_err(|fault| format!("{fault}."))?;
+    }
+    Ok(line)
 }
 
 /// A plan of these waypoints, or as many of them as it holds.
@@ -262,12 +275,16 @@ mod tests {
         let mut form = properties(&document, Units::Metric);
         fill(&mut form, "home", "40,-79");
         fill(&mut form, "setting", "set ap_max_velocity=500");
-        take_properties(&form, &mut document).unwrap();
+        take_properties(&form, &mut document, |_, _| Ok(())).unwrap();
         assert_eq!(document.settings, ["ap_max_angle = 30", "ap_max_velocity = 500"]);
         assert!(document.home.is_some());
         fill(&mut form, "setting", "what");
-        assert!(take_properties(&form, &mut document).unwrap_err().contains("name = value"));
+        assert!(take_properties(&form, &mut document, |_, _| Ok(())).unwrap_err().contains("name = value"));
         fill(&mut form, "home", "north");
-        assert!(take_properties(&form, &mut document).unwrap_err().starts_with("home: north is not a place"));
+        assert!(
+            take_properties(&form, &mut document, |_, _| Ok(()))
+                .unwrap_err()
+                .starts_with("home: north is not a place")
+        );
     }
 }

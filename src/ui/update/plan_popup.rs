@@ -27,13 +27,15 @@ fn form_key(state: &mut AppState, mut form: Form, event: KeyEvent) -> Vec<Effect
     match form.key(event) {
         FormKey::Cancel => return Vec::new(),
         FormKey::Edited => {}
-        FormKey::Accept => match state.editor.take_form(&form, findings::home(state)) {
-            Ok((effects, told)) => {
-                state.notify(Severity::Good, told);
-                return effects;
+        FormKey::Accept => {
+            match state.editor.take_form(&form, findings::home(state), state.cli_help.check_setting) {
+                Ok((effects, told)) => {
+                    state.notify(Severity::Good, told);
+                    return effects;
+                }
+                Err(problem) => form.problem = Some(problem),
             }
-            Err(problem) => form.problem = Some(problem),
-        },
+        }
     }
     state.editor.popup = Some(EditorPopup::Form(form));
     Vec::new()
