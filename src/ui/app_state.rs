@@ -8,6 +8,7 @@ use crate::session::{Event, SessionEvent, SessionView};
 use crate::signals::{RcFrame, SimTime};
 use crate::telemetry::{EventKind, FirmwareEvent, NavEvent, NavState, PlanSource, TransitionReason};
 
+use super::action::Action;
 use super::console::{CliHelp, CliState};
 use super::editor::{Editor, OpenPlan};
 use super::event_log::{LogState, Severity};
@@ -226,6 +227,11 @@ impl AppState {
         }
     }
 
+    /// The key of an action as it is now, for sentences.
+    pub(super) fn key(&self, action: Action) -> String {
+        self.keymap.key(action)
+    }
+
     /// Says something to the user: on the screen for a moment, in the log for good.
     pub fn notify(&mut self, severity: Severity, text: impl Into<String>) {
         let text = text.into();
@@ -240,7 +246,7 @@ impl AppState {
 
     /// Takes an event in.
     pub fn take_event(&mut self, event: &Event) {
-        let text = (self.sentence)(event);
+        let text = self.keymap.in_force(&(self.sentence)(event));
         let severity = Severity::of(&event.kind);
         if let SessionEvent::Branch { .. } = event.kind {
             self.leave_behind(event.time);

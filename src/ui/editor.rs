@@ -316,7 +316,7 @@ impl Editor {
     /// The waypoint has no such value.
     pub(super) fn begin_typing(&mut self, units: Units) -> Result<(), String> {
         let Some(wp) = self.document().plan.waypoints.get(self.row()) else {
-            return Err("There is no waypoint to edit: `i` inserts one.".to_owned());
+            return Err("There is no waypoint to edit.".to_owned());
         };
         if !self.column.is_used(wp.kind) {
             return Err(format!("A {} has no {}.", wp.kind, self.column.name()));
@@ -359,11 +359,13 @@ impl Editor {
         (count > 0).then_some((count, text))
     }
 
+    /// Whether waypoints were copied.
+    pub(super) fn has_copy(&self) -> bool {
+        !self.register.is_empty()
+    }
+
     /// Inserts what was copied last.
     pub(super) fn paste_copied(&mut self) -> Result<Vec<Effect>, String> {
-        if self.register.is_empty() {
-            return Err("Nothing was copied: `y` copies the selected waypoints.".to_owned());
-        }
         let waypoints = self.register.clone();
         self.insert("paste", &waypoints)
     }

@@ -1,5 +1,6 @@
 //! Movements of the sticks and switches, recorded in simulated time and played again.
 
+use super::action::Action;
 use super::app_state::AppState;
 use super::event_log::Severity;
 use super::message::Effect;
@@ -106,7 +107,8 @@ pub(super) fn can_play(state: &AppState) -> Result<(), String> {
     match recording.activity {
         Activity::Recording(_) => Err("The sticks are being recorded: end that first.".to_owned()),
         Activity::Idle if recording.frames.is_empty() => {
-            Err("No stick movements are recorded: `r` in the RC panel begins.".to_owned())
+            let key = state.key(Action::Record);
+            Err(format!("No stick movements are recorded: `{key}` in the RC panel begins."))
         }
         Activity::Idle | Activity::Playing(..) => Ok(()),
     }

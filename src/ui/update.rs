@@ -102,7 +102,10 @@ fn take(state: &mut AppState, msg: Msg) -> Vec<Effect> {
             match result {
                 // The log has the faults from the craft itself.
                 Ok(()) => state.say(Severity::Good, format!("World: {line}.")),
-                Err(sentence) => state.notify(Severity::Fault, sentence),
+                Err(sentence) => {
+                    let sentence = state.keymap.in_force(&sentence);
+                    state.notify(Severity::Fault, sentence);
+                }
             }
             Vec::new()
         }

@@ -45,6 +45,9 @@ pub(crate) fn keys(state: &mut AppState, keys: &str) -> Vec<Effect> {
             "esc" => KeyCode::Esc,
             "tab" => KeyCode::Tab,
             "backspace" => KeyCode::Backspace,
+            function if function.len() == 2 && function.starts_with('f') => {
+                KeyCode::F(function[1..].parse().expect("a function key"))
+            }
             c => KeyCode::Char(c.chars().next().expect("a key")),
         };
         effects.extend(press(state, code, modifiers));

@@ -8,6 +8,7 @@ use ratatui::widgets::canvas::Canvas;
 use crate::geo::LocalFrame;
 use crate::plan::{FlightPlan, Waypoint, WaypointType};
 use crate::telemetry::PlanSource;
+use crate::ui::action::Action;
 use crate::ui::app_state::AppState;
 use crate::ui::map_edit::{self, MapItem, Moving};
 use crate::ui::map_point::{self, MapPoint, to_map};
@@ -57,7 +58,7 @@ pub(crate) fn title(state: &AppState) -> String {
     match state.map.mode {
         MapMode::Fit => format!("{name}{source}"),
         MapMode::Follow(_) => format!("{name}{source} — follows"),
-        MapMode::Free { .. } => format!("{name}{source} — 0 fits"),
+        MapMode::Free { .. } => format!("{name}{source} — {} fits", state.key(Action::Fit)),
     }
 }
 

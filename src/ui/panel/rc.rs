@@ -5,6 +5,7 @@ use ratatui::layout::Rect;
 
 use crate::signals::{RC_CHANNELS, RcSource};
 use crate::telemetry::snapshot::{CraftView, ModeRange};
+use crate::ui::action::Action;
 use crate::ui::app_state::AppState;
 use crate::ui::formatting::cut;
 use crate::ui::panel::Panel;
@@ -26,7 +27,7 @@ pub(crate) fn title(state: &AppState) -> String {
     let craft = &state.view.vehicle.craft;
     let ours = !matches!(craft.rc_source, Some(RcSource::Udp | RcSource::Msp));
     if state.view.rc_cut && ours {
-        return format!("{name} — CUT, x restores it");
+        return format!("{name} — CUT, {} restores it", state.key(Action::CutRc));
     }
     let age = match craft.rc_age_s {
         Some(age) if age < 1.0 => format!("{:.0} ms", age * 1000.0),

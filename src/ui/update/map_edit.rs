@@ -3,6 +3,7 @@
 use super::{plan, view};
 use crate::plan::Waypoint;
 use crate::plan::format::HomePosition;
+use crate::ui::action::{Action, EditAction};
 use crate::ui::app_state::AppState;
 use crate::ui::editor::PlanId;
 use crate::ui::event_log::Severity;
@@ -48,7 +49,9 @@ pub(super) fn arrow(state: &mut AppState, columns: f64, rows: f64) -> Vec<Effect
 /// Picks up what is at the cursor, or puts down what was picked up.
 pub(super) fn pick(state: &mut AppState) -> Vec<Effect> {
     let Some(cursor) = state.map.edit else {
-        state.notify(Severity::Info, "`p` shows a cursor with which waypoints are picked, added and moved.");
+        let key = state.key(Action::Edit(EditAction::OnMap));
+        let text = format!("`{key}` shows a cursor with which waypoints are picked, added and moved.");
+        state.notify(Severity::Info, text);
         return Vec::new();
     };
     if state.map.moving.is_some() {
@@ -57,7 +60,10 @@ pub(super) fn pick(state: &mut AppState) -> Vec<Effect> {
     let Some(view) = view::viewport(state) else { return Vec::new() };
     match map_edit::item_at(state, cursor.place, view.scale) {
         Some(item) => pick_up(state, item, cursor.place, false),
-        None => state.notify(Severity::Info, "Nothing is here: `i` adds a waypoint at the cursor."),
+        None => {
+            let key = state.key(Action::Edit(EditAction::AddOnMap));
+            state.notify(Severity::Info, format!("Nothing is here: `{key}` adds a waypoint at the cursor."));
+        }
     }
     Vec::new()
 }
@@ -128,7 +134,9 @@ pub(super) fn put_down(state: &mut AppState) -> Vec<Effect> {
 pub(super) fn add(state: &mut AppState) -> Vec<Effect> {
     let Some(cursor) = state.map.edit else {
         toggle(state);
-        state.notify(Severity::Info, "Move the cursor with the arrow keys; `i` adds a waypoint there.");
+        let key = state.key(Action::Edit(EditAction::AddOnMap));
+        let text = format!("Move the cursor with the arrow keys; `{key}` adds a waypoint there.");
+        state.notify(Severity::Info, text);
         return Vec::new();
     };
     add_at(state, cursor.place)
@@ -145,7 +153,10 @@ pub(super) fn add_at(state: &mut AppState, place: MapPoint) -> Vec<Effect> {
 /// Deletes the waypoint at the cursor.
 pub(super) fn delete(state: &mut AppState) -> Vec<Effect> {
     let (Some(cursor), Some(view)) = (state.map.edit, view::viewport(state)) else {
-        state.notify(Severity::Info, "`p` shows a cursor: `d` deletes the waypoint under it.");
+        let [shows, deletes] =
+            [EditAction::OnMap, EditAction::DeleteOnMap].map(|action| state.key(Action::Edit(action)));
+        let text = format!("`{shows}` shows a cursor: `{deletes}` deletes the waypoint under it.");
+        state.notify(Severity::Info, text);
         return Vec::new();
     };
     let Some(MapItem::Waypoint(index)) = map_edit::item_at(state, cursor.place, view.scale) else {

@@ -5,6 +5,7 @@ use std::path::Path;
 use crossterm::event::{KeyCode, KeyEvent};
 
 use super::plan;
+use crate::ui::action::{Action, EditAction};
 use crate::ui::app_state::AppState;
 use crate::ui::editor::findings;
 use crate::ui::editor::{
@@ -120,8 +121,10 @@ pub(super) fn answered(state: &mut AppState, reply: FileReply) -> Vec<Effect> {
             }
             let name = opened.file.as_ref().map_or_else(String::new, |file| shown(file.as_path()));
             let told = if opened.recovered {
+                let [undo, save] =
+                    [EditAction::Undo, EditAction::Save].map(|action| state.key(Action::Edit(action)));
                 Some(format!(
-                    "Edits of {name} that were never saved are back: `u` undoes them, `s` saves them."
+                    "Edits of {name} that were never saved are back: `{undo}` undoes them, `{save}` saves them."
                 ))
             } else {
                 Some(format!("Opened {name}.")).filter(|_| opened.notes.is_empty())
@@ -147,7 +150,8 @@ pub(super) fn answered(state: &mut AppState, reply: FileReply) -> Vec<Effect> {
         }
         FileReply::Changed(id) => {
             if let Some(title) = state.editor.changed_on_disk(id) {
-                let text = format!("{title} changed on disk: `s` asks before it replaces it.");
+                let save = state.key(Action::Edit(EditAction::Save));
+                let text = format!("{title} changed on disk: `{save}` asks before it replaces it.");
                 state.notify(Severity::Warn, text);
             }
         }
