@@ -89,7 +89,7 @@ const SITUATIONS: [Situation; 14] = [
         changed(view, |v| {
             let truth = v.truth.as_mut().expect("truth");
             (truth.alt, truth.on_ground) = (20.0, false);
-        })
+        });
     }),
     ("rewound", |view| view.timeline = Some(TimelineView { rewound: true, ..TimelineView::default() })),
 ];

@@ -172,7 +172,7 @@ impl Keymap {
             let action = ACTIONS
                 .iter()
                 .filter(|spec| matches!(spec.context, Context::Global | Context::Always))
-                .find(|spec| spec.keys.iter().any(|key| is_default(&key)));
+                .find(|spec| spec.keys.iter().any(is_default));
             let text = action.map_or_else(|| part.to_owned(), |spec| self.key(spec.action));
             told.push('`');
             told.push_str(&text);

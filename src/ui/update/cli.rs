@@ -2,6 +2,7 @@
 
 use crossterm::event::{KeyCode, KeyEvent};
 
+use crate::ui::action::Action;
 use crate::ui::app_state::AppState;
 use crate::ui::event_log::Severity;
 use crate::ui::message::Effect;
@@ -60,7 +61,9 @@ pub(super) fn paste(state: &mut AppState, text: &str) -> Vec<Effect> {
         return super::plan::paste_text(state, text);
     }
     if state.focus != Panel::Cli || is_covered {
-        state.notify(Severity::Info, "Pasted text goes to the CLI (5) or, as waypoints, to the plan (2).");
+        let [cli, plan] = [Panel::Cli, Panel::Plan].map(|panel| state.key(Action::Show(panel)));
+        let text = format!("Pasted text goes to the CLI ({cli}) or, as waypoints, to the plan ({plan}).");
+        state.notify(Severity::Info, text);
         return Vec::new();
     }
     state.cli.paste(text);
