@@ -56,6 +56,24 @@ fn with_imperial_units_forms_and_the_map_are_in_feet() {
 }
 
 #[test]
+fn an_altitude_dragged_far_up_follows_the_mouse_however_often_that_tells() {
+    let mut dragged = [1, 30].map(|events| {
+        let mut state = fixture::state((120, 40), fixture::colour());
+        keys(&mut state, "2 z");
+        let number = place_of(&state, "···3");
+        let number = (number.0 + 3, number.1);
+        mouse(&mut state, MouseEventKind::Down, number);
+        for _ in 0..events {
+            mouse(&mut state, MouseEventKind::Drag, (number.0, number.1 - 15));
+        }
+        mouse(&mut state, MouseEventKind::Up, (number.0, number.1 - 15));
+        state.plan().waypoints[3].alt_cm
+    });
+    dragged.sort_unstable();
+    assert!(dragged[0] > 5000 && dragged[0] == dragged[1], "{dragged:?}");
+}
+
+#[test]
 fn altitudes_are_dragged_by_whole_feet() {
     let mut state = imperial((120, 40));
     keys(&mut state, "2 z");

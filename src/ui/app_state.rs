@@ -158,7 +158,8 @@ pub struct AppState {
     pub forecast: ForecastState,
     /// The panel on which the mouse button went down, as long as it is.
     pub pressed: Option<Panel>,
-    /// Where the mouse button went down on the map, and the map's centre (north, east) then.
+    /// Where the mouse button went down, and what it drags from there: of the map its centre (north, east), of the
+    /// altitude profile the metres in a row and the altitude, cm.
     pub drag: Option<(u16, u16, f64, f64)>,
 }
 

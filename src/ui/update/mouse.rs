@@ -75,7 +75,7 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
             Panel::Rc => rc::value_at(layout::inner(area), state.channel, event.column)
                 .map_or_else(Vec::new, |us| transmitter::set(state, state.channel, us)),
             Panel::Plan => {
-                drag_altitude(state, area, &event);
+                drag_altitude(state, &event);
                 Vec::new()
             }
             Panel::State | Panel::Cli | Panel::Graphs | Panel::World | Panel::Log => Vec::new(),
@@ -148,19 +148,21 @@ fn press_on_plan(state: &mut AppState, area: Rect, event: &MouseEvent) {
             state.editor.go_to_cell(index, Column::Altitude);
             let altitude = state.plan().waypoints.get(index).map(|wp| wp.alt_cm);
             state.editor.dragged_altitude = altitude.map(|alt_cm| (index, alt_cm));
-            state.drag = Some((event.column, event.row, 0.0, f64::from(altitude.unwrap_or_default())));
+            // The scale of now: it changes with the altitude.
+            let metres = plan_panel::metres_per_row(state, layout::inner(area)).unwrap_or_default();
+            state.drag = Some((event.column, event.row, metres, f64::from(altitude.unwrap_or_default())));
         }
         None => {}
     }
 }
 
 /// Drags an altitude of the profile, by whole metres or feet.
-fn drag_altitude(state: &mut AppState, area: Rect, event: &MouseEvent) {
-    let (Some((index, _)), Some((_, from_row, _, from_cm))) = (state.editor.dragged_altitude, state.drag)
+fn drag_altitude(state: &mut AppState, event: &MouseEvent) {
+    let (Some((index, _)), Some((_, from_row, metres, from_cm))) =
+        (state.editor.dragged_altitude, state.drag)
     else {
         return;
     };
-    let Some(metres) = plan_panel::metres_per_row(state, layout::inner(area)) else { return };
     let rows = f64::from(from_row) - f64::from(event.row);
     let shown = state.units.length(from_cm / 100.0 + rows * metres).round();
     let altitude_m = state.units.metres(shown);
