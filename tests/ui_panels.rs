@@ -249,6 +249,19 @@ fn a_craft_that_points_just_west_of_north_points_north() {
 }
 
 #[test]
+fn a_long_notice_leaves_no_letter_of_the_log_in_front_of_it() {
+    use betadeck::ui::Severity;
+    let mut state = fixture::state((80, 24), fixture::colour());
+    for _ in 0..9 {
+        state.notify(Severity::Info, "a line of the log");
+    }
+    state.notify(Severity::Warn, "x ".repeat(60));
+    let seen = screen(&state);
+    let above = seen.lines().rfind(|line| line.contains("▲ x x")).expect("the notice");
+    assert!(above.starts_with("\"│  ▲ x"), "{seen}");
+}
+
+#[test]
 fn recorded_sticks_are_played_again_in_their_time() {
     use betadeck::session::Command;
     let at = |state: &mut AppState, time_s: f64, throttle_us: u16| -> Vec<u16> {
