@@ -2,64 +2,15 @@
 
 use betadeck::plan::{FlightPlan, WaypointType};
 use betadeck::ui::editor::{Entry, FileReply, FileRequest, Listing};
-use betadeck::ui::keymap::KeyPress;
-use betadeck::ui::{AppState, Effect, Msg, draw, update};
-use crossterm::event::{KeyCode, KeyEvent, KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
-use ratatui::Terminal;
-use ratatui::backend::TestBackend;
+use betadeck::ui::{Effect, Msg, update};
+use crossterm::event::{KeyCode, KeyModifiers, MouseEventKind};
 
 #[path = "ui/fixture.rs"]
 mod fixture;
+#[path = "ui/hands.rs"]
+mod hands;
 
-fn state(size: (u16, u16)) -> AppState {
-    let mut state = fixture::state(size, fixture::colour());
-    let flight = fixture::SimpleFlight { time_s: 8.0, fix: true, ..fixture::SimpleFlight::default() };
-    update(&mut state, Msg::View(fixture::view(&flight)));
-    state
-}
-
-/// Presses keys by their names in the keymap, apart by blanks; `'text` is typed.
-fn keys(state: &mut AppState, keys: &str) -> Vec<Effect> {
-    let mut effects = Vec::new();
-    for name in keys.split_whitespace() {
-        if let Some(text) = name.strip_prefix('\'') {
-            for c in text.chars() {
-                effects.extend(press(state, KeyCode::Char(c), KeyModifiers::NONE));
-            }
-            continue;
-        }
-        assert!(KeyPress::parse(name).is_some(), "{name}");
-        let (modifiers, rest) = match name.split_once('-') {
-            Some(("ctrl", rest)) => (KeyModifiers::CONTROL, rest),
-            Some(("alt", rest)) => (KeyModifiers::ALT, rest),
-            Some(("shift", rest)) => (KeyModifiers::SHIFT, rest),
-            _ => (KeyModifiers::NONE, name),
-        };
-        let code = match rest {
-            "up" => KeyCode::Up,
-            "down" => KeyCode::Down,
-            "left" => KeyCode::Left,
-            "right" => KeyCode::Right,
-            "enter" => KeyCode::Enter,
-            "esc" => KeyCode::Esc,
-            "tab" => KeyCode::Tab,
-            "backspace" => KeyCode::Backspace,
-            c => KeyCode::Char(c.chars().next().expect("a key")),
-        };
-        effects.extend(press(state, code, modifiers));
-    }
-    effects
-}
-
-fn press(state: &mut AppState, code: KeyCode, modifiers: KeyModifiers) -> Vec<Effect> {
-    update(state, Msg::Key(KeyEvent::new(code, modifiers)))
-}
-
-fn screen(state: &AppState) -> String {
-    let mut terminal = Terminal::new(TestBackend::new(state.size.0, state.size.1)).unwrap();
-    terminal.draw(|frame| draw(state, frame)).unwrap();
-    terminal.backend().to_string()
-}
+use hands::{journal_lines, keys, mouse, mouse_button, place_of, press, screen, state_with_fix as state};
 
 /// The request to write a plan among the effects.
 fn save_of(effects: Vec<Effect>) -> FileRequest {
@@ -68,10 +19,6 @@ fn save_of(effects: Vec<Effect>) -> FileRequest {
         _ => None,
     });
     requests.last().expect("a plan to write")
-}
-
-fn journal_lines(effects: &[Effect]) -> usize {
-    effects.iter().filter(|effect| matches!(effect, Effect::Files(FileRequest::Journal(..)))).count()
 }
 
 fn altitudes(plan: &FlightPlan) -> Vec<i32> {
@@ -181,20 +128,18 @@ fn a_waypoint_is_dragged_on_the_map_by_the_mouse_as_one_edit() {
     let seen = screen(&state);
     let (row, line) = seen.lines().enumerate().find(|(_, line)| line.contains("1 FLYBY")).unwrap();
     let column = line.chars().position(|c| c == '◇').expect("the mark") as u16 - 1;
-    let mouse =
-        |kind, column, row| Msg::Mouse(MouseEvent { kind, column, row, modifiers: KeyModifiers::NONE });
     let before = state.plan().waypoints[1].position;
     let row = row as u16;
-    update(&mut state, mouse(MouseEventKind::Down(MouseButton::Left), column, row));
-    update(&mut state, mouse(MouseEventKind::Up(MouseButton::Left), column, row));
+    mouse(&mut state, MouseEventKind::Down, (column, row));
+    mouse(&mut state, MouseEventKind::Up, (column, row));
     assert_eq!(state.plan().waypoints[1].position, before, "a click moves nothing");
-    update(&mut state, mouse(MouseEventKind::Down(MouseButton::Left), column, row));
+    mouse(&mut state, MouseEventKind::Down, (column, row));
     for step in 1..6 {
-        let effects = update(&mut state, mouse(MouseEventKind::Drag(MouseButton::Left), column - step, row));
+        let effects = mouse(&mut state, MouseEventKind::Drag, (column - step, row));
         assert!(effects.is_empty());
     }
     assert!(screen(&state).contains("from WP0"), "metres and bearing while it moves");
-    let effects = update(&mut state, mouse(MouseEventKind::Up(MouseButton::Left), column - 5, row));
+    let effects = mouse(&mut state, MouseEventKind::Up, (column - 5, row));
     assert_eq!(journal_lines(&effects), 1);
     let after = state.plan().waypoints[1].position;
     assert!(after.lon_e7 < before.lon_e7, "{after} is not west of {before}");
@@ -324,6 +269,16 @@ fn name_home_and_settings_are_edited_in_a_form() {
 }
 
 #[test]
+fn a_setting_with_which_the_file_could_not_be_read_again_is_refused() {
+    for (typed, why) in [("foo=1", "foo is not a setting"), ("ap_max_angle=900", "ap_max_angle")] {
+        let mut state = state((80, 24));
+        keys(&mut state, &format!("2 E down down down '{typed} enter"));
+        assert!(screen(&state).contains(why), "{typed}: {}", screen(&state));
+        assert!(state.editor.document().settings.is_empty());
+    }
+}
+
+#[test]
 fn the_editor_and_its_popups_draw_at_every_size() {
     for open in ["2", "2 P", "2 m", "2 E", "2 o", "2 right enter", "p"] {
         let mut state = state((120, 40));
@@ -388,26 +343,133 @@ fn plans_are_opened_and_saved_by_name() {
 fn the_mouse_chooses_values_and_drags_altitudes_in_the_profile() {
     let mut state = state((120, 40));
     keys(&mut state, "2 z");
-    let find = |state: &AppState, text: &str| {
-        let seen = screen(state);
-        let (row, line) = seen.lines().enumerate().filter(|(_, line)| line.contains(text)).last().unwrap();
-        let at = line.find(text).unwrap();
-        (line[..at].chars().count() as u16 - 1, row as u16)
-    };
-    let mouse = |kind, (column, row): (u16, u16)| {
-        Msg::Mouse(MouseEvent { kind, column, row, modifiers: KeyModifiers::NONE })
-    };
-    let left = MouseButton::Left;
-    let speed = find(&state, "30.0 ORBIT");
-    update(&mut state, mouse(MouseEventKind::Down(left), speed));
-    update(&mut state, mouse(MouseEventKind::Up(left), speed));
+    let speed = place_of(&state, "30.0 ORBIT");
+    mouse(&mut state, MouseEventKind::Down, speed);
+    mouse(&mut state, MouseEventKind::Up, speed);
     keys(&mut state, "+");
     assert_eq!(state.plan().waypoints[2].duration_ds, 310);
-    let number = find(&state, "···3");
+    let number = place_of(&state, "···3");
     let number = (number.0 + 3, number.1);
-    update(&mut state, mouse(MouseEventKind::Down(left), number));
-    assert!(update(&mut state, mouse(MouseEventKind::Drag(left), (number.0, number.1 + 2))).is_empty());
-    let effects = update(&mut state, mouse(MouseEventKind::Up(left), (number.0, number.1 + 2)));
+    mouse(&mut state, MouseEventKind::Down, number);
+    assert!(mouse(&mut state, MouseEventKind::Drag, (number.0, number.1 + 2)).is_empty());
+    let effects = mouse(&mut state, MouseEventKind::Up, (number.0, number.1 + 2));
     assert_eq!(journal_lines(&effects), 1);
     assert!((2000..4500).contains(&state.plan().waypoints[3].alt_cm), "{:?}", altitudes(state.plan()));
+}
+
+#[test]
+fn a_waypoint_dropped_beside_the_map_is_put_down() {
+    let mut state = state((120, 40));
+    let mark = place_of(&state, "◇");
+    mouse(&mut state, MouseEventKind::Down, mark);
+    mouse(&mut state, MouseEventKind::Drag, (mark.0 - 4, mark.1));
+    // On the hint bar there is no panel.
+    let effects = mouse(&mut state, MouseEventKind::Up, (mark.0 - 4, 39));
+    assert_eq!(journal_lines(&effects), 1);
+    assert!(mouse(&mut state, MouseEventKind::Up, mark).is_empty());
+}
+
+#[test]
+fn a_picked_waypoint_is_put_down_in_no_other_plan_and_in_no_other_place_of_the_list() {
+    for change in ["u", "2 ) 1", "2 ( 1", "2 d 1"] {
+        let mut state = state((80, 24));
+        keys(&mut state, "2 n i i i ( 1 p left left i enter right right");
+        assert!(screen(&state).contains("from WP"), "{}", screen(&state));
+        keys(&mut state, change);
+        let plans = |state: &betadeck::ui::AppState| -> Vec<FlightPlan> {
+            state.editor.plans().iter().map(|plan| plan.document().plan.clone()).collect()
+        };
+        let before = plans(&state);
+        keys(&mut state, "enter");
+        assert_eq!(plans(&state), before, "{change}");
+        assert!(screen(&state).contains("nothing was moved"), "{change}: {}", screen(&state));
+    }
+}
+
+#[test]
+fn escape_leaves_a_picked_waypoint_where_it_was_and_the_map_can_be_dragged() {
+    for way_out in ["esc esc", "ctrl-c ctrl-l ctrl-c", "esc p"] {
+        let mut state = state((80, 24));
+        keys(&mut state, "p left left i enter right right");
+        let before = state.plan().clone();
+        keys(&mut state, way_out);
+        let mode = state.map.mode;
+        mouse(&mut state, MouseEventKind::Down, (4, 10));
+        mouse(&mut state, MouseEventKind::Drag, (9, 11));
+        mouse(&mut state, MouseEventKind::Up, (9, 11));
+        assert_ne!(state.map.mode, mode, "{way_out}");
+        assert!(!screen(&state).contains("from WP"), "{way_out}: {}", screen(&state));
+        assert_eq!(*state.plan(), before);
+    }
+}
+
+#[test]
+fn what_is_typed_goes_into_the_value_where_it_was_begun() {
+    let mut state = state((120, 40));
+    keys(&mut state, "2 z right right right enter backspace backspace '77");
+    let place = place_of(&state, "FLYBY");
+    mouse_button(&mut state, MouseEventKind::ScrollDown, place);
+    keys(&mut state, "enter");
+    assert_eq!(altitudes(state.plan()), [7700, 5000, 5000, 5000]);
+}
+
+#[test]
+fn a_value_that_is_typed_is_given_up_when_a_waypoint_is_chosen_on_the_map() {
+    let mut state = state((120, 40));
+    keys(&mut state, "2 right right right enter backspace backspace '77");
+    let mark = place_of(&state, "◇");
+    mouse(&mut state, MouseEventKind::Down, mark);
+    mouse(&mut state, MouseEventKind::Up, mark);
+    keys(&mut state, "2 enter");
+    assert_eq!(altitudes(state.plan()), [5000; 4]);
+}
+
+#[test]
+fn every_plan_of_a_generated_survey_is_asked_for_at_the_end_and_survives_a_kill() {
+    let mut state = state((120, 40));
+    let effects = keys(
+        &mut state,
+        "2 P right right right down down backspace backspace '300 down backspace backspace '5 \
+         down down down down down down right enter",
+    );
+    let made = state.editor.plans().len();
+    assert!(made > 2, "{}", screen(&state));
+    assert_eq!(journal_lines(&effects), made, "a line for each");
+    assert!(state.editor.plans().iter().all(betadeck::ui::OpenPlan::is_unsaved));
+    keys(&mut state, ") u");
+    assert!(state.plan().waypoints.is_empty(), "undo reaches before the generator");
+}
+
+#[test]
+fn text_is_pasted_into_the_fields_of_forms_and_of_the_file_browser() {
+    let mut state = state((80, 24));
+    keys(&mut state, "2 o");
+    update(&mut state, Msg::Paste("/plans/mine.toml\n".to_owned()));
+    let effects = keys(&mut state, "enter");
+    let asked = |effect: &Effect| matches!(effect, Effect::Files(FileRequest::Open(path)) if path.ends_with("mine.toml"));
+    assert!(effects.iter().any(asked), "{effects:?}");
+    keys(&mut state, "E");
+    update(&mut state, Msg::Paste(" of mine\nand more".to_owned()));
+    keys(&mut state, "enter");
+    assert_eq!(state.editor.document().name, "square of mine");
+}
+
+#[test]
+fn a_huge_paste_into_a_field_is_cut() {
+    let mut state = state((80, 24));
+    keys(&mut state, "ctrl-p");
+    update(&mut state, Msg::Paste("x".repeat(1 << 20)));
+    keys(&mut state, "esc :");
+    update(&mut state, Msg::Paste("x".repeat(1 << 20)));
+    assert!(state.command_line.field.value().len() <= 4096);
+}
+
+#[test]
+fn a_waypoint_inserted_behind_the_end_of_a_closed_square_goes_on_in_its_direction() {
+    let mut state = state((120, 40));
+    keys(&mut state, "2 n P enter down down down down i");
+    let [.., before, last, next] = state.plan().waypoints.as_slice() else { panic!("six") };
+    let (_, leg) = betadeck::geo::distance_bearing(before.position, last.position);
+    let (_, onward) = betadeck::geo::distance_bearing(last.position, next.position);
+    assert!((leg - onward).abs() < 0.01, "{leg} {onward}");
 }

@@ -283,6 +283,39 @@ fn the_mouse_sets_a_channel_and_drags_the_map() {
 }
 
 #[test]
+fn a_drag_that_strays_from_the_map_over_the_sliders_moves_no_stick() {
+    let mut state = ready();
+    press(&mut state, '4');
+    let place = |panel| layout::screen(&state).and_then(|screen| screen.panel(panel)).expect("visible");
+    let (map, rc) = (place(Panel::Map), place(Panel::Rc));
+    let at = |kind, column, row| Msg::Mouse(MouseEvent { kind, column, row, modifiers: KeyModifiers::NONE });
+    let (down, drag) = (MouseEventKind::Down(MouseButton::Left), MouseEventKind::Drag(MouseButton::Left));
+    update(&mut state, at(down, map.x + 10, map.y + 10));
+    for row in rc.y + 1..rc.y + rc.height - 1 {
+        assert!(update(&mut state, at(drag, rc.x + 25, row)).is_empty(), "row {row}");
+    }
+    update(&mut state, at(MouseEventKind::Up(MouseButton::Left), rc.x + 25, rc.y + 3));
+    assert!(update(&mut state, at(drag, rc.x + 25, rc.y + 3)).is_empty(), "nothing is pressed");
+}
+
+#[test]
+fn a_dragged_slider_stays_the_one_that_was_pressed() {
+    let mut state = ready();
+    press(&mut state, '4');
+    let rc = layout::screen(&state).and_then(|screen| screen.panel(Panel::Rc)).expect("visible");
+    let at = |kind, column, row| Msg::Mouse(MouseEvent { kind, column, row, modifiers: KeyModifiers::NONE });
+    let (down, drag) = (MouseEventKind::Down(MouseButton::Left), MouseEventKind::Drag(MouseButton::Left));
+    state.channel = 15;
+    let row = rc.y + 2;
+    let pressed = sticks(&update(&mut state, at(down, rc.x + 25, row))).expect("a slider");
+    let channel = state.channel;
+    let dragged = sticks(&update(&mut state, at(drag, rc.x + 27, row + 1))).expect("the slider");
+    assert_eq!(state.channel, channel);
+    let moved: Vec<usize> = (0..16).filter(|&at| dragged[at] != pressed[at]).collect();
+    assert_eq!(moved, [channel]);
+}
+
+#[test]
 fn help_closes_by_the_key_it_explains() {
     let mut state = ready();
     press(&mut state, '?');

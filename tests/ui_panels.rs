@@ -216,6 +216,52 @@ fn the_cursor_of_the_graphs_stands_on_the_map_too_and_time_is_scaled() {
 }
 
 #[test]
+fn a_stick_recording_forgets_what_came_after_the_instant_that_is_flown_on_from() {
+    use betadeck::signals::SimTime;
+    use betadeck::timeline::TimelineView;
+    let at = |state: &mut AppState, time_s: f64, branch: u32| {
+        let mut view = fixture::view(&fixture::SimpleFlight { time_s, fix: true, ..Default::default() });
+        let branched_at = SimTime::from_secs_f64(11.0);
+        view.timeline = Some(TimelineView { branch, branched_at, ..TimelineView::default() });
+        update(state, Msg::View(view));
+    };
+    for (begins_s, shown) in [(10.0, "● REC 2.0 s"), (20.0, "4 RC")] {
+        let mut state = fixture::state((80, 24), fixture::colour());
+        at(&mut state, begins_s, 0);
+        press(&mut state, '4');
+        press(&mut state, 'r');
+        at(&mut state, 30.0, 0);
+        at(&mut state, 12.0, 1);
+        let seen = screen(&state);
+        assert!(seen.contains(shown) && !seen.contains("REC -"), "{seen}");
+    }
+}
+
+#[test]
+fn a_craft_that_points_just_west_of_north_points_north() {
+    let mut state = fixture::state((120, 40), fixture::colour());
+    let flight = fixture::SimpleFlight { time_s: 8.0, fix: true, ..Default::default() };
+    let mut view = fixture::view(&flight);
+    std::sync::Arc::make_mut(&mut view.vehicle).estimate.heading_deg = Some(359.7);
+    update(&mut state, Msg::View(view));
+    let seen = screen(&state);
+    assert!(seen.contains("heading      0°"), "{seen}");
+}
+
+#[test]
+fn a_long_notice_leaves_no_letter_of_the_log_in_front_of_it() {
+    use betadeck::ui::Severity;
+    let mut state = fixture::state((80, 24), fixture::colour());
+    for _ in 0..9 {
+        state.notify(Severity::Info, "a line of the log");
+    }
+    state.notify(Severity::Warn, "x ".repeat(60));
+    let seen = screen(&state);
+    let above = seen.lines().rfind(|line| line.contains("▲ x x")).expect("the notice");
+    assert!(above.starts_with("\"│  ▲ x"), "{seen}");
+}
+
+#[test]
 fn recorded_sticks_are_played_again_in_their_time() {
     use betadeck::session::Command;
     let at = |state: &mut AppState, time_s: f64, throttle_us: u16| -> Vec<u16> {

@@ -61,7 +61,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         theme: Theme::default(),
         units: Units::default(),
         keymap: Keymap::default(),
-        cli: CliHelp { complete: |line| cli::complete(line).lines(line), hint: |_| None },
+        cli: CliHelp { complete: |line| cli::complete(line).lines(line), ..CliHelp::default() },
         sentence: |event| sentence::text(&event.kind).unwrap_or_default(),
         plan: OpenPlan::new(PlanId(1), None, History::new(file.into(), true)),
         mouse: true,

@@ -43,7 +43,7 @@ struct OpenFile {
     stamp: Option<Stamp>,
     /// The change was told.
     told: bool,
-    /// What the journal's file holds, or is to hold as soon as there is something to keep.
+    /// The document with its history: what the journal's file holds, or is to hold as soon as there is something to keep.
     kept: Journal,
     journal: Option<JournalFile>,
     /// A line could not be written: the file is written anew before the next one counts.
@@ -64,7 +64,8 @@ impl PlanFiles {
         if let Some(parent) = path.as_deref().and_then(Path::parent) {
             self.directory = parent.to_owned();
         }
-        self.take_in(path, document, Vec::new())
+        let stamp = path.as_deref().and_then(Stamp::of);
+        self.take_in(path, stamp, document, Vec::new())
     }
 
     /// The plans with edits that were never saved, whose program is gone.
@@ -75,7 +76,12 @@ impl PlanFiles {
             .map(|(file, journal)| {
                 let path = journal.file.as_ref().map(PathBuf::from);
                 let history = journal.history;
-                let opened = self.keep(path, history, Some(file), Vec::new());
+                let saved = history.saved_document();
+                let is_known = path.as_deref().zip(saved).is_some_and(|(path, saved)| {
+                    on_disk::holds(path, &saved) || on_disk::read(path).is_ok_and(|(there, _)| there == saved)
+                });
+                let stamp = path.as_deref().filter(|_| is_known).and_then(Stamp::of);
+                let opened = self.keep(path, stamp, history, Some(file), Vec::new());
                 Opened { recovered: true, ..opened }
             })
             .collect()
@@ -136,6 +142,7 @@ impl PlanFiles {
             Ok(path) => path,
             Err(error) => return FileReply::Failed(format!("Cannot open {}: {error}.", path.display())),
         };
+        let stamp = Stamp::of(&path);
         let (document, notes) = match on_disk::read(&path) {
             Ok(read) => read,
             Err(sentence) => return FileReply::Failed(sentence),
@@ -144,54 +151,94 @@ impl PlanFiles {
             self.directory = parent.to_owned();
         }
         let known = self.open.iter().find(|(_, file)| file.path.as_deref() == Some(&path)).map(|(&id, _)| id);
-        let mut opened = self.take_in(Some(path), document, notes);
-        // Read again: what is in the file takes the place of what is open.
-        if let Some(id) = known
-            && let Some(file) = self.open.remove(&opened.id)
-        {
-            self.open.insert(id, file);
-            opened.id = id;
-        }
+        let opened = match known {
+            Some(id) => self.read_again(id, path, stamp, document, notes),
+            None => self.take_in(Some(path), stamp, document, notes),
+        };
         FileReply::Opened(Box::new(opened))
     }
 
+    /// What another program wrote takes the place of what is open, as an edit.
+    fn read_again(
+        &mut self,
+        id: PlanId,
+        path: PathBuf,
+        stamp: Option<Stamp>,
+        document: PlanDocument,
+        mut notes: Vec<String>,
+    ) -> Opened {
+        let open = self.open.get(&id).map(|file| (file.kept.history.clone(), file.stamp));
+        let (mut history, seen) = open.unwrap_or_else(|| (History::new(document.clone(), true), None));
+        if stamp == seen {
+            return Opened { id, file: Some(path), history, notes, recovered: false };
+        }
+        let is_held = *history.document() == document || on_disk::holds(&path, history.document());
+        let label = "read again";
+        let edited = if is_held { None } else { history.commit(label, document) };
+        let edited = edited.map(|revision| Box::new(revision.change().clone()));
+        let edited = edited.map(|change| JournalLine::Edited { label: label.to_owned(), change });
+        if edited.is_some() {
+            notes.push("Read again: `u` shows what you had.".to_owned());
+        }
+        history.mark_saved();
+        for line in edited.into_iter().chain([JournalLine::Saved(path.display().to_string())]) {
+            if let Some(FileReply::Failed(sentence)) = self.append(id, &line) {
+                notes.push(sentence);
+            }
+        }
+        if let Some(file) = self.open.get_mut(&id) {
+            file.stamp = stamp;
+            file.told = false;
+        }
+        Opened { id, file: Some(path), history, notes, recovered: false }
+    }
+
     /// Takes in a document that was read from `path`, with the history that its journal has.
-    fn take_in(&mut self, path: Option<PathBuf>, document: PlanDocument, mut notes: Vec<String>) -> Opened {
+    fn take_in(
+        &mut self,
+        path: Option<PathBuf>,
+        mut stamp: Option<Stamp>,
+        document: PlanDocument,
+        mut notes: Vec<String>,
+    ) -> Opened {
         let name = path.as_ref().map(|path| path.display().to_string());
-        let own = path.as_deref().and_then(|path| {
-            let known = self.open.values_mut().find(|file| file.path.as_deref() == Some(path));
-            known.and_then(|file| file.journal.take())
-        });
-        let found = match (own, &self.journals, &name) {
-            (Some(journal), ..) => journal.read_again(),
-            (None, Some(directory), Some(name)) => journal_file::find(directory, name),
+        let found = match (&self.journals, &name) {
+            (Some(directory), Some(name)) => journal_file::find(directory, name),
             _ => None,
         };
         let Some((file, journal)) = found else {
-            return self.keep(path, History::new(document, true), None, notes);
+            return self.keep(path, stamp, History::new(document, true), None, notes);
         };
         let mut history = journal.history;
         let mut recovered = false;
-        if history.is_saved() || history.saved_document().is_none() {
-            if history.commit("changed on disk", document).is_some() {
-                notes.push("It was changed by another program: `u` shows what you had.".to_owned());
-            }
+        // A format that cannot carry everything reads as another document than was written.
+        let is_held = |held: &PlanDocument| {
+            *held == document || path.as_deref().is_some_and(|path| on_disk::holds(path, held))
+        };
+        let (holds_newest, saved) = (is_held(history.document()), history.saved_document());
+        let is_unchanged = saved.as_ref().is_some_and(is_held);
+        if holds_newest {
             history.mark_saved();
-        } else if *history.document() == document {
+        } else if history.is_saved() || saved.is_none() {
+            history.commit("changed on disk", document);
             history.mark_saved();
+            notes.push("It was changed by another program: `u` shows what you had.".to_owned());
         } else {
             recovered = true;
-            if history.saved_document() != Some(document) {
+            if !is_unchanged {
+                // So that saving asks first.
+                stamp = None;
                 notes.push("Another program changed the file meanwhile, too.".to_owned());
             }
         }
-        let opened = self.keep(path, history, Some(file), notes);
+        let opened = self.keep(path, stamp, history, Some(file), notes);
         Opened { recovered, ..opened }
     }
 
     fn keep(
         &mut self,
         path: Option<PathBuf>,
+        stamp: Option<Stamp>,
         history: History,
         journal: Option<JournalFile>,
         notes: Vec<String>,
@@ -203,7 +250,6 @@ impl PlanFiles {
         // Written anew without what was cut short.
         let mut journal = journal;
         let is_behind = journal.as_mut().is_some_and(|journal| journal.rewrite(&kept).is_err());
-        let stamp = path.as_deref().and_then(Stamp::of);
         let file = OpenFile { path: path.clone(), stamp, told: false, kept, journal, is_behind };
         self.open.insert(id, file);
         Opened { id, file: path, history, notes, recovered: false }
@@ -242,9 +288,9 @@ impl PlanFiles {
 
     /// Appends a line to the journal of a plan; the first failure is told.
     fn append(&mut self, id: PlanId, line: &JournalLine) -> Option<FileReply> {
-        let directory = self.journals.as_deref()?;
         let file = self.open.get_mut(&id)?;
         file.kept.take(line.clone());
+        let directory = self.journals.as_deref()?;
         let written = match &mut file.journal {
             None => JournalFile::create(directory, &file.kept).map(|journal| file.journal = Some(journal)),
             Some(journal) if file.is_behind => journal.rewrite(&file.kept),

@@ -10,6 +10,7 @@ use super::setup;
 use super::stop_signal;
 use crate::args::{CharsetChoice, DisplayArgs, PlanArg, ThemeChoice, TuiArgs, UnitsChoice};
 use crate::firmware::cli;
+use crate::flight::setup::check_setting;
 use crate::plan::builtin::{BuiltinPlan, DEMO};
 use crate::plan::format::PlanFile;
 use crate::record::sentence;
@@ -56,7 +57,11 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
         theme: theme(&args.display),
         units: units(&args.display),
         keymap,
-        cli: CliHelp { complete: |line| cli::complete(line).lines(line), hint: |line| cli::hint(line, None) },
+        cli: CliHelp {
+            complete: |line| cli::complete(line).lines(line),
+            hint: |line| cli::hint(line, None),
+            check_setting,
+        },
         sentence: |event| sentence::text(&event.kind).unwrap_or_default(),
         plan: OpenPlan::new(opened.id, opened.file, opened.history),
         mouse: true,

@@ -8,6 +8,7 @@ use crate::session::{Event, SessionEvent, SessionView};
 use crate::signals::{RcFrame, SimTime};
 use crate::telemetry::{EventKind, FirmwareEvent, NavEvent, NavState, PlanSource, TransitionReason};
 
+use super::action::Action;
 use super::console::{CliHelp, CliState};
 use super::editor::{Editor, OpenPlan};
 use super::event_log::{LogState, Severity};
@@ -155,7 +156,10 @@ pub struct AppState {
     pub step_ticks: u32,
     /// Flights flown ahead of time.
     pub forecast: ForecastState,
-    /// Where the mouse button went down on the map, and the map's centre (north, east) then.
+    /// The panel on which the mouse button went down, as long as it is.
+    pub pressed: Option<Panel>,
+    /// Where the mouse button went down, and what it drags from there: of the map its centre (north, east), of the
+    /// altitude profile the metres in a row and the altitude, cm.
     pub drag: Option<(u16, u16, f64, f64)>,
 }
 
@@ -219,8 +223,14 @@ impl AppState {
             fly_after_upload: false,
             step_ticks: 10,
             forecast: ForecastState::default(),
+            pressed: None,
             drag: None,
         }
+    }
+
+    /// The key of an action as it is now, for sentences.
+    pub(super) fn key(&self, action: Action) -> String {
+        self.keymap.key(action)
     }
 
     /// Says something to the user: on the screen for a moment, in the log for good.
@@ -237,7 +247,7 @@ impl AppState {
 
     /// Takes an event in.
     pub fn take_event(&mut self, event: &Event) {
-        let text = (self.sentence)(event);
+        let text = self.keymap.in_force(&(self.sentence)(event));
         let severity = Severity::of(&event.kind);
         if let SessionEvent::Branch { .. } = event.kind {
             self.leave_behind(event.time);
@@ -277,13 +287,18 @@ impl AppState {
         }
     }
 
+    /// Whether the map shows what is edited rather than what is flown.
+    pub(super) fn edits_on_map(&self) -> bool {
+        self.map.edit.is_some() || self.map.moving.is_some()
+    }
+
     /// The plan the map shows: the one being flown, else the open one, else the craft's.
     #[must_use]
     pub fn shown_plan(&self) -> &FlightPlan {
         let vehicle = &self.view.vehicle;
         match &vehicle.active_plan {
             // Whoever edits on the map sees what is edited.
-            _ if self.map.edit.is_some() || self.map.moving.is_some() => self.plan(),
+            _ if self.edits_on_map() => self.plan(),
             Some(plan) => plan,
             None if self.plan().waypoints.is_empty() => vehicle.stored_plan.as_ref().unwrap_or(self.plan()),
             None => self.plan(),

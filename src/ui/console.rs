@@ -6,6 +6,7 @@ use super::completion::common_prefix;
 use super::event_log::Severity;
 use super::history::History;
 use super::text_field::TextField;
+use crate::plan::format::SettingCheck;
 use crate::session::command::CliOutput;
 
 /// Lines of scrollback kept.
@@ -18,12 +19,14 @@ pub struct CliHelp {
     pub complete: fn(&str) -> Vec<String>,
     /// A word about the input: usage of the command, range of the setting.
     pub hint: fn(&str) -> Option<String>,
+    /// Whether the firmware takes a setting.
+    pub check_setting: SettingCheck,
 }
 
 impl Default for CliHelp {
     /// Knows nothing.
     fn default() -> Self {
-        Self { complete: |_| Vec::new(), hint: |_| None }
+        Self { complete: |_| Vec::new(), hint: |_| None, check_setting: |_, _| Ok(()) }
     }
 }
 
@@ -231,7 +234,7 @@ mod tests {
     fn completion_extends_to_what_all_candidates_share() {
         let help = CliHelp {
             complete: |_| vec!["set ap_position_p".to_owned(), "set ap_position_i".to_owned()],
-            hint: |_| None,
+            ..CliHelp::default()
         };
         let mut cli = CliState::default();
         typed(&mut cli, "set ap_po");

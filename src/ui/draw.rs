@@ -6,6 +6,7 @@ use ratatui::layout::{Position, Rect};
 use ratatui::text::Line;
 use ratatui::widgets::{Block, BorderType, Clear, Widget as _};
 
+use super::action::Action;
 use super::app_state::AppState;
 use super::ascii;
 use super::formatting;
@@ -130,8 +131,12 @@ fn framed_panel(state: &AppState, panel: Panel, area: Rect, buffer: &mut Buffer)
 
 fn too_small(state: &AppState, area: Rect, buffer: &mut Buffer) {
     let text = format!(
-        "betadeck needs at least {}x{}, now {}x{}. The flight goes on; q quits.",
-        SMALLEST.0, SMALLEST.1, area.width, area.height
+        "betadeck needs at least {}x{}, now {}x{}. The flight goes on; {} quits.",
+        SMALLEST.0,
+        SMALLEST.1,
+        area.width,
+        area.height,
+        state.key(Action::Quit)
     );
     for (row, line) in wrapped(&text, usize::from(area.width)).iter().enumerate() {
         panel::row(buffer, area, row as u16, &state.theme, Role::Text, line);

@@ -29,6 +29,7 @@ use std::path::PathBuf;
 
 use super::message::Effect;
 use super::text_field::TextField;
+use super::units::Units;
 use crate::plan::edit::{History, PlanDocument};
 use crate::plan::{FlightPlan, MAX_WAYPOINTS, Waypoint};
 
@@ -172,8 +173,11 @@ impl Editor {
         self.field = None;
     }
 
-    /// Moves the cursor.
+    /// Moves the cursor, unless a value is typed under it.
     pub(super) fn move_cursor(&mut self, rows: isize, columns: isize) {
+        if self.field.is_some() {
+            return;
+        }
         let last = self.document().plan.waypoints.len().saturating_sub(1);
         self.row = self.row().saturating_add_signed(rows).min(last);
         self.column = self.column.beside(columns);
@@ -182,6 +186,7 @@ impl Editor {
     /// Puts the cursor on a waypoint.
     pub(super) fn go_to_row(&mut self, row: usize) {
         self.row = row;
+        self.field = None;
     }
 
     /// Begins or ends a selection at the cursor.
@@ -210,8 +215,9 @@ impl Editor {
         self.replace_document(label, after)
     }
 
-    /// Makes the document `after`, as one revision.
+    /// Makes the document `after`, as one revision. What is typed is given up: its waypoint may be another now.
     pub(super) fn replace_document(&mut self, label: &str, after: PlanDocument) -> Vec<Effect> {
+        self.field = None;
         let plan = self.plan_mut();
         let id = plan.id();
         let line = plan.commit(label, after);
@@ -222,6 +228,7 @@ impl Editor {
     pub(super) fn undo(&mut self) -> Option<(String, Effect)> {
         let id = self.plan().id();
         let (label, line) = self.plan_mut().undo()?;
+        self.field = None;
         Some((label, Effect::Files(FileRequest::Journal(id, line))))
     }
 
@@ -229,6 +236,7 @@ impl Editor {
     pub(super) fn redo(&mut self) -> Option<(String, Effect)> {
         let id = self.plan().id();
         let (label, line) = self.plan_mut().redo()?;
+        self.field = None;
         Some((label, Effect::Files(FileRequest::Journal(id, line))))
     }
 
@@ -290,13 +298,13 @@ impl Editor {
     }
 
     /// Changes the value under the cursor, in all selected waypoints that use it.
-    pub(super) fn nudge(&mut self, steps: i32) -> Vec<Effect> {
+    pub(super) fn nudge(&mut self, steps: i32, units: Units) -> Vec<Effect> {
         let (column, selected) = (self.column, self.selected());
         self.edit(&format!("{} of {}", column.name(), which(&selected)), |document| {
             for index in selected {
                 if let Some(wp) = document.plan.waypoints.get_mut(index).filter(|wp| column.is_used(wp.kind))
                 {
-                    column.nudge(wp, steps);
+                    column.nudge(wp, steps, units);
                 }
             }
         })
@@ -306,14 +314,14 @@ impl Editor {
     ///
     /// # Errors
     /// The waypoint has no such value.
-    pub(super) fn begin_typing(&mut self) -> Result<(), String> {
+    pub(super) fn begin_typing(&mut self, units: Units) -> Result<(), String> {
         let Some(wp) = self.document().plan.waypoints.get(self.row()) else {
-            return Err("There is no waypoint to edit: `i` inserts one.".to_owned());
+            return Err("There is no waypoint to edit.".to_owned());
         };
         if !self.column.is_used(wp.kind) {
             return Err(format!("A {} has no {}.", wp.kind, self.column.name()));
         }
-        self.field = Some(CellField { text: TextField::new(self.column.text(wp)), problem: None });
+        self.field = Some(CellField { text: TextField::new(self.column.text(wp, units)), problem: None });
         Ok(())
     }
 
@@ -323,7 +331,7 @@ impl Editor {
     }
 
     /// Takes what was typed, in all selected waypoints that use it; a wrong value stays with what is wrong with it.
-    pub(super) fn end_typing(&mut self) -> Vec<Effect> {
+    pub(super) fn end_typing(&mut self, units: Units) -> Vec<Effect> {
         let Some(mut field) = self.field.take() else { return Vec::new() };
         let (column, selected) = (self.column, self.selected());
         let mut after = self.document().clone();
@@ -332,7 +340,7 @@ impl Editor {
             if !column.is_used(wp.kind) {
                 continue;
             }
-            if let Err(problem) = column.set(wp, field.text.value()) {
+            if let Err(problem) = column.set(wp, field.text.value(), units) {
                 field.problem = Some(problem);
                 self.field = Some(field);
                 return Vec::new();
@@ -351,11 +359,13 @@ impl Editor {
         (count > 0).then_some((count, text))
     }
 
+    /// Whether waypoints were copied.
+    pub(super) fn has_copy(&self) -> bool {
+        !self.register.is_empty()
+    }
+
     /// Inserts what was copied last.
     pub(super) fn paste_copied(&mut self) -> Result<Vec<Effect>, String> {
-        if self.register.is_empty() {
-            return Err("Nothing was copied: `y` copies the selected waypoints.".to_owned());
-        }
         let waypoints = self.register.clone();
         self.insert("paste", &waypoints)
     }

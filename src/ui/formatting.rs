@@ -21,6 +21,11 @@ pub(super) fn fixed(value: Option<f64>, width: usize, decimals: usize) -> String
     format!("{:>width$}", "…")
 }
 
+/// A direction by whole degrees, 0 to 359.
+pub(super) fn compass(degrees: f64) -> f64 {
+    degrees.round().rem_euclid(360.0)
+}
+
 /// No "-0.0".
 fn without_negative_zero(value: f64, decimals: usize) -> f64 {
     let floor = 0.5 * 0.1_f64.powi(decimals as i32);

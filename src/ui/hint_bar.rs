@@ -72,11 +72,6 @@ fn hint_actions(state: &AppState) -> Vec<(&'static [Action], &'static str)> {
             (&[Action::ChannelUp, Action::ChannelDown] as &[_], "channel"),
             (&[Action::Lower, Action::Raise], "value"),
         ]),
-        Panel::Map if state.zoomed => hints.extend([
-            (&[Action::ZoomIn, Action::ZoomOut] as &[_], "zoom"),
-            (&[Action::Follow], "follow"),
-            (&[Action::Fit], "fit"),
-        ]),
         Panel::Map if state.map.edit.is_some() => hints.extend([
             (
                 &[Action::Edit(EditAction::Pick)] as &[_],
@@ -86,6 +81,11 @@ fn hint_actions(state: &AppState) -> Vec<(&'static [Action], &'static str)> {
             (&[Action::Edit(EditAction::DeleteOnMap)], "delete"),
             (&[Action::Edit(EditAction::Undo)], "undo"),
             (&[Action::Edit(EditAction::OnMap)], "done"),
+        ]),
+        Panel::Map if state.zoomed => hints.extend([
+            (&[Action::ZoomIn, Action::ZoomOut] as &[_], "zoom"),
+            (&[Action::Follow], "follow"),
+            (&[Action::Fit], "fit"),
         ]),
         Panel::Plan => hints.extend([
             (&[Action::Edit(EditAction::Cell)] as &[_], "edit"),

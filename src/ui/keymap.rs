@@ -4,7 +4,7 @@ use std::fmt;
 
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
-use super::action::{ACTIONS, Action, Context};
+use super::action::{ACTIONS, Action, Context, spec_of};
 use super::panel::Panel;
 
 mod remap;
@@ -78,7 +78,13 @@ impl KeyPress {
             ("insert", ..) => KeyCode::Insert,
             ("delete", ..) => KeyCode::Delete,
             ("backspace", ..) => KeyCode::Backspace,
-            (_, Some(c), None) => KeyCode::Char(c),
+            // Capitals count, but terminals send Ctrl with small letters only.
+            (_, Some(c), None) if modifiers.contains(KeyModifiers::CONTROL) => KeyCode::Char(c),
+            (_, Some(_), None) if modifiers.contains(KeyModifiers::SHIFT) => {
+                modifiers -= KeyModifiers::SHIFT;
+                KeyCode::Char(text.chars().last()?.to_ascii_uppercase())
+            }
+            (_, Some(_), None) => KeyCode::Char(text.chars().last()?),
             (_, Some('f'), Some(_)) => KeyCode::F(rest[1..].parse().ok()?),
             _ => return None,
         };
@@ -146,6 +152,35 @@ impl Keymap {
             .collect()
     }
 
+    /// The first key of an action; without one the command that does it.
+    #[must_use]
+    pub fn key(&self, action: Action) -> String {
+        let first = self.shown_keys(action).into_iter().next();
+        let name = || spec_of(action).map_or_else(String::new, |spec| format!(":{}", spec.name));
+        first.unwrap_or_else(name)
+    }
+
+    /// A sentence of the session, which names default keys in backquotes, with the keys in force.
+    #[must_use]
+    pub fn in_force(&self, sentence: &str) -> String {
+        let mut parts = sentence.split('`');
+        let mut told = parts.next().unwrap_or_default().to_owned();
+        let mut is_quoted = true;
+        for part in parts {
+            let pressed = KeyPress::parse(part).filter(|_| is_quoted);
+            let is_default = |key: &&str| pressed.is_some() && KeyPress::parse(key) == pressed;
+            let action = ACTIONS
+                .iter()
+                .filter(|spec| matches!(spec.context, Context::Global | Context::Always))
+                .find(|spec| spec.keys.iter().any(is_default));
+            let text = action.map_or_else(|| part.to_owned(), |spec| self.key(spec.action));
+            told.push('`');
+            told.push_str(&text);
+            is_quoted = !is_quoted;
+        }
+        told
+    }
+
     /// The action of a key while `focus` has the focus; the panel's own meaning comes before the general one.
     #[must_use]
     pub fn action(&self, key: KeyPress, focus: Panel) -> Option<Action> {
@@ -190,6 +225,22 @@ mod tests {
     }
 
     #[test]
+    fn sentences_name_the_keys_in_force() {
+        let line = |action: &str, key: &str| KeyLine {
+            line: 1,
+            action: action.to_owned(),
+            keys: vec![key.to_owned()],
+        };
+        let lines = [line("flight.arm", "f9"), line("app.palette", "ctrl-k"), line("flight.home", "")];
+        let keymap = Keymap::remapped(&lines).expect("no conflict");
+        assert_eq!(
+            keymap.in_force("`a` disarms, `save` stays, `Ctrl-P` lists; a `b"),
+            "`F9` disarms, `save` stays, `Ctrl-K` lists; a `b"
+        );
+        assert_eq!(keymap.key(Action::Arm), "F9");
+    }
+
+    #[test]
     fn keys_are_shown_as_they_stand_on_the_keyboard() {
         for (text, shown) in [
             ("a", "a"),
@@ -200,6 +251,9 @@ mod tests {
             ("pagedown", "PgDn"),
             ("esc", "Esc"),
             ("shift-tab", "Shift-Tab"),
+            ("alt-G", "Alt-G"),
+            ("alt-shift-g", "Alt-G"),
+            ("Ctrl-P", "Ctrl-P"),
         ] {
             assert_eq!(KeyPress::parse(text).map(|key| key.to_string()).as_deref(), Some(shown));
         }

@@ -7,6 +7,7 @@ use super::app_state::AppState;
 use super::formatting::fixed;
 use super::message::Effect;
 use super::text_field::TextField;
+use super::units::Units;
 use crate::session::command::{FAULTS, FaultInfo};
 use crate::telemetry::snapshot::{FaultView, WindView, WorldView};
 use crate::telemetry::{FaultValue, Turbulence};
@@ -112,11 +113,13 @@ impl Knob {
     }
 
     /// What its value means, or how it is written.
-    pub(super) fn help(self) -> String {
+    pub(super) fn help(self, units: Units) -> String {
         match self {
-            Self::WindSpeed => "the mean wind, 0 to 60 m/s, over two seconds".to_owned(),
+            Self::WindSpeed => {
+                format!("the mean wind, 0 to {}, over two seconds", units.speed_text(MOST_MPS, 0))
+            }
             Self::WindFrom => "the direction it blows from, degrees".to_owned(),
-            Self::Gust => "strength of random gusts, 0 to 60 m/s".to_owned(),
+            Self::Gust => format!("strength of random gusts, 0 to {}", units.speed_text(MOST_MPS, 0)),
             Self::Turbulence => "none, light, moderate, severe".to_owned(),
             Self::Noise => "whether sensors err: real, none".to_owned(),
             Self::Fault(fault) if fault.value.is_empty() => format!("{}; = types SECONDS", fault.help),

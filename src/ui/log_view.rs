@@ -2,6 +2,7 @@
 
 use crossterm::event::{KeyCode, KeyEvent};
 
+use super::action::Action;
 use super::app_state::AppState;
 use super::event_log::{LogLine, Severity};
 use super::message::Effect;
@@ -99,7 +100,8 @@ pub(super) fn end_search(state: &mut AppState) {
 /// To the next older line in which the search occurs, or the next newer one; says when there is none.
 pub(super) fn next_match(state: &mut AppState, newer: bool) -> Vec<Effect> {
     if state.log_view.search.is_empty() {
-        state.notify(Severity::Info, "Nothing is searched: `/` in the log begins.");
+        let text = format!("Nothing is searched: `{}` in the log begins.", state.key(Action::Search));
+        state.notify(Severity::Info, text);
     } else if !show_match(state, newer) {
         let end = if newer { "newer" } else { "older" };
         let text = format!("No {end} line has {:?}.", state.log_view.search.value());

@@ -1,6 +1,8 @@
 //! What of a plan is edited on the map: waypoints, home and the fence, by a cursor or by the mouse.
 
 use super::app_state::AppState;
+use super::editor::PlanId;
+use super::formatting::compass;
 use super::map_point::{MapPoint, origin, to_map};
 use crate::geo::{LatLon, LocalFrame, distance_bearing};
 use nalgebra::Vector3;
@@ -30,6 +32,8 @@ pub(super) struct Moving {
     pub moved: bool,
     /// By the mouse: it is put down when the button is released.
     pub by_mouse: bool,
+    /// Plan and revision in which it was picked up.
+    pub of: (PlanId, usize),
 }
 
 /// The keyboard's cursor on the map.
@@ -77,13 +81,17 @@ pub(super) fn item_at(state: &AppState, place: MapPoint, metres_per_column: f64)
     fence_m(state).filter(|fence_m| (from_home - fence_m).abs() <= reach).map(|_| MapItem::Fence)
 }
 
-/// Metres and bearings of a place, for whoever is about to put something there.
+/// Distances and bearings of a place, for whoever is about to put something there.
 pub(super) fn measured(state: &AppState, place: MapPoint, moving: Option<MapItem>) -> Option<String> {
     let frame = origin(state)?;
     let here = position(&frame, place);
     let from = |name: &str, there: LatLon| {
         let (distance_m, bearing) = distance_bearing(there, here);
-        format!("{distance_m:.1} m {:03.0}° from {name}", bearing.to_degrees())
+        format!(
+            "{} {:03.0}° from {name}",
+            state.units.length_text(distance_m, 1),
+            compass(bearing.to_degrees())
+        )
     };
     let waypoints = &state.plan().waypoints;
     let before = match moving {

@@ -30,6 +30,8 @@ pub(super) fn draw(state: &AppState, hints: Rect, buffer: &mut Buffer) {
     let widest = lines.iter().map(|line| line.width()).max().unwrap_or(0);
     for (above, line) in (1..).zip(lines.iter().rev()) {
         let fill = " ".repeat(widest - line.width());
-        buffer.set_string(hints.x + 2, hints.y.saturating_sub(above), format!(" {line}{fill} "), style);
+        // Above the frame it stands on what a panel shows, of which no letter stays in front of it.
+        let (x, lead) = if above == 1 { (hints.x + 2, " ") } else { (hints.x + 1, "  ") };
+        buffer.set_string(x, hints.y.saturating_sub(above), format!("{lead}{line}{fill} "), style);
     }
 }

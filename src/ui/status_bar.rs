@@ -9,7 +9,7 @@ use crate::signals::RcSource;
 use crate::telemetry::{LinkState, Mode, NavState, NavTelemetry};
 
 use super::app_state::AppState;
-use super::formatting::{clock, clock_ms, cut, factor, fixed, signed};
+use super::formatting::{clock, clock_ms, compass, cut, factor, fixed, signed};
 use super::panel::span;
 use super::theme::Role;
 use super::units::Units;
@@ -192,7 +192,7 @@ fn leg(nav: &NavTelemetry, units: Units) -> Vec<(u8, &'static str, String, Strin
     };
     vec![
         (0, "", fixed(length(nav.distance_m), 5, 1), m()),
-        (3, "", fixed(bearing, 4, 0), "°".to_owned()),
+        (3, "", fixed(bearing.map(compass), 4, 0), "°".to_owned()),
         last,
     ]
 }

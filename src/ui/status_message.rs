@@ -2,10 +2,13 @@
 
 use crate::telemetry::{ArmingFlag, ArmingFlags, CannotHold, HoldLimit, LinkState, Mode, NavState, Refusal};
 
+use super::action::{Action, EditAction};
 use super::app_state::AppState;
 use super::event_log::Severity;
+use super::panel::Panel;
 use super::transmitter;
 use super::transmitter::ThrottleMove;
+use super::units::Units;
 
 /// The state of the craft as a sentence, and what to do.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -47,16 +50,16 @@ pub fn most_useful_flag(flags: ArmingFlags) -> Option<ArmingFlag> {
 
 /// What to do about an arming-disable flag, and the key that does it here.
 #[must_use]
-pub fn arming_hint(flag: ArmingFlag) -> String {
-    let key = match flag {
-        ArmingFlag::RxLoss => "`x` restores the link",
-        ArmingFlag::NotDisarmed | ArmingFlag::ArmSwitch => "`a` moves the switch",
-        ArmingFlag::Throttle => "`t` does it",
-        ArmingFlag::AltHoldSwitch | ArmingFlag::PosHoldSwitch => "`t` up and down does it",
-        ArmingFlag::AutopilotSwitch => "`g` switches it off",
+pub fn arming_hint(state: &AppState, flag: ArmingFlag) -> String {
+    let (action, does) = match flag {
+        ArmingFlag::RxLoss => (Action::CutRc, "restores the link"),
+        ArmingFlag::NotDisarmed | ArmingFlag::ArmSwitch => (Action::Arm, "moves the switch"),
+        ArmingFlag::Throttle => (Action::Throttle, "does it"),
+        ArmingFlag::AltHoldSwitch | ArmingFlag::PosHoldSwitch => (Action::Throttle, "up and down does it"),
+        ArmingFlag::AutopilotSwitch => (Action::Autopilot, "switches it off"),
         _ => return flag.hint().to_owned(),
     };
-    format!("{}; {key}", flag.hint())
+    format!("{}; `{}` {does}", flag.hint(), state.key(action))
 }
 
 /// What the user should know and do now; `None` while the mission flies.
@@ -64,9 +67,12 @@ pub fn arming_hint(flag: ArmingFlag) -> String {
 pub fn current(state: &AppState) -> Option<StatusMessage> {
     let vehicle = &state.view.vehicle;
     let craft = &vehicle.craft;
+    let key = |action| state.key(action);
     if let Some(rewound_s) = state.rewound_s() {
         let condition = format!("Rewound by {rewound_s:.1} s: the flight waits.");
-        return message(Severity::Info, condition, "b flies on from here, e goes to the end");
+        let action =
+            format!("{} flies on from here, {} goes to the end", key(Action::FlyOn), key(Action::Newest));
+        return message(Severity::Info, condition, action);
     }
     match state.view.simulator {
         Some(LinkState::Silent) => {
@@ -84,13 +90,14 @@ pub fn current(state: &AppState) -> Option<StatusMessage> {
     }
     if let Some(truth) = &vehicle.truth {
         if truth.crashed {
-            return message(Severity::Fault, "The craft crashed.", "R puts it back home");
+            let action = format!("{} puts it back home", key(Action::ResetCraft));
+            return message(Severity::Fault, "The craft crashed.", action);
         }
         if truth.diverged {
             return message(
                 Severity::Fault,
                 "The simulation left the range where it means something.",
-                "R resets",
+                format!("{} resets", key(Action::ResetCraft)),
             );
         }
     }
@@ -99,7 +106,11 @@ pub fn current(state: &AppState) -> Option<StatusMessage> {
     }
     let switched_on = transmitter::switch_is_on(state, Mode::Autopilot);
     if state.view.rc_cut {
-        return message(Severity::Fault, "The RC link is cut.", "x restores it");
+        return message(
+            Severity::Fault,
+            "The RC link is cut.",
+            format!("{} restores it", key(Action::CutRc)),
+        );
     }
     let Some(armed) = craft.armed else {
         return message(
@@ -114,71 +125,104 @@ pub fn current(state: &AppState) -> Option<StatusMessage> {
         }
         if let Some(refusal) = vehicle.nav.as_ref().and_then(|nav| nav.refusal).filter(|_| switched_on) {
             let condition = format!("AUTOPILOT refused: {}", refusal.sentence());
-            return message(Severity::Fault, condition, action_after(refusal));
+            return message(Severity::Fault, condition, action_after(state, refusal));
         }
         if let Some(doing) = state.view.pilot {
-            return message(Severity::Info, format!("The pilot flies: {doing}."), "F stops it");
+            return message(
+                Severity::Info,
+                format!("The pilot flies: {doing}."),
+                format!("{} stops it", key(Action::Fly)),
+            );
         }
         return by_hand(state);
     }
     let outside = state.view.simulator.is_some();
     if vehicle.truth.as_ref().is_some_and(|truth| !truth.on_ground && truth.alt > 1.0) {
-        let action = if outside { "reset the simulator's world" } else { "R puts the craft back home" };
+        let action = if outside {
+            "reset the simulator's world".to_owned()
+        } else {
+            format!("{} puts the craft back home", key(Action::ResetCraft))
+        };
         return message(Severity::Fault, "Disarmed in the air.", action);
     }
     if vehicle.nav.as_ref().is_some_and(|nav| nav.state == NavState::Complete) {
-        let action = if outside { "F flies again" } else { "R puts the craft back home, F flies again" };
+        let again = format!("{} flies again", key(Action::Fly));
+        let action = if outside {
+            again
+        } else {
+            format!("{} puts the craft back home, {again}", key(Action::ResetCraft))
+        };
         return message(Severity::Good, "Mission complete.", action);
     }
     if let Some(doing) = state.view.pilot {
         if let Some(flag) = most_useful_flag(craft.arming_flags()).filter(|_| craft.has_fix()) {
             let condition = format!("The pilot waits, arming is blocked: {flag}.");
-            return message(Severity::Info, condition, arming_hint(flag));
+            return message(Severity::Info, condition, arming_hint(state, flag));
         }
-        return message(Severity::Info, format!("The pilot prepares: {doing}."), "F stops it");
+        return message(
+            Severity::Info,
+            format!("The pilot prepares: {doing}."),
+            format!("{} stops it", key(Action::Fly)),
+        );
     }
     if craft.gps_fix == Some(false) {
-        return message(Severity::Warn, "No GPS fix yet.", "wait for satellites; F waits by itself");
+        return message(
+            Severity::Warn,
+            "No GPS fix yet.",
+            format!("wait for satellites; {} waits by itself", key(Action::Fly)),
+        );
     }
     if let Some(flag) = most_useful_flag(craft.arming_flags()) {
-        return message(Severity::Warn, format!("Arming is blocked: {flag}."), arming_hint(flag));
+        return message(Severity::Warn, format!("Arming is blocked: {flag}."), arming_hint(state, flag));
     }
     if vehicle.stored_plan.as_ref().is_some_and(|plan| plan.waypoints.is_empty()) {
         let action = if state.plan().waypoints.is_empty() {
-            "2 opens the plan editor: `i` inserts a waypoint".to_owned()
+            {
+                let (opens, inserts) =
+                    (key(Action::Show(Panel::Plan)), key(Action::Edit(EditAction::Insert)));
+                format!("{opens} opens the plan editor: `{inserts}` inserts a waypoint")
+            }
         } else {
-            format!("U uploads {}; F does it and flies", state.editor.plan().title())
+            {
+                let (upload, fly) = (key(Action::Upload), key(Action::Fly));
+                format!("{upload} uploads {}; {fly} does it and flies", state.editor.plan().title())
+            }
         };
         return message(Severity::Warn, "The craft has no plan.", action);
     }
     if switched_on {
-        return message(Severity::Warn, "AUTOPILOT is on while disarmed.", "g switches it off, then a arms");
+        let action = format!("{} switches it off, then {} arms", key(Action::Autopilot), key(Action::Arm));
+        return message(Severity::Warn, "AUTOPILOT is on while disarmed.", action);
     }
-    message(Severity::Good, "Ready.", "F flies the plan; by hand: a, t, g")
+    let by_hand = [Action::Arm, Action::Throttle, Action::Autopilot].map(key).join(", ");
+    message(Severity::Good, "Ready.", format!("{} flies the plan; by hand: {by_hand}", key(Action::Fly)))
 }
 
 /// What to know of a mission that is flown.
 fn in_flight(state: &AppState) -> Option<StatusMessage> {
     let nav = state.view.vehicle.nav.as_ref()?;
     if let Some(deviation) = nav.cannot_hold {
-        return cannot_hold_message(deviation);
+        return cannot_hold_message(deviation, state.units);
     }
     if nav.held_by_command {
-        let action = format!("C goes on to WP{}, G to another", nav.wp);
+        let (on, to) = (state.key(Action::Resume), state.key(Action::GoTo));
+        let action = format!("{on} goes on to WP{}, {to} to another", nav.wp);
         return message(Severity::Info, "Holds here by command.", action);
     }
     if state.flies_older_plan() {
         let condition = "The craft has a new plan, for the next engagement.";
-        return message(Severity::Info, condition, "G continues on it from a waypoint");
+        let action = format!("{} continues on it from a waypoint", state.key(Action::GoTo));
+        return message(Severity::Info, condition, action);
     }
     None
 }
 
 /// A craft that is blown off its place, or cannot keep its altitude.
-fn cannot_hold_message(deviation: CannotHold) -> Option<StatusMessage> {
+fn cannot_hold_message(deviation: CannotHold, units: Units) -> Option<StatusMessage> {
     let CannotHold { distance_m, vertical_m, limit } = deviation;
     let side = if vertical_m < 0.0 { "low" } else { "high" };
-    let condition = format!("Cannot hold: {distance_m:.0} m off, {:.0} m too {side}.", vertical_m.abs());
+    let (off, vertical) = (units.length_text(distance_m, 0), units.length_text(vertical_m.abs(), 0));
+    let condition = format!("Cannot hold: {off} off, {vertical} too {side}.");
     let action = match limit {
         HoldLimit::Lean => "the lean is at its limit: raise ap_max_angle, or land",
         HoldLimit::Throttle => "the throttle is at its limit: land",
@@ -196,40 +240,55 @@ fn lacks_plan(state: &AppState) -> bool {
 /// An armed craft on the sticks: where it is, and the keys that lead on from there.
 fn by_hand(state: &AppState) -> Option<StatusMessage> {
     let craft = &state.view.vehicle.craft;
+    let [arm, throttle, autopilot, home, upload] =
+        [Action::Arm, Action::Throttle, Action::Autopilot, Action::ReturnHome, Action::Upload]
+            .map(|action| state.key(action));
     let (condition, action) = match (transmitter::is_standing(state), transmitter::throttle_move(state)) {
         (true, ThrottleMove::Low) if lacks_plan(state) => {
-            ("Armed, on the ground.", "U uploads the plan, then g takes off")
+            ("Armed, on the ground.", format!("{upload} uploads the plan, then {autopilot} takes off"))
         }
-        (true, ThrottleMove::Low) => ("Armed, on the ground.", "g takes off; t low, then a disarms"),
-        (true, _) => ("Armed, throttle low.", "t raises it and holds, then g engages"),
+        (true, ThrottleMove::Low) => {
+            ("Armed, on the ground.", format!("{autopilot} takes off; {throttle} low, then {arm} disarms"))
+        }
+        (true, _) => {
+            ("Armed, throttle low.", format!("{throttle} raises it and holds, then {autopilot} engages"))
+        }
         (false, _) if transmitter::is_sinking(state) => {
-            ("Coming down.", "t stops that; on the ground a disarms")
+            ("Coming down.", format!("{throttle} stops that; on the ground {arm} disarms"))
         }
         (false, ThrottleMove::Sink(_)) if craft.is_active(Mode::PosHold) => {
-            ("Holds its place.", "g engages, t comes down, H flies home")
+            ("Holds its place.", format!("{autopilot} engages, {throttle} comes down, {home} flies home"))
         }
-        (false, ThrottleMove::Sink(_)) => ("Holds its height.", "g engages, t comes down"),
-        (false, ThrottleMove::Hover) => ("Flown by hand.", "t holds the place, g engages"),
-        (false, ThrottleMove::Low) => ("Flown by hand.", "g engages the autopilot"),
+        (false, ThrottleMove::Sink(_)) => {
+            ("Holds its height.", format!("{autopilot} engages, {throttle} comes down"))
+        }
+        (false, ThrottleMove::Hover) => {
+            ("Flown by hand.", format!("{throttle} holds the place, {autopilot} engages"))
+        }
+        (false, ThrottleMove::Low) => ("Flown by hand.", format!("{autopilot} engages the autopilot")),
     };
     message(Severity::Info, condition, action)
 }
 
 /// What to do after a refusal, with the keys of the screen.
-fn action_after(refusal: Refusal) -> &'static str {
+fn action_after(state: &AppState, refusal: Refusal) -> String {
+    let key = |action| state.key(action);
     match refusal {
-        Refusal::NotArmed => "a arms, then g again",
-        Refusal::Throttle => "t raises it",
-        Refusal::NoFix => "wait for satellites",
-        Refusal::NoHeading => "fly straight ahead by hand for a few seconds",
-        Refusal::NoAltitude => "wait for the barometer or GPS",
-        Refusal::NoPlan => "U uploads the plan",
-        Refusal::PlanCorrupt => "U uploads the plan anew",
-        Refusal::BadWaypoint(_) => "2 Plan shows why",
-        Refusal::NoHome => "disarm, wait for the fix, arm again",
-        Refusal::Geofence { .. } => "5 CLI: set ap_max_distance_from_home, or move the waypoint",
-        Refusal::Failsafe => "x restores the link",
-        Refusal::Aborted(_) => "g off and on again resumes",
+        Refusal::NotArmed => format!("{} arms, then {} again", key(Action::Arm), key(Action::Autopilot)),
+        Refusal::Throttle => format!("{} raises it", key(Action::Throttle)),
+        Refusal::NoFix => "wait for satellites".to_owned(),
+        Refusal::NoHeading => "fly straight ahead by hand for a few seconds".to_owned(),
+        Refusal::NoAltitude => "wait for the barometer or GPS".to_owned(),
+        Refusal::NoPlan => format!("{} uploads the plan", key(Action::Upload)),
+        Refusal::PlanCorrupt => format!("{} uploads the plan anew", key(Action::Upload)),
+        Refusal::BadWaypoint(_) => format!("{} Plan shows why", key(Action::Show(Panel::Plan))),
+        Refusal::NoHome => "disarm, wait for the fix, arm again".to_owned(),
+        Refusal::Geofence { .. } => {
+            let cli = key(Action::Show(Panel::Cli));
+            format!("{cli} CLI: set ap_max_distance_from_home, or move the waypoint")
+        }
+        Refusal::Failsafe => format!("{} restores the link", key(Action::CutRc)),
+        Refusal::Aborted(_) => format!("{} off and on again resumes", key(Action::Autopilot)),
     }
 }
 

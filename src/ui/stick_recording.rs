@@ -1,5 +1,6 @@
 //! Movements of the sticks and switches, recorded in simulated time and played again.
 
+use super::action::Action;
 use super::app_state::AppState;
 use super::event_log::Severity;
 use super::message::Effect;
@@ -38,6 +39,18 @@ impl StickRecording {
             Activity::Playing(since, _) => {
                 Some(format!("► PLAY {:.1} of {:.1} s", (now_s - since).max(0.0), self.length_s))
             }
+        }
+    }
+
+    /// The flight goes on from this earlier instant, s: what was recorded after it is forgotten, and playing ends.
+    pub(super) fn go_back_to(&mut self, time_s: f64) {
+        match self.activity {
+            Activity::Recording(since) if since <= time_s => {
+                self.frames.retain(|(at_s, _)| *at_s <= time_s - since);
+            }
+            Activity::Recording(_) => *self = Self::default(),
+            Activity::Playing(..) => self.activity = Activity::Idle,
+            Activity::Idle => {}
         }
     }
 
@@ -94,7 +107,8 @@ pub(super) fn can_play(state: &AppState) -> Result<(), String> {
     match recording.activity {
         Activity::Recording(_) => Err("The sticks are being recorded: end that first.".to_owned()),
         Activity::Idle if recording.frames.is_empty() => {
-            Err("No stick movements are recorded: `r` in the RC panel begins.".to_owned())
+            let key = state.key(Action::Record);
+            Err(format!("No stick movements are recorded: `{key}` in the RC panel begins."))
         }
         Activity::Idle | Activity::Playing(..) => Ok(()),
     }

@@ -9,6 +9,9 @@ use tui_input::{Input, InputRequest};
 use super::theme::{Role, Theme};
 use crate::printable;
 
+/// Most characters that are inserted at once: what is pasted by mistake must not hold the screen up.
+const LONGEST: usize = 2048;
+
 /// A line of text with a cursor.
 #[derive(Debug, Clone, Default)]
 pub struct TextField {
@@ -39,9 +42,10 @@ impl TextField {
         self.input.value_and_reset()
     }
 
-    /// Inserts text at the cursor, without what no terminal shows.
+    /// Inserts text at the cursor, without what no terminal shows and what is longer than any line.
     pub fn insert(&mut self, text: &str) {
-        for c in text.chars().filter(|&c| printable::is_printable(c)) {
+        let room = LONGEST.saturating_sub(self.value().chars().count());
+        for c in text.chars().filter(|&c| printable::is_printable(c)).take(room) {
             self.input.handle(InputRequest::InsertChar(c));
         }
     }

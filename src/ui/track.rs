@@ -10,16 +10,20 @@ const JUMP_MPS: f64 = 60.0;
 const STEP_M: f64 = 5.0;
 
 /// A point of the track, metres from the boot place.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct TrackPoint {
     /// North, m.
     pub n: f64,
     /// East, m.
     pub e: f64,
+    /// Altitude above home, m: in truth if the world tells.
+    pub alt_m: f64,
     /// Simulated time, s.
     pub time_s: f64,
     /// Whether the autopilot was flying.
     pub engaged: bool,
+    /// Index of the waypoint it flew to, of the stored plan.
+    pub wp: Option<u8>,
 }
 
 /// The flown track.
@@ -42,7 +46,7 @@ impl Default for Track {
 impl Track {
     /// Appends a point if it is far enough from the last one; a jump starts the track anew.
     pub fn push(&mut self, point: TrackPoint) {
-        if !(point.n.is_finite() && point.e.is_finite()) {
+        if !(point.n.is_finite() && point.e.is_finite() && point.alt_m.is_finite()) {
             return;
         }
         let distance = |from: &TrackPoint| (point.n - from.n).hypot(point.e - from.e);
@@ -53,7 +57,10 @@ impl Track {
             self.clear();
         }
         self.seen = Some(point);
-        let near = |last: &TrackPoint| distance(last) < self.spacing_m && last.engaged == point.engaged;
+        let is_same_leg = |last: &TrackPoint| last.engaged == point.engaged && last.wp == point.wp;
+        let near = |last: &TrackPoint| {
+            distance(last).hypot(point.alt_m - last.alt_m) < self.spacing_m && is_same_leg(last)
+        };
         if self.points.last().is_some_and(near) {
             return;
         }
@@ -114,7 +121,7 @@ mod tests {
         let mut track = Track::default();
         for step in 0..50_000 {
             let n = f64::from(step);
-            track.push(TrackPoint { n, e: 0.0, time_s: n / 10.0, engaged: true });
+            track.push(TrackPoint { n, time_s: n / 10.0, engaged: true, ..TrackPoint::default() });
         }
         assert!(track.points().len() <= MAX_POINTS);
         assert_eq!(track.points().first().map(|p| p.n), Some(0.0));
@@ -124,7 +131,7 @@ mod tests {
     #[test]
     fn a_branch_goes_on_from_where_it_was_cut_off() {
         let mut track = Track::default();
-        let at = |n: f64| TrackPoint { n, e: 0.0, time_s: n, engaged: true };
+        let at = |n: f64| TrackPoint { n, time_s: n, engaged: true, ..TrackPoint::default() };
         (0..10).for_each(|n| track.push(at(f64::from(n))));
         assert_eq!(track.cut_after(6.5), [at(6.0), at(7.0), at(8.0), at(9.0)]);
         assert!(track.cut_after(6.5).is_empty());
@@ -135,7 +142,7 @@ mod tests {
     #[test]
     fn a_reset_after_a_long_stand_starts_a_new_track() {
         let mut track = Track::default();
-        let at = |n, time_s| TrackPoint { n, e: 0.0, time_s, engaged: false };
+        let at = |n, time_s| TrackPoint { n, time_s, ..TrackPoint::default() };
         for second in 0..30 {
             track.push(at(100.0, f64::from(second)));
         }
@@ -146,7 +153,7 @@ mod tests {
     #[test]
     fn an_awaited_reset_needs_a_disarmed_craft_elsewhere() {
         let mut track = Track::default();
-        let at = |n, time_s| TrackPoint { n, e: 0.0, time_s, engaged: false };
+        let at = |n, time_s| TrackPoint { n, time_s, ..TrackPoint::default() };
         track.push(at(100.0, 0.0));
         track.disarmed_at(0.0, 0.0);
         assert_eq!(track.points().len(), 1, "a landing after a slice as long as this is no reset");
@@ -158,9 +165,19 @@ mod tests {
     }
 
     #[test]
+    fn a_climb_straight_up_is_kept() {
+        let mut track = Track::default();
+        for step in 0..100 {
+            let alt_m = f64::from(step) * 0.1;
+            track.push(TrackPoint { alt_m, time_s: alt_m, ..TrackPoint::default() });
+        }
+        assert!(track.points().len() > 15 && track.points().last().is_some_and(|point| point.alt_m > 9.0));
+    }
+
+    #[test]
     fn a_reset_starts_a_new_track() {
         let mut track = Track::default();
-        let at = |n, time_s| TrackPoint { n, e: 0.0, time_s, engaged: true };
+        let at = |n, time_s| TrackPoint { n, time_s, engaged: true, ..TrackPoint::default() };
         track.push(at(100.0, 50.0));
         track.push(at(90.0, 51.0));
         assert_eq!(track.points().len(), 2);

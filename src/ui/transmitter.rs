@@ -9,10 +9,12 @@ use crate::telemetry::snapshot::SettingsView;
 use crate::telemetry::switch::Switch;
 use crate::telemetry::{Mode, ModeBox, switch};
 
+use super::action::Action;
 use super::app_state::AppState;
 use super::event_log::Severity;
 use super::formatting::within;
 use super::message::Effect;
+use super::panel::Panel;
 use super::status_message;
 
 /// Channel of the throttle.
@@ -58,7 +60,8 @@ pub(super) fn switch(state: &AppState, mode: Mode) -> Result<Switch, String> {
     };
     Switch::of(mode, ranges).ok_or_else(|| {
         let line = if mode == Mode::Arm { "aux 0 0 0 1700 2100" } else { "aux 1 56 1 1700 2100" };
-        format!("No switch is assigned to {mode}: `{line}` in the CLI (5) does it.")
+        let cli = state.key(Action::Show(Panel::Cli));
+        format!("No switch is assigned to {mode}: `{line}` in the CLI ({cli}) does it.")
     })
 }
 
@@ -174,7 +177,7 @@ pub(super) fn can_arm(state: &AppState) -> Result<(), String> {
     // The others only say "switch off, then on again", which is what the key does.
     match status_message::most_useful_flag(craft.arming_flags().causes()) {
         None => Ok(()),
-        Some(flag) => Err(format!("Cannot arm, {flag}: {}.", status_message::arming_hint(flag))),
+        Some(flag) => Err(format!("Cannot arm, {flag}: {}.", status_message::arming_hint(state, flag))),
     }
 }
 
@@ -303,7 +306,8 @@ fn send(state: &mut AppState, next: RcFrame) -> Vec<Effect> {
             state.notify(Severity::Warn, "Another RC source drives the craft: stop it to fly by keys.");
         }
         _ if state.view.rc_cut => {
-            state.notify(Severity::Warn, "The RC link is cut: `x` restores it.");
+            let text = format!("The RC link is cut: `{}` restores it.", state.key(Action::CutRc));
+            state.notify(Severity::Warn, text);
         }
         _ => {}
     }

@@ -81,8 +81,11 @@ pub(super) fn follow(state: &mut AppState) {
     state.tutorial = Some(tutorial);
     if tutorial.step == STEPS.len() {
         state.tutorial = None;
-        let text =
-            "That was the tutorial: ? shows the keys of the focused panel, : takes every action by name.";
+        let text = format!(
+            "That was the tutorial: {} shows the keys of the focused panel, {} takes every action by name.",
+            state.key(Action::Help),
+            state.key(Action::CommandLine)
+        );
         state.notify(Severity::Good, text);
     }
 }
@@ -90,9 +93,7 @@ pub(super) fn follow(state: &mut AppState) {
 /// What to do now, with the keys as they are.
 fn text(state: &AppState, tutorial: Tutorial) -> String {
     let Some(step) = STEPS.get(tutorial.step) else { return String::new() };
-    let keys = step.actions.iter().map(|&action| {
-        state.keymap.shown_keys(action).into_iter().next().unwrap_or_else(|| "(no key)".to_owned())
-    });
+    let keys = step.actions.iter().map(|&action| state.key(action));
     let text = keys.fold(step.text.to_owned(), |text, key| text.replacen("{}", &key, 1));
     format!("{}/{} {text}", tutorial.step + 1, STEPS.len())
 }

@@ -36,6 +36,49 @@ impl Units {
         }
     }
 
+    /// A length as it is shown or typed, in metres.
+    #[must_use]
+    pub fn metres(self, shown: f64) -> f64 {
+        shown / self.length(1.0)
+    }
+
+    /// A speed as it is shown or typed, in metres a second.
+    #[must_use]
+    pub fn metres_per_second(self, shown: f64) -> f64 {
+        shown / self.speed(1.0)
+    }
+
+    /// A length with its unit and this many digits behind the point.
+    #[must_use]
+    pub fn length_text(self, metres: f64, digits: usize) -> String {
+        format!("{:.digits$} {}", self.length(metres), self.length_unit())
+    }
+
+    /// A speed with its unit and this many digits behind the point.
+    #[must_use]
+    pub fn speed_text(self, metres_a_second: f64, digits: usize) -> String {
+        format!("{:.digits$} {}", self.speed(metres_a_second), self.speed_unit())
+    }
+
+    /// A length moved by whole steps of what is shown: metres or feet.
+    #[must_use]
+    pub(super) fn step_length(self, metres: f64, steps: i32) -> f64 {
+        match self {
+            Self::Metric => metres + f64::from(steps),
+            // What is stored is whole centimetres: without rounding, steps of a foot would drift.
+            Self::Imperial => self.metres(tenths(self.length(metres)) + f64::from(steps)),
+        }
+    }
+
+    /// A speed moved by steps of half a metre a second, or of a mile an hour.
+    #[must_use]
+    pub(super) fn step_speed(self, metres_a_second: f64, steps: i32) -> f64 {
+        match self {
+            Self::Metric => metres_a_second + 0.5 * f64::from(steps),
+            Self::Imperial => self.metres_per_second(tenths(self.speed(metres_a_second)) + f64::from(steps)),
+        }
+    }
+
     /// What a guard's values are multiplied by, and the unit they are then in.
     #[must_use]
     pub fn of_guard(self, unit: GuardUnit) -> (f64, &'static str) {
@@ -45,6 +88,15 @@ impl Units {
             GuardUnit::None | GuardUnit::Waypoints | GuardUnit::Seconds | GuardUnit::Microseconds => {
                 (1.0, unit.into())
             }
+        }
+    }
+
+    /// Name of the unit of lengths in sentences.
+    #[must_use]
+    pub(super) fn length_name(self) -> &'static str {
+        match self {
+            Self::Metric => "metres",
+            Self::Imperial => "feet",
         }
     }
 
@@ -67,6 +119,10 @@ impl Units {
     }
 }
 
+fn tenths(value: f64) -> f64 {
+    (value * 10.0).round() / 10.0
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -75,6 +131,8 @@ mod tests {
     fn imperial_values_are_those_of_the_definitions() {
         assert!((Units::Imperial.length(0.3048) - 1.0).abs() < 1e-12);
         assert!((Units::Imperial.speed(0.44704) - 1.0).abs() < 1e-12);
+        assert_eq!(Units::Imperial.length_text(30.48, 0), "100 ft");
+        assert!((Units::Imperial.metres_per_second(Units::Imperial.speed(3.7)) - 3.7).abs() < 1e-12);
         assert_eq!((Units::Metric.length(3.5), Units::Metric.speed(3.5)), (3.5, 3.5));
     }
 }

@@ -102,7 +102,10 @@ fn take(state: &mut AppState, msg: Msg) -> Vec<Effect> {
             match result {
                 // The log has the faults from the craft itself.
                 Ok(()) => state.say(Severity::Good, format!("World: {line}.")),
-                Err(sentence) => state.notify(Severity::Fault, sentence),
+                Err(sentence) => {
+                    let sentence = state.keymap.in_force(&sentence);
+                    state.notify(Severity::Fault, sentence);
+                }
             }
             Vec::new()
         }
@@ -145,12 +148,16 @@ fn take_view(state: &mut AppState, view: SessionView) {
         return;
     }
     if let Some(place) = map_point::craft(&state.view) {
-        let engaged = state.view.vehicle.is_engaged();
-        let time_s = state.view.vehicle.time.as_secs_f64();
+        let vehicle = &state.view.vehicle;
+        let engaged = vehicle.is_engaged();
+        let time_s = vehicle.time.as_secs_f64();
+        let alt_m =
+            vehicle.truth.as_ref().map(|truth| truth.alt).or(vehicle.estimate.alt).unwrap_or_default();
+        let wp = vehicle.nav.as_ref().filter(|_| state.flies_stored_plan()).map(|nav| nav.wp);
         if state.view.vehicle.craft.armed == Some(false) {
             state.track.disarmed_at(place.n, place.e);
         }
-        state.track.push(TrackPoint { n: place.n, e: place.e, time_s, engaged });
+        state.track.push(TrackPoint { n: place.n, e: place.e, alt_m, time_s, engaged, wp });
     }
 }
 
@@ -191,7 +198,7 @@ fn cancel(state: &mut AppState) -> Vec<Effect> {
     let field = fields::close(state);
     let input = field || state.focus == Panel::Cli && state.cli.cancel();
     let upload = std::mem::take(&mut state.fly_after_upload);
-    let edit = state.editor.cancel() | state.map.edit.take().is_some();
+    let edit = state.editor.cancel() | map_edit::leave(state);
     let what = if popup || input || upload || edit { "Cancelled. " } else { "" };
     state.notify(Severity::Info, format!("{what}Ctrl-C again within 2 s quits."));
     Vec::new()
@@ -334,7 +341,7 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
                 // That was the step.
             } else if state.focus == Panel::Log && !state.log_view.search.is_empty() {
                 log_view::end_search(state);
-            } else if !state.forecast.dismiss() && !state.editor.cancel() && state.map.edit.take().is_none() {
+            } else if !state.forecast.dismiss() && !state.editor.cancel() && !map_edit::leave(state) {
                 state.zoomed = false;
             }
             Vec::new()

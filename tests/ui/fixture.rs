@@ -84,6 +84,7 @@ pub(crate) fn state_with(size: (u16, u16), theme: Theme, plan: FlightPlan) -> Ap
                     .collect()
             },
             hint: |line| line.starts_with("set ap_position_p").then(|| "0 … 200, default 30".to_owned()),
+            check_setting: betadeck::flight::setup::check_setting,
         },
         sentence,
         plan: open(plan),

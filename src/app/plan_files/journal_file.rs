@@ -50,14 +50,9 @@ impl JournalFile {
     fn open(path: PathBuf) -> Option<(Self, Journal)> {
         let file = OpenOptions::new().append(true).read(true).open(&path).ok()?;
         lock(&file).ok()?;
-        Self { path, file }.read_again()
-    }
-
-    /// What it holds now.
-    pub(super) fn read_again(self) -> Option<(Self, Journal)> {
-        let text = std::fs::read(&self.path).ok()?;
+        let text = std::fs::read(&path).ok()?;
         let journal = Journal::read(&String::from_utf8_lossy(&text))?;
-        Some((self, journal))
+        Some((Self { path, file }, journal))
     }
 
     /// Writes the whole journal anew; what is there stays until the new one is complete.

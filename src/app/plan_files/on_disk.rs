@@ -50,6 +50,14 @@ pub(super) fn read(path: &Path) -> Result<(PlanDocument, Vec<String>), String> {
     Ok((file.into(), notes))
 }
 
+/// Whether the file holds exactly what [`write`] makes of this document.
+pub(super) fn holds(path: &Path, document: &PlanDocument) -> bool {
+    Format::from_file_name(&path.display().to_string()).is_some_and(|format| {
+        let written = format::write(&PlanFile::from(document.clone()), format).text;
+        input_file::read(path).is_ok_and(|text| text == written)
+    })
+}
+
 /// Writes a plan; what its format cannot carry, as sentences. The file is replaced as a whole.
 pub(super) fn write(path: &Path, document: PlanDocument) -> Result<Vec<String>, String> {
     let name = path.display().to_string();

@@ -170,3 +170,79 @@ fn a_journal_that_is_a_pipe_or_nonsense_does_not_hold_the_program_up() {
     std::fs::File::create(plans.join("huge.journal")).unwrap().set_len(1 << 40).unwrap();
     assert!(PlanFiles::new(Some(directory.path())).recovered().is_empty());
 }
+
+/// Writes a plan as another program does.
+fn write_theirs(path: &Path, alt_cm: i32) {
+    let theirs = crate::plan::format::write(&document(alt_cm).into(), crate::plan::format::Format::Toml).text;
+    std::fs::write(path, theirs).unwrap();
+}
+
+#[test]
+fn read_it_again_shows_what_the_other_program_wrote_and_undo_what_i_had() {
+    for state in [true, false] {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("plan.toml");
+        let mut files = PlanFiles::new(Some(directory.path()).filter(|_| state));
+        let mut opened = files.start_with(None, document(1));
+        save(&mut files, &mut opened, &path, false);
+        edit(&mut files, &mut opened, document(2));
+        write_theirs(&path, 9);
+        assert!(matches!(
+            save(&mut files, &mut opened, &path, false),
+            FileReply::Occupied { changed: true, .. }
+        ));
+        let mut again = open(&mut files, &path);
+        assert_eq!((again.id, again.history.document()), (opened.id, &document(9)));
+        assert!(again.history.is_saved() && !again.recovered, "{:?}", again.notes);
+        again.history.undo();
+        assert_eq!(again.history.document(), &document(2), "my edit is not lost");
+        // The journal goes on behind it.
+        let mut opened = open(&mut files, &path);
+        edit(&mut files, &mut opened, document(10));
+        assert!(matches!(save(&mut files, &mut opened, &path, false), FileReply::Saved { .. }));
+    }
+}
+
+#[test]
+fn edits_that_come_back_do_not_replace_what_another_program_wrote_meanwhile() {
+    for by_name in [true, false] {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("plan.toml");
+        let mut files = PlanFiles::new(Some(directory.path()));
+        let mut opened = files.start_with(None, document(1));
+        save(&mut files, &mut opened, &path, false);
+        edit(&mut files, &mut opened, document(2));
+        drop(files);
+        let recover = |files: &mut PlanFiles| match by_name {
+            true => open(files, &path),
+            false => files.recovered().remove(0),
+        };
+        let mut files = PlanFiles::new(Some(directory.path()));
+        let mut back = recover(&mut files);
+        assert!(back.recovered);
+        edit(&mut files, &mut back, document(3));
+        assert!(files.changed().is_empty(), "nobody wrote the file");
+        drop(files);
+        write_theirs(&path, 9);
+        let mut files = PlanFiles::new(Some(directory.path()));
+        let mut back = recover(&mut files);
+        assert_eq!(back.history.document(), &document(3));
+        assert_eq!(files.changed(), [back.id]);
+        let reply = save(&mut files, &mut back, &path, false);
+        assert!(matches!(reply, FileReply::Occupied { changed: true, .. }), "{by_name}: {reply:?}");
+    }
+}
+
+#[test]
+fn a_plan_saved_in_a_format_without_names_was_changed_by_nobody() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("plan.txt");
+    let mut files = PlanFiles::new(Some(directory.path()));
+    let mut opened = files.start_with(None, document(1));
+    edit(&mut files, &mut opened, document(2));
+    assert!(matches!(save(&mut files, &mut opened, &path, false), FileReply::Saved { .. }));
+    drop(files);
+    let again = open(&mut PlanFiles::new(Some(directory.path())), &path);
+    assert_eq!(again.notes, [""; 0]);
+    assert_eq!(again.history.document(), &document(2), "the journal knows the name");
+}

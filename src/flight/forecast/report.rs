@@ -69,25 +69,25 @@ impl Forecast {
         self.end == ForecastEnd::Flight(FlightResult::Complete)
     }
 
-    /// The end in a line: `COMPLETE in 1:52, 41 % left`.
+    /// The end in a line: `COMPLETE in 1:52, 41 % left`; `length` writes metres with the unit that is shown.
     #[must_use]
-    pub fn line(&self) -> String {
+    pub fn line(&self, length: impl Fn(f64) -> String) -> String {
         let (time, left) = (minutes(self.time_s), 100.0 - self.battery_used_pct);
         let left = format!("{left:.0} % left");
-        let (moved, reason) = (self.moved_m, &self.reason);
+        let (moved, reason) = (length(self.moved_m), &self.reason);
         match self.end {
             ForecastEnd::Flight(FlightResult::Complete) => format!("COMPLETE in {time}, {left}"),
             ForecastEnd::Flight(FlightResult::Missed) => format!("COMPLETE in {time}, but missed: {reason}"),
             ForecastEnd::Flight(FlightResult::Landed) => {
-                format!("{reason} in {time}, {moved:.0} m from here, {left}")
+                format!("{reason} in {time}, {moved} from here, {left}")
             }
             ForecastEnd::Flight(FlightResult::Aborted) => {
-                format!("drifts {moved:.0} m in {time}, {left}: {reason}")
+                format!("drifts {moved} in {time}, {left}: {reason}")
             }
             ForecastEnd::Flight(FlightResult::Crashed) => {
-                format!("CRASHES in {time}, {moved:.0} m from here: {reason}")
+                format!("CRASHES in {time}, {moved} from here: {reason}")
             }
-            ForecastEnd::Flight(_) => format!("ends in {time}, {moved:.0} m from here: {reason}"),
+            ForecastEnd::Flight(_) => format!("ends in {time}, {moved} from here: {reason}"),
             ForecastEnd::Endless => format!("{reason}, {left} after {time}"),
             ForecastEnd::Grounded | ForecastEnd::TooLong => reason.clone(),
         }

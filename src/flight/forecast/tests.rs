@@ -4,6 +4,10 @@ use crate::plan::builtin::BuiltinPlan;
 use crate::sim::{Noise, WorldConfig};
 
 /// A vehicle at boot with this built-in plan stored.
+fn metres(length: f64) -> String {
+    format!("{length:.0} m")
+}
+
 fn vehicle(plan: &str, noise: Noise) -> Vehicle {
     let plan = BuiltinPlan::find(plan).unwrap().read().unwrap();
     let world = WorldConfig { noise, ..WorldConfig::default() };
@@ -111,7 +115,7 @@ fn a_hold_without_end_ends_the_forecast() {
     let vehicle = vehicle("square", Noise::None);
     let forecast = end(ForecastRun::plan_estimate(vehicle, &endless, &[], 10.0).unwrap());
     assert_eq!(forecast.end, ForecastEnd::Endless, "{}", forecast.reason);
-    assert!(forecast.line().contains("without end"), "{}", forecast.line());
+    assert!(forecast.line(metres).contains("without end"), "{}", forecast.line(metres));
     assert!(forecast.time_s < 200.0);
 }
 
@@ -135,7 +139,7 @@ fn a_lost_fix_makes_another_end() {
     let flying = in_flight(vehicle("square", Noise::None), 5.0);
     let forecast = end(ForecastRun::what_if(flying, &WHAT_IFS[0]).unwrap());
     assert_eq!(forecast.end, ForecastEnd::Flight(FlightResult::Aborted), "{}", forecast.reason);
-    assert!(forecast.line().starts_with("drifts "), "{}", forecast.line());
+    assert!(forecast.line(metres).starts_with("drifts "), "{}", forecast.line(metres));
 }
 
 #[test]

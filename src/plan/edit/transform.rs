@@ -4,9 +4,9 @@
 use nalgebra::Vector2;
 
 use crate::geo::{GroundPlane, LatLon};
-use crate::plan::{FlightPlan, Waypoint};
+use crate::plan::{FlightPlan, Waypoint, WaypointType};
 
-/// What is done to each of the selected waypoints.
+/// What is done to each of the selected waypoints that has such a value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Transform {
     /// Altitude above home, cm.
@@ -32,11 +32,14 @@ pub fn transform(plan: &mut FlightPlan, selected: std::ops::RangeInclusive<usize
     let end = plan.waypoints.len().min(selected.end().saturating_add(1));
     let Some(waypoints) = plan.waypoints.get_mut(*selected.start()..end) else { return };
     match what {
-        Transform::Altitude(alt_cm) => waypoints.iter_mut().for_each(|wp| wp.alt_cm = alt_cm),
+        Transform::Altitude(alt_cm) => with_altitude(waypoints).for_each(|wp| wp.alt_cm = alt_cm),
         Transform::AltitudeBy(by) => {
-            waypoints.iter_mut().for_each(|wp| wp.alt_cm = wp.alt_cm.saturating_add(by));
+            with_altitude(waypoints).for_each(|wp| wp.alt_cm = wp.alt_cm.saturating_add(by));
         }
-        Transform::Speed(speed_cms) => waypoints.iter_mut().for_each(|wp| wp.speed_cms = speed_cms),
+        // The rate of a YAW_RATE stands in the same place.
+        Transform::Speed(speed_cms) => {
+            waypoints.iter_mut().filter(|wp| wp.kind.is_positional()).for_each(|wp| wp.speed_cms = speed_cms);
+        }
         Transform::Move(by) => {
             for wp in waypoints.iter_mut().filter(|wp| wp.kind.uses_position()) {
                 wp.position = GroundPlane::new(wp.position).to_position(by);
@@ -50,6 +53,10 @@ pub fn transform(plan: &mut FlightPlan, selected: std::ops::RangeInclusive<usize
         Transform::MirrorEastWest => about_middle(waypoints, |ne| Vector2::new(ne.x, -ne.y)),
         Transform::Reverse => waypoints.reverse(),
     }
+}
+
+fn with_altitude(waypoints: &mut [Waypoint]) -> impl Iterator<Item = &mut Waypoint> {
+    waypoints.iter_mut().filter(|wp| wp.kind.is_positional() || wp.kind == WaypointType::AltChange)
 }
 
 fn about_middle(waypoints: &mut [Waypoint], place: impl Fn(Vector2<f64>) -> Vector2<f64>) {
@@ -121,6 +128,16 @@ mod tests {
         assert!(
             ((after - before).rem_euclid(std::f64::consts::TAU) - std::f64::consts::FRAC_PI_2).abs() < 1e-3
         );
+    }
+
+    #[test]
+    fn a_speed_for_many_waypoints_leaves_the_rate_of_a_turn_alone() {
+        let mut plan = plan(40.0, -79.0);
+        plan.waypoints[1] = Waypoint { kind: WaypointType::YawRate, speed_cms: 30, ..Waypoint::default() };
+        transform(&mut plan, 0..=2, Transform::Speed(500));
+        transform(&mut plan, 0..=2, Transform::Altitude(700));
+        assert_eq!(plan.waypoints.iter().map(|wp| wp.speed_cms).collect::<Vec<_>>(), [500, 30, 500]);
+        assert_eq!(plan.waypoints.iter().map(|wp| wp.alt_cm).collect::<Vec<_>>(), [700, 0, 700]);
     }
 
     #[test]

@@ -99,7 +99,7 @@ impl Session {
             self.vehicle.transmitter_mut().stop_pilot();
             self.events.notice(
                 &mut self.vehicle,
-                "RC comes from outside now: the virtual sticks are cut, x takes them back.",
+                "RC comes from outside now: the virtual sticks are cut, `x` takes them back.",
             );
         }
     }

@@ -23,7 +23,7 @@ pub fn enabled(state: &AppState, action: Action) -> Result<(), String> {
         }
         _ if is_in_recording(action) && state.view.simulator.is_some() => Err(TIME_IS_EXTERNAL.to_owned()),
         _ if is_in_recording(action) && state.view.timeline.is_none() => Err(NOT_RECORDED.to_owned()),
-        _ if steers(action) && state.is_rewound() => Err(REWOUND.to_owned()),
+        _ if steers(action) && state.is_rewound() => Err(state.keymap.in_force(REWOUND)),
         Action::ResetCraft if state.view.simulator == Some(LinkState::Flowing) => {
             Err(PLACE_IS_EXTERNAL.to_owned())
         }
@@ -33,17 +33,21 @@ pub fn enabled(state: &AppState, action: Action) -> Result<(), String> {
             Err(PHYSICS_IS_EXTERNAL.to_owned())
         }
         Action::LookAhead | Action::WhatIf if !craft.is_armed() && state.view.pilot.is_none() => {
-            Err("The craft stands disarmed, so there is no flight to look ahead to: `F` flies the plan."
-                .to_owned())
+            let fly = state.key(Action::Fly);
+            Err(format!(
+                "The craft stands disarmed, so there is no flight to look ahead to: `{fly}` flies the plan."
+            ))
         }
         Action::Arm => transmitter::can_arm(state),
         Action::Autopilot => transmitter::switch(state, Mode::Autopilot).map(drop),
         Action::Play => stick_recording::can_play(state),
-        Action::Throttle if state.view.vehicle.is_engaged() => {
-            Err("The autopilot has the throttle: `g` switches it off.".to_owned())
-        }
+        Action::Throttle if state.view.vehicle.is_engaged() => Err(format!(
+            "The autopilot has the throttle: `{}` switches it off.",
+            state.key(Action::Autopilot)
+        )),
         Action::ReturnHome if craft.armed == Some(false) => {
-            Err("Nothing to bring home: the craft is disarmed. `F` flies the plan.".to_owned())
+            let fly = state.key(Action::Fly);
+            Err(format!("Nothing to bring home: the craft is disarmed. `{fly}` flies the plan."))
         }
         Action::ReturnHome if craft.home.is_none() => {
             Err("Home is unknown: it is the place of arming with a GPS fix.".to_owned())
@@ -52,10 +56,14 @@ pub fn enabled(state: &AppState, action: Action) -> Result<(), String> {
             Err("No plan is open, so there is nothing to upload.".to_owned())
         }
         Action::Fly if state.view.pilot.is_none() && is_wrecked(state) => {
-            Err("The craft crashed and cannot fly: `R` puts it back home.".to_owned())
+            let reset = state.key(Action::ResetCraft);
+            Err(format!("The craft crashed and cannot fly: `{reset}` puts it back home."))
         }
         Action::Fly if state.view.pilot.is_none() && craft.is_armed() => {
-            Err("The craft is armed already: `g` engages the autopilot, or disarm with `a` first.".to_owned())
+            let (engage, arm) = (state.key(Action::Autopilot), state.key(Action::Arm));
+            Err(format!(
+                "The craft is armed already: `{engage}` engages the autopilot, or disarm with `{arm}` first."
+            ))
         }
         _ => Ok(()),
     }
@@ -65,21 +73,27 @@ pub fn enabled(state: &AppState, action: Action) -> Result<(), String> {
 fn can_command(state: &AppState, action: Action) -> Result<(), String> {
     let vehicle = &state.view.vehicle;
     let Some(nav) = vehicle.nav.as_ref().filter(|nav| nav.engaged) else {
-        return Err("The autopilot does not fly: `g` engages it, `F` flies the plan.".to_owned());
+        let (engage, fly) = (state.key(Action::Autopilot), state.key(Action::Fly));
+        return Err(format!("The autopilot does not fly: `{engage}` engages it, `{fly}` flies the plan."));
     };
     let stored = vehicle.stored_plan.as_ref();
     match action {
         _ if !state.flies_stored_plan() => {
-            Err("The autopilot flies home or lands by a plan of its own: `H` takes a return home back."
-                .to_owned())
+            let back = state.key(Action::ReturnHome);
+            Err(format!(
+                "The autopilot flies home or lands by a plan of its own: `{back}` takes a return home back."
+            ))
         }
         Action::GoTo if stored.is_none_or(|plan| plan.waypoints.is_empty()) => {
-            Err("The craft has no plan: `U` uploads one.".to_owned())
+            Err(format!("The craft has no plan: `{}` uploads one.", state.key(Action::Upload)))
         }
         Action::HoldHere if nav.state == NavState::Complete => {
-            Err("The plan is complete and the craft keeps its place: `G` goes to a waypoint.".to_owned())
+            let go_to = state.key(Action::GoTo);
+            Err(format!("The plan is complete and the craft keeps its place: `{go_to}` goes to a waypoint."))
         }
-        Action::Resume if !nav.held_by_command => Err("Nothing is held: `K` holds here.".to_owned()),
+        Action::Resume if !nav.held_by_command => {
+            Err(format!("Nothing is held: `{}` holds here.", state.key(Action::HoldHere)))
+        }
         _ => Ok(()),
     }
 }

@@ -5,7 +5,11 @@ use strum::IntoEnumIterator as _;
 use crate::geo::{Degrees7, GroundPlane};
 use crate::plan::format::degrees_e7;
 use crate::plan::{HoldPattern, Waypoint, WaypointType};
+use crate::ui::units::Units;
 use nalgebra::Vector2;
+
+/// The greatest speed of a leg, m/s.
+pub(super) const MOST_MPS: f64 = 655.35;
 
 /// A column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::EnumIter)]
@@ -17,9 +21,9 @@ pub enum Column {
     Latitude,
     /// Longitude, degrees.
     Longitude,
-    /// Altitude above home, m.
+    /// Altitude above home, m or ft.
     Altitude,
-    /// Leg speed, m/s; of a YAW_RATE the rate, °/s.
+    /// Leg speed, m/s or mph; of a YAW_RATE the rate, °/s.
     Speed,
     /// Hold or delay time, s.
     Time,
@@ -52,14 +56,17 @@ impl Column {
 
     /// What may be typed.
     #[must_use]
-    pub(crate) fn hint(self, kind: WaypointType) -> String {
+    pub(crate) fn hint(self, kind: WaypointType, units: Units) -> String {
         match self {
             Self::Type => names(WaypointType::iter()),
             Self::Latitude => "degrees, -90 to 90".to_owned(),
             Self::Longitude => "degrees, -180 to 180".to_owned(),
-            Self::Altitude => "metres above home".to_owned(),
+            Self::Altitude => format!("{} above home", units.length_name()),
             Self::Speed if kind == WaypointType::YawRate => "degrees per second".to_owned(),
-            Self::Speed => "m/s up to 655.35; 0 = ap_max_velocity".to_owned(),
+            Self::Speed => {
+                let most = shortest(units.speed(MOST_MPS));
+                format!("{} up to {most}; 0 = ap_max_velocity", units.speed_unit())
+            }
             Self::Time if kind == WaypointType::Hold => "seconds up to 6553.5; 0 = endless".to_owned(),
             Self::Time => "seconds up to 6553.5".to_owned(),
             Self::Pattern => names(HoldPattern::iter()),
@@ -82,14 +89,14 @@ impl Column {
 
     /// The value as it is typed.
     #[must_use]
-    pub(crate) fn text(self, wp: &Waypoint) -> String {
+    pub(crate) fn text(self, wp: &Waypoint, units: Units) -> String {
         match self {
             Self::Type => wp.kind.to_string(),
             Self::Latitude => Degrees7(wp.position.lat_e7).to_string(),
             Self::Longitude => Degrees7(wp.position.lon_e7).to_string(),
-            Self::Altitude => shortest(f64::from(wp.alt_cm) / 100.0),
+            Self::Altitude => shortest(units.length(f64::from(wp.alt_cm) / 100.0)),
             Self::Speed if wp.kind == WaypointType::YawRate => wp.speed_cms.to_string(),
-            Self::Speed => shortest(f64::from(wp.speed_cms) / 100.0),
+            Self::Speed => shortest(units.speed(f64::from(wp.speed_cms) / 100.0)),
             Self::Time => shortest(f64::from(wp.duration_ds) / 10.0),
             Self::Pattern => wp.pattern.to_string(),
         }
@@ -99,20 +106,22 @@ impl Column {
     ///
     /// # Errors
     /// What is wrong and what is allowed, in one sentence.
-    pub(crate) fn set(self, wp: &mut Waypoint, text: &str) -> Result<(), String> {
+    pub(crate) fn set(self, wp: &mut Waypoint, text: &str, units: Units) -> Result<(), String> {
         let text = text.trim();
-        let wrong = || format!("{text} is no {}: {}.", self.name(), self.hint(wp.kind));
+        let wrong = || format!("{text} is no {}: {}.", self.name(), self.hint(wp.kind, units));
         match self {
             Self::Type => wp.kind = by_prefix(text, WaypointType::iter()).ok_or_else(wrong)?,
             Self::Pattern => wp.pattern = by_prefix(text, HoldPattern::iter()).ok_or_else(wrong)?,
             Self::Latitude => wp.position.lat_e7 = within(text, 900_000_000).ok_or_else(wrong)?,
             Self::Longitude => wp.position.lon_e7 = within(text, 1_800_000_000).ok_or_else(wrong)?,
             Self::Altitude => {
-                let cm = scaled(text, 100.0, f64::from(i32::MIN), f64::from(i32::MAX)).ok_or_else(wrong)?;
+                let cm = scaled(text, units.metres(100.0), f64::from(i32::MIN), f64::from(i32::MAX))
+                    .ok_or_else(wrong)?;
                 wp.alt_cm = cm as i32;
             }
             Self::Speed => {
-                let scale = if wp.kind == WaypointType::YawRate { 1.0 } else { 100.0 };
+                let is_rate = wp.kind == WaypointType::YawRate;
+                let scale = if is_rate { 1.0 } else { units.metres_per_second(100.0) };
                 wp.speed_cms = scaled(text, scale, 0.0, f64::from(u16::MAX)).ok_or_else(wrong)? as u16;
             }
             Self::Time => {
@@ -122,22 +131,29 @@ impl Column {
         Ok(())
     }
 
-    /// Moves the value by steps: a metre on the ground and in altitude, half a metre per second, a second; names go round.
-    pub(crate) fn nudge(self, wp: &mut Waypoint, steps: i32) {
-        let metres = f64::from(steps);
+    /// Moves the value by steps: a metre or a foot on the ground and in altitude, half a metre per second or a mile per
+    /// hour, a second; names go round.
+    pub(crate) fn nudge(self, wp: &mut Waypoint, steps: i32, units: Units) {
+        let ground_m = units.metres(f64::from(steps));
         let add = |value: u16, by: i32| (i32::from(value) + by).clamp(0, i32::from(u16::MAX)) as u16;
         match self {
             Self::Type => wp.kind = beside(&wp.kind, WaypointType::iter(), steps),
             Self::Pattern => wp.pattern = beside(&wp.pattern, HoldPattern::iter(), steps),
             Self::Latitude => {
-                wp.position = GroundPlane::new(wp.position).to_position(Vector2::new(metres, 0.0));
+                wp.position = GroundPlane::new(wp.position).to_position(Vector2::new(ground_m, 0.0));
             }
             Self::Longitude => {
-                wp.position = GroundPlane::new(wp.position).to_position(Vector2::new(0.0, metres));
+                wp.position = GroundPlane::new(wp.position).to_position(Vector2::new(0.0, ground_m));
             }
-            Self::Altitude => wp.alt_cm = wp.alt_cm.saturating_add(steps.saturating_mul(100)),
+            // Conversions from floats stay within the range of the target.
+            Self::Altitude => {
+                wp.alt_cm = (units.step_length(f64::from(wp.alt_cm) / 100.0, steps) * 100.0).round() as i32;
+            }
             Self::Speed if wp.kind == WaypointType::YawRate => wp.speed_cms = add(wp.speed_cms, steps),
-            Self::Speed => wp.speed_cms = add(wp.speed_cms, steps.saturating_mul(50)),
+            Self::Speed => {
+                wp.speed_cms =
+                    (units.step_speed(f64::from(wp.speed_cms) / 100.0, steps) * 100.0).round() as u16;
+            }
             Self::Time => wp.duration_ds = add(wp.duration_ds, steps.saturating_mul(10)),
         }
     }
@@ -189,13 +205,28 @@ mod tests {
             kind: WaypointType::Hold,
             pattern: HoldPattern::Figure8,
         };
-        for column in Column::iter() {
+        for units in [Units::Metric, Units::Imperial] {
             let mut typed = Waypoint { kind: WaypointType::Hold, ..Waypoint::default() };
-            let mut expected = typed;
-            column.set(&mut typed, &column.text(&wp)).unwrap();
-            column.set(&mut expected, &column.text(&typed)).unwrap();
-            assert_eq!((column.text(&typed), typed), (column.text(&wp), expected));
+            for column in Column::iter() {
+                column.set(&mut typed, &column.text(&wp, units), units).unwrap();
+            }
+            assert_eq!(typed, wp, "in {units:?}");
         }
+    }
+
+    #[test]
+    fn feet_and_miles_an_hour_are_typed_and_nudged_without_drift() {
+        let units = Units::Imperial;
+        let mut wp = Waypoint { kind: WaypointType::Hold, ..Waypoint::default() };
+        Column::Altitude.set(&mut wp, "100", units).unwrap();
+        Column::Speed.set(&mut wp, "10", units).unwrap();
+        assert_eq!((wp.alt_cm, wp.speed_cms), (3048, 447));
+        for _ in 0..400 {
+            Column::Altitude.nudge(&mut wp, 1, units);
+            Column::Speed.nudge(&mut wp, 1, units);
+        }
+        assert_eq!((wp.alt_cm, wp.speed_cms), (15_240, 18_329), "500 ft, 410 mph");
+        assert!(Column::Speed.set(&mut wp, "1500", units).unwrap_err().contains("mph up to 1465.98"));
     }
 
     #[test]
@@ -211,7 +242,7 @@ mod tests {
             (Column::Time, "1e9"),
         ] {
             let mut wp = Waypoint::default();
-            let said = column.set(&mut wp, text).unwrap_err();
+            let said = column.set(&mut wp, text, Units::Metric).unwrap_err();
             assert!(said.starts_with(text) && said.ends_with('.') && said.contains(column.name()), "{said}");
             assert_eq!(wp, Waypoint::default());
         }
@@ -220,10 +251,10 @@ mod tests {
     #[test]
     fn nudges_go_by_a_metre_and_names_go_round() {
         let mut wp = Waypoint { alt_cm: 1000, ..Waypoint::default() };
-        Column::Altitude.nudge(&mut wp, 3);
-        Column::Speed.nudge(&mut wp, -1);
-        Column::Type.nudge(&mut wp, -1);
-        Column::Latitude.nudge(&mut wp, 10);
+        Column::Altitude.nudge(&mut wp, 3, Units::Metric);
+        Column::Speed.nudge(&mut wp, -1, Units::Metric);
+        Column::Type.nudge(&mut wp, -1, Units::Metric);
+        Column::Latitude.nudge(&mut wp, 10, Units::Metric);
         assert_eq!((wp.alt_cm, wp.speed_cms, wp.kind), (1300, 0, WaypointType::YawRate));
         assert_eq!(wp.position.lat_e7, 898);
     }

@@ -5,6 +5,7 @@ use crossterm::event::{KeyCode, KeyEvent};
 use super::forms;
 use crate::plan::edit::PlanDocument;
 use crate::ui::text_field::TextField;
+use crate::ui::units::Units;
 
 /// What a form is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,7 +24,7 @@ pub struct FormField {
     /// What the value is.
     pub label: String,
     /// Its unit, or what it may be.
-    pub hint: &'static str,
+    pub hint: String,
     /// The value that is typed; of a choice the chosen word.
     pub text: TextField,
     /// The words of a choice; empty = anything is typed.
@@ -32,14 +33,14 @@ pub struct FormField {
 
 impl FormField {
     /// A value that is typed.
-    pub(super) fn typed(label: impl Into<String>, hint: &'static str, value: impl Into<String>) -> Self {
-        Self { label: label.into(), hint, text: TextField::new(value), choices: &[] }
+    pub(super) fn typed(label: impl Into<String>, hint: impl Into<String>, value: impl Into<String>) -> Self {
+        Self { label: label.into(), hint: hint.into(), text: TextField::new(value), choices: &[] }
     }
 
     /// A value that is chosen; the first word stands at first.
     pub(super) fn choice(label: &'static str, choices: &'static [&'static str]) -> Self {
         let first = choices.first().copied().unwrap_or_default();
-        Self { label: label.to_owned(), hint: "← →", text: TextField::new(first), choices }
+        Self { label: label.to_owned(), hint: "← →".to_owned(), text: TextField::new(first), choices }
     }
 
     fn choose(&mut self, step: isize) {
@@ -56,6 +57,8 @@ impl FormField {
 pub struct Form {
     /// What it is for.
     pub kind: FormKind,
+    /// The units in which lengths and speeds are typed.
+    pub units: Units,
     /// Its values.
     pub fields: Vec<FormField>,
     /// The value that has the cursor.
@@ -76,8 +79,8 @@ pub(in crate::ui) enum FormKey {
 }
 
 impl Form {
-    pub(super) fn new(kind: FormKind, fields: Vec<FormField>) -> Self {
-        Self { kind, fields, at: 0, problem: None }
+    pub(super) fn new(kind: FormKind, units: Units, fields: Vec<FormField>) -> Self {
+        Self { kind, units, fields, at: 0, problem: None }
     }
 
     /// The text of the field with this label.
@@ -101,12 +104,28 @@ impl Form {
         }
     }
 
+    /// The length in the field with this label, m; `None` when it is empty.
+    ///
+    /// # Errors
+    /// A sentence, when it is not a number.
+    pub(super) fn metres(&self, label: &str) -> Result<Option<f64>, String> {
+        Ok(self.number(label)?.map(|shown| self.units.metres(shown)))
+    }
+
+    /// The speed in the field with this label, m/s; `None` when it is empty.
+    ///
+    /// # Errors
+    /// A sentence, when it is not a number.
+    pub(super) fn metres_per_second(&self, label: &str) -> Result<Option<f64>, String> {
+        Ok(self.number(label)?.map(|shown| self.units.metres_per_second(shown)))
+    }
+
     /// The form of a kind, for this document.
-    pub(in crate::ui) fn of(kind: FormKind, document: &PlanDocument) -> Self {
+    pub(in crate::ui) fn of(kind: FormKind, document: &PlanDocument, units: Units) -> Self {
         match kind {
-            FormKind::Bulk => forms::bulk(),
-            FormKind::Generate => forms::generate(document.plan.waypoints.is_empty()),
-            FormKind::Properties => forms::properties(document),
+            FormKind::Bulk => forms::bulk(units),
+            FormKind::Generate => forms::generate(document.plan.waypoints.is_empty(), units),
+            FormKind::Properties => forms::properties(document, units),
         }
     }
 
@@ -134,6 +153,17 @@ impl Form {
             }
         }
         FormKey::Edited
+    }
+
+    /// Inserts pasted text into the value that has the cursor; whether it is typed.
+    pub(super) fn paste(&mut self, text: &str) -> bool {
+        let typed = self.fields.get_mut(self.at).filter(|field| field.choices.is_empty());
+        if let Some(field) = typed {
+            field.text.insert(text);
+            self.problem = None;
+            return true;
+        }
+        false
     }
 
     fn choose(&mut self, step: isize) {

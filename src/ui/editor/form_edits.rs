@@ -5,6 +5,7 @@ use crate::geo::LatLon;
 use crate::plan::MAX_WAYPOINTS;
 use crate::plan::edit::PlanDocument;
 use crate::plan::edit::transform::middle;
+use crate::plan::format::SettingCheck;
 use crate::ui::message::Effect;
 
 impl Editor {
@@ -16,6 +17,7 @@ impl Editor {
         &mut self,
         form: &Form,
         home: Option<LatLon>,
+        check: SettingCheck,
     ) -> Result<(Vec<Effect>, String), String> {
         let mut after = self.document().clone();
         match form.kind {
@@ -26,7 +28,7 @@ impl Editor {
                 Ok((self.replace_document(&label, after), format!("Done: {label}.")))
             }
             FormKind::Properties => {
-                forms::take_properties(form, &mut after)?;
+                forms::take_properties(form, &mut after, check)?;
                 Ok((
                     self.replace_document("properties", after),
                     "Name, home and settings are taken.".to_owned(),
@@ -45,8 +47,11 @@ impl Editor {
                 let first = self.current;
                 for (number, waypoints) in generated.plans.iter().enumerate().skip(1) {
                     let name = format!("{name}-{}", number + 1);
+                    let empty = PlanDocument { name, ..PlanDocument::default() };
+                    effects.push(self.open_new(empty.clone()));
+                    // As an edit, so that it is kept and asked for.
                     let plan = forms::plan_of(waypoints);
-                    effects.push(self.open_new(PlanDocument { name, plan, ..PlanDocument::default() }));
+                    effects.extend(self.replace_document("generate", PlanDocument { plan, ..empty }));
                 }
                 self.show(first);
                 Ok((effects, generated.told))

@@ -3,14 +3,15 @@
 use nalgebra::Vector2;
 use strum::IntoEnumIterator as _;
 
-use super::column::shortest;
+use super::column::{MOST_MPS, shortest};
 use super::form::{Form, FormField, FormKind};
 use crate::geo::LatLon;
 use crate::plan::edit::PlanDocument;
 use crate::plan::edit::transform::{Transform, transform};
-use crate::plan::format::setting_line;
+use crate::plan::format::{SettingCheck, setting_line};
 use crate::plan::generate::{Pattern, Shape, split};
 use crate::plan::{FlightPlan, MAX_WAYPOINTS, Waypoint, WaypointType};
+use crate::ui::units::Units;
 
 const MIRRORS: &[&str] = &["no", "north-south", "east-west"];
 const SHAPES: &[&str] = &["square", "circle", "zig-zag", "survey"];
@@ -19,15 +20,17 @@ const WHERE: &[&str] = &["replace the plan", "append to it"];
 const TOO_MANY: &[&str] = &["wider spacing", "several plans"];
 
 /// Edits of many waypoints at once; what stays empty stays as it is.
-pub(super) fn bulk() -> Form {
+pub(super) fn bulk(units: Units) -> Form {
+    let length = units.length_unit();
     Form::new(
         FormKind::Bulk,
+        units,
         vec![
-            FormField::typed("altitude", "m above home", ""),
-            FormField::typed("altitude by", "m", ""),
-            FormField::typed("speed", "m/s, 0 = default", ""),
-            FormField::typed("move north", "m", ""),
-            FormField::typed("move east", "m", ""),
+            FormField::typed("altitude", format!("{length} above home"), ""),
+            FormField::typed("altitude by", length, ""),
+            FormField::typed("speed", format!("{}, 0 = default", units.speed_unit()), ""),
+            FormField::typed("move north", length, ""),
+            FormField::typed("move east", length, ""),
             FormField::typed("rotate", "° clockwise", ""),
             FormField::choice("mirror", MIRRORS),
             FormField::choice("reverse", &["no", "yes"]),
@@ -45,18 +48,18 @@ pub(super) fn take_bulk(
     selected: std::ops::RangeInclusive<usize>,
 ) -> Result<(), String> {
     let mut edits = Vec::new();
-    if let Some(metres) = form.number("altitude")? {
-        edits.push(Transform::Altitude(centi(metres)?));
+    if let Some(metres) = form.metres("altitude")? {
+        edits.push(Transform::Altitude(centi(metres, form.units)?));
     }
-    if let Some(metres) = form.number("altitude by")? {
-        edits.push(Transform::AltitudeBy(centi(metres)?));
+    if let Some(metres) = form.metres("altitude by")? {
+        edits.push(Transform::AltitudeBy(centi(metres, form.units)?));
     }
-    if let Some(speed) = form.number("speed")? {
-        edits.push(Transform::Speed(speed_cms(speed)?));
+    if let Some(speed) = form.metres_per_second("speed")? {
+        edits.push(Transform::Speed(speed_cms(speed, form.units)?));
     }
     let moved = Vector2::new(
-        form.number("move north")?.unwrap_or_default(),
-        form.number("move east")?.unwrap_or_default(),
+        form.metres("move north")?.unwrap_or_default(),
+        form.metres("move east")?.unwrap_or_default(),
     );
     if moved != Vector2::zeros() {
         edits.push(Transform::Move(moved));
@@ -79,18 +82,28 @@ pub(super) fn take_bulk(
 }
 
 /// A plan from a shape.
-pub(super) fn generate(is_empty: bool) -> Form {
+pub(super) fn generate(is_empty: bool, units: Units) -> Form {
     let usual = Pattern::default();
+    let length = units.length_unit();
+    let shown = |metres: f64| match units {
+        Units::Metric => shortest(metres),
+        Units::Imperial => shortest(units.length(metres).round()),
+    };
     let mut form = Form::new(
         FormKind::Generate,
+        units,
         vec![
             FormField::choice("shape", SHAPES),
-            FormField::typed("length", "m", shortest(usual.length_m)),
-            FormField::typed("width", "m", shortest(usual.width_m)),
-            FormField::typed("spacing", "m", shortest(usual.spacing_m)),
+            FormField::typed("length", length, shown(usual.length_m)),
+            FormField::typed("width", length, shown(usual.width_m)),
+            FormField::typed("spacing", length, shown(usual.spacing_m)),
             FormField::typed("heading", "°", "0"),
-            FormField::typed("altitude", "m above home", shortest(f64::from(usual.alt_cm) / 100.0)),
-            FormField::typed("speed", "m/s, 0 = default", "0"),
+            FormField::typed(
+                "altitude",
+                format!("{length} above home"),
+                shown(f64::from(usual.alt_cm) / 100.0),
+            ),
+            FormField::typed("speed", format!("{}, 0 = default", units.speed_unit()), "0"),
             FormField::choice("type", KINDS),
             FormField::choice("result", WHERE),
             FormField::choice("beyond 30", TOO_MANY),
@@ -104,16 +117,18 @@ pub(super) fn generate(is_empty: bool) -> Form {
 
 /// The numbers of a generator's form.
 fn pattern(form: &Form) -> Result<Pattern, String> {
-    let needed = |label: &str| form.number(label)?.ok_or_else(|| format!("{label}: a number is needed."));
+    let missing = |label: &str| format!("{label}: a number is needed.");
+    let metres = |label: &str| form.metres(label)?.ok_or_else(|| missing(label));
+    let speed_mps = form.metres_per_second("speed")?.ok_or_else(|| missing("speed"))?;
     let shape = Shape::iter().find(|shape| shape.to_string() == form.value("shape")).unwrap_or_default();
     Ok(Pattern {
         shape,
-        length_m: needed("length")?,
-        width_m: needed("width")?,
-        spacing_m: needed("spacing")?,
-        heading_deg: needed("heading")?,
-        alt_cm: centi(needed("altitude")?)?,
-        speed_cms: speed_cms(needed("speed")?)?,
+        length_m: metres("length")?,
+        width_m: metres("width")?,
+        spacing_m: metres("spacing")?,
+        heading_deg: form.number("heading")?.ok_or_else(|| missing("heading"))?,
+        alt_cm: centi(metres("altitude")?, form.units)?,
+        speed_cms: speed_cms(speed_mps, form.units)?,
         kind: form.value("type").parse().unwrap_or(WaypointType::Flyover),
     })
 }
@@ -150,30 +165,36 @@ pub(super) fn generated(form: &Form, middle: LatLon, taken: usize) -> Result<Gen
     };
     let wider = Pattern { spacing_m, ..pattern }.waypoints(middle)?;
     let told = format!(
-        "{count} waypoints, there is room for {room}: a spacing of {spacing_m} m makes {}.",
+        "{count} waypoints, there is room for {room}: a spacing of {} {} makes {}.",
+        shortest(form.units.length(spacing_m)),
+        form.units.length_unit(),
         wider.len()
     );
     Ok(Generated { plans: vec![wider], told })
 }
 
 /// What a plan has beside waypoints.
-pub(super) fn properties(document: &PlanDocument) -> Form {
+pub(super) fn properties(document: &PlanDocument, units: Units) -> Form {
     let home = document.home.map_or_else(String::new, |home| home.to_string());
     let mut fields = vec![
         FormField::typed("name", "", &document.name),
         FormField::typed("description", "", &document.description),
-        FormField::typed("home", "LAT,LON[,AMSL]; empty = none", home),
+        FormField::typed("home", "LAT,LON[,AMSL in m]; empty = none", home),
     ];
     let settings = document.settings.iter().map(String::as_str).chain(["", ""]);
     fields.extend(settings.map(|line| FormField::typed("setting", "name = value; empty = none", line)));
-    Form::new(FormKind::Properties, fields)
+    Form::new(FormKind::Properties, units, fields)
 }
 
 /// Takes the values of a properties form.
 ///
 /// # Errors
 /// What is wrong with a value, as a sentence.
-pub(super) fn take_properties(form: &Form, document: &mut PlanDocument) -> Result<(), String> {
+pub(super) fn take_properties(
+    form: &Form,
+    document: &mut PlanDocument,
+    check: SettingCheck,
+) -> Result<(), String> {
     let home = form.value("home");
     document.home = match home {
         "" => None,
@@ -183,11 +204,20 @@ pub(super) fn take_properties(form: &Form, document: &mut PlanDocument) -> Resul
         form.fields.iter().filter(|field| field.label == "setting").map(|field| field.text.value().trim());
     document.settings = texts
         .filter(|text| !text.is_empty())
-        .map(|text| setting_line(text).ok_or_else(|| format!("{text} is not a setting: write name = value.")))
+        .map(|text| checked_setting(text, check))
         .collect::<Result<_, _>>()?;
     document.name = form.value("name").to_owned();
     document.description = form.value("description").to_owned();
     Ok(())
+}
+
+/// A setting that the plan's file can be read with again.
+fn checked_setting(text: &str, check: SettingCheck) -> Result<String, String> {
+    let line = setting_line(text).ok_or_else(|| format!("{text} is not a setting: write name = value."))?;
+    if let Some((name, value)) = line.split_once(" = ") {
+        check(name, value).map_err(|fault| format!("{fault}."))?;
+    }
+    Ok(line)
 }
 
 /// A plan of these waypoints, or as many of them as it holds.
@@ -195,17 +225,22 @@ pub(super) fn plan_of(waypoints: &[Waypoint]) -> FlightPlan {
     FlightPlan { waypoints: waypoints.iter().copied().take(MAX_WAYPOINTS).collect() }
 }
 
-fn centi(metres: f64) -> Result<i32, String> {
+fn centi(metres: f64, units: Units) -> Result<i32, String> {
     let cm = (metres * 100.0).round();
-    if cm.abs() < f64::from(i32::MAX) { Ok(cm as i32) } else { Err(format!("{metres} m is out of range.")) }
+    if cm.abs() < f64::from(i32::MAX) {
+        Ok(cm as i32)
+    } else {
+        Err(format!("{} is out of range.", units.length_text(metres, 0)))
+    }
 }
 
-fn speed_cms(mps: f64) -> Result<u16, String> {
+fn speed_cms(mps: f64, units: Units) -> Result<u16, String> {
     let cms = (mps * 100.0).round();
     if (0.0..=f64::from(u16::MAX)).contains(&cms) {
         Ok(cms as u16)
     } else {
-        Err(format!("{mps} m/s is out of range: 0 to 655.35 m/s is allowed."))
+        let (typed, most) = (shortest(units.speed(mps)), units.speed_text(MOST_MPS, 2));
+        Err(format!("{typed} {} is out of range: 0 to {most} is allowed.", units.speed_unit()))
     }
 }
 
@@ -220,7 +255,7 @@ mod tests {
 
     #[test]
     fn a_survey_beyond_thirty_waypoints_is_told_and_either_spaced_wider_or_split() {
-        let mut form = generate(true);
+        let mut form = generate(true, Units::Metric);
         fill(&mut form, "shape", "survey");
         fill(&mut form, "width", "200");
         fill(&mut form, "spacing", "5");
@@ -237,15 +272,19 @@ mod tests {
     fn properties_take_home_and_settings_or_say_what_is_wrong() {
         let mut document =
             PlanDocument { settings: vec!["ap_max_angle = 30".to_owned()], ..Default::default() };
-        let mut form = properties(&document);
+        let mut form = properties(&document, Units::Metric);
         fill(&mut form, "home", "40,-79");
         fill(&mut form, "setting", "set ap_max_velocity=500");
-        take_properties(&form, &mut document).unwrap();
+        take_properties(&form, &mut document, |_, _| Ok(())).unwrap();
         assert_eq!(document.settings, ["ap_max_angle = 30", "ap_max_velocity = 500"]);
         assert!(document.home.is_some());
         fill(&mut form, "setting", "what");
-        assert!(take_properties(&form, &mut document).unwrap_err().contains("name = value"));
+        assert!(take_properties(&form, &mut document, |_, _| Ok(())).unwrap_err().contains("name = value"));
         fill(&mut form, "home", "north");
-        assert!(take_properties(&form, &mut document).unwrap_err().starts_with("home: north is not a place"));
+        assert!(
+            take_properties(&form, &mut document, |_, _| Ok(()))
+                .unwrap_err()
+                .starts_with("home: north is not a place")
+        );
     }
 }

@@ -14,3 +14,18 @@ pub enum EditorPopup {
     /// Something to decide.
     Question(Question),
 }
+
+impl EditorPopup {
+    /// Inserts pasted text where one types; whether one does.
+    pub(in crate::ui) fn paste(&mut self, text: &str) -> bool {
+        match self {
+            Self::Form(form) => form.paste(text),
+            Self::Browser(browser) => {
+                browser.text.insert(text);
+                browser.at = None;
+                true
+            }
+            Self::Question(_) => false,
+        }
+    }
+}

@@ -32,7 +32,8 @@ pub(in crate::ui) fn line(state: &AppState, width: u16) -> Line<'static> {
     };
     let role = if forecast.is_estimating() { Role::Dim } else { role };
     if !mark.is_empty() {
-        return Line::from(span(theme, role, cut(&format!("{mark}flown: {}", estimate.line()), width)));
+        let end = estimate.line(|metres| state.units.length_text(metres, 0));
+        return Line::from(span(theme, role, cut(&format!("{mark}flown: {end}"), width)));
     }
     let numbers = numbers(estimate, state.units, if forecast.is_estimating() { "…" } else { "" });
     let long = numbers.each_ref().map(|(long, _)| long.as_str()).join("   ");
@@ -51,7 +52,7 @@ fn numbers(estimate: &Forecast, units: Units, waiting: &str) -> [(String, String
     let time = format!("{:02}:{:02}{waiting}", seconds / 60, seconds % 60);
     let used_pct = estimate.battery_used_pct;
     let metres = |value: Option<f64>, decimals: usize| match value {
-        Some(value) => format!("{:.decimals$} {}", units.length(value), units.length_unit()),
+        Some(value) => units.length_text(value, decimals),
         None => "—".to_owned(),
     };
     let xte = metres(estimate.worst_xte.map(|worst| worst.xte_m), 1);

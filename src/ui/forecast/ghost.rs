@@ -2,6 +2,7 @@
 
 use crate::session::{Forecast, PathPoint};
 use crate::ui::app_state::AppState;
+use crate::ui::units::Units;
 
 /// A way that was not flown yet, and what is said of it.
 #[derive(Debug)]
@@ -17,10 +18,10 @@ pub(in crate::ui) struct Ghost<'a> {
 pub(in crate::ui) fn ghost(state: &AppState) -> Option<Ghost<'_>> {
     let forecast = &state.forecast;
     if let Some(chosen) = &forecast.what_if {
-        return Some(asked(chosen.what_if.title, chosen.asked.forecast()));
+        return Some(asked(state.units, chosen.what_if.title, chosen.asked.forecast()));
     }
     if let Some(look_ahead) = &forecast.look_ahead {
-        return Some(asked("look-ahead", look_ahead.asked.forecast()));
+        return Some(asked(state.units, "look-ahead", look_ahead.asked.forecast()));
     }
     let is_flown =
         state.view.vehicle.is_engaged() && state.view.vehicle.active_plan.as_ref() == Some(state.plan());
@@ -28,9 +29,12 @@ pub(in crate::ui) fn ghost(state: &AppState) -> Option<Ghost<'_>> {
     Some(Ghost { path: &estimate.path, line: "predicted".to_owned() })
 }
 
-fn asked<'a>(what: &str, forecast: Option<&'a Forecast>) -> Ghost<'a> {
+fn asked<'a>(units: Units, what: &str, forecast: Option<&'a Forecast>) -> Ghost<'a> {
     match forecast {
-        Some(forecast) => Ghost { path: &forecast.path, line: format!("{what}: {}", forecast.line()) },
+        Some(forecast) => {
+            let line = forecast.line(|metres| units.length_text(metres, 0));
+            Ghost { path: &forecast.path, line: format!("{what}: {line}") }
+        }
         None => Ghost { path: &[], line: format!("{what}: …") },
     }
 }

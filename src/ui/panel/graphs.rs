@@ -7,6 +7,7 @@ use ratatui::widgets::Widget as _;
 use ratatui::widgets::canvas::{Canvas, Line as CanvasLine};
 
 use crate::signals::SimTime;
+use crate::ui::action::Action;
 use crate::ui::app_state::AppState;
 use crate::ui::formatting::{clock, fixed};
 use crate::ui::graphs::{self, PLOTS, Plot, Quantity, Sample, Signal, Stroke};
@@ -38,7 +39,14 @@ pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
         return;
     }
     if area.height <= LEAST_ROWS || area.width <= AXIS + 8 {
-        row(buffer, area, 0, theme, Role::Dim, "Too little room: z zooms.");
+        row(
+            buffer,
+            area,
+            0,
+            theme,
+            Role::Dim,
+            &format!("Too little room: {} zooms.", state.key(Action::Zoom)),
+        );
         return;
     }
     let body = Rect { height: area.height - 1, ..area };
@@ -224,7 +232,7 @@ fn draw_time_axis(state: &AppState, area: Rect, (from, to): (f64, f64), hidden: 
     let right = clock(SimTime::from_secs_f64(to.max(0.0)));
     let middle = match hidden {
         0 => String::new(),
-        hidden => format!("{hidden} more: z zooms"),
+        hidden => format!("{hidden} more: {} zooms", state.key(Action::Zoom)),
     };
     let width = usize::from(area.width - AXIS).saturating_sub(left.len() + right.len());
     let text = format!("{}{left}{middle:^width$}{right}", " ".repeat(usize::from(AXIS)));

@@ -6,7 +6,7 @@ use ratatui::widgets::Widget as _;
 use ratatui::widgets::canvas::{Canvas, Points};
 
 use crate::ui::app_state::AppState;
-use crate::ui::formatting::{fixed, signed};
+use crate::ui::formatting::{compass, fixed, signed};
 use crate::ui::theme::Role;
 
 use super::row;
@@ -43,7 +43,7 @@ pub(super) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     for (at, text) in [
         (1, format!("roll    {}°", signed(roll, 6, 1))),
         (2, format!("pitch   {}°", signed(pitch, 6, 1))),
-        (3, format!("heading {}°", fixed(heading, 6, 0))),
+        (3, format!("heading {}°", fixed(heading.map(compass), 6, 0))),
     ] {
         row(buffer, numbers, at, theme, Role::Text, &text);
     }

@@ -4,6 +4,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::text::{Line, Span};
 
+use crate::ui::action::Action;
 use crate::ui::app_state::AppState;
 use crate::ui::event_log::LogLine;
 use crate::ui::formatting::clock_ms;
@@ -76,7 +77,7 @@ fn draw_lines(state: &AppState, area: Rect, buffer: &mut Buffer) {
     if entries.peek().is_none() {
         let text = match (state.log.len(), state.log_view.filter_name()) {
             (0, _) => "Nothing has happened yet.".to_owned(),
-            (_, filter) => format!("No {filter}: `f` shows everything."),
+            (_, filter) => format!("No {filter}: `{}` shows everything.", state.key(Action::Filter)),
         };
         row(buffer, area, 0, theme, Role::Dim, &text);
         return;

@@ -8,6 +8,7 @@ use ratatui::widgets::canvas::Canvas;
 use crate::geo::LocalFrame;
 use crate::plan::{FlightPlan, Waypoint, WaypointType};
 use crate::telemetry::PlanSource;
+use crate::ui::action::Action;
 use crate::ui::app_state::AppState;
 use crate::ui::map_edit::{self, MapItem, Moving};
 use crate::ui::map_point::{self, MapPoint, to_map};
@@ -30,6 +31,8 @@ struct Scene {
     view: Viewport,
     spots: Vec<PlacedWaypoint>,
     home: MapPoint,
+    /// Home of the open plan, where it is not that of the craft.
+    planned_home: Option<MapPoint>,
     craft: Option<MapPoint>,
     believed: Option<MapPoint>,
     current: Option<usize>,
@@ -46,7 +49,7 @@ pub(crate) fn title(state: &AppState) -> String {
         PlanSource::Stored => String::new(),
         injected => format!(" — {injected} plan"),
     };
-    if state.map.edit.is_some() || state.map.moving.is_some() {
+    if state.edits_on_map() {
         let place = state.map.moving.map(|moving| moving.place).or(state.map.edit.map(|cursor| cursor.place));
         let moving = state.map.moving.map(|moving| moving.item);
         let measured = place.and_then(|place| map_edit::measured(state, place, moving)).unwrap_or_default();
@@ -55,7 +58,7 @@ pub(crate) fn title(state: &AppState) -> String {
     match state.map.mode {
         MapMode::Fit => format!("{name}{source}"),
         MapMode::Follow(_) => format!("{name}{source} — follows"),
-        MapMode::Free { .. } => format!("{name}{source} — 0 fits"),
+        MapMode::Free { .. } => format!("{name}{source} — {} fits", state.key(Action::Fit)),
     }
 }
 
@@ -78,10 +81,13 @@ fn scene(state: &AppState, area: Rect) -> Scene {
     let vehicle = &state.view.vehicle;
     let plan = state.shown_plan();
     let origin = map_point::origin(state);
-    let home =
-        origin.zip(vehicle.craft.home).map_or_else(MapPoint::default, |(frame, home)| to_map(&frame, home));
+    let at_boot_place = MapPoint::default();
+    let craft_home =
+        origin.zip(vehicle.craft.home).map_or(at_boot_place, |(frame, home)| to_map(&frame, home));
+    let planned_home = map_edit::home(state).unwrap_or(craft_home);
+    // Whoever edits sees what is edited: home of the plan, and the fence around it.
+    let mut home = if state.edits_on_map() { planned_home } else { craft_home };
     let mut spots = origin.map_or_else(Vec::new, |frame| spots(plan, &frame, home));
-    let mut home = home;
     match state.map.moving {
         Some(Moving { item: MapItem::Waypoint(index), place, .. }) => {
             for spot in spots.iter_mut().filter(|spot| spot.index == index) {
@@ -97,6 +103,7 @@ fn scene(state: &AppState, area: Rect) -> Scene {
         view: Viewport::of(state, area),
         spots,
         home,
+        planned_home: (planned_home.distance(home) > 1.0 && !state.edits_on_map()).then_some(planned_home),
         craft: map_point::craft(&state.view),
         believed: believed.filter(|place| place.n.is_finite() && place.e.is_finite()),
         current: vehicle.nav.as_ref().filter(|nav| nav.engaged).map(|nav| usize::from(nav.wp)),

@@ -9,6 +9,7 @@ use ratatui::text::Line;
 
 use super::{line, row, span};
 use crate::plan::review::Finding;
+use crate::ui::action::{Action, EditAction};
 use crate::ui::app_state::AppState;
 use crate::ui::editor::{Column, findings};
 use crate::ui::forecast;
@@ -76,12 +77,7 @@ fn divided(area: Rect, below_rows: usize) -> (Rect, Rect, Option<Rect>) {
 pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     let theme = &state.theme;
     if state.plan().waypoints.is_empty() {
-        let lines = [
-            "No waypoints. `i` inserts one, `P` generates a pattern,",
-            "`o` opens a file, `D` takes the plan of the craft;",
-            "waypoint lines of a CLI can be pasted.",
-        ];
-        for (at, text) in lines.iter().enumerate() {
+        for (at, text) in nothing_planned(state).iter().enumerate() {
             row(buffer, area, at as u16, theme, Role::Dim, text);
         }
         return None;
@@ -97,6 +93,18 @@ pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<
         profile::draw(state, area, buffer);
     }
     cursor
+}
+
+/// What to do about an empty plan.
+fn nothing_planned(state: &AppState) -> [String; 3] {
+    use EditAction::{Download, Generate, Insert, Open};
+    let [insert, generate, open, download] =
+        [Insert, Generate, Open, Download].map(|action| state.key(Action::Edit(action)));
+    [
+        format!("No waypoints. `{insert}` inserts one, `{generate}` generates a pattern,"),
+        format!("`{open}` opens a file, `{download}` takes the plan of the craft;"),
+        "waypoint lines of a CLI can be pasted.".to_owned(),
+    ]
 }
 
 /// What stands below the table: what is wrong with the value being typed, or the finding with its fix.
@@ -118,7 +126,7 @@ fn said_below(state: &AppState, findings: &[Finding], width: usize) -> Vec<Line<
         let kind = state.plan().waypoints.get(state.editor.row()).map(|wp| wp.kind).unwrap_or_default();
         return match &field.problem {
             Some(problem) => said(Role::Fault, &format!("✗ {problem}")),
-            None => said(Role::Dim, &state.editor.column().hint(kind)),
+            None => said(Role::Dim, &state.editor.column().hint(kind, state.units)),
         };
     }
     let Some((finding, fix)) = findings::shown(state, findings) else {
@@ -130,6 +138,7 @@ fn said_below(state: &AppState, findings: &[Finding], width: usize) -> Vec<Line<
         0 => String::new(),
         more => format!(" (+{more})"),
     };
-    let fix = fix.map(|fix| format!(" — f: {}", fix.title)).unwrap_or_default();
+    let key = state.key(Action::Edit(EditAction::Fix));
+    let fix = fix.map(|fix| format!(" — {key}: {}", fix.title)).unwrap_or_default();
     said(role, &format!("{mark} {finding}{more}{fix}"))
 }

@@ -5,6 +5,7 @@ use ratatui::layout::Rect;
 
 use crate::signals::{RC_CHANNELS, RcSource};
 use crate::telemetry::snapshot::{CraftView, ModeRange};
+use crate::ui::action::Action;
 use crate::ui::app_state::AppState;
 use crate::ui::formatting::cut;
 use crate::ui::panel::Panel;
@@ -26,7 +27,7 @@ pub(crate) fn title(state: &AppState) -> String {
     let craft = &state.view.vehicle.craft;
     let ours = !matches!(craft.rc_source, Some(RcSource::Udp | RcSource::Msp));
     if state.view.rc_cut && ours {
-        return format!("{name} — CUT, x restores it");
+        return format!("{name} — CUT, {} restores it", state.key(Action::CutRc));
     }
     let age = match craft.rc_age_s {
         Some(age) if age < 1.0 => format!("{:.0} ms", age * 1000.0),
@@ -83,13 +84,21 @@ pub(crate) fn channel_at(
 ) -> Option<(usize, Option<u16>)> {
     let hit = |(_, place): &(usize, Rect)| place.contains((column, line).into());
     let (channel, place) = grid(area, selected).into_iter().find(hit)?;
-    let bar = bar(place);
-    if column < bar.x || bar.width < 2 {
-        return Some((channel, None));
-    }
-    let share = f64::from(column - bar.x) / f64::from(bar.width - 1);
+    let on_bar = column >= bar(place).x;
+    Some((channel, value_on(bar(place), column).filter(|_| on_bar)))
+}
+
+/// The value of a channel's slider at a screen column, beyond its ends that of the end; `None` when it is not visible.
+pub(crate) fn value_at(area: Rect, channel: usize, column: u16) -> Option<u16> {
+    let (_, place) = grid(area, channel).into_iter().find(|(there, _)| *there == channel)?;
+    value_on(bar(place), column)
+}
+
+fn value_on(bar: Rect, column: u16) -> Option<u16> {
+    let last = bar.width.checked_sub(1).filter(|last| *last > 0)?;
+    let share = f64::from(column.saturating_sub(bar.x).min(last)) / f64::from(last);
     let us = SPAN_US.0 + share * (SPAN_US.1 - SPAN_US.0);
-    Some((channel, Some((us / 10.0).round() as u16 * 10)))
+    Some((us / 10.0).round() as u16 * 10)
 }
 
 /// The column of a value on a bar.

@@ -3,6 +3,7 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
+use crate::ui::action::Action;
 use crate::ui::app_state::AppState;
 use crate::ui::formatting::cut;
 use crate::ui::knobs::{Knob, knobs};
@@ -74,8 +75,11 @@ pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<
         }
     }
     let help = match all.get(state.knobs.selected) {
-        Some(knob) if focused => knob.help(),
-        _ => "wind, noise and faults, changed while it flies: 7".to_owned(),
+        Some(knob) if focused => knob.help(state.units),
+        _ => format!(
+            "wind, noise and faults, changed while it flies: {}",
+            state.key(Action::Show(Panel::World))
+        ),
     };
     row(buffer, area, area.height - 1, theme, Role::Dim, &help);
     cursor

@@ -2,6 +2,7 @@
 
 use crossterm::event::{KeyCode, KeyEvent};
 
+use crate::ui::action::Action;
 use crate::ui::app_state::AppState;
 use crate::ui::event_log::Severity;
 use crate::ui::message::Effect;
@@ -51,12 +52,18 @@ pub(super) fn paste(state: &mut AppState, text: &str) -> Vec<Effect> {
         field.insert(text.lines().next().unwrap_or_default());
         return Vec::new();
     }
+    let first_line = text.lines().next().unwrap_or_default();
+    if state.popups.is_empty() && state.editor.popup.as_mut().is_some_and(|popup| popup.paste(first_line)) {
+        return Vec::new();
+    }
     let is_covered = !state.popups.is_empty() || state.editor.popup.is_some();
     if matches!(state.focus, Panel::Plan | Panel::Map) && !is_covered {
         return super::plan::paste_text(state, text);
     }
     if state.focus != Panel::Cli || is_covered {
-        state.notify(Severity::Info, "Pasted text goes to the CLI (5) or, as waypoints, to the plan (2).");
+        let [cli, plan] = [Panel::Cli, Panel::Plan].map(|panel| state.key(Action::Show(panel)));
+        let text = format!("Pasted text goes to the CLI ({cli}) or, as waypoints, to the plan ({plan}).");
+        state.notify(Severity::Info, text);
         return Vec::new();
     }
     state.cli.paste(text);

@@ -1,16 +1,15 @@
 //! The flight as a whole: the scripted pilot, the upload of the plan, the speed of the simulation.
 
 use crate::session::Command;
+use crate::ui::action::{Action, EditAction};
 use crate::ui::app_state::AppState;
 use crate::ui::event_log::Severity;
 use crate::ui::message::Effect;
+use crate::ui::panel::Panel;
 use crate::ui::popup::{GoTo, Popup};
 
 /// The speeds `[` and `]` go through.
 const SPEEDS: [f64; 12] = [0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, f64::INFINITY];
-
-/// What an upload in flight does.
-const NEXT_ENGAGEMENT: &str = " It takes effect at the next engagement; `G` continues on it now.";
 
 /// Starts or stops the scripted pilot; a craft without a plan gets the open one first.
 pub(super) fn fly(state: &mut AppState) -> Vec<Effect> {
@@ -18,23 +17,28 @@ pub(super) fn fly(state: &mut AppState) -> Vec<Effect> {
         return vec![Effect::Send(Command::Pilot(false))];
     }
     if state.view.paused {
-        state.notify(Severity::Info, "The simulation is paused: Space goes on.");
+        let text = format!("The simulation is paused: {} goes on.", state.key(Action::Pause));
+        state.notify(Severity::Info, text);
     }
     if state.view.vehicle.stored_plan.as_ref().is_none_or(|plan| !plan.waypoints.is_empty()) {
         if !state.plan().waypoints.is_empty() && !state.plan_is_on_craft() {
             let text = format!(
-                "Flying the plan in the craft, which is not {}: U uploads it.",
-                state.editor.plan().title()
+                "Flying the plan in the craft, which is not {}: {} uploads it.",
+                state.editor.plan().title(),
+                state.key(Action::Upload)
             );
             state.notify(Severity::Info, text);
         }
         return vec![Effect::Send(Command::Pilot(true))];
     }
     if state.plan().waypoints.is_empty() {
-        state.notify(
-            Severity::Warn,
-            "There is no plan to fly: `i` in the Plan panel (2) inserts a waypoint, `o` opens a file.",
+        let insert = state.key(Action::Edit(EditAction::Insert));
+        let (panel, open) = (state.key(Action::Show(Panel::Plan)), state.key(Action::Edit(EditAction::Open)));
+        let text = format!(
+            "There is no plan to fly: `{insert}` in the Plan panel ({panel}) inserts a waypoint, \
+             `{open}` opens a file."
         );
+        state.notify(Severity::Warn, text);
         return Vec::new();
     }
     state.fly_after_upload = true;
@@ -55,15 +59,22 @@ pub(super) fn uploaded(state: &mut AppState, result: Result<(), String>) -> Vec<
         Ok(()) => {
             let count = state.plan().waypoints.len();
             // The next picture shows the new plan; whether another one flies is known already.
-            let then =
-                if state.flies_stored_plan() && !state.flies(state.plan()) { NEXT_ENGAGEMENT } else { "" };
+            let then = if state.flies_stored_plan() && !state.flies(state.plan()) {
+                let key = state.key(Action::GoTo);
+                format!(" It takes effect at the next engagement; `{key}` continues on it now.")
+            } else {
+                String::new()
+            };
             let title = state.editor.plan().title();
             let text = format!("Uploaded {title}: {count} waypoints.{then}");
             state.notify(Severity::Good, text);
             if fly { vec![Effect::Send(Command::Pilot(true))] } else { Vec::new() }
         }
         Err(sentence) => {
-            state.notify(Severity::Fault, format!("The craft refused the plan: {sentence}"));
+            state.notify(
+                Severity::Fault,
+                format!("The craft refused the plan: {}", state.keymap.in_force(&sentence)),
+            );
             Vec::new()
         }
     }

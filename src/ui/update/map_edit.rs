@@ -3,12 +3,17 @@
 use super::{plan, view};
 use crate::plan::Waypoint;
 use crate::plan::format::HomePosition;
+use crate::ui::action::{Action, EditAction};
 use crate::ui::app_state::AppState;
+use crate::ui::editor::PlanId;
 use crate::ui::event_log::Severity;
 use crate::ui::map_edit::{self, MapCursor, MapItem, Moving};
 use crate::ui::map_point::{self, MapPoint};
 use crate::ui::message::Effect;
 use crate::ui::viewport::MapMode;
+
+/// The greatest radius of the fence that the craft takes, m.
+const WIDEST_FENCE_M: f64 = 10_000.0;
 
 /// Shows or hides the cursor.
 pub(super) fn toggle(state: &mut AppState) -> Vec<Effect> {
@@ -44,7 +49,9 @@ pub(super) fn arrow(state: &mut AppState, columns: f64, rows: f64) -> Vec<Effect
 /// Picks up what is at the cursor, or puts down what was picked up.
 pub(super) fn pick(state: &mut AppState) -> Vec<Effect> {
     let Some(cursor) = state.map.edit else {
-        state.notify(Severity::Info, "`p` shows a cursor with which waypoints are picked, added and moved.");
+        let key = state.key(Action::Edit(EditAction::OnMap));
+        let text = format!("`{key}` shows a cursor with which waypoints are picked, added and moved.");
+        state.notify(Severity::Info, text);
         return Vec::new();
     };
     if state.map.moving.is_some() {
@@ -53,7 +60,10 @@ pub(super) fn pick(state: &mut AppState) -> Vec<Effect> {
     let Some(view) = view::viewport(state) else { return Vec::new() };
     match map_edit::item_at(state, cursor.place, view.scale) {
         Some(item) => pick_up(state, item, cursor.place, false),
-        None => state.notify(Severity::Info, "Nothing is here: `i` adds a waypoint at the cursor."),
+        None => {
+            let key = state.key(Action::Edit(EditAction::AddOnMap));
+            state.notify(Severity::Info, format!("Nothing is here: `{key}` adds a waypoint at the cursor."));
+        }
     }
     Vec::new()
 }
@@ -63,7 +73,18 @@ pub(super) fn pick_up(state: &mut AppState, item: MapItem, place: MapPoint, by_m
     if let MapItem::Waypoint(index) = item {
         state.editor.go_to_row(index);
     }
-    state.map.moving = Some(Moving { item, place, moved: false, by_mouse });
+    state.map.moving = Some(Moving { item, place, moved: false, by_mouse, of: revision(state) });
+}
+
+/// Which plan is shown, and in which revision.
+fn revision(state: &AppState) -> (PlanId, usize) {
+    let plan = state.editor.plan();
+    (plan.id(), plan.history().at())
+}
+
+/// Leaves what was picked up where it was, else hides the cursor; whether there was one.
+pub(super) fn leave(state: &mut AppState) -> bool {
+    state.map.moving.take().is_some() || state.map.edit.take().is_some()
 }
 
 /// Puts down what is being moved, as one edit.
@@ -72,6 +93,13 @@ pub(super) fn put_down(state: &mut AppState) -> Vec<Effect> {
         return Vec::new();
     };
     if !moving.moved {
+        return Vec::new();
+    }
+    if moving.of != revision(state) {
+        state.notify(
+            Severity::Warn,
+            "The plan was changed meanwhile, so nothing was moved: pick it up again.",
+        );
         return Vec::new();
     }
     let position = map_edit::position(&frame, moving.place);
@@ -89,7 +117,11 @@ pub(super) fn put_down(state: &mut AppState) -> Vec<Effect> {
         }
         MapItem::Fence => {
             let Some(home) = map_edit::home(state) else { return Vec::new() };
-            let metres = home.distance(moving.place).round().max(1.0);
+            let metres = home.distance(moving.place).round().clamp(1.0, WIDEST_FENCE_M);
+            state.notify(
+                Severity::Info,
+                format!("Fence of the plan: {} around home.", state.units.length_text(metres, 0)),
+            );
             state.editor.edit("fence", |document| {
                 document.settings.retain(|line| !line.starts_with("ap_max_distance_from_home"));
                 document.settings.push(format!("ap_max_distance_from_home = {metres:.0}"));
@@ -102,7 +134,9 @@ pub(super) fn put_down(state: &mut AppState) -> Vec<Effect> {
 pub(super) fn add(state: &mut AppState) -> Vec<Effect> {
     let Some(cursor) = state.map.edit else {
         toggle(state);
-        state.notify(Severity::Info, "Move the cursor with the arrow keys; `i` adds a waypoint there.");
+        let key = state.key(Action::Edit(EditAction::AddOnMap));
+        let text = format!("Move the cursor with the arrow keys; `{key}` adds a waypoint there.");
+        state.notify(Severity::Info, text);
         return Vec::new();
     };
     add_at(state, cursor.place)
@@ -119,7 +153,10 @@ pub(super) fn add_at(state: &mut AppState, place: MapPoint) -> Vec<Effect> {
 /// Deletes the waypoint at the cursor.
 pub(super) fn delete(state: &mut AppState) -> Vec<Effect> {
     let (Some(cursor), Some(view)) = (state.map.edit, view::viewport(state)) else {
-        state.notify(Severity::Info, "`p` shows a cursor: `d` deletes the waypoint under it.");
+        let [shows, deletes] =
+            [EditAction::OnMap, EditAction::DeleteOnMap].map(|action| state.key(Action::Edit(action)));
+        let text = format!("`{shows}` shows a cursor: `{deletes}` deletes the waypoint under it.");
+        state.notify(Severity::Info, text);
         return Vec::new();
     };
     let Some(MapItem::Waypoint(index)) = map_edit::item_at(state, cursor.place, view.scale) else {

@@ -24,6 +24,9 @@ const WHEEL_LINES: isize = 3;
 
 /// Takes a mouse event in.
 pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
+    if let MouseEventKind::Up(_) = event.kind {
+        return release(state);
+    }
     if !state.popups.is_empty() || state.editor.popup.is_some() {
         return Vec::new();
     }
@@ -32,18 +35,23 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
     {
         return effects;
     }
-    let Some((panel, area)) = layout::screen(state).and_then(|screen| screen.at(event.column, event.row))
-    else {
-        return Vec::new();
+    let Some(screen) = layout::screen(state) else { return Vec::new() };
+    let at = match event.kind {
+        // A drag belongs to the panel where it began, whatever it comes across.
+        MouseEventKind::Drag(_) => state.pressed.and_then(|panel| Some((panel, screen.panel(panel)?))),
+        _ => screen.at(event.column, event.row),
     };
+    let Some((panel, area)) = at else { return Vec::new() };
     match event.kind {
         MouseEventKind::Down(MouseButton::Left) => {
             focus(state, panel);
+            state.pressed = Some(panel);
             match panel {
                 Panel::Map => press_on_map(state, area, &event),
                 Panel::Rc => set_channel(state, area, &event),
                 Panel::World => {
                     if let Some(knob) = world::knob_at(state, layout::inner(area), event.row) {
+                        state.knobs.field = None;
                         state.knobs.selected = knob;
                     }
                     Vec::new()
@@ -63,27 +71,15 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
                 }
                 Vec::new()
             }
-            Panel::Rc => set_channel(state, area, &event),
+            // The slider that was pressed, though the mouse may slip to the one below.
+            Panel::Rc => rc::value_at(layout::inner(area), state.channel, event.column)
+                .map_or_else(Vec::new, |us| transmitter::set(state, state.channel, us)),
             Panel::Plan => {
-                drag_altitude(state, area, &event);
+                drag_altitude(state, &event);
                 Vec::new()
             }
             Panel::State | Panel::Cli | Panel::Graphs | Panel::World | Panel::Log => Vec::new(),
         },
-        MouseEventKind::Up(_) => {
-            state.drag = None;
-            if let Some((index, alt_cm)) = state.editor.dragged_altitude.take() {
-                return state.editor.edit(&format!("altitude of WP{index}"), |document| {
-                    if let Some(wp) = document.plan.waypoints.get_mut(index) {
-                        wp.alt_cm = alt_cm;
-                    }
-                });
-            }
-            if state.map.moving.is_some_and(|moving| moving.by_mouse) {
-                return map_edit::put_down(state);
-            }
-            Vec::new()
-        }
         MouseEventKind::ScrollUp => {
             wheel(state, panel, area, &event, -1);
             Vec::new()
@@ -94,6 +90,23 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
         }
         _ => Vec::new(),
     }
+}
+
+/// Ends a drag, wherever the mouse is by then.
+fn release(state: &mut AppState) -> Vec<Effect> {
+    state.drag = None;
+    state.pressed = None;
+    if let Some((index, alt_cm)) = state.editor.dragged_altitude.take() {
+        return state.editor.edit(&format!("altitude of WP{index}"), |document| {
+            if let Some(wp) = document.plan.waypoints.get_mut(index) {
+                wp.alt_cm = alt_cm;
+            }
+        });
+    }
+    if state.map.moving.is_some_and(|moving| moving.by_mouse) {
+        return map_edit::put_down(state);
+    }
+    Vec::new()
 }
 
 fn wheel(state: &mut AppState, panel: Panel, area: Rect, event: &MouseEvent, direction: isize) {
@@ -135,22 +148,25 @@ fn press_on_plan(state: &mut AppState, area: Rect, event: &MouseEvent) {
             state.editor.go_to_cell(index, Column::Altitude);
             let altitude = state.plan().waypoints.get(index).map(|wp| wp.alt_cm);
             state.editor.dragged_altitude = altitude.map(|alt_cm| (index, alt_cm));
-            state.drag = Some((event.column, event.row, 0.0, f64::from(altitude.unwrap_or_default())));
+            // The scale of now: it changes with the altitude.
+            let metres = plan_panel::metres_per_row(state, layout::inner(area)).unwrap_or_default();
+            state.drag = Some((event.column, event.row, metres, f64::from(altitude.unwrap_or_default())));
         }
         None => {}
     }
 }
 
-/// Drags an altitude of the profile, by whole metres.
-fn drag_altitude(state: &mut AppState, area: Rect, event: &MouseEvent) {
-    let (Some((index, _)), Some((_, from_row, _, from_cm))) = (state.editor.dragged_altitude, state.drag)
+/// Drags an altitude of the profile, by whole metres or feet.
+fn drag_altitude(state: &mut AppState, event: &MouseEvent) {
+    let (Some((index, _)), Some((_, from_row, metres, from_cm))) =
+        (state.editor.dragged_altitude, state.drag)
     else {
         return;
     };
-    let Some(metres) = plan_panel::metres_per_row(state, layout::inner(area)) else { return };
     let rows = f64::from(from_row) - f64::from(event.row);
-    let altitude_m = (from_cm / 100.0 + rows * metres).round();
-    state.editor.dragged_altitude = Some((index, (altitude_m * 100.0) as i32));
+    let shown = state.units.length(from_cm / 100.0 + rows * metres).round();
+    let altitude_m = state.units.metres(shown);
+    state.editor.dragged_altitude = Some((index, (altitude_m * 100.0).round() as i32));
 }
 
 /// Moves what was picked up by the mouse; the window stands still meanwhile.

@@ -6,6 +6,7 @@ use nalgebra::Vector2;
 use crate::geo::{GroundPlane, LatLon, distance_bearing};
 use crate::plan::edit::PlanDocument;
 use crate::plan::{FlightPlan, HoldPattern, Waypoint, WaypointType};
+use crate::ui::action::{Action, EditAction};
 use crate::ui::app_state::AppState;
 use crate::ui::editor::findings;
 use crate::ui::editor::{Browser, Column, EditorPopup, FileRequest, Form, FormKind, Purpose, Question};
@@ -20,15 +21,15 @@ const FIRST_ALT_CM: i32 = 2000;
 /// A key while a cell is typed.
 pub(super) fn field_key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
     match event.code {
-        KeyCode::Enter => return state.editor.end_typing(),
+        KeyCode::Enter => return state.editor.end_typing(state.units),
         KeyCode::Esc => {
             state.editor.cancel();
         }
         KeyCode::Tab | KeyCode::BackTab => {
-            let effects = state.editor.end_typing();
+            let effects = state.editor.end_typing(state.units);
             if state.editor.field().is_none() {
                 state.editor.move_cursor(0, if event.code == KeyCode::Tab { 1 } else { -1 });
-                state.editor.begin_typing().ok();
+                state.editor.begin_typing(state.units).ok();
             }
             return effects;
         }
@@ -42,12 +43,19 @@ pub(super) fn field_key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
     Vec::new()
 }
 
+fn insert_key(state: &AppState) -> String {
+    state.key(Action::Edit(EditAction::Insert))
+}
+
 /// Enter on a cell: names go on to the next, numbers are typed.
 pub(super) fn edit_cell(state: &mut AppState) -> Vec<Effect> {
     match state.editor.column() {
         Column::Type | Column::Pattern => nudge(state, 1),
         _ => {
-            if let Err(sentence) = state.editor.begin_typing() {
+            if state.plan().waypoints.is_empty() {
+                let text = format!("There is no waypoint to edit: `{}` inserts one.", insert_key(state));
+                state.notify(Severity::Warn, text);
+            } else if let Err(sentence) = state.editor.begin_typing(state.units) {
                 state.notify(Severity::Warn, sentence);
             }
             Vec::new()
@@ -63,7 +71,7 @@ pub(super) fn nudge(state: &mut AppState, steps: i32) -> Vec<Effect> {
             state.notify(Severity::Warn, format!("A {kind} has no {}.", column.name()));
             Vec::new()
         }
-        _ => state.editor.nudge(steps),
+        _ => state.editor.nudge(steps, state.units),
     }
 }
 
@@ -72,11 +80,11 @@ pub(super) fn next_waypoint(state: &AppState) -> Option<Waypoint> {
     let waypoints = &state.editor.document().plan.waypoints;
     let row = state.editor.row();
     let placed = |wp: &&Waypoint| wp.kind.uses_position();
-    let Some(last) = waypoints.get(..=row).and_then(|before| before.iter().rev().find(placed)) else {
+    let at = waypoints.get(..=row).and_then(|before| before.iter().rposition(|wp| placed(&wp)));
+    let Some((at, last)) = at.and_then(|at| Some((at, waypoints.get(at)?))) else {
         let home = findings::home(state)?;
         return Some(Waypoint { position: home, alt_cm: FIRST_ALT_CM, ..Waypoint::default() });
     };
-    let at = waypoints.iter().position(|wp| wp == last).unwrap_or(0);
     let from =
         waypoints[..at].iter().rev().find(placed).map(|wp| wp.position).or_else(|| findings::home(state));
     let bearing = from.map_or(0.0, |from| distance_bearing(from, last.position).1);
@@ -118,11 +126,17 @@ pub(super) fn duplicate(state: &mut AppState) -> Vec<Effect> {
 pub(super) fn copy(state: &mut AppState) -> Vec<Effect> {
     let Some((count, text)) = state.editor.copy() else { return Vec::new() };
     let noun = if count == 1 { "waypoint" } else { "waypoints" };
-    state.notify(Severity::Info, format!("Copied {count} {noun} as CLI lines; `p` inserts them."));
+    let paste = state.key(Action::Edit(EditAction::Paste));
+    state.notify(Severity::Info, format!("Copied {count} {noun} as CLI lines; `{paste}` inserts them."));
     vec![Effect::Copy(text)]
 }
 
 pub(super) fn paste_copied(state: &mut AppState) -> Vec<Effect> {
+    if !state.editor.has_copy() {
+        let copy = state.key(Action::Edit(EditAction::Copy));
+        state.notify(Severity::Warn, format!("Nothing was copied: `{copy}` copies the selected waypoints."));
+        return Vec::new();
+    }
     let pasted = state.editor.paste_copied();
     told(state, pasted)
 }
@@ -135,7 +149,8 @@ pub(super) fn paste_text(state: &mut AppState, text: &str) -> Vec<Effect> {
     }
     match state.editor.paste_text(text) {
         Ok((count, effects)) => {
-            state.notify(Severity::Good, format!("Pasted {count} waypoints; `u` takes them out again."));
+            let undo = state.key(Action::Edit(EditAction::Undo));
+            state.notify(Severity::Good, format!("Pasted {count} waypoints; `{undo}` takes them out again."));
             effects
         }
         Err(sentence) => {
@@ -183,10 +198,11 @@ pub(super) fn take_fix(state: &mut AppState) -> Vec<Effect> {
 pub(super) fn open_form(state: &mut AppState, kind: FormKind) -> Vec<Effect> {
     let document = state.editor.document();
     if kind == FormKind::Bulk && document.plan.waypoints.is_empty() {
-        state.notify(Severity::Warn, "There is no waypoint to change: `i` inserts one.");
+        let text = format!("There is no waypoint to change: `{}` inserts one.", insert_key(state));
+        state.notify(Severity::Warn, text);
         return Vec::new();
     }
-    state.editor.popup = Some(EditorPopup::Form(Form::of(kind, document)));
+    state.editor.popup = Some(EditorPopup::Form(Form::of(kind, document, state.units)));
     Vec::new()
 }
 
@@ -232,10 +248,12 @@ pub(super) fn write(
 
 pub(super) fn new_plan(state: &mut AppState) -> Vec<Effect> {
     let effect = state.editor.open_new(PlanDocument { name: "new".to_owned(), ..PlanDocument::default() });
-    state.notify(
-        Severity::Info,
-        "A new plan: `i` inserts a waypoint, `P` generates a pattern, `(` goes back.",
+    let [insert, generate, back] = [EditAction::Insert, EditAction::Generate, EditAction::PreviousPlan]
+        .map(|action| state.key(Action::Edit(action)));
+    let text = format!(
+        "A new plan: `{insert}` inserts a waypoint, `{generate}` generates a pattern, `{back}` goes back."
     );
+    state.notify(Severity::Info, text);
     vec![effect]
 }
 
@@ -251,7 +269,9 @@ pub(super) fn close(state: &mut AppState) -> Vec<Effect> {
 
 pub(super) fn show_other(state: &mut AppState, step: isize) -> Vec<Effect> {
     if state.editor.plans().len() == 1 {
-        state.notify(Severity::Info, "One plan is open: `o` opens another, `n` makes a new one.");
+        let [open, new] = [EditAction::Open, EditAction::New].map(|action| state.key(Action::Edit(action)));
+        let text = format!("One plan is open: `{open}` opens another, `{new}` makes a new one.");
+        state.notify(Severity::Info, text);
     } else {
         state.editor.show_other(step);
     }
@@ -262,7 +282,7 @@ pub(super) fn show_other(state: &mut AppState, step: isize) -> Vec<Effect> {
 pub(super) fn downloaded(state: &mut AppState, result: Result<Box<FlightPlan>, String>) -> Vec<Effect> {
     match result {
         Err(sentence) => {
-            state.notify(Severity::Fault, format!("Not downloaded: {sentence}"));
+            state.notify(Severity::Fault, format!("Not downloaded: {}", state.keymap.in_force(&sentence)));
             Vec::new()
         }
         Ok(held) if *held == *state.plan() => {
@@ -272,8 +292,9 @@ pub(super) fn downloaded(state: &mut AppState, result: Result<Box<FlightPlan>, S
         Ok(held) => {
             let count = held.waypoints.len();
             let effects = state.editor.edit("download from the craft", |document| document.plan = *held);
-            state
-                .notify(Severity::Good, format!("Downloaded {count} waypoints; `u` brings the others back."));
+            let undo = state.key(Action::Edit(EditAction::Undo));
+            let text = format!("Downloaded {count} waypoints; `{undo}` brings the others back.");
+            state.notify(Severity::Good, text);
             effects
         }
     }
@@ -292,8 +313,11 @@ pub(super) fn craft_plan_changed(state: &mut AppState, before: &FlightPlan, now:
         more @ 1.. => differs.push(format!("{more} more")),
         fewer => differs.push(format!("{} fewer", -fewer)),
     }
-    let text =
-        format!("The plan in the craft was changed: {}. `D` takes it into the editor.", differs.join(", "));
+    let text = format!(
+        "The plan in the craft was changed: {}. `{}` takes it into the editor.",
+        differs.join(", "),
+        state.key(Action::Edit(EditAction::Download))
+    );
     state.notify(Severity::Warn, text);
 }
 
@@ -314,7 +338,7 @@ pub(super) fn saved_to_flash(state: &mut AppState, result: Result<(), String>) -
             let text = format!("Saved in the craft's flash: {stored} waypoints and the settings.");
             state.notify(Severity::Good, text);
         }
-        Err(sentence) => state.notify(Severity::Fault, sentence),
+        Err(sentence) => state.notify(Severity::Fault, state.keymap.in_force(&sentence)),
     }
     Vec::new()
 }

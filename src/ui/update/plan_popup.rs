@@ -5,6 +5,7 @@ use std::path::Path;
 use crossterm::event::{KeyCode, KeyEvent};
 
 use super::plan;
+use crate::ui::action::{Action, EditAction};
 use crate::ui::app_state::AppState;
 use crate::ui::editor::findings;
 use crate::ui::editor::{
@@ -27,13 +28,15 @@ fn form_key(state: &mut AppState, mut form: Form, event: KeyEvent) -> Vec<Effect
     match form.key(event) {
         FormKey::Cancel => return Vec::new(),
         FormKey::Edited => {}
-        FormKey::Accept => match state.editor.take_form(&form, findings::home(state)) {
-            Ok((effects, told)) => {
-                state.notify(Severity::Good, told);
-                return effects;
+        FormKey::Accept => {
+            match state.editor.take_form(&form, findings::home(state), state.cli_help.check_setting) {
+                Ok((effects, told)) => {
+                    state.notify(Severity::Good, told);
+                    return effects;
+                }
+                Err(problem) => form.problem = Some(problem),
             }
-            Err(problem) => form.problem = Some(problem),
-        },
+        }
     }
     state.editor.popup = Some(EditorPopup::Form(form));
     Vec::new()
@@ -118,8 +121,10 @@ pub(super) fn answered(state: &mut AppState, reply: FileReply) -> Vec<Effect> {
             }
             let name = opened.file.as_ref().map_or_else(String::new, |file| shown(file.as_path()));
             let told = if opened.recovered {
+                let [undo, save] =
+                    [EditAction::Undo, EditAction::Save].map(|action| state.key(Action::Edit(action)));
                 Some(format!(
-                    "Edits of {name} that were never saved are back: `u` undoes them, `s` saves them."
+                    "Edits of {name} that were never saved are back: `{undo}` undoes them, `{save}` saves them."
                 ))
             } else {
                 Some(format!("Opened {name}.")).filter(|_| opened.notes.is_empty())
@@ -145,7 +150,8 @@ pub(super) fn answered(state: &mut AppState, reply: FileReply) -> Vec<Effect> {
         }
         FileReply::Changed(id) => {
             if let Some(title) = state.editor.changed_on_disk(id) {
-                let text = format!("{title} changed on disk: `s` asks before it replaces it.");
+                let save = state.key(Action::Edit(EditAction::Save));
+                let text = format!("{title} changed on disk: `{save}` asks before it replaces it.");
                 state.notify(Severity::Warn, text);
             }
         }

@@ -113,6 +113,7 @@ pub(super) fn open_command_line(state: &mut AppState, text: &str) {
 /// Carries out what was entered, or says why not.
 fn run(state: &mut AppState, line: &str) -> Vec<Effect> {
     command::run(state, line).unwrap_or_else(|sentence| {
+        let sentence = state.keymap.in_force(&sentence);
         state.notify(Severity::Warn, sentence);
         Vec::new()
     })

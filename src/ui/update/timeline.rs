@@ -46,6 +46,7 @@ pub(super) fn follow_branch(state: &mut AppState, view: &SessionView) -> bool {
     else {
         return false;
     };
+    state.stick_recording.go_back_to(timeline.branched_at.as_secs_f64());
     let part = state.track.cut_after(timeline.branched_at.as_secs_f64());
     state.timeline.keep_track(part);
     true

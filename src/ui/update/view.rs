@@ -86,6 +86,8 @@ pub(super) fn scroll_panel(state: &mut AppState, panel: Panel, by: isize) {
             let last = panel::cli::last_scroll(state, area);
             (&mut state.cli.scroll, by.saturating_neg(), last)
         }
+        // The knob whose value is typed stays selected.
+        Panel::World if state.knobs.field.is_some() => return,
         Panel::World => {
             let last = knobs::knobs(state).len().saturating_sub(1);
             (&mut state.knobs.selected, by, last)

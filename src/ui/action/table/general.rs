@@ -41,7 +41,7 @@ pub(super) const ROWS: &[Spec] = &[
     ),
     spec(Action::GoTo, "flight.go-to", "go to", "Go now to a waypoint of the craft's plan", &["G"], Global),
     spec(Action::HoldHere, "flight.hold", "hold here", "Hold this place and altitude", &["K"], Global),
-    spec(Action::Resume, "flight.resume", "go on", "Go on with the plan after `K`", &["C"], Global),
+    spec(Action::Resume, "flight.resume", "go on", "Go on with the plan after a hold", &["C"], Global),
     spec(Action::CutRc, "rc.cut", "cut RC", "Cut or restore the RC link of the sticks", &["x"], Global),
     spec(Action::Upload, "plan.upload", "upload", "Upload the plan to the craft", &["U"], Global),
     edit(

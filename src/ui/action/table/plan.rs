@@ -27,7 +27,7 @@ pub(super) const ROWS: &[Spec] = &[
         EditAction::Raise,
         "plan.raise",
         "raise",
-        "Raise the value: 1 m, 0.5 m/s, 1 s",
+        "Raise the value: 1 m, 0.5 m/s, 1 s (1 ft, 1 mph)",
         &["+", "="],
         In(Panel::Plan),
     ),

@@ -102,7 +102,7 @@ pub(super) fn paint(state: &AppState, scene: &Scene, context: &mut Context<'_>) 
     layer(Role::Fence, &mut |painter| {
         let fence_m = match state.map.moving {
             Some(Moving { item: MapItem::Fence, place, .. }) => Some(scene.home.distance(place)),
-            _ if state.view.vehicle.active_plan.is_none() => map_edit::fence_m(state),
+            _ if state.edits_on_map() || state.view.vehicle.active_plan.is_none() => map_edit::fence_m(state),
             _ => settings.and_then(|settings| settings.fence_m),
         };
         if let Some(fence_m) = fence_m {

@@ -30,6 +30,9 @@ pub(super) fn write(state: &AppState, scene: &Scene, buffer: &mut Buffer) {
     if home_known {
         labels.mark(scene.home, "⌂", Role::Title);
     }
+    if let Some(place) = scene.planned_home {
+        labels.mark(place, "⌂", Role::Dim);
+    }
     for spot in &scene.spots {
         let role = if Some(spot.index) == scene.current { Role::Target } else { Role::Title };
         labels.mark(spot.place, glyph(spot.wp.kind), role);
@@ -65,6 +68,9 @@ pub(super) fn write(state: &AppState, scene: &Scene, buffer: &mut Buffer) {
     }
     if home_known {
         labels.beside(scene.home, "home", "H", Role::Dim);
+    }
+    if let Some(place) = scene.planned_home {
+        labels.beside(place, "home of the plan", "plan", Role::Dim);
     }
     if scene.craft.is_none() && scene.spots.is_empty() {
         labels.middle("No position yet: waiting for GPS.", Role::Dim);

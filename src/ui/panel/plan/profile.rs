@@ -8,8 +8,16 @@ use crate::ui::app_state::AppState;
 use crate::ui::editor::findings;
 use crate::ui::theme::Role;
 
+mod flown;
+
+use flown::{FlownPoint, flown};
+
 /// Columns of the scale at the left.
 const SCALE: u16 = 6;
+/// Marks of the three lines.
+const PLANNED: (&str, Role) = ("·", Role::Text);
+const ESTIMATED: (&str, Role) = ("˙", Role::Predicted);
+const FLOWN: (&str, Role) = ("•", Role::Track);
 
 /// A place of the profile: metres flown, metres above home, waypoint.
 struct Point {
@@ -51,11 +59,13 @@ struct Axes {
 
 impl Axes {
     /// `None` when there is nothing to show, or no room.
-    fn of(points: &[Point], area: Rect) -> Option<Self> {
+    fn of(points: &[Point], flown: &[FlownPoint], area: Rect) -> Option<Self> {
         let has_room = area.width > SCALE + 8 && area.height > 3;
         let length_m = points.last().filter(|_| has_room)?.along_m.max(1.0);
-        let high_m = points.iter().map(|point| point.alt_m).fold(1.0, f64::max);
-        let low_m = points.iter().map(|point| point.alt_m).fold(0.0, f64::min);
+        let altitudes =
+            || points.iter().map(|point| point.alt_m).chain(flown.iter().map(|point| point.alt_m));
+        let high_m = altitudes().fold(1.0, f64::max);
+        let low_m = altitudes().fold(0.0, f64::min);
         Some(Self { area, length_m, low_m, high_m })
     }
 
@@ -76,7 +86,7 @@ impl Axes {
 /// The waypoint whose number stands at a cell.
 pub(super) fn waypoint_at(state: &AppState, area: Rect, (column, row): (u16, u16)) -> Option<usize> {
     let points = points(state);
-    let axes = Axes::of(&points, area)?;
+    let axes = Axes::of(&points, &flown(state, &points), area)?;
     let here =
         |point: &&Point| axes.row(point.alt_m) == row && axes.column(point.along_m).abs_diff(column) <= 1;
     points.iter().rev().find(here).map(|point| point.index)
@@ -84,31 +94,31 @@ pub(super) fn waypoint_at(state: &AppState, area: Rect, (column, row): (u16, u16
 
 /// What a row of the profile is worth, m.
 pub(super) fn metres_per_row(state: &AppState, area: Rect) -> Option<f64> {
-    Axes::of(&points(state), area).map(|axes| axes.metres_per_row())
+    let points = points(state);
+    Axes::of(&points, &flown(state, &points), area).map(|axes| axes.metres_per_row())
 }
 
-/// Draws the profile: a rule with its name, then the altitudes, the waypoint under the cursor marked.
+/// Draws the profile: a rule with its legend, then the altitudes, the waypoint under the cursor marked.
 pub(super) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
-    let name = if state.forecast.estimate().is_some() {
-        "─altitude · plan ˙ flown estimate"
-    } else {
-        "─altitude"
-    };
-    let rule = format!("{name}{}", "─".repeat(usize::from(area.width).saturating_sub(name.chars().count())));
-    buffer.set_string(area.x, area.y, rule, theme.style(Role::Dim));
     let points = points(state);
-    let Some(axes) = Axes::of(&points, area) else { return };
+    let flown = flown(state, &points);
+    legend(state, !flown.is_empty(), area, buffer);
+    let Some(axes) = Axes::of(&points, &flown, area) else { return };
     for (alt_m, mark) in [(axes.high_m, '┤'), (axes.low_m, '┼')] {
-        let text = format!("{alt_m:>4.0} {mark}");
+        let text = format!("{:>4.0} {mark}", state.units.length(alt_m));
         buffer.set_string(area.x, axes.row(alt_m), text, theme.style(Role::Dim));
     }
+    let mut put = |column: u16, alt_m: f64, (symbol, role): (&str, Role)| {
+        if let Some(cell) = buffer.cell_mut((column, axes.row(alt_m))) {
+            cell.set_symbol(symbol).set_style(theme.style(role));
+        }
+    };
     // What the craft makes of it, below the plan itself.
-    for flown in state.forecast.estimate().iter().flat_map(|forecast| &forecast.path) {
-        let (along_m, alt_m) = (flown.along_m.min(axes.length_m), flown.alt.clamp(axes.low_m, axes.high_m));
-        let cell = buffer.cell_mut((axes.column(along_m), axes.row(alt_m)));
-        if let Some(cell) = cell.filter(|_| along_m >= 0.0 && alt_m.is_finite()) {
-            cell.set_symbol("˙").set_style(theme.style(Role::Dim));
+    for point in state.forecast.estimate().iter().flat_map(|forecast| &forecast.path) {
+        if point.along_m >= 0.0 && point.alt.is_finite() {
+            let column = axes.column(point.along_m.min(axes.length_m));
+            put(column, point.alt.clamp(axes.low_m, axes.high_m), ESTIMATED);
         }
     }
     let mut from = Point { along_m: 0.0, alt_m: 0.0_f64.clamp(axes.low_m, axes.high_m), index: 0 };
@@ -117,15 +127,39 @@ pub(super) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
         for x in x0..=x1 {
             let share = if x1 > x0 { f64::from(x - x0) / f64::from(x1 - x0) } else { 1.0 };
             let alt_m = from.alt_m + (point.alt_m - from.alt_m) * share;
-            if let Some(cell) = buffer.cell_mut((x, axes.row(alt_m))) {
-                cell.set_symbol("·").set_style(theme.style(Role::Track));
-            }
+            put(x, alt_m, PLANNED);
         }
         from = Point { ..*point };
+    }
+    for point in &flown {
+        put(axes.column(point.along_m), point.alt_m, FLOWN);
     }
     for point in &points {
         let role = if point.index == state.editor.row() { Role::Focus } else { Role::Title };
         let (x, y) = (axes.column(point.along_m), axes.row(point.alt_m));
         buffer.set_string(x, y, point.index.to_string(), theme.style(role));
     }
+}
+
+/// The rule above the profile: the unit, and what the marks of the lines are.
+fn legend(state: &AppState, has_flown: bool, area: Rect, buffer: &mut Buffer) {
+    let theme = &state.theme;
+    let rule = "─".repeat(usize::from(area.width));
+    buffer.set_string(area.x, area.y, rule, theme.style(Role::Dim));
+    let mut x = area.x + 1;
+    let mut write = |text: &str, role| {
+        let room = usize::from(area.right().saturating_sub(x));
+        x = buffer.set_stringn(x, area.y, text, room, theme.style(role)).0;
+    };
+    write(&format!("altitude {}", state.units.length_unit()), Role::Dim);
+    let lines = [
+        (true, PLANNED, "plan"),
+        (state.forecast.estimate().is_some(), ESTIMATED, "flown estimate"),
+        (has_flown, FLOWN, "flown"),
+    ];
+    for (_, (mark, role), name) in lines.into_iter().filter(|(is_there, ..)| *is_there) {
+        write(&format!(" {mark}"), role);
+        write(&format!(" {name}"), Role::Dim);
+    }
+    write(" ", Role::Dim);
 }

@@ -10,9 +10,10 @@ use crate::plan::review::Finding;
 use crate::plan::{FlightPlan, Waypoint, WaypointType};
 use crate::ui::app_state::AppState;
 use crate::ui::editor::Column;
-use crate::ui::formatting::cut;
+use crate::ui::formatting::{compass, cut};
 use crate::ui::panel::{Panel, row};
 use crate::ui::theme::Role;
+use crate::ui::units::Units;
 
 /// Width from which all columns have room.
 const WIDE: u16 = 75;
@@ -20,26 +21,28 @@ const WIDE: u16 = 75;
 const NUMBER: u16 = 4;
 
 /// Head and width of a column.
-fn column(column: Column, wide: bool) -> (&'static str, u16) {
-    match (column, wide) {
+fn column(column: Column, wide: bool, units: Units) -> (String, u16) {
+    let (head, width) = match (column, wide) {
         (Column::Type, _) => ("type", 11),
         (Column::Latitude, _) => ("latitude", 12),
         (Column::Longitude, _) => ("longitude", 13),
-        (Column::Altitude, true) => ("alt m", 9),
-        (Column::Altitude, false) => ("alt m", 7),
-        (Column::Speed, true) => ("m/s", 7),
-        (Column::Speed, false) => ("m/s", 5),
+        (Column::Altitude, true) => return (format!("alt {}", units.length_unit()), 9),
+        (Column::Altitude, false) => return (format!("alt {}", units.length_unit()), 7),
+        (Column::Speed, true) => (units.speed_unit(), 7),
+        (Column::Speed, false) => (units.speed_unit(), 5),
         (Column::Time, true) => ("time s", 8),
         (Column::Time, false) => ("s", 5),
         (Column::Pattern, _) => (" pattern", 9),
-    }
+    };
+    (head.to_owned(), width)
 }
 
 /// The columns that fit, with their first cell: the one with the cursor always does.
-fn columns(state: &AppState, width: u16) -> Vec<(Column, &'static str, u16, u16)> {
+fn columns(state: &AppState, width: u16) -> Vec<(Column, String, u16, u16)> {
     let wide = width >= WIDE;
     let mut shown: Vec<Column> = Column::iter().collect();
-    let total = |shown: &[Column]| NUMBER + shown.iter().map(|&c| column(c, wide).1).sum::<u16>();
+    let total =
+        |shown: &[Column]| NUMBER + shown.iter().map(|&c| column(c, wide, state.units).1).sum::<u16>();
     // Pattern and speed are the ones that most plans can be read without.
     for spare in [Column::Pattern, Column::Speed, Column::Time, Column::Latitude, Column::Longitude] {
         if total(&shown) > width && state.editor.column() != spare {
@@ -50,7 +53,7 @@ fn columns(state: &AppState, width: u16) -> Vec<(Column, &'static str, u16, u16)
     shown
         .into_iter()
         .map(|shown| {
-            let (head, width) = column(shown, wide);
+            let (head, width) = column(shown, wide, state.units);
             at += width;
             (shown, head, at - width, width)
         })
@@ -77,12 +80,14 @@ pub(super) fn difference(state: &AppState, index: usize) -> Option<String> {
     if ours.kind.uses_position() && theirs.kind.uses_position() {
         let (distance_m, bearing) = distance_bearing(ours.position, theirs.position);
         if distance_m > 0.05 {
-            parts.push(format!("{distance_m:.1} m {:03.0}° from here", bearing.to_degrees()));
+            let distance = state.units.length_text(distance_m, 1);
+            parts.push(format!("{distance} {:03.0}° from here", compass(bearing.to_degrees())));
         }
     }
     for column in Column::iter().filter(|column| !matches!(column, Column::Latitude | Column::Longitude)) {
-        if column.is_used(theirs.kind) && value(column, theirs) != value(column, ours) {
-            parts.push(format!("{} {}", column.name(), value(column, theirs)));
+        let theirs_shown = value(column, theirs, state.units);
+        if column.is_used(theirs.kind) && theirs_shown != value(column, ours, state.units) {
+            parts.push(format!("{} {theirs_shown}", column.name()));
         }
     }
     Some(format!("● On the craft WP{index} is: {}.", parts.join(", ")))
@@ -117,7 +122,8 @@ pub(super) fn draw(
     let waypoints = &state.plan().waypoints;
     let columns = columns(state, area.width);
     row(buffer, area, 0, theme, Role::Title, "  #");
-    for &(_, head, x, width) in &columns {
+    for (_, head, x, width) in &columns {
+        let (x, width) = (*x, *width);
         let text = aligned(head, width, head == "type" || head == " pattern");
         buffer.set_string(
             area.x + x,
@@ -148,7 +154,7 @@ pub(super) fn draw(
                 cursor = field.text.draw(theme, inside, buffer);
                 continue;
             }
-            let mut text = aligned(&value(column, wp), width, left);
+            let mut text = aligned(&value(column, wp, state.units), width, left);
             if here {
                 text = in_brackets(&text, left);
             }
@@ -176,18 +182,18 @@ fn mark(state: &AppState, findings: &[Finding], index: usize, wp: &Waypoint) -> 
 }
 
 /// The value as the table shows it.
-fn value(column: Column, wp: &Waypoint) -> String {
+fn value(column: Column, wp: &Waypoint, units: Units) -> String {
     if !column.is_used(wp.kind) {
         return "—".to_owned();
     }
     match column {
-        Column::Altitude => format!("{:.1}", f64::from(wp.alt_cm) / 100.0),
+        Column::Altitude => format!("{:.1}", units.length(f64::from(wp.alt_cm) / 100.0)),
         Column::Speed if wp.kind == WaypointType::YawRate => format!("{}°", wp.speed_cms),
         Column::Speed if wp.speed_cms == 0 => "—".to_owned(),
-        Column::Speed => format!("{:.1}", f64::from(wp.speed_cms) / 100.0),
+        Column::Speed => format!("{:.1}", units.speed(f64::from(wp.speed_cms) / 100.0)),
         Column::Time if wp.duration_ds == 0 && wp.kind == WaypointType::Hold => "∞".to_owned(),
         Column::Time => format!("{:.1}", f64::from(wp.duration_ds) / 10.0),
-        _ => column.text(wp),
+        _ => column.text(wp, units),
     }
 }
 
@@ -211,10 +217,13 @@ mod tests {
     #[test]
     fn what_a_waypoint_does_not_use_is_a_dash() {
         let takeoff = Waypoint { kind: WaypointType::Takeoff, ..Waypoint::default() };
-        assert_eq!(value(Column::Latitude, &takeoff), "—");
+        assert_eq!(value(Column::Latitude, &takeoff, Units::Metric), "—");
         let hold = Waypoint { kind: WaypointType::Hold, pattern: HoldPattern::Orbit, ..Waypoint::default() };
-        assert_eq!((value(Column::Time, &hold), value(Column::Pattern, &hold)), ("∞".into(), "ORBIT".into()));
+        assert_eq!(
+            (value(Column::Time, &hold, Units::Metric), value(Column::Pattern, &hold, Units::Metric)),
+            ("∞".into(), "ORBIT".into())
+        );
         let rate = Waypoint { kind: WaypointType::YawRate, speed_cms: 20, ..Waypoint::default() };
-        assert_eq!(value(Column::Speed, &rate), "20°");
+        assert_eq!(value(Column::Speed, &rate, Units::Metric), "20°");
     }
 }

@@ -1,0 +1,98 @@
+//! Keys and the mouse on a user interface without a terminal, and what is then on its screen.
+
+#![allow(dead_code, reason = "tests share this file and use different parts")]
+
+use betadeck::ui::editor::FileRequest;
+use betadeck::ui::keymap::KeyPress;
+use betadeck::ui::{AppState, Effect, Msg, draw, update};
+use crossterm::event::{KeyCode, KeyEvent, KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
+use ratatui::Terminal;
+use ratatui::backend::TestBackend;
+
+use super::fixture;
+
+/// A craft with a fix that waits at home.
+pub(crate) fn state_with_fix(size: (u16, u16)) -> AppState {
+    let mut state = fixture::state(size, fixture::colour());
+    let flight = fixture::SimpleFlight { time_s: 8.0, fix: true, ..fixture::SimpleFlight::default() };
+    update(&mut state, Msg::View(fixture::view(&flight)));
+    state
+}
+
+/// Presses keys by their names in the keymap, apart by blanks; `'text` is typed.
+pub(crate) fn keys(state: &mut AppState, keys: &str) -> Vec<Effect> {
+    let mut effects = Vec::new();
+    for name in keys.split_whitespace() {
+        if let Some(text) = name.strip_prefix('\'') {
+            for c in text.chars() {
+                effects.extend(press(state, KeyCode::Char(c), KeyModifiers::NONE));
+            }
+            continue;
+        }
+        assert!(KeyPress::parse(name).is_some(), "{name}");
+        let (modifiers, rest) = match name.split_once('-') {
+            Some(("ctrl", rest)) => (KeyModifiers::CONTROL, rest),
+            Some(("alt", rest)) => (KeyModifiers::ALT, rest),
+            Some(("shift", rest)) => (KeyModifiers::SHIFT, rest),
+            _ => (KeyModifiers::NONE, name),
+        };
+        let code = match rest {
+            "up" => KeyCode::Up,
+            "down" => KeyCode::Down,
+            "left" => KeyCode::Left,
+            "right" => KeyCode::Right,
+            "enter" => KeyCode::Enter,
+            "esc" => KeyCode::Esc,
+            "tab" => KeyCode::Tab,
+            "backspace" => KeyCode::Backspace,
+            function if function.len() == 2 && function.starts_with('f') => {
+                KeyCode::F(function[1..].parse().expect("a function key"))
+            }
+            c => KeyCode::Char(c.chars().next().expect("a key")),
+        };
+        effects.extend(press(state, code, modifiers));
+    }
+    effects
+}
+
+pub(crate) fn press(state: &mut AppState, code: KeyCode, modifiers: KeyModifiers) -> Vec<Effect> {
+    update(state, Msg::Key(KeyEvent::new(code, modifiers)))
+}
+
+pub(crate) fn screen(state: &AppState) -> String {
+    let mut terminal = Terminal::new(TestBackend::new(state.size.0, state.size.1)).unwrap();
+    terminal.draw(|frame| draw(state, frame)).unwrap();
+    terminal.backend().to_string()
+}
+
+pub(crate) fn journal_lines(effects: &[Effect]) -> usize {
+    effects.iter().filter(|effect| matches!(effect, Effect::Files(FileRequest::Journal(..)))).count()
+}
+
+/// The mouse at a cell, with the left button.
+pub(crate) fn mouse(
+    state: &mut AppState,
+    kind: fn(MouseButton) -> MouseEventKind,
+    (column, row): (u16, u16),
+) -> Vec<Effect> {
+    mouse_button(state, kind(MouseButton::Left), (column, row))
+}
+
+/// Any event of the mouse at a cell.
+pub(crate) fn mouse_button(
+    state: &mut AppState,
+    kind: MouseEventKind,
+    (column, row): (u16, u16),
+) -> Vec<Effect> {
+    update(state, Msg::Mouse(MouseEvent { kind, column, row, modifiers: KeyModifiers::NONE }))
+}
+
+/// The cell where a text begins on the screen, the last place of several.
+pub(crate) fn place_of(state: &AppState, text: &str) -> (u16, u16) {
+    let seen = screen(state);
+    let found =
+        seen.lines().enumerate().filter_map(|(row, line)| Some((row, line, line.rfind(text)?))).last();
+    let (row, line, at) = found.unwrap_or_else(|| panic!("no {text} in\n{seen}"));
+    // Each line of the picture stands in quotes.
+    (line[..at].chars().count() as u16 - 1, row as u16)
+}
