@@ -12,6 +12,7 @@ mod interrupt;
 mod keys;
 mod layers;
 mod live;
+mod open;
 mod output_file;
 mod plan;
 mod plan_files;
@@ -70,6 +71,7 @@ fn reads_layers(command: Option<&Command>) -> bool {
         None | Some(Command::Fly(_) | Command::Serve(_) | Command::Sitl(_)) => true,
         Some(
             Command::Check(_)
+            | Command::Open(_)
             | Command::Plan(_)
             | Command::Convert(_)
             | Command::Config(_)
@@ -85,6 +87,7 @@ fn dispatch(cli: Cli, keymap: Keymap) -> Result<u8, AppError> {
         None => tui::run(&cli.tui, keymap),
         Some(Command::Fly(args)) => fly::run(&args),
         Some(Command::Check(args)) => check::run(&args),
+        Some(Command::Open(args)) => open::run(&args, keymap),
         Some(Command::Sitl(args)) => sitl::run(&args),
         Some(Command::Serve(args)) => serve::run(&args),
         Some(Command::Plan(PlanCommand::Show { plan })) => plan::show(&plan),

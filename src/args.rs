@@ -13,6 +13,7 @@ mod fly;
 mod generate;
 mod help;
 mod layers;
+mod open;
 mod physics;
 mod plan_arg;
 mod value;
@@ -33,9 +34,10 @@ pub use flight::FlightArgs;
 pub use fly::FlyArgs;
 pub use generate::{completions, man_page};
 pub use layers::{ENVIRONMENT_PREFIX, Layers};
+pub use open::OpenArgs;
 pub use physics::{FdmDialect, PhysicsArgs, PhysicsChoice, SimulatorArgs};
 pub use plan_arg::{PlanArg, PlanArgError, is_descriptor};
-pub use value::{AttitudeChoice, OnOff, OutputFile, Seeds, Speed};
+pub use value::{AttitudeChoice, Instant, OnOff, OutputFile, Seeds, Speed};
 
 /// Flies the Betaflight waypoint autopilot in a simulated quadcopter
 ///
@@ -113,6 +115,12 @@ pub enum Command {
         ("betadeck check --new plan.toml > plan-test.toml", "a scenario from a flight of your plan"),
     ]))]
     Check(Box<CheckArgs>),
+
+    /// Flies a scenario and opens the screen at one of its instants, paused, to look around in the flight
+    #[command(before_help = help::examples(&[
+        ("betadeck open guide-7 --case crosswind --seed 3 --at 21.4", "the worst moment that `check` has named"),
+    ]))]
+    Open(Box<OpenArgs>),
 
     /// Firmware and physics in real time with all doors open, without a screen
     #[command(before_help = help::examples(&[
@@ -199,6 +207,7 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>, layers: &Layers) -> 
             Command::Serve(_)
             | Command::Sitl(_)
             | Command::Check(_)
+            | Command::Open(_)
             | Command::Plan(_)
             | Command::Config(_)
             | Command::Doctor

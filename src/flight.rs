@@ -135,6 +135,12 @@ impl Flight {
         &mut self.vehicle
     }
 
+    /// The vehicle as the flight left it.
+    #[must_use]
+    pub fn into_vehicle(self) -> Vehicle {
+        self.vehicle
+    }
+
     /// When the autopilot engaged for the first time.
     #[must_use]
     pub fn engaged_at(&self) -> Option<SimTime> {

@@ -28,6 +28,6 @@ pub use links::{Links, MotorTargets, MotorsError};
 pub use pacer::{Pacer, SPEED_RANGE};
 pub use persistence::Persistence;
 pub use request_handler::{Handled, RequestHandler};
-pub use runtime::{Endpoints, Handle, SessionConfig, start};
+pub use runtime::{Endpoints, FlownBefore, Handle, SessionConfig, start, start_at};
 pub use simulator::SimulatorNotice;
 pub use upload::upload;

@@ -14,6 +14,7 @@ use super::interrupt::interrupt_flag;
 use crate::args::CheckArgs;
 use crate::record::check::{CheckedFlight, Compared, Summary};
 use load::Loaded;
+pub(super) use load::load_one;
 use output::Output;
 
 /// Flies and judges; the exit code says whether every expectation was met.

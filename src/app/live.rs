@@ -3,7 +3,7 @@
 use super::AppError;
 use super::doors::{self, OpenDoors};
 use crate::args::{DoorArgs, FlightArgs, PhysicsArgs, Speed};
-use crate::session::{self, Handle, SessionConfig, SessionEvent};
+use crate::session::{self, FlownBefore, Handle, SessionConfig, SessionEvent};
 use crate::storage::Store;
 use crate::vehicle::Vehicle;
 
@@ -27,6 +27,7 @@ pub(super) async fn start(
     vehicle: Vehicle,
     store: Store,
     mut notices: Vec<String>,
+    flown: Option<FlownBefore>,
 ) -> Result<(Handle, Option<OpenDoors>), AppError> {
     let mut first_events = Vec::new();
     let (doors, endpoints) = match doors::open(args.doors, args.physics, args.flight).await? {
@@ -38,7 +39,7 @@ pub(super) async fn start(
         None => (None, None),
     };
     first_events.extend(notices.into_iter().map(SessionEvent::Notice));
-    let session = session::start(SessionConfig {
+    let config = SessionConfig {
         vehicle,
         store,
         starter_modes: true,
@@ -46,7 +47,8 @@ pub(super) async fn start(
         takeoff_m: TAKEOFF_M,
         endpoints,
         first_events,
-    })
-    .map_err(|error| AppError::environment(format!("cannot start a thread: {error}")))?;
+    };
+    let session = session::start_at(config, flown)
+        .map_err(|error| AppError::environment(format!("cannot start a thread: {error}")))?;
     Ok((session, doors))
 }

@@ -35,7 +35,7 @@ pub(super) fn run(args: &ServeArgs) -> Result<u8, AppError> {
         let stop = stop_signal::stop_in_time()
             .map_err(|error| AppError::environment(format!("cannot listen for signals: {error}")))?;
         let options = LiveArgs { doors: &args.doors, physics: &args.physics, flight: &args.flight };
-        let (session, doors) = live::start(options, vehicle, store, notices).await?;
+        let (session, doors) = live::start(options, vehicle, store, notices, None).await?;
         let outcome = report(session, &mut output, stop).await;
         if let Some(doors) = doors {
             doors.close().await;

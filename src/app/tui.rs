@@ -2,6 +2,7 @@
 #![allow(clippy::disallowed_methods, reason = "the composition root reads the environment")]
 
 use std::io::IsTerminal as _;
+use std::path::{Path, PathBuf};
 
 use super::error::{self, AppError};
 use super::live::{self, LiveArgs};
@@ -14,19 +15,41 @@ use crate::flight::setup::check_setting;
 use crate::plan::builtin::{BuiltinPlan, DEMO};
 use crate::plan::format::PlanFile;
 use crate::record::sentence;
+use crate::session::{FlownBefore, SessionView};
+use crate::storage::Store;
 use crate::ui::editor::FileReply;
 use crate::ui::keymap::Keymap;
 use crate::ui::theme::{Charset, Palette};
 use crate::ui::{self, CliHelp, Ending, FilesLink, OpenPlan, SessionLink, Theme, Tui, UiConfig, Units};
+use crate::vehicle::Vehicle;
+
+/// What the user interface starts with.
+pub(super) struct Screen<'a> {
+    /// The plan that is open at first.
+    pub(super) plan: PlanFile,
+    /// Its file.
+    pub(super) path: Option<&'a Path>,
+    /// The vehicle.
+    pub(super) vehicle: Vehicle,
+    /// Where `save` goes.
+    pub(super) store: Store,
+    /// Where edits are kept.
+    pub(super) directory: Option<PathBuf>,
+    /// A flight that was flown before, and pictures of it.
+    pub(super) flown: Option<(FlownBefore, Vec<SessionView>)>,
+    /// What the user is told first.
+    pub(super) notices: Vec<String>,
+    /// Sentences instead of a screen.
+    pub(super) plain: bool,
+    /// The screen.
+    pub(super) display: &'a DisplayArgs,
+    /// Doors, physics and flight.
+    pub(super) live: LiveArgs<'a>,
+}
 
 /// Opens the user interface; returns its exit code when the user has left it.
 pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
-    if !args.plain && (!std::io::stdout().is_terminal() || !std::io::stdin().is_terminal()) {
-        return Err(AppError::environment(
-            "the user interface needs a terminal: run betadeck in one, or fly without a screen with \
-             `betadeck --plain` or `betadeck fly PLAN`",
-        ));
-    }
+    require_terminal(args.plain)?;
     let plan = match &args.plan {
         Some(plan) => setup::read_plan(plan)?,
         None => setup::read_plan(&PlanArg::Builtin(
@@ -42,20 +65,49 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
     let on_the_ground = PlanFile { settings: Vec::new(), ..plan.clone() };
     let setup = setup::for_session(&args.flight, &args.physics, &args.doors, on_the_ground, stored)?;
     let vehicle = setup::build(setup, &mut notices)?;
-    let mut files = PlanFiles::new(setup::store_directory(&args.flight)?.as_deref());
     let path = match &args.plan {
         Some(PlanArg::File(path, _)) => Some(path.as_path()),
         _ => None,
     };
-    let opened = files.start_with(path, plan.into());
+    let screen = Screen {
+        plan,
+        path,
+        vehicle,
+        store,
+        directory: setup::store_directory(&args.flight)?,
+        flown: None,
+        notices,
+        plain: args.plain,
+        display: &args.display,
+        live: LiveArgs { doors: &args.doors, physics: &args.physics, flight: &args.flight },
+    };
+    show(screen, keymap)
+}
+
+/// Without a terminal there is no screen.
+pub(super) fn require_terminal(plain: bool) -> Result<(), AppError> {
+    if plain || std::io::stdout().is_terminal() && std::io::stdin().is_terminal() {
+        return Ok(());
+    }
+    Err(AppError::environment(
+        "the user interface needs a terminal: run betadeck in one, or fly without a screen with \
+         `betadeck --plain` or `betadeck fly PLAN`",
+    ))
+}
+
+/// Shows the screen until the user leaves it.
+pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
+    let mut notices = screen.notices;
+    let mut files = PlanFiles::new(screen.directory.as_deref());
+    let opened = files.start_with(screen.path, screen.plan.into());
     notices.extend(opened.notes);
     if opened.recovered {
         notices.push("Edits of this plan that were never saved are back: `u` undoes them.".to_owned());
     }
     let recovered = files.recovered();
     let config = UiConfig {
-        theme: theme(&args.display),
-        units: units(&args.display),
+        theme: theme(screen.display),
+        units: units(screen.display),
         keymap,
         cli: CliHelp {
             complete: |line| cli::complete(line).lines(line),
@@ -84,12 +136,17 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
         .build()
         .map_err(problem)?;
     let ending = runtime.block_on(async {
-        let options = LiveArgs { doors: &args.doors, physics: &args.physics, flight: &args.flight };
-        let (session, doors) = live::start(options, vehicle, store, notices).await?;
-        let link = SessionLink { commands: session.commands, view: session.view, events: session.events };
+        let (flown, past) = screen.flown.unzip();
+        let (session, doors) = live::start(screen.live, screen.vehicle, screen.store, notices, flown).await?;
+        let link = SessionLink {
+            commands: session.commands,
+            view: session.view,
+            events: session.events,
+            past: past.unwrap_or_default(),
+        };
         // Before the first frame: whoever sees it may already send one.
         let stop = stop_signal::stop_in_time().map_err(problem)?;
-        let ending = if args.plain {
+        let ending = if screen.plain {
             let input = input_lines()?;
             let cannot_write = |error| AppError::environment(format!("cannot write the output: {error}"));
             ui::run_plain(link, files, config, input, std::io::stdout(), stop).await.map_err(cannot_write)

@@ -177,6 +177,23 @@ pub(super) fn output_path(text: &str) -> Result<PathBuf, String> {
     }
 }
 
+/// An instant of a flight.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Instant {
+    /// Seconds after the first engagement.
+    Engagement(f64),
+    /// Seconds after boot.
+    Boot(f64),
+}
+
+/// An instant, `T` or `boot+T`.
+pub(super) fn instant(text: &str) -> Result<Instant, String> {
+    match text.strip_prefix("boot+") {
+        Some(seconds) => bounded(seconds, 0.0, 1e9, "s").map(Instant::Boot),
+        None => bounded(text, -1e9, 1e9, "s").map(Instant::Engagement),
+    }
+}
+
 /// Seeds of flights.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Seeds(pub Vec<u64>);

@@ -95,6 +95,12 @@ impl<'a> CaseFlight<'a> {
         self.flight.vehicle_mut()
     }
 
+    /// The vehicle as the flight left it.
+    #[must_use]
+    pub fn into_vehicle(self) -> Vehicle {
+        self.flight.into_vehicle()
+    }
+
     /// What was recorded so far.
     #[must_use]
     pub fn trace(&self) -> &Trace {

@@ -159,6 +159,25 @@ pub struct SessionView {
 }
 
 impl SessionView {
+    /// What a session would have shown of this vehicle: for a flight that was flown before it began.
+    #[must_use]
+    pub fn of_recorded(vehicle: &Vehicle) -> Self {
+        Self {
+            vehicle: Arc::new(vehicle.snapshot()),
+            paused: true,
+            speed_wanted: 1.0,
+            speed_achieved: 0.0,
+            lost_time: LostTime::default(),
+            sticks: vehicle.transmitter().sticks(),
+            rc_cut: vehicle.transmitter().is_cut(),
+            pilot: vehicle.transmitter().pilot_doing(),
+            endpoints: Vec::new(),
+            simulator: None,
+            live: false,
+            timeline: None,
+        }
+    }
+
     /// Whether an earlier instant is shown while the flight waits.
     #[must_use]
     pub fn is_rewound(&self) -> bool {

@@ -107,6 +107,14 @@ impl EventSender {
         self.report(vehicle, SessionEvent::Branch { number, left });
     }
 
+    /// Sends what happened in a flight that was flown before.
+    pub(super) fn send_all(&mut self, events: Vec<telemetry::Event>) {
+        for event in events {
+            self.marks.note(&event);
+            send(&self.events, event.into());
+        }
+    }
+
     /// Sends what has happened to the vehicle.
     pub(super) fn send_events_of(&mut self, vehicle: &mut Vehicle) {
         vehicle.drain_events(|event| {

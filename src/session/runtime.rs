@@ -30,9 +30,10 @@ use super::request_handler::RequestHandler;
 use super::simulator::Simulator;
 use crate::firmware::cli::Interpreter;
 use crate::link::{ExternalSimulator, ImpairedLink, Request};
+use crate::signals::SimTime;
 use crate::sim::Stream;
 use crate::storage::Store;
-use crate::telemetry::{BadPackets, EndpointStatus, LinkState};
+use crate::telemetry::{self, BadPackets, EndpointStatus, LinkState};
 use crate::timeline::Timeline;
 use crate::vehicle::Vehicle;
 use late::WaitingInterface;
@@ -79,6 +80,17 @@ pub struct SessionConfig {
     pub first_events: Vec<SessionEvent>,
 }
 
+/// A flight that was flown before the session began.
+#[derive(Debug)]
+pub struct FlownBefore {
+    /// Its recording.
+    pub timeline: Timeline,
+    /// What happened in it.
+    pub events: Vec<telemetry::Event>,
+    /// The instant to show.
+    pub show: SimTime,
+}
+
 /// The ends of a running session that the outside holds.
 #[derive(Debug)]
 pub struct Handle {
@@ -96,12 +108,25 @@ pub struct Handle {
 ///
 /// # Errors
 /// When the system gives no thread.
-pub fn start(mut config: SessionConfig) -> std::io::Result<Handle> {
+pub fn start(config: SessionConfig) -> std::io::Result<Handle> {
+    start_at(config, None)
+}
+
+/// As [`start`], at the end of a flight that was flown before: the vehicle is as that flight left it, one of its instants is
+/// shown, and time stands still.
+///
+/// # Errors
+/// When the system gives no thread.
+pub fn start_at(mut config: SessionConfig, flown: Option<FlownBefore>) -> std::io::Result<Handle> {
     let simulator = config.endpoints.as_mut().and_then(|endpoints| endpoints.simulator.take());
     let incoming = ImpairedLink::new(Stream::Link.rng(config.vehicle.seed()));
     let (command_tx, command_rx) = mpsc::channel(256);
     let (event_tx, event_rx) = mpsc::unbounded_channel();
-    let timeline = if simulator.is_none() { Timeline::new(&mut config.vehicle) } else { None };
+    let (timeline, flown) = match flown {
+        Some(flown) => (Some(flown.timeline), Some((flown.events, flown.show))),
+        None if simulator.is_none() => (Timeline::new(&mut config.vehicle), None),
+        None => (None, None),
+    };
     let persistence = Persistence::new(config.store, config.vehicle.controller_mut(), config.starter_modes);
     let mut session = Session {
         pacer: Pacer::new(config.vehicle.step_us(), config.speed),
@@ -124,6 +149,9 @@ pub fn start(mut config: SessionConfig) -> std::io::Result<Handle> {
         more_waits: false,
         quit: false,
     };
+    if let Some((events, show)) = flown {
+        session.begin_with(events, show);
+    }
     for event in config.first_events {
         session.events.report(&mut session.vehicle, event);
     }

@@ -45,6 +45,8 @@ pub struct SessionLink {
     pub view: watch::Receiver<SessionView>,
     /// Everything that happens.
     pub events: mpsc::UnboundedReceiver<Event>,
+    /// Pictures of a flight that was flown before, oldest first.
+    pub past: Vec<SessionView>,
 }
 
 /// How the user interface ended.
@@ -104,7 +106,11 @@ async fn run_loop(
     let mut stop = std::pin::pin!(stop);
     let size = tui.terminal().size()?;
     let view = link.view.borrow_and_update().clone();
-    let mut state = AppState::new(config, (size.width, size.height), view);
+    let mut state = AppState::new(config, (size.width, size.height), view.clone());
+    // Tracks and graphs grow with the pictures.
+    for past in link.past.drain(..).chain([view]) {
+        update(&mut state, Msg::View(past));
+    }
     tui.draw(&state)?;
 
     let mut keys = EventStream::new();

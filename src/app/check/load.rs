@@ -42,10 +42,10 @@ pub(super) fn load(args: &CheckArgs) -> Result<Loaded, AppError> {
     if problems.is_empty() { Ok(loaded) } else { Err(AppError::input(problems.join("\n"))) }
 }
 
-/// Reads the scenario of a name, as `open` takes it.
-pub(in crate::app) fn load_one(name: &str) -> Result<Scenario, AppError> {
+/// Reads the scenario of a name, as `open` takes it; a seed takes the place of those of the file.
+pub(in crate::app) fn load_one(name: &str, seed: Option<u64>) -> Result<Scenario, AppError> {
     let (source, _) = source(name)?;
-    read(&source, None, &mut Vec::new())
+    read(&source, seed.as_ref().map(std::slice::from_ref), &mut Vec::new())
 }
 
 /// What the arguments name, and whether a scenario itself was named.

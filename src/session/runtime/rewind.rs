@@ -8,6 +8,7 @@ use crate::session::arming::ArmingWatch;
 use crate::session::command::{CliOutput, Command, NOT_RECORDED, REWOUND, Seek};
 use crate::session::pacer::SPEED_RANGE;
 use crate::signals::SimTime;
+use crate::telemetry;
 use crate::timeline::{Shown, Timeline, TimelineView};
 use crate::vehicle::Vehicle;
 
@@ -45,6 +46,15 @@ impl Session {
     /// Whether the flight goes on until something happens.
     pub(super) fn is_running_on(&self) -> bool {
         self.run_on.is_some()
+    }
+
+    /// Begins with a flight that was flown before: tells what happened in it, and shows one of its instants.
+    pub(super) fn begin_with(&mut self, events: Vec<telemetry::Event>, show: SimTime) {
+        self.events.send_all(events);
+        self.pacer.set_paused(true, Duration::ZERO);
+        if show < self.vehicle.time() {
+            self.show(show, Duration::ZERO);
+        }
     }
 
     pub(super) fn timeline_view(&self) -> Option<TimelineView> {

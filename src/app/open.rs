@@ -1,0 +1,96 @@
+//! `betadeck open`: the screen at an instant of a scenario's flight, which has been flown before.
+
+use super::check;
+use super::error::AppError;
+use super::live::LiveArgs;
+use super::tui::{self, Screen};
+use crate::args::{DoorArgs, FlightArgs, Instant, OpenArgs, PhysicsArgs};
+use crate::did_you_mean;
+use crate::scenario::{Air, Case, CaseFlight, Scenario};
+use crate::session::{FlownBefore, SessionView};
+use crate::signals::SimTime;
+use crate::storage::Store;
+use crate::telemetry::Event;
+use crate::timeline::Timeline;
+use crate::ui::keymap::Keymap;
+
+/// Pictures a simulated second of the flight before: tracks and graphs grow from them.
+const PICTURES_HZ: u64 = 5;
+
+/// Flies the case to its end and opens the screen at the instant.
+pub(super) fn run(args: &OpenArgs, keymap: Keymap) -> Result<u8, AppError> {
+    tui::require_terminal(false)?;
+    let scenario = check::load_one(&args.scenario, args.seed)?;
+    let (case, air) = choose(&scenario, args)?;
+    let mut flight = CaseFlight::new(case, &air).map_err(AppError::input)?;
+    let mut timeline = Timeline::new(flight.vehicle_mut())
+        .ok_or_else(|| AppError::internal("the flight of a scenario is not recorded"))?;
+    let mut events: Vec<Event> = Vec::new();
+    let mut past = Vec::new();
+    let interval_us = 1_000_000 / PICTURES_HZ;
+    while !flight.is_over() {
+        flight.prepare();
+        timeline.record(flight.vehicle_mut());
+        flight.tick(|event| events.push(event.clone()));
+        if flight.vehicle().time().0.is_multiple_of(interval_us) {
+            past.push(SessionView::of_recorded(flight.vehicle()));
+        }
+    }
+    let show = instant(args.at, flight.trace().engaged_at, flight.vehicle().time())?;
+    let name = if case.name.is_empty() {
+        scenario.name.clone()
+    } else {
+        format!("{}, {}", scenario.name, case.name)
+    };
+    let notices = vec![format!(
+        "Scenario {name}, seed {}, was flown to its end: `,` and `<` go back, Space plays it, `b` flies on from here.",
+        air.seed
+    )];
+    let doors = DoorArgs { no_ports: true, ..DoorArgs::default() };
+    let (physics, flight_args) = (PhysicsArgs::default(), FlightArgs::default());
+    let screen = Screen {
+        plan: case.setup.plan.clone(),
+        path: None,
+        vehicle: flight.into_vehicle(),
+        store: Store::in_memory(),
+        directory: None,
+        flown: Some((FlownBefore { timeline, events, show }, past)),
+        notices,
+        plain: false,
+        display: &args.display,
+        live: LiveArgs { doors: &doors, physics: &physics, flight: &flight_args },
+    };
+    tui::show(screen, keymap)
+}
+
+/// The case and the air that were asked for.
+fn choose<'s>(scenario: &'s Scenario, args: &OpenArgs) -> Result<(&'s Case, Air), AppError> {
+    let case = match &args.case {
+        None => scenario.cases.first(),
+        Some(name) => scenario.cases.iter().find(|case| case.name == *name),
+    };
+    let names = || scenario.cases.iter().map(|case| case.name.as_str());
+    let case = case.ok_or_else(|| {
+        let name = args.case.as_deref().unwrap_or_default();
+        let guess = did_you_mean::suffix(name, names());
+        let all = names().collect::<Vec<_>>().join("; ");
+        AppError::input(format!("{} has no case {name}{guess}; there are: {all}", scenario.name))
+    })?;
+    let air = case.airs.first().copied().ok_or_else(|| AppError::internal("a case without a flight"))?;
+    Ok((case, air))
+}
+
+/// The instant as a time since boot.
+fn instant(at: Option<Instant>, engaged_at: Option<SimTime>, end: SimTime) -> Result<SimTime, AppError> {
+    let seconds = match at {
+        None => return Ok(end),
+        Some(Instant::Boot(seconds)) => seconds,
+        Some(Instant::Engagement(seconds)) => match engaged_at {
+            Some(engaged) => engaged.as_secs_f64() + seconds,
+            None => {
+                return Err(AppError::input("the autopilot never engaged in this flight: write --at boot+T"));
+            }
+        },
+    };
+    Ok(SimTime::from_secs_f64(seconds.clamp(0.0, end.as_secs_f64())))
+}

@@ -1,0 +1,27 @@
+//! The options of `open`.
+
+use super::{DisplayArgs, value};
+
+/// The options of `open`.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+pub struct OpenArgs {
+    /// A built-in scenario's name or a file
+    #[arg(value_name = "SCENARIO")]
+    pub scenario: String,
+
+    /// The instant to show: seconds after the engagement, or boot+SECONDS [default: the end]
+    #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = value::instant)]
+    pub at: Option<value::Instant>,
+
+    /// The case [default: the first]
+    #[arg(long, value_name = "NAME")]
+    pub case: Option<String>,
+
+    /// The seed [default: the case's first]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = value::seed)]
+    pub seed: Option<u64>,
+
+    /// The screen.
+    #[command(flatten)]
+    pub display: DisplayArgs,
+}
