@@ -132,6 +132,12 @@ impl Pilot {
         Ok(Self { phase: Phase::Waiting, takeoff_m, switches, frame: RcFrame::SAFE })
     }
 
+    /// Altitude to which the pilot climbs before engaging, m.
+    #[must_use]
+    pub fn takeoff_m(&self) -> f64 {
+        self.takeoff_m
+    }
+
     /// What the pilot is doing, in a word or two.
     #[must_use]
     pub fn doing(&self) -> &'static str {

@@ -11,6 +11,7 @@
 
 mod allowance;
 mod case;
+mod draft;
 pub mod expression;
 mod file;
 pub mod happening;
@@ -27,6 +28,7 @@ pub use case::{
     Air, Allowance, Case, Compare, Expectation, Expected, Measure, Measured, Scenario, StateStep, Statistic,
     Window,
 };
+pub use draft::Draft;
 pub use file::{FORMAT, Files, TABLES, read, seed_range};
 pub use input::{Action, FORMS, TimedInput};
 pub use judge::{Judgement, Margin, Outcome, compare, judge};

@@ -6,6 +6,7 @@
 //! Nothing here reads a clock: whoever owns the vehicle says when to record and what to show.
 
 mod marks;
+mod recorded_flight;
 mod recording;
 mod replay;
 #[cfg(test)]
@@ -18,6 +19,7 @@ use recording::{Bounds, Recording};
 use replay::Replay;
 
 pub use marks::{Mark, MarkKind, Marks};
+pub use recorded_flight::RecordedFlight;
 pub use view::TimelineView;
 
 /// The recording of a flight, and the earlier instant of it that is shown.

@@ -11,8 +11,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::error::{self, AppError};
 use super::interrupt::interrupt_flag;
+use super::setup;
 use crate::args::CheckArgs;
 use crate::record::check::{CheckedFlight, Compared, Summary};
+use crate::scenario::Draft;
 use load::Loaded;
 pub(super) use load::load_one;
 use output::Output;
@@ -21,6 +23,11 @@ use output::Output;
 pub(super) fn run(args: &CheckArgs) -> Result<u8, AppError> {
     if args.list {
         return list(args);
+    }
+    if let Some(plan) = &args.new {
+        let plan = setup::read_plan(plan)?;
+        let text = Draft::of_plan(&plan).finish().map_err(AppError::input)?;
+        return error::print(&text);
     }
     let interrupted = interrupt_flag()?;
     if args.watch {

@@ -57,6 +57,18 @@ impl RcTransmitter {
         self.pilot.take().is_some()
     }
 
+    /// The scripted pilot, while it flies.
+    #[must_use]
+    pub fn pilot(&self) -> Option<&Pilot> {
+        self.pilot.as_ref()
+    }
+
+    /// The channels that are forced to values.
+    #[must_use]
+    pub fn inputs(&self) -> &[StickInput] {
+        &self.inputs
+    }
+
     /// What the scripted pilot is doing, in a word or two, while it flies.
     #[must_use]
     pub fn pilot_doing(&self) -> Option<&'static str> {

@@ -5,8 +5,8 @@ mod order;
 mod outcome;
 mod samples;
 
-use super::case::{Case, Compare, Expectation, Expected, Window};
-use super::expression::{Condition, Evaluator, Instant};
+use super::case::{Case, Compare, Expectation, Expected, Statistic, Window};
+use super::expression::{Condition, Evaluator, Instant, Number};
 use super::happening::{Happening, Pattern};
 use super::run::Flown;
 use super::trace::Trace;
@@ -34,6 +34,16 @@ pub fn judge(case: &Case, flown: &Flown) -> (Vec<Judgement>, Vec<(String, f64)>)
         })
         .collect();
     (judgements, names)
+}
+
+/// A statistic over a part of a flight; `None` when its instants did not come.
+pub(super) fn statistic(
+    window: &Window,
+    statistic: Statistic,
+    number: &Number,
+    evaluator: &Evaluator<'_>,
+) -> Option<f64> {
+    measures::over(window, statistic, number, evaluator)
 }
 
 /// Judges what is expected of several flights together: `names` are their measures as `CASE.MEASURE`.

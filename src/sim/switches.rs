@@ -147,6 +147,44 @@ impl Switches {
         self.assign(name, value).map_err(|problem| error(format!("{problem}; allowed are {}", info.values)))
     }
 
+    /// The switches that differ from the default, as [`Self::set`] takes them.
+    #[must_use]
+    pub fn changed(&self) -> Vec<String> {
+        let usual = Self::default();
+        let on_off = |on: bool| if on { "on" } else { "off" };
+        let density = match self.air_density {
+            AirDensity::Isa => "isa",
+            AirDensity::Reference => "reference",
+        };
+        let profile = match self.wind_profile {
+            WindProfile::Log => "log",
+            WindProfile::Flat => "flat",
+        };
+        let all = [
+            (self.wind_profile != usual.wind_profile, format!("wind_profile={profile}")),
+            (self.battery_sag != usual.battery_sag, format!("battery_sag={}", on_off(self.battery_sag))),
+            (
+                self.battery_capacity_ah.is_some(),
+                format!("battery_capacity={}", self.battery_capacity_ah.unwrap_or_default()),
+            ),
+            (
+                self.ground_effect != usual.ground_effect,
+                format!("ground_effect={}", on_off(self.ground_effect)),
+            ),
+            (
+                self.turbulence_scale != usual.turbulence_scale,
+                format!("turbulence_scale={}", self.turbulence_scale),
+            ),
+            (self.gust_rise_s != usual.gust_rise_s, format!("gust_rise={}", self.gust_rise_s)),
+            (self.air_density != usual.air_density, format!("air_density={density}")),
+            (self.vibration_mps2 != usual.vibration_mps2, format!("vibration={}", self.vibration_mps2)),
+            (self.sensor_bias != usual.sensor_bias, format!("sensor_bias={}", on_off(self.sensor_bias))),
+            (self.declination_deg != usual.declination_deg, format!("declination={}", self.declination_deg)),
+            (self.gps != usual.gps, format!("gps={}", self.gps)),
+        ];
+        all.into_iter().filter(|(differs, _)| *differs).map(|(_, text)| text).collect()
+    }
+
     /// Whether all numbers are in the ranges of [`SWITCHES`].
     pub(super) fn check(&self) -> Result<(), WorldError> {
         in_range("turbulence_scale", self.turbulence_scale, 0.0, 10.0)?;
@@ -229,6 +267,12 @@ mod tests {
             gps: GpsGrade::Urban,
         };
         assert_eq!(switches, expected);
+        let mut again = Switches::default();
+        for text in switches.changed() {
+            again.set(&text).unwrap();
+        }
+        assert_eq!(again, expected);
+        assert!(Switches::default().changed().is_empty());
     }
 
     #[test]

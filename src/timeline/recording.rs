@@ -135,6 +135,11 @@ impl Recording {
         self.inputs.get(index).filter(|input| input.at <= time).map(|input| &input.input)
     }
 
+    /// The inputs that are kept with their instants, oldest first.
+    pub(super) fn inputs(&self) -> impl DoubleEndedIterator<Item = (SimTime, &Input)> {
+        self.inputs.iter().map(|input| (input.at, &input.input))
+    }
+
     /// The number of the oldest input that is kept.
     pub(super) fn first_input(&self) -> u64 {
         self.first_input

@@ -1,17 +1,14 @@
 //! Numbers taken from a flight.
 
 use super::{Range, samples};
-use crate::scenario::case::Measured;
-use crate::scenario::expression::Evaluator;
+use crate::scenario::case::{Measured, Statistic, Window};
+use crate::scenario::expression::{Evaluator, Number};
 
 /// A measure; NaN when what it waits for did not happen.
 pub(super) fn take(measured: &Measured, evaluator: &Evaluator<'_>) -> f64 {
     let trace = evaluator.trace();
     let number = match measured {
-        Measured::Over(window, statistic, number) => Range::of(window, evaluator).ok().and_then(|range| {
-            samples::take(*statistic, range.samples(trace), |index| evaluator.number(number, index))
-                .map(|(value, _)| value)
-        }),
+        Measured::Over(window, statistic, number) => over(window, *statistic, number, evaluator),
         Measured::At(instant, number) => evaluator
             .instant(instant)
             .and_then(|us| trace.index_at(us))
@@ -23,4 +20,16 @@ pub(super) fn take(measured: &Measured, evaluator: &Evaluator<'_>) -> f64 {
         Measured::Of(number) => trace.samples.len().checked_sub(1).map(|last| evaluator.number(number, last)),
     };
     number.unwrap_or(f64::NAN)
+}
+
+/// A statistic over a part of the flight; `None` when its instants did not come or nothing of it was known.
+pub(super) fn over(
+    window: &Window,
+    statistic: Statistic,
+    number: &Number,
+    evaluator: &Evaluator<'_>,
+) -> Option<f64> {
+    let range = Range::of(window, evaluator).ok()?;
+    let samples = range.samples(evaluator.trace());
+    samples::take(statistic, samples, |index| evaluator.number(number, index)).map(|(value, _)| value)
 }

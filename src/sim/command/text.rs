@@ -1,5 +1,6 @@
 //! World commands as text, in the words of the command line: `wind=5@270`, `fault=motor,,2:0.8`, `end=motor:2`.
 
+use std::fmt;
 use std::str::FromStr;
 
 use crate::did_you_mean;
@@ -82,6 +83,33 @@ impl WorldCommand {
     }
 }
 
+impl fmt::Display for WorldCommand {
+    /// As [`Self::parse`] reads it.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::SetWind(wind) => write!(f, "wind {wind}"),
+            Self::SetGust(size) => write!(f, "gust {size}"),
+            Self::GustNow(wind) => write!(f, "gust-now {wind}"),
+            Self::SetTurbulence(level) => write!(f, "turbulence {level}"),
+            Self::SetNoise(noise) => write!(f, "noise {noise}"),
+            Self::SetSwitch(switch) => f.write_str(switch),
+            Self::SetGpsRate(rate) => write!(f, "gps-rate {rate}"),
+            Self::FaultOn(fault, for_s) => {
+                let for_s = for_s.map_or_else(String::new, |for_s| for_s.to_string());
+                match (for_s.as_str(), fault.to_string().as_str()) {
+                    ("", "") => write!(f, "fault {}", fault.name()),
+                    (for_s, "") => write!(f, "fault {},{for_s}", fault.name()),
+                    (for_s, value) => write!(f, "fault {},{for_s},{value}", fault.name()),
+                }
+            }
+            Self::FaultOff(key) => write!(f, "end {key}"),
+            Self::ClearFaults => f.write_str("end all"),
+            Self::Schedule(fault) => write!(f, "fault {fault}"),
+            Self::ResetToHome => f.write_str("reset"),
+        }
+    }
+}
+
 /// Whether the first separator behind the name is the one of a time.
 fn starts_with_time(value: &str) -> bool {
     value.find(['@', ',', ':']).is_some_and(|place| value[place..].starts_with('@'))
@@ -139,6 +167,7 @@ mod tests {
             ("reset", WorldCommand::ResetToHome),
         ] {
             assert_eq!(parse(text), command, "{text}");
+            assert_eq!(parse(&command.to_string()), command, "{text}");
         }
     }
 

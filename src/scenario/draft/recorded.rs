@@ -1,0 +1,186 @@
+//! A recorded flight as a draft: what the craft had at the start, and the inputs since as sentences.
+
+use super::Draft;
+use super::toml_text::quoted;
+use crate::firmware::cli::Interpreter;
+use crate::geo::LatLon;
+use crate::pilot::{RcTransmitter, channel_name};
+use crate::plan::format::{HomePosition, setting_line};
+use crate::signals::SimTime;
+use crate::telemetry::InFlightCommand;
+use crate::timeline::RecordedFlight;
+use crate::vehicle::{Answer, Input, Vehicle};
+
+/// Lines of `diff all` that set nothing of the craft, or what the scenario says elsewhere.
+const PASSED_OVER: [&str; 11] = [
+    "#",
+    "batch",
+    "defaults",
+    "board_name",
+    "manufacturer_id",
+    "mcu_id",
+    "signature",
+    "waypoint",
+    "save",
+    "profile",
+    "rateprofile",
+];
+/// Lines on the command line that change nothing.
+const READING: [&str; 14] = [
+    "get",
+    "dump",
+    "diff",
+    "status",
+    "version",
+    "help",
+    "tasks",
+    "list",
+    "exit",
+    "save",
+    "#",
+    "waypoint list",
+    "resource",
+    "mcu_id",
+];
+
+impl Draft {
+    /// The flight that was recorded, as a scenario that flies it again.
+    ///
+    /// # Errors
+    /// Why it cannot be flown again, as a sentence.
+    pub fn of_recorded(name: &str, flight: RecordedFlight) -> Result<Self, String> {
+        let RecordedFlight { mut start, inputs, until } = flight;
+        let start_at = start.time();
+        let (settings, lines) = configuration(&mut start)?;
+        let world =
+            start.world().ok_or("an external simulator moved the craft: nobody can move it so again")?;
+        let status = world.status();
+        let frame = world.local_frame();
+        let truth = world.truth();
+        let mut air = vec![
+            ("wind", quoted(&status.wind.to_string())),
+            ("gust_mps", status.gust_mps.to_string()),
+            ("turbulence", quoted(&status.turbulence.to_string())),
+            ("noise", quoted(&status.noise.to_string())),
+        ];
+        let world_lines = status.switches.changed();
+        if !world_lines.is_empty() {
+            air.push(("world", super::toml_text::list(&world_lines)));
+        }
+        let airframe = world.airframe().name.clone();
+        if airframe.parse::<crate::sim::Airframe>().as_ref() != Ok(world.airframe()) {
+            return Err(format!("the airframe {airframe} is from a file: name it in a scenario of your own"));
+        }
+        let position = LatLon::from_degrees(frame.lat_deg, frame.lon_deg);
+        let mut draft = Self {
+            name: name.to_owned(),
+            description: "Made from a flight on the screen".to_owned(),
+            plan: start.controller().stored_plan().cloned().unwrap_or_default(),
+            home: Some(HomePosition { position, amsl_m: Some(frame.alt_amsl_m) }),
+            heading_deg: (truth.heading_deg() * 10.0).round() / 10.0,
+            airframe: Some(airframe),
+            pilot: false,
+            settings,
+            lines,
+            air,
+            seed: start.seed(),
+            ..Self::default()
+        };
+        let mut transmitter = start.transmitter().clone();
+        for (at, input) in &inputs {
+            let what = sentences(input, &mut transmitter)?;
+            let at = instant(*at, start_at);
+            draft.inputs.extend(what.into_iter().map(|what| (at.clone(), what)));
+        }
+        draft.ends = Some(instant(until, start_at));
+        Ok(draft)
+    }
+}
+
+/// `12.34 s after boot`, where the flight begins at boot.
+fn instant(at: SimTime, start_at: SimTime) -> String {
+    let us = at.0.saturating_sub(start_at.0);
+    let decimals = if us.is_multiple_of(10_000) { 2 } else { 6 };
+    format!("{:.decimals$} s after boot", us as f64 * 1e-6)
+}
+
+/// The craft's settings and its other lines, as the command line tells them.
+fn configuration(vehicle: &mut Vehicle) -> Result<(Vec<String>, Vec<String>), String> {
+    let reply = match vehicle.controller_mut().run_cli(&mut Interpreter::default(), "diff all") {
+        Answer::Now(reply) => reply.text,
+        Answer::Later(_) => {
+            return Err("the flight controller runs elsewhere: its flight cannot be repeated".to_owned());
+        }
+    };
+    let (mut settings, mut lines) = (Vec::new(), Vec::new());
+    for line in reply.lines().map(str::trim) {
+        let first = line.split_whitespace().next().unwrap_or("#");
+        if PASSED_OVER.iter().any(|word| first == *word || *word == "#" && first.starts_with('#')) {
+            continue;
+        }
+        match setting_line(line).filter(|_| first == "set") {
+            Some(setting) => settings.push(setting),
+            None => lines.push(line.to_owned()),
+        }
+    }
+    Ok((settings, lines))
+}
+
+/// What an input does, as a scenario says it.
+fn sentences(input: &Input, transmitter: &mut RcTransmitter) -> Result<Vec<String>, String> {
+    let one = |text: &str| Ok(vec![text.to_owned()]);
+    match input {
+        Input::Rc(..) => {
+            Err("RC came from outside: what a script sent cannot be repeated by a scenario".to_owned())
+        }
+        Input::Message(_) => {
+            Err("a client changed the craft over MSP: that cannot be repeated by a scenario".to_owned())
+        }
+        Input::SticksFirst(_) | Input::CliOpened | Input::CliClosed => Ok(Vec::new()),
+        Input::Line(line) => {
+            let text = line.1.trim();
+            let reads = text.is_empty()
+                || READING.iter().any(|word| {
+                    text == *word
+                        || text.starts_with(&format!("{word} "))
+                        || *word == "#" && text.starts_with('#')
+                });
+            Ok(if reads { Vec::new() } else { vec![format!("cli {text}")] })
+        }
+        Input::Restart(_) | Input::ResetCraft => Err("the flight begins anew within itself".to_owned()),
+        Input::ReturnHome => one("return home"),
+        Input::CancelReturn => one("cancel return"),
+        Input::InFlight(InFlightCommand::GoTo(wp)) => Ok(vec![format!("go to {wp}")]),
+        Input::InFlight(InFlightCommand::HoldHere) => one("hold here"),
+        Input::InFlight(InFlightCommand::Resume) => one("go on"),
+        Input::World(command) => Ok(vec![command.to_string()]),
+        Input::Transmitter(now) => {
+            let told = changes(transmitter, now);
+            transmitter.clone_from(now);
+            Ok(told)
+        }
+    }
+}
+
+/// How the transmitter was changed by hand.
+fn changes(before: &RcTransmitter, now: &RcTransmitter) -> Vec<String> {
+    let mut told = Vec::new();
+    match (before.pilot(), now.pilot()) {
+        (None, Some(pilot)) => told.push(format!("pilot {}", pilot.takeoff_m())),
+        (Some(_), None) => told.push("pilot off".to_owned()),
+        (None, None) | (Some(_), Some(_)) => {}
+    }
+    // What the pilot holds follows from the flight.
+    if now.pilot().is_none() && (before.sticks() != now.sticks() || before.pilot().is_some()) {
+        let values: Vec<String> = now.sticks().channels.iter().map(ToString::to_string).collect();
+        told.push(format!("sticks {}", values.join(" ")));
+    }
+    if before.is_cut() != now.is_cut() {
+        told.push(if now.is_cut() { "rc cut" } else { "rc restore" }.to_owned());
+    }
+    for input in now.inputs().iter().filter(|input| !before.inputs().contains(input)) {
+        let for_s = input.for_s.map_or_else(String::new, |for_s| format!(" for {for_s} s"));
+        told.push(format!("stick {} {}{for_s}", channel_name(input.channel), input.value_us));
+    }
+    told
+}

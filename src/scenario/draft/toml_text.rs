@@ -1,0 +1,76 @@
+//! A draft as the text of a scenario file.
+
+use super::{Block, Draft};
+use crate::geo::Degrees7;
+use crate::plan::waypoint_values;
+use crate::scenario::file::FORMAT;
+
+/// A text as TOML writes it.
+pub(super) fn quoted(text: &str) -> String {
+    toml::Value::String(text.to_owned()).to_string()
+}
+
+/// The whole file.
+pub(super) fn text(draft: &Draft, expectations: &[Block]) -> String {
+    let mut out = format!("format = {FORMAT}\nname = {}\n", quoted(&draft.name));
+    let mut line = |text: String| {
+        out.push_str(&text);
+        out.push('\n');
+    };
+    if !draft.description.is_empty() {
+        line(format!("description = {}", quoted(&draft.description)));
+    }
+    line(format!("seeds = {}", draft.seed));
+    if let Some(ends) = &draft.ends {
+        line(format!("ends = {}", quoted(ends)));
+        line("time_limit_s = 100000".to_owned());
+    }
+    line(String::new());
+    line("[plan]".to_owned());
+    let waypoints = draft.plan.waypoints.iter().enumerate();
+    let waypoints: Vec<String> = waypoints
+        .map(|(index, waypoint)| format!("{index} {}", waypoint_values(waypoint, waypoint.alt_cm)))
+        .collect();
+    line(format!("waypoints = {}", list(&waypoints)));
+    line(String::new());
+    line("[craft]".to_owned());
+    if let Some(home) = &draft.home {
+        let place = format!("{},{}", Degrees7(home.position.lat_e7), Degrees7(home.position.lon_e7));
+        let amsl = home.amsl_m.map_or_else(String::new, |amsl| format!(",{amsl}"));
+        line(format!("home = {}", quoted(&(place + &amsl))));
+    }
+    if draft.heading_deg.abs() > 1e-9 {
+        line(format!("heading_deg = {}", draft.heading_deg));
+    }
+    if let Some(airframe) = &draft.airframe {
+        line(format!("airframe = {}", quoted(airframe)));
+    }
+    if draft.pilot {
+        line(format!("takeoff_m = {}", draft.takeoff_m));
+    } else {
+        line("pilot = \"none\"".to_owned());
+    }
+    for (key, lines) in [("settings", &draft.settings), ("lines", &draft.lines)] {
+        if !lines.is_empty() {
+            line(format!("{key} = {}", list(lines)));
+        }
+    }
+    if !draft.air.is_empty() {
+        line("\n[air]".to_owned());
+        draft.air.iter().for_each(|(key, value)| line(format!("{key} = {value}")));
+    }
+    for (at, what) in &draft.inputs {
+        line(format!("\n[[input]]\nat = {}\ndo = {}", quoted(at), quoted(what)));
+    }
+    for block in expectations {
+        line("\n[[expect]]".to_owned());
+        block.iter().for_each(|(key, value)| line(format!("{key} = {value}")));
+    }
+    out
+}
+
+/// A list of texts, each on its line.
+pub(super) fn list(texts: &[String]) -> String {
+    let lines: String = texts.iter().map(|text| format!("  {},\n", quoted(text))).collect();
+    format!("[\n{lines}]")
+}

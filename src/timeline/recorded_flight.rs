@@ -1,0 +1,41 @@
+//! The flight that was flown since the craft stood at home the last time, as data.
+
+use super::Timeline;
+use super::replay::Replay;
+use crate::signals::SimTime;
+use crate::vehicle::{Input, Vehicle};
+
+/// A flight from its start to now.
+#[derive(Debug)]
+pub struct RecordedFlight {
+    /// The vehicle at the start: at boot, or after the craft was put back home or restarted.
+    pub start: Vehicle,
+    /// What came from outside since, with the instants since boot.
+    pub inputs: Vec<(SimTime, Input)>,
+    /// The instant at which it ends.
+    pub until: SimTime,
+}
+
+impl Timeline {
+    /// The flight since its start, up to `until`; `None` when the recording does not reach back so far.
+    #[must_use]
+    pub fn recorded_flight(&self, until: SimTime) -> Option<RecordedFlight> {
+        let begins = |input: &Input| matches!(input, Input::ResetCraft | Input::Restart(_));
+        let recorded = || self.recording.inputs().filter(|(at, _)| *at < until);
+        let last = recorded().enumerate().filter(|(_, (_, input))| begins(input)).last();
+        let (skipped, start_at) = match last {
+            // What came at the same instant before it belongs to the flight before.
+            Some((index, (at, _))) => (index + 1, SimTime(at.0 + 1)),
+            None => (0, SimTime::ZERO),
+        };
+        let first = self.recording.first()?;
+        if start_at == SimTime::ZERO && first > SimTime::ZERO || first > start_at {
+            return None;
+        }
+        let frozen = self.recording.latest_before(start_at)?;
+        let mut replay = Replay::new(frozen);
+        replay.fly_to(start_at, &self.recording);
+        let inputs = recorded().skip(skipped).map(|(at, input)| (at, input.clone())).collect();
+        Some(RecordedFlight { start: replay.into_vehicle(), inputs, until })
+    }
+}
