@@ -66,7 +66,7 @@ mod tests {
     }
 
     fn at(n: f64, e: f64) -> TrackPoint {
-        TrackPoint { n, e, time_s: 0.0, engaged: true }
+        TrackPoint { n, e, engaged: true, ..TrackPoint::default() }
     }
 
     #[test]
