@@ -9,6 +9,7 @@ mod fly;
 mod input_file;
 mod keys;
 mod layers;
+mod line_history;
 mod live;
 mod output_file;
 mod plan;

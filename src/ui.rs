@@ -73,6 +73,7 @@ pub use draw::draw;
 pub use editor::OpenPlan;
 pub use event_log::Severity;
 pub use files_link::FilesLink;
+pub use history::{EnteredLines, LineField};
 pub use message::{Effect, Msg};
 pub use panel::Panel;
 pub use popup::{CommandLine, Palette, Popup};

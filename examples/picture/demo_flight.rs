@@ -16,7 +16,7 @@ use betadeck::sim::WorldConfig;
 use betadeck::timeline::{Marks, Timeline, TimelineView};
 use betadeck::ui::editor::PlanId;
 use betadeck::ui::keymap::Keymap;
-use betadeck::ui::{AppState, CliHelp, Effect, Msg, OpenPlan, Theme, UiConfig, Units, update};
+use betadeck::ui::{AppState, CliHelp, Effect, EnteredLines, Msg, OpenPlan, Theme, UiConfig, Units, update};
 use betadeck::vehicle::Vehicle;
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 
@@ -57,6 +57,7 @@ impl DemoFlight {
             sentence: |event| sentence::text(&event.kind).unwrap_or_default(),
             plan: OpenPlan::new(PlanId(1), None, History::new(file.into(), true)),
             mouse: true,
+            entered: EnteredLines::default(),
         };
         let state = AppState::new(config, size, view(&vehicle));
         let timeline = Timeline::new(&mut vehicle).ok_or("a flight that cannot be recorded")?;

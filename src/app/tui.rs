@@ -4,6 +4,7 @@
 use std::io::IsTerminal as _;
 
 use super::error::{self, AppError};
+use super::line_history::LineHistory;
 use super::live::{self, LiveArgs};
 use super::plan_files::PlanFiles;
 use super::setup;
@@ -42,7 +43,8 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
     let on_the_ground = PlanFile { settings: Vec::new(), ..plan.clone() };
     let setup = setup::for_session(&args.flight, &args.physics, &args.doors, on_the_ground, stored)?;
     let vehicle = setup::build(setup, &mut notices)?;
-    let mut files = PlanFiles::new(setup::store_directory(&args.flight)?.as_deref());
+    let state_directory = setup::store_directory(&args.flight)?;
+    let mut files = PlanFiles::new(state_directory.as_deref());
     let path = match &args.plan {
         Some(PlanArg::File(path, _)) => Some(path.as_path()),
         _ => None,
@@ -65,6 +67,7 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
         sentence: |event| sentence::text(&event.kind).unwrap_or_default(),
         plan: OpenPlan::new(opened.id, opened.file, opened.history),
         mouse: true,
+        entered: LineHistory::new(state_directory.as_deref()).read(),
     };
     let problem = |error| AppError::environment(format!("cannot use the terminal: {error}"));
     let (requests, asked) = std::sync::mpsc::channel();
