@@ -49,7 +49,11 @@ pub(super) fn question(state: &AppState) -> Option<Vec<String>> {
             Some(list("What if, from this instant on?".to_owned(), choices))
         }
         Popup::Quit => Some(vec!["The craft is armed and flying ends here. Quit? y yes, n no.".to_owned()]),
-        Popup::Help { .. } | Popup::Plots { .. } | Popup::CommandLine | Popup::Palette(_) => None,
+        Popup::Help { .. }
+        | Popup::Plots { .. }
+        | Popup::CommandLine
+        | Popup::Palette(_)
+        | Popup::MapMenu(_) => None,
     }
 }
 

@@ -49,7 +49,12 @@ pub(super) fn paste(state: &mut AppState, text: &str) -> Vec<Effect> {
         Some(Popup::CommandLine) => Some(&mut state.command_line.field),
         Some(Popup::Palette(palette)) => Some(&mut palette.query),
         Some(
-            Popup::Help { .. } | Popup::GoTo(_) | Popup::Plots { .. } | Popup::WhatIf { .. } | Popup::Quit,
+            Popup::Help { .. }
+            | Popup::GoTo(_)
+            | Popup::MapMenu(_)
+            | Popup::Plots { .. }
+            | Popup::WhatIf { .. }
+            | Popup::Quit,
         ) => None,
         None => super::fields::open(state),
     };

@@ -2,7 +2,7 @@
 
 use crossterm::event::{KeyCode, KeyEvent};
 
-use super::act;
+use super::{act, map_menu};
 use crate::session::Command;
 use crate::telemetry::InFlightCommand;
 use crate::ui::action::{self, Action};
@@ -32,6 +32,10 @@ pub(super) fn key(state: &mut AppState, event: KeyEvent, found: Option<Action>) 
                 vec![Effect::Send(Command::InFlight(InFlightCommand::GoTo(index)))]
             }
         },
+        Some(Popup::MapMenu(menu)) => {
+            let (outcome, place) = (menu.key(event), menu.place);
+            map_menu::take(state, place, outcome)
+        }
         Some(Popup::WhatIf { selected }) => match what_if::key(selected, event) {
             what_if::Outcome::Choosing => Vec::new(),
             what_if::Outcome::Left => {
