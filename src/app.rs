@@ -11,6 +11,7 @@ mod input_file;
 mod interrupt;
 mod keys;
 mod layers;
+mod line_history;
 mod live;
 mod open;
 mod output_file;

@@ -18,7 +18,7 @@
 //! * [`run`] is the shell around it: it waits for the terminal, the session and the clock, and carries effects out.
 //!
 //! Inside: `action` is what keys can do, `keymap` which key means what, `command` what can be typed behind `:`; `editor` holds the open plans;
-//! `update` is what messages do, one file a subject; `panel` draws, one file a panel, `popup` what lies over them;
+//! `update` is what messages do, one file a subject; `panel` draws, one file a panel, `popup` what lies over them, which `prompt` asks line by line where there is no screen;
 //! `transmitter` moves the virtual sticks.
 //!
 //! May use: ratatui, crossterm, the session's snapshots, events and commands, and plans. Never firmware internals,
@@ -50,6 +50,7 @@ mod message;
 mod notice;
 mod panel;
 mod popup;
+mod prompt;
 mod run;
 mod status_bar;
 pub mod status_message;
@@ -72,6 +73,7 @@ pub use draw::draw;
 pub use editor::OpenPlan;
 pub use event_log::Severity;
 pub use files_link::FilesLink;
+pub use history::{EnteredLines, LineField};
 pub use message::{Effect, Msg};
 pub use panel::Panel;
 pub use popup::{CommandLine, Palette, Popup};

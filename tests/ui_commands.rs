@@ -2,8 +2,9 @@
 
 use betadeck::session::Command;
 use betadeck::ui::action::{ACTIONS, Action, enabled};
+use betadeck::ui::editor::FileRequest;
 use betadeck::ui::keymap::KeyPress;
-use betadeck::ui::{AppState, Effect, Msg, Panel, Popup, draw, update};
+use betadeck::ui::{AppState, Effect, EnteredLines, LineField, Msg, Panel, Popup, draw, update};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
@@ -14,7 +15,10 @@ mod fixture;
 use fixture::SimpleFlight;
 
 fn key(state: &mut AppState, code: KeyCode) -> Vec<Effect> {
-    update(state, Msg::Key(KeyEvent::new(code, KeyModifiers::NONE)))
+    let mut effects = update(state, Msg::Key(KeyEvent::new(code, KeyModifiers::NONE)));
+    // Lines that are kept for the next start have their own test.
+    effects.retain(|effect| !matches!(effect, Effect::Files(FileRequest::KeepLine(..))));
+    effects
 }
 
 fn ctrl(state: &mut AppState, c: char) -> Vec<Effect> {
@@ -168,6 +172,34 @@ fn the_line_completes_remembers_and_leaves() {
     key(&mut state, KeyCode::Esc);
     assert!(state.popups.is_empty());
     assert!(matches!(key(&mut state, KeyCode::Char(' '))[..], [Effect::Send(Command::Pause(true))]));
+}
+
+#[test]
+fn lines_of_earlier_runs_are_recalled_and_new_ones_kept_for_the_next() {
+    let entered = EnteredLines {
+        commands: vec!["speed 4".to_owned(), "wind 5@270".to_owned()],
+        cli: vec!["status".to_owned()],
+    };
+    let mut state = fixture::state_after((80, 24), fixture::colour(), fixture::square(), entered);
+    key(&mut state, KeyCode::Char(':'));
+    key(&mut state, KeyCode::Up);
+    assert_eq!(state.command_line.field.value(), "wind 5@270");
+    key(&mut state, KeyCode::Up);
+    let kept = |state: &mut AppState| -> Vec<(LineField, String)> {
+        let effects = update(state, Msg::Key(KeyEvent::new(KeyCode::Enter, KeyModifiers::NONE)));
+        let kept = effects.into_iter().filter_map(|effect| match effect {
+            Effect::Files(FileRequest::KeepLine(field, line)) => Some((field, line)),
+            _ => None,
+        });
+        kept.collect()
+    };
+    assert_eq!(kept(&mut state), [(LineField::Command, "speed 4".to_owned())]);
+    key(&mut state, KeyCode::Char('5'));
+    key(&mut state, KeyCode::Up);
+    assert_eq!(state.cli.input.value(), "status");
+    assert_eq!(kept(&mut state), [], "the same line again is one line");
+    type_text(&mut state, "version");
+    assert_eq!(kept(&mut state), [(LineField::Cli, "version".to_owned())]);
 }
 
 #[test]

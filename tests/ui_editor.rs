@@ -320,7 +320,7 @@ fn plans_are_opened_and_saved_by_name() {
     let mut state = state((80, 24));
     let requests = |effects: Vec<Effect>| {
         let files = effects.into_iter().filter_map(|effect| match effect {
-            Effect::Files(request) => Some(request),
+            Effect::Files(request) if !matches!(request, FileRequest::KeepLine(..)) => Some(request),
             _ => None,
         });
         files.collect::<Vec<_>>()

@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use betadeck::session::Command;
 use betadeck::session::command::CliOutput;
+use betadeck::ui::editor::FileRequest;
 use betadeck::ui::keymap::KeyPress;
 use betadeck::ui::{AppState, Effect, MapMode, Msg, Panel, Popup, layout, update};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
@@ -14,7 +15,10 @@ mod fixture;
 use fixture::SimpleFlight;
 
 fn key(state: &mut AppState, code: KeyCode) -> Vec<Effect> {
-    update(state, Msg::Key(KeyEvent::new(code, KeyModifiers::NONE)))
+    let mut effects = update(state, Msg::Key(KeyEvent::new(code, KeyModifiers::NONE)));
+    // Lines that are kept for the next start have their own test.
+    effects.retain(|effect| !matches!(effect, Effect::Files(FileRequest::KeepLine(..))));
+    effects
 }
 
 fn press(state: &mut AppState, c: char) -> Vec<Effect> {

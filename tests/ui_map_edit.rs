@@ -2,14 +2,14 @@
 
 use betadeck::plan::FlightPlan;
 use betadeck::ui::{AppState, Msg, update};
-use crossterm::event::MouseEventKind;
+use crossterm::event::{MouseButton, MouseEventKind};
 
 #[path = "ui/fixture.rs"]
 mod fixture;
 #[path = "ui/hands.rs"]
 mod hands;
 
-use hands::{journal_lines, keys, mouse, place_of, screen};
+use hands::{journal_lines, keys, mouse, mouse_button, place_of, screen};
 
 /// The map alone, and a craft that was carried away from home.
 fn away_from_home() -> AppState {
@@ -142,4 +142,34 @@ fn without_the_cursor_the_mouse_drags_the_map_over_home_and_fence() {
     mouse(&mut state, MouseEventKind::Drag, (home.0 + 5, home.1));
     assert!(mouse(&mut state, MouseEventKind::Up, (home.0 + 5, home.1)).is_empty());
     assert_eq!(state.editor.document().home, None);
+}
+
+#[test]
+fn the_right_button_opens_a_menu_that_keys_and_clicks_choose_from() {
+    let mut state = away_from_home();
+    keys(&mut state, "z");
+    let right = MouseEventKind::Down(MouseButton::Right);
+    mouse_button(&mut state, right, (40, 20));
+    assert!(screen(&state).contains("i  add a waypoint here"), "{}", screen(&state));
+    let effects = keys(&mut state, "down enter");
+    assert_eq!(journal_lines(&effects), 1);
+    assert!(state.editor.document().home.is_some() && state.popups.is_empty());
+    mouse_button(&mut state, right, (40, 20));
+    assert_eq!(journal_lines(&keys(&mut state, "i")), 1);
+    assert_eq!(state.plan().waypoints.len(), 5);
+    mouse_button(&mut state, right, (20, 10));
+    let row = place_of(&state, "fence through here");
+    assert_eq!(journal_lines(&mouse(&mut state, MouseEventKind::Down, row)), 1);
+    assert!(fence(&state).is_some());
+    // At a waypoint it is about that; a click elsewhere or Esc closes it.
+    let place = place_of(&state, "▼");
+    mouse_button(&mut state, right, place);
+    assert!(screen(&state).contains("delete WP"), "{}", screen(&state));
+    mouse(&mut state, MouseEventKind::Down, (100, 3));
+    mouse_button(&mut state, right, place);
+    keys(&mut state, "esc");
+    assert_eq!((state.plan().waypoints.len(), state.popups.len()), (5, 0));
+    mouse_button(&mut state, right, place);
+    keys(&mut state, "d");
+    assert_eq!(state.plan().waypoints.len(), 4);
 }

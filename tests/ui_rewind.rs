@@ -18,7 +18,9 @@ use betadeck::storage::Store;
 use betadeck::telemetry::{NavState, Snapshot};
 use betadeck::ui::editor::PlanId;
 use betadeck::ui::keymap::Keymap;
-use betadeck::ui::{AppState, CliHelp, Effect, Msg, OpenPlan, Theme, UiConfig, Units, draw, update};
+use betadeck::ui::{
+    AppState, CliHelp, Effect, EnteredLines, Msg, OpenPlan, Theme, UiConfig, Units, draw, update,
+};
 use betadeck::vehicle::{Vehicle, VehicleConfig};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
 use ratatui::Terminal;
@@ -63,6 +65,7 @@ impl Rig {
             sentence: |event| sentence::text(&event.kind).unwrap_or_default(),
             plan: OpenPlan::new(PlanId(1), None, History::new(demo.into(), true)),
             mouse: true,
+            entered: EnteredLines::default(),
         };
         let view = session.view.borrow().clone();
         let mut rig = Self { session, state: AppState::new(config, (120, 40), view) };

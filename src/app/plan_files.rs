@@ -15,6 +15,7 @@ use std::time::Duration;
 use tokio::sync::mpsc::UnboundedSender;
 use tokio::sync::watch;
 
+use super::line_history::LineHistory;
 use crate::plan::edit::{History, Journal, JournalLine, PlanDocument};
 use crate::ui::editor::{FileReply, FileRequest, Opened, PlanId};
 use journal_file::JournalFile;
@@ -34,6 +35,7 @@ pub(super) struct PlanFiles {
     directory: PathBuf,
     /// A journal could not be written, and that was told.
     told: bool,
+    lines: LineHistory,
 }
 
 #[derive(Debug)]
@@ -55,7 +57,14 @@ impl PlanFiles {
     pub(super) fn new(state: Option<&Path>) -> Self {
         let journals = state.map(|state| state.join("plans"));
         let directory = std::env::current_dir().unwrap_or_else(|_| PathBuf::from("/"));
-        Self { journals, open: BTreeMap::new(), next: 1, directory, told: false }
+        Self {
+            journals,
+            open: BTreeMap::new(),
+            next: 1,
+            directory,
+            told: false,
+            lines: LineHistory::new(state),
+        }
     }
 
     /// Takes in the plan that the program starts with, with the history that its journal has.
@@ -120,6 +129,10 @@ impl PlanFiles {
             }
             FileRequest::List(directory) => vec![self.list(directory)],
             FileRequest::Journal(id, line) => self.append(id, &line).into_iter().collect(),
+            FileRequest::KeepLine(field, line) => {
+                self.lines.append(field, &line);
+                Vec::new()
+            }
             FileRequest::Begin(id, document) => {
                 let kept = Journal { file: None, history: History::new(*document, false) };
                 let (path, stamp, journal) = (None, None, None);

@@ -5,6 +5,7 @@ use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
 
 use super::error::{self, AppError};
+use super::line_history::LineHistory;
 use super::live::{self, LiveArgs};
 use super::plan_files::PlanFiles;
 use super::setup;
@@ -117,6 +118,7 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
         sentence: |event| sentence::text(&event.kind).unwrap_or_default(),
         plan: OpenPlan::new(opened.id, opened.file, opened.history),
         mouse: true,
+        entered: LineHistory::new(screen.directory.as_deref()).read(),
     };
     let problem = |error| AppError::environment(format!("cannot use the terminal: {error}"));
     let (requests, asked) = std::sync::mpsc::channel();

@@ -220,7 +220,11 @@ impl<'a> CaseFlight<'a> {
 
     /// What it came to.
     #[must_use]
-    pub fn finish(self) -> Flown {
+    pub fn finish(mut self) -> Flown {
+        // What happened last can be looked at.
+        if self.trace.samples.last().is_some_and(|sample| sample.time < self.flight.vehicle().time()) {
+            self.sample();
+        }
         let end = self.end.unwrap_or_else(|| self.flight.interrupt("the scenario ended the flight"));
         let (result, reason) = match self.stopped {
             Some((word, reason)) => (word.to_owned(), reason),

@@ -129,7 +129,8 @@ impl Trace {
     /// When the record ends.
     #[must_use]
     pub fn end(&self) -> SimTime {
-        self.samples.last().map_or(SimTime::ZERO, |sample| sample.time)
+        let sampled = self.samples.last().map_or(SimTime::ZERO, |sample| sample.time);
+        self.happenings.last().map_or(sampled, |happening| happening.time.max(sampled))
     }
 
     /// Place of a waypoint of the first plan of an origin, m north and east of the boot place.

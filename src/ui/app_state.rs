@@ -14,6 +14,7 @@ use super::editor::{Editor, OpenPlan};
 use super::event_log::{LogState, Severity};
 use super::forecast::ForecastState;
 use super::graphs::GraphsState;
+use super::history::EnteredLines;
 use super::keymap::Keymap;
 use super::knobs::KnobsState;
 use super::layout::Slots;
@@ -48,6 +49,8 @@ pub struct UiConfig {
     pub plan: OpenPlan,
     /// Whether the mouse is used.
     pub mouse: bool,
+    /// Lines entered in earlier runs.
+    pub entered: EnteredLines,
 }
 
 /// A sentence that is shown for a moment.
@@ -180,6 +183,7 @@ impl AppState {
             sentence: |_| String::new(),
             plan: OpenPlan::new(PlanId::default(), None, History::new(PlanDocument::default(), true)),
             mouse: false,
+            entered: EnteredLines::default(),
         };
         Self::new(config, size, view)
     }
@@ -206,8 +210,8 @@ impl AppState {
             tutorial: None,
             map: MapState::default(),
             channel: 0,
-            cli: CliState::default(),
-            command_line: CommandLine::default(),
+            cli: CliState::with_history(&config.entered.cli),
+            command_line: CommandLine::with_history(&config.entered.commands),
             log: LogState::default(),
             log_view: LogView::default(),
             knobs: KnobsState::default(),

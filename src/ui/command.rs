@@ -4,6 +4,7 @@
 //! the name of a [`Command`], the full name of an action, or what stands behind the dot of it where that is unique.
 
 mod display;
+pub(super) mod flight;
 mod plan;
 mod suggestion;
 mod table;

@@ -70,13 +70,19 @@ pub struct CliState {
 }
 
 impl CliState {
-    /// Takes the input as a line to run.
-    pub fn enter(&mut self) {
+    /// A command line with the lines of earlier runs.
+    pub(super) fn with_history(lines: &[String]) -> Self {
+        Self { history: History::of(lines), ..Self::default() }
+    }
+
+    /// Takes the input as a line to run; gives it when it is new in the history.
+    pub fn enter(&mut self) -> Option<String> {
         let line = self.input.take();
         self.candidates.clear();
         self.scroll = 0;
-        self.history.remember(&line);
+        let new = self.history.remember(&line).then(|| line.clone());
         self.run_line(line);
+        new
     }
 
     /// Runs a line, of which only this panel tells.

@@ -13,7 +13,7 @@ use super::formatting;
 use super::layout::{self, SMALLEST};
 use super::panel::Panel;
 use super::panel::{self, span};
-use super::popup::{Popup, command_line, go_to, palette, what_if};
+use super::popup::{Popup, command_line, go_to, map_menu, palette, what_if};
 use super::text_wrap::wrapped;
 use super::theme::{Charset, Role};
 use super::{hint_bar, notice, status_bar, timeline, tutorial};
@@ -56,6 +56,10 @@ pub fn draw(state: &AppState, frame: &mut Frame<'_>) {
             }
             Popup::GoTo(question) => {
                 go_to::draw(state, question, area, buffer);
+                None
+            }
+            Popup::MapMenu(menu) => {
+                map_menu::draw(state, menu, area, buffer);
                 None
             }
             Popup::WhatIf { selected } => {

@@ -1,5 +1,23 @@
 //! The lines that were entered in a text field, to be recalled.
 
+/// A text field whose lines are kept over a restart.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LineField {
+    /// The `:` line.
+    Command,
+    /// The firmware's command line.
+    Cli,
+}
+
+/// The lines entered in earlier runs, the oldest first.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct EnteredLines {
+    /// In the `:` line.
+    pub commands: Vec<String>,
+    /// In the firmware's command line.
+    pub cli: Vec<String>,
+}
+
 /// Lines kept.
 const MAX_LINES: usize = 500;
 
@@ -13,16 +31,26 @@ pub(super) struct History {
 }
 
 impl History {
-    /// Remembers an entered line, unless it is blank or the same as the one before.
-    pub(super) fn remember(&mut self, line: &str) {
+    /// A history that begins with these lines.
+    pub(super) fn of(lines: &[String]) -> Self {
+        let mut history = Self::default();
+        for line in lines {
+            history.remember(line);
+        }
+        history
+    }
+
+    /// Remembers an entered line, unless it is blank or the same as the one before; says whether it is new.
+    pub(super) fn remember(&mut self, line: &str) -> bool {
         self.recalled = None;
         if line.trim().is_empty() || self.lines.last().is_some_and(|last| last == line) {
-            return;
+            return false;
         }
         if self.lines.len() == MAX_LINES {
             self.lines.remove(0);
         }
         self.lines.push(line.to_owned());
+        true
     }
 
     /// Ends recalling: what is typed next is new.

@@ -2,11 +2,13 @@
 
 pub(super) mod command_line;
 pub(super) mod go_to;
+pub(super) mod map_menu;
 pub(super) mod palette;
 pub(super) mod what_if;
 
 pub use command_line::CommandLine;
 pub(super) use go_to::GoTo;
+pub(super) use map_menu::MapMenu;
 pub use palette::Palette;
 
 /// What lies over the panels; the last one opened gets the keys first.
@@ -19,6 +21,8 @@ pub enum Popup {
     },
     /// Which waypoint to go to.
     GoTo(GoTo),
+    /// What can be done at a place of the map.
+    MapMenu(MapMenu),
     /// What may go wrong now, to fly ahead with it.
     WhatIf {
         /// The row that Enter takes.

@@ -169,6 +169,9 @@ async fn run_loop(
         };
         let received = events.drain(..).map(Msg::Event);
         for msg in received.chain(msg).collect::<Vec<_>>() {
+            if matches!(msg, Msg::Resize(..)) {
+                tui.lose_screen();
+            }
             for effect in update(&mut state, msg) {
                 if matches!(effect, Effect::Quit) {
                     link.commands.try_send(Command::Quit).ok();

@@ -29,6 +29,8 @@ pub struct Tui {
     /// by [`restore`].
     terminal: ManuallyDrop<Terminal<CrosstermBackend<Stdout>>>,
     mouse: bool,
+    /// What is on the screen is not what was drawn.
+    is_lost: bool,
 }
 
 impl Tui {
@@ -47,7 +49,7 @@ impl Tui {
         // The theme decides about colours; the library's own reading of NO_COLOR would wipe bold and reverse, too.
         style::force_color_output(true);
         match take_over(mouse).and_then(|()| Terminal::new(CrosstermBackend::new(stdout()))) {
-            Ok(terminal) => Ok(Self { terminal: ManuallyDrop::new(terminal), mouse }),
+            Ok(terminal) => Ok(Self { terminal: ManuallyDrop::new(terminal), mouse, is_lost: false }),
             Err(error) => {
                 restore();
                 Err(error)
@@ -78,12 +80,22 @@ impl Tui {
         execute!(stdout(), Clear(ClearType::All))
     }
 
+    /// The next frame is drawn anew: a window that shrinks and grows again before anybody looks has its old size, and has
+    /// lost what was drawn.
+    pub fn lose_screen(&mut self) {
+        self.is_lost = true;
+    }
+
     /// Draws a frame; a terminal that can shows it all at once.
     ///
     /// # Errors
     /// Whatever the terminal says.
     pub fn draw(&mut self, state: &AppState) -> io::Result<()> {
         execute!(stdout(), BeginSynchronizedUpdate)?;
+        if std::mem::take(&mut self.is_lost) {
+            let size = self.terminal.size()?;
+            self.terminal.resize(size.into())?;
+        }
         self.terminal.draw(|frame| draw(state, frame))?;
         execute!(stdout(), EndSynchronizedUpdate)
     }

@@ -1,7 +1,7 @@
 //! Where the craft has been: a polyline that never grows beyond a bound.
 
 /// Points kept; when full, every second one is dropped and the spacing doubles.
-const MAX_POINTS: usize = 4096;
+const MAX_POINTS: usize = 20_480;
 /// Spacing of points at first, m.
 const SPACING_M: f64 = 0.4;
 /// Faster than this is no flight but a jump: a reset, a glitch.
@@ -119,13 +119,13 @@ mod tests {
     #[test]
     fn a_long_flight_stays_bounded_and_keeps_both_ends() {
         let mut track = Track::default();
-        for step in 0..50_000 {
+        for step in 0..100_000 {
             let n = f64::from(step);
             track.push(TrackPoint { n, time_s: n / 10.0, engaged: true, ..TrackPoint::default() });
         }
         assert!(track.points().len() <= MAX_POINTS);
         assert_eq!(track.points().first().map(|p| p.n), Some(0.0));
-        assert!(track.points().last().is_some_and(|p| p.n > 49_980.0));
+        assert!(track.points().last().is_some_and(|p| p.n > 99_980.0));
     }
 
     #[test]

@@ -31,6 +31,7 @@ mod cli;
 mod fields;
 mod flight;
 mod map_edit;
+mod map_menu;
 mod mouse;
 mod plan;
 mod plan_popup;

@@ -1,8 +1,71 @@
 //! `--plain`: the same flight as sentences, with commands on standard input and no terminal.
+#![allow(clippy::disallowed_methods, reason = "a deadline for a program that hangs needs the clock")]
+
+use std::io::{BufRead as _, BufReader, Write as _};
+use std::process::{Child, ChildStdin, Stdio};
+use std::sync::mpsc::{Receiver, channel};
+use std::time::Duration;
 
 use crate::support::Sandbox;
 
 const PLAIN: [&str; 4] = ["--plain", "--fresh", "--no-ports", "--speed=max"];
+/// When a line that is waited for counts as never coming.
+const NEVER: Duration = Duration::from_secs(60);
+
+/// A running program that is spoken with; killed when dropped.
+struct Dialogue {
+    child: Child,
+    input: ChildStdin,
+    output: Receiver<String>,
+}
+
+impl Dialogue {
+    fn start(sandbox: &Sandbox, arguments: &[&str]) -> Self {
+        let mut command = sandbox.command(arguments);
+        let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().expect("it runs");
+        let lines = BufReader::new(child.stdout.take().expect("its output")).lines();
+        let (sender, output) = channel();
+        std::thread::spawn(move || {
+            for line in lines.map_while(Result::ok) {
+                if sender.send(line).is_err() {
+                    return;
+                }
+            }
+        });
+        Self { input: child.stdin.take().expect("its input"), child, output }
+    }
+
+    fn say(&mut self, line: &str) {
+        writeln!(self.input, "{line}").expect("it listens");
+    }
+
+    /// Waits for a line with this text; gives what was written up to it.
+    #[track_caller]
+    fn hear(&mut self, text: &str) -> Vec<String> {
+        let mut heard = Vec::new();
+        loop {
+            let line = self.output.recv_timeout(NEVER);
+            let line = line.unwrap_or_else(|error| panic!("{error} before: {text}\n{heard:#?}"));
+            let is_it = line.contains(text);
+            heard.push(line);
+            if is_it {
+                return heard;
+            }
+        }
+    }
+
+    fn end(mut self) -> Option<i32> {
+        self.child.wait().expect("an exit status").code()
+    }
+}
+
+impl Drop for Dialogue {
+    fn drop(&mut self) {
+        // It may have ended already.
+        drop(self.child.kill());
+        drop(self.child.wait());
+    }
+}
 
 #[test]
 fn commands_are_read_and_answered_in_their_order() {
@@ -27,4 +90,78 @@ fn help_lists_the_commands_and_a_wrong_plan_is_an_input_error() {
     let ran = sandbox.run_with(&PLAIN, "help\nquit\n").exits(0);
     assert!(ran.out.contains("wind SPEED@FROM") && ran.out.contains("flight.fly — "), "{}", ran.out);
     sandbox.run_with(&["--plain", "no-such-file.toml"], "").exits(3);
+}
+
+#[test]
+fn what_a_screen_asks_in_flight_is_chosen_by_number_or_named_on_the_line() {
+    let sandbox = Sandbox::new();
+    let mut flight = Dialogue::start(&sandbox, &["--plain", "--fresh", "--no-ports", "--speed=8"]);
+    flight.hear("GPS fix");
+    flight.say("what-if gps-loss");
+    flight.hear("disarmed");
+    flight.say("fly");
+    flight.hear("APPROACHING (waypoint 0");
+    flight.say("what-if");
+    flight.hear("1 GPS lost here");
+    flight.hear("A number chooses");
+    flight.say("1");
+    flight.hear("What if GPS lost here: ");
+    flight.say("what-if wind");
+    flight.hear("What if wind +8 m/s: ");
+    flight.say("look-ahead");
+    flight.hear("look-ahead: ");
+    flight.say("go-to 7");
+    flight.hear("the craft has 0, 1, 2, 3.");
+    flight.say("go-to");
+    flight.hear("3 LAND");
+    flight.say("3");
+    flight.hear("APPROACHING (waypoint 3, LAND)");
+    flight.say("quit");
+    flight.hear("The craft is armed and flying ends here. Quit?");
+    flight.say("n");
+    flight.say("quit");
+    flight.hear("Quit?");
+    flight.say("y");
+    assert_eq!(flight.end(), Some(0));
+}
+
+#[test]
+fn plans_are_generated_saved_replaced_and_opened_line_by_line() {
+    let sandbox = Sandbox::new();
+    let input = "plan.generate\nshape = circle\nlength = 80\ntake\nsave\nmine\nplan.generate\ntake\n\
+                 save mine.toml\nquit\nquit\n";
+    let ran = sandbox.run_with(&PLAIN, input).exits(0);
+    let mut rest = ran.out.as_str();
+    for part in [
+        "Generate a pattern.",
+        "1 shape = square (square, circle, zig-zag, survey)",
+        "`take` takes them all",
+        "shape = circle: ",
+        "length = 80: ",
+        " waypoints.",
+        "Save as which file in ",
+        "Saved mine.toml.",
+        "Saved mine.toml.",
+    ] {
+        let at = rest.find(part).unwrap_or_else(|| panic!("no {part} in its place\n{}", ran.out));
+        rest = &rest[at + part.len()..];
+    }
+    assert_eq!(sandbox.names(), ["mine.toml"]);
+
+    // Another plan, in the place of that file when it is asked for, and not kept at the end.
+    let input = "plan.generate\ntake\nsave mine.toml\nn\nopen\n1\nplan.generate\nshape = survey\ntake\nquit\nwhat\nd\nd\nd\n";
+    let before = sandbox.read("mine.toml");
+    let ran = sandbox.run_with(&PLAIN, input).exits(0);
+    for part in
+        ["mine.toml exists. Answer y replace it", "Open which plan of ", "1 mine.toml", "Opened mine.toml."]
+    {
+        assert!(ran.out.contains(part), "no {part}\n{}", ran.out);
+    }
+    assert!(
+        ran.out.contains("has edits that no file holds. Answer s save, d discard, n stay"),
+        "{}",
+        ran.out
+    );
+    assert!(ran.out.contains("Answer s save, d discard, n stay.\n"), "{}", ran.out);
+    assert_eq!(sandbox.read("mine.toml"), before);
 }

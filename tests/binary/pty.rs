@@ -88,9 +88,14 @@ impl Terminal {
         rustix::termios::tcflow(terminal, rustix::termios::Action::OOff).expect("output held");
     }
 
+    /// The number of the process.
+    pub(crate) fn id(&self) -> u32 {
+        self.child.process_id().expect("a process")
+    }
+
     /// Whether the program is stopped, as by Ctrl-Z.
     pub(crate) fn is_stopped(&self) -> bool {
-        let id = self.child.process_id().expect("a process");
+        let id = self.id();
         let stat = std::fs::read_to_string(format!("/proc/{id}/stat")).expect("a process");
         stat.rsplit(") ").next().is_some_and(|rest| rest.starts_with('T'))
     }
@@ -114,7 +119,7 @@ impl Terminal {
 
     /// Sends a signal to the program.
     pub(crate) fn signal(&self, name: &str) {
-        let id = self.child.process_id().expect("a process").to_string();
+        let id = self.id().to_string();
         let sent = std::process::Command::new("kill").args(["-s", name, &id]).status().expect("kill");
         assert!(sent.success());
     }

@@ -202,6 +202,64 @@ fn every_size_is_survived_in_flight() {
 }
 
 #[test]
+fn a_storm_of_sizes_is_survived_in_flight_and_the_terminal_is_given_back_on_a_signal() {
+    let mut terminal = started(120, 40, &["--fresh"]);
+    terminal.send("F]]]");
+    terminal.until("the mission", |terminal| state(terminal) == "APPROACHING");
+    let mut at: u32 = 3;
+    let mut next = |most: u32| {
+        at = at.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        1 + (at >> 8) % most
+    };
+    for round in 0..10 {
+        // Faster than frames are drawn, each storm over another panel or popup.
+        let keys = ["1", "2", "3", "6z", "7", "8", "?", "\x1b\x1b", "2z", "\x10"];
+        terminal.send(keys[round]);
+        for _ in 0..60 {
+            terminal.resize(next(250) as u16, next(80) as u16);
+        }
+        // What was drawn for other sizes than the emulator's goes by.
+        terminal.resize(80, 24);
+        terminal.send("\x1b\x1b\x1b\x1b\x1b[19~");
+        terminal.until("a whole screen", |terminal| {
+            terminal.row(0).contains("ARMED")
+                && terminal.screen().contains("▸8 Log")
+                && terminal.row(23).contains("q quit")
+        });
+    }
+    terminal.signal("TERM");
+    assert_eq!(terminal.end(), 130);
+    terminal.assert_given_back();
+}
+
+#[test]
+fn look_ahead_and_what_if_are_flown_by_keys_in_flight() {
+    for (columns, rows) in [(80, 24), (120, 40)] {
+        let mut terminal = started(columns, rows, &["--fresh", "land"]);
+        terminal.send("F]]");
+        terminal.until("the mission", |terminal| state(terminal) == "APPROACHING");
+        terminal.send(" ");
+        terminal.until("a pause", |terminal| terminal.row(MISSION).contains('‖'));
+        terminal.send("L");
+        terminal.until_shown("look-ahead: COMPLETE in ");
+        terminal.send("L");
+        terminal.until("no look-ahead", |terminal| !terminal.screen().contains("look-ahead"));
+        terminal.send("w");
+        terminal.until_shown("What if, from this instant on:");
+        terminal.send("\r");
+        terminal.until_shown("GPS lost here: ");
+        terminal.until("its end", |terminal| terminal.screen().contains("% left"));
+        terminal.send("\x1b");
+        terminal.until("none on the map", |terminal| !terminal.row(3).contains("GPS lost here"));
+        // The flight itself goes on as it was.
+        assert!(terminal.row(0).contains("3D"), "{}", terminal.screen());
+        terminal.send("qy");
+        assert_eq!(terminal.end(), 0);
+        terminal.assert_given_back();
+    }
+}
+
+#[test]
 fn signals_give_the_terminal_back() {
     let before = Terminal::start(80, 24, "cat", &[]).discipline();
     for signal in ["TERM", "INT", "HUP"] {
@@ -283,6 +341,38 @@ fn a_paste_of_garbage_into_the_command_line_breaks_nothing() {
     terminal.send("\x03\x03");
     assert_eq!(terminal.end(), 0);
     terminal.assert_given_back();
+}
+
+#[test]
+fn a_paste_of_a_thousand_lines_runs_them_all_in_their_order() {
+    for (columns, rows) in [(80, 24), (120, 40)] {
+        let mut terminal = started(columns, rows, &["--fresh"]);
+        terminal.send("5");
+        terminal.until_shown("Enter run");
+        let mut lines: String =
+            (0..999).map(|line| format!("set ap_max_angle = {}\n", 20 + line % 30)).collect();
+        lines.push_str("set ap_max_angle = 55\n");
+        terminal.send(&format!("\x1b[200~{lines}\x1b[201~"));
+        // The title counts; a slow machine may take its time from one hundred to the next.
+        for hundred in (1..10).rev() {
+            terminal.until(&format!("{hundred}xx lines to run"), |terminal| {
+                let row = terminal.row(2);
+                let count = row.split_once("— ").and_then(|(_, rest)| rest.split_once(" lines to run"));
+                count
+                    .and_then(|(count, _)| count.parse::<u32>().ok())
+                    .is_some_and(|count| count < 100 * hundred + 100)
+            });
+        }
+        terminal.until_shown("ap_max_angle set to 55");
+        let screen = terminal.screen();
+        let answers = screen.lines().filter_map(|line| line.split_once("set to ")?.1.get(..2));
+        let sets: Vec<&str> = answers.collect();
+        let last = ["26", "27", "28", "55"];
+        assert!(sets.ends_with(&last), "{sets:?}\n{screen}");
+        terminal.send("\x1b\x1bq");
+        assert_eq!(terminal.end(), 0);
+        terminal.assert_given_back();
+    }
 }
 
 #[test]

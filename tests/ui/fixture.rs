@@ -19,7 +19,7 @@ use betadeck::timeline::{Mark, MarkKind, TimelineView};
 use betadeck::ui::editor::PlanId;
 use betadeck::ui::keymap::Keymap;
 use betadeck::ui::theme::{Charset, Palette};
-use betadeck::ui::{AppState, CliHelp, Msg, OpenPlan, Theme, UiConfig, Units, update};
+use betadeck::ui::{AppState, CliHelp, EnteredLines, Msg, OpenPlan, Theme, UiConfig, Units, update};
 use nalgebra::{Vector2, Vector3};
 
 /// Where the craft stands at boot.
@@ -71,6 +71,16 @@ pub(crate) fn state(size: (u16, u16), theme: Theme) -> AppState {
 
 /// The same with another plan open.
 pub(crate) fn state_with(size: (u16, u16), theme: Theme, plan: FlightPlan) -> AppState {
+    state_after(size, theme, plan, EnteredLines::default())
+}
+
+/// The same after earlier runs in which these lines were entered.
+pub(crate) fn state_after(
+    size: (u16, u16),
+    theme: Theme,
+    plan: FlightPlan,
+    entered: EnteredLines,
+) -> AppState {
     let config = UiConfig {
         theme,
         units: Units::default(),
@@ -89,6 +99,7 @@ pub(crate) fn state_with(size: (u16, u16), theme: Theme, plan: FlightPlan) -> Ap
         sentence,
         plan: open(plan),
         mouse: true,
+        entered,
     };
     AppState::new(config, size, view(&SimpleFlight::default()))
 }

@@ -8,6 +8,8 @@ const FRESHER_MPS: f64 = 8.0;
 /// Something that may go wrong.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct WhatIf {
+    /// In one word, to be typed.
+    pub name: &'static str,
     /// In a few words, for a list and in front of the outcome.
     pub title: &'static str,
     change: Change,
@@ -24,19 +26,19 @@ enum Change {
 
 /// All of them, the likely ones first.
 pub const WHAT_IFS: [WhatIf; 9] = [
-    what_if("GPS lost here", "fault=gps-loss"),
-    what_if("RC lost here", "fault=rx-loss"),
-    WhatIf { title: "wind +8 m/s", change: Change::FresherWind },
-    what_if("gust 12 m/s from the north", "gust-now=12@0"),
-    what_if("motor 2 at 70 %", "fault=motor,,2:0.7"),
-    what_if("battery 1.5 V lower", "fault=battery,,-1.5"),
-    what_if("GPS jumps 30 m to the east", "fault=gps-glitch,,30@90"),
-    what_if("compass 45° off", "fault=mag-bias,,45"),
-    what_if("barometer drifts 1 Pa/s", "fault=baro-drift,,1"),
+    what_if("gps-loss", "GPS lost here", "fault=gps-loss"),
+    what_if("rx-loss", "RC lost here", "fault=rx-loss"),
+    WhatIf { name: "wind", title: "wind +8 m/s", change: Change::FresherWind },
+    what_if("gust", "gust 12 m/s from the north", "gust-now=12@0"),
+    what_if("motor", "motor 2 at 70 %", "fault=motor,,2:0.7"),
+    what_if("battery", "battery 1.5 V lower", "fault=battery,,-1.5"),
+    what_if("gps-glitch", "GPS jumps 30 m to the east", "fault=gps-glitch,,30@90"),
+    what_if("mag-bias", "compass 45° off", "fault=mag-bias,,45"),
+    what_if("baro-drift", "barometer drifts 1 Pa/s", "fault=baro-drift,,1"),
 ];
 
-const fn what_if(title: &'static str, command: &'static str) -> WhatIf {
-    WhatIf { title, change: Change::Command(command) }
+const fn what_if(name: &'static str, title: &'static str, command: &'static str) -> WhatIf {
+    WhatIf { name, title, change: Change::Command(command) }
 }
 
 impl WhatIf {

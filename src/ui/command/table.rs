@@ -1,6 +1,6 @@
 //! The commands that take an argument. To add one: a row here, its function in the file of its subject.
 
-use super::{display, plan, time, vehicle, world};
+use super::{display, flight, plan, time, vehicle, world};
 use crate::session::command::WORLD_WORDS;
 use crate::ui::app_state::AppState;
 use crate::ui::message::Effect;
@@ -49,6 +49,20 @@ const COMMANDS: &[Command] = &[
         help: "Save the plan in this file; without a name: in its own",
         run: plan::save,
         complete: plan::complete,
+    },
+    Command {
+        name: "go-to",
+        argument: "WAYPOINT",
+        help: "Go now to a waypoint of the craft's plan; without a number: choose one",
+        run: flight::go_to,
+        complete: flight::complete_go_to,
+    },
+    Command {
+        name: "what-if",
+        argument: "NAME",
+        help: "How the flight would end with a fault now; without a name: choose one",
+        run: flight::what_if,
+        complete: flight::complete_what_if,
     },
     Command {
         name: "speed",

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use super::open_plan::PlanId;
 use crate::plan::edit::{History, JournalLine, PlanDocument};
+use crate::ui::history::LineField;
 
 /// A request.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,6 +28,8 @@ pub enum FileRequest {
     List(Option<PathBuf>),
     /// Keep an action, so that it survives the program. The first line of a plan is kept by whoever opens it.
     Journal(PlanId, JournalLine),
+    /// Keep a line that was entered in a text field, so that it can be recalled after a restart.
+    KeepLine(LineField, String),
     /// A new plan begins its journal.
     Begin(PlanId, Box<PlanDocument>),
     /// The plan was closed; its journal goes when edits are given up.

@@ -129,6 +129,20 @@ impl Form {
         }
     }
 
+    /// Gives a value to the field at this place.
+    ///
+    /// # Errors
+    /// The words of a choice, when it is none of them, as a sentence.
+    pub(in crate::ui) fn set(&mut self, at: usize, value: &str) -> Result<(), String> {
+        let Some(field) = self.fields.get_mut(at) else { return Ok(()) };
+        if !field.choices.is_empty() && !field.choices.contains(&value) {
+            return Err(format!("{}: choose {}.", field.label, field.choices.join(", ")));
+        }
+        field.text = TextField::new(value);
+        self.problem = None;
+        Ok(())
+    }
+
     /// Whether what is generated comes behind the waypoints that are there.
     pub(super) fn appends(&self) -> bool {
         self.value("result").starts_with("append")

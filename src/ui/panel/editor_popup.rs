@@ -7,13 +7,17 @@ use ratatui::text::Line;
 use super::{line, row, span};
 use crate::ui::app_state::AppState;
 use crate::ui::draw::popup;
-use crate::ui::editor::{Browser, EditorPopup, Form, FormKind, OpenPlan, Purpose, Question, findings};
+use crate::ui::editor::{
+    Browser, EditorPopup, Form, FormField, FormKind, OpenPlan, Purpose, Question, findings,
+};
 use crate::ui::text_wrap::wrapped;
 use crate::ui::theme::Role;
 
 /// Columns of a form: labels, values, hints.
 const LABEL: u16 = 14;
 const VALUE: u16 = 30;
+/// The fewest columns of a value.
+const NARROW: u16 = 16;
 const WIDTH: u16 = 72;
 
 /// Draws the popup that is open; gives the place of the cursor.
@@ -51,12 +55,8 @@ fn form(state: &AppState, form: &Form, area: Rect, buffer: &mut Buffer) -> Optio
         let here = at == form.at;
         let role = if here { Role::Focus } else { Role::Text };
         row(buffer, inside, y, theme, role, &format!("{} {}", if here { "▸" } else { " " }, field.label));
-        let place = Rect {
-            x: inside.x + LABEL,
-            y: inside.y + y,
-            width: VALUE.min(inside.width.saturating_sub(LABEL)),
-            height: 1,
-        };
+        let place =
+            Rect { x: inside.x + LABEL, y: inside.y + y, width: value_width(field, inside.width), height: 1 };
         if field.choices.is_empty() {
             let position = field.text.draw(theme, place, buffer);
             cursor = if here { position } else { cursor };
@@ -77,6 +77,12 @@ fn form(state: &AppState, form: &Form, area: Rect, buffer: &mut Buffer) -> Optio
     let keys = keys(state, &[("Enter", "take"), ("↑ ↓", "next value"), ("Esc", "close")]);
     line(buffer, inside, inside.height.saturating_sub(1), &keys);
     cursor
+}
+
+/// Columns of a value: a narrow form leaves the hint behind it whole.
+fn value_width(field: &FormField, columns: u16) -> u16 {
+    let hint = field.hint.chars().count() as u16 + 1;
+    VALUE.min(columns.saturating_sub(LABEL + hint).max(NARROW)).min(columns.saturating_sub(LABEL))
 }
 
 fn browser(state: &AppState, browser: &Browser, area: Rect, buffer: &mut Buffer) -> Option<Position> {

@@ -38,6 +38,7 @@ pub(crate) fn draw(state: &AppState, scroll: usize, area: Rect, buffer: &mut Buf
     for (what, text) in [
         ("click", "Focus a panel, set a channel"),
         ("drag", "Move the map"),
+        ("right", "What can be done at a place of the map"),
         ("wheel", "Zoom the map at the pointer, scroll the others"),
         ("Shift", "Lets the terminal select text"),
     ] {

@@ -18,6 +18,7 @@ use crate::ui::viewport::{MapMode, Viewport};
 mod labels;
 mod lines;
 mod marks;
+mod track_line;
 
 /// A waypoint on the ground.
 struct PlacedWaypoint {

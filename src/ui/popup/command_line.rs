@@ -35,13 +35,18 @@ pub struct CommandLine {
 pub(in crate::ui) enum Outcome {
     /// It is being typed.
     Typing,
-    /// It is to be carried out.
-    Entered(String),
+    /// It is to be carried out; it is new in the history or not.
+    Entered(String, bool),
     /// It is left.
     Left,
 }
 
 impl CommandLine {
+    /// A line with the history of earlier runs.
+    pub(in crate::ui) fn with_history(lines: &[String]) -> Self {
+        Self { history: History::of(lines), ..Self::default() }
+    }
+
     /// Begins a new line.
     pub(in crate::ui) fn open(&mut self, text: &str) {
         self.field = TextField::new(text);
@@ -65,8 +70,8 @@ pub(in crate::ui) fn key(state: &mut AppState, event: KeyEvent) -> Outcome {
         KeyCode::Backspace if state.command_line.field.is_empty() => return Outcome::Left,
         KeyCode::Enter => {
             let entered = state.command_line.field.take();
-            state.command_line.history.remember(&entered);
-            return Outcome::Entered(entered);
+            let is_new = state.command_line.history.remember(&entered);
+            return Outcome::Entered(entered, is_new);
         }
         KeyCode::Tab => {
             let suggestions = command::suggestions(state, state.command_line.field.value());

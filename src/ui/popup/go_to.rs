@@ -46,6 +46,11 @@ impl GoTo {
         Self { waypoints, selected, typed: String::new() }
     }
 
+    /// Index and type of those that can be chosen.
+    pub(crate) fn waypoints(&self) -> impl Iterator<Item = (u8, &str)> {
+        self.waypoints.iter().map(|(index, kind)| (*index, kind.as_str()))
+    }
+
     pub(crate) fn key(&mut self, event: KeyEvent) -> Outcome {
         match event.code {
             KeyCode::Up | KeyCode::Char('k') => self.selected = self.selected.saturating_sub(1),

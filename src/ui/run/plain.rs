@@ -6,15 +6,15 @@ use std::time::Instant;
 use tokio::sync::mpsc;
 
 use super::{Ending, SessionLink, carry_out};
-use crate::printable;
-use crate::session::{Command, Forecaster};
-use crate::ui::action::{ACTIONS, Context};
+use crate::session::{Command, ForecastKind, Forecaster};
 use crate::ui::app_state::{AppState, UiConfig};
-use crate::ui::command;
+use crate::ui::editor::{FileReply, FileRequest};
 use crate::ui::files_link::FilesLink;
 use crate::ui::message::{Effect, Msg};
-use crate::ui::popup::Popup;
 use crate::ui::update::update;
+use lines::Lines;
+
+mod lines;
 
 /// The size that the state believes in; nothing is drawn.
 const SIZE: (u16, u16) = (80, 24);
@@ -48,25 +48,26 @@ async fn run_loop(
 ) -> io::Result<Ending> {
     let started = Instant::now();
     let mut stop = std::pin::pin!(stop);
-    let mut lines = Lines(output);
+    let mut lines = Lines::new(output);
     let view = link.view.borrow_and_update().clone();
     let mut state = AppState::new(config, SIZE, view);
     let (replies_in, mut replies) = mpsc::unbounded_channel();
     let forecasts = replies_in.clone();
     let forecaster = Forecaster::start(move |reply| drop(forecasts.send(Msg::Forecast(reply))))?;
     let mut awaited = 0_usize;
-    let mut quit_asked = false;
     let ending = loop {
-        let mut effects = tokio::select! {
+        let effects = tokio::select! {
             biased;
             () = &mut stop => break Ending::Signal,
             Some(msg) = replies.recv() => {
-                if is_answer(&msg) {
-                    awaited = awaited.saturating_sub(1);
-                }
+                awaited = awaited.saturating_sub(usize::from(is_answer(&msg)));
                 lines.answer(&mut state, msg)?
             }
-            Some(reply) = files.replies.recv() => update(&mut state, Msg::Files(reply)),
+            Some(reply) = files.replies.recv() => {
+                let msg = Msg::Files(reply);
+                awaited = awaited.saturating_sub(usize::from(is_answer(&msg)));
+                lines.answer(&mut state, msg)?
+            }
             event = link.events.recv() => match event {
                 None => break Ending::SessionEnded,
                 Some(event) => {
@@ -89,35 +90,19 @@ async fn run_loop(
             },
             Some(line) = input.recv(), if awaited == 0 => {
                 update(&mut state, Msg::Clock(started.elapsed()));
-                let effects = match command::run(&mut state, &line) {
-                    Ok(effects) => effects,
-                    Err(sentence) => {
-                        lines.write(&sentence)?;
-                        Vec::new()
-                    }
-                };
-                let asked = lines.question(&mut state)?;
-                if asked && quit_asked {
-                    break Ending::Quit;
-                }
-                quit_asked = asked;
-                effects
+                lines.enter(&mut state, &line)?
             }
         };
-        if let Some(notice) = state.notice.take() {
-            lines.write(&notice.text)?;
-        }
-        let is_end = |effect: &Effect| matches!(effect, Effect::Quit);
-        if effects.iter().any(is_end) {
+        lines.follow(&mut state)?;
+        if effects.iter().any(|effect| matches!(effect, Effect::Quit)) {
             break Ending::Quit;
         }
-        for effect in effects.drain(..) {
+        for effect in effects {
             match effect {
                 Effect::Suspend => {}
                 Effect::Copy(text) => lines.write(&text)?,
                 effect => {
-                    let answers = matches!(effect, Effect::Cli(_) | Effect::World(_) | Effect::Upload { .. });
-                    awaited += usize::from(answers);
+                    awaited += usize::from(is_question(&effect));
                     carry_out(effect, &link, &forecaster, &mut files, &replies_in);
                 }
             }
@@ -128,60 +113,39 @@ async fn run_loop(
     Ok(ending)
 }
 
-/// Whether a message is what a line of input waits for.
-fn is_answer(msg: &Msg) -> bool {
-    matches!(msg, Msg::CliReply(_) | Msg::WorldReply { .. } | Msg::UploadReply(_) | Msg::Busy)
+/// Whether an effect is answered by a message, before which no further line is read.
+fn is_question(effect: &Effect) -> bool {
+    match effect {
+        Effect::Cli(_)
+        | Effect::World(_)
+        | Effect::Upload { .. }
+        | Effect::Download
+        | Effect::SaveToFlash => true,
+        Effect::Files(request) => {
+            matches!(request, FileRequest::Open(_) | FileRequest::Save { .. } | FileRequest::List(_))
+        }
+        Effect::Forecast(job) => job.request.kind() != ForecastKind::PlanEstimate,
+        Effect::Send(_) | Effect::Copy(_) | Effect::Suspend | Effect::Quit => false,
+    }
 }
 
-/// The output, a sentence a line.
-struct Lines<W>(W);
-
-impl<W: Write> Lines<W> {
-    fn write(&mut self, text: &str) -> io::Result<()> {
-        writeln!(self.0, "{}", printable::line(text))?;
-        self.0.flush()
-    }
-
-    /// Writes what the firmware answered as it is, and passes every answer on.
-    fn answer(&mut self, state: &mut AppState, msg: Msg) -> io::Result<Vec<Effect>> {
-        let Msg::CliReply(Some(output)) = &msg else { return Ok(update(state, msg)) };
-        for line in output.text.trim_end().lines().chain(output.advice.as_deref()) {
-            self.write(line.trim_end())?;
-        }
-        let effects = update(state, msg);
-        state.notice = None;
-        Ok(effects)
-    }
-
-    /// What a screen would ask in a popup: help is written, and whoever quits is told what would be lost. Whether it was
-    /// that.
-    fn question(&mut self, state: &mut AppState) -> io::Result<bool> {
-        let popups = std::mem::take(&mut state.popups);
-        let unsaved = state.editor.popup.is_some();
-        state.editor.cancel();
-        match popups.last() {
-            Some(Popup::Quit) => {
-                self.write("The craft is armed and flying ends here: quit once more to end.")?;
-                return Ok(true);
-            }
-            Some(Popup::Help { .. }) => {
-                for command in command::all() {
-                    self.write(&format!("{} {} — {}", command.name, command.argument, command.help))?;
-                }
-                let everywhere = ACTIONS.iter().filter(|spec| spec.context == Context::Global);
-                for spec in everywhere {
-                    self.write(&format!("{} — {}", spec.name, spec.help))?;
-                }
-            }
-            Some(_) => self.write("This is chosen on the screen: start without --plain.")?,
-            None if unsaved => {
-                self.write(
-                    "This asks on the screen; quit once more to end, unsaved edits are kept for later.",
-                )?;
-                return Ok(true);
-            }
-            None => {}
-        }
-        Ok(false)
+/// Whether a message is such an answer.
+fn is_answer(msg: &Msg) -> bool {
+    match msg {
+        Msg::CliReply(_)
+        | Msg::WorldReply { .. }
+        | Msg::UploadReply(_)
+        | Msg::DownloadReply(_)
+        | Msg::SaveReply(_)
+        | Msg::Busy => true,
+        Msg::Forecast(reply) => reply.kind != ForecastKind::PlanEstimate,
+        Msg::Files(reply) => !matches!(reply, FileReply::Changed(_)),
+        Msg::Clock(_)
+        | Msg::Key(_)
+        | Msg::Mouse(_)
+        | Msg::Paste(_)
+        | Msg::Resize(..)
+        | Msg::View(_)
+        | Msg::Event(_) => false,
     }
 }

@@ -4,7 +4,9 @@ use crossterm::event::{KeyCode, KeyEvent};
 
 use crate::ui::action::Action;
 use crate::ui::app_state::AppState;
+use crate::ui::editor::FileRequest;
 use crate::ui::event_log::Severity;
+use crate::ui::history::LineField;
 use crate::ui::message::Effect;
 use crate::ui::panel::Panel;
 use crate::ui::popup::Popup;
@@ -15,8 +17,11 @@ use super::view::{focus, neighbour, scroll_panel};
 pub(super) fn cli_key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
     match event.code {
         KeyCode::Enter => {
-            state.cli.enter();
-            return run_cli(state);
+            let entered = state.cli.enter();
+            let keep = entered.map(|line| Effect::Files(FileRequest::KeepLine(LineField::Cli, line)));
+            let mut effects = run_cli(state);
+            effects.extend(keep);
+            return effects;
         }
         KeyCode::Tab => {
             if state.cli.input.is_empty() {
@@ -44,7 +49,12 @@ pub(super) fn paste(state: &mut AppState, text: &str) -> Vec<Effect> {
         Some(Popup::CommandLine) => Some(&mut state.command_line.field),
         Some(Popup::Palette(palette)) => Some(&mut palette.query),
         Some(
-            Popup::Help { .. } | Popup::GoTo(_) | Popup::Plots { .. } | Popup::WhatIf { .. } | Popup::Quit,
+            Popup::Help { .. }
+            | Popup::GoTo(_)
+            | Popup::MapMenu(_)
+            | Popup::Plots { .. }
+            | Popup::WhatIf { .. }
+            | Popup::Quit,
         ) => None,
         None => super::fields::open(state),
     };

@@ -87,6 +87,12 @@ pub(super) fn leave(state: &mut AppState) -> bool {
     state.map.moving.take().is_some() || state.map.edit.take().is_some()
 }
 
+/// Puts an item at a place, as one edit.
+pub(super) fn put(state: &mut AppState, item: MapItem, place: MapPoint) -> Vec<Effect> {
+    state.map.moving = Some(Moving { item, place, moved: true, by_mouse: false, of: revision(state) });
+    put_down(state)
+}
+
 /// Puts down what is being moved, as one edit.
 pub(super) fn put_down(state: &mut AppState) -> Vec<Effect> {
     let (Some(moving), Some(frame)) = (state.map.moving.take(), map_point::origin(state)) else {

@@ -12,10 +12,12 @@ use crate::ui::message::Effect;
 use crate::ui::panel::Panel;
 use crate::ui::panel::plan::{self as plan_panel, PlanTarget};
 use crate::ui::panel::{rc, world};
+use crate::ui::popup::Popup;
 use crate::ui::transmitter;
 use crate::ui::viewport::{MapMode, Viewport};
 
 use super::map_edit;
+use super::map_menu;
 use super::timeline;
 use super::view::{ZOOM_STEP, focus, scroll_panel};
 
@@ -26,6 +28,11 @@ const WHEEL_LINES: isize = 3;
 pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
     if let MouseEventKind::Up(_) = event.kind {
         return release(state);
+    }
+    if let Some(Popup::MapMenu(menu)) = state.popups.last() {
+        let (outcome, place) = (menu.click(state.size, (event.column, event.row)), menu.place);
+        let is_click = matches!(event.kind, MouseEventKind::Down(_));
+        return if is_click { map_menu::take(state, place, outcome) } else { Vec::new() };
     }
     if !state.popups.is_empty() || state.editor.popup.is_some() {
         return Vec::new();
@@ -80,6 +87,14 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
             }
             Panel::State | Panel::Cli | Panel::Graphs | Panel::World | Panel::Log => Vec::new(),
         },
+        MouseEventKind::Down(MouseButton::Right) => {
+            focus(state, panel);
+            if panel == Panel::Map {
+                let view = Viewport::of(state, layout::inner(area));
+                map_menu::open(state, &view, (event.column, event.row));
+            }
+            Vec::new()
+        }
         MouseEventKind::ScrollUp => {
             wheel(state, panel, area, &event, -1);
             Vec::new()

@@ -2,15 +2,17 @@
 
 use crossterm::event::{KeyCode, KeyEvent};
 
-use super::act;
+use super::{act, map_menu};
 use crate::session::Command;
 use crate::telemetry::InFlightCommand;
 use crate::ui::action::{self, Action};
 use crate::ui::app_state::AppState;
 use crate::ui::command;
+use crate::ui::editor::FileRequest;
 use crate::ui::event_log::Severity;
 use crate::ui::forecast;
 use crate::ui::graphs::PLOTS;
+use crate::ui::history::LineField;
 use crate::ui::message::Effect;
 use crate::ui::popup::palette::Entry;
 use crate::ui::popup::{Popup, command_line, go_to, palette, what_if};
@@ -30,6 +32,10 @@ pub(super) fn key(state: &mut AppState, event: KeyEvent, found: Option<Action>) 
                 vec![Effect::Send(Command::InFlight(InFlightCommand::GoTo(index)))]
             }
         },
+        Some(Popup::MapMenu(menu)) => {
+            let (outcome, place) = (menu.key(event), menu.place);
+            map_menu::take(state, place, outcome)
+        }
         Some(Popup::WhatIf { selected }) => match what_if::key(selected, event) {
             what_if::Outcome::Choosing => Vec::new(),
             what_if::Outcome::Left => {
@@ -60,9 +66,14 @@ pub(super) fn key(state: &mut AppState, event: KeyEvent, found: Option<Action>) 
                 state.popups.pop();
                 Vec::new()
             }
-            command_line::Outcome::Entered(line) => {
+            command_line::Outcome::Entered(line, is_new) => {
                 state.popups.pop();
-                run(state, &line)
+                let mut effects = run(state, &line);
+                if is_new {
+                    // Ahead of the line's own: `quit` is remembered, too.
+                    effects.insert(0, Effect::Files(FileRequest::KeepLine(LineField::Command, line)));
+                }
+                effects
             }
         },
         Some(Popup::Palette(palette)) => match palette::key(palette, event) {

@@ -13,6 +13,7 @@ use crate::ui::map_point::{self, MapPoint, to_map};
 use crate::ui::theme::Role;
 use crate::ui::track::TrackPoint;
 
+use super::track_line::TrackLine;
 use super::{PlacedWaypoint, Scene};
 
 /// Dots of a dash and of the gap behind it.
@@ -37,9 +38,7 @@ impl LinePainter<'_, '_> {
     }
 
     fn track(&mut self, points: &[TrackPoint]) {
-        for pair in points.windows(2) {
-            self.line(MapPoint::new(pair[0].n, pair[0].e), MapPoint::new(pair[1].n, pair[1].e));
-        }
+        self.context.draw(&TrackLine { points, colour: self.colour, dot_m: self.dot_m });
     }
 
     /// A dot every few dots along a way.

@@ -22,6 +22,9 @@ pub(super) fn flown(state: &AppState, points: &[Point]) -> Vec<FlownPoint> {
     if !are_at_the_same_places(waypoints, &flown.waypoints) {
         return Vec::new();
     }
+    // Not once for each of thousands of points.
+    let targets: Vec<Option<MapPoint>> =
+        waypoints.iter().map(|wp| wp.kind.uses_position().then(|| to_map(&frame, wp.position))).collect();
     let mut along_m = 0.0_f64;
     let track = state.track.points().iter().take(state.track_points_shown());
     let on_leg = track.filter_map(|place| Some((place, usize::from(place.wp?))));
@@ -29,10 +32,8 @@ pub(super) fn flown(state: &AppState, points: &[Point]) -> Vec<FlownPoint> {
         .map(|(place, wp)| {
             // Where the leg ends, less what is left of it; the distance never shrinks, as in a hold.
             if let Some(end) = points.iter().rfind(|point| point.index <= wp) {
-                let left_m = match waypoints.get(wp).filter(|wp| wp.kind.uses_position()) {
-                    Some(to) => to_map(&frame, to.position).distance(MapPoint::new(place.n, place.e)),
-                    None => 0.0,
-                };
+                let target = targets.get(wp).copied().flatten();
+                let left_m = target.map_or(0.0, |to| to.distance(MapPoint::new(place.n, place.e)));
                 along_m = along_m.max(end.along_m - left_m);
             }
             FlownPoint { along_m, alt_m: place.alt_m }

@@ -1,0 +1,163 @@
+//! The built program in a pseudo-terminal: how soon its first frame stands and a key is answered, and what it takes of a
+//! core; and how soon a flown estimate follows an edit.
+//!
+//! `cargo bench --bench program`. Goals: first frame within 50 ms of process start, key to frame below 33 ms, below 6 %
+//! of a core at real time, the estimate of the guide's square within 0.3 s of the last edit.
+
+#![allow(
+    dead_code,
+    clippy::unwrap_used,
+    clippy::disallowed_methods,
+    clippy::print_stdout,
+    reason = "a bench looks at the clock and prints; it shares its terminal with the tests"
+)]
+
+#[path = "../tests/ui/fixture.rs"]
+mod fixture;
+#[path = "../tests/binary/lines.rs"]
+mod lines;
+#[path = "../tests/binary/pty.rs"]
+mod pty;
+#[path = "../tests/binary/support.rs"]
+mod support;
+
+use std::time::{Duration, Instant};
+
+use betadeck::flight::FlightSetup;
+use betadeck::session::{Command, ForecastJob, ForecastReply, Forecaster, Handle, SessionConfig, start};
+use betadeck::storage::Store;
+use betadeck::ui::{AppState, Effect, Msg, update};
+use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
+use pty::Terminal;
+use tokio::sync::{mpsc, oneshot};
+
+const RUNS: usize = 30;
+const PROGRAM: [&str; 2] = ["--no-ports", "--fresh"];
+/// How long the use of the core is watched.
+const WATCHED: Duration = Duration::from_secs(10);
+/// Ticks of the kernel's accounting in a second.
+const ACCOUNTED_HZ: f64 = 100.0;
+
+fn main() {
+    for (columns, rows) in [(80, 24), (200, 60)] {
+        println!("at {columns}x{rows}");
+        tell("  first frame after process start", (0..RUNS).map(|_| first_frame(columns, rows)).collect());
+        let mut terminal = Terminal::betadeck(columns, rows, &PROGRAM);
+        terminal.until_shown("1 Map");
+        tell("  key to frame", (0..RUNS).map(|_| key_to_frame(&mut terminal)).collect());
+        println!("  standing at 1x: {:.1} % of a core", core_share(&mut terminal) * 100.0);
+        terminal.send("F");
+        terminal.until_shown("APPROACHING");
+        println!("  flying at 1x:   {:.1} % of a core", core_share(&mut terminal) * 100.0);
+    }
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap();
+    tell("edit of the square to its flown estimate", runtime.block_on(estimates()));
+}
+
+fn tell(what: &str, mut times: Vec<Duration>) {
+    times.sort();
+    let ms = |at: usize| times[at.min(times.len() - 1)].as_secs_f64() * 1e3;
+    println!(
+        "{what}: median {:.1} ms, worst of {} {:.1} ms",
+        ms(times.len() / 2),
+        times.len(),
+        ms(times.len())
+    );
+}
+
+/// From the start of the process to the last cell of the first frame.
+fn first_frame(columns: u16, rows: u16) -> Duration {
+    let started = Instant::now();
+    let mut terminal = Terminal::betadeck(columns, rows, &PROGRAM);
+    terminal.until("the hint bar", |terminal| terminal.row(usize::from(rows) - 1).contains("? help"));
+    started.elapsed()
+}
+
+/// From a key written to the terminal to the help that it opens.
+fn key_to_frame(terminal: &mut Terminal) -> Duration {
+    let is_open = |terminal: &Terminal| terminal.screen().contains("Keys");
+    let asked = Instant::now();
+    terminal.send("?");
+    terminal.until("help", is_open);
+    let took = asked.elapsed();
+    terminal.send("?");
+    terminal.until("no help", |terminal| !is_open(terminal));
+    took
+}
+
+/// The part of one core that the program takes while its terminal is read.
+fn core_share(terminal: &mut Terminal) -> f64 {
+    let (began, before) = (Instant::now(), core_seconds(terminal.id()));
+    terminal.watch("the end", |_| began.elapsed() >= WATCHED);
+    (core_seconds(terminal.id()) - before) / began.elapsed().as_secs_f64()
+}
+
+/// What a process has used of all cores, s.
+fn core_seconds(process: u32) -> f64 {
+    let stat = std::fs::read_to_string(format!("/proc/{process}/stat")).unwrap();
+    let (_, fields) = stat.rsplit_once(") ").unwrap();
+    let ticks = fields.split(' ').skip(11).take(2).map(|field| field.parse::<f64>().unwrap());
+    ticks.sum::<f64>() / ACCOUNTED_HZ
+}
+
+/// Edits of the guide's square in a session at real time: from the key to the estimate in the user interface.
+async fn estimates() -> Vec<Duration> {
+    let mut session = session();
+    let (answers, mut answered) = mpsc::unbounded_channel();
+    let forecaster = Forecaster::start(move |reply| drop(answers.send(reply))).unwrap();
+    let mut state = fixture::state((120, 40), fixture::colour());
+    session.view.wait_for(|view| view.vehicle.craft.gps_fix == Some(true)).await.unwrap();
+    let view = session.view.borrow().clone();
+    // The plan that is open at the start is estimated at once.
+    let first = update(&mut state, Msg::View(view));
+    fly(first, &mut state, &session, &forecaster, &mut answered).await;
+    press(&mut state, '2');
+    let mut times = Vec::new();
+    for run in 0..RUNS {
+        let asked = Instant::now();
+        // A waypoint more, and again without it.
+        let effects = press(&mut state, if run % 2 == 0 { 'i' } else { 'u' });
+        fly(effects, &mut state, &session, &forecaster, &mut answered).await;
+        times.push(asked.elapsed());
+        assert!(!state.forecast.is_estimating() && state.forecast.estimate().is_some());
+    }
+    times
+}
+
+fn press(state: &mut AppState, key: char) -> Vec<Effect> {
+    update(state, Msg::Key(KeyEvent::new(KeyCode::Char(key), KeyModifiers::NONE)))
+}
+
+/// Has the estimate flown that is asked for, as the user interface's loop does.
+async fn fly(
+    effects: Vec<Effect>,
+    state: &mut AppState,
+    session: &Handle,
+    forecaster: &Forecaster,
+    answered: &mut mpsc::UnboundedReceiver<ForecastReply>,
+) {
+    let job = effects.into_iter().find_map(estimate).expect("an estimate is asked for");
+    let (reply, copy) = oneshot::channel();
+    session.commands.send(Command::CopyVehicle(reply)).await.unwrap();
+    forecaster.order(job, copy.await.unwrap().unwrap());
+    let reply = answered.recv().await.unwrap();
+    update(state, Msg::Forecast(reply));
+}
+
+fn estimate(effect: Effect) -> Option<ForecastJob> {
+    if let Effect::Forecast(job) = effect { Some(job) } else { None }
+}
+
+fn session() -> Handle {
+    let (vehicle, _) = FlightSetup::default().build().expect("the default world is sound");
+    start(SessionConfig {
+        vehicle,
+        store: Store::in_memory(),
+        starter_modes: true,
+        speed: 1.0,
+        takeoff_m: 10.0,
+        endpoints: None,
+        first_events: Vec::new(),
+    })
+    .unwrap()
+}

@@ -1,0 +1,143 @@
+//! The demo plan in the user interface, with the craft that flies it.
+
+use std::error::Error;
+use std::sync::Arc;
+
+use betadeck::firmware::cli::{self, Interpreter};
+use betadeck::flight::FlightSetup;
+use betadeck::flight::forecast::ForecastRun;
+use betadeck::plan::builtin::{BuiltinPlan, DEMO};
+use betadeck::plan::edit::History;
+use betadeck::plan::upload_lines;
+use betadeck::record::sentence;
+use betadeck::session::{ForecastReply, ForecastRequest, SessionView};
+use betadeck::signals::SimTime;
+use betadeck::sim::WorldConfig;
+use betadeck::timeline::{Marks, Timeline, TimelineView};
+use betadeck::ui::editor::PlanId;
+use betadeck::ui::keymap::Keymap;
+use betadeck::ui::{AppState, CliHelp, Effect, EnteredLines, Msg, OpenPlan, Theme, UiConfig, Units, update};
+use betadeck::vehicle::Vehicle;
+use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
+
+/// Altitude to which the pilot climbs before it engages, m.
+const TAKEOFF_M: f64 = 10.0;
+/// Ticks between two pictures that the track is made of.
+const TICKS_A_VIEW: u32 = 50;
+/// When the craft on the ground has its fix, simulated s.
+const READY_S: f64 = 12.0;
+
+/// A craft with the demo plan, and the user interface that shows it.
+pub(crate) struct DemoFlight {
+    /// The user interface.
+    pub(crate) state: AppState,
+    vehicle: Vehicle,
+    timeline: Timeline,
+    marks: Marks,
+}
+
+impl DemoFlight {
+    /// A craft that stands ready, its plan estimated.
+    pub(crate) fn on_the_ground(size: (u16, u16)) -> Result<Self, Box<dyn Error>> {
+        let file = BuiltinPlan::find(DEMO)
+            .ok_or("no demo plan")?
+            .read()
+            .map_err(|errors| betadeck::plan::format::report(&errors))?;
+        let world = WorldConfig { wind: "3@230".parse()?, ..WorldConfig::default() };
+        let (mut vehicle, _) = FlightSetup { world, ..FlightSetup::default() }.build()?;
+        let mut console = Interpreter::default();
+        for line in upload_lines(&file.plan, &file.settings) {
+            vehicle.embedded_mut().ok_or("no embedded firmware")?.run_cli(&mut console, &line);
+        }
+        let config = UiConfig {
+            theme: Theme::default(),
+            units: Units::default(),
+            keymap: Keymap::default(),
+            cli: CliHelp { complete: |line| cli::complete(line).lines(line), ..CliHelp::default() },
+            sentence: |event| sentence::text(&event.kind).unwrap_or_default(),
+            plan: OpenPlan::new(PlanId(1), None, History::new(file.into(), true)),
+            mouse: true,
+            entered: EnteredLines::default(),
+        };
+        let state = AppState::new(config, size, view(&vehicle));
+        let timeline = Timeline::new(&mut vehicle).ok_or("a flight that cannot be recorded")?;
+        let mut flight = Self { state, vehicle, timeline, marks: Marks::default() };
+        flight.advance_to(READY_S)?;
+        Ok(flight)
+    }
+
+    /// The pilot takes off and engages; until this simulated time, s.
+    pub(crate) fn fly_to(&mut self, time_s: f64) -> Result<(), Box<dyn Error>> {
+        self.vehicle.start_pilot(TAKEOFF_M).map_err(|mode| format!("no switch for {mode}"))?;
+        self.advance_to(time_s)
+    }
+
+    fn advance_to(&mut self, time_s: f64) -> Result<(), Box<dyn Error>> {
+        while self.vehicle.time().as_secs_f64() < time_s {
+            for _ in 0..TICKS_A_VIEW {
+                self.timeline.record(&mut self.vehicle);
+                self.vehicle.tick();
+            }
+            let mut heard = Vec::new();
+            self.vehicle.drain_events(|event| heard.push(event));
+            for event in heard {
+                self.marks.note(&event);
+                self.tell(Msg::Event(event.into()))?;
+            }
+            self.tell(Msg::View(view(&self.vehicle)))?;
+        }
+        Ok(())
+    }
+
+    /// Shows an earlier instant, simulated s.
+    pub(crate) fn rewind(&mut self, time_s: f64) -> Result<(), Box<dyn Error>> {
+        let head = self.vehicle.time();
+        self.timeline.show(SimTime::from_secs_f64(time_s), head);
+        let shown = self.timeline.shown().ok_or("nothing earlier")?;
+        let recording =
+            TimelineView { head, rewound: true, marks: self.marks.all(), ..TimelineView::default() };
+        self.tell(Msg::View(SessionView { paused: true, timeline: Some(recording), ..view(shown) }))
+    }
+
+    /// Types; a line end is the Enter key, and there is a backspace.
+    pub(crate) fn press(&mut self, keys: &str) -> Result<(), Box<dyn Error>> {
+        for key in keys.chars() {
+            let code = match key {
+                '\n' => KeyCode::Enter,
+                '\u{8}' => KeyCode::Backspace,
+                key => KeyCode::Char(key),
+            };
+            self.tell(Msg::Key(KeyEvent::new(code, KeyModifiers::NONE)))?;
+        }
+        Ok(())
+    }
+
+    /// Passes a message on, and flies the estimates that are asked for.
+    fn tell(&mut self, msg: Msg) -> Result<(), Box<dyn Error>> {
+        for effect in update(&mut self.state, msg) {
+            let Effect::Forecast(job) = effect else { continue };
+            let kind = job.request.kind();
+            let ForecastRequest::PlanEstimate { plan, settings } = job.request else { continue };
+            let mut run = ForecastRun::plan_estimate(self.vehicle.clone(), &plan, &settings, TAKEOFF_M)?;
+            let forecast = loop {
+                if let Some(forecast) = run.advance(TICKS_A_VIEW) {
+                    break forecast;
+                }
+            };
+            let reply = ForecastReply { revision: job.revision, kind, forecast: Ok(Box::new(forecast)) };
+            update(&mut self.state, Msg::Forecast(reply));
+        }
+        Ok(())
+    }
+}
+
+fn view(vehicle: &Vehicle) -> SessionView {
+    SessionView {
+        vehicle: Arc::new(vehicle.snapshot()),
+        speed_wanted: 1.0,
+        speed_achieved: 1.0,
+        sticks: vehicle.transmitter().sticks(),
+        pilot: vehicle.transmitter().pilot_doing(),
+        ..SessionView::default()
+    }
+}

@@ -1,0 +1,155 @@
+//! The lines entered in text fields, kept in the state directory as a shell keeps its history: each is appended as it is
+//! entered, so that programs that run at the same time lose none of each other's.
+#![allow(clippy::disallowed_methods, reason = "the shell of the user interface reads and writes files")]
+
+use std::fs::OpenOptions;
+use std::io::Write as _;
+use std::os::unix::fs::OpenOptionsExt as _;
+use std::path::{Path, PathBuf};
+
+use rustix::fs::OFlags;
+
+use super::input_file;
+use crate::ui::{EnteredLines, LineField};
+
+/// Lines of a field that are recalled.
+const RECALLED: usize = 500;
+/// Lines of a file from which the older ones are dropped at the next start.
+const MOST_LINES: usize = 2 * RECALLED;
+/// Longest line that is kept, bytes.
+const LONGEST: usize = 4096;
+
+/// The files of the lines.
+#[derive(Debug, Clone)]
+pub(super) struct LineHistory {
+    /// `None` keeps nothing.
+    directory: Option<PathBuf>,
+}
+
+impl LineHistory {
+    /// Keeps lines in the state directory.
+    pub(super) fn new(state: Option<&Path>) -> Self {
+        Self { directory: state.map(Path::to_owned) }
+    }
+
+    /// What was entered before, the oldest first; what cannot be read counts as nothing.
+    pub(super) fn read(&self) -> EnteredLines {
+        EnteredLines { commands: self.read_field(LineField::Command), cli: self.read_field(LineField::Cli) }
+    }
+
+    /// Keeps a line. One that cannot be kept is forgotten with the program, as in a shell.
+    pub(super) fn append(&self, field: LineField, line: &str) {
+        if line.len() > LONGEST || line.contains(char::is_control) {
+            return;
+        }
+        let Some(path) = self.path(field) else { return };
+        // Nobody waits for the reader of a FIFO; one write of a whole line is not mixed with another program's.
+        let opened = OpenOptions::new()
+            .append(true)
+            .create(true)
+            .mode(0o600)
+            .custom_flags(OFlags::NONBLOCK.bits() as i32)
+            .open(path);
+        if let Ok(mut file) = opened
+            && file.metadata().is_ok_and(|metadata| metadata.is_file())
+        {
+            file.write_all(format!("{line}\n").as_bytes()).ok();
+        }
+    }
+
+    fn path(&self, field: LineField) -> Option<PathBuf> {
+        let name = match field {
+            LineField::Command => "commands.history",
+            LineField::Cli => "cli.history",
+        };
+        Some(self.directory.as_ref()?.join(name))
+    }
+
+    fn read_field(&self, field: LineField) -> Vec<String> {
+        let Some(path) = self.path(field) else { return Vec::new() };
+        let Ok(Some(text)) = input_file::read_if_there(&path) else { return Vec::new() };
+        let is_line = |line: &&str| {
+            !line.trim().is_empty() && line.len() <= LONGEST && !line.contains(char::is_control)
+        };
+        let lines: Vec<&str> = text.lines().filter(is_line).collect();
+        let recalled = &lines[lines.len().saturating_sub(RECALLED)..];
+        if text.lines().count() > MOST_LINES {
+            shorten(&path, recalled);
+        }
+        recalled.iter().map(|&line| line.to_owned()).collect()
+    }
+}
+
+/// Replaces a file that grew by its newest lines; it stays as it is when that does not work.
+fn shorten(path: &Path, lines: &[&str]) {
+    let temporary = path.with_extension(format!("{}.tmp", std::process::id()));
+    let text: String = lines.iter().map(|line| format!("{line}\n")).collect();
+    if std::fs::write(&temporary, text).and_then(|()| std::fs::rename(&temporary, path)).is_err() {
+        std::fs::remove_file(&temporary).ok();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn directory(name: &str) -> PathBuf {
+        let path = std::env::temp_dir().join(format!("betadeck-history-{name}-{}", std::process::id()));
+        std::fs::remove_dir_all(&path).ok();
+        std::fs::create_dir_all(&path).unwrap();
+        path
+    }
+
+    #[test]
+    fn lines_of_two_programs_are_all_recalled_after_a_restart() {
+        let directory = directory("two");
+        let (one, other) = (LineHistory::new(Some(&directory)), LineHistory::new(Some(&directory)));
+        for number in 0..20 {
+            one.append(LineField::Command, &format!("speed {number}"));
+            other.append(LineField::Command, &format!("wind {number}"));
+        }
+        one.append(LineField::Cli, "status");
+        one.append(LineField::Cli, "two\nlines");
+        let lines = LineHistory::new(Some(&directory)).read();
+        assert_eq!((lines.commands.len(), lines.cli.as_slice()), (40, &["status".to_owned()][..]));
+        assert_eq!(lines.commands[..2], ["speed 0", "wind 0"]);
+        std::fs::remove_dir_all(directory).ok();
+    }
+
+    #[test]
+    fn the_file_stays_bounded_and_garbage_in_it_is_passed_over() {
+        let directory = directory("bounded");
+        let history = LineHistory::new(Some(&directory));
+        let file = directory.join("commands.history");
+        let long = "x".repeat(LONGEST + 1);
+        let many: String = (0..3000).map(|number| format!("speed {number}\n")).collect();
+        std::fs::write(&file, format!("{many}\n\u{1b}[2J\n{long}\nlast\n")).unwrap();
+        let lines = history.read().commands;
+        assert_eq!((lines.len(), lines.last().map(String::as_str)), (RECALLED, Some("last")));
+        assert_eq!(std::fs::read_to_string(&file).unwrap().lines().count(), RECALLED);
+        std::fs::write(&file, [0xff, 0xfe, b'\n', 0]).unwrap();
+        assert!(history.read().commands.is_empty());
+        std::fs::remove_dir_all(directory).ok();
+    }
+
+    #[test]
+    fn a_directory_or_a_fifo_in_its_place_and_a_missing_state_are_no_history() {
+        let directory = directory("places");
+        let history = LineHistory::new(Some(&directory));
+        std::fs::create_dir(directory.join("commands.history")).unwrap();
+        rustix::fs::mknodat(
+            rustix::fs::CWD,
+            directory.join("cli.history"),
+            rustix::fs::FileType::Fifo,
+            rustix::fs::Mode::RUSR | rustix::fs::Mode::WUSR,
+            0,
+        )
+        .unwrap();
+        history.append(LineField::Command, "speed 2");
+        history.append(LineField::Cli, "status");
+        assert_eq!(history.read(), EnteredLines::default());
+        LineHistory::new(None).append(LineField::Cli, "status");
+        assert_eq!(LineHistory::new(None).read(), EnteredLines::default());
+        std::fs::remove_dir_all(directory).ok();
+    }
+}

@@ -1,0 +1,71 @@
+//! Commands in flight that choose something; without an argument they ask, as the keys do.
+
+use super::did_you_mean_end;
+use crate::session::{Command, WHAT_IFS};
+use crate::telemetry::InFlightCommand;
+use crate::ui::action::{self, Action};
+use crate::ui::app_state::AppState;
+use crate::ui::forecast;
+use crate::ui::message::Effect;
+use crate::ui::update;
+
+/// `go-to 2`.
+pub(super) fn go_to(state: &mut AppState, _: &str, argument: &str) -> Result<Vec<Effect>, String> {
+    action::enabled(state, Action::GoTo)?;
+    if argument.is_empty() {
+        return Ok(update::perform(state, Action::GoTo));
+    }
+    go_to_waypoint(state, argument)
+}
+
+/// Goes to the waypoint with this number.
+pub(in crate::ui) fn go_to_waypoint(state: &AppState, number: &str) -> Result<Vec<Effect>, String> {
+    let numbers = waypoints(state);
+    match number.parse().ok().filter(|_| numbers.iter().any(|known| known == number)) {
+        Some(index) => Ok(vec![Effect::Send(Command::InFlight(InFlightCommand::GoTo(index)))]),
+        None => Err(format!("There is no waypoint {number} to go to; the craft has {}.", numbers.join(", "))),
+    }
+}
+
+/// Numbers of the waypoints that can be gone to.
+pub(super) fn complete_go_to(state: &AppState, _: &str, typed: &str) -> Vec<String> {
+    waypoints(state).into_iter().filter(|number| number.starts_with(typed)).collect()
+}
+
+/// The waypoints of the craft that have a place, by number.
+fn waypoints(state: &AppState) -> Vec<String> {
+    let stored = state.view.vehicle.stored_plan.iter().flat_map(|plan| plan.waypoints.iter().enumerate());
+    stored.filter(|(_, waypoint)| waypoint.kind.is_positional()).map(|(index, _)| index.to_string()).collect()
+}
+
+/// `what-if gps-loss`.
+pub(super) fn what_if(state: &mut AppState, _: &str, argument: &str) -> Result<Vec<Effect>, String> {
+    action::enabled(state, Action::WhatIf)?;
+    if argument.is_empty() {
+        return Ok(update::perform(state, Action::WhatIf));
+    }
+    ask_what_if(state, argument)
+}
+
+/// Flies ahead with what has this name, or this number in the list.
+pub(in crate::ui) fn ask_what_if(state: &mut AppState, name: &str) -> Result<Vec<Effect>, String> {
+    let numbered = name.parse::<usize>().ok().and_then(|number| number.checked_sub(1));
+    let found = match numbered {
+        Some(at) => WHAT_IFS.get(at),
+        None => WHAT_IFS.iter().find(|what_if| what_if.name == name),
+    };
+    let found = found.copied().ok_or_else(|| {
+        let names = WHAT_IFS.map(|what_if| what_if.name);
+        match did_you_mean_end(name, names) {
+            guess if guess.ends_with('?') => format!("There is no what-if {name}{guess}"),
+            _ => format!("There is no what-if {name}; there are {}.", names.join(", ")),
+        }
+    })?;
+    Ok(forecast::ask_what_if(state, found))
+}
+
+/// Names of what may go wrong.
+pub(super) fn complete_what_if(_: &AppState, _: &str, typed: &str) -> Vec<String> {
+    let names = WHAT_IFS.iter().map(|what_if| what_if.name);
+    names.filter(|name| name.starts_with(typed)).map(str::to_owned).collect()
+}

@@ -1,0 +1,139 @@
+//! What lies over the panels as lines to read, and lines as answers to it: for whoever has no screen.
+
+mod file;
+mod form;
+
+use crossterm::event::{KeyCode, KeyEvent, KeyModifiers};
+
+use super::app_state::AppState;
+use super::command;
+use super::editor::{EditorPopup, OpenPlan, Question};
+use super::message::{Effect, Msg};
+use super::popup::Popup;
+use super::update::update;
+use crate::session::WHAT_IFS;
+
+/// How a list of choices ends.
+const NONE: &str = "A number chooses, an empty line leaves it.";
+
+/// What an answer did.
+#[derive(Debug, Default)]
+pub(super) struct Answered {
+    pub(super) effects: Vec<Effect>,
+    /// What it changed in a question that goes on.
+    pub(super) told: Option<String>,
+}
+
+impl From<Vec<Effect>> for Answered {
+    fn from(effects: Vec<Effect>) -> Self {
+        Self { effects, told: None }
+    }
+}
+
+/// What is asked now, one sentence or choice a line; `None` when nothing is, or its choices are not known yet.
+pub(super) fn question(state: &AppState) -> Option<Vec<String>> {
+    match &state.editor.popup {
+        Some(EditorPopup::Form(open)) => return Some(form::question(state, open)),
+        Some(EditorPopup::Browser(browser)) => return file::question(browser),
+        Some(EditorPopup::Question(question)) => return Some(decision(state, question)),
+        None => {}
+    }
+    match state.popups.last()? {
+        Popup::GoTo(go_to) => {
+            let title = if state.flies_older_plan() { "Continue on the new plan from" } else { "Go now to" };
+            let waypoints = go_to.waypoints().map(|(index, kind)| format!("{index} {kind}"));
+            Some(list(format!("{title} which waypoint?"), waypoints))
+        }
+        Popup::WhatIf { .. } => {
+            let choices = (1..).zip(WHAT_IFS).map(|(number, what_if)| format!("{number} {}", what_if.title));
+            Some(list("What if, from this instant on?".to_owned(), choices))
+        }
+        Popup::Quit => Some(vec!["The craft is armed and flying ends here. Quit? y yes, n no.".to_owned()]),
+        Popup::Help { .. }
+        | Popup::Plots { .. }
+        | Popup::CommandLine
+        | Popup::Palette(_)
+        | Popup::MapMenu(_) => None,
+    }
+}
+
+/// Takes a line as the answer to what is asked.
+///
+/// # Errors
+/// What can be answered, in a sentence; it is still asked.
+pub(super) fn answer(state: &mut AppState, line: &str) -> Result<Answered, String> {
+    let line = line.trim();
+    let quits = line == "quit" || line == "app.quit";
+    match &state.editor.popup {
+        Some(EditorPopup::Form(_)) => return form::answer(state, line),
+        Some(EditorPopup::Browser(_)) => return file::answer(state, line),
+        // The journals keep the edits for the next start.
+        Some(EditorPopup::Question(Question::Unsaved { quits: true, .. })) if quits => {
+            return Ok(vec![Effect::Quit].into());
+        }
+        Some(EditorPopup::Question(question)) => {
+            let answers = question.answers();
+            let found = answers.iter().find(|(key, what)| line == key.to_string() || line == *what);
+            let key = match found {
+                Some((key, _)) => *key,
+                None if line.is_empty() => 'n',
+                None => return Err(format!("Answer {}.", choices(question))),
+            };
+            return Ok(press(state, KeyCode::Char(key)).into());
+        }
+        None => {}
+    }
+    match state.popups.last() {
+        Some(Popup::Quit) if quits || line == "y" || line == "yes" => {
+            return Ok(press(state, KeyCode::Char('y')).into());
+        }
+        Some(Popup::Quit) if !matches!(line, "n" | "no" | "") => {
+            return Err("Answer y to end, n to fly on.".to_owned());
+        }
+        Some(Popup::GoTo(_) | Popup::WhatIf { .. }) if !line.is_empty() => {
+            let effects = match state.popups.last() {
+                Some(Popup::GoTo(_)) => command::flight::go_to_waypoint(state, line)?,
+                _ => command::flight::ask_what_if(state, line)?,
+            };
+            state.popups.pop();
+            return Ok(effects.into());
+        }
+        _ => {}
+    }
+    state.popups.pop();
+    Ok(Answered::default())
+}
+
+fn list(title: String, choices: impl Iterator<Item = String>) -> Vec<String> {
+    std::iter::once(title).chain(choices).chain([NONE.to_owned()]).collect()
+}
+
+fn decision(state: &AppState, question: &Question) -> Vec<String> {
+    let text = match question {
+        Question::Replace { path, changed: true, .. } => {
+            format!("{} was changed by somebody else since it was read.", path.display())
+        }
+        Question::Replace { path, changed: false, .. } => format!("{} exists.", path.display()),
+        Question::Unsaved { id, .. } => {
+            let title = state.editor.plan_of(*id).map_or_else(String::new, OpenPlan::title);
+            format!("{title} has edits that no file holds.")
+        }
+    };
+    let later = match question {
+        Question::Unsaved { quits: true, .. } => "; quit once more ends and keeps them for later",
+        _ => "",
+    };
+    vec![format!("{text} Answer {}{later}.", choices(question))]
+}
+
+/// `s save, d discard, n stay`.
+fn choices(question: &Question) -> String {
+    let answers = question.answers().iter().map(|(key, what)| format!("{key} {what}"));
+    answers.collect::<Vec<_>>().join(", ")
+}
+
+fn press(state: &mut AppState, code: KeyCode) -> Vec<Effect> {
+    update(state, Msg::Key(KeyEvent::new(code, KeyModifiers::NONE)))
+}
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,140 @@
+use super::*;
+use crate::geo::LatLon;
+use crate::plan::{Waypoint, WaypointType};
+use crate::session::{Command, ForecastRequest, SessionView};
+use crate::telemetry::InFlightCommand;
+use crate::ui::action::{Action, EditAction};
+use crate::ui::editor::{Browser, FileReply, FileRequest, PlanId, Purpose};
+use crate::ui::update::perform;
+
+fn state() -> AppState {
+    let mut state = AppState::bare((80, 24), SessionView::default());
+    let vehicle = std::sync::Arc::make_mut(&mut state.view.vehicle);
+    vehicle.craft.home = Some(LatLon::new(404_635_000, -795_182_000));
+    let mut plan = crate::plan::FlightPlan::default();
+    for kind in [WaypointType::Flyover, WaypointType::AltChange, WaypointType::Land] {
+        plan.waypoints.push(Waypoint { kind, ..Waypoint::default() });
+    }
+    vehicle.stored_plan = Some(plan);
+    state
+}
+
+fn asked(state: &AppState) -> Vec<String> {
+    question(state).expect("a question")
+}
+
+#[test]
+fn a_waypoint_to_go_to_is_chosen_by_its_number() {
+    let mut state = state();
+    perform(&mut state, Action::GoTo);
+    assert_eq!(asked(&state), ["Go now to which waypoint?", "0 FLYOVER", "2 LAND", NONE]);
+    assert!(answer(&mut state, "1").unwrap_err().contains("the craft has 0, 2."));
+    assert!(question(&state).is_some(), "it is still asked");
+    let answered = answer(&mut state, " 2 ").unwrap();
+    assert!(matches!(answered.effects[..], [Effect::Send(Command::InFlight(InFlightCommand::GoTo(2)))]));
+    assert_eq!(question(&state), None);
+    perform(&mut state, Action::GoTo);
+    assert!(answer(&mut state, "").unwrap().effects.is_empty() && question(&state).is_none());
+}
+
+#[test]
+fn what_may_go_wrong_is_chosen_by_number_or_name() {
+    for line in ["1", "gps-loss"] {
+        let mut state = state();
+        perform(&mut state, Action::WhatIf);
+        assert_eq!(asked(&state)[1], "1 GPS lost here");
+        assert!(answer(&mut state, "gps-los").unwrap_err().contains("did you mean gps-loss?"));
+        let effects = answer(&mut state, line).unwrap().effects;
+        let [Effect::Forecast(job)] = &effects[..] else { panic!("{effects:?}") };
+        assert_eq!(job.request, ForecastRequest::WhatIf(WHAT_IFS[0]));
+    }
+}
+
+#[test]
+fn a_form_takes_its_values_line_by_line() {
+    let mut state = state();
+    perform(&mut state, Action::Edit(EditAction::Generate));
+    let lines = asked(&state);
+    assert_eq!(lines[0], "Generate a pattern.");
+    assert_eq!(lines[1], "1 shape = square (square, circle, zig-zag, survey)");
+    for (line, part) in [
+        ("shape = hexagon", "choose square, circle, zig-zag, survey"),
+        ("colour = red", "NAME = VALUE"),
+        ("99 = 1", "NAME = VALUE"),
+        ("length", "NAME = VALUE"),
+    ] {
+        let refusal = answer(&mut state, line).unwrap_err();
+        assert!(refusal.contains(part), "{line}: {refusal}");
+    }
+    let told = answer(&mut state, "shape = circle").unwrap().told.unwrap();
+    assert!(told.starts_with("shape = circle: ") && told.ends_with(" waypoints."), "{told}");
+    let told = answer(&mut state, "2 = wide").unwrap().told.unwrap();
+    assert_eq!(told, "length = wide: length: wide is not a number.");
+    assert_eq!(answer(&mut state, "take").unwrap_err(), "length: wide is not a number.");
+    answer(&mut state, "length = 80").unwrap();
+    let effects = answer(&mut state, "take").unwrap().effects;
+    assert!(!effects.is_empty() && question(&state).is_none());
+    assert!(state.plan().waypoints.len() > 3, "{:?}", state.plan());
+}
+
+#[test]
+fn files_are_chosen_by_number_or_name_once_the_directory_was_read() {
+    let listing = || crate::ui::editor::Listing {
+        directory: "/plans".into(),
+        entries: [("deep", true), ("orbit.toml", false), ("square.toml", false)]
+            .map(|(name, is_directory)| crate::ui::editor::Entry { name: name.to_owned(), is_directory })
+            .to_vec(),
+    };
+    for (line, wanted) in [("3", "/plans/square.toml"), ("orbit", "/plans/orbit.toml")] {
+        let mut state = state();
+        perform(&mut state, Action::Edit(EditAction::Open));
+        assert_eq!(question(&state), None);
+        update(&mut state, Msg::Files(FileReply::Listed(listing())));
+        assert_eq!(asked(&state)[..3], ["Open which plan of /plans?", "1 deep/", "2 orbit.toml"]);
+        let effects = answer(&mut state, line).unwrap().effects;
+        let [Effect::Files(FileRequest::Open(path))] = &effects[..] else { panic!("{effects:?}") };
+        assert_eq!(path.to_str(), Some(wanted));
+        assert_eq!(question(&state), None);
+    }
+    let mut state = state();
+    let browser =
+        Browser { listing: listing(), ..Browser::new(Purpose::Save(PlanId::default()), "new.toml") };
+    state.editor.popup = Some(EditorPopup::Browser(browser));
+    assert_eq!(asked(&state)[0], "Save as which file in /plans?");
+    let effects = answer(&mut state, "1").unwrap().effects;
+    assert!(matches!(&effects[..], [Effect::Files(FileRequest::List(Some(_)))]), "{effects:?}");
+    let effects = answer(&mut state, "mine").unwrap().effects;
+    let [Effect::Files(FileRequest::Save { path, .. })] = &effects[..] else { panic!("{effects:?}") };
+    assert_eq!(path.to_str(), Some("/plans/mine.toml"));
+}
+
+#[test]
+fn unsaved_plans_are_asked_for_and_quitting_twice_keeps_them() {
+    let mut state = state();
+    state.editor.edit("a name", |document| document.name = "mine".to_owned());
+    let ask = |state: &mut AppState| {
+        assert!(perform(state, Action::Quit).is_empty());
+        let lines = asked(state);
+        assert!(lines[0].starts_with("mine has edits that no file holds. Answer s save, d discard, n stay;"));
+    };
+    ask(&mut state);
+    assert_eq!(answer(&mut state, "what").unwrap_err(), "Answer s save, d discard, n stay.");
+    assert!(answer(&mut state, "stay").unwrap().effects.is_empty() && question(&state).is_none());
+    ask(&mut state);
+    assert!(matches!(answer(&mut state, "quit").unwrap().effects[..], [Effect::Quit]));
+    ask(&mut state);
+    let effects = answer(&mut state, "d").unwrap().effects;
+    assert!(matches!(effects[..], [.., Effect::Quit]), "{effects:?}");
+}
+
+#[test]
+fn an_armed_craft_is_asked_about() {
+    let mut state = state();
+    std::sync::Arc::make_mut(&mut state.view.vehicle).craft.armed = Some(true);
+    perform(&mut state, Action::Quit);
+    assert!(asked(&state)[0].contains("armed"));
+    assert!(answer(&mut state, "perhaps").is_err());
+    assert!(answer(&mut state, "n").unwrap().effects.is_empty() && question(&state).is_none());
+    perform(&mut state, Action::Quit);
+    assert!(matches!(answer(&mut state, "y").unwrap().effects[..], [Effect::Quit]));
+}

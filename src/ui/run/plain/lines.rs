@@ -1,0 +1,115 @@
+//! What is written: a sentence a line.
+
+use std::io::{self, Write};
+
+use crate::printable;
+use crate::session::ForecastKind;
+use crate::ui::action::{ACTIONS, Context};
+use crate::ui::app_state::AppState;
+use crate::ui::command;
+use crate::ui::forecast;
+use crate::ui::message::{Effect, Msg};
+use crate::ui::popup::Popup;
+use crate::ui::prompt;
+use crate::ui::update::update;
+
+/// The output, and what was asked on it last.
+#[derive(Debug)]
+pub(super) struct Lines<W> {
+    output: W,
+    asked: Option<Vec<String>>,
+}
+
+impl<W: Write> Lines<W> {
+    pub(super) fn new(output: W) -> Self {
+        Self { output, asked: None }
+    }
+
+    pub(super) fn write(&mut self, text: &str) -> io::Result<()> {
+        writeln!(self.output, "{}", printable::line(text))?;
+        self.output.flush()
+    }
+
+    /// Carries a line of input out: the answer to what was asked, else a command.
+    pub(super) fn enter(&mut self, state: &mut AppState, line: &str) -> io::Result<Vec<Effect>> {
+        let is_asked = state.editor.popup.is_some() || !state.popups.is_empty();
+        if !is_asked {
+            return self.said(command::run(state, line));
+        }
+        let answered = self.said(prompt::answer(state, line))?;
+        if let Some(told) = answered.told {
+            self.write(&told)?;
+            // Not all of it again.
+            self.asked = prompt::question(state);
+        }
+        Ok(answered.effects)
+    }
+
+    /// Writes a refusal.
+    fn said<T: Default>(&mut self, result: Result<T, String>) -> io::Result<T> {
+        result.or_else(|sentence| {
+            self.write(&sentence)?;
+            Ok(T::default())
+        })
+    }
+
+    /// Passes an answer on, and writes what no notice tells of it: the firmware's own words, and how a flight would end.
+    pub(super) fn answer(&mut self, state: &mut AppState, msg: Msg) -> io::Result<Vec<Effect>> {
+        match msg {
+            Msg::CliReply(Some(output)) => {
+                for line in output.text.trim_end().lines().chain(output.advice.as_deref()) {
+                    self.write(line.trim_end())?;
+                }
+                let effects = update(state, Msg::CliReply(Some(output)));
+                state.notice = None;
+                Ok(effects)
+            }
+            Msg::Forecast(reply) if reply.kind == ForecastKind::LookAhead => {
+                let effects = update(state, Msg::Forecast(reply));
+                if let Some(ghost) = forecast::ghost(state).filter(|_| state.forecast.looks_ahead()) {
+                    self.write(&ghost.line)?;
+                    // Once for each time that it is asked for.
+                    state.forecast.dismiss();
+                }
+                Ok(effects)
+            }
+            msg => Ok(update(state, msg)),
+        }
+    }
+
+    /// Writes the newest notice, and what is asked when that is something else than before.
+    pub(super) fn follow(&mut self, state: &mut AppState) -> io::Result<()> {
+        if let Some(notice) = state.notice.take() {
+            self.write(&notice.text)?;
+        }
+        match state.popups.last() {
+            Some(Popup::Help { .. } | Popup::Palette(_) | Popup::CommandLine) => {
+                state.popups.clear();
+                self.list_commands()?;
+            }
+            Some(Popup::Plots { .. }) => {
+                state.popups.clear();
+                self.write("Graphs are drawn on the screen: start without --plain.")?;
+            }
+            _ => {}
+        }
+        let asked = prompt::question(state);
+        if asked != self.asked {
+            for line in asked.iter().flatten() {
+                self.write(line)?;
+            }
+            self.asked = asked;
+        }
+        Ok(())
+    }
+
+    fn list_commands(&mut self) -> io::Result<()> {
+        for command in command::all() {
+            self.write(&format!("{} {} — {}", command.name, command.argument, command.help))?;
+        }
+        for spec in ACTIONS.iter().filter(|spec| spec.context == Context::Global) {
+            self.write(&format!("{} — {}", spec.name, spec.help))?;
+        }
+        Ok(())
+    }
+}
