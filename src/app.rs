@@ -17,6 +17,7 @@ mod open;
 mod output_file;
 mod plan;
 mod plan_files;
+mod scenario_file;
 mod serve;
 mod setup;
 mod sitl;

@@ -8,6 +8,7 @@ use super::error::{self, AppError};
 use super::line_history::LineHistory;
 use super::live::{self, LiveArgs};
 use super::plan_files::PlanFiles;
+use super::scenario_file;
 use super::setup;
 use super::stop_signal;
 use crate::args::{CharsetChoice, DisplayArgs, PlanArg, ThemeChoice, TuiArgs, UnitsChoice};
@@ -145,6 +146,7 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
             view: session.view,
             events: session.events,
             past: past.unwrap_or_default(),
+            write_scenario: scenario_file::write,
         };
         // Before the first frame: whoever sees it may already send one.
         let stop = stop_signal::stop_in_time().map_err(problem)?;

@@ -7,7 +7,7 @@ pub use crate::sim::{COMMAND_WORDS as WORLD_WORDS, FAULTS, FaultInfo, SWITCHES a
 use crate::plan::FlightPlan;
 use crate::signals::{RcFrame, SimTime};
 use crate::telemetry::{EndpointStatus, InFlightCommand, LinkState, LostTime, Snapshot};
-use crate::timeline::TimelineView;
+use crate::timeline::{RecordedFlight, TimelineView};
 use crate::vehicle::Vehicle;
 
 /// Why time cannot be paused, stepped or made faster with an external simulator.
@@ -19,6 +19,10 @@ pub const PLACE_IS_EXTERNAL: &str =
 
 /// Why a flight cannot be taken back whose flight controller runs somewhere else.
 pub const NOT_RECORDED: &str = "The flight controller runs elsewhere: its time cannot be taken back.";
+
+/// Why what was recorded is not the whole flight.
+pub const BEGINNING_LOST: &str =
+    "The recording does not reach back to where this flight began: put the craft back home and fly again.";
 
 /// Why nothing is steered while an earlier instant is shown.
 pub const REWOUND: &str = "An earlier instant is shown: `b` flies on from here, `e` goes back to the end.";
@@ -106,6 +110,8 @@ pub enum Command {
     },
     /// Copy the vehicle as it is shown between two ticks, for a forecast; the reply is the copy, or why there can be none.
     CopyVehicle(tokio::sync::oneshot::Sender<Result<VehicleCopy, String>>),
+    /// Copy what was recorded of the flight up to the instant that is shown; or why there is nothing.
+    RecordedFlight(tokio::sync::oneshot::Sender<Result<Box<RecordedFlight>, String>>),
     /// End the session.
     Quit,
 }

@@ -91,6 +91,8 @@ pub enum Action {
     Previous,
     /// The focused panel alone.
     Zoom,
+    /// The flight as a scenario.
+    WriteScenario,
     /// The first minutes, step by step.
     Tutorial,
     /// Help.

@@ -1,5 +1,6 @@
 //! The messages that the user interface gets, and the effects that it asks for.
 
+use std::path::PathBuf;
 use std::time::Duration;
 
 use crossterm::event::{KeyEvent, MouseEvent};
@@ -43,6 +44,8 @@ pub enum Msg {
     DownloadReply(Result<Box<FlightPlan>, String>),
     /// The craft saved its configuration: the sentence of why not otherwise.
     SaveReply(Result<(), String>),
+    /// The flight was written as a scenario, a sentence tells where; or why not.
+    ScenarioReply(Result<String, String>),
     /// The files answered.
     Files(FileReply),
     /// A command could not be delivered because the session does not keep up.
@@ -73,6 +76,14 @@ pub enum Effect {
     Download,
     /// Save the configuration in the craft's flash, as a ground station does; a notice tells how it went.
     SaveToFlash,
+    /// Write the flight just flown as a scenario into this file, or into one with the name of the plan; it comes back as
+    /// [`Msg::ScenarioReply`].
+    WriteScenario {
+        /// The file.
+        file: Option<PathBuf>,
+        /// The name of the plan.
+        plan: String,
+    },
     /// Give text to the terminal's clipboard.
     Copy(String),
     /// Give the terminal back until the shell continues the program.

@@ -3,6 +3,7 @@
 #![allow(clippy::disallowed_methods, reason = "the shell of the user interface lives on wall-clock time")]
 
 use std::io::{self, IsTerminal as _};
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use crossterm::clipboard::CopyToClipboard;
@@ -15,6 +16,7 @@ use tokio::sync::{mpsc, oneshot, watch};
 use tokio::time::sleep;
 
 use crate::session::{Command, Event, ForecastReply, Forecaster, SessionView};
+use crate::timeline::RecordedFlight;
 
 use super::app_state::{AppState, UiConfig};
 use super::editor::FileReply;
@@ -47,6 +49,9 @@ pub struct SessionLink {
     pub events: mpsc::UnboundedReceiver<Event>,
     /// Pictures of a flight that was flown before, oldest first.
     pub past: Vec<SessionView>,
+    /// Writes a flight as a scenario: gets the file, or the name of the plan where none is given; a sentence tells where it
+    /// was written, or why not.
+    pub write_scenario: fn(Option<PathBuf>, &str, RecordedFlight) -> Result<String, String>,
 }
 
 /// How the user interface ended.
@@ -236,6 +241,20 @@ fn carry_out(
                 replies.send(Msg::DownloadReply(answer)).ok();
             });
             link.commands.try_send(Command::Download { reply })
+        }
+        Effect::WriteScenario { file, plan } => {
+            let (reply, answer) = oneshot::channel();
+            let (replies, write) = (replies.clone(), link.write_scenario);
+            tokio::spawn(async move {
+                let recorded: Result<Box<RecordedFlight>, String> =
+                    answer.await.unwrap_or_else(|_| Err("the session did not answer.".to_owned()));
+                // It is flown again, which takes a while.
+                let written = tokio::task::spawn_blocking(move || write(file, &plan, *recorded?)).await;
+                let answer =
+                    written.unwrap_or_else(|_| Err("the flight could not be flown again.".to_owned()));
+                replies.send(Msg::ScenarioReply(answer)).ok();
+            });
+            link.commands.try_send(Command::RecordedFlight(reply))
         }
         Effect::SaveToFlash => {
             let (reply, answer) = oneshot::channel();

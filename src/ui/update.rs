@@ -44,7 +44,7 @@ use flight::{ask_where_to_go, fly, speed, upload, uploaded};
 use view::{ZOOM_STEP, follow, neighbour, scroll, zoom_map};
 
 pub(super) use cli::run_cli;
-pub(super) use plan::write_shown as write_plan;
+pub(super) use plan::{write_scenario, write_shown as write_plan};
 pub(super) use view::focus;
 
 /// Two Ctrl-C within this time quit.
@@ -116,6 +116,7 @@ fn take(state: &mut AppState, msg: Msg) -> Vec<Effect> {
             Vec::new()
         }
         Msg::DownloadReply(result) => plan::downloaded(state, result),
+        Msg::ScenarioReply(result) => plan::scenario_written(state, result),
         Msg::SaveReply(result) => plan::saved_to_flash(state, result),
         Msg::Files(reply) => plan_popup::answered(state, reply),
         Msg::Busy => {
@@ -318,6 +319,7 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
             state.zoomed = !state.zoomed;
             Vec::new()
         }
+        Action::WriteScenario => plan::write_scenario(state, None),
         Action::Tutorial => {
             tutorial::toggle(state);
             Vec::new()

@@ -98,6 +98,7 @@ impl Session {
                 });
                 drop(reply.send(copy));
             }
+            Command::RecordedFlight(reply) => drop(reply.send(self.recorded_flight())),
             Command::Quit => self.quit = true,
         }
     }

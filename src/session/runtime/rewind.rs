@@ -5,11 +5,11 @@ use std::time::Duration;
 use super::{SLICE, Session};
 use crate::firmware::cli::Interpreter;
 use crate::session::arming::ArmingWatch;
-use crate::session::command::{CliOutput, Command, NOT_RECORDED, REWOUND, Seek};
+use crate::session::command::{BEGINNING_LOST, CliOutput, Command, NOT_RECORDED, REWOUND, Seek};
 use crate::session::pacer::SPEED_RANGE;
 use crate::signals::SimTime;
 use crate::telemetry;
-use crate::timeline::{Shown, Timeline, TimelineView};
+use crate::timeline::{RecordedFlight, Shown, Timeline, TimelineView};
 use crate::vehicle::Vehicle;
 
 /// How long the flight goes on at most until something happens, µs.
@@ -57,6 +57,14 @@ impl Session {
         }
     }
 
+    /// What was recorded of the flight up to the instant that is shown.
+    pub(super) fn recorded_flight(&mut self) -> Result<Box<RecordedFlight>, String> {
+        let until = self.shown_vehicle().time();
+        let timeline = self.timeline.as_mut().ok_or(NOT_RECORDED)?;
+        timeline.record(&mut self.vehicle);
+        timeline.recorded_flight(until).map(Box::new).ok_or_else(|| BEGINNING_LOST.to_owned())
+    }
+
     pub(super) fn timeline_view(&self) -> Option<TimelineView> {
         let timeline = self.timeline.as_ref()?;
         let head = self.vehicle.time();
@@ -87,6 +95,7 @@ impl Session {
             | Command::FlyOn
             | Command::Speed(_)
             | Command::CopyVehicle(_)
+            | Command::RecordedFlight(_)
             | Command::Quit => return Some(command),
             Command::Cli { reply, .. } => {
                 let (text, advice) = ("###ERROR: REWOUND###".to_owned(), Some(REWOUND.to_owned()));

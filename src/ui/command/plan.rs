@@ -21,6 +21,15 @@ pub(super) fn save(state: &mut AppState, _: &str, file: &str) -> Result<Vec<Effe
     Ok(vec![update::write_plan(state, path)])
 }
 
+pub(super) fn scenario(state: &mut AppState, _: &str, file: &str) -> Result<Vec<Effect>, String> {
+    let path = if file.is_empty() {
+        None
+    } else {
+        Some(std::path::absolute(file).map_err(|error| format!("{file}: {error}."))?)
+    };
+    Ok(update::write_scenario(state, path))
+}
+
 /// Files are not completed here: `:open` alone shows them.
 pub(super) fn complete(_: &AppState, _: &str, _: &str) -> Vec<String> {
     Vec::new()

@@ -51,6 +51,13 @@ const COMMANDS: &[Command] = &[
         complete: plan::complete,
     },
     Command {
+        name: "scenario",
+        argument: "FILE",
+        help: "Write the flight just flown as a scenario in this file; without a name: in one called as the plan",
+        run: plan::scenario,
+        complete: plan::complete,
+    },
+    Command {
         name: "go-to",
         argument: "WAYPOINT",
         help: "Go now to a waypoint of the craft's plan; without a number: choose one",

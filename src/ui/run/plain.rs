@@ -120,6 +120,7 @@ fn is_question(effect: &Effect) -> bool {
         | Effect::World(_)
         | Effect::Upload { .. }
         | Effect::Download
+        | Effect::WriteScenario { .. }
         | Effect::SaveToFlash => true,
         Effect::Files(request) => {
             matches!(request, FileRequest::Open(_) | FileRequest::Save { .. } | FileRequest::List(_))
@@ -137,6 +138,7 @@ fn is_answer(msg: &Msg) -> bool {
         | Msg::UploadReply(_)
         | Msg::DownloadReply(_)
         | Msg::SaveReply(_)
+        | Msg::ScenarioReply(_)
         | Msg::Busy => true,
         Msg::Forecast(reply) => reply.kind != ForecastKind::PlanEstimate,
         Msg::Files(reply) => !matches!(reply, FileReply::Changed(_)),

@@ -343,6 +343,24 @@ pub(super) fn saved_to_flash(state: &mut AppState, result: Result<(), String>) -
     Vec::new()
 }
 
+/// Writes the flight just flown as a scenario.
+pub(in crate::ui) fn write_scenario(state: &mut AppState, file: Option<std::path::PathBuf>) -> Vec<Effect> {
+    state.notify(Severity::Info, "The flight is flown again to see what can be expected of it.");
+    let plan = state.editor.plan().document().name.clone();
+    vec![Effect::WriteScenario { file, plan }]
+}
+
+pub(super) fn scenario_written(state: &mut AppState, result: Result<String, String>) -> Vec<Effect> {
+    match result {
+        Ok(sentence) => state.notify(Severity::Good, sentence),
+        Err(sentence) => {
+            let sentence = state.keymap.in_force(&sentence);
+            state.notify(Severity::Fault, format!("No scenario was written: {sentence}"));
+        }
+    }
+    Vec::new()
+}
+
 /// Writes the plan that is shown to a file.
 pub(in crate::ui) fn write_shown(state: &AppState, path: std::path::PathBuf) -> Effect {
     write(state, state.editor.plan().id(), path, false)

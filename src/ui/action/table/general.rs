@@ -163,6 +163,14 @@ pub(super) const ROWS: &[Spec] = &[
     ),
     spec(Action::Zoom, "view.zoom", "zoom", "The focused panel alone, or all again", &["z"], Global),
     spec(
+        Action::WriteScenario,
+        "flight.scenario",
+        "write test",
+        "Write the flight just flown as a scenario for `betadeck check`",
+        &["T"],
+        Global,
+    ),
+    spec(
         Action::Tutorial,
         "app.tutorial",
         "tutorial",
