@@ -1,36 +1,287 @@
 //! Whole scenarios: text in, judgements out.
 
 use super::*;
-use crate::plan::format::{PlanFile, report};
+use crate::plan::format::{PlanError, PlanFile, report};
 
 /// No file is at hand.
 struct NoFiles;
 
 impl Files for NoFiles {
     fn plan(&mut self, name: &str) -> Result<PlanFile, String> {
-        Err(format!("there is no {name}"))
+        Err(format!("cannot open {name}"))
     }
 
     fn text(&mut self, name: &str) -> Result<String, String> {
-        Err(format!("there is no {name}"))
+        Err(format!("cannot open {name}"))
     }
 }
 
+/// A craft that stands for three seconds; what is expected of it follows.
+const STANDING: &str = "format = 1
+ends = \"3 s after boot\"
+[plan]
+builtin = \"square\"
+[craft]
+pilot = \"none\"
+[air]
+noise = \"none\"
+";
+
 fn scenario(text: &str) -> Scenario {
-    read("test.toml", text, None, &mut BuiltinFiles).unwrap_or_else(|errors| panic!("{}", report(&errors)))
+    read("test.toml", text, None, &mut NoFiles).unwrap_or_else(|errors| panic!("{}", report(&errors)))
+}
+
+/// What became of the expectations of the first case, the one about the result first.
+fn judged(text: &str) -> Vec<Judgement> {
+    let scenario = scenario(text);
+    let case = &scenario.cases[0];
+    judge(case, &CaseFlight::new(case, &case.airs[0]).unwrap().fly()).0
+}
+
+/// Standing with this expectation.
+fn outcome(expectation: &str) -> Outcome {
+    judged(&format!("{STANDING}[[expect]]\n{expectation}\n")).pop().unwrap().outcome
+}
+
+/// The problems of a text, each with its place.
+fn problems(text: &str) -> Vec<String> {
+    read("test.toml", text, None, &mut NoFiles).unwrap_err().iter().map(PlanError::headline).collect()
+}
+
+fn hints(text: &str) -> String {
+    read("test.toml", text, None, &mut NoFiles)
+        .unwrap_err()
+        .iter()
+        .map(|error| format!("{} | {}\n", error.message, error.hint))
+        .collect()
 }
 
 #[test]
-fn guide_1() {
-    let scenario = scenario(include_str!("../../plans/scenarios/guide-1.toml"));
-    for case in &scenario.cases {
-        for air in &case.airs {
-            let flown = CaseFlight::new(case, air).unwrap().fly();
-            println!("{} {} {} {}", case.name, air.seed, flown.result, flown.reason);
-            for judgement in judge(case, &flown).0 {
-                println!("  {judgement:?}");
-            }
-        }
+fn a_craft_that_stands_is_seen_to_stand() {
+    for (expectation, met) in [
+        ("always = 'altitude in -0.1..0.1 m and not armed'\nfrom = 'boot'", true),
+        ("always = 'armed'\nfrom = 'boot'", false),
+        ("never = 'speed > 0.1 m/s'\nfrom = 'boot'", true),
+        ("never = 'on_ground'\nfrom = 'boot'", false),
+        ("eventually = 'boot_time > 2 s'\nfrom = 'boot'", true),
+        ("eventually = 'boot_time > 4 s'\nfrom = 'boot'", false),
+        ("mostly = 'boot_time > 1 s'\nshare = 60\nfrom = 'boot'", true),
+        ("mostly = 'boot_time > 2 s'\nshare = 60\nfrom = 'boot'", false),
+        ("mean = 'boot_time = 1.5 +- 0.1 s'\nfrom = 'boot'", true),
+        ("max = 'boot_time <= 2 s'\nfrom = 'boot'", false),
+        ("that = 'boot_time = 2 +- 0.02 s'\nat = '2 s after boot'", true),
+        ("no_event = 'armed'\nfrom = 'boot'", true),
+        ("event = 'armed'\nfrom = 'boot'", false),
+        ("result = 'stopped'", true),
+        ("result = ['complete', 'landed']", false),
+    ] {
+        let outcome = outcome(expectation);
+        assert_eq!(outcome.is_met(), met, "{expectation}: {outcome:?}");
+        assert!(met || matches!(outcome, Outcome::Failed { .. }), "{expectation}: {outcome:?}");
     }
-    panic!();
+}
+
+#[test]
+fn what_was_never_judged_is_not_met() {
+    for (expectation, part) in [
+        ("that = 'altitude < 5 m'\nat = 'touchdown'", "its instant did not come"),
+        ("always = 'altitude < 5 m'\nfrom = 'ARRIVED 0'", "from which it holds did not come"),
+        ("always = 'altitude < 5 m'\nuntil = 'ARRIVED 0'", "until which it holds did not come"),
+        ("always = 'altitude < 5 m'\nfrom = '2 s after boot'\nuntil = '1 s after boot'", "before it begins"),
+        ("always = 'cross_track < 5 m'\nfrom = 'boot'", "nothing of it was known"),
+        ("that = 'altitude < 5 m'\nat = '9 s after boot'", "behind the end of the record"),
+        ("states = 'COMPLETE'", "never engaged"),
+        ("event = 'armed'\ncount = 0\nfrom = 'crash'", "did not come"),
+    ] {
+        let outcome = outcome(expectation);
+        assert!(
+            matches!(&outcome, Outcome::NeverJudged(why) if why.contains(part)),
+            "{expectation}: {outcome:?}"
+        );
+    }
+}
+
+#[test]
+fn a_failure_says_the_value_the_bound_and_the_worst_moment() {
+    let Outcome::Failed { sentence, at, .. } = outcome("always = 'boot_time <= 2 s'\nfrom = 'boot'") else {
+        panic!("not met")
+    };
+    assert!(
+        sentence.starts_with("3.00 s, at most 2.00 s at 3.00 s after boot; outside for 33."),
+        "{sentence}"
+    );
+    assert_eq!(at.map(|at| at.as_secs_f64()), Some(3.0));
+}
+
+#[test]
+fn inputs_act_at_their_instants_and_answers_can_be_expected() {
+    let text = format!(
+        "{STANDING}
+[[input]]
+name = 'ask'
+at = '1 s after boot'
+do = 'cli get ap_max_angle'
+[[input]]
+at = '0.5 s after input ask'
+do = 'wind 5@270'
+[[input]]
+at = 'when boot_time > 1.2 s'
+do = 'cli set ap_max_angel = 3'
+[[input]]
+at = '1 s after boot'
+do = 'return home'
+[[expect]]
+event = \"reply 'ap_max_angle = '\"
+within = '0.99..1.01 s after boot'
+from = 'boot'
+[[expect]]
+always = 'wind <= 0.01 m/s'
+from = 'boot'
+until = '1.4 s after boot'
+[[expect]]
+event = \"input_refused 'ap_max_angel'\"
+within = '1.2..1.23 s after boot'
+from = 'boot'
+[[expect]]
+event = \"input_refused 'armed'\"
+from = 'boot'
+[[expect]]
+that = 'wind > 1 m/s'
+at = '2.9 s after boot'
+"
+    );
+    for judgement in judged(&text) {
+        assert!(judgement.outcome.is_met(), "{judgement:?}");
+    }
+}
+
+#[test]
+fn cases_vary_and_seeds_make_flights_and_measures_compare_them() {
+    let text = format!(
+        "{STANDING}
+[vary]
+wind = ['calm', '5@270', '{{seed % 3}}@90']
+[[measure]]
+name = 'air'
+value = 'wind'
+at = '2 s after boot'
+[[case]]
+name = 'slow'
+seeds = '4..6'
+[[case]]
+name = 'fast'
+seeds = [7]
+[case.parameters]
+bound = '2 m'
+[[case.expect]]
+always = 'altitude <= bound'
+from = 'boot'
+[[compare]]
+that = 'fast.air - slow.air in -1..1 m/s'
+"
+    );
+    let scenario = scenario(&text);
+    let names: Vec<&str> = scenario.cases.iter().map(|case| case.name.as_str()).collect();
+    assert_eq!(names[..2], ["slow, wind calm", "slow, wind 5@270"]);
+    assert_eq!(names.len(), 6);
+    // Without anything random one seed is enough, unless the wind follows the seed.
+    let flights: Vec<usize> = scenario.cases.iter().map(|case| case.airs.len()).collect();
+    assert_eq!(flights, [1, 1, 3, 1, 1, 1]);
+    let winds: Vec<f64> = scenario.cases[2].airs.iter().map(|air| air.wind.speed_mps).collect();
+    assert_eq!(winds, [1.0, 2.0, 0.0]);
+    let names = [("fast.air".to_owned(), 3.0), ("slow.air".to_owned(), 2.5)];
+    assert!(compare(&scenario.compares[0], &names).outcome.is_met());
+    let names = [("fast.air".to_owned(), 3.0), ("slow.air".to_owned(), f64::NAN)];
+    assert!(matches!(compare(&scenario.compares[0], &names).outcome, Outcome::NeverJudged(_)));
+}
+
+#[test]
+fn real_sensors_get_their_allowance_and_exact_ones_do_not() {
+    let bounds = |noise: &str, exact: &str| {
+        let text = format!(
+            "format = 1\nends = '1 s after boot'\n[plan]\nbuiltin = 'land'\n[craft]\npilot = 'none'\n[air]\nnoise = '{noise}'\n\
+             [allow]\nhorizontal_m = 1\nvertical_m = 0.5\nspeed_mps = 0.2\n[[expect]]\nfrom = 'boot'\n{exact}\n\
+             always = 'altitude in 0..0.1 m and distance(home) <= 1 m and speed <= 1 m/s'\n"
+        );
+        format!("{:?}", scenario(&text).cases[0].expectations[1].expected).matches("Join").count()
+    };
+    assert_eq!(bounds("real", ""), 4);
+    assert_eq!(bounds("real", "exact = true"), 0);
+    assert_eq!(bounds("none", ""), 0);
+}
+
+#[test]
+fn every_problem_of_a_file_is_told_with_its_place() {
+    let text = "format = 2
+nmae = 'x'
+[plan]
+waypoints = ['40.4640403 -79.5182000 2000 500 FLYOVR 0 ORBIT']
+[craft]
+settings = ['ap_max_angel = 3']
+[air]
+wind = '5'
+[[input]]
+at = '5 s after ARRIVED 9'
+do = 'stick pich 2000'
+[[expect]]
+always = 'altitude <= 5 s'
+within = '1..2 s after engaged'
+[[expect]]
+[[expect]]
+event = 'ARRIVED 0'
+within = '5..2 s after engaged'
+";
+    assert_eq!(
+        problems(text),
+        [
+            "test.toml:1:10: format 2 is not known",
+            "test.toml:2:1: nmae is not a key of the scenario",
+            "test.toml:4:14: FLYOVR is not a waypoint type",
+            "test.toml:6:13: ap_max_angel is not a setting",
+            "test.toml:8:8: the direction it blows from is missing; write SPEED@FROM, for example 5@270: 5 m/s blowing from the west, or calm",
+            "test.toml:10:25: the plan has no waypoint 9",
+            "test.toml:11:7: pich is not a channel; did you mean pitch? (roll, pitch, throttle, yaw, aux1 to aux12, or 1 to 16)",
+            "test.toml:13:23: seconds do not fit: metres are compared",
+            "test.toml:14:1: within means nothing for always",
+            "test.toml:15:1: the expectation says nothing",
+            "test.toml:18:11: this time ends before it begins",
+        ]
+    );
+    let hints = hints(text);
+    for part in
+        ["did you mean name?", "did you mean FLYOVER?", "did you mean ap_max_angle?", "allowed: m, cm, km"]
+    {
+        assert!(hints.contains(part), "{part}\n{hints}");
+    }
+}
+
+#[test]
+fn a_missing_plan_and_an_unknown_case_are_told() {
+    let told = |text: &str| problems(text).join("\n");
+    assert!(told("format = 1\n[plan]\nfile = 'no.toml'").contains("test.toml:3:8: cannot open no.toml"));
+    assert!(
+        told("format = 1\n[plan]\nbuiltin = 'sqare'")
+            .contains("no built-in plan sqare; did you mean square?")
+    );
+    assert!(told("format = 1").contains("the scenario has no plan"));
+    assert!(told("[plan]\nbuiltin = 'square'").contains("format is missing"));
+    let text = "format = 1\n[plan]\nbuiltin = 'square'\n[[case]]\nname = 'calm'\n[[expect]]\ncases = ['clam']\nresult = 'complet'";
+    let told = told(text);
+    assert!(told.contains("test.toml:7:10: there is no case clam; did you mean calm?"), "{told}");
+    assert!(!told.contains("complet is not"), "what is for no case is not read: {told}");
+    assert!(problems("format = 1\nx = [").len() == 1);
+}
+
+#[test]
+fn one_mistake_is_told_once_however_many_cases_read_it() {
+    let text = "format = 1\n[plan]\nbuiltin = 'square'\n[vary]\nwind = ['calm', '5@270', '8@270']\n[[expect]]\nalways = 'sped <= 5 m/s'";
+    assert_eq!(problems(text), ["test.toml:7:11: sped is not a signal or a measure"]);
+}
+
+proptest::proptest! {
+    #[test]
+    fn no_text_makes_the_reader_of_files_panic(text in "\\PC{0,80}") {
+        let _ = read("test.toml", &text, None, &mut NoFiles);
+        let _ = read("test.toml", &format!("{STANDING}[[expect]]\nalways = {text}"), None, &mut NoFiles);
+    }
 }

@@ -202,7 +202,9 @@ impl<'a> Cursor<'a> {
         what: &str,
         words: impl Iterator<Item = &'w str> + Clone,
     ) -> SyntaxError {
-        let found = self.peek_argument().unwrap_or_else(|| self.rest());
+        let rest = self.rest();
+        let symbol = &rest[..rest.chars().next().map_or(0, char::len_utf8)];
+        let found = self.peek_argument().unwrap_or(symbol);
         let shown = if found.is_empty() { "the end".to_owned() } else { found.to_owned() };
         let guess = did_you_mean::closest(found, words.clone());
         let guess = guess.map_or_else(String::new, |word| format!("did you mean {word}? "));

@@ -80,9 +80,9 @@ fn read_one(
         return None;
     };
     let value = table.get(kind)?;
+    refuse_idle(kind, table, reader);
     let window = window(table, scope, reader);
     let expected = read_expected(kind, value, table, scope, reader)?.widened(allowance);
-    refuse_idle(kind, table, reader);
     let label = reader.string(table, "name").unwrap_or_else(|| label(kind, value, table, reader));
     Some(Expectation { label, line: reader.line(value.span()), window, expected })
 }
