@@ -1,6 +1,7 @@
 //! The built executable, used from outside: flights, plans, the command line, and the user interface in a
 //! pseudo-terminal.
 
+mod check;
 mod cli;
 #[cfg(unix)]
 mod docs;

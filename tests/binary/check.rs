@@ -1,0 +1,282 @@
+//! Scenarios by the executable: what `check` prints, writes and exits with, and `open`.
+#![allow(clippy::disallowed_methods, reason = "a program that waits for changes is waited for")]
+
+use std::io::{BufRead as _, BufReader, Read as _};
+use std::process::{Child, Stdio};
+
+use serde_json::Value;
+
+use crate::support::Sandbox;
+
+/// A craft that stands for two seconds.
+const STANDING: &str = "format = 1
+description = \"Stands\"
+ends = \"2 s after boot\"
+[plan]
+builtin = \"square\"
+[craft]
+pilot = \"none\"
+[air]
+noise = \"none\"
+[[expect]]
+from = \"boot\"
+always = \"altitude in -1..1 m\"
+";
+
+/// The same with another bound.
+fn standing(bound: &str) -> String {
+    STANDING.replace("-1..1 m", bound)
+}
+
+/// A process that does not outlive its test.
+struct Guard(Child);
+
+impl Drop for Guard {
+    fn drop(&mut self) {
+        drop(self.0.kill());
+        drop(self.0.wait());
+    }
+}
+
+fn spawn(sandbox: &Sandbox, arguments: &[&str]) -> Guard {
+    let mut command = sandbox.command(arguments);
+    Guard(
+        command
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("it starts"),
+    )
+}
+
+fn interrupt(child: &Guard) {
+    let id = child.0.id().to_string();
+    assert!(std::process::Command::new("kill").args(["-s", "INT", &id]).status().expect("kill").success());
+}
+
+fn json(text: &str) -> Vec<Value> {
+    text.lines()
+        .map(|line| serde_json::from_str(line).unwrap_or_else(|error| panic!("{error}: {line}")))
+        .collect()
+}
+
+#[test]
+fn a_scenario_that_passes_prints_a_line_with_its_tightest_margin() {
+    let sandbox = Sandbox::new();
+    sandbox.write("calm.toml", STANDING);
+    let ran = sandbox.run(&["check", "calm.toml"]).exits(0);
+    let lines: Vec<&str> = ran.out.lines().collect();
+    assert_eq!(
+        lines[0],
+        "✓ calm: stopped, tightest: always altitude in -1..1 m, from boot (0.000 m, -1.00 m to 1.00 m, 100 % left)"
+    );
+    assert!(lines[1].starts_with("1 of 1 flight passed; 2.0 s flown in "), "{}", ran.out);
+    assert_eq!(lines.len(), 2);
+}
+
+#[test]
+fn a_scenario_that_fails_says_where_what_and_how_to_look_at_it() {
+    let sandbox = Sandbox::new();
+    sandbox.write("low.toml", &standing("2..3 m"));
+    sandbox.write("calm.toml", STANDING);
+    let ran = sandbox.run(&[
+        "check",
+        "low.toml",
+        "calm.toml",
+        "--junit",
+        "report.xml",
+        "--markdown",
+        "summary.md",
+        "--json",
+        "out.json",
+    ]);
+    let ran = ran.exits(1);
+    for part in [
+        "✗ low: stopped, the scenario ended the flight",
+        "line 11: always altitude in 2..3 m, from boot: 0.000 m, 2.00 m to 3.00 m at ",
+        "      betadeck open low.toml --at boot+",
+        "✓ calm: stopped",
+        "1 of 2 flights passed",
+    ] {
+        assert!(ran.out.contains(part), "{part}\n{}", ran.out);
+    }
+    let xml = sandbox.read("report.xml");
+    for part in [
+        "<testsuites name=\"betadeck\" tests=\"2\" failures=\"1\"",
+        "<testcase classname=\"low\" name=\"flight seed 1\"",
+        "<failure message=\"always altitude in 2..3 m, from boot: 0.000 m",
+        "<testcase classname=\"calm\" name=\"flight seed 1\" time=\"",
+        "</testsuites>",
+    ] {
+        assert!(xml.contains(part), "{part}\n{xml}");
+    }
+    let summary = sandbox.read("summary.md");
+    for part in [
+        "### ❌ Some flights failed",
+        "| ❌ low | 0 of 1 |",
+        "| ✅ calm | 1 of 1 |",
+        "`betadeck open low.toml --at",
+    ] {
+        assert!(summary.contains(part), "{part}\n{summary}");
+    }
+    let lines = json(&sandbox.read("out.json"));
+    assert_eq!(lines.len(), 3);
+    assert_eq!((&lines[0]["event"], &lines[0]["passed"]), (&"flight".into(), &false.into()));
+    assert_eq!(lines[0]["expectations"][1]["outcome"], "failed");
+    assert_eq!(lines[1]["expectations"][1]["outcome"], "met");
+    assert_eq!((&lines[2]["event"], &lines[2]["flights_passed"]), (&"summary".into(), &1.into()));
+}
+
+#[test]
+fn a_mistake_in_a_scenario_is_told_with_its_place_and_nothing_is_flown() {
+    let sandbox = Sandbox::new();
+    sandbox.write("typo.toml", &STANDING.replace("always", "alwais"));
+    sandbox.write("unit.toml", &standing("-1..1 s"));
+    let ran = sandbox.run(&["check", "typo.toml", "unit.toml", "--junit", "report.xml"]).exits(2);
+    assert_eq!(ran.out, "");
+    for part in ["typo.toml:12:1: alwais is not a key of expect", "did you mean always?", "unit.toml:12:"] {
+        assert!(ran.err.contains(part), "{part}\n{}", ran.err);
+    }
+    assert!(!sandbox.path("report.xml").exists());
+    let ran = sandbox.run(&["check", "guide-11"]).exits(2);
+    assert!(ran.err.contains("did you mean guide-1?"), "{}", ran.err);
+    sandbox.run(&["check", "missing.toml"]).exits(3);
+    sandbox.run(&["check", "typo.toml", "--seeds", "5..1"]).exits(2);
+}
+
+#[test]
+fn folders_standard_input_lists_and_filters_choose_what_is_flown() {
+    let sandbox = Sandbox::new();
+    std::fs::create_dir(sandbox.path("tests")).expect("a folder");
+    sandbox.write("tests/b.toml", STANDING);
+    sandbox.write("tests/a.toml", &format!("{STANDING}[[case]]\nname = \"one\"\n[[case]]\nname = \"two\"\n"));
+    sandbox.write("tests/plan.toml", "name = \"a plan, no scenario\"\n");
+    let ran = sandbox.run(&["check", "tests"]).exits(0);
+    let names: Vec<&str> =
+        ran.out.lines().filter_map(|line| line.strip_prefix("✓ ")?.split(':').next()).collect();
+    assert_eq!(names, ["a · one", "a · two", "b"]);
+    let ran = sandbox.run(&["check", "tests", "--filter", "a two"]).exits(0);
+    assert!(ran.out.contains("1 of 1 flight passed"), "{}", ran.out);
+    sandbox.run(&["check", "tests", "--filter", "three"]).exits(2);
+    let ran = sandbox.run(&["check", "tests", "--list"]).exits(0);
+    assert_eq!(ran.out, "a: Stands\n    one\n    two\nb: Stands\n    one case\n");
+    let ran = sandbox.run_with(&["check", "-"], STANDING).exits(0);
+    assert!(ran.out.starts_with("✓ standard input: stopped"), "{}", ran.out);
+    let ran = sandbox.run(&["check", "--list"]).exits(0);
+    for name in ["guide-1: ", "guide-8: ", "(slow)"] {
+        assert!(ran.out.contains(name), "{name}\n{}", ran.out);
+    }
+}
+
+#[test]
+fn repetitions_are_the_same_to_the_last_bit() {
+    let sandbox = Sandbox::new();
+    sandbox.write("real.toml", &STANDING.replace("\"none\"\n[[", "\"real\"\n[["));
+    let ran =
+        sandbox.run(&["check", "real.toml", "--repeat", "5", "--seeds", "3..4", "--json", "-"]).exits(0);
+    let lines = json(&ran.out);
+    assert_eq!(lines.len(), 11);
+    let hashes: Vec<&str> = lines[..10].iter().map(|line| line["hash"].as_str().expect("a hash")).collect();
+    assert!(
+        hashes[..5].iter().all(|hash| *hash == hashes[0])
+            && hashes[5..].iter().all(|hash| *hash == hashes[5])
+    );
+    assert_ne!(hashes[0], hashes[5], "another seed is another flight");
+    assert_eq!(lines[10]["cases"][0]["flights"], 10);
+}
+
+#[test]
+fn fail_fast_ends_at_the_first_failure() {
+    let sandbox = Sandbox::new();
+    sandbox.write("a.toml", &standing("2..3 m"));
+    sandbox.write("b.toml", STANDING);
+    let ran = sandbox
+        .run(&["check", "a.toml", "b.toml", "b.toml", "b.toml", "--fail-fast", "--jobs", "1"])
+        .exits(1);
+    assert!(ran.out.contains("were not flown"), "{}", ran.out);
+}
+
+#[test]
+fn an_interrupted_run_prints_what_is_done() {
+    let sandbox = Sandbox::new();
+    sandbox.write("a.toml", STANDING);
+    let endless = STANDING.replace("2 s after boot", "900000 s after boot");
+    sandbox.write("b.toml", &format!("time_limit_s = 1000000\nsample_hz = 0.1\n{endless}"));
+    let mut child = spawn(&sandbox, &["check", "a.toml", "b.toml", "--junit", "report.xml"]);
+    let mut reader = BufReader::new(child.0.stdout.take().expect("standard output"));
+    let mut text = String::new();
+    reader.read_line(&mut text).expect("the first flight");
+    interrupt(&child);
+    reader.read_to_string(&mut text).expect("the rest");
+    assert_eq!(child.0.wait().expect("an end").code(), Some(130), "{text}");
+    assert!(
+        text.contains("✓ a: stopped") && text.contains("1 of 1 flight passed, 1 were not flown"),
+        "{text}"
+    );
+    assert!(sandbox.read("report.xml").contains("classname=\"a\""));
+}
+
+#[test]
+fn a_changed_file_is_flown_again_while_it_is_watched() {
+    let sandbox = Sandbox::new();
+    sandbox.write("a.toml", STANDING);
+    let mut child = spawn(&sandbox, &["check", "a.toml", "--watch"]);
+    let mut lines = BufReader::new(child.0.stdout.take().expect("standard output")).lines();
+    let mut told = BufReader::new(child.0.stderr.take().expect("standard error")).lines();
+    let mut until = |part: &str| {
+        lines.by_ref().map(|line| line.expect("a line")).find(|line| line.contains(part)).expect("the line");
+    };
+    let mut waits = || {
+        told.by_ref()
+            .map(|line| line.expect("a line"))
+            .find(|line| line.contains("Waiting"))
+            .expect("it waits");
+    };
+    until("1 of 1 flight passed");
+    waits();
+    sandbox.write("a.toml", &standing("22..33 m"));
+    until("0 of 1 flight passed");
+    waits();
+    interrupt(&child);
+    assert_eq!(child.0.wait().expect("an end").code(), Some(130));
+}
+
+#[test]
+fn a_scenario_made_of_a_plan_passes() {
+    let sandbox = Sandbox::new();
+    let made = sandbox.run(&["check", "--new", "land"]).exits(0);
+    sandbox.write("land-test.toml", &made.out);
+    sandbox.run(&["check", "land-test.toml"]).exits(0);
+    // Of another plan it is no test.
+    sandbox.write("other.toml", &made.out.replace("LAND 0", "HOLD 50"));
+    sandbox.run(&["check", "other.toml"]).exits(1);
+}
+
+#[cfg(unix)]
+#[test]
+fn the_worst_moment_is_opened_on_the_screen_and_a_flight_on_the_screen_becomes_a_scenario() {
+    let sandbox = Sandbox::new();
+    let plan = "waypoint insert 0 40.4635 -79.5182 500 0 LAND 0 NONE\n";
+    sandbox.write("near.txt", plan);
+    let scenario = "format = 1\n[plan]\nfile = \"near.txt\"\n[craft]\ntakeoff_m = 5\n";
+    sandbox.write("near.toml", scenario);
+    let path = sandbox.path("near.toml").display().to_string();
+    let mut terminal = crate::pty::Terminal::betadeck(120, 40, &["open", &path, "--at", "4"]);
+    terminal.until_shown("LANDING");
+    terminal.until_shown("⏮");
+    terminal.send("e");
+    terminal.until_shown("COMPLETE");
+    // The flight was flown before: it can be written down as it is.
+    let written = sandbox.path("written.toml").display().to_string();
+    terminal.send(&format!(":scenario {written}\r"));
+    terminal.until_shown("betadeck check");
+    terminal.send("q");
+    terminal.until("the question or the end", |terminal| {
+        !terminal.is_alternate() || terminal.screen().contains("uit")
+    });
+    terminal.signal("TERM");
+    terminal.end();
+    let ran = sandbox.run(&["check", "written.toml"]).exits(0);
+    assert!(ran.out.contains("complete"), "{}", ran.out);
+}
