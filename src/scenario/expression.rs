@@ -213,6 +213,12 @@ impl Instant {
         }
     }
 
+    /// Whether it can come several times.
+    #[must_use]
+    pub(super) fn recurs(&self) -> bool {
+        matches!(self.anchor, Anchor::Happening(_) | Anchor::When(_)) && self.occurrence != Occurrence::Last
+    }
+
     /// An anchor without an offset.
     #[must_use]
     pub fn of(anchor: Anchor) -> Self {

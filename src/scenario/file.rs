@@ -31,6 +31,9 @@ const MAX_BYTES: usize = 512 << 10;
 const MAX_FLIGHTS: usize = 10_000;
 /// How long a scenario flies at most unless it says otherwise, s after the engagement.
 const TIME_LIMIT_S: f64 = 600.0;
+/// How long the record goes on behind the end unless the scenario says otherwise, s: what the end brings with it, such as the
+/// disarm, belongs to the flight.
+const WATCH_S: f64 = 0.5;
 /// Samples a second unless the scenario says otherwise.
 const SAMPLE_HZ: f64 = 100.0;
 
@@ -199,7 +202,7 @@ fn read_case(base: &str, all: &[String], layers: &Layers<'_, '_>, reader: &mut R
         options: craft.options,
         pilot: craft.pilot,
         time_limit_s: reader.number_in(layers.value("time_limit_s"), 1.0, 1e6, "s").unwrap_or(TIME_LIMIT_S),
-        watch_s: reader.number_in(layers.value("watch_s"), 0.0, 1e6, "s").unwrap_or(0.0),
+        watch_s: reader.number_in(layers.value("watch_s"), 0.0, 1e6, "s").unwrap_or(WATCH_S),
         ends,
         sample_hz: reader.number_in(layers.value("sample_hz"), 0.1, 1000.0, "Hz").unwrap_or(SAMPLE_HZ),
         parameters: parameters.into_iter().map(|(name, value, _)| (name, value)).collect(),
@@ -244,6 +247,10 @@ fn read_parameters(
             }) else {
                 continue;
             };
+            if let Some(problem) = measure::taken(name) {
+                reader.problem(span, problem, "choose another name");
+                continue;
+            }
             if let Some(known) = parameters.iter_mut().find(|(known, ..)| known == name) {
                 if known.2 != dimension {
                     reader.problem(
@@ -306,11 +313,21 @@ fn read_inputs(
         let at = reader
             .required(&table, "at")
             .and_then(|value| reader.expression(value, |cursor| read_instant(cursor, scope)));
+        let each = reader.boolean(&table, "each").unwrap_or(false);
+        if let Some(span) =
+            at.as_ref().filter(|at| each && !at.recurs()).and_then(|_| table.get("each")).map(|v| v.span())
+        {
+            reader.problem(
+                span,
+                "this instant comes only once",
+                "leave each out, or write at = \"COMPLETE\"",
+            );
+        }
         let told = reader.required(&table, "do").and_then(|value| Some((value, reader.text(value)?)));
         let Some((value, text)) = told else { continue };
         let action = read_action(&text, &mut |plan| reader.plan(plan));
         match (action, at) {
-            (Ok(action), Some(at)) => inputs.push(TimedInput { name, at, action, text }),
+            (Ok(action), Some(at)) => inputs.push(TimedInput { name, at, each, action, text }),
             (Err(error), _) => reader.syntax(value, error),
             (Ok(_), None) => {}
         }

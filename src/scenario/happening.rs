@@ -40,7 +40,7 @@ events! {
     Engaged "engaged" [] "the autopilot began to fly a mission";
     Mode "mode" [] "a mode went on or off";
     Plan "plan" [Count] "another plan became the active one, with its source";
-    Refused "engage_refused" [Wp] "the autopilot did not engage, with the reason";
+    Refused "engage_refused" [Wp, Distance, Limit] "the autopilot did not engage, with the reason";
     Geofence "geofence" [Distance, Limit] "the craft left the fence, with what is done about it";
     RxLoss "rx_loss" [] "the receiver link was lost";
     RxRecovered "rx_recovered" [] "the receiver link came back";

@@ -14,6 +14,8 @@ pub struct TimedInput {
     pub name: String,
     /// When.
     pub at: Instant,
+    /// Each time that comes, not only once.
+    pub each: bool,
     /// What.
     pub action: Action,
     /// As it is written.

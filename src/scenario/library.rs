@@ -18,6 +18,24 @@ macro_rules! scenarios {
 
 scenarios! {
     "guide-1"
+    "guide-2"
+    "guide-3"
+    "guide-4"
+    "guide-5"
+    "guide-6"
+    "guide-7"
+    "guide-8"
+    "hold-wind"
+    "gust-8"
+    "gps-outage"
+    "gps-glitch"
+    "weak-motor"
+    "dead-motor"
+    "sag"
+    "heavy"
+    "bias"
+    "strong-wind"
+    "campaign"
 }
 
 /// Settings that several of them share.

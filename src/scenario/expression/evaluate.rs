@@ -40,9 +40,13 @@ impl Verdict {
         if self.strict { self.margin() > 0.0 } else { self.margin() >= 0.0 }
     }
 
-    /// The margin as a share of the allowed range: of its half width, or of the limit.
+    /// The margin as a share of the allowed range: of its half width, or of the limit. Of a number that must be exact all of
+    /// it is left, or nothing.
     #[must_use]
     pub fn share(&self) -> f64 {
+        if self.low >= self.high {
+            return if self.holds() { 1.0 } else { -1.0 };
+        }
         let room = match (self.low.is_finite(), self.high.is_finite()) {
             (true, true) => (self.high - self.low) / 2.0,
             (true, false) => self.low.abs(),

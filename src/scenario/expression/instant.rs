@@ -257,6 +257,8 @@ pub struct Search<'a> {
     looked_at: usize,
     /// Such happenings so far.
     seen: usize,
+    /// Which of them it is.
+    wanted: Occurrence,
     /// The condition held at the sample before.
     held: bool,
     /// When it was, without the offset, µs since boot.
@@ -268,13 +270,27 @@ impl<'a> Search<'a> {
     #[must_use]
     pub fn new(instant: &'a Instant) -> Self {
         let after = instant.after.as_deref().map(|after| Box::new(Search::new(after)));
-        Self { instant, after, looked_at: 0, seen: 0, held: false, found_us: None }
+        Self {
+            instant,
+            after,
+            looked_at: 0,
+            seen: 0,
+            wanted: instant.occurrence,
+            held: false,
+            found_us: None,
+        }
     }
 
     /// When the instant is in a flight that is over, µs since boot.
     pub(super) fn to_end(&mut self, evaluator: &Evaluator<'_>) -> Option<i64> {
         self.look(evaluator);
         self.result()
+    }
+
+    /// Looks for the next such instant behind the one that was found.
+    pub(in crate::scenario) fn go_on(&mut self) {
+        self.found_us = None;
+        self.wanted = Occurrence::Nth(self.seen + 1);
     }
 
     /// When the instant is, as far as the flight has come, µs since boot.
@@ -304,15 +320,16 @@ impl<'a> Search<'a> {
             Anchor::Happening(pattern) => {
                 for happening in trace.happenings.get(self.looked_at..).unwrap_or_default() {
                     let time = happening.time.0 as i64;
+                    self.looked_at += 1;
                     if time >= earliest && pattern.matches(happening) && self.is_it(time) {
                         break;
                     }
                 }
-                self.looked_at = trace.happenings.len();
             }
             Anchor::When(condition) => {
                 for index in self.looked_at..trace.samples.len() {
                     let time = trace.samples[index].time.0 as i64;
+                    self.looked_at = index + 1;
                     if time < earliest {
                         continue;
                     }
@@ -323,7 +340,6 @@ impl<'a> Search<'a> {
                         break;
                     }
                 }
-                self.looked_at = trace.samples.len();
             }
         }
     }
@@ -331,7 +347,7 @@ impl<'a> Search<'a> {
     /// Notes one of them; says whether the search is over.
     fn is_it(&mut self, time_us: i64) -> bool {
         self.seen += 1;
-        match self.instant.occurrence {
+        match self.wanted {
             Occurrence::Nth(nth) if nth == self.seen => {
                 self.found_us = Some(time_us);
                 true

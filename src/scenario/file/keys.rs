@@ -81,7 +81,7 @@ pub(super) const VARY_KEYS: &[&str] = &[
 pub(super) const ALLOW_KEYS: &[&str] = &["horizontal_m", "vertical_m", "speed_mps", "angle_deg"];
 
 /// Keys of `[[input]]`.
-pub(super) const INPUT_KEYS: &[&str] = &["name", "cases", "at", "do"];
+pub(super) const INPUT_KEYS: &[&str] = &["name", "cases", "at", "each", "do"];
 
 /// Keys of `[[measure]]`.
 pub(super) const MEASURE_KEYS: &[&str] =

@@ -9,6 +9,7 @@ use crate::plan::format::TomlTable;
 use crate::scenario::case::{Measure, Measured, Statistic, Window};
 use crate::scenario::expression::{Scope, read_instant, read_number};
 use crate::scenario::quantity::Dimension;
+use crate::scenario::signal::Signal;
 
 /// Reads the measures of a case; later ones may use earlier ones.
 pub(super) fn read(
@@ -31,12 +32,21 @@ pub(super) fn read(
             reader.problem(value.span(), format!("{name} is no name of a measure"), "letters, digits and _");
             continue;
         }
+        if let Some(problem) = taken(&name) {
+            reader.problem(value.span(), problem, "choose another name");
+            continue;
+        }
         if let Some((measured, dimension)) = read_measured(&table, scope, reader) {
             scope.names.push((name.clone(), dimension));
             measures.push(Measure { name, dimension, measured });
         }
     }
     measures
+}
+
+/// What is wrong with a name that a parameter or a measure cannot have: it would never be meant.
+pub(super) fn taken(name: &str) -> Option<String> {
+    Signal::find(name).map(|_| format!("{name} is a signal"))
 }
 
 /// The window of a table.

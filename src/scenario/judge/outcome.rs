@@ -131,8 +131,9 @@ pub(super) fn unjudged(why: &str) -> Outcome {
     Outcome::NeverJudged(why.to_owned())
 }
 
-/// A time that must lie between two.
+/// A time that must lie between two. Nothing that comes after all is sooner than at once.
 pub(super) fn time_verdict(seconds: f64, low: f64, high: f64) -> Verdict {
+    let low = if low == 0.0 && seconds >= 0.0 { f64::NEG_INFINITY } else { low };
     Verdict { value: seconds, low, high, dimension: Dimension::TIME, strict: false }
 }
 

@@ -169,11 +169,17 @@ fn mostly(
     if known == 0 {
         return unjudged(NOTHING_KNOWN);
     }
-    let value = held as f64 / known as f64;
-    let verdict =
-        Verdict { value, low: share, high: f64::INFINITY, dimension: Dimension::NONE, strict: false };
     let time = first.unwrap_or_else(|| trace.end());
-    if verdict.holds() {
+    let value = held as f64 / known as f64;
+    // What is allowed is a share of samples at which it does not hold: of that the margin is told.
+    let verdict = Verdict {
+        value: 1.0 - value,
+        low: f64::NEG_INFINITY,
+        high: 1.0 - share,
+        dimension: Dimension::NONE,
+        strict: false,
+    };
+    if value >= share {
         return met(Some(Margin { verdict, time }));
     }
     let sentence = format!(

@@ -64,11 +64,14 @@ impl<'a> Inputs<'a> {
             vehicle.transmitter_mut().set_cut(false);
         }
         let mut due: Vec<(i64, &TimedInput)> = Vec::new();
-        self.waiting.retain(|waiting| {
-            if let (true, Some(us)) = (waiting.is_due(now), waiting.due_us) {
-                due.push((us, waiting.input));
+        self.waiting.retain_mut(|waiting| {
+            let (true, Some(us)) = (waiting.is_due(now), waiting.due_us) else { return true };
+            due.push((us, waiting.input));
+            if waiting.input.each {
+                waiting.due_us = None;
+                waiting.search.go_on();
             }
-            !waiting.is_due(now)
+            waiting.input.each
         });
         due.sort_by_key(|&(us, _)| us);
         for (_, input) in due {

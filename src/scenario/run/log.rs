@@ -121,11 +121,16 @@ fn refused(time: SimTime, refusal: &Refusal) -> Happening {
         Refusal::Geofence { wp, .. } | Refusal::BadWaypoint(wp) => (refusal.into(), Some(*wp)),
         other => (other.into(), None),
     };
-    let happening = Happening::event(time, EventName::Refused, &[word]).saying(refusal.sentence());
-    match wp {
-        Some(wp) => happening.with(Field::Wp, f64::from(wp)),
-        None => happening,
+    let mut happening = Happening::event(time, EventName::Refused, &[word]).saying(refusal.sentence());
+    if let Some(wp) = wp {
+        happening = happening.with(Field::Wp, f64::from(wp));
     }
+    if let Refusal::Geofence { distance_cm, limit_m, .. } = refusal {
+        happening = happening
+            .with(Field::Distance, f64::from(*distance_cm) / 100.0)
+            .with(Field::Limit, f64::from(*limit_m));
+    }
+    happening
 }
 
 /// `FLYOVER, LAND`.
