@@ -94,7 +94,7 @@ fn a_scenario_that_fails_says_where_what_and_how_to_look_at_it() {
     let ran = ran.exits(1);
     for part in [
         "✗ low: stopped, the scenario ended the flight",
-        "line 11: always altitude in 2..3 m, from boot: 0.000 m, 2.00 m to 3.00 m at ",
+        "line 12: always altitude in 2..3 m, from boot: 0.000 m, 2.00 m to 3.00 m at ",
         "      betadeck open low.toml --at boot+",
         "✓ calm: stopped",
         "1 of 2 flights passed",
@@ -249,7 +249,7 @@ fn a_scenario_made_of_a_plan_passes() {
     sandbox.write("land-test.toml", &made.out);
     sandbox.run(&["check", "land-test.toml"]).exits(0);
     // Of another plan it is no test.
-    sandbox.write("other.toml", &made.out.replace("LAND 0", "HOLD 50"));
+    sandbox.write("other.toml", &made.out.replace("LAND 30", "HOLD 30"));
     sandbox.run(&["check", "other.toml"]).exits(1);
 }
 
@@ -264,7 +264,7 @@ fn the_worst_moment_is_opened_on_the_screen_and_a_flight_on_the_screen_becomes_a
     let path = sandbox.path("near.toml").display().to_string();
     let mut terminal = crate::pty::Terminal::betadeck(120, 40, &["open", &path, "--at", "4"]);
     terminal.until_shown("LANDING");
-    terminal.until_shown("⏮");
+    terminal.until_shown("fly on");
     terminal.send("e");
     terminal.until_shown("COMPLETE");
     // The flight was flown before: it can be written down as it is.

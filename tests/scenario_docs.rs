@@ -1,0 +1,100 @@
+//! `docs/scenarios.md` against the code: every key, signal, flag, event, input and unit has its row.
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stdout,
+    reason = "a test may stop at a surprise and print what the page should say"
+)]
+
+use std::path::Path;
+
+use betadeck::scenario::happening::EVENTS;
+use betadeck::scenario::quantity::UNITS;
+use betadeck::scenario::signal::{Flag, SIGNALS};
+use betadeck::scenario::{FORMS, TABLES};
+use strum::IntoEnumIterator as _;
+
+/// The tables of the reference with the marks between which they stand.
+fn tables() -> Vec<(&'static str, String)> {
+    vec![
+        ("INPUTS", inputs()),
+        ("EVENTS", events()),
+        ("FLAGS", flags()),
+        ("SIGNALS", signals()),
+        ("UNITS", units()),
+        ("KEYS", keys()),
+    ]
+}
+
+fn rows(head: &str, rows: impl Iterator<Item = String>) -> String {
+    let columns = head.matches('|').count() - 1;
+    format!("{head}\n|{}\n{}", " --- |".repeat(columns), rows.map(|row| row + "\n").collect::<String>())
+}
+
+fn inputs() -> String {
+    rows("| `do` | does |", FORMS.iter().map(|(form, help)| format!("| `{form}` | {help} |")))
+}
+
+fn events() -> String {
+    let row = |info: &betadeck::scenario::happening::EventInfo| {
+        let words = info.event.words();
+        let words = if words.len() > 12 {
+            format!("`{}` … `{}`", words[..10].join("` `"), words[words.len() - 2..].join("` `"))
+        } else if words.is_empty() {
+            String::new()
+        } else {
+            format!("`{}`", words.join("` `"))
+        };
+        let fields: Vec<String> = info
+            .fields
+            .iter()
+            .map(|field| {
+                let (name, dimension, help) = field.info();
+                let unit = dimension.unit().map_or(String::new(), |unit| format!(", {}", unit.name));
+                format!("`{name}` ({help}{unit})")
+            })
+            .collect();
+        format!("| `{}` | {} | {words} | {} |", info.name, info.help, fields.join(", "))
+    };
+    rows("| event | when | words behind it | numbers for `with` |", EVENTS.iter().map(row))
+}
+
+fn flags() -> String {
+    rows("| flag | says |", Flag::iter().map(|flag| format!("| `{flag}` | {} |", flag.help())))
+}
+
+fn signals() -> String {
+    let row = |info: &betadeck::scenario::signal::SignalInfo| {
+        let unit = info.dimension.unit().map_or("", |unit| unit.name);
+        format!("| `{}` | {unit} | {} |", info.name, info.help)
+    };
+    rows("| signal | unit | is |", SIGNALS.iter().map(row))
+}
+
+fn units() -> String {
+    rows("| unit | is |", UNITS.iter().map(|unit| format!("| `{}` | {} |", unit.name, unit.help)))
+}
+
+fn keys() -> String {
+    rows(
+        "| table | keys |",
+        TABLES.iter().map(|(table, keys)| format!("| {table} | `{}` |", keys.join("` `"))),
+    )
+}
+
+#[test]
+fn the_reference_has_a_row_for_everything_that_can_be_written() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/scenarios.md");
+    let page = std::fs::read_to_string(path).unwrap();
+    let mut missing = Vec::new();
+    for (name, table) in tables() {
+        println!("=={name}==\n{table}");
+        let marked = format!("<!-- {name} -->\n{table}<!-- end -->");
+        if !page.contains(&marked) {
+            missing.push(name);
+        }
+    }
+    assert!(
+        missing.is_empty(),
+        "replace these tables of docs/scenarios.md by those printed above: {missing:?}"
+    );
+}
