@@ -144,7 +144,7 @@ pub const RESULTS: [&str; 10] = [
 ];
 
 /// The names of refusals (autopilot and abort).
-const REFUSALS: [&str; 15] = [
+pub(super) const REFUSALS: [&str; 15] = [
     "NOT_ARMED",
     "THROTTLE",
     "NO_FIX",

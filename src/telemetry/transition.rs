@@ -56,6 +56,31 @@ pub enum TransitionReason {
 }
 
 impl TransitionReason {
+    /// The words of all causes but refusals and aborts, which have their own.
+    pub const WORDS: [&'static str; 21] = [
+        "reset",
+        "resume",
+        "set_current",
+        "hold here",
+        "emergency",
+        "return to home",
+        "disengage",
+        "disarm",
+        "fence",
+        "climb",
+        "arrival",
+        "plane",
+        "turn radius",
+        "missed",
+        "advance",
+        "hold",
+        "loiter",
+        "land",
+        "pattern",
+        "hold time",
+        "touchdown",
+    ];
+
     /// The cause in a word.
     #[must_use]
     pub fn word(self) -> &'static str {
@@ -90,5 +115,39 @@ impl TransitionReason {
 impl fmt::Display for TransitionReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(self.word())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_list_has_the_words_of_all_causes() {
+        use TransitionReason as Reason;
+        let all = [
+            Reason::Reset,
+            Reason::Resume,
+            Reason::SetCurrent,
+            Reason::HoldHere,
+            Reason::Emergency,
+            Reason::ReturnHome,
+            Reason::Disengage,
+            Reason::Disarm,
+            Reason::Fence,
+            Reason::Climb,
+            Reason::Arrival,
+            Reason::Plane,
+            Reason::TurnRadius,
+            Reason::Missed,
+            Reason::Advance,
+            Reason::Hold,
+            Reason::Loiter,
+            Reason::Land,
+            Reason::Pattern,
+            Reason::HoldTime,
+            Reason::Touchdown,
+        ];
+        assert_eq!(all.map(Reason::word), Reason::WORDS);
     }
 }

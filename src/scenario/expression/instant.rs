@@ -8,9 +8,9 @@ use super::evaluate::Evaluator;
 use super::number::read_number;
 use super::place::waypoints;
 use super::{Anchor, Instant, Number, Occurrence, Scope};
-use crate::scenario::happening::{EVENTS, EventName, Pattern, mode_word};
+use crate::scenario::happening::{EVENTS, EventName, Pattern, REFUSALS, mode_word};
 use crate::scenario::quantity::Dimension;
-use crate::telemetry::{Mode, NavState, PlanSource};
+use crate::telemetry::{Mode, NavState, PlanSource, TransitionReason};
 
 /// Origins of a plan by their words.
 pub(super) const SOURCES: [(&str, PlanSource); 3] =
@@ -170,14 +170,17 @@ fn event_words() -> impl Iterator<Item = &'static str> + Clone {
 
 /// Reads the words of a transition's cause.
 fn read_reason(cursor: &mut Cursor<'_>) -> Result<String, SyntaxError> {
-    if let Some(quoted) = cursor.take_quoted()? {
-        return Ok(quoted.to_owned());
-    }
-    let Some(word) = cursor.peek_argument() else {
+    let start = cursor.clone();
+    let Some(reason) =
+        cursor.take_quoted()?.or_else(|| cursor.peek_argument().inspect(|word| cursor.take_word(word)))
+    else {
         return Err(cursor.error("the reason is missing", "write by resume, or by 'turn radius'"));
     };
-    cursor.take_word(word);
-    Ok(word.to_owned())
+    let reasons = || TransitionReason::WORDS.into_iter().chain(REFUSALS);
+    if reasons().any(|known| known.eq_ignore_ascii_case(reason)) {
+        return Ok(reason.to_owned());
+    }
+    Err(start.unknown("the reason of a transition", reasons()))
 }
 
 /// Reads the name of a state.

@@ -1,0 +1,78 @@
+//! Reads, flies and judges cases.
+
+use betadeck::flight::setup::BootLines;
+use betadeck::plan::format::report;
+use betadeck::scenario::{
+    BuiltinFiles, BuiltinScenario, Case, CaseFlight, Flown, Judgement, Outcome, Scenario, judge, read,
+};
+
+/// A built-in scenario with one seed.
+#[track_caller]
+pub(crate) fn builtin(name: &str) -> Scenario {
+    with_more(name, "")
+}
+
+/// A built-in scenario with one seed, and with these lines behind its own.
+#[track_caller]
+fn with_more(name: &str, lines: &str) -> Scenario {
+    let found = BuiltinScenario::find(name).unwrap_or_else(|| panic!("there is no {name}"));
+    let text = format!("{}\n{lines}", found.text);
+    read(name, &text, Some(&[1]), &mut BuiltinFiles).unwrap_or_else(|errors| panic!("{}", report(&errors)))
+}
+
+/// A case of a built-in scenario, by its whole name.
+#[track_caller]
+pub(crate) fn case_of(scenario: &str, case: &str) -> Case {
+    case_with(scenario, case, "")
+}
+
+/// A case of a built-in scenario that has these lines behind its own.
+#[track_caller]
+pub(crate) fn case_with(scenario: &str, case: &str, lines: &str) -> Case {
+    let all = with_more(scenario, lines).cases;
+    let names: Vec<String> = all.iter().map(|known| known.name.clone()).collect();
+    all.into_iter()
+        .find(|known| known.name == case)
+        .unwrap_or_else(|| panic!("{scenario} has no case {case}: {names:?}"))
+}
+
+/// The flight of a case in its first air.
+#[track_caller]
+pub(crate) fn fly(case: &Case) -> Flown {
+    CaseFlight::new(case, &case.airs[0]).unwrap().fly()
+}
+
+/// What became of the expectations of a case.
+#[track_caller]
+pub(crate) fn judged(case: &Case) -> Vec<Judgement> {
+    judge(case, &fly(case)).0
+}
+
+/// A case whose craft is set up in another way than the scenario says.
+pub(crate) fn with_settings(mut case: Case, settings: &[&str]) -> Case {
+    let settings: Vec<String> = settings.iter().map(|&setting| setting.to_owned()).collect();
+    case.setup.boot_lines.push(BootLines::settings("fault", &settings));
+    case
+}
+
+/// Fails unless the expectation of this name was not met, with this in its sentence.
+#[track_caller]
+pub(crate) fn assert_fails(judgements: &[Judgement], name: &str, told: &str) {
+    let judgement = judgements
+        .iter()
+        .find(|judgement| judgement.label == name)
+        .unwrap_or_else(|| panic!("there is no expectation {name}"));
+    match &judgement.outcome {
+        Outcome::Failed { sentence, .. } => {
+            assert!(sentence.contains(told), "{name}: {sentence}");
+        }
+        other => panic!("{name}: {other:?}"),
+    }
+}
+
+/// Fails unless all expectations were met.
+#[track_caller]
+pub(crate) fn assert_met(judgements: &[Judgement]) {
+    let broken: Vec<&Judgement> = judgements.iter().filter(|judgement| !judgement.outcome.is_met()).collect();
+    assert!(broken.is_empty(), "{broken:#?}");
+}
