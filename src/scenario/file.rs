@@ -314,8 +314,11 @@ fn read_inputs(
             .required(&table, "at")
             .and_then(|value| reader.expression(value, |cursor| read_instant(cursor, scope)));
         let each = reader.boolean(&table, "each").unwrap_or(false);
-        if let Some(span) =
-            at.as_ref().filter(|at| each && !at.recurs()).and_then(|_| table.get("each")).map(|v| v.span())
+        if let Some(span) = at
+            .as_ref()
+            .filter(|at| each && !at.recurs())
+            .and_then(|_| table.get("each"))
+            .map(toml::Spanned::span)
         {
             reader.problem(
                 span,

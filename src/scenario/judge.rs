@@ -57,7 +57,7 @@ pub fn compare(compare: &Compare, names: &[(String, f64)]) -> Judgement {
 fn judge_one(expectation: &Expectation, flown: &Flown, evaluator: &Evaluator<'_>) -> Outcome {
     let trace = evaluator.trace();
     match &expectation.expected {
-        Expected::Result(allowed) if allowed.iter().any(|word| *word == flown.result) => met(None),
+        Expected::Result(allowed) if allowed.contains(&flown.result) => met(None),
         Expected::Result(allowed) => {
             let sentence = format!(
                 "the flight was to end {}, it ended {}: {}",

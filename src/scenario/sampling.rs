@@ -3,6 +3,7 @@
 use super::signal::{Flag, Signal};
 use super::trace::Sample;
 use crate::signals::SimTime;
+use crate::sim::World;
 use crate::telemetry::snapshot::{CraftView, EstimateView};
 use crate::telemetry::{NavTelemetry, PlanSource};
 use crate::vehicle::Vehicle;
@@ -135,7 +136,7 @@ impl Values {
 }
 
 fn flags(vehicle: &Vehicle, craft: &CraftView, nav: Option<&NavTelemetry>) -> u16 {
-    let truth = vehicle.world().map(|world| world.truth());
+    let truth = vehicle.world().map(World::truth);
     let set = [
         (Flag::Armed, craft.is_armed()),
         (Flag::Engaged, nav.is_some_and(|nav| nav.engaged)),

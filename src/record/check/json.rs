@@ -4,6 +4,7 @@ use serde_json::{Map, Value, json};
 
 use super::{CheckedFlight, Compared, Summary};
 use crate::scenario::{Judgement, Outcome};
+use crate::signals::SimTime;
 
 /// The line of a flight.
 #[must_use]
@@ -24,7 +25,7 @@ pub fn flight_line(flight: &CheckedFlight) -> String {
         "result": flight.result,
         "reason": flight.reason,
         "problem": flight.problem,
-        "engaged_s": flight.engaged_at.map(|time| time.as_secs_f64()),
+        "engaged_s": flight.engaged_at.map(SimTime::as_secs_f64),
         "flown_s": flight.flown_s,
         "wall_s": flight.wall_s,
         "hash": format!("{:016x}", flight.hash),
@@ -93,7 +94,7 @@ fn expectation(judgement: &Judgement, flight: Option<&CheckedFlight>) -> Value {
             object.insert("outcome".to_owned(), json!("failed"));
             object.insert("sentence".to_owned(), json!(sentence));
             object.insert("guard".to_owned(), json!(guard));
-            object.insert("t".to_owned(), json!(at.map(|at| at.as_secs_f64())));
+            object.insert("t".to_owned(), json!(at.map(SimTime::as_secs_f64)));
             if let (Some(at), Some(flight)) = (at, flight) {
                 object.insert("open".to_owned(), json!(flight.open_command(*at)));
             }

@@ -87,7 +87,7 @@ impl<'a> Evaluator<'a> {
         if let Some(&(_, found)) = self.found.borrow().iter().find(|(known, _)| *known == key) {
             return found;
         }
-        let found = Search::new(instant).to_end(self);
+        let found = Search::new(instant).finish(self);
         self.found.borrow_mut().push((key, found));
         found
     }

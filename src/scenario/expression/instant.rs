@@ -285,7 +285,7 @@ impl<'a> Search<'a> {
     }
 
     /// When the instant is in a flight that is over, µs since boot.
-    pub(super) fn to_end(&mut self, evaluator: &Evaluator<'_>) -> Option<i64> {
+    pub(super) fn finish(&mut self, evaluator: &Evaluator<'_>) -> Option<i64> {
         self.look(evaluator);
         self.result()
     }

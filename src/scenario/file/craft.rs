@@ -44,7 +44,7 @@ pub(super) fn read(layers: &Layers<'_, '_>, plan: PlanFile, reader: &mut Reader<
         let text = reader.text(value)?;
         text.parse()
             .map_err(|error: crate::plan::format::HomeError| {
-                reader.problem(value.span(), error.to_string(), "")
+                reader.problem(value.span(), error.to_string(), "");
             })
             .ok()
     });

@@ -98,7 +98,7 @@ fn always(
             if is_worse {
                 worst = Some((index, verdict));
             }
-        } else if let Some(verdict) = verdict.filter(|verdict| verdict.holds())
+        } else if let Some(verdict) = verdict.filter(Verdict::holds)
             && tightest.is_none_or(|before| verdict.share() < before.verdict.share())
         {
             tightest = Some(Margin { verdict, time });
