@@ -87,6 +87,10 @@ impl Draft {
             ..Self::default()
         };
         let mut transmitter = start.transmitter().clone();
+        if let Some(pilot) = transmitter.pilot() {
+            draft.pilot = true;
+            draft.takeoff_m = pilot.takeoff_m();
+        }
         for (at, input) in &inputs {
             let what = sentences(input, &mut transmitter)?;
             let at = instant(*at, start_at);
