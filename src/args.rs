@@ -118,7 +118,7 @@ pub enum Command {
 
     /// Flies a scenario and opens the screen at one of its instants, paused, to look around in the flight
     #[command(before_help = help::examples(&[
-        ("betadeck open guide-7 --case crosswind --seed 3 --at 21.4", "the worst moment that `check` has named"),
+        ("betadeck open guide-7 --case 'wind-5, noise real' --seed 3 --at 21.4", "a moment that `check` has named"),
     ]))]
     Open(Box<OpenArgs>),
 

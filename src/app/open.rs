@@ -67,7 +67,10 @@ pub(super) fn run(args: &OpenArgs, keymap: Keymap) -> Result<u8, AppError> {
 fn choose<'s>(scenario: &'s Scenario, args: &OpenArgs) -> Result<(&'s Case, Air), AppError> {
     let case = match &args.case {
         None => scenario.cases.first(),
-        Some(name) => scenario.cases.iter().find(|case| case.name == *name),
+        Some(name) => scenario.cases.iter().find(|case| case.name == *name).or_else(|| {
+            let mut named = scenario.cases.iter().filter(|case| case.name.contains(name.as_str()));
+            named.next().filter(|_| named.next().is_none())
+        }),
     };
     let names = || scenario.cases.iter().map(|case| case.name.as_str());
     let case = case.ok_or_else(|| {

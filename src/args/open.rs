@@ -13,7 +13,7 @@ pub struct OpenArgs {
     #[arg(long, value_name = "T", allow_hyphen_values = true, value_parser = value::instant)]
     pub at: Option<value::Instant>,
 
-    /// The case [default: the first]
+    /// The case, or a part of its name that only one has [default: the first]
     #[arg(long, value_name = "NAME")]
     pub case: Option<String>,
 
