@@ -113,7 +113,7 @@ mod tests {
     use crate::plan::format::report;
 
     #[test]
-    fn every_file_of_the_folder_is_built_in_and_reads() {
+    fn every_file_of_the_folder_is_built_in_reads_and_has_its_row() {
         let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("plans/scenarios");
         let mut names: Vec<String> = std::fs::read_dir(folder)
             .unwrap()
@@ -124,10 +124,13 @@ mod tests {
         let mut built_in: Vec<&str> = SCENARIOS.iter().map(|scenario| scenario.name).collect();
         built_in.sort_unstable();
         assert_eq!(names, built_in);
+        let page = include_str!("../../plans/README.md");
         for scenario in SCENARIOS {
             let read = crate::scenario::read(scenario.name, scenario.text, None, &mut BuiltinFiles)
                 .unwrap_or_else(|errors| panic!("{}", report(&errors)));
             assert!(!read.description.is_empty(), "{}", scenario.name);
+            let row = format!("| `{}` | {}", scenario.name, read.description);
+            assert!(page.contains(&row), "plans/README.md lacks {row}");
         }
     }
 }
