@@ -172,6 +172,17 @@ fn what_does_not_fit_the_status_line_ends_in_an_ellipsis() {
 }
 
 #[test]
+fn a_large_cross_track_error_keeps_its_distance_from_its_name() {
+    let mut state = fixture::state((120, 40), fixture::colour());
+    fixture::approach(&mut state);
+    for (xte_m, shown) in [(0.31, "xte +0.3 m"), (-13.2, "xte -13.2 m"), (-1320.0, "xte -1320 m")] {
+        let vehicle = std::sync::Arc::make_mut(&mut state.view.vehicle);
+        vehicle.nav.as_mut().expect("a mission").xte_m = Some(xte_m);
+        assert!(text(&state).contains(shown), "{}", text(&state));
+    }
+}
+
+#[test]
 fn the_speed_is_the_wanted_one_until_it_is_measured() {
     let mut state = fixture::state((80, 24), fixture::colour());
     for (achieved, shown) in [(0.0, " 8× "), (7.9, " 8× "), (3.0, " 3× ")] {

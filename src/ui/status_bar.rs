@@ -185,10 +185,12 @@ fn leg(nav: &NavTelemetry, units: Units) -> Vec<(u8, &'static str, String, Strin
     let bearing = nav.bearing_rad.map(|rad| rad.to_degrees().rem_euclid(360.0));
     let last = if nav.hold_remaining_ds > 0 {
         let left = (nav.hold_remaining_ds != u16::MAX).then(|| f64::from(nav.hold_remaining_ds) / 10.0);
-        let text = left.map_or_else(|| "∞".to_owned(), |left| fixed(Some(left), 4, 0));
-        (4, " hold", format!("{text:>4}"), " s".to_owned())
+        let text =
+            left.map_or_else(|| "∞".to_owned(), |left| fixed(Some(left), 4, 0).trim_start().to_owned());
+        (4, " hold ", format!("{text:>3}"), " s".to_owned())
     } else {
-        (4, " xte", signed(length(nav.xte_m), 5, 1), m())
+        let xte = signed(length(nav.xte_m), 5, 1);
+        (4, " xte ", format!("{:>4}", xte.trim_start()), m())
     };
     vec![
         (0, "", fixed(length(nav.distance_m), 5, 1), m()),

@@ -65,7 +65,14 @@ pub(super) fn write(path: &Path, document: PlanDocument) -> Result<Vec<String>, 
         return Err(format!("{name} has no ending that tells the format: name it {}.", Format::endings()));
     };
     let written = format::write(&PlanFile::from(document), format);
-    replace(&link_target(path), &written.text).map_err(|error| format!("Cannot write {name}: {error}."))?;
+    let target = link_target(path);
+    // The directory would let it be replaced.
+    if target.metadata().is_ok_and(|there| there.permissions().readonly()) {
+        return Err(format!(
+            "{name} is write-protected: save under another name, or allow it with chmod u+w."
+        ));
+    }
+    replace(&target, &written.text).map_err(|error| format!("Cannot write {name}: {error}."))?;
     Ok(written.lost)
 }
 

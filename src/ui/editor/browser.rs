@@ -69,7 +69,12 @@ impl Browser {
             KeyCode::Backspace if self.text.is_empty() => return self.parent(),
             KeyCode::Left if self.text.is_empty() => return self.parent(),
             KeyCode::Tab => {
-                if let Some(name) = self.visible().first().map(|entry| entry.name.clone()) {
+                let typed = self.text.value();
+                // Whoever saves has typed a name: it is completed, never replaced.
+                let completes = |entry: &&&Entry| {
+                    self.purpose == Purpose::Open || !typed.is_empty() && entry.name.starts_with(typed)
+                };
+                if let Some(name) = self.visible().iter().find(completes).map(|entry| entry.name.clone()) {
                     self.text = TextField::new(name);
                     self.at = None;
                 }
@@ -153,6 +158,20 @@ mod tests {
         assert_eq!(press(&mut open, KeyCode::Backspace), BrowserKey::List("/".into()));
         let mut open = browser(Purpose::Open, "/etc/x.txt");
         assert_eq!(press(&mut open, KeyCode::Enter), BrowserKey::Chosen("/etc/x.txt".into()));
+    }
+
+    #[test]
+    fn tab_completes_a_name_and_replaces_none_that_is_typed_to_save() {
+        for (purpose, typed, completed) in [
+            (Purpose::Open, "q", "square.toml"),
+            (Purpose::Save(PlanId(1)), "mine", "mine"),
+            (Purpose::Save(PlanId(1)), "sq", "square.toml"),
+            (Purpose::Save(PlanId(1)), "", ""),
+        ] {
+            let mut open = browser(purpose, typed);
+            press(&mut open, KeyCode::Tab);
+            assert_eq!(open.text.value(), completed);
+        }
     }
 
     #[test]
