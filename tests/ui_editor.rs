@@ -228,8 +228,9 @@ fn the_plan_of_the_craft_is_compared_downloaded_and_watched() {
     let seen = screen(&state);
     assert!(seen.contains("● On the craft WP0 is: 1.0 m 180° from here, altitude"), "{seen}");
     let effects = keys(&mut state, "D");
-    assert!(effects.iter().any(|effect| matches!(effect, Effect::Download)));
-    update(&mut state, Msg::DownloadReply(Ok(Box::new(fixture::square()))));
+    assert!(effects.iter().any(|effect| matches!(effect, Effect::Download(_))));
+    let id = state.editor.plan().id();
+    update(&mut state, Msg::DownloadReply { id, result: Ok(Box::new(fixture::square())) });
     assert_eq!(*state.plan(), fixture::square());
 
     // The App changes a waypoint.

@@ -276,7 +276,8 @@ fn an_upload_in_flight_takes_effect_at_the_next_engagement_or_by_going_there() {
     press(&mut state, 'd');
     press(&mut state, '1');
     press(&mut state, 'U');
-    update(&mut state, Msg::UploadReply(Ok(())));
+    let id = state.editor.plan().id();
+    update(&mut state, Msg::UploadReply { id, count: 4, result: Ok(()) });
     let told = state.notice.as_ref().map(|notice| notice.text.clone()).unwrap_or_default();
     assert!(told.contains("at the next engagement; `G` continues on it"), "{told}");
     let open = state.plan().clone();

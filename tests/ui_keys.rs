@@ -74,9 +74,9 @@ fn f_uploads_first_when_the_craft_has_no_plan_and_stops_the_pilot_when_it_flies(
     let mut view = state.view.clone();
     std::sync::Arc::make_mut(&mut view.vehicle).stored_plan.as_mut().unwrap().waypoints.clear();
     update(&mut state, Msg::View(view.clone()));
-    let [Effect::Upload { plan, .. }] = &press(&mut state, 'F')[..] else { panic!("an upload first") };
+    let [Effect::Upload { id, plan, .. }] = &press(&mut state, 'F')[..] else { panic!("an upload first") };
     assert_eq!(plan.waypoints.len(), 4);
-    let effects = update(&mut state, Msg::UploadReply(Ok(())));
+    let effects = update(&mut state, Msg::UploadReply { id: *id, count: 4, result: Ok(()) });
     assert!(matches!(effects[..], [Effect::Send(Command::Pilot(true))]));
 
     view.pilot = Some("climbing");
@@ -89,7 +89,9 @@ fn a_refused_upload_does_not_fly() {
     let mut state = ready();
     std::sync::Arc::make_mut(&mut state.view.vehicle).stored_plan.as_mut().unwrap().waypoints.clear();
     press(&mut state, 'F');
-    assert!(update(&mut state, Msg::UploadReply(Err("WP1 is invalid.".to_owned()))).is_empty());
+    let id = state.editor.plan().id();
+    let refused = Msg::UploadReply { id, count: 4, result: Err("WP1 is invalid.".to_owned()) };
+    assert!(update(&mut state, refused).is_empty());
     assert!(state.notice.is_some_and(|notice| notice.text.contains("WP1 is invalid.")));
 }
 

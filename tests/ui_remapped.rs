@@ -152,6 +152,7 @@ fn empty_panels_and_titles_name_the_keys_in_force() {
     let seen = screen(&state);
     assert!(seen.contains("`Alt-i` inserts one, `Alt-P` generates"), "{seen}");
     assert!(seen.contains("→ Alt-x restores it"), "{seen}");
+    assert!(seen.contains("▸Alt-2 Plan") && seen.contains("Alt-1 Map"), "{seen}");
     keys(&mut state, "f4");
     assert!(screen(&state).contains("CUT, Alt-x restores it"), "{}", screen(&state));
     keys(&mut state, "f1 left");
@@ -174,8 +175,13 @@ fn notices_of_the_session_name_the_keys_in_force_too() {
     update(&mut state, Msg::Event(Event { time: SimTime(0), kind }));
     keys(&mut state, "f8");
     assert!(screen(&state).contains("`Alt-x` takes it back"), "{}", screen(&state));
+    let kind = SessionEvent::Notice("Edits are back: `u` undoes them.".to_owned());
+    update(&mut state, Msg::Event(Event { time: SimTime(0), kind }));
+    assert!(screen(&state).contains("back: `Alt-u` undoes them"), "{}", screen(&state));
     update(&mut state, Msg::SaveReply(Err("Not saved while armed: `a` disarms it.".to_owned())));
     assert!(screen(&state).contains("`Alt-a` disarms it"), "{}", screen(&state));
-    update(&mut state, Msg::UploadReply(Err("an earlier instant is shown: `b` flies on.".to_owned())));
+    let result = Err("an earlier instant is shown: `b` flies on.".to_owned());
+    let id = state.editor.plan().id();
+    update(&mut state, Msg::UploadReply { id, count: 4, result });
     assert!(screen(&state).contains("`Alt-b` flies on"), "{}", screen(&state));
 }

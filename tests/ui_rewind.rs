@@ -2,167 +2,18 @@
 
 #![allow(clippy::unwrap_used, clippy::disallowed_methods, reason = "tests may panic and wait")]
 
-use std::sync::Arc;
-use std::time::Duration;
-
-use betadeck::firmware::FirmwareOptions;
-use betadeck::firmware::config::Configuration;
-use betadeck::plan::builtin::{BuiltinPlan, DEMO};
-use betadeck::plan::edit::History;
-use betadeck::record::sentence;
+use betadeck::session::Command;
 use betadeck::session::command::Seek;
-use betadeck::session::{Command, Handle, SessionConfig, start};
 use betadeck::signals::SimTime;
-use betadeck::sim::{Turbulence, WorldConfig};
-use betadeck::storage::Store;
-use betadeck::telemetry::{NavState, Snapshot};
-use betadeck::ui::editor::PlanId;
-use betadeck::ui::keymap::Keymap;
-use betadeck::ui::{
-    AppState, CliHelp, Effect, EnteredLines, Msg, OpenPlan, Theme, UiConfig, Units, draw, update,
-};
-use betadeck::vehicle::{Vehicle, VehicleConfig};
+use betadeck::telemetry::NavState;
+use betadeck::ui::{AppState, Msg, update};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
-use ratatui::Terminal;
-use ratatui::backend::TestBackend;
 use tokio::sync::oneshot;
 
-/// Nothing in these tests takes this long unless it hangs.
-const PATIENCE: Duration = Duration::from_secs(120);
+#[path = "ui/session_rig.rs"]
+mod session_rig;
 
-/// A user interface with a session that flies only when it is told to.
-struct Rig {
-    session: Handle,
-    state: AppState,
-}
-
-impl Rig {
-    async fn new() -> Self {
-        let mut configuration = Configuration::default();
-        configuration.starter_modes();
-        let config = VehicleConfig {
-            world: WorldConfig { turbulence: Turbulence::Light, ..WorldConfig::default() },
-            firmware: FirmwareOptions::default(),
-            configuration,
-            live: false,
-        };
-        let session = start(SessionConfig {
-            vehicle: Vehicle::new(config).unwrap(),
-            store: Store::in_memory(),
-            starter_modes: true,
-            speed: 1.0,
-            takeoff_m: 5.0,
-            endpoints: None,
-            first_events: Vec::new(),
-        })
-        .unwrap();
-        let demo = BuiltinPlan::find(DEMO).unwrap().read().unwrap();
-        let config = UiConfig {
-            theme: Theme::default(),
-            units: Units::default(),
-            keymap: Keymap::default(),
-            cli: CliHelp::default(),
-            sentence: |event| sentence::text(&event.kind).unwrap_or_default(),
-            plan: OpenPlan::new(PlanId(1), None, History::new(demo.into(), true)),
-            mouse: true,
-            entered: EnteredLines::default(),
-        };
-        let view = session.view.borrow().clone();
-        let mut rig = Self { session, state: AppState::new(config, (120, 40), view) };
-        rig.keys(" ").await;
-        rig.until("the pause", |state| state.view.paused).await;
-        rig
-    }
-
-    /// Presses keys one after another.
-    async fn keys(&mut self, keys: &str) {
-        for key in keys.chars() {
-            let event = KeyEvent::new(KeyCode::Char(key), KeyModifiers::NONE);
-            let effects = update(&mut self.state, Msg::Key(event));
-            self.carry_out(effects).await;
-        }
-    }
-
-    async fn carry_out(&mut self, effects: Vec<Effect>) {
-        for effect in effects {
-            match effect {
-                Effect::Send(command) => self.session.commands.send(command).await.unwrap(),
-                Effect::Upload { plan, settings } => {
-                    let (reply, answer) = oneshot::channel();
-                    self.session.commands.send(Command::Upload { plan, settings, reply }).await.unwrap();
-                    let next = update(&mut self.state, Msg::UploadReply(answer.await.unwrap()));
-                    Box::pin(self.carry_out(next)).await;
-                }
-                other => panic!("not expected here: {other:?}"),
-            }
-        }
-    }
-
-    /// Takes pictures and events in until the screen shows this.
-    async fn until(&mut self, what: &str, wanted: impl Fn(&AppState) -> bool) {
-        let seen = async {
-            loop {
-                while let Ok(event) = self.session.events.try_recv() {
-                    update(&mut self.state, Msg::Event(event));
-                }
-                let view = self.session.view.borrow_and_update().clone();
-                update(&mut self.state, Msg::View(view));
-                if wanted(&self.state) {
-                    return;
-                }
-                self.session.view.changed().await.unwrap();
-            }
-        };
-        let in_time = tokio::time::timeout(PATIENCE, seen).await.is_ok();
-        assert!(in_time, "never seen: {what}\n{}", self.screen());
-        // Events come before the picture that shows them.
-        while let Ok(event) = self.session.events.try_recv() {
-            update(&mut self.state, Msg::Event(event));
-        }
-    }
-
-    /// Lets the flight go on to its next transition, which leads to `state`.
-    async fn fly_to(&mut self, state: NavState) {
-        let from = self.time();
-        self.keys("}").await;
-        let arrived =
-            |now: &AppState| now.view.vehicle.time > from && now.view.paused && nav_state(now) == Some(state);
-        self.until(state.into(), arrived).await;
-    }
-
-    /// Shows the instant at this time.
-    async fn show(&mut self, time: SimTime) {
-        self.session.commands.send(Command::Seek(Seek::Time(time))).await.unwrap();
-        self.until("an instant", |state| state.view.vehicle.time == time).await;
-    }
-
-    fn time(&self) -> SimTime {
-        self.state.view.vehicle.time
-    }
-
-    fn picture(&self) -> Arc<Snapshot> {
-        Arc::clone(&self.state.view.vehicle)
-    }
-
-    fn screen(&self) -> String {
-        let (width, height) = self.state.size;
-        let mut terminal = Terminal::new(TestBackend::new(width, height)).unwrap();
-        terminal.draw(|frame| draw(&self.state, frame)).unwrap();
-        terminal.backend().to_string()
-    }
-
-    #[track_caller]
-    fn assert_shown(&self, words: &[&str]) {
-        let screen = self.screen();
-        for word in words {
-            assert!(screen.contains(word), "no {word} in\n{screen}");
-        }
-    }
-}
-
-fn nav_state(state: &AppState) -> Option<NavState> {
-    state.view.vehicle.nav.as_ref().map(|nav| nav.state)
-}
+use session_rig::Rig;
 
 fn rewound(state: &AppState) -> bool {
     state.is_rewound()

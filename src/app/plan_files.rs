@@ -125,7 +125,7 @@ impl PlanFiles {
         match request {
             FileRequest::Open(path) => vec![self.open(&path)],
             FileRequest::Save { id, path, document, revision, replace } => {
-                vec![self.save(id, path, *document, revision, replace)]
+                self.save(id, path, *document, revision, replace)
             }
             FileRequest::List(directory) => vec![self.list(directory)],
             FileRequest::Journal(id, line) => self.append(id, &line).into_iter().collect(),
@@ -195,7 +195,7 @@ impl PlanFiles {
         }
         history.mark_saved();
         for line in edited.into_iter().chain([JournalLine::Saved(path.display().to_string())]) {
-            if let Some(FileReply::Failed(sentence)) = self.append(id, &line) {
+            if let Some(FileReply::NotKept(sentence)) = self.append(id, &line) {
                 notes.push(sentence);
             }
         }
@@ -275,19 +275,19 @@ impl PlanFiles {
         document: PlanDocument,
         revision: usize,
         replace: bool,
-    ) -> FileReply {
+    ) -> Vec<FileReply> {
         let Some(file) = self.open.get_mut(&id) else {
-            return FileReply::Failed("This plan is not open any more.".to_owned());
+            return vec![FileReply::Failed("This plan is not open any more.".to_owned())];
         };
         let is_own = file.path.as_deref() == Some(path.as_path());
         let there = Stamp::of(&path);
         let is_known = is_own && there == file.stamp;
         if there.is_some() && !is_known && !replace {
-            return FileReply::Occupied { id, path, changed: is_own };
+            return vec![FileReply::Occupied { id, path, changed: is_own }];
         }
         let lost = match on_disk::write(&path, document) {
             Ok(lost) => lost,
-            Err(sentence) => return FileReply::Failed(sentence),
+            Err(sentence) => return vec![FileReply::Failed(sentence)],
         };
         file.stamp = Stamp::of(&path);
         file.told = false;
@@ -295,11 +295,11 @@ impl PlanFiles {
         if let Some(parent) = path.parent() {
             self.directory = parent.to_owned();
         }
-        self.append(id, &JournalLine::Saved(path.display().to_string()));
-        FileReply::Saved { id, path, revision, lost }
+        let kept = self.append(id, &JournalLine::Saved(path.display().to_string()));
+        [FileReply::Saved { id, path, revision, lost }].into_iter().chain(kept).collect()
     }
 
-    /// Appends a line to the journal of a plan; the first failure is told.
+    /// Appends a line to the journal of a plan; the first failure is told, and its end.
     fn append(&mut self, id: PlanId, line: &JournalLine) -> Option<FileReply> {
         let file = self.open.get_mut(&id)?;
         file.kept.take(line.clone());
@@ -310,10 +310,14 @@ impl PlanFiles {
             Some(journal) => journal.append(line),
         };
         file.is_behind = written.is_err();
-        let error = written.err()?;
+        let Err(error) = written else {
+            let again = self.told && !self.open.values().any(|file| file.is_behind);
+            self.told &= !again;
+            return again.then_some(FileReply::KeptAgain);
+        };
         let first = !std::mem::replace(&mut self.told, true);
         first.then(|| {
-            FileReply::Failed(format!(
+            FileReply::NotKept(format!(
                 "Edits cannot be kept in {}: {error}. Save often.",
                 directory.display()
             ))

@@ -27,6 +27,8 @@ use endless::EndlessWatch;
 use observer::Observer;
 use report::Ended;
 
+/// From this altitude on a craft that touches nothing is in the air, m: a bounce is not.
+const IN_THE_AIR_M: f64 = 1.0;
 /// Longest flight that a forecast follows, simulated s.
 pub const LIMIT_S: f64 = 1800.0;
 
@@ -187,12 +189,14 @@ pub fn check_possible(vehicle: &Vehicle) -> Result<(), String> {
 fn check_flies(vehicle: &Vehicle) -> Result<(), String> {
     check_possible(vehicle)?;
     if vehicle.crashed() {
-        return Err("The craft crashed, so its flight is over: R puts it back home.".to_owned());
+        return Err("The craft crashed, so its flight is over: `R` puts it back home.".to_owned());
     }
     if !vehicle.controller().is_armed() && vehicle.transmitter().pilot_doing().is_none() {
-        return Err(
-            "The craft stands disarmed, so there is no flight to look ahead to: F flies the plan.".to_owned()
-        );
+        let falls =
+            vehicle.snapshot().truth.is_some_and(|truth| !truth.on_ground && truth.alt > IN_THE_AIR_M);
+        let (does, way_out) =
+            if falls { ("falls", "`R` puts it back home") } else { ("stands", "`F` flies the plan") };
+        return Err(format!("The craft {does} disarmed, so there is no flight to look ahead to: {way_out}."));
     }
     Ok(())
 }

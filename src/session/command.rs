@@ -27,6 +27,9 @@ pub const BEGINNING_LOST: &str =
 /// Why nothing is steered while an earlier instant is shown.
 pub const REWOUND: &str = "An earlier instant is shown: `b` flies on from here, `e` goes back to the end.";
 
+/// Why a plan is not uploaded while another is.
+pub const UPLOADING: &str = "another upload is under way: wait for its end, then upload again";
+
 /// Which instant to show.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Seek {
@@ -152,6 +155,8 @@ pub struct SessionView {
     pub sticks: RcFrame,
     /// The virtual sticks are cut.
     pub rc_cut: bool,
+    /// An upload to a remote flight controller that is under way.
+    pub upload: Option<UploadView>,
     /// The scripted pilot is flying, and what it is doing in a word or two.
     pub pilot: Option<&'static str>,
     /// Where other programs reach the craft.
@@ -162,6 +167,15 @@ pub struct SessionView {
     pub live: bool,
     /// The recording; `None` when the flight cannot be taken back.
     pub timeline: Option<TimelineView>,
+}
+
+/// How far an upload is, in lines of the command line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct UploadView {
+    /// How many lines were sent.
+    pub sent: usize,
+    /// How many there are, reading the plan back among them.
+    pub total: usize,
 }
 
 impl SessionView {
@@ -176,6 +190,7 @@ impl SessionView {
             lost_time: LostTime::default(),
             sticks: vehicle.transmitter().sticks(),
             rc_cut: vehicle.transmitter().is_cut(),
+            upload: None,
             pilot: vehicle.transmitter().pilot_doing(),
             endpoints: Vec::new(),
             simulator: None,

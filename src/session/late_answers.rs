@@ -37,6 +37,11 @@ impl<R> LateAnswers<R> {
         self.0.remove(&ticket).map(|(_, recipient)| recipient)
     }
 
+    /// Who awaits an answer.
+    pub(super) fn recipients(&self) -> impl Iterator<Item = &R> {
+        self.0.values().map(|(_, recipient)| recipient)
+    }
+
     /// Those who have waited for too long.
     pub(super) fn take_overdue(&mut self, now: Instant) -> Vec<R> {
         let overdue = |_: &Ticket, (asked, _): &mut (Instant, R)| {

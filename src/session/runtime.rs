@@ -117,44 +117,10 @@ pub fn start(config: SessionConfig) -> std::io::Result<Handle> {
 ///
 /// # Errors
 /// When the system gives no thread.
-pub fn start_at(mut config: SessionConfig, flown: Option<FlownBefore>) -> std::io::Result<Handle> {
-    let simulator = config.endpoints.as_mut().and_then(|endpoints| endpoints.simulator.take());
-    let incoming = ImpairedLink::new(Stream::Link.rng(config.vehicle.seed()));
+pub fn start_at(config: SessionConfig, flown: Option<FlownBefore>) -> std::io::Result<Handle> {
     let (command_tx, command_rx) = mpsc::channel(256);
     let (event_tx, event_rx) = mpsc::unbounded_channel();
-    let (timeline, flown) = match flown {
-        Some(flown) => (Some(flown.timeline), Some((flown.events, flown.show))),
-        None if simulator.is_none() => (Timeline::new(&mut config.vehicle), None),
-        None => (None, None),
-    };
-    let persistence = Persistence::new(config.store, config.vehicle.controller_mut(), config.starter_modes);
-    let mut session = Session {
-        pacer: Pacer::new(config.vehicle.step_us(), config.speed),
-        console: Interpreter::default(),
-        vehicle: config.vehicle,
-        persistence,
-        takeoff_m: config.takeoff_m,
-        simulator: simulator.map(|link| Simulator::new(link, incoming, Instant::now())),
-        endpoints: config.endpoints,
-        commands: command_rx,
-        events: EventSender::new(event_tx),
-        arming: ArmingWatch::default(),
-        late_answers: LateAnswers::default(),
-        real_time: RealTime::default(),
-        timeline,
-        run_on: None,
-        was_paused: false,
-        rc_received: false,
-        changed: true,
-        more_waits: false,
-        quit: false,
-    };
-    if let Some((events, show)) = flown {
-        session.begin_with(events, show);
-    }
-    for event in config.first_events {
-        session.events.report(&mut session.vehicle, event);
-    }
+    let mut session = Session::new(config, flown, command_rx, event_tx);
     let (view_tx, view_rx) = watch::channel(session.view());
     let thread =
         std::thread::Builder::new().name("vehicle".to_owned()).spawn(move || session.run(&view_tx))?;
@@ -170,6 +136,8 @@ struct Session {
     simulator: Option<Simulator>,
     endpoints: Option<Endpoints>,
     commands: mpsc::Receiver<Command>,
+    /// A command that was taken out and is carried out next.
+    held_back: Option<Command>,
     events: EventSender,
     arming: ArmingWatch,
     /// What the user interface asked of a remote flight controller.
@@ -200,6 +168,52 @@ impl Wake for ThreadWaker {
 }
 
 impl Session {
+    fn new(
+        mut config: SessionConfig,
+        flown: Option<FlownBefore>,
+        commands: mpsc::Receiver<Command>,
+        events: mpsc::UnboundedSender<Event>,
+    ) -> Self {
+        let simulator = config.endpoints.as_mut().and_then(|endpoints| endpoints.simulator.take());
+        let incoming = ImpairedLink::new(Stream::Link.rng(config.vehicle.seed()));
+        let (timeline, flown) = match flown {
+            Some(flown) => (Some(flown.timeline), Some((flown.events, flown.show))),
+            None if simulator.is_none() => (Timeline::new(&mut config.vehicle), None),
+            None => (None, None),
+        };
+        let persistence =
+            Persistence::new(config.store, config.vehicle.controller_mut(), config.starter_modes);
+        let mut session = Self {
+            pacer: Pacer::new(config.vehicle.step_us(), config.speed),
+            console: Interpreter::default(),
+            vehicle: config.vehicle,
+            persistence,
+            takeoff_m: config.takeoff_m,
+            simulator: simulator.map(|link| Simulator::new(link, incoming, Instant::now())),
+            endpoints: config.endpoints,
+            commands,
+            held_back: None,
+            events: EventSender::new(events),
+            arming: ArmingWatch::default(),
+            late_answers: LateAnswers::default(),
+            real_time: RealTime::default(),
+            timeline,
+            run_on: None,
+            was_paused: false,
+            rc_received: false,
+            changed: true,
+            more_waits: false,
+            quit: false,
+        };
+        if let Some((events, show)) = flown {
+            session.begin_with(events, show);
+        }
+        for event in config.first_events {
+            session.events.report(&mut session.vehicle, event);
+        }
+        session
+    }
+
     fn run(&mut self, view: &watch::Sender<SessionView>) {
         let waker = Waker::from(Arc::new(ThreadWaker(std::thread::current())));
         let mut context = Context::from_waker(&waker);
@@ -235,7 +249,7 @@ impl Session {
                 }
                 view.send_replace(view_now);
             }
-            if ticks < SLICE && !self.more_waits {
+            if ticks < SLICE && !self.more_waits && !self.has_commands() {
                 std::thread::park_timeout(
                     self.longest_sleep().saturating_sub(start.elapsed().saturating_sub(now)),
                 );
@@ -286,3 +300,6 @@ impl Session {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,5 +1,6 @@
 //! Uploads a plan as a ground station does, through the command line, and reads it back; downloads one the same way.
 
+use super::command::UploadView;
 use crate::firmware::cli::{CliReply, Interpreter};
 use crate::plan::format::{self, Format};
 use crate::plan::{FlightPlan, upload_lines};
@@ -45,12 +46,13 @@ pub(super) struct Upload {
     plan: FlightPlan,
     /// The lines that were not sent yet.
     lines: std::vec::IntoIter<String>,
+    total: usize,
     /// The line that was sent last.
     sent: String,
     interpreter: Interpreter,
 }
 
-/// How far an upload is.
+/// What sending on led to.
 #[derive(Debug)]
 pub(super) enum UploadProgress {
     /// Through, or refused with this sentence; what came before the refusal stays.
@@ -64,10 +66,16 @@ impl Upload {
         let lines: Vec<String> = upload_lines(plan, settings).chain([LIST.to_owned()]).collect();
         Self {
             plan: plan.clone(),
+            total: lines.len(),
             lines: lines.into_iter(),
             sent: String::new(),
             interpreter: Interpreter::default(),
         }
+    }
+
+    /// How many lines were sent, the reading back among them, and of how many.
+    pub(super) fn lines_sent(&self) -> UploadView {
+        UploadView { sent: self.total - self.lines.len(), total: self.total }
     }
 
     /// Sends lines until one is refused or its answer comes later.

@@ -4,13 +4,14 @@ use std::collections::VecDeque;
 use std::time::Duration;
 
 use crate::plan::FlightPlan;
+use crate::session::command::UploadView;
 use crate::session::{Event, SessionEvent, SessionView};
 use crate::signals::{RcFrame, SimTime};
 use crate::telemetry::{EventKind, FirmwareEvent, NavEvent, NavState, PlanSource, TransitionReason};
 
 use super::action::Action;
 use super::console::{CliHelp, CliState};
-use super::editor::{Editor, OpenPlan};
+use super::editor::{Editor, OpenPlan, PlanId};
 use super::event_log::{LogState, Severity};
 use super::forecast::ForecastState;
 use super::graphs::GraphsState;
@@ -29,6 +30,8 @@ use super::tutorial::Tutorial;
 use super::units::Units;
 use super::viewport::MapState;
 
+/// From this altitude on a craft that touches nothing is in the air, m: a bounce is not.
+const IN_THE_AIR_M: f64 = 1.0;
 /// Transitions remembered for the state panel.
 const MAX_TRANSITIONS: usize = 200;
 
@@ -153,8 +156,8 @@ pub struct AppState {
     pub cancelled: Option<Duration>,
     /// Sticks sent that the session has not confirmed yet, and when.
     pub sticks_sent: Option<(RcFrame, Duration)>,
-    /// The pilot starts when the upload on its way succeeds.
-    pub fly_after_upload: bool,
+    /// The pilot starts when the upload of this plan, which is on its way, succeeds.
+    pub fly_after_upload: Option<PlanId>,
     /// Ticks of one navigator update.
     pub step_ticks: u32,
     /// Flights flown ahead of time.
@@ -166,8 +169,6 @@ pub struct AppState {
     pub drag: Option<(u16, u16, f64, f64)>,
 }
 
-#[cfg(test)]
-use super::editor::PlanId;
 #[cfg(test)]
 use crate::plan::edit::{History, PlanDocument};
 
@@ -224,7 +225,7 @@ impl AppState {
             notice: None,
             cancelled: None,
             sticks_sent: None,
-            fly_after_upload: false,
+            fly_after_upload: None,
             step_ticks: 10,
             forecast: ForecastState::default(),
             pressed: None,
@@ -235,6 +236,12 @@ impl AppState {
     /// The key of an action as it is now, for sentences.
     pub(super) fn key(&self, action: Action) -> String {
         self.keymap.key(action)
+    }
+
+    /// The name of a panel behind the key that shows it, as it is now.
+    pub(super) fn panel_title(&self, panel: Panel) -> String {
+        let key = self.keymap.shown_keys(Action::Show(panel)).into_iter().next();
+        key.map_or_else(|| panel.name().to_owned(), |key| format!("{key} {}", panel.name()))
     }
 
     /// Says something to the user: on the screen for a moment, in the log for good.
@@ -334,6 +341,18 @@ impl AppState {
     #[must_use]
     pub fn plan(&self) -> &FlightPlan {
         &self.editor.document().plan
+    }
+
+    /// Whether the craft falls, or hangs, without its motors.
+    pub(super) fn is_disarmed_in_the_air(&self) -> bool {
+        let vehicle = &self.view.vehicle;
+        vehicle.craft.armed == Some(false)
+            && vehicle.truth.as_ref().is_some_and(|truth| !truth.on_ground && truth.alt > IN_THE_AIR_M)
+    }
+
+    /// How far the upload of an open plan is, while it is under way.
+    pub(super) fn upload_of(&self, id: PlanId) -> Option<UploadView> {
+        self.view.upload.filter(|_| self.editor.uploaded_last() == Some(id))
     }
 
     /// Whether the craft stores the open plan.

@@ -12,6 +12,7 @@ mod form;
 mod form_edits;
 mod forms;
 mod open_plan;
+mod plans;
 mod popup;
 mod question;
 
@@ -21,16 +22,15 @@ pub use column::Column;
 pub use files::{Entry, FileReply, FileRequest, Listing, Opened};
 pub(super) use form::FormKey;
 pub use form::{Form, FormField, FormKind};
+use form_edits::GeneratorFoot;
 pub use open_plan::{OpenPlan, PlanId};
 pub use popup::EditorPopup;
 pub use question::Question;
 
-use std::path::PathBuf;
-
 use super::message::Effect;
 use super::text_field::TextField;
 use super::units::Units;
-use crate::plan::edit::{History, PlanDocument};
+use crate::plan::edit::PlanDocument;
 use crate::plan::{FlightPlan, MAX_WAYPOINTS, Waypoint};
 
 /// The state of the plan editor.
@@ -39,18 +39,24 @@ pub struct Editor {
     /// Never empty.
     plans: Vec<OpenPlan>,
     current: usize,
+    /// Plans made here so far.
+    made: u32,
     row: usize,
     column: Column,
     anchor: Option<usize>,
     field: Option<CellField>,
     register: Vec<Waypoint>,
     /// What was handed to the craft last.
-    uploaded: Option<FlightPlan>,
+    uploaded: Option<(PlanId, FlightPlan)>,
     pub(super) popup: Option<EditorPopup>,
     /// A waypoint whose altitude is dragged in the profile, and the altitude now, cm.
     pub(super) dragged_altitude: Option<(usize, i32)>,
     /// The program ends as soon as every plan is saved or given up.
     pub(super) quitting: bool,
+    /// Edits cannot be kept, so that they are lost when the program is killed.
+    pub(super) loses_edits: bool,
+    /// What the open generator's form would make.
+    generator: Option<GeneratorFoot>,
 }
 
 /// A cell that is being typed.
@@ -62,9 +68,6 @@ pub(crate) struct CellField {
     pub(crate) problem: Option<String>,
 }
 
-/// First identifier of plans that are made here; those that the files open have lower ones.
-const FIRST_NEW: u32 = 1 << 16;
-
 impl Editor {
     /// An editor with an open plan.
     #[must_use]
@@ -72,6 +75,7 @@ impl Editor {
         Self {
             plans: vec![plan],
             current: 0,
+            made: 0,
             row: 0,
             column: Column::default(),
             anchor: None,
@@ -81,6 +85,8 @@ impl Editor {
             popup: None,
             dragged_altitude: None,
             quitting: false,
+            loses_edits: false,
+            generator: None,
         }
     }
 
@@ -97,12 +103,17 @@ impl Editor {
 
     /// The plan that is shown is about to be handed to the craft.
     pub(super) fn remember_upload(&mut self) {
-        self.uploaded = Some(self.document().plan.clone());
+        self.uploaded = Some((self.plan().id(), self.document().plan.clone()));
     }
 
     /// Whether a plan of the craft is there because this editor handed it over.
     pub(super) fn has_uploaded(&self, plan: &FlightPlan) -> bool {
-        self.uploaded.as_ref() == Some(plan)
+        self.uploaded.as_ref().is_some_and(|(_, uploaded)| uploaded == plan)
+    }
+
+    /// The plan that was handed to the craft last.
+    pub(super) fn uploaded_last(&self) -> Option<PlanId> {
+        self.uploaded.as_ref().map(|(id, _)| *id)
     }
 
     /// All open plans.
@@ -375,88 +386,6 @@ impl Editor {
         let file = clipboard::from_text(text)?;
         let count = file.plan.waypoints.len();
         Ok((count, self.insert("paste", &file.plan.waypoints)?))
-    }
-
-    /// Shows the next or the previous open plan.
-    pub(super) fn show_other(&mut self, step: isize) {
-        let count = self.plans.len();
-        self.show((self.current + count).wrapping_add_signed(step) % count);
-    }
-
-    fn show(&mut self, index: usize) {
-        self.current = index.min(self.plans.len() - 1);
-        self.row = 0;
-        self.anchor = None;
-        self.field = None;
-    }
-
-    /// Opens a new plan with this document.
-    pub(super) fn open_new(&mut self, document: PlanDocument) -> Effect {
-        let newest = self.plans.iter().map(|plan| plan.id().0).max().unwrap_or_default();
-        let id = PlanId(newest.max(FIRST_NEW - 1) + 1);
-        let begin = FileRequest::Begin(id, Box::new(document.clone()));
-        self.add(OpenPlan::new(id, None, History::new(document, false)));
-        Effect::Files(begin)
-    }
-
-    /// Shows a plan that was read; one that is open already is replaced by it.
-    pub(super) fn opened(&mut self, opened: Opened) {
-        let plan = OpenPlan::new(opened.id, opened.file, opened.history);
-        match self.plans.iter().position(|other| other.id() == plan.id()) {
-            Some(index) => {
-                self.plans[index] = plan;
-                self.show(index);
-            }
-            None => self.add(plan),
-        }
-    }
-
-    fn add(&mut self, plan: OpenPlan) {
-        self.plans.push(plan);
-        self.show(self.plans.len() - 1);
-    }
-
-    /// Closes a plan; the last one leaves an empty one behind.
-    pub(super) fn close(&mut self, id: PlanId) -> Vec<Effect> {
-        let discard = self.plan_of(id).is_some_and(OpenPlan::is_unsaved);
-        let mut effects = vec![Effect::Files(FileRequest::Close { id, discard })];
-        if self.plans.len() == 1 {
-            effects.push(self.open_new(PlanDocument::default()));
-        }
-        self.plans.retain(|plan| plan.id() != id);
-        self.show(self.current.saturating_sub(1));
-        effects
-    }
-
-    /// The open plan of this identifier.
-    #[must_use]
-    pub fn plan_of(&self, id: PlanId) -> Option<&OpenPlan> {
-        self.plans.iter().find(|plan| plan.id() == id)
-    }
-
-    /// Shows the open plan of this identifier.
-    pub(super) fn show_plan(&mut self, id: PlanId) {
-        if let Some(index) = self.plans.iter().position(|plan| plan.id() == id) {
-            self.show(index);
-        }
-    }
-
-    /// A plan was written.
-    pub(super) fn saved(&mut self, id: PlanId, file: PathBuf, revision: usize) {
-        if let Some(plan) = self.plan_of_mut(id) {
-            plan.saved(file, revision);
-        }
-    }
-
-    /// Somebody else changed the file of a plan; the plan's title, if it is open.
-    pub(super) fn changed_on_disk(&mut self, id: PlanId) -> Option<String> {
-        let plan = self.plan_of_mut(id)?;
-        plan.set_changed_on_disk(true);
-        Some(plan.title())
-    }
-
-    fn plan_of_mut(&mut self, id: PlanId) -> Option<&mut OpenPlan> {
-        self.plans.iter_mut().find(|plan| plan.id() == id)
     }
 }
 

@@ -222,12 +222,13 @@ pub(super) fn take_answer(state: &mut AppState, reply: ForecastReply) {
         // The flight is over, or there never was one to look ahead to.
         (ForecastKind::LookAhead | ForecastKind::WhatIf, Some(reason)) => {
             forecast.dismiss();
+            let reason = state.keymap.in_force(&reason);
             state.notify(Severity::Warn, reason);
         }
         (ForecastKind::LookAhead, None) => {}
         (ForecastKind::WhatIf, None) => {
             if let Some(ghost) = ghost(state) {
-                let text = format!("What if {}.", ghost.line);
+                let text = format!("What if {}.", ghost.line.trim_end_matches('.'));
                 state.notify(Severity::Info, text);
             }
         }

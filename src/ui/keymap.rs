@@ -169,10 +169,15 @@ impl Keymap {
         for part in parts {
             let pressed = KeyPress::parse(part).filter(|_| is_quoted);
             let is_default = |key: &&str| pressed.is_some() && KeyPress::parse(key) == pressed;
-            let action = ACTIONS
-                .iter()
-                .filter(|spec| matches!(spec.context, Context::Global | Context::Always))
-                .find(|spec| spec.keys.iter().any(is_default));
+            // Those of the plan editor are named from outside, too.
+            let named = |wanted: fn(Context) -> bool| {
+                ACTIONS
+                    .iter()
+                    .filter(|spec| wanted(spec.context))
+                    .find(|spec| spec.keys.iter().any(is_default))
+            };
+            let action = named(|context| matches!(context, Context::Global | Context::Always))
+                .or_else(|| named(|context| context == Context::In(Panel::Plan)));
             let text = action.map_or_else(|| part.to_owned(), |spec| self.key(spec.action));
             told.push('`');
             told.push_str(&text);

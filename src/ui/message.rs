@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use crossterm::event::{KeyEvent, MouseEvent};
 
-use super::editor::{FileReply, FileRequest};
+use super::editor::{FileReply, FileRequest, PlanId};
 use crate::plan::FlightPlan;
 use crate::session::command::{CliOutput, Command, SessionView};
 use crate::session::{Event, ForecastJob, ForecastReply};
@@ -29,8 +29,15 @@ pub enum Msg {
     Event(Event),
     /// The firmware answered a CLI line; `None` when it went away instead.
     CliReply(Option<CliOutput>),
-    /// The craft answered an upload: the sentence of the first refusal otherwise.
-    UploadReply(Result<(), String>),
+    /// The craft answered an upload.
+    UploadReply {
+        /// The plan that was uploaded.
+        id: PlanId,
+        /// How many waypoints it had.
+        count: usize,
+        /// The sentence of the first refusal otherwise.
+        result: Result<(), String>,
+    },
     /// The session answered a change of the world.
     WorldReply {
         /// What was to change.
@@ -40,8 +47,13 @@ pub enum Msg {
     },
     /// A forecast, or why there is none.
     Forecast(ForecastReply),
-    /// The plan of the craft, or the sentence of the refusal.
-    DownloadReply(Result<Box<FlightPlan>, String>),
+    /// The craft answered a download.
+    DownloadReply {
+        /// The plan that takes it in.
+        id: PlanId,
+        /// The plan of the craft, or the sentence of the refusal.
+        result: Result<Box<FlightPlan>, String>,
+    },
     /// The craft saved its configuration: the sentence of why not otherwise.
     SaveReply(Result<(), String>),
     /// The flight was written as a scenario, a sentence tells where; or why not.
@@ -63,6 +75,8 @@ pub enum Effect {
     World(String),
     /// Hand a plan to the craft; the reply comes back as [`Msg::UploadReply`].
     Upload {
+        /// Which plan it is.
+        id: PlanId,
         /// The plan.
         plan: Box<FlightPlan>,
         /// Setting lines that come with it, without `set `.
@@ -72,8 +86,8 @@ pub enum Effect {
     Forecast(ForecastJob),
     /// Ask the files.
     Files(FileRequest),
-    /// Read the plan of the craft; it comes back as [`Msg::DownloadReply`].
-    Download,
+    /// Read the plan of the craft for this open plan; it comes back as [`Msg::DownloadReply`].
+    Download(PlanId),
     /// Save the configuration in the craft's flash, as a ground station does; a notice tells how it went.
     SaveToFlash,
     /// Write the flight just flown as a scenario into this file, or into one with the name of the plan; it comes back as

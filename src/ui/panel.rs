@@ -48,18 +48,18 @@ impl Panel {
     pub const ALL: [Self; 8] =
         [Self::Map, Self::Plan, Self::State, Self::Rc, Self::Cli, Self::Graphs, Self::World, Self::Log];
 
-    /// Number and name.
+    /// Its name.
     #[must_use]
-    pub fn title(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
-            Self::Map => "1 Map",
-            Self::Plan => "2 Plan",
-            Self::State => "3 State",
-            Self::Rc => "4 RC",
-            Self::Cli => "5 CLI",
-            Self::Graphs => "6 Graphs",
-            Self::World => "7 World",
-            Self::Log => "8 Log",
+            Self::Map => "Map",
+            Self::Plan => "Plan",
+            Self::State => "State",
+            Self::Rc => "RC",
+            Self::Cli => "CLI",
+            Self::Graphs => "Graphs",
+            Self::World => "World",
+            Self::Log => "Log",
         }
     }
 

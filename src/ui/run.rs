@@ -233,12 +233,12 @@ fn carry_out(
             execute!(io::stdout(), CopyToClipboard::to_clipboard_from(text)).ok();
             Ok(())
         }
-        Effect::Download => {
+        Effect::Download(id) => {
             let (reply, answer) = oneshot::channel();
             let replies = replies.clone();
             tokio::spawn(async move {
                 let answer = answer.await.unwrap_or_else(|_| Err("the session did not answer.".to_owned()));
-                replies.send(Msg::DownloadReply(answer)).ok();
+                replies.send(Msg::DownloadReply { id, result: answer }).ok();
             });
             link.commands.try_send(Command::Download { reply })
         }
@@ -285,12 +285,13 @@ fn carry_out(
             });
             link.commands.try_send(Command::World { line, reply })
         }
-        Effect::Upload { plan, settings } => {
+        Effect::Upload { id, plan, settings } => {
+            let count = plan.waypoints.len();
             let (reply, answer) = oneshot::channel();
             let replies = replies.clone();
             tokio::spawn(async move {
                 let answer = answer.await.unwrap_or_else(|_| Err("the session did not answer.".to_owned()));
-                replies.send(Msg::UploadReply(answer)).ok();
+                replies.send(Msg::UploadReply { id, count, result: answer }).ok();
             });
             link.commands.try_send(Command::Upload { plan, settings, reply })
         }

@@ -137,7 +137,7 @@ pub fn current(state: &AppState) -> Option<StatusMessage> {
         return by_hand(state);
     }
     let outside = state.view.simulator.is_some();
-    if vehicle.truth.as_ref().is_some_and(|truth| !truth.on_ground && truth.alt > 1.0) {
+    if state.is_disarmed_in_the_air() {
         let action = if outside {
             "reset the simulator's world".to_owned()
         } else {

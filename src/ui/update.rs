@@ -2,14 +2,14 @@
 
 use std::time::Duration;
 
-use crossterm::event::{KeyEvent, KeyEventKind};
+use crossterm::event::{KeyCode, KeyEvent, KeyEventKind};
 
 use crate::session::{Command, SessionView};
 use crate::telemetry::InFlightCommand;
 
 use super::action::{self, Action, EditAction};
 use super::app_state::AppState;
-use super::editor::FormKind;
+use super::editor::{FormKind, findings};
 use super::event_log::Severity;
 use super::forecast;
 use super::formatting::within;
@@ -59,6 +59,7 @@ pub fn update(state: &mut AppState, msg: Msg) -> Vec<Effect> {
     if is_followed {
         tutorial::follow(state);
         effects.extend(forecast::follow_plan(state));
+        state.editor.follow_generator(findings::home(state));
     }
     if is_picture {
         effects.extend(forecast::repeat(state));
@@ -110,12 +111,12 @@ fn take(state: &mut AppState, msg: Msg) -> Vec<Effect> {
             }
             Vec::new()
         }
-        Msg::UploadReply(result) => uploaded(state, result),
+        Msg::UploadReply { id, count, result } => uploaded(state, id, count, result),
         Msg::Forecast(reply) => {
             forecast::take_answer(state, reply);
             Vec::new()
         }
-        Msg::DownloadReply(result) => plan::downloaded(state, result),
+        Msg::DownloadReply { id, result } => plan::downloaded(state, id, result),
         Msg::ScenarioReply(result) => plan::scenario_written(state, result),
         Msg::SaveReply(result) => plan::saved_to_flash(state, result),
         Msg::Files(reply) => plan_popup::answered(state, reply),
@@ -169,7 +170,12 @@ fn key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
     if found != Some(Action::Cancel) {
         state.cancelled = None;
     }
-    state.notice = None;
+    // What went wrong must be read, however busy the hands are; Esc takes it away.
+    if event.code == KeyCode::Esc
+        || state.notice.as_ref().is_some_and(|notice| notice.severity != Severity::Fault)
+    {
+        state.notice = None;
+    }
     let types = fields::open(state).is_some();
     match state.popups.last() {
         _ if found == Some(Action::Cancel) => cancel(state),
@@ -199,7 +205,7 @@ fn cancel(state: &mut AppState) -> Vec<Effect> {
     let popup = state.popups.pop().is_some();
     let field = fields::close(state);
     let input = field || state.focus == Panel::Cli && state.cli.cancel();
-    let upload = std::mem::take(&mut state.fly_after_upload);
+    let upload = state.fly_after_upload.take().is_some();
     let edit = state.editor.cancel() | map_edit::leave(state);
     let what = if popup || input || upload || edit { "Cancelled. " } else { "" };
     state.notify(Severity::Info, format!("{what}Ctrl-C again within 2 s quits."));
@@ -218,7 +224,7 @@ fn edit(state: &mut AppState, action: EditAction) -> Vec<Effect> {
         EditAction::Close => plan::close(state),
         EditAction::NextPlan => plan::show_other(state, 1),
         EditAction::PreviousPlan => plan::show_other(state, -1),
-        EditAction::Download => vec![Effect::Download],
+        EditAction::Download => vec![Effect::Download(state.editor.plan().id())],
         EditAction::SaveToFlash => vec![Effect::SaveToFlash],
         EditAction::Left => moved(state, -1),
         EditAction::Right => moved(state, 1),

@@ -246,3 +246,24 @@ fn a_plan_saved_in_a_format_without_names_was_changed_by_nobody() {
     assert_eq!(again.notes, [""; 0]);
     assert_eq!(again.history.document(), &document(2), "the journal knows the name");
 }
+
+#[test]
+fn a_write_protected_file_is_not_replaced() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("plan.toml");
+    let mut files = PlanFiles::new(None);
+    let mut opened = files.start_with(None, document(1));
+    save(&mut files, &mut opened, &path, false);
+    let written = std::fs::read_to_string(&path).unwrap();
+    let mut permissions = path.metadata().unwrap().permissions();
+    permissions.set_readonly(true);
+    std::fs::set_permissions(&path, permissions).unwrap();
+    edit(&mut files, &mut opened, document(2));
+    for replace in [false, true] {
+        let FileReply::Failed(sentence) = save(&mut files, &mut opened, &path, replace) else {
+            panic!("it was replaced")
+        };
+        assert!(sentence.contains("plan.toml is write-protected: save under another name"), "{sentence}");
+    }
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), written);
+}

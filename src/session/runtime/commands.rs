@@ -8,7 +8,7 @@ use super::Session;
 use super::late::WaitingInterface;
 use crate::firmware::cli::Interpreter;
 use crate::flight::forecast;
-use crate::session::command::{Command, PLACE_IS_EXTERNAL, TIME_IS_EXTERNAL, VehicleCopy};
+use crate::session::command::{Command, PLACE_IS_EXTERNAL, Seek, TIME_IS_EXTERNAL, UPLOADING, VehicleCopy};
 use crate::session::upload::{LIST, Upload, plan_of_list};
 use crate::sim::WorldCommand;
 use crate::telemetry::LinkState;
@@ -16,19 +16,44 @@ use crate::vehicle::Answer;
 
 impl Session {
     pub(super) fn take_commands(&mut self, now: Duration, context: &mut Context<'_>) {
-        loop {
-            match self.commands.poll_recv(context) {
-                Poll::Ready(Some(command)) => {
-                    self.changed = true;
-                    self.carry_out(command, now);
+        while let Some(mut command) = self.next_command(context) {
+            // A key that is held asks faster than an instant is found: what follows in one direction is one way.
+            while let Command::Seek(Seek::Seconds(way)) = &mut command {
+                match self.next_command(context) {
+                    Some(Command::Seek(Seek::Seconds(more))) if more.signum() == way.signum() => *way += more,
+                    other => {
+                        self.held_back = other;
+                        break;
+                    }
                 }
-                Poll::Ready(None) => {
-                    self.quit = true;
-                    return;
-                }
-                Poll::Pending => return,
+            }
+            self.changed = true;
+            let seeks = matches!(command, Command::Seek(_));
+            self.carry_out(command, now);
+            if seeks {
+                // Its picture is shown before the next.
+                return;
             }
         }
+    }
+
+    fn next_command(&mut self, context: &mut Context<'_>) -> Option<Command> {
+        if let Some(command) = self.held_back.take() {
+            return Some(command);
+        }
+        match self.commands.poll_recv(context) {
+            Poll::Ready(Some(command)) => Some(command),
+            Poll::Ready(None) => {
+                self.quit = true;
+                None
+            }
+            Poll::Pending => None,
+        }
+    }
+
+    /// Whether a command waits that could be carried out now.
+    pub(super) fn has_commands(&self) -> bool {
+        self.held_back.is_some() || !self.commands.is_empty()
     }
 
     fn carry_out(&mut self, command: Command, now: Duration) {
@@ -59,6 +84,10 @@ impl Session {
                 self.vehicle.transmitter_mut().set_cut(cut);
             }
             Command::Cli { line, reply } => self.run_cli(line, reply),
+            // The lines of two would mix.
+            Command::Upload { reply, .. } if self.upload_under_way().is_some() => {
+                drop(reply.send(Err(UPLOADING.to_owned())));
+            }
             Command::Upload { plan, settings, reply } => {
                 let mut upload = Box::new(Upload::new(&plan, &settings));
                 let progress = upload.send_lines(self.vehicle.controller_mut());

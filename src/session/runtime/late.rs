@@ -8,7 +8,7 @@ use super::Session;
 use super::console::output;
 use crate::firmware::cli::CliAction;
 use crate::plan::FlightPlan;
-use crate::session::command::CliOutput;
+use crate::session::command::{CliOutput, UploadView};
 use crate::session::hazards;
 use crate::session::late_answers::{NO_ANSWER, no_answer_line};
 use crate::session::upload::{Upload, UploadProgress, plan_of_list};
@@ -76,6 +76,14 @@ impl Session {
         if let Some(endpoints) = &mut self.endpoints {
             endpoints.handler.give_up_overdue(now);
         }
+    }
+
+    /// How far the upload is that is under way.
+    pub(super) fn upload_under_way(&self) -> Option<UploadView> {
+        self.late_answers.recipients().find_map(|recipient| match recipient {
+            WaitingInterface::Upload { upload, .. } => Some(upload.lines_sent()),
+            WaitingInterface::Line { .. } | WaitingInterface::Download { .. } => None,
+        })
     }
 
     /// Reports the result of an upload, once there is one.

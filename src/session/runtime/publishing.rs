@@ -23,6 +23,7 @@ impl Session {
             lost_time: self.real_time.lost(self.pacer.achieved()),
             sticks: vehicle.transmitter().sticks(),
             rc_cut: vehicle.transmitter().is_cut(),
+            upload: self.upload_under_way(),
             pilot: vehicle.transmitter().pilot_doing(),
             endpoints: self.endpoints(),
             simulator: self.simulator.as_ref().map(Simulator::state),

@@ -33,6 +33,12 @@ pub fn enabled(state: &AppState, action: Action) -> Result<(), String> {
             Err(PHYSICS_IS_EXTERNAL.to_owned())
         }
         Action::LookAhead | Action::WhatIf if !craft.is_armed() && state.view.pilot.is_none() => {
+            if state.is_disarmed_in_the_air() {
+                let reset = state.key(Action::ResetCraft);
+                return Err(format!(
+                    "The craft falls disarmed, so there is no flight to look ahead to: `{reset}` puts it back home."
+                ));
+            }
             let fly = state.key(Action::Fly);
             Err(format!(
                 "The craft stands disarmed, so there is no flight to look ahead to: `{fly}` flies the plan."
@@ -55,6 +61,10 @@ pub fn enabled(state: &AppState, action: Action) -> Result<(), String> {
         Action::Upload if state.plan().waypoints.is_empty() => {
             Err("No plan is open, so there is nothing to upload.".to_owned())
         }
+        Action::Upload if let Some(upload) = state.view.upload => Err(format!(
+            "An upload is under way, line {} of {}: wait for its end.",
+            upload.sent, upload.total
+        )),
         Action::Fly if state.view.pilot.is_none() && is_wrecked(state) => {
             let reset = state.key(Action::ResetCraft);
             Err(format!("The craft crashed and cannot fly: `{reset}` puts it back home."))
@@ -170,6 +180,19 @@ mod tests {
         assert_eq!(enabled(&state, Action::ResetCraft), Err(PLACE_IS_EXTERNAL.to_owned()));
         state.view.simulator = Some(LinkState::Silent);
         assert!(refused(&state) && enabled(&state, Action::ResetCraft).is_ok(), "it disarms at least");
+    }
+
+    #[test]
+    fn a_craft_that_falls_disarmed_does_not_stand() {
+        let mut view = SessionView::default();
+        let vehicle = std::sync::Arc::make_mut(&mut view.vehicle);
+        vehicle.craft.armed = Some(false);
+        let mut state = AppState::bare((80, 24), view.clone());
+        assert!(enabled(&state, Action::LookAhead).unwrap_err().contains("stands disarmed"));
+        let truth = crate::telemetry::snapshot::TruthView { alt: 30.0, ..Default::default() };
+        std::sync::Arc::make_mut(&mut state.view.vehicle).truth = Some(truth);
+        let told = enabled(&state, Action::LookAhead).unwrap_err();
+        assert!(told.contains("falls disarmed") && told.contains("`R` puts it back home"), "{told}");
     }
 
     #[test]

@@ -72,6 +72,10 @@ pub enum FileReply {
     Listed(Listing),
     /// It did not work: why, in one sentence.
     Failed(String),
+    /// Edits cannot be kept from now on: why, in one sentence.
+    NotKept(String),
+    /// All edits are kept again.
+    KeptAgain,
 }
 
 /// A plan that was read.

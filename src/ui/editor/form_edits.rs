@@ -1,6 +1,6 @@
 //! What the forms do to the open plans.
 
-use super::{Editor, Form, FormKind, forms, which};
+use super::{Editor, EditorPopup, Form, FormField, FormKind, forms, which};
 use crate::geo::LatLon;
 use crate::plan::MAX_WAYPOINTS;
 use crate::plan::edit::PlanDocument;
@@ -8,7 +8,34 @@ use crate::plan::edit::transform::middle;
 use crate::plan::format::SettingCheck;
 use crate::ui::message::Effect;
 
+/// What the generator's form would make, and from what.
+#[derive(Debug, PartialEq)]
+pub(super) struct GeneratorFoot {
+    fields: Vec<FormField>,
+    middle: Option<LatLon>,
+    /// Waypoints that are there already.
+    taken: usize,
+    told: Result<String, String>,
+}
+
 impl Editor {
+    /// Runs the generator of an open form when its values, the plan or home have changed since.
+    pub(in crate::ui) fn follow_generator(&mut self, home: Option<LatLon>) {
+        let Some(EditorPopup::Form(form)) = self.popup.as_ref().filter(|popup| popup.generates()) else {
+            self.generator = None;
+            return;
+        };
+        let waypoints = &self.document().plan.waypoints;
+        let (middle, taken) = (middle(waypoints).or(home), waypoints.len());
+        let is_told =
+            |foot: &GeneratorFoot| foot.fields == form.fields && foot.middle == middle && foot.taken == taken;
+        if self.generator.as_ref().is_some_and(is_told) {
+            return;
+        }
+        let told = self.generated(form, home).map(|generated| generated.told);
+        self.generator = Some(GeneratorFoot { fields: form.fields.clone(), middle, taken, told });
+    }
+
     /// Does what the values of a form say; the sentence tells what was done.
     ///
     /// # Errors
@@ -70,12 +97,47 @@ impl Editor {
     ///
     /// # Errors
     /// What is wrong with a value, as a sentence.
-    pub(crate) fn form_told(&self, form: &Form, home: Option<LatLon>) -> Result<String, String> {
+    pub(crate) fn form_told(&self, form: &Form) -> Result<String, String> {
         match (&form.problem, form.kind) {
             (Some(problem), _) => Err(problem.clone()),
-            (None, FormKind::Generate) => self.generated(form, home).map(|generated| generated.told),
+            (None, FormKind::Generate) => {
+                self.generator.as_ref().map_or_else(|| Ok(String::new()), |foot| foot.told.clone())
+            }
             (None, FormKind::Bulk) => Ok(format!("{} · empty = as it is", which(&self.selected()))),
             (None, FormKind::Properties) => Ok(String::new()),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::edit::History;
+    use crate::ui::editor::{OpenPlan, PlanId};
+    use crate::ui::units::Units;
+
+    #[test]
+    fn the_generator_runs_when_something_changed_and_only_then() {
+        let history = History::new(PlanDocument::default(), true);
+        let mut editor = Editor::new(OpenPlan::new(PlanId(1), None, history));
+        let form = Form::of(FormKind::Generate, editor.document(), Units::Metric);
+        editor.popup = Some(EditorPopup::Form(form.clone()));
+        editor.follow_generator(None);
+        assert!(editor.form_told(&form).unwrap_err().starts_with("Home is not known"));
+        let home = Some(LatLon::new(404_635_000, -795_182_000));
+        editor.follow_generator(home);
+        let told = editor.form_told(&form).unwrap();
+        assert!(told.contains("waypoints"), "{told}");
+
+        editor.generator.as_mut().unwrap().told = Ok("as it was".to_owned());
+        editor.follow_generator(home);
+        assert_eq!(editor.form_told(&form).unwrap(), "as it was");
+        let Some(EditorPopup::Form(open)) = &mut editor.popup else { unreachable!() };
+        open.set(1, "123").unwrap();
+        editor.follow_generator(home);
+        assert_ne!(editor.form_told(&form).unwrap(), "as it was");
+        editor.popup = None;
+        editor.follow_generator(home);
+        assert_eq!(editor.generator, None);
     }
 }

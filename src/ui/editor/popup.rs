@@ -1,7 +1,7 @@
 //! What of the editor lies over the panels.
 
 use super::browser::Browser;
-use super::form::Form;
+use super::form::{Form, FormKind};
 use super::question::Question;
 
 /// A popup of the editor; it gets the keys.
@@ -16,6 +16,11 @@ pub enum EditorPopup {
 }
 
 impl EditorPopup {
+    /// Whether a plan is generated from its values.
+    pub(super) fn generates(&self) -> bool {
+        matches!(self, Self::Form(form) if form.kind == FormKind::Generate)
+    }
+
     /// Inserts pasted text where one types; whether one does.
     pub(in crate::ui) fn paste(&mut self, text: &str) -> bool {
         match self {

@@ -24,7 +24,7 @@ const WELCOME: &str =
 
 /// The title: what it is doing.
 pub(crate) fn title(state: &AppState) -> String {
-    let name = Panel::Cli.title();
+    let name = state.panel_title(Panel::Cli);
     match (state.cli.queued(), state.cli.waiting, state.cli.scroll) {
         (0, false, 0) => name.to_owned(),
         (0, true, 0) => format!("{name} — running"),

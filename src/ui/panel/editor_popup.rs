@@ -7,9 +7,7 @@ use ratatui::text::Line;
 use super::{line, row, span};
 use crate::ui::app_state::AppState;
 use crate::ui::draw::popup;
-use crate::ui::editor::{
-    Browser, EditorPopup, Form, FormField, FormKind, OpenPlan, Purpose, Question, findings,
-};
+use crate::ui::editor::{Browser, EditorPopup, Form, FormField, FormKind, OpenPlan, Purpose, Question};
 use crate::ui::text_wrap::wrapped;
 use crate::ui::theme::Role;
 
@@ -39,7 +37,7 @@ fn form(state: &AppState, form: &Form, area: Rect, buffer: &mut Buffer) -> Optio
         FormKind::Generate => "Generate a pattern",
         FormKind::Properties => "Name, home, settings",
     };
-    let told = state.editor.form_told(form, findings::home(state));
+    let told = state.editor.form_told(form);
     let (role, text) = match &told {
         Ok(text) => (Role::Dim, text.clone()),
         Err(problem) => (Role::Fault, format!("✗ {problem}")),

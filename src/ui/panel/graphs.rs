@@ -27,7 +27,7 @@ pub(crate) fn title(state: &AppState) -> String {
     let span = if span < 120.0 { format!("{span:.0} s") } else { format!("{:.0} min", span / 60.0) };
     let cursor = graphs::cursor_s(state)
         .map_or_else(String::new, |cursor| format!(" — at {}", clock(SimTime::from_secs_f64(cursor))));
-    format!("{} — {span}{cursor}", Panel::Graphs.title())
+    format!("{} — {span}{cursor}", state.panel_title(Panel::Graphs))
 }
 
 /// Draws the inside.

@@ -7,19 +7,25 @@ use ratatui::text::Line;
 use crate::ui::action::{ACTIONS, Context};
 use crate::ui::app_state::AppState;
 use crate::ui::draw::popup;
-use crate::ui::theme::Role;
+use crate::ui::text_wrap::wrapped;
+use crate::ui::theme::{Role, Theme};
 
 use super::{line, span};
+
+/// Columns of the keys.
+const KEYS: usize = 12;
 
 /// Draws the popup, scrolled down by `scroll` lines.
 pub(crate) fn draw(state: &AppState, scroll: usize, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
+    // Within the frame.
+    let columns = usize::from(area.width.saturating_sub(2));
     let mut lines: Vec<Line<'static>> = Vec::new();
     let own =
         |context: Context| matches!(context, Context::In(_) | Context::Lists) && context.applies(state.focus);
     let general = |context: Context| matches!(context, Context::Global | Context::Always);
     let sections: [(String, &dyn Fn(Context) -> bool); 2] =
-        [(format!("In {}", state.focus.title()), &own), ("Everywhere".to_owned(), &general)];
+        [(format!("In {}", state.panel_title(state.focus)), &own), ("Everywhere".to_owned(), &general)];
     for (title, wanted) in sections {
         let rows: Vec<_> = ACTIONS.iter().filter(|spec| wanted(spec.context)).collect();
         if rows.is_empty() {
@@ -28,10 +34,7 @@ pub(crate) fn draw(state: &AppState, scroll: usize, area: Rect, buffer: &mut Buf
         lines.push(Line::from(span(theme, Role::Title, title)));
         for spec in rows {
             let keys = state.keymap.shown_keys(spec.action);
-            lines.push(Line::from(vec![
-                span(theme, Role::Key, format!("{:>12}  ", keys.join(" "))),
-                span(theme, Role::Text, spec.help),
-            ]));
+            lines.extend(explained(theme, &keys.join(" "), spec.help, columns));
         }
     }
     lines.push(Line::from(span(theme, Role::Title, "Mouse")));
@@ -42,10 +45,7 @@ pub(crate) fn draw(state: &AppState, scroll: usize, area: Rect, buffer: &mut Buf
         ("wheel", "Zoom the map at the pointer, scroll the others"),
         ("Shift", "Lets the terminal select text"),
     ] {
-        lines.push(Line::from(vec![
-            span(theme, Role::Key, format!("{what:>12}  ")),
-            span(theme, Role::Text, text),
-        ]));
+        lines.extend(explained(theme, what, text, columns));
     }
     let width = lines.iter().map(Line::width).max().unwrap_or(0) as u16 + 1;
     let height = lines.len() as u16;
@@ -55,4 +55,18 @@ pub(crate) fn draw(state: &AppState, scroll: usize, area: Rect, buffer: &mut Buf
     for (at, text) in lines.iter().skip(first).take(usize::from(inside.height)).enumerate() {
         line(buffer, inside, at as u16, text);
     }
+}
+
+/// Keys, and behind them what they do: in as many lines as it takes in these columns.
+fn explained(theme: &Theme, keys: &str, text: &str, columns: usize) -> Vec<Line<'static>> {
+    let rows = wrapped(text, columns.saturating_sub(KEYS.max(keys.chars().count()) + 2).max(1));
+    let keys = std::iter::once(keys).chain(std::iter::repeat(""));
+    std::iter::zip(keys, rows)
+        .map(|(keys, text)| {
+            Line::from(vec![
+                span(theme, Role::Key, format!("{keys:>KEYS$}  ")),
+                span(theme, Role::Text, text),
+            ])
+        })
+        .collect()
 }

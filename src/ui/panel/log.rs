@@ -20,7 +20,7 @@ const STAMP: usize = 12;
 
 /// The title: how many lines are above the first one shown, what is left out and what is searched.
 pub(crate) fn title(state: &AppState) -> String {
-    let mut title = Panel::Log.title().to_owned();
+    let mut title = state.panel_title(Panel::Log).to_owned();
     let view = &state.log_view;
     let newer = match state.scrolls.log {
         0 => String::new(),

@@ -41,7 +41,7 @@ struct Scene {
 
 /// The title: how the map chooses its place.
 pub(crate) fn title(state: &AppState) -> String {
-    let name = Panel::Map.title();
+    let name = state.panel_title(Panel::Map);
     let source = match &state.view.vehicle.active_plan {
         Some(_) => state.view.vehicle.nav.as_ref().map_or(PlanSource::Stored, |nav| nav.source),
         None => PlanSource::Stored,

@@ -26,7 +26,13 @@ pub(crate) fn title(state: &AppState) -> String {
     let count = state.editor.plans().len();
     let which = if count > 1 { format!(" {}/{count}", state.editor.current() + 1) } else { String::new() };
     let unsaved = if plan.is_unsaved() { " ✎ unsaved" } else { "" };
+    let kept = if state.editor.loses_edits { " ✗ edits not kept" } else { "" };
     let disk = if plan.is_changed_on_disk() { " ▲ changed on disk" } else { "" };
+    // It passes, so it stands where it is not cut off.
+    if let Some(upload) = state.upload_of(plan.id()) {
+        let uploading = format!("↑ uploading {}/{}", upload.sent, upload.total);
+        return format!("{}{which} — {uploading} {}{unsaved}", state.panel_title(Panel::Plan), plan.title());
+    }
     let craft = match &state.view.vehicle.stored_plan {
         _ if plan.document().plan.waypoints.is_empty() => String::new(),
         Some(stored) if *stored == plan.document().plan => " ✓ on the craft".to_owned(),
@@ -35,7 +41,7 @@ pub(crate) fn title(state: &AppState) -> String {
         }
         None => " — on the craft?".to_owned(),
     };
-    format!("{}{which} — {}{unsaved}{disk}{craft}", Panel::Plan.title(), plan.title())
+    format!("{}{which} — {}{unsaved}{kept}{disk}{craft}", state.panel_title(Panel::Plan), plan.title())
 }
 
 /// What is under the mouse in the panel.

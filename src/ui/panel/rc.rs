@@ -22,8 +22,10 @@ const SPAN_US: (f64, f64) = (900.0, 2100.0);
 pub(crate) fn title(state: &AppState) -> String {
     let now_s = state.view.vehicle.time.as_secs_f64();
     let recording = state.stick_recording.shown(now_s);
-    let name = recording
-        .map_or_else(|| Panel::Rc.title().to_owned(), |doing| format!("{} {doing}", Panel::Rc.title()));
+    let name = recording.map_or_else(
+        || state.panel_title(Panel::Rc).to_owned(),
+        |doing| format!("{} {doing}", state.panel_title(Panel::Rc)),
+    );
     let craft = &state.view.vehicle.craft;
     let ours = !matches!(craft.rc_source, Some(RcSource::Udp | RcSource::Msp));
     if state.view.rc_cut && ours {

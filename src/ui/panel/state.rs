@@ -35,7 +35,7 @@ const GUARD_ROWS: u16 = 8;
 
 /// The title: the waypoint of the mission.
 pub(crate) fn title(state: &AppState) -> String {
-    let name = Panel::State.title();
+    let name = state.panel_title(Panel::State);
     let Some(nav) = state.view.vehicle.nav.as_ref().filter(|nav| nav.engaged && nav.count > 0) else {
         return name.to_owned();
     };

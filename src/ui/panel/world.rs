@@ -17,7 +17,7 @@ const NAME: usize = 18;
 
 /// The title: what flies.
 pub(crate) fn title(state: &AppState) -> String {
-    let name = Panel::World.title();
+    let name = state.panel_title(Panel::World);
     match state.view.vehicle.world.airframe.as_str() {
         "" => name.to_owned(),
         airframe => format!("{name} — airframe {airframe}"),

@@ -38,8 +38,9 @@ pub(super) fn answer(state: &mut AppState, line: &str) -> Result<Answered, Strin
     }
     let Some(EditorPopup::Form(mut form)) = state.editor.popup.take() else { return Ok(Answered::default()) };
     let set = set(&mut form, line);
+    state.editor.popup = Some(EditorPopup::Form(form.clone()));
+    state.editor.follow_generator(findings::home(state));
     let told = told(state, &form);
-    state.editor.popup = Some(EditorPopup::Form(form));
     let value = set?;
     Ok(Answered {
         effects: Vec::new(),
@@ -73,6 +74,6 @@ fn hint(field: &FormField) -> String {
 
 /// What the form would make now, or what is wrong.
 fn told(state: &AppState, form: &Form) -> Option<String> {
-    let told = state.editor.form_told(form, findings::home(state));
+    let told = state.editor.form_told(form);
     Some(told.unwrap_or_else(|problem| problem)).filter(|told| !told.is_empty())
 }

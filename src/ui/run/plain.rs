@@ -119,7 +119,7 @@ fn is_question(effect: &Effect) -> bool {
         Effect::Cli(_)
         | Effect::World(_)
         | Effect::Upload { .. }
-        | Effect::Download
+        | Effect::Download(_)
         | Effect::WriteScenario { .. }
         | Effect::SaveToFlash => true,
         Effect::Files(request) => {
@@ -135,13 +135,15 @@ fn is_answer(msg: &Msg) -> bool {
     match msg {
         Msg::CliReply(_)
         | Msg::WorldReply { .. }
-        | Msg::UploadReply(_)
-        | Msg::DownloadReply(_)
+        | Msg::UploadReply { .. }
+        | Msg::DownloadReply { .. }
         | Msg::SaveReply(_)
         | Msg::ScenarioReply(_)
         | Msg::Busy => true,
         Msg::Forecast(reply) => reply.kind != ForecastKind::PlanEstimate,
-        Msg::Files(reply) => !matches!(reply, FileReply::Changed(_)),
+        Msg::Files(reply) => {
+            !matches!(reply, FileReply::Changed(_) | FileReply::NotKept(_) | FileReply::KeptAgain)
+        }
         Msg::Clock(_)
         | Msg::Key(_)
         | Msg::Mouse(_)

@@ -3,6 +3,7 @@
 use crate::session::Command;
 use crate::ui::action::{Action, EditAction};
 use crate::ui::app_state::AppState;
+use crate::ui::editor::{OpenPlan, PlanId};
 use crate::ui::event_log::Severity;
 use crate::ui::message::Effect;
 use crate::ui::panel::Panel;
@@ -41,31 +42,39 @@ pub(super) fn fly(state: &mut AppState) -> Vec<Effect> {
         state.notify(Severity::Warn, text);
         return Vec::new();
     }
-    state.fly_after_upload = true;
+    state.fly_after_upload = Some(state.editor.plan().id());
     vec![upload(state)]
 }
 
 pub(super) fn upload(state: &mut AppState) -> Effect {
     state.editor.remember_upload();
     Effect::Upload {
+        id: state.editor.plan().id(),
         plan: Box::new(state.plan().clone()),
         settings: state.editor.document().settings.clone(),
     }
 }
 
-pub(super) fn uploaded(state: &mut AppState, result: Result<(), String>) -> Vec<Effect> {
-    let fly = std::mem::take(&mut state.fly_after_upload);
+/// The craft answered the upload of a plan of `count` waypoints, which need not be shown any more.
+pub(super) fn uploaded(
+    state: &mut AppState,
+    id: PlanId,
+    count: usize,
+    result: Result<(), String>,
+) -> Vec<Effect> {
+    let fly = state.fly_after_upload.take_if(|asked| *asked == id).is_some();
+    let open = state.editor.plan_of(id);
+    let title = open.map_or_else(|| "a plan that is closed now".to_owned(), OpenPlan::title);
     match result {
         Ok(()) => {
-            let count = state.plan().waypoints.len();
+            let flies = open.is_some_and(|open| state.flies(&open.document().plan));
             // The next picture shows the new plan; whether another one flies is known already.
-            let then = if state.flies_stored_plan() && !state.flies(state.plan()) {
+            let then = if state.flies_stored_plan() && !flies {
                 let key = state.key(Action::GoTo);
                 format!(" It takes effect at the next engagement; `{key}` continues on it now.")
             } else {
                 String::new()
             };
-            let title = state.editor.plan().title();
             let text = format!("Uploaded {title}: {count} waypoints.{then}");
             state.notify(Severity::Good, text);
             if fly { vec![Effect::Send(Command::Pilot(true))] } else { Vec::new() }
@@ -73,7 +82,7 @@ pub(super) fn uploaded(state: &mut AppState, result: Result<(), String>) -> Vec<
         Err(sentence) => {
             state.notify(
                 Severity::Fault,
-                format!("The craft refused the plan: {}", state.keymap.in_force(&sentence)),
+                format!("Uploading {title} failed: {}", state.keymap.in_force(&sentence)),
             );
             Vec::new()
         }

@@ -9,7 +9,9 @@ use crate::plan::{FlightPlan, HoldPattern, Waypoint, WaypointType};
 use crate::ui::action::{Action, EditAction};
 use crate::ui::app_state::AppState;
 use crate::ui::editor::findings;
-use crate::ui::editor::{Browser, Column, EditorPopup, FileRequest, Form, FormKind, Purpose, Question};
+use crate::ui::editor::{
+    Browser, Column, EditorPopup, FileRequest, Form, FormKind, PlanId, Purpose, Question,
+};
 use crate::ui::event_log::Severity;
 use crate::ui::message::Effect;
 
@@ -203,6 +205,7 @@ pub(super) fn open_form(state: &mut AppState, kind: FormKind) -> Vec<Effect> {
         return Vec::new();
     }
     state.editor.popup = Some(EditorPopup::Form(Form::of(kind, document, state.units)));
+    state.editor.follow_generator(findings::home(state));
     Vec::new()
 }
 
@@ -230,12 +233,7 @@ pub(super) fn save_as(state: &mut AppState) -> Vec<Effect> {
     vec![Effect::Files(FileRequest::List(beside))]
 }
 
-pub(super) fn write(
-    state: &AppState,
-    id: crate::ui::editor::PlanId,
-    path: std::path::PathBuf,
-    replace: bool,
-) -> Effect {
+pub(super) fn write(state: &AppState, id: PlanId, path: std::path::PathBuf, replace: bool) -> Effect {
     let plan = state.editor.plan_of(id).unwrap_or_else(|| state.editor.plan());
     Effect::Files(FileRequest::Save {
         id,
@@ -278,24 +276,36 @@ pub(super) fn show_other(state: &mut AppState, step: isize) -> Vec<Effect> {
     Vec::new()
 }
 
-/// Takes the plan of the craft into the editor, as one edit.
-pub(super) fn downloaded(state: &mut AppState, result: Result<Box<FlightPlan>, String>) -> Vec<Effect> {
+/// Takes the plan of the craft into the open plan for which it was asked, as one edit.
+pub(super) fn downloaded(
+    state: &mut AppState,
+    id: PlanId,
+    result: Result<Box<FlightPlan>, String>,
+) -> Vec<Effect> {
+    let Some(open) = state.editor.plan_of(id) else {
+        state.notify(Severity::Warn, "Not downloaded: the plan that was to take it in is closed.");
+        return Vec::new();
+    };
+    let elsewhere = Some(open.title()).filter(|_| id != state.editor.plan().id());
     match result {
         Err(sentence) => {
             state.notify(Severity::Fault, format!("Not downloaded: {}", state.keymap.in_force(&sentence)));
             Vec::new()
         }
-        Ok(held) if *held == *state.plan() => {
+        Ok(held) if *held == open.document().plan => {
             state.notify(Severity::Info, "The craft has this very plan.");
             Vec::new()
         }
         Ok(held) => {
             let count = held.waypoints.len();
-            let effects = state.editor.edit("download from the craft", |document| document.plan = *held);
+            let effects = state.editor.replace_waypoints(id, "download from the craft", *held);
             let undo = state.key(Action::Edit(EditAction::Undo));
-            let text = format!("Downloaded {count} waypoints; `{undo}` brings the others back.");
+            let text = match elsewhere {
+                Some(title) => format!("Downloaded {count} waypoints into {title}."),
+                None => format!("Downloaded {count} waypoints; `{undo}` brings the others back."),
+            };
             state.notify(Severity::Good, text);
-            effects
+            effects.unwrap_or_default()
         }
     }
 }

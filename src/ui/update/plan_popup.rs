@@ -117,7 +117,8 @@ pub(super) fn answered(state: &mut AppState, reply: FileReply) -> Vec<Effect> {
     match reply {
         FileReply::Opened(opened) => {
             for note in &opened.notes {
-                state.notify(Severity::Info, note.clone());
+                let note = state.keymap.in_force(note);
+                state.notify(Severity::Info, note);
             }
             let name = opened.file.as_ref().map_or_else(String::new, |file| shown(file.as_path()));
             let told = if opened.recovered {
@@ -160,6 +161,14 @@ pub(super) fn answered(state: &mut AppState, reply: FileReply) -> Vec<Effect> {
                 browser.listing = listing;
                 browser.at = None;
             }
+        }
+        FileReply::NotKept(sentence) => {
+            state.editor.loses_edits = true;
+            state.notify(Severity::Fault, sentence);
+        }
+        FileReply::KeptAgain => {
+            state.editor.loses_edits = false;
+            state.notify(Severity::Good, "Edits are kept again.");
         }
         FileReply::Failed(sentence) => {
             state.editor.quitting = false;

@@ -5,6 +5,10 @@ use crate::plan::Waypoint;
 use crate::ui::app_state::AppState;
 use crate::ui::map_point::{self, MapPoint, to_map};
 
+/// Points of the track nearer to each other than this fall on one mark of the profile: a share of its length, and m.
+const NEAR_SHARE: f64 = 1.0 / 2000.0;
+const NEAR_ALT_M: f64 = 0.05;
+
 /// A place of the flown track: metres along the plan, metres above home.
 pub(super) struct FlownPoint {
     pub(super) along_m: f64,
@@ -22,23 +26,37 @@ pub(super) fn flown(state: &AppState, points: &[Point]) -> Vec<FlownPoint> {
     if !are_at_the_same_places(waypoints, &flown.waypoints) {
         return Vec::new();
     }
-    // Not once for each of thousands of points.
-    let targets: Vec<Option<MapPoint>> =
-        waypoints.iter().map(|wp| wp.kind.uses_position().then(|| to_map(&frame, wp.position))).collect();
-    let mut along_m = 0.0_f64;
-    let track = state.track.points().iter().take(state.track_points_shown());
-    let on_leg = track.filter_map(|place| Some((place, usize::from(place.wp?))));
-    on_leg
-        .map(|(place, wp)| {
-            // Where the leg ends, less what is left of it; the distance never shrinks, as in a hold.
-            if let Some(end) = points.iter().rfind(|point| point.index <= wp) {
-                let target = targets.get(wp).copied().flatten();
-                let left_m = target.map_or(0.0, |to| to.distance(MapPoint::new(place.n, place.e)));
-                along_m = along_m.max(end.along_m - left_m);
-            }
-            FlownPoint { along_m, alt_m: place.alt_m }
+    // Once for each waypoint, not for each of thousands of points: where its leg ends, along the plan and on the map.
+    let ends: Vec<(Option<f64>, Option<MapPoint>)> = waypoints
+        .iter()
+        .enumerate()
+        .map(|(index, wp)| {
+            let end = points.iter().rfind(|point| point.index <= index);
+            let place = wp.kind.uses_position().then(|| to_map(&frame, wp.position));
+            (end.map(|end| end.along_m), place)
         })
-        .collect()
+        .collect();
+    let near_m = points.last().map_or(0.0, |last| last.along_m * NEAR_SHARE);
+    let mut along_m = 0.0_f64;
+    let mut seen: Vec<FlownPoint> = Vec::new();
+    let track = state.track.points().iter().take(state.track_points_shown());
+    for (place, wp) in track.filter_map(|place| Some((place, usize::from(place.wp?)))) {
+        // Where the leg ends, less what is left of it; the distance never shrinks, as in a hold.
+        if let Some(&(Some(end_m), target)) = ends.get(wp) {
+            let left_m = target.map_or(0.0, |to| {
+                let (north_m, east_m) = (to.n - place.n, to.e - place.e);
+                (north_m * north_m + east_m * east_m).sqrt()
+            });
+            along_m = along_m.max(end_m - left_m);
+        }
+        let is_near = |last: &FlownPoint| {
+            along_m - last.along_m <= near_m && (place.alt_m - last.alt_m).abs() <= NEAR_ALT_M
+        };
+        if !seen.last().is_some_and(is_near) {
+            seen.push(FlownPoint { along_m, alt_m: place.alt_m });
+        }
+    }
+    seen
 }
 
 /// Whether two plans lead through the same places; their altitudes may differ.

@@ -1,0 +1,150 @@
+use tokio::sync::oneshot;
+
+use super::*;
+use crate::firmware::config::Configuration;
+use crate::firmware::{Firmware, FirmwareOptions};
+use crate::plan::{FlightPlan, Waypoint};
+use crate::session::command::{Seek, UPLOADING, UploadView};
+use crate::signals::SimTime;
+use crate::sim::WorldConfig;
+use crate::vehicle::{LateAnswer, RemoteRequest, VehicleConfig};
+
+/// A session whose flight controller runs elsewhere: `firmware`, which is asked by hand.
+struct Rig {
+    session: Session,
+    commands: mpsc::Sender<Command>,
+    firmware: Firmware,
+    console: Interpreter,
+}
+
+impl Rig {
+    fn new() -> Self {
+        Self::with(Vehicle::with_remote_controller(WorldConfig::default()).unwrap())
+    }
+
+    fn with(vehicle: Vehicle) -> Self {
+        let (commands, taken) = mpsc::channel(32);
+        let config = SessionConfig {
+            vehicle,
+            store: Store::in_memory(),
+            starter_modes: true,
+            speed: 1.0,
+            takeoff_m: 10.0,
+            endpoints: None,
+            first_events: Vec::new(),
+        };
+        let session = Session::new(config, None, taken, mpsc::unbounded_channel().0);
+        let firmware = Firmware::new(Configuration::default(), FirmwareOptions::default());
+        Self { session, commands, firmware, console: Interpreter::default() }
+    }
+
+    /// Asks for the upload of these waypoints; gets the result.
+    fn upload(&mut self, waypoints: usize) -> oneshot::Receiver<Result<(), String>> {
+        let mut plan = Box::new(FlightPlan::default());
+        plan.waypoints.extend((0..waypoints).map(|_| Waypoint { alt_cm: 2000, ..Waypoint::default() }));
+        let (reply, result) = oneshot::channel();
+        let settings = vec!["ap_max_angle = 33".to_owned()];
+        self.commands.try_send(Command::Upload { plan, settings, reply }).unwrap();
+        self.take_commands();
+        result
+    }
+
+    fn seek(&mut self, seek: Seek) {
+        self.commands.try_send(Command::Seek(seek)).unwrap();
+    }
+
+    /// What the session does with its commands before it publishes a view.
+    fn take_commands(&mut self) {
+        self.session.take_commands(Duration::ZERO, &mut Context::from_waker(Waker::noop()));
+    }
+
+    /// Answers what was asked since, `change` having a look at each line and its output; how many lines these were.
+    fn answer(&mut self, change: impl Fn(&str, &mut String)) -> usize {
+        let mut answered = 0;
+        while let Some((ticket, request)) = self.mailbox().take_request() {
+            let RemoteRequest::Cli(line) = request else { panic!("{request:?}") };
+            let mut said = self.firmware.run_cli(&mut self.console, &line);
+            change(&line, &mut said.text);
+            self.mailbox().deliver_answer(ticket, LateAnswer::Cli(said));
+            answered += 1;
+        }
+        self.session.take_late_answers(Instant::now());
+        answered
+    }
+
+    fn mailbox(&mut self) -> &mut crate::vehicle::RemoteController {
+        self.session.vehicle.controller_mut().remote_mut().unwrap()
+    }
+
+    fn shown(&self) -> Option<UploadView> {
+        self.session.view().upload
+    }
+}
+
+#[test]
+fn an_upload_to_a_remote_flight_controller_shows_how_far_it_is_until_it_was_read_back() {
+    let mut rig = Rig::new();
+    assert_eq!(rig.shown(), None);
+    let mut result = rig.upload(2);
+    // A setting, `clear`, two waypoints, `list`.
+    for sent in 1..=5 {
+        assert_eq!(rig.shown(), Some(UploadView { sent, total: 5 }));
+        assert!(rig.session.changed, "it is published");
+        assert_eq!(rig.answer(|_, _| {}), 1, "one line after the other");
+    }
+    assert_eq!((rig.shown(), result.try_recv().unwrap()), (None, Ok(())));
+    assert_eq!(rig.firmware.stored_plan().waypoints.len(), 2);
+    assert_eq!(rig.firmware.parameters().nav.max_angle, 33);
+}
+
+#[test]
+fn a_craft_that_holds_another_waypoint_than_was_sent_is_found_by_reading_back() {
+    let mut rig = Rig::new();
+    let mut result = rig.upload(2);
+    let spoilt = |line: &str, text: &mut String| {
+        if line == "waypoint list" {
+            let second = text.rfind("2000").unwrap();
+            text.replace_range(second..second + 4, "2100");
+        }
+    };
+    while rig.answer(spoilt) > 0 {}
+    let sentence = result.try_recv().unwrap().unwrap_err();
+    assert_eq!(sentence, "the craft holds another waypoint 1 than was sent: upload again");
+}
+
+#[test]
+fn the_lines_of_two_uploads_do_not_mix() {
+    let mut rig = Rig::new();
+    let (mut first, mut second) = (rig.upload(3), rig.upload(1));
+    assert_eq!(second.try_recv().unwrap(), Err(UPLOADING.to_owned()));
+    while rig.answer(|_, _| {}) > 0 {}
+    assert_eq!(first.try_recv().unwrap(), Ok(()));
+    assert_eq!(rig.firmware.stored_plan().waypoints.len(), 3);
+}
+
+#[test]
+fn a_held_rewind_key_is_one_way_and_each_other_instant_is_shown_before_the_next() {
+    let vehicle = Vehicle::new(VehicleConfig {
+        world: WorldConfig::default(),
+        firmware: FirmwareOptions::default(),
+        configuration: Configuration::default(),
+        live: false,
+    });
+    let mut rig = Rig::with(vehicle.unwrap());
+    rig.session.advance(60_000, Duration::ZERO);
+    let shown_s = |rig: &Rig| rig.session.view().vehicle.time.as_secs_f64();
+    (0..20).for_each(|_| rig.seek(Seek::Seconds(-1.0)));
+    rig.seek(Seek::Seconds(5.0));
+    rig.seek(Seek::Time(SimTime(7_000_000)));
+    let (sent, begun) = (oneshot::channel(), rig.session.has_commands());
+    rig.commands.try_send(Command::Save { reply: sent.0 }).unwrap();
+    assert!(begun, "the loop does not sleep");
+    for expected_s in [40.0, 45.0, 7.0] {
+        assert!(rig.session.has_commands());
+        rig.take_commands();
+        assert!((shown_s(&rig) - expected_s).abs() < 1e-3, "{} for {expected_s}", shown_s(&rig));
+    }
+    rig.take_commands();
+    assert!(!rig.session.has_commands(), "whatever comes behind is not forgotten");
+    drop(sent.1);
+}

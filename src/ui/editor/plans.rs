@@ -1,0 +1,112 @@
+//! The plans that are open: which of them is shown; opened, closed, written.
+
+use std::path::PathBuf;
+
+use super::{Editor, FileRequest, OpenPlan, Opened, PlanId};
+use crate::plan::FlightPlan;
+use crate::plan::edit::{History, PlanDocument};
+use crate::ui::message::Effect;
+
+/// First identifier of plans that are made here; those that the files open have lower ones.
+const FIRST_NEW: u32 = 1 << 16;
+
+impl Editor {
+    /// Shows the next or the previous open plan.
+    pub(in crate::ui) fn show_other(&mut self, step: isize) {
+        let count = self.plans.len();
+        self.show((self.current + count).wrapping_add_signed(step) % count);
+    }
+
+    pub(super) fn show(&mut self, index: usize) {
+        self.current = index.min(self.plans.len() - 1);
+        self.row = 0;
+        self.anchor = None;
+        self.field = None;
+    }
+
+    /// Opens a new plan with this document, under an identifier that no plan had before: what is still on its way to
+    /// a closed one must not reach it.
+    pub(in crate::ui) fn open_new(&mut self, document: PlanDocument) -> Effect {
+        let id = PlanId(FIRST_NEW + self.made);
+        self.made += 1;
+        let begin = FileRequest::Begin(id, Box::new(document.clone()));
+        self.add(OpenPlan::new(id, None, History::new(document, false)));
+        Effect::Files(begin)
+    }
+
+    /// Shows a plan that was read; one that is open already is replaced by it.
+    pub(in crate::ui) fn opened(&mut self, opened: Opened) {
+        let plan = OpenPlan::new(opened.id, opened.file, opened.history);
+        match self.plans.iter().position(|other| other.id() == plan.id()) {
+            Some(index) => {
+                self.plans[index] = plan;
+                self.show(index);
+            }
+            None => self.add(plan),
+        }
+    }
+
+    fn add(&mut self, plan: OpenPlan) {
+        self.plans.push(plan);
+        self.show(self.plans.len() - 1);
+    }
+
+    /// Closes a plan; the last one leaves an empty one behind.
+    pub(in crate::ui) fn close(&mut self, id: PlanId) -> Vec<Effect> {
+        let discard = self.plan_of(id).is_some_and(OpenPlan::is_unsaved);
+        let mut effects = vec![Effect::Files(FileRequest::Close { id, discard })];
+        if self.plans.len() == 1 {
+            effects.push(self.open_new(PlanDocument::default()));
+        }
+        self.plans.retain(|plan| plan.id() != id);
+        self.show(self.current.saturating_sub(1));
+        effects
+    }
+
+    /// The open plan of this identifier.
+    #[must_use]
+    pub fn plan_of(&self, id: PlanId) -> Option<&OpenPlan> {
+        self.plans.iter().find(|plan| plan.id() == id)
+    }
+
+    /// Shows the open plan of this identifier.
+    pub(in crate::ui) fn show_plan(&mut self, id: PlanId) {
+        if let Some(index) = self.plans.iter().position(|plan| plan.id() == id) {
+            self.show(index);
+        }
+    }
+
+    /// Makes a plan hold these waypoints, as one revision, whether it is shown or not; `None` when it was closed.
+    pub(in crate::ui) fn replace_waypoints(
+        &mut self,
+        id: PlanId,
+        label: &str,
+        waypoints: FlightPlan,
+    ) -> Option<Vec<Effect>> {
+        if self.plan().id() == id {
+            return Some(self.edit(label, |document| document.plan = waypoints));
+        }
+        let plan = self.plan_of_mut(id)?;
+        let after = PlanDocument { plan: waypoints, ..plan.document().clone() };
+        let line = plan.commit(label, after);
+        Some(line.map(|line| Effect::Files(FileRequest::Journal(id, line))).into_iter().collect())
+    }
+
+    /// A plan was written.
+    pub(in crate::ui) fn saved(&mut self, id: PlanId, file: PathBuf, revision: usize) {
+        if let Some(plan) = self.plan_of_mut(id) {
+            plan.saved(file, revision);
+        }
+    }
+
+    /// Somebody else changed the file of a plan; the plan's title, if it is open.
+    pub(in crate::ui) fn changed_on_disk(&mut self, id: PlanId) -> Option<String> {
+        let plan = self.plan_of_mut(id)?;
+        plan.set_changed_on_disk(true);
+        Some(plan.title())
+    }
+
+    fn plan_of_mut(&mut self, id: PlanId) -> Option<&mut OpenPlan> {
+        self.plans.iter_mut().find(|plan| plan.id() == id)
+    }
+}

@@ -1,0 +1,58 @@
+//! Keys in, screen out, with a session behind them: losses in flight, and an upload read back.
+
+#![allow(clippy::unwrap_used, reason = "tests may panic")]
+
+use betadeck::telemetry::NavState;
+use betadeck::ui::AppState;
+
+#[path = "ui/session_rig.rs"]
+mod session_rig;
+
+use session_rig::Rig;
+
+#[tokio::test]
+async fn a_cut_rc_link_shows_failsafe_and_the_landing_that_was_chosen() {
+    let mut rig = Rig::new().await;
+    rig.keys(":set ap_rx_loss_policy=LAND\nF").await;
+    rig.fly_to(NavState::Approaching).await;
+    rig.keys("x").await;
+    rig.until("the cut", |state| state.view.rc_cut).await;
+    rig.assert_shown(&["RC CUT", "x restore RC"]);
+    rig.fly_to(NavState::Landing).await;
+    rig.assert_shown(&[
+        "◆ LANDING",
+        "RC link lost.",
+        "Failsafe stage 1",
+        "policy LAND",
+        "APPROACHING → LANDING",
+    ]);
+    rig.fly_to(NavState::Complete).await;
+    rig.assert_shown(&["DISARMED", "The RC link is cut.", "x restores it", "◆ COMPLETE"]);
+}
+
+#[tokio::test]
+async fn a_lost_gps_fix_shows_why_the_autopilot_idles_and_its_return_resumes_the_mission() {
+    let mut rig = Rig::new().await;
+    rig.keys("F").await;
+    rig.fly_to(NavState::Approaching).await;
+    rig.keys(":fault gps-loss\n").await;
+    rig.fly_to(NavState::Idle).await;
+    rig.assert_shown(&["◆ IDLE", "APPROACHING → IDLE: the GPS fix is lost", "GPS_LOST"]);
+    let lost = rig.time();
+    rig.keys(".").await;
+    rig.until("a step", |state| state.view.vehicle.time > lost).await;
+    rig.assert_shown(&["⌖ no", "AUTOPILOT refused: The GPS fix was lost", "resumes 2 s after it is back"]);
+    rig.keys(":end gps-loss\n").await;
+    rig.fly_to(NavState::Approaching).await;
+    rig.assert_shown(&["● ARMED AUTOPILOT", "⌖ 3D", "IDLE → APPROACHING"]);
+}
+
+#[tokio::test]
+async fn a_plan_is_uploaded_and_read_back() {
+    let mut rig = Rig::new().await;
+    rig.assert_shown(&["● 4 not on the craft"]);
+    rig.keys("U").await;
+    rig.assert_shown(&["✓ Uploaded", "4 waypoints."]);
+    rig.until("the plan", AppState::plan_is_on_craft).await;
+    rig.assert_shown(&["✓ on the craft"]);
+}
