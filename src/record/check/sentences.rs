@@ -1,7 +1,11 @@
 //! Checked flights as sentences.
 
 use super::{CheckedFlight, Summary, complaint};
-use crate::scenario::Outcome;
+use crate::scenario::quantity::shown;
+use crate::scenario::{Margin, Outcome};
+
+/// From so many flights of a case on it is told how far their numbers spread.
+const MANY: usize = 20;
 
 /// The lines of a flight: one when it passed; else what was seen, and how to open the worst moment.
 #[must_use]
@@ -34,6 +38,35 @@ pub fn flight_lines(flight: &CheckedFlight) -> Vec<String> {
     lines
 }
 
+/// Of cases with many flights: how far the numbers of each expectation spread.
+fn spreads(summary: &Summary) -> Vec<String> {
+    let mut lines = Vec::new();
+    let mut first = 0;
+    for (name, _, all) in summary.cases() {
+        let flights = &summary.flights[first..first + all];
+        first += all;
+        if all < MANY {
+            continue;
+        }
+        lines.push(format!("{name}, {all} flights:"));
+        let labels = flights.first().map_or(&[][..], |flight| flight.judgements.as_slice());
+        for label in labels.iter().map(|judgement| judgement.label.as_str()) {
+            let mut margins: Vec<Margin> = flights
+                .iter()
+                .flat_map(|flight| flight.judgements.iter().filter(|judgement| judgement.label == label))
+                .filter_map(|judgement| judgement.outcome.margin().copied())
+                .collect();
+            margins.sort_by(|a, b| a.verdict.share().total_cmp(&b.verdict.share()));
+            // The tightest twentieth lies beyond the 95th percentile.
+            if let (Some(worst), Some(tight)) = (margins.first(), margins.get(margins.len() / 20)) {
+                let tight = shown(tight.verdict.value, tight.verdict.dimension);
+                lines.push(format!("    {label}: worst {}, 95th percentile {tight}", worst.shown()));
+            }
+        }
+    }
+    lines
+}
+
 /// The last lines of a run.
 #[must_use]
 pub fn summary_lines(summary: &Summary) -> Vec<String> {
@@ -43,6 +76,7 @@ pub fn summary_lines(summary: &Summary) -> Vec<String> {
             lines.push(format!("{name}: {passed} of {all}"));
         }
     }
+    lines.extend(spreads(summary));
     for compared in &summary.compared {
         let mark = if compared.judgement.outcome.is_met() { "✓" } else { "✗" };
         match compared.judgement.outcome.margin() {
