@@ -68,7 +68,7 @@ fn fly(loaded: &Loaded, args: &CheckArgs, interrupted: &Arc<AtomicBool>) -> Resu
     }
     let is_interrupted = interrupted.load(Ordering::Relaxed);
     let whole = flights.len() == jobs.len();
-    let compared = if whole { run::compared(loaded, &flights) } else { Vec::new() };
+    let compared = if whole { run::compared(loaded, &flights, args.filter.is_some()) } else { Vec::new() };
     let summary = Summary::new(flights, compared, jobs.len(), loaded.left_out, started.seconds());
     output.finish(&summary)?;
     Ok(if is_interrupted {

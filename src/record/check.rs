@@ -13,6 +13,9 @@ pub use junit::junit;
 pub use markdown::markdown;
 pub use sentences::{flight_lines, summary_lines};
 
+/// What stands for the file of a scenario that was read from standard input; the screen cannot read it again.
+pub const STANDARD_INPUT: &str = "standard input";
+
 /// A flight that was flown and judged.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct CheckedFlight {
@@ -30,6 +33,8 @@ pub struct CheckedFlight {
     pub seed: u64,
     /// Seeds of the case.
     pub seeds: usize,
+    /// The seed was asked for: it may be none of the file's.
+    pub seed_is_given: bool,
     /// Which flight of the same, from 0.
     pub repetition: u32,
     /// What keeps the flight from being judged, or from being believed.
@@ -83,13 +88,17 @@ impl CheckedFlight {
         if !self.case.is_empty() {
             title.push_str(&format!(" · {}", self.case));
         }
-        if self.seeds > 1 {
+        if self.tells_seed() {
             title.push_str(&format!(" · seed {}", self.seed));
         }
         if self.repetition > 0 {
             title.push_str(&format!(" · repetition {}", self.repetition + 1));
         }
         title
+    }
+
+    fn tells_seed(&self) -> bool {
+        self.seeds > 1 || self.seed_is_given
     }
 
     /// A time as people read it: seconds after the engagement, or after boot when there was none.
@@ -101,16 +110,22 @@ impl CheckedFlight {
     /// The command that opens an instant of the flight in the screen.
     #[must_use]
     pub fn open_command(&self, time: SimTime) -> String {
-        let case = if self.case.is_empty() { String::new() } else { format!(" --case '{}'", self.case) };
-        let seed = if self.seeds > 1 { format!(" --seed {}", self.seed) } else { String::new() };
+        let case =
+            if self.case.is_empty() { String::new() } else { format!(" --case {}", shell_word(&self.case)) };
+        let seed = if self.tells_seed() { format!(" --seed {}", self.seed) } else { String::new() };
         let boot = if self.engaged_at.is_some() { "" } else { "boot+" };
-        let file = if self.file.contains([' ', '\'']) {
-            format!("'{}'", self.file.replace('\'', r"'\''"))
-        } else {
-            self.file.clone()
-        };
+        let file = if self.file == STANDARD_INPUT { "FILE".to_owned() } else { shell_word(&self.file) };
         format!("betadeck open {file}{case}{seed} --at {boot}{:.2}", self.seconds(time))
     }
+}
+
+/// A word as a shell takes it, whatever is in it.
+fn shell_word(text: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "_./,:@%+=-".contains(c);
+    if !text.is_empty() && text.chars().all(is_plain) {
+        return text.to_owned();
+    }
+    format!("'{}'", text.replace('\'', r"'\''"))
 }
 
 /// What was expected of several flights together.
@@ -118,6 +133,8 @@ impl CheckedFlight {
 pub struct Compared {
     /// Name of the scenario.
     pub scenario: String,
+    /// Its file, as its user named it.
+    pub file: String,
     /// What is varied.
     pub variant: String,
     /// The seed that all of them had.
@@ -187,6 +204,7 @@ impl Summary {
     #[must_use]
     pub fn cases(&self) -> Vec<(String, usize, usize)> {
         let mut cases: Vec<(String, usize, usize)> = Vec::new();
+        let mut file = "";
         for flight in &self.flights {
             let name = if flight.case.is_empty() {
                 flight.scenario.clone()
@@ -195,12 +213,13 @@ impl Summary {
             };
             let passed = usize::from(flight.passed());
             match cases.last_mut() {
-                Some((known, good, all)) if *known == name => {
+                Some((known, good, all)) if *known == name && file == flight.file => {
                     *good += passed;
                     *all += 1;
                 }
                 _ => cases.push((name, passed, 1)),
             }
+            file = &flight.file;
         }
         cases
     }

@@ -219,6 +219,20 @@ impl Instant {
         matches!(self.anchor, Anchor::Happening(_) | Anchor::When(_)) && self.occurrence != Occurrence::Last
     }
 
+    /// Why nobody can wait for it during a flight: only a flight that is over shows it. `None` when one can.
+    #[must_use]
+    pub(super) fn unseen_in_flight(&self) -> Option<&'static str> {
+        if self.offset_s < 0.0 {
+            Some("what is to happen is not known before it does")
+        } else if self.anchor == Anchor::Last {
+            Some("the end of the record is not known during the flight")
+        } else if self.occurrence == Occurrence::Last {
+            Some("which one is the last is not known during the flight")
+        } else {
+            self.after.as_deref().and_then(Self::unseen_in_flight)
+        }
+    }
+
     /// An anchor without an offset.
     #[must_use]
     pub fn of(anchor: Anchor) -> Self {

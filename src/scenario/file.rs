@@ -10,10 +10,10 @@ mod reader;
 mod vary;
 
 use super::case::{Air, Allowance, Case, Compare, Scenario};
-use super::expression::{Scope, read_condition, read_instant, read_quantity};
+use super::expression::{Instant, Scope, read_condition, read_instant, read_quantity};
 use super::input::{TimedInput, read_action};
 use crate::flight::FlightSetup;
-use crate::plan::format::{PlanError, PlanFile, Problems, TomlTable};
+use crate::plan::format::{PlanError, PlanFile, Problems, TomlTable, Value};
 use crate::sim::Noise;
 use keys::{ALLOW_KEYS, CASE_KEYS, COMPARE_KEYS, FILE_KEYS, INPUT_KEYS};
 use reader::{Layers, Reader};
@@ -183,9 +183,7 @@ fn read_case(base: &str, all: &[String], layers: &Layers<'_, '_>, reader: &mut R
     let belongs = Belongs { base, all };
     scope.inputs = input_names(layers, &belongs, reader);
     let inputs = read_inputs(layers, &belongs, &scope, reader);
-    let ends = layers
-        .value("ends")
-        .and_then(|value| reader.expression(value, |cursor| read_instant(cursor, &scope)));
+    let ends = layers.value("ends").and_then(|value| read_awaited(value, &scope, reader));
     let measures = measure::read(layers, &belongs, &mut scope, reader);
     let mut expectations = expect::read(layers, &belongs, &scope, &allowance, reader);
     let says_result =
@@ -222,6 +220,9 @@ impl Belongs<'_> {
     /// Whether a table is for this case: without `cases` it is for all.
     fn includes(&self, table: &TomlTable<'_, '_>, reader: &mut Reader<'_, '_>) -> bool {
         let Some(names) = reader.texts(table, "cases") else { return true };
+        if names.is_empty() {
+            reader.problem(table.span(), "this is for no case", "leave cases out, or name one");
+        }
         for (name, span) in &names {
             if !self.all.contains(name) {
                 let guess = crate::did_you_mean::suffix(name, self.all.iter().map(String::as_str));
@@ -297,6 +298,19 @@ fn input_names(layers: &Layers<'_, '_>, belongs: &Belongs<'_>, reader: &mut Read
     names
 }
 
+/// Reads an instant that is waited for during the flight.
+fn read_awaited(value: &Value<'_>, scope: &Scope, reader: &mut Reader<'_, '_>) -> Option<Instant> {
+    let instant = reader.expression(value, |cursor| read_instant(cursor, scope))?;
+    if let Some(problem) = instant.unseen_in_flight() {
+        reader.problem(
+            value.span(),
+            problem,
+            "write 5 s after ARRIVED 1, second ARRIVED 1, or when north > 70 m",
+        );
+    }
+    Some(instant)
+}
+
 fn read_inputs(
     layers: &Layers<'_, '_>,
     belongs: &Belongs<'_>,
@@ -310,9 +324,14 @@ fn read_inputs(
             continue;
         }
         let name = scope.inputs.get(inputs.len()).cloned().unwrap_or_default();
-        let at = reader
-            .required(&table, "at")
-            .and_then(|value| reader.expression(value, |cursor| read_instant(cursor, scope)));
+        if scope.inputs[..inputs.len()].contains(&name) {
+            reader.problem(
+                table.span(),
+                format!("there are two inputs {name}"),
+                "each input has its own name",
+            );
+        }
+        let at = reader.required(&table, "at").and_then(|value| read_awaited(value, scope, reader));
         let each = reader.boolean(&table, "each").unwrap_or(false);
         if let Some(span) = at
             .as_ref()
@@ -330,7 +349,10 @@ fn read_inputs(
         let Some((value, text)) = told else { continue };
         let action = read_action(&text, &mut |plan| reader.plan(plan));
         match (action, at) {
-            (Ok(action), Some(at)) => inputs.push(TimedInput { name, at, each, action, text }),
+            (Ok(action), Some(at)) => {
+                let line = reader.line(value.span());
+                inputs.push(TimedInput { name, line, at, each, action, text });
+            }
             (Err(error), _) => reader.syntax(value, error),
             (Ok(_), None) => {}
         }

@@ -12,6 +12,8 @@ use crate::telemetry::{InFlightCommand, Mode};
 pub struct TimedInput {
     /// Its name for instants; `inputN` when it has none.
     pub name: String,
+    /// Line in the scenario's file, from 1.
+    pub line: usize,
     /// When.
     pub at: Instant,
     /// Each time that comes, not only once.

@@ -1,5 +1,6 @@
 //! Judges a recorded flight by the expectations of its case.
 
+mod inputs;
 mod measures;
 mod order;
 mod outcome;
@@ -15,7 +16,8 @@ use crate::signals::SimTime;
 pub use outcome::{Judgement, Margin, Outcome};
 use outcome::{failed, met, unjudged};
 
-/// Judges a flight: a judgement for each expectation, in their order, and the measures that were taken.
+/// Judges a flight: a judgement for each expectation, in their order, then one for each input that was not carried out, and
+/// the measures that were taken.
 #[must_use]
 pub fn judge(case: &Case, flown: &Flown) -> (Vec<Judgement>, Vec<(String, f64)>) {
     let mut names = case.parameters.clone();
@@ -24,7 +26,7 @@ pub fn judge(case: &Case, flown: &Flown) -> (Vec<Judgement>, Vec<(String, f64)>)
         names.push((measure.name.clone(), value));
     }
     let evaluator = Evaluator::new(&flown.trace, &names);
-    let judgements = case
+    let mut judgements: Vec<Judgement> = case
         .expectations
         .iter()
         .map(|expectation| Judgement {
@@ -33,6 +35,7 @@ pub fn judge(case: &Case, flown: &Flown) -> (Vec<Judgement>, Vec<(String, f64)>)
             outcome: judge_one(expectation, flown, &evaluator),
         })
         .collect();
+    judgements.extend(inputs::judge(case, &flown.trace));
     (judgements, names)
 }
 
@@ -52,6 +55,15 @@ pub fn compare(compare: &Compare, names: &[(String, f64)]) -> Judgement {
     let trace = Trace::of_nothing();
     let outcome = that(&compare.that, &Evaluator::new(&trace, names));
     Judgement { label: compare.label.clone(), line: compare.line, outcome }
+}
+
+impl Compare {
+    /// What becomes of it when the cases have no seed in common.
+    #[must_use]
+    pub fn never_judged(&self) -> Judgement {
+        let outcome = unjudged("no seed was flown by all the cases; give them the same seeds");
+        Judgement { label: self.label.clone(), line: self.line, outcome }
+    }
 }
 
 fn judge_one(expectation: &Expectation, flown: &Flown, evaluator: &Evaluator<'_>) -> Outcome {
@@ -74,11 +86,24 @@ fn judge_one(expectation: &Expectation, flown: &Flown, evaluator: &Evaluator<'_>
                 Err(outcome) => return outcome,
             };
             let found = range.happenings(pattern, trace);
-            judge_event(&found, *count, within.as_ref(), with.as_ref(), evaluator)
+            if found.is_empty()
+                && *count != Some(0)
+                && let Some(outside) = trace.happenings.iter().find(|happening| pattern.matches(happening))
+            {
+                let sentence = format!(
+                    "it did not happen from {} to {}, but at {}: from and until say when it counts",
+                    trace.shown_time(range.from()),
+                    trace.shown_time(range.to()),
+                    trace.shown_time(outside.time)
+                );
+                return failed(sentence, Some(outside.time));
+            }
+            let outcome = judge_event(&found, *count, within.as_ref(), with.as_ref(), evaluator);
+            if count.is_some() { range.whole(outcome, trace) } else { outcome }
         }
         Expected::NoEvent(pattern) => match Range::of(&expectation.window, evaluator) {
             Ok(range) => match range.happenings(pattern, trace).first() {
-                None => met(None),
+                None => range.whole(met(None), trace),
                 Some(happening) => failed(
                     format!("{happening} came at {}", trace.shown_time(happening.time)),
                     Some(happening.time),
@@ -88,7 +113,11 @@ fn judge_one(expectation: &Expectation, flown: &Flown, evaluator: &Evaluator<'_>
         },
         Expected::Always(..) | Expected::Eventually(_) | Expected::Mostly(..) | Expected::Statistic(..) => {
             match Range::of(&expectation.window, evaluator) {
-                Ok(range) => samples::judge(&expectation.expected, range, evaluator),
+                Ok(range) => {
+                    let outcome = samples::judge(&expectation.expected, range, evaluator);
+                    let is_seen = matches!(expectation.expected, Expected::Eventually(_));
+                    if is_seen { outcome } else { range.whole(outcome, trace) }
+                }
                 Err(outcome) => outcome,
             }
         }
@@ -143,6 +172,9 @@ fn judge_event(
 
 fn at(instant: &Instant, condition: &Condition, evaluator: &Evaluator<'_>) -> Outcome {
     let Some(us) = evaluator.instant(instant) else { return unjudged("its instant did not come") };
+    if us < 0 {
+        return unjudged("its instant lies before boot");
+    }
     let trace = evaluator.trace();
     let Some(index) = trace.index_at(us) else {
         return unjudged("its instant lies behind the end of the record; let the flight be watched longer");
@@ -190,6 +222,31 @@ impl Range {
             )));
         }
         Ok(Self { from_us, to_us })
+    }
+
+    fn from(&self) -> SimTime {
+        SimTime(self.from_us.max(0) as u64)
+    }
+
+    fn to(&self) -> SimTime {
+        SimTime(self.to_us.max(0) as u64)
+    }
+
+    /// Whether the record ends before it does.
+    fn is_cut(&self, trace: &Trace) -> bool {
+        self.to_us > trace.end().0 as i64
+    }
+
+    /// What was met in a part of the time only has not been judged.
+    fn whole(&self, outcome: Outcome, trace: &Trace) -> Outcome {
+        if !outcome.is_met() || !self.is_cut(trace) {
+            return outcome;
+        }
+        unjudged(&format!(
+            "its time ends at {}, the record at {}; watch_s watches the flight for longer",
+            trace.shown_time(self.to()),
+            trace.shown_time(trace.end())
+        ))
     }
 
     fn happenings<'t>(&self, pattern: &Pattern, trace: &'t Trace) -> Vec<&'t Happening> {

@@ -90,6 +90,12 @@ fn what_was_never_judged_is_not_met() {
         ("always = 'altitude < 5 m'\nfrom = '2 s after boot'\nuntil = '1 s after boot'", "before it begins"),
         ("always = 'cross_track < 5 m'\nfrom = 'boot'", "nothing of it was known"),
         ("that = 'altitude < 5 m'\nat = '9 s after boot'", "behind the end of the record"),
+        ("that = 'altitude < 5 m'\nat = '9 s before input_refused'", "did not come"),
+        ("that = 'altitude < 5 m'\nat = '9 s before when boot_time > 1 s'", "before boot"),
+        ("always = 'altitude < 5 m'\nfrom = 'boot'\nuntil = '9 s after boot'", "the record at 3.00 s"),
+        ("max = 'altitude < 5 m'\nfrom = 'boot'\nuntil = '9 s after boot'", "the record at 3.00 s"),
+        ("no_event = 'crash'\nfrom = '5 s after boot'\nuntil = '9 s after boot'", "the record at 3.00 s"),
+        ("event = 'armed'\ncount = 0\nfrom = 'boot'\nuntil = '9 s after boot'", "the record at 3.00 s"),
         ("states = 'COMPLETE'", "never engaged"),
         ("event = 'armed'\ncount = 0\nfrom = 'crash'", "did not come"),
     ] {
@@ -152,6 +158,88 @@ at = '2.9 s after boot'
     );
     for judgement in judged(&text) {
         assert!(judgement.outcome.is_met(), "{judgement:?}");
+    }
+}
+
+#[test]
+fn an_input_that_was_not_carried_out_fails_the_flight() {
+    let last = |input: &str| judged(&format!("{STANDING}[[input]]\n{input}\n")).pop().unwrap();
+    let judgement = last("at = '1 s after ARRIVED 1'\ndo = 'rc cut'");
+    assert_eq!((judgement.label.as_str(), judgement.line), ("input rc cut", 11));
+    assert!(matches!(judgement.outcome, Outcome::NeverJudged(_)), "{judgement:?}");
+    let judgement = last("at = '1 s after boot'\ndo = 'cli set ap_max_angel = 3'");
+    assert!(
+        matches!(&judgement.outcome, Outcome::Failed { sentence, .. } if sentence.contains("ap_max_angel")),
+        "{judgement:?}"
+    );
+    // Who expects a refusal has it.
+    for expectation in
+        ["event = 'input_refused'\nfrom = 'boot'", "event = \"input_refused 'ap_max'\"\nfrom = 'boot'"]
+    {
+        let text = format!(
+            "{STANDING}[[input]]\nat = '1 s after boot'\ndo = 'cli set ap_max_angel = 3'\n[[expect]]\n{expectation}\n"
+        );
+        assert!(judged(&text).iter().all(|judgement| judgement.outcome.is_met()), "{expectation}");
+    }
+}
+
+#[test]
+fn an_event_outside_its_window_is_said_to_have_come_there() {
+    let text = format!(
+        "{STANDING}[[input]]\nname = 'gust'\nat = '1 s after boot'\ndo = 'wind 5@270'\n[[expect]]\nevent = 'input gust'\nfrom = '2.9 s after boot'\n"
+    );
+    let outcome = judged(&text).pop().unwrap().outcome;
+    assert!(
+        matches!(&outcome, Outcome::Failed { sentence, .. } if sentence.contains("did not happen from 2.90 s") && sentence.contains("but at")),
+        "{outcome:?}"
+    );
+}
+
+#[test]
+fn nobody_can_wait_for_what_only_the_end_of_a_flight_shows() {
+    for (instant, part) in [
+        ("1 s before ARRIVED 0", "not known before it does"),
+        ("last ARRIVED 0", "which one is the last"),
+        ("last_sample", "the end of the record"),
+        ("contact after 1 s before disarmed", "not known before it does"),
+    ] {
+        let input = format!("{STANDING}[[input]]\nat = '{instant}'\ndo = 'hold here'");
+        let ends = STANDING.replace("3 s after boot", instant);
+        for (text, place) in [(input, "test.toml:10:6: "), (ends, "test.toml:2:8: ")] {
+            let problems = problems(&text);
+            assert!(problems.len() == 1 && problems[0].starts_with(place), "{instant}: {problems:?}");
+            assert!(problems[0].contains(part), "{instant}: {problems:?}");
+        }
+    }
+}
+
+#[test]
+fn numbers_and_names_that_cannot_be_meant_are_told() {
+    let long = "9".repeat(400);
+    for (text, problem) in [
+        ("[[expect]]\nalways = 'lean <= 80 deg'\nuntil = '99999999999999999999 s after boot'".to_owned(), "no flight is this long"),
+        (format!("[[expect]]\nalways = 'altitude <= {long} m'"), "infinite"),
+        ("[[expect]]\nalways = 'altitude <= 1 m / 0'".to_owned(), "infinite"),
+        ("[parameters]\nbound = '1 m / 0'".to_owned(), "not known before the flight"),
+        ("[[expect]]\nevent = 'armed'\ncount = -1".to_owned(), "-1 is no count"),
+        ("[[expect]]\nalways = 'armed'\ncases = []".to_owned(), "for no case"),
+        ("[[measure]]\nname = 'a'\nmax = 'speed'\n[[measure]]\nname = 'a'\nmin = 'speed'".to_owned(), "measure or a parameter a already"),
+        ("[parameters]\na = '1 m'\n[[measure]]\nname = 'a'\nmin = 'speed'".to_owned(), "measure or a parameter a already"),
+        ("[[measure]]\nname = 'a'\nmax = 'speed'\nmin = 'speed'".to_owned(), "both max and min"),
+        ("[[measure]]\nname = 'a'\nvalue = 'speed'\nfrom = 'boot'".to_owned(), "from means nothing for value"),
+        ("[[input]]\nname = 'a'\nat = 'boot'\ndo = 'rc cut'\n[[input]]\nname = 'a'\nat = 'boot'\ndo = 'rc restore'".to_owned(), "two inputs a"),
+    ] {
+        let problems = problems(&format!("{STANDING}{text}"));
+        assert!(problems.len() == 1 && problems[0].contains(problem), "{text}: {problems:?}");
+    }
+    for (seeds, problem) in [
+        ("[-1, 2]", "-1 is not a seed"),
+        ("-3", "-3 is not a seed"),
+        ("[2, 2]", "seed 2 is there twice"),
+        ("[]", "there is no seed"),
+    ] {
+        let problems = problems(&format!("seeds = {seeds}\n{STANDING}"));
+        assert!(problems.len() == 1 && problems[0].contains(problem), "{seeds}: {problems:?}");
     }
 }
 

@@ -6,6 +6,7 @@ use crate::app::{AppError, input_file};
 use crate::args::CheckArgs;
 use crate::flight::setup::check_setting;
 use crate::plan::format::{self, Format, PlanFile};
+use crate::record::check::STANDARD_INPUT;
 use crate::scenario::{self, BuiltinFiles, BuiltinScenario, Files, SCENARIOS, Scenario};
 
 /// What was read.
@@ -17,6 +18,8 @@ pub(super) struct Loaded {
     pub(super) files: Vec<PathBuf>,
     /// Slow scenarios that were left out.
     pub(super) left_out: usize,
+    /// The seeds are those of the command line.
+    pub(super) seeds_are_given: bool,
 }
 
 /// Where a scenario comes from.
@@ -28,7 +31,12 @@ enum Source {
 
 /// Reads what the arguments name; all problems of all files are reported together.
 pub(super) fn load(args: &CheckArgs) -> Result<Loaded, AppError> {
-    let mut loaded = Loaded { scenarios: Vec::new(), files: Vec::new(), left_out: 0 };
+    let mut loaded = Loaded {
+        scenarios: Vec::new(),
+        files: Vec::new(),
+        left_out: 0,
+        seeds_are_given: args.seeds.is_some(),
+    };
     let mut problems = Vec::new();
     let seeds = args.seeds.as_ref().map(|seeds| seeds.0.as_slice());
     for (source, is_named) in sources(args)? {
@@ -105,11 +113,16 @@ fn in_directory(directory: &Path) -> Result<Vec<PathBuf>, AppError> {
     Ok(files)
 }
 
-/// Whether a TOML file says that it is a scenario.
+/// Whether a TOML file says that it is a scenario: it begins with its format, or it expects something.
 fn is_scenario(text: &str) -> bool {
-    text.lines().take_while(|line| !line.trim_start().starts_with('[')).any(|line| {
-        line.trim_start().strip_prefix("format").is_some_and(|rest| rest.trim_start().starts_with('='))
-    })
+    if text.lines().any(|line| line.trim_start().starts_with("[[expect]]")) {
+        return true;
+    }
+    text.trim_start_matches('\u{feff}').lines().take_while(|line| !line.trim_start().starts_with('[')).any(
+        |line| {
+            line.trim_start().strip_prefix("format").is_some_and(|rest| rest.trim_start().starts_with('='))
+        },
+    )
 }
 
 fn read(source: &Source, seeds: Option<&[u64]>, read: &mut Vec<PathBuf>) -> Result<Scenario, AppError> {
@@ -117,7 +130,7 @@ fn read(source: &Source, seeds: Option<&[u64]>, read: &mut Vec<PathBuf>) -> Resu
         Source::Builtin(builtin) => scenario::read(builtin.name, builtin.text, seeds, &mut BuiltinFiles),
         Source::Stdin => {
             let text = input_file::read_stdin()?;
-            scenario::read("standard input", &text, seeds, &mut Beside { place: PathBuf::new(), read })
+            scenario::read(STANDARD_INPUT, &text, seeds, &mut Beside { place: PathBuf::new(), read })
         }
         Source::File(path) => {
             let text = input_file::read_small(path)?;

@@ -126,6 +126,7 @@ fn one(loaded: &Loaded, job: Job, is_stopped: &impl Fn() -> bool) -> Option<Chec
         variant: case.variant.clone(),
         seed: air.seed,
         seeds: case.airs.len(),
+        seed_is_given: loaded.seeds_are_given,
         repetition: job.repetition,
         ..CheckedFlight::default()
     };
@@ -185,9 +186,9 @@ impl Repetitions {
     }
 }
 
-/// What is expected of several flights together, for each combination of what is varied and each seed. Where a filter has
-/// left out one of them, nothing is compared.
-pub(super) fn compared(loaded: &Loaded, flights: &[CheckedFlight]) -> Comparisons {
+/// What is expected of several flights together, for each combination of what is varied and each seed that all its cases
+/// have. Where they have none in common it was never judged, unless a filter has left out some of them.
+pub(super) fn compared(loaded: &Loaded, flights: &[CheckedFlight], is_filtered: bool) -> Comparisons {
     let mut compared = Vec::new();
     for scenario in loaded.scenarios.iter().filter(|scenario| !scenario.compares.is_empty()) {
         let own = || flights.iter().filter(|flight| flight.file == scenario.file && flight.repetition == 0);
@@ -195,24 +196,35 @@ pub(super) fn compared(loaded: &Loaded, flights: &[CheckedFlight]) -> Comparison
             own().map(|flight| (flight.variant.as_str(), flight.seed)).collect();
         groups.sort_unstable();
         groups.dedup();
-        for (variant, seed) in groups {
-            let group = || own().filter(move |flight| flight.variant == variant && flight.seed == seed);
+        for of_variant in groups.chunk_by(|a, b| a.0 == b.0) {
+            let Some(&(variant, first)) = of_variant.first() else { continue };
             let wanted = scenario.cases.iter().filter(|case| case.variant == variant).count();
-            if group().count() < wanted {
-                continue;
-            }
-            let names: Vec<(String, f64)> = group()
-                .flat_map(|flight| {
-                    flight.measures.iter().map(|(name, value)| (format!("{}.{name}", flight.base), *value))
-                })
+            let group = |seed| own().filter(move |flight| flight.variant == variant && flight.seed == seed);
+            let whole: Vec<u64> = of_variant
+                .iter()
+                .map(|&(_, seed)| seed)
+                .filter(|&seed| group(seed).count() >= wanted)
                 .collect();
-            for compare in &scenario.compares {
+            let mut tell = |seed, judgement| {
                 compared.push(Compared {
                     scenario: scenario.name.clone(),
+                    file: scenario.file.clone(),
                     variant: variant.to_owned(),
                     seed,
-                    judgement: scenario::compare(compare, &names),
+                    judgement,
                 });
+            };
+            for &seed in &whole {
+                let names: Vec<(String, f64)> = group(seed)
+                    .flat_map(|flight| {
+                        let measures = flight.measures.iter();
+                        measures.map(|(name, value)| (format!("{}.{name}", flight.base), *value))
+                    })
+                    .collect();
+                scenario.compares.iter().for_each(|compare| tell(seed, scenario::compare(compare, &names)));
+            }
+            if whole.is_empty() && !is_filtered {
+                scenario.compares.iter().for_each(|compare| tell(first, compare.never_judged()));
             }
         }
     }

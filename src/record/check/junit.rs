@@ -5,8 +5,14 @@ use super::{CheckedFlight, Compared, Summary, complaint};
 /// The whole file.
 #[must_use]
 pub fn junit(summary: &Summary) -> String {
-    let mut scenarios: Vec<&str> = summary.flights.iter().map(|flight| flight.scenario.as_str()).collect();
-    scenarios.dedup();
+    // Two files may give their scenarios the same name.
+    let mut scenarios: Vec<(&str, &str)> = Vec::new();
+    for flight in &summary.flights {
+        let scenario = (flight.scenario.as_str(), flight.file.as_str());
+        if !scenarios.contains(&scenario) {
+            scenarios.push(scenario);
+        }
+    }
     let failures = summary.flights.len() - summary.passed_flights()
         + summary.compared.iter().filter(|compared| !compared.judgement.outcome.is_met()).count();
     let tests = summary.flights.len() + summary.compared.len();
@@ -14,11 +20,17 @@ pub fn junit(summary: &Summary) -> String {
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"betadeck\" tests=\"{tests}\" failures=\"{failures}\" time=\"{:.3}\">\n",
         summary.wall_s
     );
-    for scenario in scenarios {
-        let flights: Vec<&CheckedFlight> =
-            summary.flights.iter().filter(|flight| flight.scenario == scenario).collect();
-        let compared: Vec<&Compared> =
-            summary.compared.iter().filter(|compared| compared.scenario == scenario).collect();
+    for (scenario, file) in scenarios {
+        let flights: Vec<&CheckedFlight> = summary
+            .flights
+            .iter()
+            .filter(|flight| (flight.scenario.as_str(), flight.file.as_str()) == (scenario, file))
+            .collect();
+        let compared: Vec<&Compared> = summary
+            .compared
+            .iter()
+            .filter(|compared| (compared.scenario.as_str(), compared.file.as_str()) == (scenario, file))
+            .collect();
         let failed = flights.iter().filter(|flight| !flight.passed()).count()
             + compared.iter().filter(|compared| !compared.judgement.outcome.is_met()).count();
         let time: f64 = flights.iter().map(|flight| flight.wall_s).sum();
@@ -56,11 +68,12 @@ fn testcase(flight: &CheckedFlight) -> String {
 }
 
 fn comparison(compared: &Compared) -> String {
+    let variant = if compared.variant.is_empty() { String::new() } else { format!("{}, ", compared.variant) };
     let head = format!(
-        "    <testcase classname=\"{}\" name=\"{} ({} seed {})\" time=\"0\"",
+        "    <testcase classname=\"{}\" name=\"{} ({}seed {})\" time=\"0\"",
         escaped(&compared.scenario),
         escaped(&compared.judgement.label),
-        escaped(&compared.variant),
+        escaped(&variant),
         compared.seed
     );
     if compared.judgement.outcome.is_met() {

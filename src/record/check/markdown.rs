@@ -50,7 +50,7 @@ pub fn markdown(summary: &Summary) -> String {
         for judgement in flight.failures() {
             text.push_str(&format!("  - {}\n", line(&complaint(judgement))));
             if let Outcome::Failed { at: Some(at), .. } = judgement.outcome {
-                text.push_str(&format!("    `{}`\n", flight.open_command(at)));
+                text.push_str(&format!("    {}\n", code(&flight.open_command(at))));
             }
         }
     }
@@ -71,5 +71,21 @@ fn cell(text: &str) -> String {
 
 /// Text that Markdown takes for text.
 fn line(text: &str) -> String {
-    text.replace('\n', " ").replace('*', "\\*").replace('_', "\\_").replace('<', "&lt;")
+    let mut escaped = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '\n' | '\r' => escaped.push(' '),
+            '\\' | '*' | '_' | '`' | '[' | ']' => escaped.extend(['\\', c]),
+            '<' => escaped.push_str("&lt;"),
+            '&' => escaped.push_str("&amp;"),
+            other => escaped.push(other),
+        }
+    }
+    escaped
+}
+
+/// A command, also one with a back quote in it.
+fn code(command: &str) -> String {
+    let command = command.replace('\n', " ");
+    if command.contains('`') { format!("`` {command} ``") } else { format!("`{command}`") }
 }

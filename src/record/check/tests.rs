@@ -78,3 +78,66 @@ fn names_of_any_kind_survive_xml_and_markdown() {
     let table = markdown(&summary);
     assert!(table.contains("| ❌ a &lt;b> & \"c\" \\| \\*d\\* · one, noise real | 1 of 2 |"), "{table}");
 }
+
+fn failed_flight(file: &str, case: &str) -> CheckedFlight {
+    CheckedFlight {
+        scenario: "square".to_owned(),
+        file: file.to_owned(),
+        case: case.to_owned(),
+        seed: 7,
+        seeds: 1,
+        judgements: vec![Judgement {
+            label: "speed in 1..2 m/s".to_owned(),
+            line: 3,
+            outcome: Outcome::Failed {
+                sentence: "`set ap_max|x` [was] refused\\".to_owned(),
+                at: Some(SimTime(2_000_000)),
+                guard: None,
+            },
+        }],
+        ..CheckedFlight::default()
+    }
+}
+
+fn summary_of(flights: Vec<CheckedFlight>) -> Summary {
+    let wanted = flights.len();
+    Summary::new(flights, Vec::new(), wanted, 0, 1.0)
+}
+
+#[test]
+fn the_command_that_opens_a_flight_can_be_pasted_into_a_shell() {
+    for (file, case, command) in [
+        ("a/b-1.toml", "", "betadeck open a/b-1.toml --at boot+2.00"),
+        ("a b.toml", "calm", "betadeck open 'a b.toml' --case calm --at boot+2.00"),
+        ("a;b$(x).toml", "pilot's", r"betadeck open 'a;b$(x).toml' --case 'pilot'\''s' --at boot+2.00"),
+        (STANDARD_INPUT, "wind 5@270", "betadeck open FILE --case 'wind 5@270' --at boot+2.00"),
+    ] {
+        assert_eq!(failed_flight(file, case).open_command(SimTime(2_000_000)), command);
+    }
+}
+
+#[test]
+fn a_seed_that_was_asked_for_is_in_the_title_and_in_the_command_that_opens_the_flight() {
+    let flight = CheckedFlight { seed_is_given: true, ..failed_flight("a.toml", "") };
+    assert_eq!(flight.title(), "square · seed 7");
+    assert_eq!(flight.open_command(SimTime::ZERO), "betadeck open a.toml --seed 7 --at boot+0.00");
+}
+
+#[test]
+fn files_whose_scenarios_have_one_name_are_testsuites_of_their_own() {
+    let files = ["a.toml", "b.toml", "a.toml"];
+    let summary = summary_of(files.map(|file| failed_flight(file, "")).to_vec());
+    let text = junit(&summary);
+    assert_eq!(text.matches("<testcase ").count(), 3, "{text}");
+    assert_eq!(text.matches("<testsuite ").count(), 2, "{text}");
+    assert!(text.contains("<testsuite name=\"square\" tests=\"2\" failures=\"2\""), "{text}");
+    assert_eq!(summary.cases().len(), 3);
+}
+
+#[test]
+fn what_was_said_is_no_markup_in_the_markdown_summary() {
+    let text = markdown(&summary_of(vec![failed_flight("a`b.toml", "x|y")]));
+    assert!(text.contains("| ❌ square · x\\|y |"), "{text}");
+    assert!(text.contains(r"\`set ap\_max|x\` \[was\] refused\\"), "{text}");
+    assert!(text.contains("`` betadeck open 'a`b.toml' --case 'x|y' --at boot+2.00 ``"), "{text}");
+}

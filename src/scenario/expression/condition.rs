@@ -136,17 +136,28 @@ pub(super) fn read_comparison(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<
             cursor.error("a comparison is expected here", hint)
         });
     };
-    empty_range(&bound).map_or(Ok(Comparison { left: left.0, dimension, bound }), |message| {
-        Err(cursor.error_since(behind, message, "write the smaller number first"))
-    })
+    match wrong_bound(&bound) {
+        None => Ok(Comparison { left: left.0, dimension, bound }),
+        Some((message, hint)) => Err(cursor.error_since(behind, message, hint)),
+    }
 }
 
-/// What is wrong with a range of literals that holds nothing.
-fn empty_range(bound: &Bound) -> Option<&'static str> {
+/// What is wrong with a bound of literals: a range that holds nothing, or a number without an end.
+fn wrong_bound(bound: &Bound) -> Option<(&'static str, &'static str)> {
     let literal = |number: &super::Number| number.constant(&|_| None);
+    let numbers = match bound {
+        Bound::AtMost(one, _) | Bound::AtLeast(one, _) | Bound::Equal(one) => [one, one],
+        Bound::Between(one, other) | Bound::Around(one, other) => [one, other],
+    };
+    if numbers.into_iter().any(|number| literal(number).is_some_and(|value| !value.is_finite())) {
+        return Some(("this number is infinite", "write a number that can be reached"));
+    }
     match bound {
-        Bound::Between(low, high) => (literal(low)? > literal(high)?).then_some("nothing is in this range"),
-        Bound::Around(_, tolerance) => (literal(tolerance)? < 0.0).then_some("this tolerance is negative"),
+        Bound::Between(low, high) => (literal(low)? > literal(high)?)
+            .then_some(("nothing is in this range", "write the smaller number first")),
+        Bound::Around(_, tolerance) => {
+            (literal(tolerance)? < 0.0).then_some(("this tolerance is negative", "write it without the sign"))
+        }
         _ => None,
     }
 }

@@ -25,6 +25,9 @@ const ORDINALS: [(&str, Occurrence); 6] = [
     ("last", Occurrence::Last),
 ];
 
+/// Longest time before or after what happens, s.
+const MAX_OFFSET_S: f64 = 1e6;
+
 /// Reads an instant: `5 s after ORBITING 2`, `contact`, `when north > 70 m`.
 ///
 /// # Errors
@@ -79,6 +82,9 @@ pub fn read_span_from(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<(f64, f6
 
 fn duration(cursor: &mut Cursor<'_>, scope: &Scope, start: usize) -> Result<f64, SyntaxError> {
     match read_number(cursor, scope)? {
+        (Number::Literal(seconds, Some(_)), Dimension::TIME) if seconds > MAX_OFFSET_S => Err(
+            cursor.error_since(start, "no flight is this long", format!("allowed: up to {MAX_OFFSET_S} s"))
+        ),
         (Number::Literal(seconds, Some(_)), Dimension::TIME) => Ok(seconds),
         _ => Err(cursor.error_since(start, "this is not a time", "write 5 s after engaged")),
     }

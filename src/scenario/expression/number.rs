@@ -167,7 +167,21 @@ fn named(cursor: &mut Cursor<'_>, scope: &Scope, word: &str) -> Result<Typed, Sy
     } else if let Some(signal) = Signal::find(word) {
         (Number::Signal(signal), signal.info().dimension)
     } else {
-        // A measure of another case is written with a dot.
+        // A measure of a case is written with a dot; in the name of the case anything may stand.
+        let is_end = |c: char| !(c.is_alphanumeric() || c == '_' || c == '.');
+        let of_case = scope
+            .names
+            .iter()
+            .filter(|(name, _)| name.contains('.'))
+            .filter(|(name, _)| {
+                let behind = cursor.rest().strip_prefix(name.as_str());
+                behind.is_some_and(|behind| behind.chars().next().is_none_or(is_end))
+            })
+            .max_by_key(|(name, _)| name.len());
+        if let Some((name, dimension)) = of_case {
+            cursor.take_word(name);
+            return Ok((Number::Name(name.clone()), *dimension));
+        }
         let dotted = cursor.rest().find(|c: char| !(c.is_alphanumeric() || c == '_' || c == '.'));
         let whole = &cursor.rest()[..dotted.unwrap_or(cursor.rest().len())];
         let Some((name, dimension)) = scope.names.iter().find(|(name, _)| name == whole || name == word)
@@ -264,7 +278,7 @@ pub fn read_quantity(text: &str) -> Result<(f64, Dimension), SyntaxError> {
     let mut cursor = Cursor::new(text);
     let (number, dimension) = read_number(&mut cursor, &Scope::default())?;
     cursor.finish()?;
-    let value = number.constant(&|_| None).ok_or_else(|| {
+    let value = number.constant(&|_| None).filter(|value| value.is_finite()).ok_or_else(|| {
         cursor.error_since(0, "this is not known before the flight", "write a number with its unit")
     })?;
     Ok((value, dimension))

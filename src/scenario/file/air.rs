@@ -95,13 +95,21 @@ fn number_of_seed(number: &Number, seed: f64) -> Option<f64> {
 fn read_seeds(value: &Value<'_>, reader: &mut Reader<'_, '_>) -> Vec<u64> {
     let hint = "write seeds = 3, [1, 2, 3] or \"1..5\"";
     let seeds: Vec<u64> = match value.get_ref() {
-        DeValue::Array(values) => values
-            .iter()
-            .filter_map(|value| reader.integer(value).and_then(|seed| u64::try_from(seed).ok()))
-            .collect(),
-        DeValue::Integer(_) => {
-            reader.integer(value).and_then(|seed| u64::try_from(seed).ok()).into_iter().collect()
+        DeValue::Array(values) => {
+            let mut seeds = Vec::new();
+            for value in values {
+                let Some(seed) = read_seed(value, reader) else { continue };
+                if seeds.contains(&seed) {
+                    reader.problem(value.span(), format!("seed {seed} is there twice"), "leave one out");
+                }
+                seeds.push(seed);
+            }
+            if seeds.is_empty() && !values.is_empty() {
+                return vec![1];
+            }
+            seeds
         }
+        DeValue::Integer(_) => return vec![read_seed(value, reader).unwrap_or(1)],
         _ => match reader.text(value).as_deref().map(seed_range) {
             Some(Ok(seeds)) => seeds.collect(),
             Some(Err(problem)) => {
@@ -116,6 +124,15 @@ fn read_seeds(value: &Value<'_>, reader: &mut Reader<'_, '_>) -> Vec<u64> {
         return vec![1];
     }
     seeds
+}
+
+fn read_seed(value: &Value<'_>, reader: &mut Reader<'_, '_>) -> Option<u64> {
+    let number = reader.integer(value)?;
+    let seed = u64::try_from(number).ok();
+    if seed.is_none() {
+        reader.problem(value.span(), format!("{number} is not a seed"), "write 1, 2 and so on");
+    }
+    seed
 }
 
 /// `1..5`, both included.

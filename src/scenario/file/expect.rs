@@ -201,7 +201,11 @@ fn read_event(
         None => None,
         Some(value) => {
             let count = reader.integer(value)?;
-            Some(usize::try_from(count).unwrap_or_default())
+            let Ok(count) = usize::try_from(count) else {
+                reader.problem(value.span(), format!("{count} is no count"), "write 0, 1, 2 and so on");
+                return None;
+            };
+            Some(count)
         }
     };
     let within = match table.get("within") {

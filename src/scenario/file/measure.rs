@@ -11,6 +11,9 @@ use crate::scenario::expression::{Scope, read_instant, read_number};
 use crate::scenario::quantity::Dimension;
 use crate::scenario::signal::Signal;
 
+/// Keys of which a measure has one.
+const KINDS: [&str; 6] = ["mean", "rms", "max", "min", "time", "value"];
+
 /// Reads the measures of a case; later ones may use earlier ones.
 pub(super) fn read(
     layers: &Layers<'_, '_>,
@@ -32,7 +35,11 @@ pub(super) fn read(
             reader.problem(value.span(), format!("{name} is no name of a measure"), "letters, digits and _");
             continue;
         }
-        if let Some(problem) = taken(&name) {
+        let problem = taken(&name).or_else(|| {
+            let known = scope.names.iter().any(|(known, _)| *known == name);
+            known.then(|| format!("there is a measure or a parameter {name} already"))
+        });
+        if let Some(problem) = problem {
             reader.problem(value.span(), problem, "choose another name");
             continue;
         }
@@ -61,6 +68,23 @@ fn read_measured(
     scope: &Scope,
     reader: &mut Reader<'_, '_>,
 ) -> Option<(Measured, Dimension)> {
+    let given: Vec<&str> = KINDS.into_iter().filter(|key| table.get(key).is_some()).collect();
+    let [kind] = given.as_slice() else {
+        let message = match given.as_slice() {
+            [first, second, ..] => format!("the measure says both {first} and {second}"),
+            _ => "the measure says nothing".to_owned(),
+        };
+        reader.problem(table.span(), message, format!("it has one of {}", KINDS.join(", ")));
+        return None;
+    };
+    let is_idle = |key: &str| match key {
+        "from" | "until" => matches!(*kind, "time" | "value"),
+        "at" => *kind != "value",
+        _ => false,
+    };
+    for (key, span, _) in table.keys().filter(|(key, ..)| is_idle(key)) {
+        reader.problem(span, format!("{key} means nothing for {kind}"), "leave it out");
+    }
     for statistic in Statistic::iter() {
         if let Some(value) = table.get(statistic.into()) {
             let window = window(table, scope, reader);
@@ -76,11 +100,7 @@ fn read_measured(
         })?;
         return Some((Measured::Time(from, to), Dimension::TIME));
     }
-    let value = table.get("value");
-    let Some(value) = value else {
-        reader.problem(table.span(), "the measure says nothing", "add mean, rms, max, min, time or value");
-        return None;
-    };
+    let value = table.get("value")?;
     let (number, dimension) = reader.expression(value, |cursor| read_number(cursor, scope))?;
     let measured = match table.get("at") {
         None => Measured::Of(number),

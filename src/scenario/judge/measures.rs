@@ -29,7 +29,7 @@ pub(super) fn over(
     number: &Number,
     evaluator: &Evaluator<'_>,
 ) -> Option<f64> {
-    let range = Range::of(window, evaluator).ok()?;
+    let range = Range::of(window, evaluator).ok().filter(|range| !range.is_cut(evaluator.trace()))?;
     let samples = range.samples(evaluator.trace());
     samples::take(statistic, samples, |index| evaluator.number(number, index)).map(|(value, _)| value)
 }
