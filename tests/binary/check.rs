@@ -170,6 +170,36 @@ fn folders_standard_input_lists_and_filters_choose_what_is_flown() {
 }
 
 #[test]
+fn a_comparison_of_cases_without_a_common_seed_fails() {
+    let sandbox = Sandbox::new();
+    let text = format!(
+        "{STANDING}[[measure]]\nname = \"far\"\nmax = \"altitude\"\nfrom = \"boot\"\n\
+         [[case]]\nname = \"calm\"\nseeds = 1\n[[case]]\nname = \"pilot's wind\"\nseeds = 2\n\
+         [[compare]]\nthat = \"pilot's wind.far - calm.far <= 1 m\"\n"
+    );
+    sandbox.write("seeds.toml", &text);
+    let ran = sandbox.run(&["check", "seeds.toml", "--junit", "report.xml"]).exits(1);
+    assert!(ran.out.contains("never judged, no seed was flown by all the cases"), "{}", ran.out);
+    let report = std::fs::read_to_string(sandbox.path("report.xml")).expect("a report");
+    assert!(report.contains("tests=\"3\" failures=\"1\""), "{report}");
+    // Who asks for one of them only, or gives all of them the same seed, is not told so.
+    sandbox.run(&["check", "seeds.toml", "--filter", "calm"]).exits(0);
+    let ran = sandbox.run(&["check", "seeds.toml", "--seeds", "4"]).exits(0);
+    assert!(ran.out.contains("✓ seeds · seed 4: pilot's wind.far"), "{}", ran.out);
+}
+
+#[test]
+fn a_scenario_without_a_format_in_a_folder_is_not_passed_over() {
+    let sandbox = Sandbox::new();
+    std::fs::create_dir(sandbox.path("tests")).expect("a folder");
+    sandbox.write("tests/a.toml", &format!("\u{feff}{STANDING}"));
+    sandbox.run(&["check", "tests"]).exits(0);
+    sandbox.write("tests/b.toml", &STANDING.replace("format = 1\n", ""));
+    let ran = sandbox.run(&["check", "tests"]).exits(2);
+    assert!(ran.err.contains("format is missing"), "{}", ran.err);
+}
+
+#[test]
 fn repetitions_are_the_same_to_the_last_bit() {
     let sandbox = Sandbox::new();
     sandbox.write("real.toml", &STANDING.replace("\"none\"\n[[", "\"real\"\n[["));

@@ -77,7 +77,6 @@ fn line(text: &str) -> String {
             '\n' | '\r' => escaped.push(' '),
             '\\' | '*' | '_' | '`' | '[' | ']' => escaped.extend(['\\', c]),
             '<' => escaped.push_str("&lt;"),
-            '&' => escaped.push_str("&amp;"),
             other => escaped.push(other),
         }
     }
