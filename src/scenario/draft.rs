@@ -10,6 +10,7 @@ use super::judge::judge;
 use super::run::{CaseFlight, Flown};
 use crate::plan::FlightPlan;
 use crate::plan::format::{HomePosition, PlanFile, report};
+use crate::signals::SimTime;
 
 /// A scenario that is being made.
 #[derive(Debug, Clone, Default)]
@@ -27,7 +28,8 @@ pub struct Draft {
     /// Lines of `[air]`, as key and text in TOML.
     air: Vec<(&'static str, String)>,
     seed: u64,
-    ends: Option<String>,
+    /// When it ends, counted from boot.
+    ends: Option<SimTime>,
     /// When and what.
     inputs: Vec<(String, String)>,
 }
@@ -60,7 +62,7 @@ impl Draft {
         let (scenario, flown) = self.fly()?;
         if flown.result == "timeout" && self.ends.is_none() {
             // It goes on for ever, as a hold without an end does.
-            self.ends = Some(format!("{:.0} s after boot", flown.trace.end().as_secs_f64().floor()));
+            self.ends = Some(SimTime(flown.trace.end().0 / 1_000_000 * 1_000_000));
             return self.finish();
         }
         drop(scenario);

@@ -201,6 +201,44 @@ pub enum Occurrence {
     Last,
 }
 
+impl Condition {
+    /// Calls `visit` for every number in it, those inside other numbers included.
+    fn each_number(&self, visit: &mut impl FnMut(&Number)) {
+        match self {
+            Self::Compare(comparison) => {
+                comparison.left.each(visit);
+                match &comparison.bound {
+                    Bound::AtMost(number, _) | Bound::AtLeast(number, _) | Bound::Equal(number) => {
+                        number.each(visit);
+                    }
+                    Bound::Between(first, second) | Bound::Around(first, second) => {
+                        first.each(visit);
+                        second.each(visit);
+                    }
+                }
+            }
+            Self::Not(inner) => inner.each_number(visit),
+            Self::All(inner) | Self::Any(inner) => inner.iter().for_each(|one| one.each_number(visit)),
+            Self::Flag(_) | Self::State(..) | Self::Mode(_) | Self::Flying(_) => {}
+        }
+    }
+}
+
+impl Number {
+    fn each(&self, visit: &mut impl FnMut(&Self)) {
+        visit(self);
+        match self {
+            Self::Negative(inner) | Self::At(inner, _) | Self::Rate(inner) => inner.each(visit),
+            Self::Join(_, left, right) => {
+                left.each(visit);
+                right.each(visit);
+            }
+            Self::Call(_, arguments) => arguments.iter().for_each(|argument| argument.each(visit)),
+            _ => {}
+        }
+    }
+}
+
 impl Instant {
     /// The first such happening.
     #[must_use]

@@ -34,6 +34,8 @@ const TIME_LIMIT_S: f64 = 600.0;
 /// How long the record goes on behind the end unless the scenario says otherwise, s: what the end brings with it, such as the
 /// disarm, belongs to the flight.
 const WATCH_S: f64 = 0.5;
+/// Most samples of a flight: some 400 MB.
+const MAX_SAMPLES: f64 = 2e6;
 /// Samples a second unless the scenario says otherwise.
 const SAMPLE_HZ: f64 = 100.0;
 
@@ -191,6 +193,15 @@ fn read_case(base: &str, all: &[String], layers: &Layers<'_, '_>, reader: &mut R
     if !says_result {
         expectations.insert(0, expect::usual_result(ends.is_some()));
     }
+    let time_limit_s = reader.number_in(layers.value("time_limit_s"), 1.0, 1e6, "s").unwrap_or(TIME_LIMIT_S);
+    let sample_hz = reader.number_in(layers.value("sample_hz"), 0.1, 1000.0, "Hz").unwrap_or(SAMPLE_HZ);
+    if time_limit_s * sample_hz > MAX_SAMPLES {
+        let place =
+            layers.value("time_limit_s").or(layers.value("sample_hz")).map_or(0..0, toml::Spanned::span);
+        let message =
+            format!("{time_limit_s} s with {sample_hz} samples a second are too many samples to keep");
+        reader.problem(place, message, format!("allowed: {MAX_SAMPLES}, lower one of the two"));
+    }
     Case {
         name: layers.variant.name_of(base),
         base: base.to_owned(),
@@ -199,10 +210,10 @@ fn read_case(base: &str, all: &[String], layers: &Layers<'_, '_>, reader: &mut R
         setup: craft.setup,
         options: craft.options,
         pilot: craft.pilot,
-        time_limit_s: reader.number_in(layers.value("time_limit_s"), 1.0, 1e6, "s").unwrap_or(TIME_LIMIT_S),
+        time_limit_s,
         watch_s: reader.number_in(layers.value("watch_s"), 0.0, 1e6, "s").unwrap_or(WATCH_S),
         ends,
-        sample_hz: reader.number_in(layers.value("sample_hz"), 0.1, 1000.0, "Hz").unwrap_or(SAMPLE_HZ),
+        sample_hz,
         parameters: parameters.into_iter().map(|(name, value, _)| (name, value)).collect(),
         inputs,
         measures,

@@ -85,6 +85,10 @@ fn a_craft_that_stands_is_seen_to_stand() {
 fn what_was_never_judged_is_not_met() {
     for (expectation, part) in [
         ("that = 'altitude < 5 m'\nat = 'touchdown'", "its instant did not come"),
+        (
+            "that = 'lap < 5 s'\n[[measure]]\nname = 'lap'\ntime = 'ORBITING 0 -> ARRIVED 1'",
+            "no lap was known at its instant",
+        ),
         ("always = 'altitude < 5 m'\nfrom = 'ARRIVED 0'", "from which it holds did not come"),
         ("always = 'altitude < 5 m'\nuntil = 'ARRIVED 0'", "until which it holds did not come"),
         ("always = 'altitude < 5 m'\nfrom = '2 s after boot'\nuntil = '1 s after boot'", "before it begins"),
@@ -358,6 +362,12 @@ fn a_missing_plan_and_an_unknown_case_are_told() {
     assert!(told.contains("test.toml:7:10: there is no case clam; did you mean calm?"), "{told}");
     assert!(!told.contains("complet is not"), "what is for no case is not read: {told}");
     assert!(problems("format = 1\nx = [").len() == 1);
+}
+
+#[test]
+fn more_samples_than_memory_should_hold_are_refused() {
+    let told = problems("format = 1\ntime_limit_s = 1000000\nsample_hz = 1000\n[plan]\nbuiltin = 'square'");
+    assert_eq!(told, ["test.toml:2:16: 1000000 s with 1000 samples a second are too many samples to keep"]);
 }
 
 #[test]

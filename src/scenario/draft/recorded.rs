@@ -1,7 +1,7 @@
 //! A recorded flight as a draft: what the craft had at the start, and the inputs since as sentences.
 
 use super::Draft;
-use super::toml_text::quoted;
+use super::toml_text::{after_boot, quoted};
 use crate::firmware::cli::Interpreter;
 use crate::geo::LatLon;
 use crate::pilot::{RcTransmitter, channel_name};
@@ -93,19 +93,17 @@ impl Draft {
         }
         for (at, input) in &inputs {
             let what = sentences(input, &mut transmitter)?;
-            let at = instant(*at, start_at);
+            let at = after_boot(since(*at, start_at));
             draft.inputs.extend(what.into_iter().map(|what| (at.clone(), what)));
         }
-        draft.ends = Some(instant(until, start_at));
+        draft.ends = Some(since(until, start_at));
         Ok(draft)
     }
 }
 
-/// `12.34 s after boot`, where the flight begins at boot.
-fn instant(at: SimTime, start_at: SimTime) -> String {
-    let us = at.0.saturating_sub(start_at.0);
-    let decimals = if us.is_multiple_of(10_000) { 2 } else { 6 };
-    format!("{:.decimals$} s after boot", us as f64 * 1e-6)
+/// An instant of the flight, which begins at `start_at`, counted from boot.
+fn since(at: SimTime, start_at: SimTime) -> SimTime {
+    SimTime(at.0.saturating_sub(start_at.0))
 }
 
 /// The craft's settings and its other lines, as the command line tells them.

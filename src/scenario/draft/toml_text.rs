@@ -4,10 +4,17 @@ use super::{Block, Draft};
 use crate::geo::Degrees7;
 use crate::plan::waypoint_values;
 use crate::scenario::file::FORMAT;
+use crate::signals::SimTime;
 
 /// A text as TOML writes it.
 pub(super) fn quoted(text: &str) -> String {
     toml::Value::String(text.to_owned()).to_string()
+}
+
+/// `12.34 s after boot`.
+pub(super) fn after_boot(at: SimTime) -> String {
+    let decimals = if at.0.is_multiple_of(10_000) { 2 } else { 6 };
+    format!("{:.decimals$} s after boot", at.as_secs_f64())
 }
 
 /// The whole file.
@@ -22,8 +29,8 @@ pub(super) fn text(draft: &Draft, expectations: &[Block]) -> String {
     }
     line(format!("seeds = {}", draft.seed));
     if let Some(ends) = &draft.ends {
-        line(format!("ends = {}", quoted(ends)));
-        line("time_limit_s = 100000".to_owned());
+        line(format!("ends = {}", quoted(&after_boot(*ends))));
+        line(format!("time_limit_s = {}", ends.as_secs_f64().ceil() + 60.0));
     }
     line(String::new());
     line("[plan]".to_owned());

@@ -206,6 +206,19 @@ impl<'a> Evaluator<'a> {
         })
     }
 
+    /// The measures of a condition that were not taken, because what they wait for did not happen.
+    #[must_use]
+    pub fn unknown_names(&self, condition: &Condition) -> Vec<&'a str> {
+        let mut used = Vec::new();
+        condition.each_number(&mut |number| {
+            if let Number::Name(name) = number {
+                used.push(name.clone());
+            }
+        });
+        let is_unknown = |(name, value): &&(String, f64)| value.is_nan() && used.contains(name);
+        self.names.iter().filter(is_unknown).map(|(name, _)| name.as_str()).collect()
+    }
+
     /// Whether a condition holds at a sample; `None` when that is unknown.
     #[must_use]
     pub fn holds(&self, condition: &Condition, index: usize) -> Option<bool> {

@@ -43,7 +43,15 @@ pub(super) fn instant(
             Some(verdict) => of_verdict(&verdict, time, trace),
             None => failed(format!("it did not hold at {}", trace.shown_time(time)), Some(time)),
         },
-        None => unjudged("nothing of it was known at its instant"),
+        None => {
+            let unknown = evaluator.unknown_names(condition);
+            let what = if unknown.is_empty() {
+                "nothing of it".to_owned()
+            } else {
+                format!("no {}", unknown.join(", no "))
+            };
+            unjudged(&format!("{what} was known at its instant"))
+        }
     }
 }
 
