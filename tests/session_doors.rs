@@ -209,7 +209,8 @@ async fn sticks_are_cut_while_a_script_flies_and_after_it_until_they_are_taken_b
         assert!(view.rc_cut && !is_on(&view, STICKS), "the sticks fly in the script's place");
         assert_eq!(view.vehicle.craft.rc_link, Some(false));
     }
-    let told = |event: &Event| matches!(&event.kind, SessionEvent::Notice(text) if text.contains("x takes"));
+    let told =
+        |event: &Event| matches!(&event.kind, SessionEvent::Notice(text) if text.contains("`x` takes"));
     let events = std::iter::from_fn(|| rig.session.events.try_recv().ok());
     assert_eq!(events.filter(told).count(), 1);
     // Whoever takes them back flies, whatever the script sends.
