@@ -116,9 +116,10 @@ async fn run_loop(
     for past in link.past.drain(..).chain([view]) {
         update(&mut state, Msg::View(past));
     }
+    // Before the first frame: a terminal that is closed when it has seen that gives no keys any more.
+    let mut keys = EventStream::new();
     tui.draw(&state)?;
 
-    let mut keys = EventStream::new();
     let (replies_in, mut replies) = mpsc::unbounded_channel();
     let forecasts = replies_in.clone();
     let forecaster = Forecaster::start(move |reply| drop(forecasts.send(Msg::Forecast(reply))))?;
