@@ -23,6 +23,15 @@ pub fn suffix<'a>(typed: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     closest(typed, candidates).map_or_else(String::new, |word| format!("; did you mean {word}?"))
 }
 
+/// `did you mean FLYOVER? allowed: FLYOVER, FLYBY, …`: what may be written instead.
+#[must_use]
+pub fn hint<'a>(typed: &str, words: impl IntoIterator<Item = &'a str>) -> String {
+    let words: Vec<&str> = words.into_iter().collect();
+    let guess = closest(typed, words.iter().copied());
+    let guess = guess.map_or_else(String::new, |word| format!("did you mean {word}? "));
+    format!("{guess}allowed: {}", words.join(", "))
+}
+
 /// Optimal string alignment distance: insertions, deletions, substitutions and swaps of neighbours.
 fn slips(a: &[char], b: &[char]) -> usize {
     let mut before_previous = vec![0; b.len() + 1];

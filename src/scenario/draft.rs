@@ -59,13 +59,12 @@ impl Draft {
     /// # Errors
     /// A sentence, when it cannot be flown.
     pub fn finish(mut self) -> Result<String, String> {
-        let (scenario, flown) = self.fly()?;
+        let flown = self.fly()?;
         if flown.result == "timeout" && self.ends.is_none() {
             // It goes on for ever, as a hold without an end does.
             self.ends = Some(SimTime(flown.trace.end().0 / 1_000_000 * 1_000_000));
             return self.finish();
         }
-        drop(scenario);
         let text = toml_text::text(&self, &observed::expectations(&flown));
         let scenario = parse(&self.name, &text)?;
         let case = scenario.cases.first().ok_or("the scenario has no case")?;
@@ -83,12 +82,11 @@ impl Draft {
     }
 
     /// Flies what is there, without expectations.
-    fn fly(&self) -> Result<(Scenario, Flown), String> {
+    fn fly(&self) -> Result<Flown, String> {
         let scenario = parse(&self.name, &toml_text::text(self, &[]))?;
         let case = scenario.cases.first().ok_or("the scenario has no case")?;
         let air = case.airs.first().ok_or("the scenario has no seed")?;
-        let flown = CaseFlight::new(case, air)?.fly();
-        Ok((scenario, flown))
+        Ok(CaseFlight::new(case, air)?.fly())
     }
 }
 

@@ -240,17 +240,6 @@ impl Number {
 }
 
 impl Instant {
-    /// The first such happening.
-    #[must_use]
-    pub fn first(pattern: Pattern) -> Self {
-        Self {
-            anchor: Anchor::Happening(pattern),
-            occurrence: Occurrence::Nth(1),
-            after: None,
-            offset_s: 0.0,
-        }
-    }
-
     /// Whether it can come several times.
     #[must_use]
     pub(super) fn recurs(&self) -> bool {
@@ -269,12 +258,6 @@ impl Instant {
         } else {
             self.after.as_deref().and_then(Self::unseen_in_flight)
         }
-    }
-
-    /// An anchor without an offset.
-    #[must_use]
-    pub fn of(anchor: Anchor) -> Self {
-        Self { anchor, occurrence: Occurrence::Nth(1), after: None, offset_s: 0.0 }
     }
 }
 

@@ -10,7 +10,6 @@ use super::sampling::{Origin, sample};
 use super::trace::Trace;
 use crate::flight::{Flight, FlightEnd, FlightOptions, FlightResult, Report};
 use crate::signals::SimTime;
-use crate::telemetry::FlightTruth;
 use crate::vehicle::Vehicle;
 use inputs::Inputs;
 use log::Log;
@@ -24,8 +23,6 @@ pub struct Flown {
     pub result: String,
     /// Why, as a sentence.
     pub reason: String,
-    /// What really happened to the waypoints.
-    pub truth: FlightTruth,
     /// When the flight ended; the record may go on.
     pub ended_at: SimTime,
 }
@@ -230,6 +227,6 @@ impl<'a> CaseFlight<'a> {
             Some((word, reason)) => (word.to_owned(), reason),
             None => (end.verdict.result.to_string(), end.verdict.reason),
         };
-        Flown { trace: self.trace, result, reason, truth: end.truth, ended_at: end.time }
+        Flown { trace: self.trace, result, reason, ended_at: end.time }
     }
 }

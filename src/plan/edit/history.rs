@@ -176,19 +176,6 @@ impl History {
         }
         true
     }
-
-    /// What undo would take back.
-    #[must_use]
-    pub fn undo_label(&self) -> Option<&str> {
-        self.revisions.get(self.at.checked_sub(1)?).map(Revision::label)
-    }
-
-    /// What redo would make again.
-    #[must_use]
-    pub fn redo_label(&self) -> Option<&str> {
-        let index = (*self.next.get(self.at)?)?;
-        self.revisions.get(index - 1).map(Revision::label)
-    }
 }
 
 #[cfg(test)]

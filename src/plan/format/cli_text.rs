@@ -122,7 +122,7 @@ impl Reader<'_, '_> {
             _ => self.problems.add(
                 span.clone(),
                 format!("{operation} is not an operation of waypoint"),
-                field::words_hint(operation, OPERATIONS.into_iter()),
+                did_you_mean::hint(operation, OPERATIONS),
             ),
         }
     }

@@ -114,7 +114,7 @@ pub(super) fn waypoint_type(text: &str) -> Result<WaypointType, FieldError> {
     text.parse().map_err(|_| {
         FieldError::new(
             format!("{text} is not a waypoint type"),
-            words_hint(text, WaypointType::iter().map(Into::into)),
+            did_you_mean::hint(text, WaypointType::iter().map(Into::into)),
         )
     })
 }
@@ -124,17 +124,9 @@ pub(super) fn pattern(text: &str) -> Result<HoldPattern, FieldError> {
     text.parse().map_err(|_| {
         FieldError::new(
             format!("{text} is not a hold pattern"),
-            words_hint(text, HoldPattern::iter().map(Into::into)),
+            did_you_mean::hint(text, HoldPattern::iter().map(Into::into)),
         )
     })
-}
-
-/// `did you mean FLYOVER? allowed: FLYOVER, FLYBY, …`.
-pub(super) fn words_hint(typed: &str, words: impl Iterator<Item = &'static str>) -> String {
-    let words: Vec<&str> = words.collect();
-    let guess = did_you_mean::closest(typed, words.iter().copied());
-    let guess = guess.map_or_else(String::new, |word| format!("did you mean {word}? "));
-    format!("{guess}allowed: {}", words.join(", "))
 }
 
 #[cfg(test)]

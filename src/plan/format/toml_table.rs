@@ -6,7 +6,7 @@ use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
 use super::Problems;
-use super::field::words_hint;
+use crate::did_you_mean;
 
 /// A value with its place.
 pub type Value<'i> = Spanned<DeValue<'i>>;
@@ -97,7 +97,7 @@ impl<'t, 'i> TomlTable<'t, 'i> {
                 problems.add(
                     key.span(),
                     format!("{name} is not a key of {}", self.what),
-                    words_hint(name, known.iter().copied()),
+                    did_you_mean::hint(name, known.iter().copied()),
                 );
             }
         }

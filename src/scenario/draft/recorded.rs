@@ -7,6 +7,7 @@ use crate::geo::LatLon;
 use crate::pilot::{RcTransmitter, channel_name};
 use crate::plan::format::{HomePosition, setting_line};
 use crate::signals::SimTime;
+use crate::sim::WorldCommand;
 use crate::telemetry::InFlightCommand;
 use crate::timeline::RecordedFlight;
 use crate::vehicle::{Answer, Input, Vehicle};
@@ -86,6 +87,14 @@ impl Draft {
             seed: start.seed(),
             ..Self::default()
         };
+        // What was wrong with the craft already goes on being wrong.
+        for (fault, left_s) in &status.faults {
+            let fault = WorldCommand::FaultOn(*fault, *left_s).to_string();
+            draft.inputs.push((after_boot(SimTime::ZERO), fault));
+        }
+        for fault in world.waiting_faults() {
+            draft.inputs.push((after_boot(SimTime::ZERO), WorldCommand::Schedule(*fault).to_string()));
+        }
         let mut transmitter = start.transmitter().clone();
         if let Some(pilot) = transmitter.pilot() {
             draft.pilot = true;

@@ -197,19 +197,12 @@ impl<'a> Cursor<'a> {
 
     /// The word that stands here is none of these.
     #[must_use]
-    pub(super) fn unknown<'w>(
-        &self,
-        what: &str,
-        words: impl Iterator<Item = &'w str> + Clone,
-    ) -> SyntaxError {
+    pub(super) fn unknown<'w>(&self, what: &str, words: impl Iterator<Item = &'w str>) -> SyntaxError {
         let rest = self.rest();
         let symbol = &rest[..rest.chars().next().map_or(0, char::len_utf8)];
         let found = self.peek_argument().unwrap_or(symbol);
         let shown = if found.is_empty() { "the end".to_owned() } else { found.to_owned() };
-        let guess = did_you_mean::closest(found, words.clone());
-        let guess = guess.map_or_else(String::new, |word| format!("did you mean {word}? "));
-        let all: Vec<&str> = words.collect();
-        self.error(format!("{shown} is not {what}"), format!("{guess}allowed: {}", all.join(", ")))
+        self.error(format!("{shown} is not {what}"), did_you_mean::hint(found, words))
     }
 
     /// Demands the end of the text.

@@ -6,6 +6,7 @@ use super::instant::Search;
 use super::{Bound, Comparison, Condition, Function, Instant, Number, Place};
 use crate::scenario::happening::Happening;
 use crate::scenario::quantity::Dimension;
+use crate::scenario::signal::{Flag, Signal};
 use crate::scenario::trace::{Sample, Trace};
 use crate::signals::SimTime;
 
@@ -161,7 +162,7 @@ impl<'a> Evaluator<'a> {
         let difference = value(index) - value(before);
         // A direction that passes north has not turned by a whole circle.
         let is_direction = matches!(inner, Number::Bearing(_))
-            || matches!(inner, Number::Signal(signal) if signal.info().name == "heading" || signal.info().name == "course");
+            || matches!(inner, Number::Signal(Signal::Heading | Signal::Course));
         if is_direction { wrap(difference) / seconds } else { difference / seconds }
     }
 
@@ -239,9 +240,7 @@ impl<'a> Evaluator<'a> {
             Condition::Flag(flag) => sample.has(*flag),
             Condition::State(state, wp) => sample.state == *state && wp.is_none_or(|wp| wp == sample.wp),
             Condition::Mode(mode) => sample.modes.has(*mode),
-            Condition::Flying(source) => {
-                sample.has(crate::scenario::signal::Flag::Engaged) && sample.source == *source
-            }
+            Condition::Flying(source) => sample.has(Flag::Engaged) && sample.source == *source,
             Condition::Not(inner) => !self.holds_of(inner, index, happening)?,
             Condition::All(all) => {
                 let mut unknown = false;

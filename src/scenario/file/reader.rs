@@ -114,9 +114,7 @@ impl<'r, 'p> Reader<'r, 'p> {
     pub(super) fn refuse_unknown(&mut self, table: &TomlTable<'_, '_>, known: &'static [&'static str]) {
         for (name, span, _) in table.keys() {
             if !known.contains(&name) {
-                let guess = crate::did_you_mean::closest(name, known.iter().copied());
-                let guess = guess.map_or_else(String::new, |word| format!("did you mean {word}? "));
-                let hint = format!("{guess}allowed: {}", known.join(", "));
+                let hint = crate::did_you_mean::hint(name, known.iter().copied());
                 self.problem(span, format!("{name} is not a key of {}", table.what()), hint);
             }
         }

@@ -3,7 +3,7 @@
 use arrayvec::ArrayVec;
 
 use crate::sim::config::{Noise, Turbulence, Wind};
-use crate::sim::fault::{ActiveFault, Fault, MAX_FAULTS};
+use crate::sim::fault::{ActiveFault, Fault, MAX_FAULTS, ScheduledFault};
 use crate::sim::switches::Switches;
 
 use super::World;
@@ -32,6 +32,12 @@ pub struct WorldStatus {
 }
 
 impl World {
+    /// The faults that wait for their time.
+    #[must_use]
+    pub fn waiting_faults(&self) -> &[ScheduledFault] {
+        self.faults.waiting()
+    }
+
     /// The settings of air, noise and faults as they are now.
     #[must_use]
     pub fn status(&self) -> WorldStatus {
