@@ -15,6 +15,7 @@ mod client;
 mod client_stream;
 mod endpoint_stats;
 mod external;
+mod fc_stream;
 mod impairment;
 mod listener;
 mod listeners;
@@ -25,6 +26,7 @@ mod request;
 mod udp;
 
 pub use external::ExternalSimulator;
+pub use fc_stream::{FcStream, StreamEvent};
 pub use impairment::{ImpairedLink, LinkImpairment};
 pub use listeners::{ListenConfig, ListenError, Listeners, RestartSignal};
 pub use request::{ClientId, Request};
