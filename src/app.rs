@@ -29,6 +29,7 @@ use std::ffi::OsString;
 pub use error::AppError;
 
 use crate::args::{self, Cli, Command, PlanCommand};
+use crate::link::launch_firmware;
 use crate::ui::keymap::Keymap;
 
 /// Runs the program with the given command line (program name first) and gives its exit code.
@@ -40,6 +41,9 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
 
 /// The exit code of the command that was typed.
 fn outcome(arguments: Vec<OsString>) -> u8 {
+    if let Some(code) = launch_firmware(&arguments) {
+        return code;
+    }
     let is_sitl = arguments.get(1).is_some_and(|command| command == "sitl");
     let outside = layers::read();
     // Help, completions and the doctor work with a broken configuration file, too.

@@ -23,6 +23,8 @@ mod notices;
 mod origin;
 pub mod proto;
 mod request;
+mod sitl_child;
+mod sitl_peer;
 mod udp;
 
 pub use external::ExternalSimulator;
@@ -30,4 +32,6 @@ pub use fc_stream::{FcStream, StreamEvent};
 pub use impairment::{ImpairedLink, LinkImpairment};
 pub use listeners::{ListenConfig, ListenError, Listeners, RestartSignal};
 pub use request::{ClientId, Request};
+pub use sitl_child::{ChildConfig, ChildEnd, ChildEvent, LaunchError, SitlChild, launch_firmware};
+pub use sitl_peer::{MotorsInError, SitlPeer, SitlPorts};
 pub use udp::{MotorPort, Sent, StateQueue};

@@ -11,3 +11,4 @@ pub mod msp;
 pub mod rc;
 pub mod serial_session;
 pub mod servo;
+pub mod sitl_feed;

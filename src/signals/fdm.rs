@@ -40,3 +40,14 @@ pub enum MotorOrder {
     /// M2, M3, M4, M1, as models from before spring 2026 expect.
     Legacy,
 }
+
+/// What the stamps are of the packets that feed a SITL executable.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, strum::Display, strum::EnumString)]
+#[strum(serialize_all = "lowercase")]
+pub enum Stamps {
+    /// The same in every packet, so that the executable's clock is the wall clock.
+    #[default]
+    Constant,
+    /// Simulated time, for an executable that is patched to follow it.
+    Sim,
+}

@@ -28,6 +28,15 @@ impl MotorOrder {
             Self::Legacy => [m2, m3, m4, m1],
         }
     }
+
+    /// Values of M1 … M4 from the order of the packet.
+    #[must_use]
+    pub fn in_native_order<T>(self, [first, second, third, fourth]: [T; 4]) -> [T; 4] {
+        match self {
+            Self::Native => [first, second, third, fourth],
+            Self::Legacy => [fourth, first, second, third],
+        }
+    }
 }
 
 /// Motor pulses in µs, 1000 at rest, 2000 at full power.

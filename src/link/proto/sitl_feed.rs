@@ -1,0 +1,276 @@
+//! What a SITL executable is fed with: the state of the craft as its sensors measured it, and what its motors say.
+//!
+//! The executable's clock is the wall clock times the rate of the stamps, so that jitter becomes time: every packet
+//! carries the same stamp, and the clock stays the wall clock. Positions are mirrored about the first one it processes:
+//! until it has answered for a while the craft is shown at home, exactly, and with a fix. The packet carries one altitude
+//! for GPS and barometer; it is the barometer's. It carries no battery.
+
+use super::fdm::{Packet, State, mirrored, pressure_pa};
+use super::servo;
+use crate::geo::offset_to_degrees;
+use crate::signals::fdm::{Dialect, MotorOrder, Stamps};
+use crate::signals::{GpsSample, MotorCommand, SensorFrame, SimTime};
+use nalgebra::{UnitQuaternion, Vector2, Vector3};
+
+/// The stamp of every packet, s.
+const STAMP_S: f64 = 1.0;
+/// How long after its first answer the executable is shown the true home, s: the first position that it processes is
+/// the centre of the mirror.
+const AT_HOME_US: u64 = 200_000;
+/// Silence after which the motors stop, s.
+const SILENCE_US: u64 = 1_000_000;
+/// What stands for latitude and longitude without a fix, degrees: out of range, so that the executable skips the GPS.
+const NO_FIX_DEG: f64 = 999.0;
+
+/// How an executable is fed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FeedConfig {
+    /// What its packets mean.
+    pub dialect: Dialect,
+    /// What their stamps are.
+    pub stamps: Stamps,
+    /// The order of the motors in its packets.
+    pub motor_order: MotorOrder,
+    /// Where the craft stands at boot: latitude and longitude, degrees, and metres above mean sea level.
+    pub home: (f64, f64, f64),
+}
+
+/// Whether the executable answers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FeedState {
+    /// It has not answered yet.
+    Waiting,
+    /// It answers.
+    Answering,
+    /// It has answered, and has been silent for a second.
+    Silent,
+}
+
+/// The feed of an executable.
+#[derive(Debug, Clone)]
+pub struct SitlFeed {
+    config: FeedConfig,
+    frame: SensorFrame,
+    alt_amsl_m: f64,
+    /// The newest solution of the GPS, and when it was delivered.
+    gps: Option<(GpsSample, SimTime)>,
+    /// When the first motor packet came, and the newest, µs of wall time.
+    answered_us: Option<(u64, u64)>,
+}
+
+impl SitlFeed {
+    /// A feed that has sent nothing yet.
+    #[must_use]
+    pub fn new(config: FeedConfig) -> Self {
+        let (_, _, alt_amsl_m) = config.home;
+        Self { config, frame: SensorFrame::default(), alt_amsl_m, gps: None, answered_us: None }
+    }
+
+    /// The executable started anew: its first position is the centre of the mirror again.
+    pub fn restart(&mut self) {
+        *self = Self::new(self.config);
+    }
+
+    /// Takes in what the sensors measured.
+    pub fn sense(&mut self, frame: &SensorFrame) {
+        self.frame = *frame;
+        if let Some(pressure_pa) = frame.pressure_pa {
+            self.alt_amsl_m = altitude_m(pressure_pa);
+        }
+        if let Some(gps) = frame.gps {
+            self.gps = Some((gps, frame.time));
+        }
+    }
+
+    /// The packet for what was sensed last; `now_us` is wall time.
+    #[must_use]
+    pub fn packet(&self, now_us: u64) -> Packet {
+        let Position { lat_deg, lon_deg, vel_enu } = match self.gps {
+            Some((gps, at)) if !self.is_at_home(now_us) => self.measured(&gps, at),
+            _ => self.at_home(),
+        };
+        let dialect = self.config.dialect;
+        let (home_lat_deg, home_lon_deg, _) = self.config.home;
+        let on_wire = |centre_deg, value_deg| {
+            if dialect.mirrors() && value_deg != NO_FIX_DEG {
+                mirrored(centre_deg, value_deg)
+            } else {
+                value_deg
+            }
+        };
+        dialect.encode(&State {
+            stamp_s: match self.config.stamps {
+                Stamps::Constant => STAMP_S,
+                Stamps::Sim => STAMP_S + self.frame.time.as_secs_f64(),
+            },
+            rate_flu: self.frame.rate_flu,
+            specific_force_flu: self.frame.specific_force_flu,
+            attitude: self.frame.truth_attitude.unwrap_or_else(UnitQuaternion::identity),
+            vel_enu,
+            lon_deg: on_wire(home_lon_deg, lon_deg),
+            lat_deg: on_wire(home_lat_deg, lat_deg),
+            alt_m: self.alt_amsl_m,
+            pressure_pa: pressure_pa(self.alt_amsl_m),
+        })
+    }
+
+    /// The motor command of a packet that came at `now_us` of wall time; `None` when it is none.
+    pub fn answered(&mut self, datagram: &[u8], now_us: u64) -> Option<MotorCommand> {
+        let values = self.config.motor_order.in_native_order(servo::decode(datagram)?);
+        let (first_us, _) = self.answered_us.unwrap_or((now_us, now_us));
+        self.answered_us = Some((first_us, now_us));
+        Some(MotorCommand(values.map(|value| f64::from(value).clamp(0.0, 1.0))))
+    }
+
+    /// Whether it answers.
+    #[must_use]
+    pub fn state(&self, now_us: u64) -> FeedState {
+        match self.answered_us {
+            None => FeedState::Waiting,
+            Some((_, last_us)) if now_us.saturating_sub(last_us) >= SILENCE_US => FeedState::Silent,
+            Some(_) => FeedState::Answering,
+        }
+    }
+
+    fn is_at_home(&self, now_us: u64) -> bool {
+        self.answered_us.is_none_or(|(first_us, _)| now_us.saturating_sub(first_us) < AT_HOME_US)
+    }
+
+    fn at_home(&self) -> Position {
+        let (lat_deg, lon_deg, _) = self.config.home;
+        Position { lat_deg, lon_deg, vel_enu: Vector3::zeros() }
+    }
+
+    /// Where the receiver's solution puts the craft now: a packet is read at any time, so it is carried on by its velocity.
+    fn measured(&self, gps: &GpsSample, at: SimTime) -> Position {
+        if !gps.fix {
+            return Position { lat_deg: NO_FIX_DEG, lon_deg: NO_FIX_DEG, vel_enu: Vector3::zeros() };
+        }
+        let age_s = self.frame.time.seconds_since(at) + gps.latency_s;
+        let moved_ne = Vector2::new(gps.vel_enu.y, gps.vel_enu.x) * age_s;
+        let (lat_deg, lon_deg) = offset_to_degrees(gps.position, moved_ne);
+        Position { lat_deg, lon_deg, vel_enu: gps.vel_enu }
+    }
+}
+
+struct Position {
+    lat_deg: f64,
+    lon_deg: f64,
+    vel_enu: Vector3<f64>,
+}
+
+/// Height (m) in the troposphere of the standard atmosphere at a pressure (Pa), the inverse of [`pressure_pa`].
+fn altitude_m(pressure_pa: f64) -> f64 {
+    (1.0 - (pressure_pa / 101_325.0).max(0.0).powf(1.0 / 5.255_88)) / 2.255_77e-5
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geo::LatLon;
+
+    const HOME: (f64, f64, f64) = (40.4635, -79.5182, 300.0);
+    const MS: u64 = 1000;
+
+    fn feed(dialect: Dialect) -> SitlFeed {
+        let config =
+            FeedConfig { dialect, stamps: Stamps::Constant, motor_order: MotorOrder::Native, home: HOME };
+        SitlFeed::new(config)
+    }
+
+    fn frame_at(ms: u64, lat_deg: f64, fix: bool) -> SensorFrame {
+        let gps = GpsSample {
+            fix,
+            position: LatLon::from_degrees(lat_deg, HOME.1),
+            vel_enu: Vector3::new(0.0, 5.0, 0.0),
+            ..GpsSample::default()
+        };
+        SensorFrame {
+            time: SimTime(ms * MS),
+            gps: Some(gps),
+            pressure_pa: Some(pressure_pa(320.0)),
+            truth_attitude: Some(UnitQuaternion::identity()),
+            ..SensorFrame::default()
+        }
+    }
+
+    fn motors(feed: &mut SitlFeed, ms: u64) -> Option<MotorCommand> {
+        feed.answered(&servo::encode([1100.0, 1200.0, 1300.0, 1400.0]), ms * MS)
+    }
+
+    /// Latitude on the wire.
+    fn latitude(feed: &SitlFeed, ms: u64) -> f64 {
+        feed.packet(ms * MS).fields[15]
+    }
+
+    #[test]
+    fn every_packet_carries_the_same_stamp_unless_the_executable_follows_simulated_time() {
+        let mut constant = feed(Dialect::SitlGz);
+        let mut sim = SitlFeed::new(FeedConfig { stamps: Stamps::Sim, ..constant.config });
+        for ms in [0, 7, 900] {
+            constant.sense(&frame_at(ms, HOME.0, true));
+            sim.sense(&frame_at(ms, HOME.0, true));
+            assert_eq!(constant.packet(ms * MS).stamp_s().to_bits(), 1.0_f64.to_bits());
+            assert!((sim.packet(ms * MS).stamp_s() - 1.0 - ms as f64 * 1e-3).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn until_it_has_answered_for_a_while_the_craft_stands_at_home_with_a_fix() {
+        let mut feed = feed(Dialect::SitlGz);
+        let north = HOME.0 + 0.001;
+        for (ms, fix) in [(0, false), (500, true)] {
+            feed.sense(&frame_at(ms, north, fix));
+            assert!((latitude(&feed, ms) - HOME.0).abs() < 1e-12);
+        }
+        assert!(motors(&mut feed, 1000).is_some());
+        assert!((latitude(&feed, 1199) - HOME.0).abs() < 1e-12);
+        // Mirrored about home, and carried on by 5 m/s since the solution of half a second before.
+        feed.sense(&SensorFrame { time: SimTime(1000 * MS), gps: None, ..frame_at(0, 0.0, true) });
+        let carried_m = (HOME.0 - 0.001 - latitude(&feed, 1200)) * 111_319.5;
+        assert!((carried_m - 2.5).abs() < 0.01, "{carried_m}");
+        feed.restart();
+        assert!((latitude(&feed, 1300) - HOME.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn without_a_fix_the_place_is_out_of_range_and_the_rest_goes_on() {
+        let mut feed = feed(Dialect::SitlGz);
+        motors(&mut feed, 0);
+        feed.sense(&frame_at(1000, HOME.0, false));
+        let fields = feed.packet(1000 * MS).fields;
+        assert_eq!((fields[14].to_bits(), fields[15].to_bits()), (999.0_f64.to_bits(), 999.0_f64.to_bits()));
+        assert!((fields[16] - 320.0).abs() < 1e-6 && (fields[6] + crate::geo::GRAVITY).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_dialect_without_a_mirror_has_true_positions() {
+        let mut feed = feed(Dialect::Legacy);
+        motors(&mut feed, 0);
+        feed.sense(&frame_at(1000, HOME.0 + 0.001, true));
+        assert!((latitude(&feed, 1000) - HOME.0 - 0.001).abs() < 1e-7);
+    }
+
+    #[test]
+    fn motors_come_in_the_order_of_the_airframe_and_nonsense_is_none() {
+        let mut native = feed(Dialect::SitlGz);
+        let values = motors(&mut native, 0).unwrap().0;
+        assert!(
+            std::iter::zip(values, [0.1, 0.2, 0.3, 0.4]).all(|(a, b)| (a - b).abs() < 1e-6),
+            "{values:?}"
+        );
+        let mut legacy = SitlFeed::new(FeedConfig { motor_order: MotorOrder::Legacy, ..native.config });
+        let sent = MotorOrder::Legacy.arrange([1100.0, 1200.0, 1300.0, 1400.0]);
+        assert_eq!(legacy.answered(&servo::encode(sent), 0).unwrap().0, values);
+        assert!(legacy.answered(&[0; 15], 0).is_none() && legacy.answered(&[0xff; 16], 0).is_none());
+    }
+
+    #[test]
+    fn a_second_of_silence_is_told() {
+        let mut feed = feed(Dialect::SitlGz);
+        assert_eq!(feed.state(5000 * MS), FeedState::Waiting);
+        motors(&mut feed, 5000);
+        assert_eq!(feed.state(5999 * MS), FeedState::Answering);
+        assert_eq!(feed.state(6000 * MS), FeedState::Silent);
+    }
+}

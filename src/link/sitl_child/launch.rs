@@ -1,0 +1,110 @@
+//! Starts the executable by way of this program: a process that asks the system to be ended with its parent, and then
+//! becomes the executable. So no executable is left behind when this program is killed.
+
+use std::ffi::OsString;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+
+use super::ChildConfig;
+
+/// Exit codes of a launcher that could not become the executable; as shells have them.
+const NOT_EXECUTABLE: i32 = 126;
+const NOT_FOUND: i32 = 127;
+/// The parent was gone before the child could ask to be ended with it.
+const ORPHAN: i32 = 125;
+
+/// The command of this program by which it starts an executable; for itself only.
+const LAUNCH: &str = "launch-firmware";
+
+/// What stands in the environment for the options of this program; nothing for the executable.
+const OUR_VARIABLES: &str = "BETADECK_";
+
+/// Why an executable could not be started.
+#[derive(Debug, thiserror::Error)]
+pub enum LaunchError {
+    /// Its directory cannot be made.
+    #[error("cannot make the directory {directory} for the firmware: {error}")]
+    Directory {
+        /// The directory.
+        directory: PathBuf,
+        /// What the system says.
+        error: io::Error,
+    },
+    /// The system starts nothing.
+    #[error("cannot start {program}: {error}")]
+    Start {
+        /// What was to be started.
+        program: PathBuf,
+        /// What the system says.
+        error: io::Error,
+    },
+}
+
+/// Starts the executable in its directory, with its output to be read.
+pub(super) fn spawn(config: &ChildConfig) -> Result<Child, LaunchError> {
+    std::fs::create_dir_all(&config.directory)
+        .map_err(|error| LaunchError::Directory { directory: config.directory.clone(), error })?;
+    let mut command = Command::new(&config.launcher);
+    command.arg(LAUNCH).arg(std::process::id().to_string()).arg(&config.program).args(&config.arguments);
+    command.current_dir(&config.directory);
+    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    for (name, _) in std::env::vars_os() {
+        if name.to_str().is_some_and(|name| name.starts_with(OUR_VARIABLES)) {
+            command.env_remove(name);
+        }
+    }
+    #[cfg(unix)]
+    // The terminal's interrupt is for this program, which ends the child itself.
+    std::os::unix::process::CommandExt::process_group(&mut command, 0);
+    command.spawn().map_err(|error| LaunchError::Start { program: config.launcher.clone(), error })
+}
+
+/// When this is the command line of a launcher (program name first): becomes the executable that it names. Comes back only
+/// when that failed, with an exit code after a sentence on standard error; `None` for any other command line.
+#[must_use]
+pub fn launch_firmware(arguments: &[OsString]) -> Option<u8> {
+    let [_, command, parent, program, arguments @ ..] = arguments else { return None };
+    if command != LAUNCH {
+        return None;
+    }
+    let parent = parent.to_str()?.parse().ok()?;
+    Some(exec_with_parent(parent, Path::new(program), arguments))
+}
+
+#[allow(clippy::print_stderr, reason = "the process that reads it tells its user")]
+fn exec_with_parent(parent: i32, program: &Path, arguments: &[OsString]) -> u8 {
+    #[cfg(target_os = "linux")]
+    {
+        use rustix::process::{Signal, getppid, set_parent_process_death_signal};
+        if let Err(error) = set_parent_process_death_signal(Some(Signal::KILL)) {
+            eprintln!("betadeck: the firmware may outlive this program: {error}");
+        }
+        // Ended meanwhile, the parent sends no signal.
+        if getppid().is_none_or(|pid| pid.as_raw_nonzero().get() != parent) {
+            return ORPHAN as u8;
+        }
+    }
+    let _ = parent;
+    #[cfg(unix)]
+    let error = std::os::unix::process::CommandExt::exec(Command::new(program).args(arguments));
+    #[cfg(not(unix))]
+    let error = match Command::new(program).args(arguments).status() {
+        Ok(status) => return status.code().unwrap_or(NOT_EXECUTABLE) as u8,
+        Err(error) => error,
+    };
+    eprintln!("betadeck: cannot start {}: {error}", program.display());
+    (if error.kind() == io::ErrorKind::NotFound { NOT_FOUND } else { NOT_EXECUTABLE }) as u8
+}
+
+/// What an exit code of the launcher says of the executable; `None` when it is the executable's own.
+pub(super) fn error_of_code(code: i32, config: &ChildConfig) -> Option<String> {
+    let program = config.program.display();
+    match code {
+        NOT_FOUND => Some(format!("there is no executable {program}")),
+        NOT_EXECUTABLE => Some(format!(
+            "the system does not run {program}: it is no executable for this machine, or may not be executed (chmod +x)"
+        )),
+        _ => None,
+    }
+}

@@ -1,0 +1,169 @@
+//! The sockets beside a SITL executable: states and RC go to it, motors come from it.
+
+use std::io;
+use std::net::{IpAddr, SocketAddr, UdpSocket};
+use std::time::Instant;
+
+use super::endpoint_stats::EndpointStats;
+use super::proto::rc;
+use super::proto::sitl_feed::{FeedConfig, FeedState, SitlFeed};
+use crate::signals::{MotorCommand, RcFrame, SensorFrame};
+use crate::telemetry::{EndpointKind, EndpointState, EndpointStatus};
+
+/// Longer than any motor packet.
+const BUFFER: usize = 128;
+/// Most packets that are taken from a socket in one go.
+const QUEUED_MAX: usize = 4096;
+
+/// Where a SITL executable listens, and where it sends to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SitlPorts {
+    /// Its machine.
+    pub ip: IpAddr,
+    /// Motor pulses come to this port.
+    pub raw: u16,
+    /// Motor values come to this port.
+    pub motors: u16,
+    /// It takes states here.
+    pub fdm: u16,
+    /// It takes RC here.
+    pub rc: u16,
+}
+
+/// A port that its motors are to come to is not free.
+#[derive(Debug, thiserror::Error)]
+#[error(
+    "cannot take the motors of the firmware at UDP {address}: {error}; end what holds the port (a simulator such as Gazebo, \
+     another betadeck), or name others with --udp-ports"
+)]
+pub struct MotorsInError {
+    address: SocketAddr,
+    error: io::Error,
+}
+
+/// The link to a SITL executable.
+#[derive(Debug)]
+pub struct SitlPeer {
+    feed: SitlFeed,
+    motors: UdpSocket,
+    /// Bound so that nobody else's is taken for it; its pulses say what the values say.
+    raw: UdpSocket,
+    fdm: SocketAddr,
+    rc: SocketAddr,
+    started: Instant,
+    stats: EndpointStats,
+}
+
+impl SitlPeer {
+    /// Sockets for an executable that may not have started yet.
+    ///
+    /// # Errors
+    /// When a port for motors is not free.
+    pub fn open(config: FeedConfig, ports: SitlPorts, now: Instant) -> Result<Self, MotorsInError> {
+        Ok(Self {
+            feed: SitlFeed::new(config),
+            motors: bind(SocketAddr::new(ports.ip, ports.motors))?,
+            raw: bind(SocketAddr::new(ports.ip, ports.raw))?,
+            fdm: SocketAddr::new(ports.ip, ports.fdm),
+            rc: SocketAddr::new(ports.ip, ports.rc),
+            started: now,
+            stats: EndpointStats::new(now),
+        })
+    }
+
+    /// The ports that motors come to: values, pulses.
+    ///
+    /// # Errors
+    /// When the system does not tell.
+    pub fn motor_ports(&self) -> io::Result<(u16, u16)> {
+        Ok((self.motors.local_addr()?.port(), self.raw.local_addr()?.port()))
+    }
+
+    /// The executable started anew.
+    pub fn restart(&mut self) {
+        self.feed.restart();
+    }
+
+    /// Sends what the sensors measured. Without an executable it is lost.
+    pub fn send_state(&mut self, frame: &SensorFrame, now: Instant) {
+        self.feed.sense(frame);
+        let packet = self.feed.packet(self.micros(now));
+        self.send(&packet.to_bytes(), self.fdm);
+    }
+
+    /// Takes in what the sensors measured in a step whose state is not sent, for a later one is.
+    pub fn pass_over(&mut self, frame: &SensorFrame) {
+        self.feed.sense(frame);
+    }
+
+    /// Sends a frame of the transmitter.
+    pub fn send_rc(&mut self, frame: &RcFrame, now: Instant) {
+        let stamp_s = self.micros(now) as f64 * 1e-6;
+        self.send(&rc::encode(stamp_s, frame), self.rc);
+    }
+
+    /// The newest motor command that has come since, the older ones read and dropped.
+    pub fn take_motors(&mut self, now: Instant) -> Option<MotorCommand> {
+        let now_us = self.micros(now);
+        let mut buffer = [0; BUFFER];
+        let mut newest = None;
+        for _ in 0..QUEUED_MAX {
+            let size = match self.motors.recv(&mut buffer) {
+                Ok(size) => size,
+                Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
+                Err(_) => break,
+            };
+            self.stats.received(size);
+            match self.feed.answered(&buffer[..size], now_us) {
+                Some(motors) => {
+                    self.stats.packet(now);
+                    newest = Some(motors);
+                }
+                None => self.stats.wrong_size(),
+            }
+        }
+        for _ in 0..QUEUED_MAX {
+            if self.raw.recv(&mut buffer).is_err() {
+                break;
+            }
+        }
+        newest
+    }
+
+    /// Whether the executable answers.
+    #[must_use]
+    pub fn state(&self, now: Instant) -> FeedState {
+        self.feed.state(self.micros(now))
+    }
+
+    /// Its line among the endpoints.
+    #[must_use]
+    pub fn status(&self, now: Instant) -> EndpointStatus {
+        EndpointStatus {
+            kind: EndpointKind::Motors,
+            address: self.motors.local_addr().map_or_else(|_| String::new(), |address| address.to_string()),
+            state: EndpointState::Packets(self.stats.packet_stats(now)),
+        }
+    }
+
+    fn send(&self, datagram: &[u8], to: SocketAddr) {
+        match self.motors.send_to(datagram, to) {
+            Ok(size) => self.stats.sent(size),
+            // Nobody listens yet, or not any more: the other side's silence tells that.
+            Err(_) => self.stats.error(),
+        }
+    }
+
+    fn micros(&self, now: Instant) -> u64 {
+        now.saturating_duration_since(self.started).as_micros() as u64
+    }
+}
+
+fn bind(address: SocketAddr) -> Result<UdpSocket, MotorsInError> {
+    let socket = UdpSocket::bind(address).and_then(|socket| {
+        // The flight waits for nobody.
+        socket.set_nonblocking(true)?;
+        Ok(socket)
+    });
+    socket.map_err(|error| MotorsInError { address, error })
+}
