@@ -3,6 +3,7 @@
 
 pub mod command_line;
 mod command_message;
+pub mod fc_client;
 pub mod fdm;
 pub mod fdm_link;
 pub mod first_line;

@@ -9,15 +9,15 @@ use super::command_line::LineReply;
 use super::msp::Frame;
 
 /// The message's code.
-const CLI_COMMAND: u16 = 0x3012;
+pub(super) const CLI_COMMAND: u16 = 0x3012;
 /// Most output that is kept.
 const OUTPUT_MAX: usize = 2048;
 /// Most output of one reply.
 const PAGE_MAX: usize = 512;
 /// The output was longer than what is kept.
-const CUT: u8 = 1;
+pub(super) const CUT: u8 = 1;
 /// The line was refused.
-const REFUSED: u8 = 2;
+pub(super) const REFUSED: u8 = 2;
 
 /// The last line and its output.
 #[derive(Debug, Clone, Default)]

@@ -1,0 +1,98 @@
+//! A command line between STX and ETX.
+
+use std::time::Duration;
+
+use super::exchange::LineProgress;
+use super::line_text;
+
+const ETX: u8 = 0x03;
+/// How long the STX that opens the command line is awaited.
+const OPENING: Duration = Duration::from_millis(700);
+/// How long output may pause; a board that stores its settings is silent while it does.
+const PAUSE: Duration = Duration::from_secs(4);
+/// How long nothing may follow the announcement of a restart for it to be believed on a link that stays open.
+pub(super) const RESTART_QUIET: Duration = Duration::from_millis(500);
+/// Most output that is kept.
+pub(super) const MAX_OUTPUT: usize = 256 * 1024;
+
+/// A line and its output. STX was sent; the line follows once it is answered, for a flight controller that does not open
+/// its command line takes single letters for commands.
+#[derive(Debug)]
+pub(super) struct FramedLine {
+    pub(super) line: String,
+    open: bool,
+    output: Vec<u8>,
+    /// When something was sent or came last.
+    active: Duration,
+}
+
+impl FramedLine {
+    pub(super) fn new(line: String, now: Duration) -> Self {
+        Self { line, open: false, output: Vec::new(), active: now }
+    }
+
+    /// Whether the command line is open, and every byte belongs to it.
+    pub(super) fn is_open(&self) -> bool {
+        self.open
+    }
+
+    /// Takes a byte: STX first, then output.
+    pub(super) fn push(&mut self, byte: u8, now: Duration, output: &mut Vec<u8>) -> LineProgress {
+        self.active = now;
+        if !self.open {
+            self.open = true;
+            output.extend(self.line.as_bytes());
+            output.extend([b'\n', ETX]);
+            return LineProgress::Waiting;
+        }
+        if byte == ETX && self.announces_restart() {
+            return LineProgress::Restarting { text: self.text() };
+        }
+        if byte == ETX {
+            return LineProgress::Answered { text: self.text(), open: false };
+        }
+        if self.output.len() < MAX_OUTPUT {
+            self.output.push(byte);
+        }
+        LineProgress::Waiting
+    }
+
+    pub(super) fn poll(&self, now: Duration) -> LineProgress {
+        if now < self.due() {
+            LineProgress::Waiting
+        } else if !self.open {
+            LineProgress::NotOpened
+        } else if self.announces_restart() {
+            LineProgress::Restarting { text: self.text() }
+        } else {
+            LineProgress::Silent
+        }
+    }
+
+    pub(super) fn due(&self) -> Duration {
+        let patience = match self.open {
+            false => OPENING,
+            true if self.announces_restart() => RESTART_QUIET,
+            true => PAUSE,
+        };
+        self.active + patience
+    }
+
+    /// The line and its output so far, once it was sent.
+    pub(super) fn sent(&self) -> Option<(&str, String)> {
+        self.open.then(|| (self.line.as_str(), self.text()))
+    }
+
+    fn announces_restart(&self) -> bool {
+        line_text::announces_restart(&end_of(&self.output))
+    }
+
+    fn text(&self) -> String {
+        String::from_utf8_lossy(&self.output).into_owned()
+    }
+}
+
+/// The last letters of an output.
+pub(super) fn end_of(output: &[u8]) -> std::borrow::Cow<'_, str> {
+    String::from_utf8_lossy(&output[output.len().saturating_sub(80)..])
+}

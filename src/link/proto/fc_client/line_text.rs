@@ -1,0 +1,47 @@
+//! The text of command lines and of their output.
+
+use super::Answer;
+
+/// The last word of a flight controller that restarts.
+const REBOOTING: &str = "Rebooting";
+/// Lines that restart the flight controller or leave it for its boot loader.
+const RESTARTING: [&str; 7] = ["save", "exit", "defaults", "reboot", "bl", "dfu", "msc"];
+/// What an error begins with at the prompt, and the answer to an unknown word between STX and ETX.
+const ERRORS: [&str; 2] = ["###ERROR", "ERR_CMD_NA"];
+
+/// A line as it may be typed: control characters and what is not ASCII would be dropped or mean something else.
+pub(super) fn printable(line: &str) -> String {
+    let printable: String = line.chars().filter(|letter| matches!(letter, ' '..='~')).collect();
+    printable.trim().to_owned()
+}
+
+/// Whether a line says nothing, but for a comment.
+pub(super) fn is_empty(line: &str) -> bool {
+    let line = printable(line);
+    line.is_empty() || line.starts_with('#')
+}
+
+/// Whether a line is meant to end in a restart.
+pub(super) fn restarts(line: &str) -> bool {
+    let mut words = line.split_ascii_whitespace();
+    let restarting =
+        words.next().is_some_and(|first| RESTARTING.iter().any(|word| first.eq_ignore_ascii_case(word)));
+    restarting
+        && !words.any(|word| word.eq_ignore_ascii_case("noreboot") || word.eq_ignore_ascii_case("nosave"))
+}
+
+/// Whether an output ends in the announcement of a restart.
+pub(super) fn announces_restart(text: &str) -> bool {
+    text.trim_end().ends_with(REBOOTING)
+}
+
+/// Whether an output tells of an error.
+pub(super) fn tells_of_error(text: &str) -> bool {
+    ERRORS.iter().any(|error| text.contains(error))
+}
+
+/// The answer that an output is.
+pub(super) fn answer(text: String, restarted: bool) -> Answer {
+    let failed = tells_of_error(&text);
+    Answer::Line { text, failed, restarted }
+}
