@@ -157,6 +157,7 @@ fn session() -> Handle {
         speed: 1.0,
         takeoff_m: 10.0,
         endpoints: None,
+        remote: None,
         first_events: Vec::new(),
     })
     .unwrap()

@@ -63,6 +63,7 @@ fn session() -> Handle {
         speed: f64::INFINITY,
         takeoff_m: 10.0,
         endpoints: None,
+        remote: None,
         first_events: Vec::new(),
     })
     .unwrap()

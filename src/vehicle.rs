@@ -245,6 +245,19 @@ impl Vehicle {
         self.notice(VehicleNotice::BackHome);
     }
 
+    /// A remote flight controller started anew by itself: the craft of the simulated world stands at home again, disarmed.
+    pub fn remote_restarted(&mut self) {
+        let Some(remote) = self.controller.remote_mut() else { return };
+        remote.restarted();
+        self.engaged_at = None;
+        self.active_plan = None;
+        *self.transmitter.sticks_mut() = RcFrame::SAFE;
+        // Returning home is always allowed; physics of others are not ours to reset.
+        if self.physics.world().is_some() {
+            let _ = self.physics.apply(WorldCommand::ResetToHome);
+        }
+    }
+
     /// One step of simulated time. With an external simulator: a step in which nothing is sensed.
     pub fn tick(&mut self) {
         self.step(None);

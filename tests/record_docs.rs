@@ -101,9 +101,10 @@ fn name(kind: &SessionEvent) -> Option<&'static str> {
         SessionEvent::Vehicle(kind) => vehicle_name(kind),
         SessionEvent::Endpoints(_) => Some("doors"),
         SessionEvent::Branch { .. } => Some("branch"),
-        SessionEvent::Notice(_) | SessionEvent::ArmingBlocked(_) | SessionEvent::Simulator(_) => {
-            Some("notice")
-        }
+        SessionEvent::Notice(_)
+        | SessionEvent::ArmingBlocked(_)
+        | SessionEvent::Simulator(_)
+        | SessionEvent::Remote(_) => Some("notice"),
         SessionEvent::FirstState { .. } | SessionEvent::FirstRc { .. } | SessionEvent::Restarted => None,
     }
 }

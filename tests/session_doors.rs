@@ -55,6 +55,7 @@ async fn rig() -> Rig {
         speed: 1.0,
         takeoff_m: 10.0,
         endpoints: Some(Endpoints { requests: inbox, handler, status: views, simulator: None }),
+        remote: None,
         first_events: Vec::new(),
     })
     .unwrap();

@@ -46,6 +46,7 @@ pub(super) async fn start(
         speed: args.flight.speed.map_or(1.0, |Speed(speed)| speed),
         takeoff_m: TAKEOFF_M,
         endpoints,
+        remote: None,
         first_events,
     };
     let session = session::start_at(config, flown)

@@ -25,6 +25,8 @@ const PAUSE: Duration = Duration::from_millis(100);
 const PAUSE_AFTER_CRASH: Duration = Duration::from_secs(1);
 /// Longest line of its output that is told whole, bytes.
 const LINE_MAX: u64 = 4096;
+/// It prints thousands of such lines when it stores its configuration: they are not told.
+const STORED_WORD: &str = "[FLASH_ProgramWord]";
 
 /// How a SITL executable is started.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -205,7 +207,10 @@ impl Keeper {
             while matches!(output.by_ref().take(LINE_MAX).read_until(b'\n', &mut line), Ok(1..)) {
                 let text = String::from_utf8_lossy(&line).trim_end().to_owned();
                 line.clear();
-                if !text.is_empty() && tell.send(ChildEvent::Line(text)).is_err() {
+                if !text.is_empty()
+                    && !text.starts_with(STORED_WORD)
+                    && tell.send(ChildEvent::Line(text)).is_err()
+                {
                     return;
                 }
             }

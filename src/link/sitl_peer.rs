@@ -51,15 +51,23 @@ pub struct SitlPeer {
     fdm: SocketAddr,
     rc: SocketAddr,
     started: Instant,
+    /// It is up: states that come while it boots may crash it.
+    is_up: bool,
     stats: EndpointStats,
 }
 
 impl SitlPeer {
-    /// Sockets for an executable that may not have started yet.
+    /// Sockets for an executable; `is_up` when it has started long ago, else its first motor packet tells that it has
+    /// booted, or [`Self::came_up`].
     ///
     /// # Errors
     /// When a port for motors is not free.
-    pub fn open(config: FeedConfig, ports: SitlPorts, now: Instant) -> Result<Self, MotorsInError> {
+    pub fn open(
+        config: FeedConfig,
+        ports: SitlPorts,
+        is_up: bool,
+        now: Instant,
+    ) -> Result<Self, MotorsInError> {
         Ok(Self {
             feed: SitlFeed::new(config),
             motors: bind(SocketAddr::new(ports.ip, ports.motors))?,
@@ -67,6 +75,7 @@ impl SitlPeer {
             fdm: SocketAddr::new(ports.ip, ports.fdm),
             rc: SocketAddr::new(ports.ip, ports.rc),
             started: now,
+            is_up,
             stats: EndpointStats::new(now),
         })
     }
@@ -79,16 +88,24 @@ impl SitlPeer {
         Ok((self.motors.local_addr()?.port(), self.raw.local_addr()?.port()))
     }
 
-    /// The executable started anew.
-    pub fn restart(&mut self) {
+    /// The executable ended, or is about to: nothing is sent before it has booted again.
+    pub fn went_down(&mut self) {
         self.feed.restart();
+        self.is_up = false;
+    }
+
+    /// The executable has booted.
+    pub fn came_up(&mut self) {
+        self.is_up = true;
     }
 
     /// Sends what the sensors measured. Without an executable it is lost.
     pub fn send_state(&mut self, frame: &SensorFrame, now: Instant) {
         self.feed.sense(frame);
-        let packet = self.feed.packet(self.micros(now));
-        self.send(&packet.to_bytes(), self.fdm);
+        if self.is_up {
+            let packet = self.feed.packet(self.micros(now));
+            self.send(&packet.to_bytes(), self.fdm);
+        }
     }
 
     /// Takes in what the sensors measured in a step whose state is not sent, for a later one is.
@@ -117,6 +134,7 @@ impl SitlPeer {
             match self.feed.answered(&buffer[..size], now_us) {
                 Some(motors) => {
                     self.stats.packet(now);
+                    self.is_up = true;
                     newest = Some(motors);
                 }
                 None => self.stats.wrong_size(),

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 pub use crate::sim::{COMMAND_WORDS as WORLD_WORDS, FAULTS, FaultInfo, SWITCHES as WORLD_SWITCHES};
 
+use super::remote::RemoteView;
 use crate::plan::FlightPlan;
 use crate::signals::{RcFrame, SimTime};
 use crate::telemetry::{EndpointStatus, InFlightCommand, LinkState, LostTime, Snapshot};
@@ -12,6 +13,10 @@ use crate::vehicle::Vehicle;
 
 /// Why time cannot be paused, stepped or made faster with an external simulator.
 pub const TIME_IS_EXTERNAL: &str = "The simulator sets the time: pause it or change its speed there.";
+
+/// Why time cannot be paused, stepped or made faster with a flight controller outside.
+pub const TIME_IS_THE_FIRMWARES: &str =
+    "The firmware outside runs on the wall clock: time cannot be paused, stepped or made faster.";
 
 /// Why the craft cannot be put back home with an external simulator.
 pub const PLACE_IS_EXTERNAL: &str =
@@ -163,6 +168,8 @@ pub struct SessionView {
     pub endpoints: Vec<EndpointStatus>,
     /// Whether the external simulator speaks; `None` when the physics is our own.
     pub simulator: Option<LinkState>,
+    /// The flight controller, when it runs outside.
+    pub remote: Option<RemoteView>,
     /// Files or doors influence the flight: not repeatable.
     pub live: bool,
     /// The recording; `None` when the flight cannot be taken back.
@@ -194,6 +201,7 @@ impl SessionView {
             pilot: vehicle.transmitter().pilot_doing(),
             endpoints: Vec::new(),
             simulator: None,
+            remote: None,
             live: false,
             timeline: None,
         }

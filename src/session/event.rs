@@ -4,6 +4,7 @@ use std::net::SocketAddr;
 
 use tokio::sync::mpsc;
 
+use super::remote::RemoteNotice;
 use super::simulator::SimulatorNotice;
 use crate::signals::{RcFrame, SimTime};
 use crate::telemetry::{self, EventKind};
@@ -26,6 +27,8 @@ pub enum SessionEvent {
     Vehicle(EventKind),
     /// A notice for the user, as a sentence.
     Notice(String),
+    /// About the flight controller that runs outside.
+    Remote(RemoteNotice),
     /// Why a craft does not arm whose script holds the ARM switch on, as a sentence.
     ArmingBlocked(String),
     /// Other programs can reach the vehicle from now on.

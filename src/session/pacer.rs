@@ -104,6 +104,16 @@ impl Pacer {
         ticks
     }
 
+    /// Wall time, counted as `now` is, at which the next step is due; none while time stands still.
+    #[must_use]
+    pub fn next_due(&self) -> Option<Duration> {
+        if self.paused || self.speed.is_infinite() {
+            return None;
+        }
+        let wait_s = (1.0 - self.carry).max(0.0) * self.step.as_secs_f64() / self.speed;
+        Some(self.handed_out + Duration::from_secs_f64(wait_s))
+    }
+
     /// Wall time that was dropped since this was asked last.
     pub fn take_lost(&mut self) -> Duration {
         std::mem::take(&mut self.lost)
@@ -179,6 +189,17 @@ mod tests {
         pacer.set_speed(f64::INFINITY, ms(9_020));
         pacer.due(ms(19_020), 10);
         assert_eq!(pacer.take_lost(), ms(0));
+    }
+
+    #[test]
+    fn when_the_next_step_is_due_is_known() {
+        let mut pacer = Pacer::new(1000, 1.0);
+        assert_eq!(pacer.due(Duration::from_micros(5_400), 100), 5);
+        assert_eq!(pacer.next_due(), Some(ms(6)));
+        assert_eq!(pacer.due(ms(6), 100), 1);
+        assert_eq!(pacer.next_due(), Some(ms(7)));
+        pacer.set_paused(true, ms(7));
+        assert_eq!(pacer.next_due(), None);
     }
 
     #[test]

@@ -9,6 +9,7 @@ mod commands;
 mod console;
 mod late;
 mod publishing;
+mod remote;
 mod requests;
 mod rewind;
 
@@ -26,6 +27,7 @@ use super::late_answers::LateAnswers;
 use super::pacer::Pacer;
 use super::persistence::Persistence;
 use super::real_time::RealTime;
+use super::remote::RemoteLink;
 use super::request_handler::RequestHandler;
 use super::simulator::Simulator;
 use crate::firmware::cli::Interpreter;
@@ -76,6 +78,8 @@ pub struct SessionConfig {
     pub takeoff_m: f64,
     /// The endpoints, when any are open; they make the flight live.
     pub endpoints: Option<Endpoints>,
+    /// The link to the vehicle's flight controller, when that is remote.
+    pub remote: Option<RemoteLink>,
     /// What is reported first, after the boot.
     pub first_events: Vec<SessionEvent>,
 }
@@ -134,6 +138,7 @@ struct Session {
     console: Interpreter,
     takeoff_m: f64,
     simulator: Option<Simulator>,
+    remote: Option<RemoteLink>,
     endpoints: Option<Endpoints>,
     commands: mpsc::Receiver<Command>,
     /// A command that was taken out and is carried out next.
@@ -190,6 +195,7 @@ impl Session {
             persistence,
             takeoff_m: config.takeoff_m,
             simulator: simulator.map(|link| Simulator::new(link, incoming, Instant::now())),
+            remote: config.remote,
             endpoints: config.endpoints,
             commands,
             held_back: None,
@@ -229,6 +235,7 @@ impl Session {
             self.record_flood();
             let due = if self.follows_wall_clock() { self.pacer.due(now, SLICE) } else { 0 };
             let ticks = flown + self.advance(due, now);
+            self.exchange_with_remote(&mut context);
             let after = start.elapsed();
             self.pacer.ran(ticks, after);
             self.count_lost_time(after);
@@ -250,9 +257,7 @@ impl Session {
                 view.send_replace(view_now);
             }
             if ticks < SLICE && !self.more_waits && !self.has_commands() {
-                std::thread::park_timeout(
-                    self.longest_sleep().saturating_sub(start.elapsed().saturating_sub(now)),
-                );
+                std::thread::park_timeout(self.sleep_from(now, start.elapsed()));
             }
         }
     }
@@ -276,6 +281,18 @@ impl Session {
         {
             self.notice(notice.to_string());
         }
+    }
+
+    /// How long the thread may sleep at `present` when nothing comes; its round began at `now`. A remote flight controller
+    /// that is fed gets its states in the rhythm of the steps.
+    fn sleep_from(&self, now: Duration, present: Duration) -> Duration {
+        if let Some(remote) = &self.remote
+            && remote.is_fed()
+            && let Some(due) = self.pacer.next_due()
+        {
+            return due.saturating_sub(present);
+        }
+        self.longest_sleep().saturating_sub(present.saturating_sub(now))
     }
 
     /// How long the thread may sleep when nothing comes.

@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use crate::session::SessionEvent;
+use crate::session::{RemoteNotice, SessionEvent};
 use crate::signals::SimTime;
 use crate::telemetry::{BatteryAlarm, DisarmReason, EventKind, FirmwareEvent, NavEvent, NavState};
 
@@ -35,7 +35,10 @@ impl Severity {
             // What the store says of a save that failed.
             SessionEvent::Notice(text) if text.starts_with("Not saved: ") => Self::Warn,
             SessionEvent::Branch { .. } => Self::Step,
-            SessionEvent::Endpoints(_)
+            SessionEvent::Remote(RemoteNotice::Lost(_) | RemoteNotice::Restarted(_)) => Self::Warn,
+            SessionEvent::Remote(RemoteNotice::Failed(_)) => Self::Fault,
+            SessionEvent::Remote(RemoteNotice::Output(_) | RemoteNotice::Told(_))
+            | SessionEvent::Endpoints(_)
             | SessionEvent::Notice(_)
             | SessionEvent::ArmingBlocked(_)
             | SessionEvent::Simulator(_)

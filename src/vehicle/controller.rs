@@ -311,7 +311,10 @@ impl FlightController {
     /// Why the craft was disarmed last.
     #[must_use]
     pub fn last_disarm(&self) -> Option<DisarmReason> {
-        self.embedded().and_then(Firmware::last_disarm)
+        match self {
+            Self::Embedded(embedded) => embedded.firmware.last_disarm(),
+            Self::Remote(remote) => remote.telemetry().last_disarm,
+        }
     }
 
     /// The navigator's telemetry.

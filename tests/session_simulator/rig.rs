@@ -94,6 +94,7 @@ pub(crate) async fn rig_with(faults: &[&str]) -> Rig {
         speed: 1.0,
         takeoff_m: 10.0,
         endpoints,
+        remote: None,
         first_events: Vec::new(),
     })
     .unwrap();

@@ -90,6 +90,7 @@ fn session(simulator: &Simulator, runtime: &tokio::runtime::Runtime) -> (Handle,
         speed: 1.0,
         takeoff_m: 10.0,
         endpoints: Some(endpoints),
+        remote: None,
         first_events: Vec::new(),
     })
     .unwrap();

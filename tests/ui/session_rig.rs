@@ -54,6 +54,7 @@ impl Rig {
             speed: 1.0,
             takeoff_m: 5.0,
             endpoints: None,
+            remote: None,
             first_events: Vec::new(),
         })
         .unwrap();

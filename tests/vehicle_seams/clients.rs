@@ -161,6 +161,7 @@ async fn an_upload_to_a_silent_flight_controller_fails_in_a_sentence() {
         speed: 1.0,
         takeoff_m: 10.0,
         endpoints: None,
+        remote: None,
         first_events: Vec::new(),
     })
     .unwrap();

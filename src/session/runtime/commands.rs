@@ -8,7 +8,9 @@ use super::Session;
 use super::late::WaitingInterface;
 use crate::firmware::cli::Interpreter;
 use crate::flight::forecast;
-use crate::session::command::{Command, PLACE_IS_EXTERNAL, Seek, TIME_IS_EXTERNAL, UPLOADING, VehicleCopy};
+use crate::session::command::{
+    Command, PLACE_IS_EXTERNAL, Seek, TIME_IS_EXTERNAL, TIME_IS_THE_FIRMWARES, UPLOADING, VehicleCopy,
+};
 use crate::session::upload::{LIST, Upload, plan_of_list};
 use crate::sim::WorldCommand;
 use crate::telemetry::LinkState;
@@ -63,6 +65,9 @@ impl Session {
                 if self.simulator.is_some() =>
             {
                 self.notice(TIME_IS_EXTERNAL);
+            }
+            Command::Pause(_) | Command::Step(_) | Command::Speed(_) if self.remote.is_some() => {
+                self.notice(TIME_IS_THE_FIRMWARES);
             }
             Command::Pause(paused) => {
                 self.run_on = None;

@@ -6,6 +6,7 @@ use std::time::Instant;
 
 use super::Session;
 use crate::session::command::SessionView;
+use crate::session::remote::RemoteLink;
 use crate::session::simulator::Simulator;
 use crate::telemetry::EndpointStatus;
 
@@ -27,6 +28,7 @@ impl Session {
             pilot: vehicle.transmitter().pilot_doing(),
             endpoints: self.endpoints(),
             simulator: self.simulator.as_ref().map(Simulator::state),
+            remote: self.remote.as_ref().map(RemoteLink::view),
             live: self.endpoints.is_some(),
             timeline: self.timeline_view(),
         }
@@ -35,6 +37,7 @@ impl Session {
     fn endpoints(&self) -> Vec<EndpointStatus> {
         let mut all =
             self.endpoints.as_ref().map_or_else(Vec::new, |endpoints| endpoints.status.borrow().clone());
+        all.extend(self.remote.iter().flat_map(|remote| remote.status(Instant::now())));
         all.extend(self.simulator.as_ref().map(|simulator| simulator.status(Instant::now())));
         all
     }

@@ -31,6 +31,7 @@ impl Rig {
             speed: 1.0,
             takeoff_m: 10.0,
             endpoints: None,
+            remote: None,
             first_events: Vec::new(),
         };
         let session = Session::new(config, None, taken, mpsc::unbounded_channel().0);

@@ -127,6 +127,7 @@ impl Sitl {
             speed: 1.0,
             takeoff_m: 0.0,
             endpoints: Some(endpoints),
+            remote: None,
             first_events: Vec::new(),
         })?;
         Ok(Self { session, doors, publish, exit_on_reboot: config.exit_on_reboot, clients: 0 })
@@ -249,6 +250,7 @@ fn print_event(event: &Event, print: &mut impl FnMut(OutputLine)) {
             print(OutputLine::Out(lines::refused_line(event.time.0 / 1000, *refusal)));
         }
         SessionEvent::Simulator(_)
+        | SessionEvent::Remote(_)
         | SessionEvent::Vehicle(_)
         | SessionEvent::ArmingBlocked(_)
         | SessionEvent::Branch { .. }

@@ -12,7 +12,7 @@ use crate::pilot::PilotFacts;
 use crate::plan::FlightPlan;
 use crate::signals::{MotorCommand, RcFrame, RcSource, SensorFrame, SimTime};
 use crate::telemetry::snapshot::{CraftView, EstimateView, SettingsView};
-use crate::telemetry::{FirmwareEvent, Mode, NavTelemetry};
+use crate::telemetry::{DisarmReason, FirmwareEvent, Mode, NavTelemetry};
 
 /// Frames that wait to be taken out; beyond that the oldest is dropped, for old measurements are of no use.
 const MAX_FRAMES: usize = 1024;
@@ -62,6 +62,8 @@ pub struct RemoteTelemetry {
     pub settings: Option<SettingsView>,
     /// The plan it has stored.
     pub stored_plan: Option<FlightPlan>,
+    /// Why it was disarmed last, as far as can be told.
+    pub last_disarm: Option<DisarmReason>,
 }
 
 /// The mailbox.
@@ -155,9 +157,14 @@ impl RemoteController {
         ticket
     }
 
-    /// Asks for a restart; what was told before it means nothing, and its motors stand still.
+    /// Asks for a restart.
     pub(super) fn restart(&mut self) {
         self.ask(RemoteRequest::Restart);
+        self.restarted();
+    }
+
+    /// It started anew: what was told before means nothing, and its motors stand still.
+    pub(in crate::vehicle) fn restarted(&mut self) {
         self.motors = MotorCommand::default();
         self.telemetry = RemoteTelemetry::default();
     }

@@ -1,0 +1,454 @@
+//! Speaks with a flight controller that runs outside: what the vehicle's mailbox holds goes out, what comes back is delivered.
+//!
+//! ```text
+//!                    ┌── sensor and RC frames ──▶ SitlPeer ──▶ UDP        (a SITL executable only)
+//!  vehicle's mailbox ┤◀─ motors ─────────────────┘
+//!                    ├── lines, messages ───────▶ FcClient ──▶ FcStream   (TCP, serial, websocket)
+//!                    └◀─ answers, telemetry ── Observer ◀── polling ──┘
+//! ```
+//!
+//! Nothing here waits: [`RemoteLink::exchange`] is called between two steps.
+
+mod identify;
+mod observer;
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::task::{Context, Poll};
+use std::time::{Duration, Instant};
+
+use crate::firmware::cli::{CliAction, CliReply};
+use crate::link::proto::fc_client::{Answer, Ask, AskId, FcClient};
+use crate::link::proto::sitl_feed::FeedState;
+use crate::link::{ChildEvent, FcStream, SitlChild, SitlPeer, StreamEvent};
+use crate::signals::MotorCommand;
+use crate::telemetry::switch::Switch;
+use crate::telemetry::{EndpointStatus, Mode};
+use crate::vehicle::{FrameOut, LateAnswer, RemoteRequest, Ticket, Vehicle};
+use identify::{Identification, Question};
+use observer::Observer;
+
+/// The message that restarts a flight controller.
+const REBOOT: u16 = 68;
+/// How long a program may take until it answers for the first time.
+const FIRST_ANSWER: Duration = Duration::from_secs(10);
+
+/// The ends by which a flight controller is reached.
+#[derive(Debug)]
+pub struct RemoteEnds {
+    /// What it is called in sentences: a file, or where it is.
+    pub name: String,
+    /// Its serial port.
+    pub stream: FcStream,
+    /// Where its states, RC and motors go, when it is a SITL executable.
+    pub peer: Option<SitlPeer>,
+    /// Its process, when it is a child of this program.
+    pub child: Option<SitlChild>,
+}
+
+/// How far a flight controller is known.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum RemoteState {
+    /// Its program starts, or no connection was made yet.
+    Connecting,
+    /// It is asked what it is and how it is set.
+    Identifying,
+    /// It answers and tells.
+    Ready,
+    /// The connection is gone; another is made by itself.
+    Lost,
+    /// It is of no use: why, as a sentence. Nothing follows.
+    Unusable(String),
+}
+
+/// What a screen shows of a remote flight controller.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RemoteView {
+    /// What it is called: a file, or where it is.
+    pub name: String,
+    /// How far it is known.
+    pub state: RemoteState,
+    /// A SITL executable that the physics of this program feeds; else a craft of its own, at which only reading is free.
+    pub is_sitl: bool,
+}
+
+/// What is told of a remote flight controller. `Display` gives a sentence.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum RemoteNotice {
+    /// A line that its program printed.
+    Output(String),
+    /// A sentence.
+    Told(String),
+    /// It does not speak any more, or not as it should: a sentence.
+    Lost(String),
+    /// It started anew, so that what was set and not stored is gone: a sentence.
+    Restarted(String),
+    /// It is of no use: a sentence.
+    Failed(String),
+}
+
+impl fmt::Display for RemoteNotice {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Output(line) => write!(f, "[firmware] {line}"),
+            Self::Told(sentence)
+            | Self::Lost(sentence)
+            | Self::Restarted(sentence)
+            | Self::Failed(sentence) => f.write_str(sentence),
+        }
+    }
+}
+
+/// What an answer is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Purpose {
+    /// A line that somebody in this program asked for.
+    Line(Ticket),
+    /// A message likewise.
+    Message(Ticket),
+    /// To know what it is.
+    Identity(Question),
+    /// Nothing: what it causes is seen elsewhere.
+    Nothing,
+}
+
+/// The link to a flight controller outside.
+#[derive(Debug)]
+pub struct RemoteLink {
+    ends: RemoteEnds,
+    client: FcClient,
+    state: RemoteState,
+    identification: Identification,
+    observer: Observer,
+    waiting: BTreeMap<AskId, Purpose>,
+    next_ask: u64,
+    started: Instant,
+    /// It has answered since its program was started first.
+    has_answered: bool,
+    motors: FeedState,
+    notices: Vec<RemoteNotice>,
+}
+
+impl RemoteLink {
+    /// A link over these ends, whose program, if it has one here, starts now.
+    #[must_use]
+    pub fn new(ends: RemoteEnds, now: Instant) -> Self {
+        Self {
+            ends,
+            client: FcClient::default(),
+            state: RemoteState::Connecting,
+            identification: Identification::default(),
+            observer: Observer::default(),
+            waiting: BTreeMap::new(),
+            next_ask: 0,
+            started: now,
+            has_answered: false,
+            motors: FeedState::Waiting,
+            notices: Vec::new(),
+        }
+    }
+
+    /// How far the flight controller is known.
+    #[must_use]
+    pub fn state(&self) -> &RemoteState {
+        &self.state
+    }
+
+    /// What a screen shows of it.
+    #[must_use]
+    pub fn view(&self) -> RemoteView {
+        RemoteView { name: self.ends.name.clone(), state: self.state.clone(), is_sitl: self.is_fed() }
+    }
+
+    /// What it is called in sentences.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.ends.name
+    }
+
+    /// What is known of it.
+    #[must_use]
+    pub fn observer(&self) -> &Observer {
+        &self.observer
+    }
+
+    /// Whether it gets the states of the craft from here, in the rhythm of the steps.
+    #[must_use]
+    pub fn is_fed(&self) -> bool {
+        self.ends.peer.is_some()
+    }
+
+    /// Its lines among the endpoints.
+    #[must_use]
+    pub fn status(&self, now: Instant) -> Vec<EndpointStatus> {
+        self.ends.peer.iter().map(|peer| peer.status(now)).collect()
+    }
+
+    /// Sends what the vehicle's mailbox holds and delivers what has come back since; what is to be told of it comes back.
+    /// With a context the caller is woken when more comes over the serial port.
+    pub fn exchange(
+        &mut self,
+        vehicle: &mut Vehicle,
+        context: Option<&mut Context<'_>>,
+        now: Instant,
+    ) -> Vec<RemoteNotice> {
+        self.follow_program(vehicle);
+        self.read_stream(context, now);
+        self.exchange_frames(vehicle, now);
+        self.take_requests(vehicle);
+        self.ask_what_is_due();
+        self.client.poll(now.saturating_duration_since(self.started));
+        self.take_answers(vehicle);
+        self.write_stream();
+        self.observe(vehicle, now);
+        std::mem::take(&mut self.notices)
+    }
+
+    /// Tells what became of its program since.
+    fn follow_program(&mut self, vehicle: &mut Vehicle) {
+        while let Some(event) = self.ends.child.as_mut().and_then(SitlChild::take_event) {
+            match event {
+                ChildEvent::Started => {}
+                ChildEvent::Line(line) => self.notices.push(RemoteNotice::Output(line)),
+                ChildEvent::Failed(reason) => self.give_up(format!("{} cannot be started: {reason}.", self.ends.name)),
+                ChildEvent::Ended(end) if !self.has_answered => self.give_up(format!(
+                    "{} ended {end} before it answered: is it a SITL executable of Betaflight, and are its ports free?",
+                    self.ends.name
+                )),
+                ChildEvent::Ended(end) => {
+                    if let Some(peer) = &mut self.ends.peer {
+                        peer.went_down();
+                    }
+                    vehicle.remote_restarted();
+                    self.notices.push(RemoteNotice::Restarted(if end.is_reboot() {
+                        "The firmware restarts; the craft stands at home again.".to_owned()
+                    } else {
+                        format!("The firmware ended {end}: it is started again, and the craft stands at home again.")
+                    }));
+                }
+            }
+        }
+    }
+
+    fn give_up(&mut self, sentence: String) {
+        if !matches!(self.state, RemoteState::Unusable(_)) {
+            self.notices.push(RemoteNotice::Failed(sentence.clone()));
+            self.state = RemoteState::Unusable(sentence);
+            self.ends.child = None;
+        }
+    }
+
+    fn read_stream(&mut self, mut context: Option<&mut Context<'_>>, now: Instant) {
+        let since = now.saturating_duration_since(self.started);
+        loop {
+            let event = match &mut context {
+                Some(context) => match self.ends.stream.from.poll_recv(context) {
+                    Poll::Ready(event) => event,
+                    Poll::Pending => None,
+                },
+                None => self.ends.stream.from.try_recv().ok(),
+            };
+            match event {
+                None => return,
+                Some(StreamEvent::Bytes(bytes)) => self.client.push(&bytes, since),
+                Some(StreamEvent::Connected) => {
+                    self.client.connected();
+                    if let Some(peer) = &mut self.ends.peer {
+                        peer.came_up();
+                    }
+                    if !matches!(self.state, RemoteState::Unusable(_)) {
+                        self.state = RemoteState::Identifying;
+                        self.identification = Identification::default();
+                    }
+                }
+                Some(StreamEvent::Lost(reason)) => self.lose(&reason),
+            }
+        }
+    }
+
+    fn lose(&mut self, reason: &str) {
+        self.client.disconnected();
+        self.observer.forget();
+        match self.state {
+            RemoteState::Unusable(_) => {}
+            // Its own program may still be starting: that is told when it takes too long.
+            RemoteState::Connecting if self.ends.child.is_some() => {}
+            RemoteState::Connecting => {
+                let notice = format!("No connection to {}: {reason}; it is tried again.", self.ends.name);
+                self.notices.push(RemoteNotice::Lost(notice));
+            }
+            RemoteState::Identifying | RemoteState::Ready | RemoteState::Lost => {
+                if self.state != RemoteState::Lost {
+                    let notice = format!(
+                        "The connection to {} is lost: {reason}; it is made again by itself.",
+                        self.ends.name
+                    );
+                    self.notices.push(RemoteNotice::Lost(notice));
+                }
+                self.state = RemoteState::Lost;
+            }
+        }
+    }
+
+    /// Sensor and RC frames go out, motors come in.
+    fn exchange_frames(&mut self, vehicle: &mut Vehicle, now: Instant) {
+        let Some(mailbox) = vehicle.controller_mut().remote_mut() else { return };
+        let Some(peer) = &mut self.ends.peer else {
+            while mailbox.take_frame().is_some() {}
+            return;
+        };
+        if let Some(motors) = peer.take_motors(now) {
+            mailbox.deliver_motors(motors);
+            self.has_answered = true;
+        }
+        let mut state = None;
+        while let Some(frame) = mailbox.take_frame() {
+            match frame {
+                FrameOut::Rc(frame, _) => peer.send_rc(&frame, now),
+                FrameOut::Sensors(frame) => {
+                    // Late by several steps: one packet, of the newest.
+                    if let Some(older) = state.replace(frame) {
+                        peer.pass_over(&older);
+                    }
+                }
+            }
+        }
+        if let Some(frame) = state {
+            peer.send_state(&frame, now);
+        }
+        let motors = peer.state(now);
+        if motors == FeedState::Silent && self.motors == FeedState::Answering {
+            mailbox.deliver_motors(MotorCommand::default());
+            let sentence = "The firmware has sent no motors for a second: they stand still until it does.";
+            self.notices.push(RemoteNotice::Lost(sentence.to_owned()));
+        } else if motors == FeedState::Answering && self.motors == FeedState::Silent {
+            self.notices.push(RemoteNotice::Told("The firmware sends motors again.".to_owned()));
+        }
+        self.motors = motors;
+    }
+
+    /// Asks what somebody in this program wants to know or to be done.
+    fn take_requests(&mut self, vehicle: &mut Vehicle) {
+        loop {
+            let Some(mailbox) = vehicle.controller_mut().remote_mut() else { return };
+            let Some((ticket, request)) = mailbox.take_request() else { return };
+            match request {
+                RemoteRequest::Cli(line) => self.ask(Purpose::Line(ticket), Ask::Line(line)),
+                RemoteRequest::Msp { code, payload } => {
+                    self.ask(Purpose::Message(ticket), Ask::Msp { code, payload });
+                }
+                RemoteRequest::ReturnHome => self.switch_rescue(vehicle, true),
+                RemoteRequest::CancelReturn => self.switch_rescue(vehicle, false),
+                RemoteRequest::Restart => {
+                    self.ask(Purpose::Nothing, Ask::Msp { code: REBOOT, payload: Vec::new() });
+                }
+            }
+        }
+    }
+
+    /// A firmware outside has no command to fly home, but a mode.
+    fn switch_rescue(&mut self, vehicle: &mut Vehicle, on: bool) {
+        match Switch::of(Mode::GpsRescue, &vehicle.controller().mode_ranges()) {
+            Some(Switch { channel, on_us, off_us }) => {
+                vehicle.transmitter_mut().sticks_mut().channels[channel] = if on { on_us } else { off_us };
+            }
+            None => self.notices.push(RemoteNotice::Told(
+                "This firmware flies home by a switch alone, and GPS RESCUE has none: give it one with the CLI command aux."
+                    .to_owned(),
+            )),
+        }
+    }
+
+    fn ask(&mut self, purpose: Purpose, ask: Ask) {
+        let id = AskId(self.next_ask);
+        self.next_ask += 1;
+        self.waiting.insert(id, purpose);
+        self.client.ask(id, ask);
+    }
+
+    /// While nobody else asks: what it is, then how it is.
+    fn ask_what_is_due(&mut self) {
+        if !self.client.is_idle() {
+            return;
+        }
+        let next = match self.state {
+            RemoteState::Identifying => {
+                self.identification.next().map(|question| (Purpose::Identity(question), question.ask()))
+            }
+            RemoteState::Ready | RemoteState::Connecting | RemoteState::Lost | RemoteState::Unusable(_) => {
+                None
+            }
+        };
+        if let Some((purpose, ask)) = next {
+            self.ask(purpose, ask);
+        }
+    }
+
+    fn take_answers(&mut self, vehicle: &mut Vehicle) {
+        while let Some((id, answer)) = self.client.next_answer() {
+            let Some(purpose) = self.waiting.remove(&id) else { continue };
+            self.has_answered |= !matches!(answer, Answer::NotAnswered(_));
+            let Some(mailbox) = vehicle.controller_mut().remote_mut() else { return };
+            match purpose {
+                Purpose::Line(ticket) => mailbox.deliver_answer(ticket, LateAnswer::Cli(cli_reply(answer))),
+                Purpose::Message(ticket) => {
+                    let payload = if let Answer::Msp(payload) = answer { payload } else { None };
+                    mailbox.deliver_answer(ticket, LateAnswer::Msp(payload));
+                }
+                Purpose::Identity(question) => self.identify(question, &answer),
+                Purpose::Nothing => {}
+            }
+        }
+    }
+
+    fn identify(&mut self, question: Question, answer: &Answer) {
+        match self.identification.take(question, answer, &mut self.observer) {
+            Ok(false) => {}
+            Ok(true) => {
+                self.state = RemoteState::Ready;
+                self.notices.push(RemoteNotice::Told(self.observer.introduction(&self.ends.name)));
+            }
+            Err(why) => self.give_up(format!("{}: {why}", self.ends.name)),
+        }
+    }
+
+    fn write_stream(&mut self) {
+        let output = self.client.take_output();
+        if !output.is_empty() {
+            // A full queue means a stream that carries nothing any more: the client gives the request up.
+            drop(self.ends.stream.to.try_send(output));
+        }
+    }
+
+    /// Delivers what was observed since, and what follows from it.
+    fn observe(&mut self, vehicle: &mut Vehicle, now: Instant) {
+        if self.ends.child.is_some()
+            && !self.has_answered
+            && now.saturating_duration_since(self.started) >= FIRST_ANSWER
+        {
+            self.give_up(format!(
+                "{} has not answered for {} s: is it a SITL executable of Betaflight, and are its ports free?",
+                self.ends.name,
+                FIRST_ANSWER.as_secs()
+            ));
+        }
+        self.client.set_armed(self.observer.is_armed());
+        let Some(mailbox) = vehicle.controller_mut().remote_mut() else { return };
+        self.observer.deliver(mailbox);
+    }
+}
+
+/// The answer to a line as the command line of an embedded flight controller gives it.
+fn cli_reply(answer: Answer) -> CliReply {
+    match answer {
+        Answer::Line { text, failed, restarted } => {
+            let actions =
+                if restarted { vec![CliAction::Restart { close_links: false }] } else { Vec::new() };
+            CliReply { text, actions, failed }
+        }
+        Answer::NotAnswered(why) => {
+            CliReply { text: format!("###ERROR: {why}###\r\n"), failed: true, ..CliReply::default() }
+        }
+        Answer::Msp(_) => CliReply::default(),
+    }
+}
