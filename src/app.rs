@@ -6,6 +6,7 @@ mod convert;
 mod doctor;
 mod doors;
 mod error;
+mod firmware;
 mod fly;
 mod input_file;
 mod interrupt;

@@ -3,11 +3,13 @@
 //! A value comes from the first of: the command line, the environment (`BETADECK_…`), the configuration file, the
 //! default. This module only turns texts into values: it reads no file, no environment and no clock.
 
+mod betaloop;
 mod check;
 mod config_file;
 mod convert;
 mod display;
 mod doors;
+mod firmware;
 mod flight;
 mod fly;
 mod generate;
@@ -25,11 +27,13 @@ use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 
 use crate::did_you_mean;
 
+pub use betaloop::{Betaloop, BetaloopError};
 pub use check::CheckArgs;
 pub use config_file::{ConfigCommand, KeyHelp, Origin, origins, template};
 pub use convert::ConvertArgs;
 pub use display::{CharsetChoice, DisplayArgs, ThemeChoice, UnitsChoice};
 pub use doors::{DoorArgs, ServeArgs, SitlArgs, UdpPorts, sitl_usage_error};
+pub use firmware::{FirmwareArgs, FirmwareChoice, FirmwareLinkArgs, FirmwarePortArgs};
 pub use flight::FlightArgs;
 pub use fly::FlyArgs;
 pub use generate::{completions, man_page};
@@ -85,6 +89,10 @@ pub struct TuiArgs {
     /// The doors.
     #[command(flatten)]
     pub doors: DoorArgs,
+
+    /// Which firmware flies.
+    #[command(flatten)]
+    pub firmware: FirmwareArgs,
 
     /// Whose physics moves the craft.
     #[command(flatten)]

@@ -10,9 +10,10 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::error::{self, AppError};
+use super::firmware::{self, Beside};
 use super::interrupt::interrupt_flag;
 use super::setup;
-use crate::args::CheckArgs;
+use crate::args::{CheckArgs, FlightArgs, PhysicsArgs};
 use crate::record::check::{CheckedFlight, Compared, Summary};
 use crate::scenario::Draft;
 use load::Loaded;
@@ -28,6 +29,15 @@ pub(super) fn run(args: &CheckArgs) -> Result<u8, AppError> {
         let plan = setup::read_plan(plan)?;
         let text = Draft::of_plan(&plan).finish().map_err(AppError::input)?;
         return error::print(&text);
+    }
+    let (flight, physics) = (FlightArgs::default(), PhysicsArgs::default());
+    let beside = Beside { ports: (&args.firmware_ports).into(), flight: &flight, physics: &physics };
+    let mut notices = Vec::new();
+    let firmware = firmware::choose(&args.firmware, beside, &mut notices)?;
+    notices.extend(args.firmware_ports.idle_options(firmware.is_some()));
+    notices.iter().for_each(|notice| error::tell(notice));
+    if firmware.is_some() {
+        return Err(firmware::not_linked());
     }
     let interrupted = interrupt_flag()?;
     if args.watch {

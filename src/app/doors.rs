@@ -8,6 +8,7 @@ use tokio::sync::watch;
 use tokio_util::sync::CancellationToken;
 
 use super::AppError;
+use super::live::LiveArgs;
 use crate::args::{DoorArgs, FlightArgs, PhysicsArgs};
 use crate::link::proto::fdm_link::FdmLinkConfig;
 use crate::link::{ExternalSimulator, ListenConfig, Listeners};
@@ -43,25 +44,31 @@ pub(super) struct Opened {
 /// # Errors
 /// When there is no socket for the motors of an external simulator.
 pub(super) async fn open(
-    args: &DoorArgs,
-    physics: &PhysicsArgs,
-    flight: &FlightArgs,
+    LiveArgs { doors: args, firmware, physics, flight }: LiveArgs<'_>,
 ) -> Result<Option<Opened>, AppError> {
     if args.no_ports && !physics.is_external() {
         return Ok(None);
     }
     let wanted = |port: u16| (!args.no_ports).then_some(port);
+    // Ports that a firmware outside has are not ours.
+    let own = |port: u16| wanted(port).filter(|_| firmware.is_none());
     let config = ListenConfig {
         listen: args.listen,
-        tcp_port: wanted(args.tcp_port()),
+        tcp_port: own(args.tcp_port()),
         ws_port: wanted(args.ws_port()),
-        rc_port: wanted(args.udp_ports().rc),
+        rc_port: own(args.udp_ports().rc),
         fdm_port: physics.is_external().then_some(args.udp_ports().fdm),
         allow_origin: args.allow_origin.clone(),
     };
     let links = Links::open(&config).await;
     let doors = &links.doors;
     let mut notices: Vec<String> = doors.problems().map(|problem| format!("{problem}.")).collect();
+    if let Some(firmware) = firmware {
+        let (tcp, rc) = (firmware.ports.tcp, firmware.ports.udp.rc);
+        notices.push(format!(
+            "TCP {tcp} and UDP {rc} are the firmware's: the doors of this program for TCP and RC are closed."
+        ));
+    }
     if let Some(address) = args.listen.filter(|address| !address.is_loopback()) {
         notices.push(format!("The doors listen on {address}: everybody on that network can fly this craft."));
     }
@@ -148,9 +155,11 @@ mod tests {
         let ports = UdpPorts { raw: 9, motors: 9, fdm: 0, rc: 0 };
         let doors = DoorArgs { no_ports: true, udp_ports: Some(ports), ..DoorArgs::default() };
         let flight = FlightArgs::default();
-        assert!(open(&doors, &PhysicsArgs::default(), &flight).await.unwrap().is_none());
+        let embedded = PhysicsArgs::default();
+        let of = |physics| LiveArgs { doors: &doors, firmware: None, physics, flight: &flight };
+        assert!(open(of(&embedded)).await.unwrap().is_none());
         let external = PhysicsArgs { physics: Some(PhysicsChoice::External), ..PhysicsArgs::default() };
-        let opened = open(&doors, &external, &flight).await.unwrap().unwrap();
+        let opened = open(of(&external)).await.unwrap().unwrap();
         let views = opened.endpoints.status.borrow().clone();
         assert_eq!(views.iter().map(|door| door.kind.to_string()).collect::<Vec<_>>(), ["udp fdm"]);
         assert!(opened.endpoints.simulator.is_some());

@@ -7,9 +7,10 @@ use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use super::error::{self, AppError};
+use super::firmware::{self, Beside};
 use super::interrupt::interrupt_flag;
 use super::setup;
-use crate::args::FlyArgs;
+use crate::args::{FlyArgs, PhysicsArgs};
 use crate::flight::setup::{BootLines, PhysicsSource};
 use crate::flight::{Flight, FlightEnd, FlightOptions, FlightResult};
 use crate::plan::format::PlanFile;
@@ -29,6 +30,16 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, AppError> {
     let plan = setup::read_plan(&args.plan)?;
     refuse_unflyable(&plan)?;
     let mut notices: Vec<String> = plan.notes.iter().map(ToString::to_string).collect();
+    let beside = Beside {
+        ports: (&args.firmware_ports).into(),
+        flight: &args.flight,
+        physics: &PhysicsArgs::default(),
+    };
+    let firmware = firmware::choose(&args.firmware, beside, &mut notices)?;
+    notices.extend(args.firmware_ports.idle_options(firmware.is_some()));
+    if firmware.is_some() {
+        return Err(firmware::not_linked());
+    }
     let mut store = open_store(args)?;
     let stored = setup::stored(&mut store, &mut notices);
     let mut setup = setup::from_args(&args.flight, PhysicsSource::Embedded, plan.clone(), stored)?;

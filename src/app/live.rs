@@ -2,6 +2,7 @@
 
 use super::AppError;
 use super::doors::{self, OpenDoors};
+use super::firmware::{RemoteFirmware, not_linked};
 use crate::args::{DoorArgs, FlightArgs, PhysicsArgs, Speed};
 use crate::session::{self, FlownBefore, Handle, SessionConfig, SessionEvent};
 use crate::storage::Store;
@@ -14,6 +15,8 @@ const TAKEOFF_M: f64 = 10.0;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LiveArgs<'a> {
     pub(super) doors: &'a DoorArgs,
+    /// The firmware outside, if it is not the embedded one that flies.
+    pub(super) firmware: Option<&'a RemoteFirmware>,
     pub(super) physics: &'a PhysicsArgs,
     pub(super) flight: &'a FlightArgs,
 }
@@ -30,7 +33,10 @@ pub(super) async fn start(
     flown: Option<FlownBefore>,
 ) -> Result<(Handle, Option<OpenDoors>), AppError> {
     let mut first_events = Vec::new();
-    let (doors, endpoints) = match doors::open(args.doors, args.physics, args.flight).await? {
+    if args.firmware.is_some() {
+        return Err(not_linked());
+    }
+    let (doors, endpoints) = match doors::open(args).await? {
         Some(opened) => {
             notices.extend(opened.notices);
             first_events.push(SessionEvent::Endpoints(opened.addresses));

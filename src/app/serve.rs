@@ -3,6 +3,7 @@
 use std::io::{BufWriter, Write};
 
 use super::error::{self, AppError};
+use super::firmware::{self, Beside};
 use super::live::{self, LiveArgs};
 use super::output_file;
 use super::setup;
@@ -18,7 +19,10 @@ pub(super) fn run(args: &ServeArgs) -> Result<u8, AppError> {
     let mut notices = Vec::new();
     let mut store = setup::open_store(&args.flight)?;
     notices.extend(setup::storage_notice(&store));
-    notices.extend(args.physics.idle_options(&args.flight));
+    let beside =
+        Beside { ports: (&args.doors, &args.physics).into(), flight: &args.flight, physics: &args.physics };
+    let firmware = firmware::choose(&args.firmware, beside, &mut notices)?;
+    notices.extend(args.physics.idle_options(&args.flight, firmware.is_some()));
     let stored = setup::stored(&mut store, &mut notices);
     let no_plan = PlanFile::default();
     let setup = setup::for_session(&args.flight, &args.physics, &args.doors, no_plan, stored)?;
@@ -34,7 +38,12 @@ pub(super) fn run(args: &ServeArgs) -> Result<u8, AppError> {
     runtime.block_on(async {
         let stop = stop_signal::stop_in_time()
             .map_err(|error| AppError::environment(format!("cannot listen for signals: {error}")))?;
-        let options = LiveArgs { doors: &args.doors, physics: &args.physics, flight: &args.flight };
+        let options = LiveArgs {
+            doors: &args.doors,
+            firmware: firmware.as_ref(),
+            physics: &args.physics,
+            flight: &args.flight,
+        };
         let (session, doors) = live::start(options, vehicle, store, notices, None).await?;
         let outcome = report(session, &mut output, stop).await;
         if let Some(doors) = doors {

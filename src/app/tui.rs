@@ -5,6 +5,7 @@ use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
 
 use super::error::{self, AppError};
+use super::firmware::{self, Beside};
 use super::line_history::LineHistory;
 use super::live::{self, LiveArgs};
 use super::plan_files::PlanFiles;
@@ -61,7 +62,10 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
     let mut notices: Vec<String> = plan.notes.iter().map(ToString::to_string).collect();
     let mut store = setup::open_store(&args.flight)?;
     notices.extend(setup::storage_notice(&store));
-    notices.extend(args.physics.idle_options(&args.flight));
+    let beside =
+        Beside { ports: (&args.doors, &args.physics).into(), flight: &args.flight, physics: &args.physics };
+    let firmware = firmware::choose(&args.firmware, beside, &mut notices)?;
+    notices.extend(args.physics.idle_options(&args.flight, firmware.is_some()));
     let stored = setup::stored(&mut store, &mut notices);
     // The plan's settings go to the craft with its upload.
     let on_the_ground = PlanFile { settings: Vec::new(), ..plan.clone() };
@@ -81,7 +85,12 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
         notices,
         plain: args.plain,
         display: &args.display,
-        live: LiveArgs { doors: &args.doors, physics: &args.physics, flight: &args.flight },
+        live: LiveArgs {
+            doors: &args.doors,
+            firmware: firmware.as_ref(),
+            physics: &args.physics,
+            flight: &args.flight,
+        },
     };
     show(screen, keymap)
 }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use super::value::{self, OutputFile};
-use super::{PlanArg, help};
+use super::{FirmwareArgs, FirmwarePortArgs, PlanArg, help};
 
 /// The options of `check`.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
@@ -60,4 +60,12 @@ pub struct CheckArgs {
     /// Flies this plan and prints a scenario that expects what was seen, with sensible margins
     #[arg(long, value_name = "PLAN", conflicts_with_all = ["what", "list", "filter", "json", "junit", "markdown"], help_heading = "Output")]
     pub new: Option<PlanArg>,
+
+    /// Which firmware flies.
+    #[command(flatten)]
+    pub firmware: FirmwareArgs,
+
+    /// How it is reached.
+    #[command(flatten)]
+    pub firmware_ports: FirmwarePortArgs,
 }

@@ -6,9 +6,9 @@ use std::str::FromStr;
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 
-use super::FlightArgs;
 use super::physics::{PhysicsArgs, SimulatorArgs};
 use super::value::{AttitudeChoice, OnOff, OutputFile};
+use super::{FirmwareArgs, FlightArgs};
 
 /// Where the doors are; port 0 = the system chooses.
 #[derive(Debug, Clone, Default, PartialEq, Eq, clap::Args)]
@@ -112,6 +112,10 @@ pub struct ServeArgs {
     /// The doors.
     #[command(flatten)]
     pub doors: DoorArgs,
+
+    /// Which firmware flies.
+    #[command(flatten)]
+    pub firmware: FirmwareArgs,
 
     /// Whose physics moves the craft.
     #[command(flatten)]

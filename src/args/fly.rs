@@ -7,7 +7,7 @@ use crate::sim::ScheduledFault;
 
 use super::plan_arg::PlanArg;
 use super::value::{self, OutputFile};
-use super::{FlightArgs, Speed, help};
+use super::{FirmwareArgs, FirmwarePortArgs, FlightArgs, Speed, help};
 
 /// The options of `fly`.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
@@ -62,6 +62,14 @@ pub struct FlyArgs {
     /// Something goes wrong at T, such as motor@10,,2:0.8 or gps-glitch@10,2,30@90; repeatable
     #[arg(long, value_name = "NAME@T[,FOR][,VALUE]", value_parser = value::fault, long_help = help::faults(), help_heading = "Faults")]
     pub fault: Vec<ScheduledFault>,
+
+    /// Which firmware flies.
+    #[command(flatten)]
+    pub firmware: FirmwareArgs,
+
+    /// How it is reached.
+    #[command(flatten)]
+    pub firmware_ports: FirmwarePortArgs,
 
     /// What flies, where and in which air.
     #[command(flatten)]

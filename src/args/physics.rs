@@ -61,9 +61,10 @@ impl PhysicsArgs {
         self.physics == Some(PhysicsChoice::External)
     }
 
-    /// What was given but has no effect with this physics, as a sentence.
+    /// What was given but has no effect with this physics and firmware, as a sentence.
     #[must_use]
-    pub fn idle_options(&self, flight: &FlightArgs) -> Option<String> {
+    pub fn idle_options(&self, flight: &FlightArgs, firmware_outside: bool) -> Option<String> {
+        let mirror = ("--fdm-mirror", self.simulator.fdm_mirror.is_some());
         let (names, why) = if self.is_external() {
             let given = [
                 ("--home", flight.home.is_some()),
@@ -77,19 +78,31 @@ impl PhysicsArgs {
                 ("--speed", flight.speed.is_some()),
             ];
             (given.to_vec(), "the external simulator decides that")
+        } else if firmware_outside {
+            let given = [
+                mirror,
+                ("--attitude", flight.attitude.is_some()),
+                ("--arm-assist", flight.arm_assist.is_some()),
+            ];
+            (given.to_vec(), "the firmware outside decides that")
         } else {
             let simulator = &self.simulator;
             let given = [
                 ("--fdm-dialect", simulator.fdm_dialect.is_some()),
-                ("--fdm-mirror", simulator.fdm_mirror.is_some()),
+                mirror,
                 ("--motor-order", simulator.motor_order.is_some()),
             ];
-            (given.to_vec(), "the physics is embedded (--physics external)")
+            (given.to_vec(), "firmware and physics are embedded (--firmware PATH, --physics external)")
         };
-        let given: Vec<&str> = names.iter().filter(|(_, given)| *given).map(|(name, _)| *name).collect();
-        let has = if given.len() == 1 { "has" } else { "have" };
-        (!given.is_empty()).then(|| format!("{} {has} no effect: {why}.", given.join(", ")))
+        without_effect(&names, why)
     }
+}
+
+/// A sentence about the options of `names` that were given but have no effect.
+pub(super) fn without_effect(names: &[(&str, bool)], why: &str) -> Option<String> {
+    let given: Vec<&str> = names.iter().filter(|(_, given)| *given).map(|(name, _)| *name).collect();
+    let has = if given.len() == 1 { "has" } else { "have" };
+    (!given.is_empty()).then(|| format!("{} {has} no effect: {why}.", given.join(", ")))
 }
 
 /// A dialect by name, or `auto`.
@@ -111,20 +124,29 @@ impl FromStr for FdmDialect {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::args::Speed;
+    use crate::args::{AttitudeChoice, Speed};
 
     #[test]
     fn options_without_effect_are_named() {
         let flight =
             FlightArgs { wind: "5@270".parse().ok(), speed: Some(Speed(2.0)), ..FlightArgs::default() };
         let embedded = PhysicsArgs::default();
-        assert_eq!(embedded.idle_options(&flight), None);
+        assert_eq!(embedded.idle_options(&flight, false), None);
         let external = PhysicsArgs { physics: Some(PhysicsChoice::External), ..PhysicsArgs::default() };
-        assert_eq!(external.idle_options(&FlightArgs::default()), None);
-        let sentence = external.idle_options(&flight).unwrap();
+        assert_eq!(external.idle_options(&FlightArgs::default(), false), None);
+        let sentence = external.idle_options(&flight, false).unwrap();
         assert_eq!(sentence, "--wind, --speed have no effect: the external simulator decides that.");
         let simulator = SimulatorArgs { motor_order: Some(MotorOrder::Legacy), ..SimulatorArgs::default() };
-        let sentence = PhysicsArgs { simulator, ..embedded }.idle_options(&flight).unwrap();
-        assert_eq!(sentence, "--motor-order has no effect: the physics is embedded (--physics external).");
+        let ordered = PhysicsArgs { simulator, ..embedded };
+        assert_eq!(
+            ordered.idle_options(&flight, false).unwrap(),
+            "--motor-order has no effect: firmware and physics are embedded (--firmware PATH, --physics external)."
+        );
+        assert_eq!(ordered.idle_options(&flight, true), None, "it orders the motors of the firmware outside");
+        let attitude = FlightArgs { attitude: Some(AttitudeChoice::Truth), ..flight };
+        assert_eq!(
+            ordered.idle_options(&attitude, true).unwrap(),
+            "--attitude has no effect: the firmware outside decides that."
+        );
     }
 }

@@ -71,6 +71,25 @@ fn fly_reads_every_option() {
 }
 
 #[test]
+fn the_firmware_can_be_outside() {
+    let fly =
+        fly("betadeck fly square --firmware ./sitl.elf --firmware-arg --ip --firmware-arg 127.0.0.1 --yes \
+         --fdm-stamps sim --tcp-port 6000 --udp-ports 1,2,3,4 --fdm-dialect legacy --motor-order legacy");
+    assert_eq!(fly.firmware.firmware, Some(FirmwareChoice::Executable("./sitl.elf".into())));
+    assert_eq!(fly.firmware.link.firmware_arg, ["--ip", "127.0.0.1"]);
+    assert!(fly.firmware.link.yes && fly.firmware.link.stamps().to_string() == "sim");
+    assert_eq!((fly.firmware_ports.tcp_port, fly.firmware_ports.udp_ports.unwrap().rc), (Some(6000), 4));
+    let layers =
+        layers(&[("BETADECK_FIRMWARE", "attach")], "firmware-arg = [\"-a\", \"-b\"]\nbetaloop = \"x\"");
+    let fly = fly_over("betadeck fly square", &layers);
+    assert_eq!(fly.firmware.firmware, Some(FirmwareChoice::Attach));
+    assert_eq!(fly.firmware.link.firmware_arg, ["-a", "-b"]);
+    assert_eq!(fly.firmware.link.betaloop, None, "the environment decides");
+    let fly = fly_over("betadeck fly square --betaloop config.txt", &layers);
+    assert_eq!((fly.firmware.firmware, fly.firmware.link.betaloop), (None, Some("config.txt".into())));
+}
+
+#[test]
 fn defaults_of_fly() {
     let fly = fly("betadeck fly -");
     assert_eq!(fly.plan, PlanArg::Stdin(None));
@@ -98,6 +117,9 @@ fn wrong_values_say_what_is_allowed() {
         ("betadeck fly square --speed -1", "0.05 to 1000"),
         ("betadeck fly square --gpx -", "not to standard output"),
         ("betadeck fly square --fresh --state-dir x", "cannot be used with"),
+        ("betadeck fly square --firmware attach --betaloop x", "cannot be used with"),
+        ("betadeck fly square --firmware=", "the path of a SITL executable"),
+        ("betadeck serve --fdm-stamps none", "--fdm-stamps <STAMPS>"),
         ("betadeck fly square --home 95,1", "latitude 95 is out of range"),
         ("betadeck fly square --arm-assist maybe", "possible values: on, off"),
         ("betadeck flly square", "did you mean betadeck fly?"),

@@ -1,0 +1,193 @@
+//! Which firmware the options and the launcher's file name, checked before anything is started.
+
+mod executable;
+
+use std::path::{Path, PathBuf};
+
+use super::{AppError, input_file};
+use crate::args::{
+    Betaloop, BetaloopError, DoorArgs, FdmDialect, FirmwareArgs, FirmwareChoice, FirmwareLinkArgs,
+    FirmwarePortArgs, FlightArgs, PhysicsArgs, UdpPorts,
+};
+use crate::signals::fdm::{Dialect, MotorOrder, Stamps};
+
+/// The launcher's file in the working directory.
+const LAUNCHER_FILE: &str = "config.txt";
+
+/// A firmware outside, found and checked.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct RemoteFirmware {
+    /// The executable's absolute path; `None` = it is running already.
+    pub(super) executable: Option<PathBuf>,
+    /// Its arguments.
+    pub(super) arguments: Vec<String>,
+    /// How it is reached.
+    pub(super) ports: FirmwarePorts,
+    /// How the packets to it are stamped.
+    pub(super) stamps: Stamps,
+    /// A configuration that it had before may be changed without asking.
+    pub(super) may_write: bool,
+}
+
+/// How a firmware outside is reached, and how its packets are read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct FirmwarePorts {
+    /// Of its CLI and MSP.
+    pub(super) tcp: u16,
+    /// Of the simulator link.
+    pub(super) udp: UdpPorts,
+    /// What the packets to it mean.
+    pub(super) dialect: Dialect,
+    /// Order of the motors in its packets.
+    pub(super) motor_order: MotorOrder,
+}
+
+impl FirmwarePorts {
+    fn new(
+        tcp: Option<u16>,
+        udp: Option<UdpPorts>,
+        dialect: Option<FdmDialect>,
+        motor_order: Option<MotorOrder>,
+    ) -> Self {
+        Self {
+            tcp: tcp.unwrap_or(5761),
+            udp: udp.unwrap_or_default(),
+            dialect: dialect.unwrap_or_default().0.unwrap_or(Dialect::SitlGz),
+            motor_order: motor_order.unwrap_or_default(),
+        }
+    }
+
+    /// No firmware outside listens on a port of the system's choice.
+    fn check(self) -> Result<Self, AppError> {
+        let UdpPorts { raw, motors, fdm, rc } = self.udp;
+        if [self.tcp, raw, motors, fdm, rc].contains(&0) {
+            return Err(AppError::input(
+                "with --firmware, --tcp-port and --udp-ports name the ports that it uses: 0 is none",
+            ));
+        }
+        Ok(self)
+    }
+}
+
+impl From<(&DoorArgs, &PhysicsArgs)> for FirmwarePorts {
+    /// Of a command with doors: their options name the firmware's ports.
+    fn from((doors, physics): (&DoorArgs, &PhysicsArgs)) -> Self {
+        let speech = &physics.simulator;
+        Self::new(doors.tcp_port, doors.udp_ports, speech.fdm_dialect, speech.motor_order)
+    }
+}
+
+impl From<&FirmwarePortArgs> for FirmwarePorts {
+    fn from(args: &FirmwarePortArgs) -> Self {
+        Self::new(args.tcp_port, args.udp_ports, args.fdm_dialect, args.motor_order)
+    }
+}
+
+/// What else decides about the firmware.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Beside<'a> {
+    pub(super) ports: FirmwarePorts,
+    pub(super) flight: &'a FlightArgs,
+    pub(super) physics: &'a PhysicsArgs,
+}
+
+/// The firmware that a command flies, the launcher's file in the working directory included; `None` = the embedded one.
+pub(super) fn choose(
+    args: &FirmwareArgs,
+    beside: Beside<'_>,
+    notices: &mut Vec<String>,
+) -> Result<Option<RemoteFirmware>, AppError> {
+    let (choice, file) = match (&args.firmware, &args.link.betaloop) {
+        (Some(choice), _) => (choice.clone(), None),
+        (None, Some(file)) => (of_launcher(file, notices)?, Some(file.as_path())),
+        // Who asks for an external simulator asks for the embedded firmware.
+        (None, None) if beside.physics.is_external() => (FirmwareChoice::Embedded, None),
+        (None, None) => (of_launcher_here(notices)?, Some(Path::new(LAUNCHER_FILE))),
+    };
+    notices.extend(args.link.idle_options(&choice));
+    check(&choice, &args.link, beside).map_err(|error| match file {
+        None => error,
+        Some(file) => {
+            let message = format!(
+                "{} (the firmware is that of {}; --firmware embedded flies the embedded one)",
+                error.message,
+                file.display()
+            );
+            AppError { message, ..error }
+        }
+    })
+}
+
+/// One firmware, checked.
+pub(super) fn check(
+    choice: &FirmwareChoice,
+    link: &FirmwareLinkArgs,
+    beside: Beside<'_>,
+) -> Result<Option<RemoteFirmware>, AppError> {
+    choice.check(link, beside.flight, beside.physics).map_err(AppError::input)?;
+    let executable = match choice {
+        FirmwareChoice::Embedded => return Ok(None),
+        FirmwareChoice::Attach => None,
+        FirmwareChoice::Executable(path) => Some(executable::find(&from_home(path))?),
+    };
+    Ok(Some(RemoteFirmware {
+        arguments: if executable.is_some() { link.firmware_arg.clone() } else { Vec::new() },
+        executable,
+        ports: beside.ports.check()?,
+        stamps: link.stamps(),
+        may_write: link.yes,
+    }))
+}
+
+/// What is said as long as nothing speaks with a firmware outside.
+pub(super) fn not_linked() -> AppError {
+    AppError::internal("no link to a firmware outside")
+}
+
+/// The executable that a file of the launcher names.
+pub(super) fn of_launcher(file: &Path, notices: &mut Vec<String>) -> Result<FirmwareChoice, AppError> {
+    let text = input_file::read(&from_home(file))?;
+    let betaloop = Betaloop::read(&text)
+        .map_err(|error| AppError::input(format!("--betaloop {}: {error}", file.display())))?;
+    Ok(named(file, &betaloop, notices))
+}
+
+/// The executable of the launcher's file in the working directory, which may be missing or of another program.
+fn of_launcher_here(notices: &mut Vec<String>) -> Result<FirmwareChoice, AppError> {
+    let file = Path::new(LAUNCHER_FILE);
+    let Ok(text) = input_file::read(file) else { return Ok(FirmwareChoice::Embedded) };
+    match Betaloop::read(&text) {
+        Ok(betaloop) => Ok(named(file, &betaloop, notices)),
+        Err(BetaloopError::NoSection | BetaloopError::Form(_)) => Ok(FirmwareChoice::Embedded),
+        Err(error @ BetaloopError::NoExecutable) => {
+            Err(AppError::input(format!("{LAUNCHER_FILE}: {error}, or fly with --firmware embedded")))
+        }
+    }
+}
+
+/// What the launcher's file names, told to the user.
+fn named(file: &Path, betaloop: &Betaloop, notices: &mut Vec<String>) -> FirmwareChoice {
+    let written = from_home(Path::new(&betaloop.executable));
+    let executable = file.parent().unwrap_or(Path::new("")).join(written);
+    let unused = match betaloop.unused.join(", ") {
+        none if none.is_empty() => String::new(),
+        keys => format!(" Not used of it: {keys}; the embedded physics flies instead of Gazebo."),
+    };
+    notices.push(format!(
+        "The firmware is that of {}: {} (--firmware embedded flies the embedded one).{unused}",
+        file.display(),
+        executable.display()
+    ));
+    FirmwareChoice::Executable(executable)
+}
+
+/// The path with `~` in front as the home directory, which a shell leaves alone in options and in files.
+fn from_home(path: &Path) -> PathBuf {
+    match (path.strip_prefix("~"), etcetera::home_dir()) {
+        (Ok(rest), Ok(home)) => home.join(rest),
+        _ => path.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests;

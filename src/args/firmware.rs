@@ -1,0 +1,241 @@
+//! Which firmware flies: the embedded one, a SITL executable, or one that is running already.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use super::physics::{FdmDialect, PhysicsArgs};
+use super::{FlightArgs, Speed, UdpPorts};
+use crate::signals::fdm::{MotorOrder, Stamps};
+
+/// Which firmware flies.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub enum FirmwareChoice {
+    /// The one in this program.
+    #[default]
+    Embedded,
+    /// A SITL that somebody else started.
+    Attach,
+    /// A SITL executable, started as a child.
+    Executable(PathBuf),
+}
+
+impl FromStr for FirmwareChoice {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "" => Err("write embedded, attach, or the path of a SITL executable".to_owned()),
+            "embedded" => Ok(Self::Embedded),
+            "attach" => Ok(Self::Attach),
+            path => Ok(Self::Executable(path.into())),
+        }
+    }
+}
+
+impl FirmwareChoice {
+    /// Whether it runs outside this program.
+    #[must_use]
+    pub fn is_remote(&self) -> bool {
+        *self != Self::Embedded
+    }
+
+    /// Why these options cannot be used with it, as a sentence that says what to do.
+    ///
+    /// # Errors
+    /// That sentence.
+    pub fn check(
+        &self,
+        link: &FirmwareLinkArgs,
+        flight: &FlightArgs,
+        physics: &PhysicsArgs,
+    ) -> Result<(), String> {
+        if !self.is_remote() {
+            return Ok(());
+        }
+        if physics.is_external() {
+            return Err(
+                "with --physics external the firmware is the embedded one: an executable and a simulator \
+                        outside fly without betadeck between them; leave out one of the two"
+                    .to_owned(),
+            );
+        }
+        match flight.speed {
+            None | Some(Speed(1.0)) => Ok(()),
+            Some(Speed(speed)) if link.stamps() == Stamps::Sim && speed.is_finite() => Ok(()),
+            Some(Speed(speed)) if link.stamps() == Stamps::Sim => Err(format!(
+                "--speed {} needs the embedded firmware, for nothing paces the one outside then: write a factor",
+                speed_text(speed)
+            )),
+            Some(Speed(speed)) => Err(format!(
+                "--speed {} needs the embedded firmware: the clock of a SITL is the wall clock, so that it flies at 1 \
+                 only; leave --speed out, or add --fdm-stamps sim for a build whose clock follows the packets",
+                speed_text(speed)
+            )),
+        }
+    }
+}
+
+fn speed_text(speed: f64) -> String {
+    if speed.is_finite() { speed.to_string() } else { "max".to_owned() }
+}
+
+/// Which firmware flies, and how it is started.
+#[derive(Debug, Clone, Default, PartialEq, Eq, clap::Args)]
+pub struct FirmwareArgs {
+    /// What flies: embedded, the path of a SITL executable, or attach: one that is running [default: embedded]
+    ///
+    /// An executable is started in a folder of its own below the state directory, is fed by the embedded physics and
+    /// ends with this program. It flies in real time and has the TCP and UDP ports to itself: --tcp-port and --udp-ports
+    /// say which ones it uses, --fdm-dialect and --motor-order how its packets are written. The websocket door stays.
+    #[arg(long, value_name = "WHICH", help_heading = "Firmware")]
+    pub firmware: Option<FirmwareChoice>,
+
+    /// How it is started and fed.
+    #[command(flatten)]
+    pub link: FirmwareLinkArgs,
+}
+
+/// How a firmware outside is started and fed.
+#[derive(Debug, Clone, Default, PartialEq, Eq, clap::Args)]
+pub struct FirmwareLinkArgs {
+    /// An argument for the executable of --firmware; repeatable
+    #[arg(long, value_name = "ARG", allow_hyphen_values = true, help_heading = "Firmware")]
+    pub firmware_arg: Vec<String>,
+
+    /// Takes the executable from the launcher's file [default: config.txt here, when it has a section Betaloop]
+    #[arg(long, value_name = "FILE", conflicts_with = "firmware", help_heading = "Firmware")]
+    pub betaloop: Option<PathBuf>,
+
+    /// Changes the configuration that a firmware outside has kept without asking
+    #[arg(long, help_heading = "Firmware")]
+    pub yes: bool,
+
+    /// Stamps of the packets to it: constant, or sim: simulated time, for a patched build [default: constant]
+    ///
+    /// The clock of a stock SITL leaps when stamps advance unevenly, so it gets the same stamp in every packet and runs
+    /// on the wall clock. A build whose clock follows the stamps flies at any --speed.
+    #[arg(long, value_name = "STAMPS", help_heading = "Firmware")]
+    pub fdm_stamps: Option<Stamps>,
+}
+
+impl FirmwareLinkArgs {
+    /// The stamps of the packets to the firmware.
+    #[must_use]
+    pub fn stamps(&self) -> Stamps {
+        self.fdm_stamps.unwrap_or_default()
+    }
+
+    /// What was given but has no effect with this firmware, as a sentence.
+    #[must_use]
+    pub fn idle_options(&self, firmware: &FirmwareChoice) -> Option<String> {
+        let arguments = ("--firmware-arg", !self.firmware_arg.is_empty());
+        let (given, why) = match firmware {
+            FirmwareChoice::Executable(_) => return None,
+            FirmwareChoice::Attach => (vec![arguments], "the firmware is running already"),
+            FirmwareChoice::Embedded => (
+                vec![arguments, ("--yes", self.yes), ("--fdm-stamps", self.fdm_stamps.is_some())],
+                "the firmware is embedded (--firmware PATH)",
+            ),
+        };
+        super::physics::without_effect(&given, why)
+    }
+}
+
+/// Where a firmware outside is reached, for commands that have no doors of their own.
+#[derive(Debug, Clone, Default, PartialEq, Eq, clap::Args)]
+pub struct FirmwarePortArgs {
+    /// Port of its CLI and MSP over TCP [default: 5761]
+    #[arg(long, value_name = "PORT", help_heading = "Firmware")]
+    pub tcp_port: Option<u16>,
+
+    /// Its UDP ports: raw PWM out, motors out, simulator in, RC in [default: 9001,9002,9003,9004]
+    #[arg(long, value_name = "RAW,MOTORS,FDM,RC", help_heading = "Firmware")]
+    pub udp_ports: Option<UdpPorts>,
+
+    /// What the packets to it mean: auto, sitl-gz, gz-plugin or legacy [default: auto, which is sitl-gz]
+    #[arg(long, value_name = "DIALECT", help_heading = "Firmware")]
+    pub fdm_dialect: Option<FdmDialect>,
+
+    /// Order of the motors in its packets: native, or legacy (before spring 2026) [default: native]
+    #[arg(long, value_name = "ORDER", help_heading = "Firmware")]
+    pub motor_order: Option<MotorOrder>,
+}
+
+impl FirmwarePortArgs {
+    /// What was given but has no effect with the embedded firmware, as a sentence.
+    #[must_use]
+    pub fn idle_options(&self, firmware_outside: bool) -> Option<String> {
+        let given = [
+            ("--tcp-port", self.tcp_port.is_some()),
+            ("--udp-ports", self.udp_ports.is_some()),
+            ("--fdm-dialect", self.fdm_dialect.is_some()),
+            ("--motor-order", self.motor_order.is_some()),
+        ];
+        let sentence = super::physics::without_effect(&given, "the firmware is embedded (--firmware PATH)");
+        sentence.filter(|_| !firmware_outside)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::args::PhysicsChoice;
+
+    fn refusal(speed: Option<f64>, stamps: Option<Stamps>) -> Option<String> {
+        let flight = FlightArgs { speed: speed.map(Speed), ..FlightArgs::default() };
+        let link = FirmwareLinkArgs { fdm_stamps: stamps, ..FirmwareLinkArgs::default() };
+        FirmwareChoice::Attach.check(&link, &flight, &PhysicsArgs::default()).err()
+    }
+
+    #[test]
+    fn words_and_paths() {
+        assert_eq!("embedded".parse(), Ok(FirmwareChoice::Embedded));
+        assert_eq!("attach".parse(), Ok(FirmwareChoice::Attach));
+        assert_eq!("./attach".parse(), Ok(FirmwareChoice::Executable("./attach".into())));
+        assert!("".parse::<FirmwareChoice>().unwrap_err().contains("the path of a SITL executable"));
+    }
+
+    #[test]
+    fn a_stock_firmware_flies_in_real_time_only() {
+        assert_eq!(refusal(None, None), None);
+        assert_eq!(refusal(Some(1.0), None), None);
+        let sentence = refusal(Some(4.0), None).unwrap();
+        assert!(sentence.starts_with("--speed 4 needs the embedded firmware: the clock"), "{sentence}");
+        assert!(refusal(Some(f64::INFINITY), None).unwrap().contains("--fdm-stamps sim"));
+        assert_eq!(refusal(Some(4.0), Some(Stamps::Sim)), None);
+        assert!(refusal(Some(f64::INFINITY), Some(Stamps::Sim)).unwrap().contains("write a factor"));
+    }
+
+    #[test]
+    fn firmware_and_physics_cannot_both_be_outside() {
+        let physics = PhysicsArgs { physics: Some(PhysicsChoice::External), ..PhysicsArgs::default() };
+        let check = |firmware: FirmwareChoice| {
+            firmware.check(&FirmwareLinkArgs::default(), &FlightArgs::default(), &physics)
+        };
+        assert_eq!(check(FirmwareChoice::Embedded), Ok(()));
+        assert!(
+            check(FirmwareChoice::Executable("x".into())).unwrap_err().contains("leave out one of the two")
+        );
+    }
+
+    #[test]
+    fn options_without_effect_are_named() {
+        let link = FirmwareLinkArgs {
+            firmware_arg: vec!["-x".to_owned()],
+            yes: true,
+            ..FirmwareLinkArgs::default()
+        };
+        assert_eq!(
+            link.idle_options(&FirmwareChoice::Embedded).unwrap(),
+            "--firmware-arg, --yes have no effect: the firmware is embedded (--firmware PATH)."
+        );
+        assert_eq!(
+            link.idle_options(&FirmwareChoice::Attach).unwrap(),
+            "--firmware-arg has no effect: the firmware is running already."
+        );
+        assert_eq!(link.idle_options(&FirmwareChoice::Executable("x".into())), None);
+        let ports = FirmwarePortArgs { tcp_port: Some(1), ..FirmwarePortArgs::default() };
+        assert!(ports.idle_options(false).unwrap().starts_with("--tcp-port has no effect"));
+        assert_eq!(ports.idle_options(true), None);
+    }
+}
