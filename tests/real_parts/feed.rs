@@ -1,0 +1,107 @@
+//! The feed of an executable, in simulated wall time, against the rules of the public one (L-9).
+
+use betadeck::geo::LatLon;
+use betadeck::link::proto::fdm::pressure_pa;
+use betadeck::link::proto::servo;
+use betadeck::link::proto::sitl_feed::{FeedConfig, FeedState, SitlFeed};
+use betadeck::signals::fdm::{Dialect, MotorOrder, Stamps};
+use betadeck::signals::{GpsSample, SensorFrame, SimTime};
+use nalgebra::{UnitQuaternion, Vector3};
+
+use super::stand_in::receiver::{BOOT_US, Receiver, Taken};
+
+const MS: u64 = 1000;
+const SECOND: u64 = 1000 * MS;
+const HOME: (f64, f64, f64) = (40.4635, -79.5182, 300.0);
+
+/// A small generator, so that every run is held up alike.
+struct Delays(u64);
+
+impl Delays {
+    /// How late the sender wakes, µs: mostly a little, now and then much.
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        let number = self.0 >> 33;
+        if number.is_multiple_of(400) { number % (30 * MS) } else { number % 900 }
+    }
+}
+
+fn feed(stamps: Stamps) -> SitlFeed {
+    SitlFeed::new(FeedConfig {
+        dialect: Dialect::SitlGz,
+        stamps,
+        motor_order: MotorOrder::Native,
+        home: HOME,
+    })
+}
+
+/// What the sensors of a craft measure that drifts north at 1 m/s from the beginning.
+fn drifting(now_us: u64) -> SensorFrame {
+    let north_deg = now_us as f64 * 1e-6 / 111_000.0;
+    let gps = GpsSample {
+        fix: true,
+        position: LatLon::from_degrees(HOME.0 + north_deg, HOME.1),
+        vel_enu: Vector3::new(0.0, 1.0, 0.0),
+        ..GpsSample::default()
+    };
+    SensorFrame {
+        time: SimTime(now_us),
+        gps: Some(gps),
+        pressure_pa: Some(pressure_pa(300.0)),
+        truth_attitude: Some(UnitQuaternion::identity()),
+        ..SensorFrame::default()
+    }
+}
+
+/// Feeds the stand-in from its boot packet on for `seconds` by a sender that wakes late, and tells the end of it.
+fn feed_for(seconds: u64, stamps: Stamps) -> (Receiver, u64) {
+    let (mut feed, mut receiver, mut delays) = (feed(stamps), Receiver::new(), Delays(7));
+    let answer = servo::encode([1000.0; 4]);
+    let (end, mut wakes, mut turn) = (BOOT_US + seconds * SECOND, BOOT_US, BOOT_US);
+    while wakes.min(turn) < end {
+        if wakes <= turn {
+            let wall = wakes;
+            // The simulation's time is that of its newest step.
+            feed.sense(&drifting((wall - BOOT_US) / MS * MS));
+            if receiver.receive(&feed.packet(wall).to_bytes(), wall) == Taken::Resync {
+                assert!(feed.answered(&answer, wall).is_some());
+            }
+            // The next step of the grid that is not over yet, and late for it.
+            wakes = wall / MS * MS + MS + delays.next();
+        } else {
+            if receiver.mixer_sends() {
+                assert!(feed.answered(&answer, turn).is_some());
+            }
+            turn += MS;
+        }
+    }
+    assert_eq!(feed.state(end), FeedState::Answering);
+    (receiver, end)
+}
+
+#[test]
+fn a_minute_of_packets_keeps_the_executables_clock_and_nearly_all_are_answered() {
+    let (mut receiver, end) = feed_for(60, Stamps::Constant);
+    let off_us = receiver.clock_us(end) - end as f64;
+    assert!(off_us.abs() <= 50_000.0, "its clock is off by {off_us} µs");
+    let seen = receiver.seen;
+    assert_eq!((seen.other_stamps, seen.before_boot, seen.moved_before_answer), (0, 0, 0), "{seen:?}");
+    assert!(seen.worst_leap_us <= 20_000.0, "{seen:?}");
+    assert!(seen.answered as f64 >= 0.95 * seen.packets as f64, "{seen:?}");
+    assert!(seen.packets > 50_000, "{seen:?}");
+    let gps = receiver.sensors().unwrap().gps.unwrap();
+    // A minute at 1 m/s, and nothing sideways: the mirror's centre is home.
+    let north_m = (f64::from(gps.lat) * 1e-7 - HOME.0) * 111_000.0;
+    assert!(
+        (north_m - 60.0).abs() < 1.0 && (gps.lon - (HOME.1 * 1e7) as i32).abs() <= 1,
+        "{north_m} {gps:?}"
+    );
+}
+
+#[test]
+fn stamps_of_simulated_time_are_no_clock_for_it() {
+    // What the constant stamp is for: the same feed with advancing ones leaves the executable's clock seconds off.
+    let (mut receiver, end) = feed_for(60, Stamps::Sim);
+    assert!(receiver.seen.other_stamps > 50_000);
+    assert!((receiver.clock_us(end) - end as f64).abs() > SECOND as f64);
+}
