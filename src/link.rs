@@ -28,7 +28,7 @@ mod sitl_peer;
 mod udp;
 
 pub use external::ExternalSimulator;
-pub use fc_stream::{FcStream, StreamEvent};
+pub use fc_stream::{DEFAULT_BAUD, FcPlace, FcPlaceError, FcStream, StreamEvent};
 pub use impairment::{ImpairedLink, LinkImpairment};
 pub use listeners::{ListenConfig, ListenError, Listeners, RestartSignal};
 pub use request::{ClientId, Request};

@@ -1,7 +1,29 @@
 //! The byte stream to a flight controller that runs outside: bytes and changes of the connection, moved by a task that
 //! connects again by itself.
+#![allow(clippy::disallowed_methods, reason = "a lost connection is tried again in wall time")]
 
+mod place;
+mod serial;
+mod tcp;
+mod ws;
+
+use std::io::{self, ErrorKind};
+use std::time::Duration;
+
+use tokio::io::{AsyncRead, AsyncReadExt as _, AsyncWrite, AsyncWriteExt as _};
 use tokio::sync::mpsc;
+use tokio::time::Instant;
+
+pub use place::{DEFAULT_BAUD, FcPlace, FcPlaceError};
+
+/// Pieces that may wait in each direction; a full queue towards the session stops the reading.
+const QUEUE: usize = 64;
+/// Most bytes taken from a stream at once.
+const CHUNK: usize = 4096;
+/// Pause before the first new attempt; it doubles with each that fails.
+const PAUSE_FIRST: Duration = Duration::from_millis(200);
+/// Longest pause between two attempts.
+const PAUSE_LONGEST: Duration = Duration::from_secs(2);
 
 /// What comes from the stream.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -10,7 +32,8 @@ pub enum StreamEvent {
     Connected,
     /// Bytes from the flight controller.
     Bytes(Vec<u8>),
-    /// The connection is gone, or none could be made: why, as a part of a sentence. Another attempt follows by itself.
+    /// The connection is gone, or none could be made: why, as a part of a sentence. Another attempt follows by itself; the
+    /// same reason is not told again until there was a connection.
     Lost(String),
 }
 
@@ -25,4 +48,151 @@ pub struct FcStream {
     pub place: String,
     /// Bytes a second that it carries; `None` = more than anybody asks for.
     pub bytes_per_s: Option<u32>,
+}
+
+impl FcStream {
+    /// Opens the stream on the present tokio runtime; its first event says whether there is somebody.
+    #[must_use]
+    pub fn open(place: FcPlace) -> Self {
+        let (to, outgoing) = mpsc::channel(QUEUE);
+        let (incoming, from) = mpsc::channel(QUEUE);
+        let (shown, bytes_per_s) = (place.to_string(), place.bytes_per_s());
+        tokio::spawn(keep_connected(place, outgoing, incoming));
+        Self { to, from, place: shown, bytes_per_s }
+    }
+}
+
+/// How a connection ended.
+#[derive(Debug, PartialEq, Eq)]
+enum Ended {
+    /// Nobody wants it any more.
+    Dropped,
+    /// It is gone, for this reason.
+    Lost(String),
+}
+
+impl Ended {
+    fn closed() -> Self {
+        Self::Lost("the other end closed the connection".to_owned())
+    }
+}
+
+/// Connects, moves bytes, and connects again, until the session's end is dropped.
+async fn keep_connected(place: FcPlace, mut to: mpsc::Receiver<Vec<u8>>, from: mpsc::Sender<StreamEvent>) {
+    let mut pause = PAUSE_FIRST;
+    let mut told = None;
+    loop {
+        let begun = Instant::now();
+        let attempt = tokio::select! {
+            ended = connect(&place, &mut to, &from, &mut told) => ended,
+            () = from.closed() => return,
+        };
+        let Ended::Lost(reason) = attempt else { return };
+        // One that is closed as soon as it is made is no better than none.
+        pause = if begun.elapsed() > PAUSE_LONGEST { PAUSE_FIRST } else { pause };
+        if told.as_ref() != Some(&reason) {
+            if from.send(StreamEvent::Lost(reason.clone())).await.is_err() {
+                return;
+            }
+            told = Some(reason);
+        }
+        tokio::select! {
+            () = tokio::time::sleep(pause) => {}
+            () = from.closed() => return,
+        }
+        pause = (pause * 2).min(PAUSE_LONGEST);
+    }
+}
+
+/// One connection, from the attempt to its end.
+async fn connect(
+    place: &FcPlace,
+    to: &mut mpsc::Receiver<Vec<u8>>,
+    from: &mpsc::Sender<StreamEvent>,
+    told: &mut Option<String>,
+) -> Ended {
+    let connection = match place {
+        FcPlace::Serial { device, baud } => serial::open(device, *baud).map(Connection::Serial),
+        FcPlace::Tcp { host, port } => tcp::connect(host, *port).await.map(Connection::Tcp),
+        FcPlace::WebSocket(uri) => {
+            ws::connect(uri).await.map(|socket| Connection::WebSocket(Box::new(socket)))
+        }
+    };
+    let connection = match connection {
+        Ok(connection) => connection,
+        Err(reason) => return Ended::Lost(reason),
+    };
+    // What was meant for the connection before.
+    while to.try_recv().is_ok() {}
+    *told = None;
+    if from.send(StreamEvent::Connected).await.is_err() {
+        return Ended::Dropped;
+    }
+    match connection {
+        Connection::Serial(port) => match pump(port, to, from).await {
+            Ended::Lost(_) => Ended::Lost("it was unplugged".to_owned()),
+            Ended::Dropped => Ended::Dropped,
+        },
+        Connection::Tcp(stream) => pump(stream, to, from).await,
+        Connection::WebSocket(socket) => ws::pump(*socket, to, from).await,
+    }
+}
+
+/// An open connection.
+enum Connection {
+    Serial(serial2_tokio::SerialPort),
+    Tcp(tokio::net::TcpStream),
+    /// Boxed, for it is large.
+    WebSocket(Box<ws::Socket>),
+}
+
+/// Moves bytes until the connection is lost or nobody wants them any more. Reading goes on while a write is held up.
+async fn pump(
+    stream: impl AsyncRead + AsyncWrite,
+    to: &mut mpsc::Receiver<Vec<u8>>,
+    from: &mpsc::Sender<StreamEvent>,
+) -> Ended {
+    let (mut reader, mut writer) = tokio::io::split(stream);
+    let read = async {
+        let mut chunk = [0; CHUNK];
+        loop {
+            match reader.read(&mut chunk).await {
+                Ok(0) => return Ended::closed(),
+                Ok(count) => {
+                    if from.send(StreamEvent::Bytes(chunk[..count].to_vec())).await.is_err() {
+                        return Ended::Dropped;
+                    }
+                }
+                Err(error) => return Ended::Lost(reason(&error)),
+            }
+        }
+    };
+    let write = async {
+        while let Some(bytes) = to.recv().await {
+            if let Err(error) = writer.write_all(&bytes).await {
+                return Ended::Lost(reason(&error));
+            }
+        }
+        Ended::Dropped
+    };
+    tokio::select! {
+        ended = read => ended,
+        ended = write => ended,
+        () = from.closed() => Ended::Dropped,
+    }
+}
+
+/// What the system says, as a part of a sentence.
+fn reason(error: &io::Error) -> String {
+    match error.kind() {
+        ErrorKind::ConnectionRefused => "nobody listens there (connection refused)".to_owned(),
+        ErrorKind::ConnectionReset
+        | ErrorKind::BrokenPipe
+        | ErrorKind::ConnectionAborted
+        | ErrorKind::UnexpectedEof => "the other end closed the connection".to_owned(),
+        _ => {
+            let text = error.to_string();
+            text.split(" (os error").next().unwrap_or_default().to_owned()
+        }
+    }
 }

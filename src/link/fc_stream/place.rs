@@ -1,0 +1,230 @@
+//! Where a flight controller is reached: a serial port, a TCP port or a websocket.
+
+use std::fmt;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use tokio_tungstenite::tungstenite::http::Uri;
+
+/// Speed of a serial port when none is given, bit/s.
+pub const DEFAULT_BAUD: u32 = 115_200;
+/// Bits on a serial line for each byte: start, eight of data, stop.
+const BITS_PER_BYTE: u32 = 10;
+
+/// Where a flight controller is reached.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum FcPlace {
+    /// A serial port, USB among them.
+    Serial {
+        /// Its device file.
+        device: PathBuf,
+        /// Its speed, bit/s.
+        baud: u32,
+    },
+    /// A TCP port.
+    Tcp {
+        /// Name or address; an IPv6 address without brackets.
+        host: String,
+        /// Its port.
+        port: u16,
+    },
+    /// A websocket.
+    WebSocket(
+        /// Its address, `ws://…` or `wss://…`.
+        Uri,
+    ),
+}
+
+/// Why a text names no place of a flight controller.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{what}; allowed are serial:DEVICE[,BAUD], tcp:HOST:PORT and ws:URL, such as {example}")]
+pub struct FcPlaceError {
+    what: String,
+    example: String,
+}
+
+impl FcPlaceError {
+    fn new(what: impl Into<String>, example: impl Into<String>) -> Self {
+        Self { what: what.into(), example: example.into() }
+    }
+}
+
+impl FcPlace {
+    /// Bytes a second that the line carries; `None` = more than anybody asks for.
+    #[must_use]
+    pub fn bytes_per_s(&self) -> Option<u32> {
+        match self {
+            Self::Serial { baud, .. } => Some(baud / BITS_PER_BYTE),
+            Self::Tcp { .. } | Self::WebSocket(_) => None,
+        }
+    }
+}
+
+impl FromStr for FcPlace {
+    type Err = FcPlaceError;
+
+    fn from_str(text: &str) -> Result<Self, FcPlaceError> {
+        match text.split_once(':') {
+            Some(("serial", device)) => serial(device),
+            Some(("tcp", address)) => tcp(address),
+            Some(("ws", rest)) if rest.starts_with("//") => websocket(text),
+            Some(("ws", url)) => websocket(url),
+            Some(("wss", _)) => websocket(text),
+            _ if text.starts_with('/') => Err(FcPlaceError::new(
+                format!("{text} does not say how to connect"),
+                format!("serial:{text}"),
+            )),
+            _ => Err(FcPlaceError::new(
+                format!("\"{text}\" is no place of a flight controller"),
+                "serial:/dev/ttyACM0",
+            )),
+        }
+    }
+}
+
+fn serial(text: &str) -> Result<FcPlace, FcPlaceError> {
+    let (device, baud) = text.rsplit_once(',').unwrap_or((text, ""));
+    if device.is_empty() {
+        return Err(FcPlaceError::new("the serial port is missing", "serial:/dev/ttyACM0"));
+    }
+    let baud = match baud.trim() {
+        "" if device.len() == text.len() => DEFAULT_BAUD,
+        digits => match digits.parse() {
+            Ok(baud @ 300..=20_000_000) => baud,
+            _ => {
+                return Err(FcPlaceError::new(
+                    format!("\"{digits}\" is no speed of a serial port (300 to 20000000 bit/s)"),
+                    format!("serial:{device},{DEFAULT_BAUD}"),
+                ));
+            }
+        },
+    };
+    Ok(FcPlace::Serial { device: device.into(), baud })
+}
+
+fn tcp(text: &str) -> Result<FcPlace, FcPlaceError> {
+    const EXAMPLE: &str = "tcp:127.0.0.1:5761";
+    let (host, port) = text
+        .rsplit_once(':')
+        .ok_or_else(|| FcPlaceError::new(format!("tcp:{text} has no port"), format!("tcp:{text}:5761")))?;
+    let in_brackets = host.strip_prefix('[').and_then(|host| host.strip_suffix(']'));
+    let host = match in_brackets {
+        Some(address) => address,
+        None if host.contains(':') => {
+            return Err(FcPlaceError::new(
+                format!("the address {host} needs brackets"),
+                format!("tcp:[{host}]:{port}"),
+            ));
+        }
+        None => host,
+    };
+    if host.is_empty() || host.contains(char::is_whitespace) {
+        return Err(FcPlaceError::new(format!("tcp:{text} has no host"), EXAMPLE));
+    }
+    match port.parse() {
+        Ok(port @ 1..) => Ok(FcPlace::Tcp { host: host.to_owned(), port }),
+        _ => Err(FcPlaceError::new(format!("\"{port}\" is no port (1 to 65535)"), EXAMPLE)),
+    }
+}
+
+fn websocket(url: &str) -> Result<FcPlace, FcPlaceError> {
+    const EXAMPLE: &str = "ws://127.0.0.1:6761";
+    let with_scheme = if url.contains("://") { url.to_owned() } else { format!("ws://{url}") };
+    let problem = |what: String| FcPlaceError::new(what, EXAMPLE);
+    let uri: Uri = with_scheme.parse().map_err(|error| problem(format!("\"{url}\" is no URL ({error})")))?;
+    if !matches!(uri.scheme_str(), Some("ws" | "wss")) {
+        return Err(problem(format!("\"{url}\" is no URL of a websocket (ws:// or wss://)")));
+    }
+    if uri.host().is_none_or(str::is_empty) {
+        return Err(problem(format!("\"{url}\" names no host")));
+    }
+    Ok(FcPlace::WebSocket(uri))
+}
+
+impl fmt::Display for FcPlace {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Serial { device, baud: DEFAULT_BAUD } => write!(f, "serial:{}", device.display()),
+            Self::Serial { device, baud } => write!(f, "serial:{},{baud}", device.display()),
+            Self::Tcp { host, port } if host.contains(':') => write!(f, "tcp:[{host}]:{port}"),
+            Self::Tcp { host, port } => write!(f, "tcp:{host}:{port}"),
+            // An address without a path ends in a slash otherwise.
+            Self::WebSocket(uri) if uri.path_and_query().is_none_or(|path| path == "/") => {
+                write!(f, "{}", uri.to_string().trim_end_matches('/'))
+            }
+            Self::WebSocket(uri) => write!(f, "{uri}"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn refusal(text: &str) -> String {
+        text.parse::<FcPlace>().unwrap_err().to_string()
+    }
+
+    #[test]
+    fn places_are_read_and_written() {
+        for (text, shown) in [
+            ("serial:/dev/ttyACM0", "serial:/dev/ttyACM0"),
+            ("serial:/dev/ttyACM0,115200", "serial:/dev/ttyACM0"),
+            ("serial:/dev/serial/by-id/usb-a,b-if00,9600", "serial:/dev/serial/by-id/usb-a,b-if00,9600"),
+            ("tcp:localhost:5761", "tcp:localhost:5761"),
+            ("tcp:[::1]:5761", "tcp:[::1]:5761"),
+            ("ws:localhost:6761", "ws://localhost:6761"),
+            ("ws:ws://localhost:6761/", "ws://localhost:6761"),
+            ("ws://10.0.0.1/fc?x=1", "ws://10.0.0.1/fc?x=1"),
+            ("ws:wss://craft.example/fc", "wss://craft.example/fc"),
+            ("wss://craft.example", "wss://craft.example"),
+        ] {
+            let place: FcPlace = text.parse().unwrap_or_else(|error| panic!("{text}: {error}"));
+            assert_eq!(place.to_string(), shown, "{text}");
+            assert_eq!(shown.parse(), Ok(place), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_refusal_says_what_is_allowed() {
+        for (text, part) in [
+            ("/dev/ttyUSB1", "such as serial:/dev/ttyUSB1"),
+            ("COM3", "\"COM3\" is no place"),
+            ("", "\"\" is no place"),
+            ("serial:", "the serial port is missing"),
+            ("serial:/dev/ttyACM0,", "\"\" is no speed"),
+            ("serial:/dev/ttyACM0,fast", "such as serial:/dev/ttyACM0,115200"),
+            ("serial:/dev/ttyACM0,0", "300 to 20000000"),
+            ("tcp:localhost", "such as tcp:localhost:5761"),
+            ("tcp::5761", "has no host"),
+            ("tcp:::1:5761", "such as tcp:[::1]:5761"),
+            ("tcp:localhost:0", "1 to 65535"),
+            ("tcp:localhost:70000", "1 to 65535"),
+            ("ws:", "no URL"),
+            ("ws:http://craft.example", "ws:// or wss://"),
+            ("ws://", "\"ws://\""),
+        ] {
+            let told = refusal(text);
+            assert!(told.contains(part), "{text}: {told}");
+            assert!(told.contains("allowed are serial:DEVICE[,BAUD], tcp:HOST:PORT and ws:URL"), "{told}");
+        }
+    }
+
+    #[test]
+    fn a_serial_line_carries_a_tenth_of_its_speed() {
+        let place = |text: &str| text.parse::<FcPlace>().unwrap();
+        assert_eq!(place("serial:/dev/ttyACM0").bytes_per_s(), Some(11_520));
+        assert_eq!(place("tcp:localhost:1").bytes_per_s(), None);
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn any_text_is_read_or_refused_and_what_is_read_is_shown_as_it_is_typed(
+            text in "(serial:|tcp:|ws:|wss://|ws://)?[a-z0-9/.:,\\[\\]? @é-]{0,30}",
+        ) {
+            if let Ok(place) = text.parse::<FcPlace>() {
+                proptest::prop_assert_eq!(place.to_string().parse(), Ok(place));
+            }
+        }
+    }
+}

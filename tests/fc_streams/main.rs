@@ -1,0 +1,55 @@
+//! Streams to a flight controller over real sockets and a pseudo-terminal pair: they connect, move bytes, say why not, and
+//! come back by themselves.
+
+#![allow(clippy::unwrap_used, clippy::disallowed_methods, reason = "tests may panic and wait")]
+
+#[path = "../serial_support/cable.rs"]
+mod cable;
+
+mod serial;
+mod tcp;
+mod websocket;
+
+use std::time::Duration;
+
+use betadeck::link::{FcStream, StreamEvent};
+
+/// Nothing in these tests takes this long unless it hangs.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+fn open(place: &str) -> FcStream {
+    FcStream::open(place.parse().unwrap())
+}
+
+/// The next event.
+async fn next(stream: &mut FcStream) -> StreamEvent {
+    tokio::time::timeout(PATIENCE, stream.from.recv()).await.expect("an event").expect("a task")
+}
+
+/// The reason of the loss that comes next.
+async fn lost(stream: &mut FcStream) -> String {
+    match next(stream).await {
+        StreamEvent::Lost(reason) => reason,
+        other => panic!("{other:?}"),
+    }
+}
+
+async fn connected(stream: &mut FcStream) {
+    assert_eq!(next(stream).await, StreamEvent::Connected);
+}
+
+/// The next bytes, until there are as many as expected.
+async fn bytes(stream: &mut FcStream, count: usize) -> Vec<u8> {
+    let mut all = Vec::new();
+    while all.len() < count {
+        match next(stream).await {
+            StreamEvent::Bytes(bytes) => all.extend(bytes),
+            other => panic!("{other:?} after {all:?}"),
+        }
+    }
+    all
+}
+
+async fn send(stream: &FcStream, bytes: &[u8]) {
+    stream.to.send(bytes.to_vec()).await.expect("a task");
+}

@@ -1,0 +1,68 @@
+//! A pseudo-terminal pair as a USB cable: what the program opens is a device file that keeps its name while the cable is
+//! pulled and plugged in again.
+
+use std::fs::File;
+use std::io::{ErrorKind, Read as _, Write as _};
+use std::path::PathBuf;
+
+use rustix::fs::{OFlags, fcntl_setfl};
+use rustix::pty::{OpenptFlags, grantpt, openpt, ptsname, unlockpt};
+
+/// A cable; its far end is held by the test.
+#[derive(Debug)]
+pub(crate) struct Cable {
+    directory: tempfile::TempDir,
+    far_end: Option<File>,
+}
+
+impl Cable {
+    /// A cable that is plugged in.
+    pub(crate) fn plugged_in() -> Self {
+        let mut cable = Self { directory: tempfile::tempdir().unwrap(), far_end: None };
+        cable.plug_in();
+        cable
+    }
+
+    /// The device file.
+    pub(crate) fn device(&self) -> PathBuf {
+        self.directory.path().join("ttyACM0")
+    }
+
+    /// Plugs the cable in: the device is there.
+    pub(crate) fn plug_in(&mut self) {
+        let far_end = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC).unwrap();
+        grantpt(&far_end).unwrap();
+        unlockpt(&far_end).unwrap();
+        let name = ptsname(&far_end, Vec::new()).unwrap().into_string().unwrap();
+        fcntl_setfl(&far_end, OFlags::NONBLOCK).unwrap();
+        std::os::unix::fs::symlink(name, self.device()).unwrap();
+        self.far_end = Some(far_end.into());
+    }
+
+    /// Pulls the cable: the device is gone, and whoever has it open notices.
+    pub(crate) fn pull(&mut self) {
+        std::fs::remove_file(self.device()).unwrap();
+        self.far_end = None;
+    }
+
+    /// What has come through since; nothing while nobody has the device open.
+    pub(crate) fn received(&mut self) -> Vec<u8> {
+        let Some(far_end) = &mut self.far_end else { return Vec::new() };
+        let mut bytes = [0; 4096];
+        match far_end.read(&mut bytes) {
+            Ok(count) => bytes[..count].to_vec(),
+            // The system says "input/output error" while the device is closed.
+            Err(_) => Vec::new(),
+        }
+    }
+
+    /// Sends bytes; gives those that the line does not take now.
+    pub(crate) fn send<'a>(&mut self, bytes: &'a [u8]) -> &'a [u8] {
+        let Some(far_end) = &mut self.far_end else { return &[] };
+        match far_end.write(bytes) {
+            Ok(count) => &bytes[count..],
+            Err(error) if error.kind() == ErrorKind::WouldBlock => bytes,
+            Err(error) => panic!("{error}"),
+        }
+    }
+}
