@@ -3,7 +3,7 @@
 use super::mode::Mode;
 
 /// A box. The discriminant is its permanent id in mode conditions and protocols, `Display` its name.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::IntoStaticStr)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::FromRepr, strum::IntoStaticStr)]
 #[repr(u8)]
 pub enum ModeBox {
     /// Motors may run.

@@ -22,6 +22,12 @@ fn exchanges() -> Vec<(u32, Vec<u8>, Vec<u8>)> {
         .collect()
 }
 
+/// The payload of a captured reply.
+pub(crate) fn payload_of(number: u32) -> Vec<u8> {
+    let (_, _, reply) = exchanges().into_iter().find(|(of, ..)| *of == number).unwrap();
+    frames(Decoder::client(), &reply).remove(0).payload
+}
+
 /// A client that has heard its first answer.
 fn in_step() -> FcClient {
     let mut client = FcClient::default();

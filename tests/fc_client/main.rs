@@ -5,4 +5,6 @@
 mod board;
 mod captured;
 mod damaged;
+mod decoders;
 mod lines;
+mod telemetry;

@@ -16,8 +16,10 @@ mod exchange;
 mod framed_line;
 mod line_text;
 mod message_line;
+pub mod polling;
 mod prompt_line;
 mod request;
+pub mod telemetry;
 
 pub use ask::{Answer, Ask, AskId, CliAccess, Unanswered};
 

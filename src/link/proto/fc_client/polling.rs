@@ -1,0 +1,234 @@
+//! Which message is to be asked next so that a display is up to date and the link has room for everything else.
+//!
+//! The greatest lateness, measured in a message's own period, has its turn. So a slow link slows everything down alike, and
+//! nothing starves.
+
+use std::time::Duration;
+
+use super::telemetry::code;
+use super::{Answer, Ask, Unanswered};
+
+/// Prints the mission's progress.
+const MISSION_LINE: &str = "waypoint status";
+/// How often the mission is asked for while nothing is flown.
+const MISSION_AT_REST: Duration = Duration::from_secs(2);
+/// How often a message is asked that was refused: a setting may bring it to life.
+const REFUSED_PERIOD: Duration = Duration::from_secs(30);
+/// The share of the link's bytes that may be used: the user's own requests need some.
+const SHARE: f64 = 0.6;
+/// Bytes of a frame around its payload, with those of the request.
+const FRAME_BYTES: usize = 15;
+
+/// Something that is asked again and again.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Poll {
+    /// An MSP message.
+    Message(u16),
+    /// The progress of the mission, by message.
+    Mission,
+}
+
+impl Poll {
+    /// How it is asked.
+    #[must_use]
+    pub fn ask(self) -> Ask {
+        match self {
+            Self::Message(code) => Ask::Msp { code, payload: Vec::new() },
+            Self::Mission => Ask::MessageLine(MISSION_LINE.to_owned()),
+        }
+    }
+}
+
+/// What is asked, most important first, and how often while the link carries it, ms.
+const PLAN: [(Poll, u64); 12] = [
+    (Poll::Message(code::BOX_IDS), 5000),
+    (Poll::Message(code::STATUS_EX), 100),
+    (Poll::Message(code::ATTITUDE), 50),
+    (Poll::Message(code::ALTITUDE), 100),
+    (Poll::Message(code::RAW_GPS), 200),
+    (Poll::Mission, 200),
+    (Poll::Message(code::RC), 200),
+    (Poll::Message(code::MOTOR), 200),
+    (Poll::Message(code::COMP_GPS), 500),
+    (Poll::Message(code::BATTERY_STATE), 500),
+    (Poll::Message(code::MODE_RANGES), 5000),
+    (Poll::Message(code::MODE_RANGES_EXTRA), 5000),
+];
+
+/// What is asked when.
+#[derive(Debug, Clone)]
+pub struct Schedule {
+    entries: Vec<Entry>,
+    /// Bytes a second that may be used; `None` = more than anybody asks for.
+    budget: Option<f64>,
+    /// What was asked last has had its share of the link by then.
+    free_at: Duration,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Entry {
+    poll: Poll,
+    period: Duration,
+    /// When it was asked last, of late.
+    asked: Option<Duration>,
+    refused: bool,
+}
+
+impl Schedule {
+    /// A schedule for a link that carries so many bytes a second; `None` = more than anybody asks for.
+    #[must_use]
+    pub fn new(bytes_per_s: Option<u32>) -> Self {
+        let entries = PLAN.map(|(poll, ms)| Entry {
+            poll,
+            period: Duration::from_millis(ms),
+            asked: None,
+            refused: false,
+        });
+        Self {
+            entries: entries.to_vec(),
+            budget: bytes_per_s.map(|bytes| SHARE * f64::from(bytes.max(1))),
+            free_at: Duration::ZERO,
+        }
+    }
+
+    /// Everything is old: a new connection, or somebody changed something.
+    pub fn refresh(&mut self) {
+        for entry in &mut self.entries {
+            entry.asked = None;
+            entry.refused = false;
+        }
+        self.free_at = Duration::ZERO;
+    }
+
+    /// What is to be asked now, if anything; from then on it counts as asked. `in_flight`: armed, or a mission is flown.
+    pub fn next(&mut self, in_flight: bool, now: Duration) -> Option<Poll> {
+        if now < self.free_at {
+            return None;
+        }
+        let lateness = |entry: &Entry| match entry.asked {
+            None => f64::INFINITY,
+            Some(asked) => {
+                let period = match entry.poll {
+                    _ if entry.refused => REFUSED_PERIOD,
+                    Poll::Mission if !in_flight => MISSION_AT_REST,
+                    Poll::Mission | Poll::Message(_) => entry.period,
+                };
+                now.saturating_sub(asked).as_secs_f64() / period.as_secs_f64()
+            }
+        };
+        let mut latest: Option<(f64, &mut Entry)> = None;
+        for entry in &mut self.entries {
+            let late = lateness(entry);
+            if late >= 1.0 && latest.as_ref().is_none_or(|(most, _)| late > *most) {
+                latest = Some((late, entry));
+            }
+        }
+        let (_, entry) = latest?;
+        entry.asked = Some(now);
+        Some(entry.poll)
+    }
+
+    /// Takes note of what came of a request.
+    pub fn answered(&mut self, poll: Poll, answer: &Answer) {
+        let (refused, bytes) = match answer {
+            Answer::Msp(payload) => (payload.is_none(), payload.as_ref().map_or(0, Vec::len)),
+            Answer::Line { text, .. } => (false, text.len()),
+            Answer::NotAnswered(why) => (*why == Unanswered::CliClosed, 0),
+        };
+        if let Some(entry) = self.entries.iter_mut().find(|entry| entry.poll == poll) {
+            entry.refused = refused;
+            if let (Some(budget), Some(asked)) = (self.budget, entry.asked) {
+                self.free_at = asked + Duration::from_secs_f64((bytes + FRAME_BYTES) as f64 / budget);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeMap;
+
+    use super::*;
+
+    /// How often each was asked in ten seconds, with replies of so many bytes that take so long.
+    fn asked(
+        mut schedule: Schedule,
+        reply: usize,
+        takes_ms: u64,
+        in_flight: bool,
+    ) -> BTreeMap<String, usize> {
+        let mut counts = BTreeMap::new();
+        let mut now = Duration::from_secs(100);
+        let end = now + Duration::from_secs(10);
+        while now < end {
+            match schedule.next(in_flight, now) {
+                Some(poll) => {
+                    *counts.entry(format!("{poll:?}")).or_default() += 1;
+                    now += Duration::from_millis(takes_ms);
+                    schedule.answered(poll, &Answer::Msp(Some(vec![0; reply])));
+                }
+                None => now += Duration::from_millis(1),
+            }
+        }
+        counts
+    }
+
+    fn count(counts: &BTreeMap<String, usize>, poll: Poll) -> usize {
+        counts.get(&format!("{poll:?}")).copied().unwrap_or_default()
+    }
+
+    #[test]
+    fn a_link_with_room_carries_every_message_at_its_rate() {
+        let counts = asked(Schedule::new(None), 20, 2, true);
+        for (poll, ms) in PLAN {
+            let wanted = 10_000 / ms as usize;
+            let got = count(&counts, poll);
+            assert!(got * 10 >= wanted * 9 && got <= wanted + 1, "{poll:?}: {got} of {wanted}");
+        }
+        let at_rest = asked(Schedule::new(None), 20, 2, false);
+        assert_eq!(count(&at_rest, Poll::Mission), 5);
+    }
+
+    #[test]
+    fn a_slow_flight_controller_slows_everything_alike_and_starves_nothing() {
+        let counts = asked(Schedule::new(None), 20, 40, true);
+        let rates: Vec<f64> =
+            PLAN.iter().map(|(poll, ms)| count(&counts, *poll) as f64 * *ms as f64 / 10_000.0).collect();
+        assert!(rates.iter().all(|rate| *rate > 0.25), "{rates:?}");
+        assert!(counts.values().sum::<usize>() <= 250);
+    }
+
+    #[test]
+    fn the_bytes_of_the_link_are_not_used_up() {
+        for bytes_per_s in [960, 1920, 5760, 11_520] {
+            let counts = asked(Schedule::new(Some(bytes_per_s)), 40, 2, true);
+            let bytes = counts.values().sum::<usize>() * (40 + FRAME_BYTES);
+            assert!(bytes as f64 <= SHARE * 10.0 * f64::from(bytes_per_s) + 60.0, "{bytes_per_s}: {bytes}");
+            assert!(bytes as f64 >= 0.4 * SHARE * 10.0 * f64::from(bytes_per_s), "{bytes_per_s}: {bytes}");
+        }
+    }
+
+    #[test]
+    fn what_is_refused_is_asked_rarely_until_somebody_changes_something() {
+        let mut schedule = Schedule::new(None);
+        let refuse = |schedule: &mut Schedule, from: u64, to: u64| {
+            let mut asked = 0;
+            for ms in (from * 1000..to * 1000).step_by(10) {
+                let now = Duration::from_millis(ms);
+                while let Some(poll) = schedule.next(true, now) {
+                    let answer = match poll {
+                        Poll::Mission => Answer::NotAnswered(Unanswered::CliClosed),
+                        Poll::Message(_) => Answer::Msp(None),
+                    };
+                    schedule.answered(poll, &answer);
+                    asked += 1;
+                }
+            }
+            asked
+        };
+        assert_eq!(refuse(&mut schedule, 0, 29), PLAN.len());
+        assert_eq!(refuse(&mut schedule, 29, 59), PLAN.len());
+        schedule.refresh();
+        assert_eq!(refuse(&mut schedule, 59, 60), PLAN.len());
+    }
+}

@@ -1,0 +1,171 @@
+//! Everything that a flight controller has told, put together.
+
+use super::{
+    Altitude, Attitude, BatteryReading, HomeVector, RawGps, Status, channels, code, mode_ranges, motors,
+};
+use crate::geo::{LatLon, local_offset, offset_to_latlon};
+use crate::signals::RC_CHANNELS;
+use crate::telemetry::snapshot::{CraftView, EstimateView, GpsView};
+use crate::telemetry::{ArmingFlag, ArmingFlags, Mode};
+
+/// The place that displays count from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Origin {
+    /// Where.
+    pub position: LatLon,
+    /// Its altitude above mean sea level, m.
+    pub alt_amsl_m: f64,
+}
+
+/// The newest of every message.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Observation {
+    box_ids: Vec<u8>,
+    ranges: Option<Vec<u8>>,
+    range_links: Option<Vec<u8>>,
+    status: Option<Status>,
+    attitude: Option<Attitude>,
+    altitude: Option<Altitude>,
+    gps: Option<RawGps>,
+    home_vector: Option<HomeVector>,
+    home: Option<LatLon>,
+    battery: Option<BatteryReading>,
+    channels: Option<[u16; RC_CHANNELS]>,
+    motors: Option<[f64; 4]>,
+}
+
+impl Observation {
+    /// Takes a reply. One that cannot be read leaves what was known; says whether it could.
+    pub fn take(&mut self, code: u16, payload: &[u8]) -> bool {
+        match code {
+            code::BOX_IDS => keep(&mut self.box_ids, Some(payload.to_vec())),
+            code::MODE_RANGES => keep(&mut self.ranges, Some(Some(payload.to_vec()))),
+            code::MODE_RANGES_EXTRA => keep(&mut self.range_links, Some(Some(payload.to_vec()))),
+            code::STATUS_EX => self.take_status(Status::decode(payload)),
+            code::ATTITUDE => keep(&mut self.attitude, Attitude::decode(payload).map(Some)),
+            code::ALTITUDE => keep(&mut self.altitude, Altitude::decode(payload).map(Some)),
+            code::RAW_GPS => keep(&mut self.gps, RawGps::decode(payload).map(Some)),
+            code::COMP_GPS => keep(&mut self.home_vector, HomeVector::decode(payload).map(Some)),
+            code::BATTERY_STATE => keep(&mut self.battery, BatteryReading::decode(payload).map(Some)),
+            code::RC => keep(&mut self.channels, channels(payload).map(Some)),
+            code::MOTOR => keep(&mut self.motors, motors(payload).map(Some)),
+            _ => false,
+        }
+    }
+
+    /// Home is where the craft is armed; of a craft that flew already it is where the flight controller points to.
+    fn take_status(&mut self, status: Option<Status>) -> bool {
+        let before = self.armed();
+        let is_read = keep(&mut self.status, status.map(Some));
+        if before == Some(false) && self.armed() == Some(true) {
+            self.home = self.gps.filter(|gps| gps.fix).map(|gps| gps.position);
+        }
+        if self.home.is_none() && self.armed() == Some(true) {
+            self.home = self.gps.zip(self.home_vector).filter(|(gps, _)| gps.fix).map(|(gps, vector)| {
+                let (sin, cos) = vector.bearing_deg.to_radians().sin_cos();
+                offset_to_latlon(gps.position, vector.distance_m * nalgebra::Vector2::new(cos, sin))
+            });
+        }
+        is_read
+    }
+
+    /// Whether the craft is armed.
+    #[must_use]
+    pub fn armed(&self) -> Option<bool> {
+        self.status.and_then(|status| status.is_armed(&self.box_ids))
+    }
+
+    /// Whether a mode is known to be active.
+    #[must_use]
+    pub fn is_active(&self, mode: Mode) -> bool {
+        self.status.is_some_and(|status| status.modes(&self.box_ids).has(mode))
+    }
+
+    /// The newest of the GPS.
+    #[must_use]
+    pub fn gps(&self) -> Option<&RawGps> {
+        self.gps.as_ref()
+    }
+
+    /// Motor outputs M1…M4, 0…1.
+    #[must_use]
+    pub fn motors(&self) -> Option<[f64; 4]> {
+        self.motors
+    }
+
+    /// Modes, arming, receiver and battery, as far as they were told.
+    #[must_use]
+    pub fn craft_view(&self) -> CraftView {
+        let armed = self.armed();
+        let flags = self.status.and_then(|status| status.arming_blocked_by);
+        let has_rx_loss = flags.map(|flags| flags.has(ArmingFlag::RxLoss));
+        let in_failsafe = self.is_active(Mode::Failsafe);
+        let battery = self.battery.filter(BatteryReading::is_present);
+        CraftView {
+            armed,
+            modes: self.status.map(|status| status.modes(&self.box_ids)),
+            arming_blocked_by: if armed == Some(true) { flags.and(Some(ArmingFlags::NONE)) } else { flags },
+            gps_fix: self.gps.map(|gps| gps.fix),
+            gps: self.gps.filter(|gps| gps.fix || gps.position != LatLon::default()).map(gps_view),
+            sats: self.gps.map(|gps| gps.sats),
+            home: self.home,
+            battery_v: battery.map(|battery| battery.voltage_v),
+            battery_a: battery.map(|battery| battery.current_a),
+            battery_mah: battery.map(|battery| battery.drawn_mah),
+            battery_cells: battery.and_then(|battery| battery.cells),
+            motors: self.motors.unwrap_or_default(),
+            channels: self.channels,
+            rc_link: has_rx_loss.map(|is_lost| !is_lost && !in_failsafe),
+            failsafe_stage: has_rx_loss.map(|is_lost| match (in_failsafe, is_lost && armed == Some(true)) {
+                (true, _) => 2,
+                (false, true) => 1,
+                (false, false) => 0,
+            }),
+            mode_ranges: self
+                .ranges
+                .as_deref()
+                .map(|ranges| mode_ranges(ranges, self.range_links.as_deref())),
+            ..CraftView::default()
+        }
+    }
+
+    /// What the flight controller believes of the craft's motion; places count from `origin` and are unknown without one.
+    #[must_use]
+    pub fn estimate_view(&self, origin: Option<Origin>) -> EstimateView {
+        let fix = self.gps.filter(|gps| gps.fix);
+        let offset = fix.zip(origin).map(|(gps, origin)| local_offset(origin.position, gps.position));
+        EstimateView {
+            n: offset.map(|offset| offset.x),
+            e: offset.map(|offset| offset.y),
+            alt: self.altitude.map(|altitude| self.above_origin(altitude.alt_m, origin)),
+            ground_speed_mps: fix.map(|gps| gps.ground_speed_mps),
+            climb_mps: self.altitude.and_then(|altitude| altitude.climb_mps),
+            roll_deg: self.attitude.map(|attitude| attitude.roll_deg),
+            pitch_deg: self.attitude.map(|attitude| attitude.pitch_deg),
+            heading_deg: self.attitude.map(|attitude| attitude.heading_deg),
+            ..EstimateView::default()
+        }
+    }
+
+    /// Before its first arming a flight controller shows the altitude above sea level: whichever is nearer to what the GPS
+    /// says is meant.
+    fn above_origin(&self, alt_m: f64, origin: Option<Origin>) -> f64 {
+        let (Some(gps), Some(origin)) = (self.gps.filter(|gps| gps.fix), origin) else { return alt_m };
+        let from_sea_level = (alt_m - gps.alt_amsl_m).abs();
+        let from_origin = (alt_m - (gps.alt_amsl_m - origin.alt_amsl_m)).abs();
+        let is_amsl = self.armed() != Some(true) && from_sea_level < from_origin;
+        if is_amsl { alt_m - origin.alt_amsl_m } else { alt_m }
+    }
+}
+
+/// Keeps what could be read, and says whether it could.
+fn keep<T>(place: &mut T, read: Option<T>) -> bool {
+    read.is_some_and(|read| {
+        *place = read;
+        true
+    })
+}
+
+fn gps_view(gps: RawGps) -> GpsView {
+    GpsView { position: gps.position, alt_amsl_m: gps.alt_amsl_m, ground_speed_mps: gps.ground_speed_mps }
+}

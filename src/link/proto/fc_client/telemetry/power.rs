@@ -1,0 +1,56 @@
+//! The battery.
+
+use super::reader::Reader;
+
+/// State of a battery; the discriminant is the code on the wire.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, strum::FromRepr)]
+#[repr(u8)]
+pub enum BatteryState {
+    /// Enough.
+    Ok = 0,
+    /// Below the warning voltage.
+    Warning = 1,
+    /// Below the lowest voltage.
+    Critical = 2,
+    /// None.
+    NotPresent = 3,
+    /// Being measured.
+    Starting = 4,
+}
+
+/// `BATTERY_STATE`.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct BatteryReading {
+    /// Cells in series, once counted.
+    pub cells: Option<u8>,
+    /// Voltage, V.
+    pub voltage_v: f64,
+    /// Charge drawn, mAh.
+    pub drawn_mah: f64,
+    /// Current, A.
+    pub current_a: f64,
+    /// Its state, when it is a known one.
+    pub state: Option<BatteryState>,
+}
+
+impl BatteryReading {
+    /// Reads the message.
+    #[must_use]
+    pub fn decode(payload: &[u8]) -> Option<Self> {
+        let mut reader = Reader::new(payload);
+        let cells = Some(reader.u8()?).filter(|cells| *cells > 0);
+        reader.u16()?; // capacity
+        let coarse_v = f64::from(reader.u8()?) / 10.0;
+        let drawn_mah = f64::from(reader.u16()?);
+        let current_a = f64::from(reader.i16()?) / 100.0;
+        let state = reader.u8().and_then(BatteryState::from_repr);
+        let voltage_v = reader.u16().map_or(coarse_v, |fine| f64::from(fine) / 100.0);
+        Some(Self { cells, voltage_v, drawn_mah, current_a, state })
+    }
+
+    /// Whether there is a battery that is measured.
+    #[must_use]
+    pub fn is_present(&self) -> bool {
+        self.state != Some(BatteryState::NotPresent)
+    }
+}
