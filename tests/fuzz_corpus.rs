@@ -8,7 +8,7 @@ mod fuzz_bodies;
 
 use std::path::{Path, PathBuf};
 
-use fuzz_bodies::{airframe, cli, eeprom, fdm, msp_stream, plan_file, rc, servo, settings_file};
+use fuzz_bodies::{airframe, cli, eeprom, fc_client, fdm, msp_stream, plan_file, rc, servo, settings_file};
 
 /// Bytes up to which every beginning of a stored case is a case too.
 const SHORT: usize = 64;
@@ -187,6 +187,11 @@ fn command_lines() {
 #[test]
 fn stored_images() {
     check("eeprom", eeprom::run, 20);
+}
+
+#[test]
+fn flight_controllers_answers() {
+    check("fc_client", fc_client::run, 100);
 }
 
 #[test]

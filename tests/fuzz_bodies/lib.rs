@@ -6,6 +6,7 @@ pub mod airframe;
 pub mod cli;
 mod craft;
 pub mod eeprom;
+pub mod fc_client;
 pub mod fdm;
 pub mod msp_stream;
 pub mod plan_file;

@@ -169,6 +169,10 @@ impl FcClient {
         if self.connected {
             for &byte in bytes {
                 self.take(byte, now);
+                // So that it does not matter where the bytes are cut.
+                if self.exchange.is_none() {
+                    self.poll(now);
+                }
             }
             self.poll(now);
         }
