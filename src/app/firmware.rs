@@ -1,6 +1,7 @@
 //! Which firmware the options and the launcher's file name, checked before anything is started.
 
 mod executable;
+pub(super) mod link;
 
 use std::path::{Path, PathBuf};
 

@@ -2,7 +2,11 @@
 
 use super::AppError;
 use super::doors::{self, OpenDoors};
-use super::firmware::{RemoteFirmware, not_linked};
+use super::firmware::RemoteFirmware;
+use super::firmware::link::{self, OpenLink};
+use super::setup;
+use tempfile::TempDir;
+
 use crate::args::{DoorArgs, FlightArgs, PhysicsArgs, Speed};
 use crate::session::{self, FlownBefore, Handle, SessionConfig, SessionEvent};
 use crate::storage::Store;
@@ -21,21 +25,19 @@ pub(super) struct LiveArgs<'a> {
     pub(super) flight: &'a FlightArgs,
 }
 
-/// Opens the doors and starts the session behind them; `notices` are told first. No doors are open with `--no-ports`.
+/// Opens the doors and starts the session behind them; `notices` are told first. No doors are open with `--no-ports`. A
+/// directory that comes with it is that of the firmware outside, to be kept until the session has ended.
 ///
 /// # Errors
-/// When there is no socket for the motors of an external simulator, or no thread.
+/// When there is no socket for the motors of an external simulator, no thread, or no link to the firmware outside.
 pub(super) async fn start(
     args: LiveArgs<'_>,
     vehicle: Vehicle,
     store: Store,
     mut notices: Vec<String>,
     flown: Option<FlownBefore>,
-) -> Result<(Handle, Option<OpenDoors>), AppError> {
+) -> Result<(Handle, Option<OpenDoors>, Option<TempDir>), AppError> {
     let mut first_events = Vec::new();
-    if args.firmware.is_some() {
-        return Err(not_linked());
-    }
     let (doors, endpoints) = match doors::open(args).await? {
         Some(opened) => {
             notices.extend(opened.notices);
@@ -44,6 +46,11 @@ pub(super) async fn start(
         }
         None => (None, None),
     };
+    let state = setup::store_directory(args.flight)?;
+    let opened =
+        args.firmware.map(|firmware| link::open(firmware, &vehicle, state.as_deref())).transpose()?;
+    notices.extend(opened.as_ref().and_then(OpenLink::notice));
+    let (remote, directory) = opened.map(|opened| (opened.link, opened.directory)).unzip();
     first_events.extend(notices.into_iter().map(SessionEvent::Notice));
     let config = SessionConfig {
         vehicle,
@@ -52,10 +59,10 @@ pub(super) async fn start(
         speed: args.flight.speed.map_or(1.0, |Speed(speed)| speed),
         takeoff_m: TAKEOFF_M,
         endpoints,
-        remote: None,
+        remote,
         first_events,
     };
     let session = session::start_at(config, flown)
         .map_err(|error| AppError::environment(format!("cannot start a thread: {error}")))?;
-    Ok((session, doors))
+    Ok((session, doors, directory.flatten()))
 }

@@ -25,7 +25,8 @@ pub(super) fn run(args: &ServeArgs) -> Result<u8, AppError> {
     notices.extend(args.physics.idle_options(&args.flight, firmware.is_some()));
     let stored = setup::stored(&mut store, &mut notices);
     let no_plan = PlanFile::default();
-    let setup = setup::for_session(&args.flight, &args.physics, &args.doors, no_plan, stored)?;
+    let mut setup = setup::for_session(&args.flight, &args.physics, &args.doors, no_plan, stored)?;
+    setup.remote_controller = firmware.is_some();
     let mut vehicle = setup::build(setup, &mut notices)?;
     // RC comes through the doors only; resting virtual sticks would hide the loss of a script.
     vehicle.transmitter_mut().set_cut(true);
@@ -44,7 +45,7 @@ pub(super) fn run(args: &ServeArgs) -> Result<u8, AppError> {
             physics: &args.physics,
             flight: &args.flight,
         };
-        let (session, doors) = live::start(options, vehicle, store, notices, None).await?;
+        let (session, doors, _directory) = live::start(options, vehicle, store, notices, None).await?;
         let outcome = report(session, &mut output, stop).await;
         if let Some(doors) = doors {
             doors.close().await;

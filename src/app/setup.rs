@@ -54,6 +54,7 @@ pub(super) fn from_args(
         home: args.home,
         plan,
         attitude: args.attitude.map(attitude_source),
+        remote_controller: false,
         arm_assist: args.arm_assist.is_some_and(OnOff::is_on),
         stored,
         boot_lines,

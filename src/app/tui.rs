@@ -69,7 +69,8 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
     let stored = setup::stored(&mut store, &mut notices);
     // The plan's settings go to the craft with its upload.
     let on_the_ground = PlanFile { settings: Vec::new(), ..plan.clone() };
-    let setup = setup::for_session(&args.flight, &args.physics, &args.doors, on_the_ground, stored)?;
+    let mut setup = setup::for_session(&args.flight, &args.physics, &args.doors, on_the_ground, stored)?;
+    setup.remote_controller = firmware.is_some();
     let vehicle = setup::build(setup, &mut notices)?;
     let path = match &args.plan {
         Some(PlanArg::File(path, _)) => Some(path.as_path()),
@@ -149,7 +150,8 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
         .map_err(problem)?;
     let ending = runtime.block_on(async {
         let (flown, past) = screen.flown.unzip();
-        let (session, doors) = live::start(screen.live, screen.vehicle, screen.store, notices, flown).await?;
+        let (session, doors, _directory) =
+            live::start(screen.live, screen.vehicle, screen.store, notices, flown).await?;
         let link = SessionLink {
             commands: session.commands,
             view: session.view,

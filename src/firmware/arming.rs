@@ -205,6 +205,7 @@ impl Arming {
             | DisarmReason::GpsRescue
             | DisarmReason::SerialCommand
             | DisarmReason::Crashflip
+            | DisarmReason::Unknown
             | DisarmReason::System => {}
         }
         true

@@ -48,6 +48,8 @@ pub struct FlightSetup {
     pub home: Option<HomePosition>,
     /// The plan: its home is where the craft stands unless `home` says otherwise, its settings are applied at boot.
     pub plan: PlanFile,
+    /// The flight controller runs outside, with a configuration of its own.
+    pub remote_controller: bool,
     /// Where the attitude comes from; `None` = the estimator, or with an external physics the simulator's truth.
     pub attitude: Option<AttitudeSource>,
     /// Arming rules are softened for RC from UDP.
@@ -118,6 +120,9 @@ impl FlightSetup {
     /// # Errors
     /// When the firmware refuses a line, or the world cannot be built.
     pub fn build(self) -> Result<(Vehicle, Vec<SetupNotice>), SetupError> {
+        if self.remote_controller {
+            return self.build_remote();
+        }
         let (configuration, got_starter_modes) = self.configuration()?;
         let firmware = self.firmware_options();
         let (home, home_notice) = match self.physics {
@@ -134,6 +139,14 @@ impl FlightSetup {
         vehicle.controller_mut().set_build(self.build);
         *vehicle.transmitter_mut().inputs_mut() = self.stick_inputs;
         Ok((vehicle, home_notice.into_iter().chain(starter_notice).collect()))
+    }
+
+    /// The vehicle at boot whose flight controller runs outside.
+    fn build_remote(self) -> Result<(Vehicle, Vec<SetupNotice>), SetupError> {
+        let (home, notice) = self.boot_home();
+        let mut vehicle = Vehicle::with_remote_controller(WorldConfig { home, ..self.world })?;
+        *vehicle.transmitter_mut().inputs_mut() = self.stick_inputs;
+        Ok((vehicle, notice.into_iter().collect()))
     }
 }
 

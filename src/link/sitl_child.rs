@@ -25,8 +25,9 @@ const PAUSE: Duration = Duration::from_millis(100);
 const PAUSE_AFTER_CRASH: Duration = Duration::from_secs(1);
 /// Longest line of its output that is told whole, bytes.
 const LINE_MAX: u64 = 4096;
-/// It prints thousands of such lines when it stores its configuration: they are not told.
-const STORED_WORD: &str = "[FLASH_ProgramWord]";
+/// How the lines begin that are not told: the thousands about its storing, and those of each second about its flight, which
+/// is seen here anyway.
+const NOT_TOLD: [&str; 2] = ["[FLASH_ProgramWord]", "[SITL] t="];
 
 /// How a SITL executable is started.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -208,7 +209,7 @@ impl Keeper {
                 let text = String::from_utf8_lossy(&line).trim_end().to_owned();
                 line.clear();
                 if !text.is_empty()
-                    && !text.starts_with(STORED_WORD)
+                    && !NOT_TOLD.iter().any(|start| text.starts_with(start))
                     && tell.send(ChildEvent::Line(text)).is_err()
                 {
                     return;

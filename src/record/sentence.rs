@@ -218,6 +218,7 @@ fn disarm(reason: DisarmReason) -> &'static str {
         DisarmReason::SerialCommand => "serial command",
         DisarmReason::Landing => "landed",
         DisarmReason::Crashflip => "crash flip",
+        DisarmReason::Unknown => "the firmware does not say why",
         DisarmReason::System => "restart",
     }
 }

@@ -18,6 +18,7 @@ use std::task::{Context, Poll};
 use std::time::{Duration, Instant};
 
 use crate::firmware::cli::{CliAction, CliReply};
+use crate::link::proto::fc_client::polling::{Poll as Subject, Schedule};
 use crate::link::proto::fc_client::{Answer, Ask, AskId, FcClient};
 use crate::link::proto::sitl_feed::FeedState;
 use crate::link::{ChildEvent, FcStream, SitlChild, SitlPeer, StreamEvent};
@@ -108,6 +109,8 @@ enum Purpose {
     Message(Ticket),
     /// To know what it is.
     Identity(Question),
+    /// To show how it is.
+    Polled(Subject),
     /// Nothing: what it causes is seen elsewhere.
     Nothing,
 }
@@ -119,6 +122,7 @@ pub struct RemoteLink {
     client: FcClient,
     state: RemoteState,
     identification: Identification,
+    schedule: Schedule,
     observer: Observer,
     waiting: BTreeMap<AskId, Purpose>,
     next_ask: u64,
@@ -134,6 +138,7 @@ impl RemoteLink {
     #[must_use]
     pub fn new(ends: RemoteEnds, now: Instant) -> Self {
         Self {
+            schedule: Schedule::new(ends.stream.bytes_per_s),
             ends,
             client: FcClient::default(),
             state: RemoteState::Connecting,
@@ -196,7 +201,7 @@ impl RemoteLink {
         self.read_stream(context, now);
         self.exchange_frames(vehicle, now);
         self.take_requests(vehicle);
-        self.ask_what_is_due();
+        self.ask_what_is_due(now);
         self.client.poll(now.saturating_duration_since(self.started));
         self.take_answers(vehicle);
         self.write_stream();
@@ -220,6 +225,7 @@ impl RemoteLink {
                         peer.went_down();
                     }
                     vehicle.remote_restarted();
+                    self.observer.restarted();
                     self.notices.push(RemoteNotice::Restarted(if end.is_reboot() {
                         "The firmware restarts; the craft stands at home again.".to_owned()
                     } else {
@@ -367,17 +373,20 @@ impl RemoteLink {
     }
 
     /// While nobody else asks: what it is, then how it is.
-    fn ask_what_is_due(&mut self) {
+    fn ask_what_is_due(&mut self, now: Instant) {
         if !self.client.is_idle() {
             return;
         }
+        let since = now.saturating_duration_since(self.started);
         let next = match self.state {
             RemoteState::Identifying => {
                 self.identification.next().map(|question| (Purpose::Identity(question), question.ask()))
             }
-            RemoteState::Ready | RemoteState::Connecting | RemoteState::Lost | RemoteState::Unusable(_) => {
-                None
+            RemoteState::Ready => {
+                let next = self.schedule.next(self.observer.is_armed(), since);
+                next.map(|subject| (Purpose::Polled(subject), subject.ask()))
             }
+            RemoteState::Connecting | RemoteState::Lost | RemoteState::Unusable(_) => None,
         };
         if let Some((purpose, ask)) = next {
             self.ask(purpose, ask);
@@ -396,6 +405,18 @@ impl RemoteLink {
                     mailbox.deliver_answer(ticket, LateAnswer::Msp(payload));
                 }
                 Purpose::Identity(question) => self.identify(question, &answer),
+                Purpose::Polled(subject) => {
+                    self.schedule.answered(subject, &answer);
+                    match (subject, &answer) {
+                        (Subject::Message(code), Answer::Msp(Some(payload))) => {
+                            self.observer.take_message(code, payload);
+                        }
+                        (Subject::Mission, Answer::Line { text, failed: false, .. }) => {
+                            self.observer.take_mission(text);
+                        }
+                        _ => {}
+                    }
+                }
                 Purpose::Nothing => {}
             }
         }
@@ -406,6 +427,7 @@ impl RemoteLink {
             Ok(false) => {}
             Ok(true) => {
                 self.state = RemoteState::Ready;
+                self.schedule.refresh();
                 self.notices.push(RemoteNotice::Told(self.observer.introduction(&self.ends.name)));
             }
             Err(why) => self.give_up(format!("{}: {why}", self.ends.name)),
@@ -433,8 +455,9 @@ impl RemoteLink {
             ));
         }
         self.client.set_armed(self.observer.is_armed());
+        let frame = vehicle.world().map(|world| *world.local_frame());
         let Some(mailbox) = vehicle.controller_mut().remote_mut() else { return };
-        self.observer.deliver(mailbox);
+        self.observer.deliver(mailbox, frame.as_ref());
     }
 }
 

@@ -33,6 +33,8 @@ pub enum DisarmReason {
     Landing = 9,
     /// Crash flip.
     Crashflip = 10,
+    /// A remote flight controller does not tell.
+    Unknown = 254,
     /// The system (restart).
     System = 255,
 }

@@ -1,7 +1,9 @@
 //! Asks a flight controller what it is and how it is set, one question after the other.
 
 use super::observer::Observer;
+use crate::link::proto::fc_client::telemetry::code;
 use crate::link::proto::fc_client::{Answer, Ask, Unanswered};
+use crate::session::upload::LIST;
 
 /// What is asked after each connection, in this order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,19 +50,26 @@ const BETAFLIGHT: &[u8] = b"BTFL";
 
 impl Question {
     pub(super) fn ask(self) -> Ask {
-        let code = match self {
-            Self::ApiVersion => 1,
-            Self::Variant => 2,
-            Self::Version => 3,
-            Self::Board => 4,
-            Self::Build => 5,
-            Self::Boxes => 119,
-            Self::ModeRanges => 34,
-            Self::ModeLinks => 238,
-            Self::Settings(part) => return Ask::Line(format!("get {part}")),
-            Self::Plan => return Ask::Line("waypoint list".to_owned()),
-        };
-        Ask::Msp { code, payload: Vec::new() }
+        match (self.code(), self) {
+            (Some(code), _) => Ask::Msp { code, payload: Vec::new() },
+            (None, Self::Settings(part)) => Ask::Line(format!("get {part}")),
+            (None, _) => Ask::Line(LIST.to_owned()),
+        }
+    }
+
+    /// The code of the message; `None` for a line.
+    pub(super) fn code(self) -> Option<u16> {
+        Some(match self {
+            Self::ApiVersion => code::API_VERSION,
+            Self::Variant => code::FC_VARIANT,
+            Self::Version => code::FC_VERSION,
+            Self::Board => code::BOARD_INFO,
+            Self::Build => code::BUILD_INFO,
+            Self::Boxes => code::BOX_IDS,
+            Self::ModeRanges => code::MODE_RANGES,
+            Self::ModeLinks => code::MODE_RANGES_EXTRA,
+            Self::Settings(_) | Self::Plan => return None,
+        })
     }
 }
 

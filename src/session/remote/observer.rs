@@ -1,56 +1,58 @@
-//! What a remote flight controller has told of itself.
+//! What a remote flight controller has told of itself, and what follows from it.
+
+mod events;
+mod mission;
+mod settings;
 
 use super::identify::Question;
-use crate::firmware::cli::{CliReply, Interpreter};
-use crate::firmware::config::Configuration;
-use crate::firmware::{Firmware, FirmwareOptions};
+use crate::firmware::cli::CliReply;
+use crate::geo::LocalFrame;
 use crate::link::proto::fc_client::Answer;
+use crate::link::proto::fc_client::telemetry::{
+    ApiVersion, BoardInfo, BuildInfo, Mission, Observation, Origin, version,
+};
 use crate::plan::FlightPlan;
 use crate::session::upload::plan_of_list;
-use crate::telemetry::snapshot::SettingsView;
+use crate::telemetry::Mode;
 use crate::vehicle::{RemoteController, RemoteTelemetry};
-
-/// A setting that firmware has whose waypoints count from home; that of the others counts from sea level.
-const COUNTS_FROM_HOME: &str = "ap_velocity_p";
+use events::EventObserver;
+use settings::Settings;
 
 /// What is known of a flight controller.
 #[derive(Debug, Default)]
 pub struct Observer {
+    identity: Identity,
+    observation: Observation,
     settings: Settings,
+    /// As it holds it.
     stored_plan: Option<FlightPlan>,
+    mission: Option<Mission>,
+    /// Where the craft was first seen, when no world says where it stood.
+    first_fix: Option<Origin>,
+    events: EventObserver,
     /// Something new is known.
     changed: bool,
 }
 
-/// The settings that were read, taken over by a firmware that says what follows from them.
-#[derive(Debug, Default)]
-struct Settings {
-    twin: Option<Box<Firmware>>,
-    waypoints_from_home: bool,
-}
-
-impl Settings {
-    /// Takes in what `get` prints.
-    fn read(&mut self, text: &str) {
-        let twin = self.twin.get_or_insert_with(|| {
-            Box::new(Firmware::new(Configuration::default(), FirmwareOptions::default()))
-        });
-        for line in text.lines().map(str::trim) {
-            let Some((name, value)) = line.split_once(" = ") else { continue };
-            self.waypoints_from_home |= name == COUNTS_FROM_HOME;
-            // What this program does not know or allow has no effect on what is shown.
-            twin.run_cli(&mut Interpreter::default(), &format!("set {name} = {value}"));
-        }
-    }
-
-    fn view(&self) -> Option<SettingsView> {
-        self.twin.as_ref().map(|twin| twin.settings_view())
-    }
+/// What it is.
+#[derive(Debug, Clone, Default)]
+struct Identity {
+    api: Option<ApiVersion>,
+    version: Option<String>,
+    board: Option<BoardInfo>,
+    build: Option<BuildInfo>,
 }
 
 impl Observer {
-    /// The connection is gone: what was told is old.
+    /// The connection is gone: what was told is old. What it was set to and where it was seen first may still hold.
     pub(super) fn forget(&mut self) {
+        self.observation = Observation::default();
+        self.mission = None;
+        self.changed = true;
+    }
+
+    /// It started anew, so that nothing of before counts.
+    pub(super) fn restarted(&mut self) {
         *self = Self { changed: true, ..Self::default() };
     }
 
@@ -58,40 +60,118 @@ impl Observer {
     pub(super) fn learn(&mut self, question: Question, answer: &Answer) {
         self.changed = true;
         match (question, answer) {
+            (Question::ApiVersion, Answer::Msp(Some(payload))) => {
+                self.identity.api = ApiVersion::decode(payload);
+            }
+            (Question::Version, Answer::Msp(Some(payload))) => self.identity.version = version(payload),
+            (Question::Board, Answer::Msp(Some(payload))) => self.identity.board = BoardInfo::decode(payload),
+            (Question::Build, Answer::Msp(Some(payload))) => self.identity.build = BuildInfo::decode(payload),
             (Question::Settings(_), Answer::Line { text, failed: false, .. }) => self.settings.read(text),
             (Question::Plan, Answer::Line { text, failed, .. }) => {
                 let reply = CliReply { text: text.clone(), failed: *failed, ..CliReply::default() };
                 self.stored_plan = plan_of_list(&reply).ok();
             }
+            (_, Answer::Msp(Some(payload))) => {
+                if let Some(code) = question.code() {
+                    self.observation.take(code, payload);
+                }
+            }
             _ => {}
         }
     }
 
-    /// Delivers what is new.
-    pub(super) fn deliver(&mut self, mailbox: &mut RemoteController) {
-        if std::mem::take(&mut self.changed) {
-            mailbox.deliver_telemetry(RemoteTelemetry {
-                settings: self.settings.view(),
-                stored_plan: self.stored_plan.clone(),
-                ..RemoteTelemetry::default()
-            });
+    /// Takes in the reply to a message that was polled.
+    pub(super) fn take_message(&mut self, code: u16, payload: &[u8]) {
+        self.changed |= self.observation.take(code, payload);
+        if self.first_fix.is_none()
+            && let Some(gps) = self.observation.gps().filter(|gps| gps.fix)
+        {
+            self.first_fix = Some(Origin { position: gps.position, alt_amsl_m: gps.alt_amsl_m });
         }
+    }
+
+    /// Takes in the output of `waypoint status`.
+    pub(super) fn take_mission(&mut self, output: &str) {
+        if let Some(mission) = Mission::parse(output) {
+            self.mission = Some(mission);
+            self.changed = true;
+        }
+    }
+
+    /// Delivers what is new: telemetry, and the events that it shows. `frame` is that of the boot place, when there is a
+    /// world.
+    pub(super) fn deliver(&mut self, mailbox: &mut RemoteController, frame: Option<&LocalFrame>) {
+        if !std::mem::take(&mut self.changed) {
+            return;
+        }
+        let origin = frame.map(origin_of).or(self.first_fix);
+        let stored_plan = self.stored_plan.clone().map(|plan| self.above_home(plan, origin));
+        let craft = self.observation.craft_view();
+        let engaged = self.observation.is_active(Mode::Autopilot);
+        let told = self.mission.as_ref().map(|told| mission::nav(told, engaged, stored_plan.as_ref()));
+        for event in self.events.follow(&craft, told.as_ref(), stored_plan.as_ref()) {
+            mailbox.deliver_event(event);
+        }
+        mailbox.deliver_telemetry(RemoteTelemetry {
+            estimate: self.observation.estimate_view(origin),
+            craft,
+            nav: told.map(|nav| self.events.completed(nav)),
+            settings: self.settings.view(),
+            stored_plan,
+            last_disarm: self.events.last_disarm(),
+        });
+    }
+
+    /// A plan as everything here has it: altitudes above home.
+    fn above_home(&self, mut plan: FlightPlan, origin: Option<Origin>) -> FlightPlan {
+        if let Some(origin) = origin
+            && !self.counts_from_home()
+        {
+            let home_cm = (origin.alt_amsl_m * 100.0).round() as i32;
+            for waypoint in &mut plan.waypoints {
+                waypoint.alt_cm = waypoint.alt_cm.saturating_sub(home_cm);
+            }
+        }
+        plan
     }
 
     /// Whether its waypoints' altitudes count from home; else from sea level.
     #[must_use]
     pub fn counts_from_home(&self) -> bool {
-        self.settings.waypoints_from_home
+        self.settings.waypoints_from_home()
+    }
+
+    /// Whether it holds and flies plans, as far as it has told.
+    #[must_use]
+    pub fn has_plans(&self) -> bool {
+        let built_in = self.identity.build.as_ref().and_then(BuildInfo::has_flight_plan);
+        self.stored_plan.is_some() || built_in == Some(true)
     }
 
     /// Whether it is known to be armed.
     #[must_use]
     pub fn is_armed(&self) -> bool {
-        false
+        self.observation.armed() == Some(true)
     }
 
     /// What it is, as a sentence.
     pub(super) fn introduction(&self, name: &str) -> String {
-        format!("{name} answers.")
+        let Identity { api, version, board, .. } = &self.identity;
+        let version = version.as_deref().unwrap_or("of an unknown version");
+        let board = board
+            .as_ref()
+            .map_or("an unknown board", |board| board.target.as_deref().unwrap_or(&board.identifier));
+        let api = api.map_or_else(String::new, |api| format!(", MSP {}.{}", api.major, api.minor));
+        let plans = match (self.has_plans(), self.counts_from_home()) {
+            (false, _) => "it has no waypoints",
+            (true, true) => "its waypoints' altitudes count from home",
+            (true, false) => "its waypoints' altitudes count from sea level and are converted",
+        };
+        format!("{name} answers: Betaflight {version} on {board}{api}; {plans}.")
     }
+}
+
+fn origin_of(frame: &LocalFrame) -> Origin {
+    let (lat_deg, lon_deg, alt_amsl_m) = frame.to_geodetic(nalgebra::Vector3::zeros());
+    Origin { position: crate::geo::LatLon::from_degrees(lat_deg, lon_deg), alt_amsl_m }
 }

@@ -1,0 +1,120 @@
+//! Opens the link to a firmware outside, and starts its program.
+#![allow(clippy::disallowed_methods, reason = "a program is started and spoken with in wall time")]
+
+use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener, UdpSocket};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use tempfile::TempDir;
+
+use super::RemoteFirmware;
+use crate::app::AppError;
+use crate::args::UdpPorts;
+use crate::link::proto::sitl_feed::FeedConfig;
+use crate::link::{ChildConfig, FcPlace, FcStream, SitlChild, SitlPeer, SitlPorts};
+use crate::session::{RemoteEnds, RemoteLink};
+use crate::vehicle::Vehicle;
+
+/// Where a firmware keeps its configuration below the state directory: not where ours is, which it would overwrite.
+const DIRECTORY: &str = "firmware";
+/// The file in which it keeps it.
+const STORED: &str = "eeprom.bin";
+
+/// An open link.
+#[derive(Debug)]
+pub(in crate::app) struct OpenLink {
+    /// The link, for the session or the flight.
+    pub(in crate::app) link: RemoteLink,
+    /// It starts without a configuration of its own.
+    pub(in crate::app) is_fresh: bool,
+    /// Where it keeps its configuration, when it was started here.
+    pub(in crate::app) stored_in: Option<PathBuf>,
+    /// Its directory, when it lasts as long as this program.
+    pub(in crate::app) directory: Option<TempDir>,
+}
+
+impl OpenLink {
+    /// Where the firmware keeps its configuration, as a sentence.
+    pub(in crate::app) fn notice(&self) -> Option<String> {
+        let place = self.stored_in.as_ref()?.display();
+        Some(match (&self.directory, self.is_fresh) {
+            (Some(_), _) => "The firmware starts without a configuration, and what it saves lasts as long as this program.".to_owned(),
+            (None, true) => format!("The firmware starts without a configuration; it keeps the one that it saves in {place}."),
+            (None, false) => format!("The firmware starts with the configuration that it keeps in {place}."),
+        })
+    }
+}
+
+/// Starts the program, or finds the one that runs, for `vehicle`, which its motors fly. Without a state directory it runs
+/// in one that ends with this program.
+///
+/// To be called on a tokio runtime.
+///
+/// # Errors
+/// When a port is not free, or the system starts nothing.
+pub(in crate::app) fn open(
+    firmware: &RemoteFirmware,
+    vehicle: &Vehicle,
+    state: Option<&Path>,
+) -> Result<OpenLink, AppError> {
+    let ip = IpAddr::V4(Ipv4Addr::LOCALHOST);
+    let ports = firmware.ports;
+    let UdpPorts { raw, motors, fdm, rc } = ports.udp;
+    let home = vehicle.local_frame().map(|frame| frame.to_geodetic(nalgebra::Vector3::zeros()));
+    let feed = FeedConfig {
+        dialect: ports.dialect,
+        stamps: firmware.stamps,
+        motor_order: ports.motor_order,
+        home: home.ok_or_else(|| AppError::internal("a firmware outside needs the embedded physics"))?,
+    };
+    let is_running = firmware.executable.is_none();
+    let now = Instant::now();
+    let peer = SitlPeer::open(feed, SitlPorts { ip, raw, motors, fdm, rc }, is_running, now)
+        .map_err(|error| AppError::environment(error.to_string()))?;
+    let (mut directory, mut is_fresh, mut child, mut stored_in) = (None, false, None, None);
+    if let Some(program) = &firmware.executable {
+        check_free(SocketAddr::new(ip, ports.tcp), &[fdm, rc])?;
+        let place = match state {
+            Some(state) => state.join(DIRECTORY),
+            None => {
+                let temporary = TempDir::with_prefix("betadeck-firmware-").map_err(|error| {
+                    AppError::environment(format!("cannot make a directory for the firmware: {error}"))
+                })?;
+                directory.insert(temporary).path().to_owned()
+            }
+        };
+        is_fresh = !place.join(STORED).exists();
+        stored_in = Some(place.clone());
+        child = Some(start(program.clone(), firmware.arguments.clone(), place)?);
+    }
+    let name = firmware.executable.as_ref().and_then(|program| program.file_name()).map_or_else(
+        || format!("the firmware at port {}", ports.tcp),
+        |name| name.to_string_lossy().into_owned(),
+    );
+    let stream = FcStream::open(FcPlace::Tcp { host: ip.to_string(), port: ports.tcp });
+    let ends = RemoteEnds { name, stream, peer: Some(peer), child };
+    Ok(OpenLink { link: RemoteLink::new(ends, now), is_fresh, stored_in, directory })
+}
+
+fn start(program: PathBuf, arguments: Vec<String>, directory: PathBuf) -> Result<SitlChild, AppError> {
+    let launcher = std::env::current_exe()
+        .map_err(|error| AppError::environment(format!("cannot find this program: {error}")))?;
+    SitlChild::start(ChildConfig { program, arguments, directory, launcher })
+        .map_err(|error| AppError::environment(format!("cannot start a thread: {error}")))
+}
+
+/// The executable carries on without a port that is not free, and nobody would know why it hears nothing.
+fn check_free(tcp: SocketAddr, udp: &[u16]) -> Result<(), AppError> {
+    let taken = |port: String, option: &str, error: std::io::Error| {
+        AppError::environment(format!(
+            "the firmware cannot have {port}: {error}; end what holds it (another SITL, another betadeck), or start the \
+             firmware on other ports and name them with {option}"
+        ))
+    };
+    TcpListener::bind(tcp).map_err(|error| taken(format!("TCP port {}", tcp.port()), "--tcp-port", error))?;
+    for &port in udp {
+        UdpSocket::bind((tcp.ip(), port))
+            .map_err(|error| taken(format!("UDP port {port}"), "--udp-ports", error))?;
+    }
+    Ok(())
+}

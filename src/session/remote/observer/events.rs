@@ -1,0 +1,239 @@
+//! What happened in a remote flight controller, seen by comparing what it tells with what it told before.
+
+use crate::geo::LatLon;
+use crate::plan::FlightPlan;
+use crate::telemetry::snapshot::CraftView;
+use crate::telemetry::{
+    DisarmReason, FirmwareEvent, Mode, ModeFlags, NavEvent, NavState, NavTelemetry, PlanSource,
+    TransitionReason,
+};
+
+/// What was told last.
+#[derive(Debug, Default)]
+pub(super) struct EventObserver {
+    fix: bool,
+    armed: bool,
+    modes: ModeFlags,
+    rc_link: Option<bool>,
+    state: NavState,
+    wp: u8,
+    last_disarm: Option<DisarmReason>,
+}
+
+impl EventObserver {
+    /// What happened, now that this is told.
+    pub(super) fn follow(
+        &mut self,
+        craft: &CraftView,
+        nav: Option<&NavTelemetry>,
+        plan: Option<&FlightPlan>,
+    ) -> Vec<FirmwareEvent> {
+        let mut events = Vec::new();
+        if let Some(fix) = craft.gps_fix
+            && std::mem::replace(&mut self.fix, fix) != fix
+        {
+            let sats = craft.sats.unwrap_or_default();
+            events.push(if fix { FirmwareEvent::GpsFix { sats } } else { FirmwareEvent::GpsLost { sats } });
+        }
+        if let Some(armed) = craft.armed
+            && std::mem::replace(&mut self.armed, armed) != armed
+        {
+            if armed {
+                self.last_disarm = None;
+                events.push(FirmwareEvent::Armed);
+            } else {
+                self.disarm(craft, plan, &mut events);
+            }
+        }
+        if let Some(modes) = craft.modes
+            && std::mem::replace(&mut self.modes, modes) != modes
+        {
+            events.push(FirmwareEvent::Mode(modes));
+        }
+        if let Some(link) = craft.rc_link {
+            match self.rc_link.replace(link) {
+                Some(true) if !link => events.push(FirmwareEvent::RxLoss),
+                Some(false) if link => events.push(FirmwareEvent::RxRecovered),
+                _ => {}
+            }
+        }
+        if let Some(nav) = nav.filter(|_| self.armed) {
+            self.navigate(nav, plan, &mut events);
+        }
+        events
+    }
+
+    /// Why it was disarmed last, as far as can be told.
+    pub(super) fn last_disarm(&self) -> Option<DisarmReason> {
+        self.last_disarm
+    }
+
+    /// A disarmed flight controller tells of no mission any more: one that ended by its landing stays complete.
+    pub(super) fn completed(&self, nav: NavTelemetry) -> NavTelemetry {
+        if self.armed || self.state != NavState::Complete {
+            return nav;
+        }
+        NavTelemetry { state: NavState::Complete, wp: self.wp, next_wp: self.wp, ..nav }
+    }
+
+    fn disarm(&mut self, craft: &CraftView, plan: Option<&FlightPlan>, events: &mut Vec<FirmwareEvent>) {
+        let reason = match self.state {
+            // Its own touchdown disarms it; that is the end of the mission.
+            NavState::Landing => {
+                self.enter(NavState::Complete, self.wp, TransitionReason::Touchdown, plan, events);
+                DisarmReason::Landing
+            }
+            state => {
+                if !matches!(state, NavState::Idle | NavState::Complete) {
+                    self.enter(NavState::Idle, self.wp, TransitionReason::Disarm, plan, events);
+                }
+                match craft.channels {
+                    _ if craft.is_active(Mode::Failsafe) => DisarmReason::Failsafe,
+                    Some(_) if !craft.is_switched_on(Mode::Arm) => DisarmReason::Switch,
+                    _ => DisarmReason::Unknown,
+                }
+            }
+        };
+        self.last_disarm = Some(reason);
+        events.push(FirmwareEvent::Disarmed(reason));
+    }
+
+    fn navigate(&mut self, nav: &NavTelemetry, plan: Option<&FlightPlan>, events: &mut Vec<FirmwareEvent>) {
+        let (from, wp) = (self.state, self.wp);
+        if (nav.state, nav.wp) == (from, wp) {
+            return;
+        }
+        let starts = matches!(from, NavState::Idle | NavState::Complete) && nav.state != NavState::Idle;
+        if starts {
+            if let Some(plan) = plan {
+                let plan = Box::new(plan.clone());
+                events.push(FirmwareEvent::Nav(NavEvent::Plan { source: PlanSource::Stored, plan }));
+            }
+            self.enter(NavState::Approaching, nav.wp, TransitionReason::Reset, plan, events);
+        } else if nav.wp != wp && from == NavState::Approaching && nav.state != NavState::Idle {
+            self.enter(NavState::Arrived, wp, TransitionReason::Arrival, plan, events);
+        }
+        if nav.wp != self.wp && nav.state != NavState::Idle {
+            self.enter(NavState::Approaching, nav.wp, TransitionReason::Advance, plan, events);
+        }
+        if nav.state != self.state {
+            let reason = match nav.state {
+                NavState::Idle => nav.reason.unwrap_or(TransitionReason::Disengage),
+                NavState::Approaching | NavState::Complete => TransitionReason::Advance,
+                NavState::Arrived => TransitionReason::Arrival,
+                NavState::Holding => TransitionReason::Hold,
+                NavState::Orbiting | NavState::Figure8 => TransitionReason::Pattern,
+                NavState::Landing => TransitionReason::Land,
+            };
+            self.enter(nav.state, nav.wp, reason, plan, events);
+        }
+    }
+
+    fn enter(
+        &mut self,
+        to: NavState,
+        wp: u8,
+        reason: TransitionReason,
+        plan: Option<&FlightPlan>,
+        events: &mut Vec<FirmwareEvent>,
+    ) {
+        let waypoint = plan.and_then(|plan| plan.waypoints.get(usize::from(wp)));
+        events.push(FirmwareEvent::Nav(NavEvent::State {
+            from: self.state,
+            to,
+            wp,
+            kind: waypoint.map(|waypoint| waypoint.kind),
+            reason,
+            guard: None,
+            target: waypoint.map_or_else(LatLon::default, |waypoint| waypoint.position),
+            target_alt_m: waypoint.map_or(0.0, |waypoint| f64::from(waypoint.alt_cm) / 100.0),
+        }));
+        (self.state, self.wp) = (to, wp);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::builtin::BuiltinPlan;
+
+    /// A flight as its telemetry shows it: armed, state, waypoint; what happened, in words.
+    fn told(steps: &[(bool, NavState, u8)]) -> (Vec<String>, EventObserver) {
+        let plan = BuiltinPlan::find("square").unwrap().read().unwrap().plan;
+        let mut observer = EventObserver::default();
+        let mut words = Vec::new();
+        for &(armed, state, wp) in steps {
+            let craft = CraftView { armed: Some(armed), ..CraftView::default() };
+            let nav = NavTelemetry { state, wp, ..NavTelemetry::default() };
+            for event in observer.follow(&craft, Some(&nav), Some(&plan)) {
+                words.push(match event {
+                    FirmwareEvent::Nav(NavEvent::State { from, to, wp, reason, target_alt_m, .. }) => {
+                        assert!(target_alt_m > 0.0 || to == NavState::Landing || to == NavState::Complete);
+                        format!("{from} {to} {wp} {reason}")
+                    }
+                    FirmwareEvent::Nav(NavEvent::Plan { .. }) => "plan".to_owned(),
+                    FirmwareEvent::Armed => "armed".to_owned(),
+                    FirmwareEvent::Disarmed(reason) => format!("disarmed {reason}"),
+                    other => format!("{other:?}"),
+                });
+            }
+        }
+        (words, observer)
+    }
+
+    #[test]
+    fn a_mission_is_followed_from_waypoint_to_waypoint() {
+        use NavState::{Approaching, Complete, Idle};
+        let (words, _) = told(&[
+            (true, Idle, 0),
+            (true, Approaching, 0),
+            (true, Approaching, 0),
+            (true, Approaching, 1),
+            (true, Complete, 1),
+            (true, Idle, 0),
+        ]);
+        let expected = [
+            "armed",
+            "plan",
+            "IDLE APPROACHING 0 reset",
+            "APPROACHING ARRIVED 0 arrival",
+            "ARRIVED APPROACHING 1 advance",
+            "APPROACHING COMPLETE 1 advance",
+            "COMPLETE IDLE 0 disengage",
+        ];
+        assert_eq!(words, expected);
+    }
+
+    #[test]
+    fn a_hold_and_a_landing_that_disarms_are_the_end_of_the_mission() {
+        use NavState::{Approaching, Complete, Holding, Idle, Landing};
+        let (words, observer) = told(&[
+            (true, Approaching, 2),
+            (true, Holding, 2),
+            (true, Approaching, 3),
+            (true, Landing, 3),
+            (false, Landing, 3),
+            (false, Idle, 0),
+        ]);
+        let expected = [
+            "armed",
+            "plan",
+            "IDLE APPROACHING 2 reset",
+            "APPROACHING HOLDING 2 hold",
+            "HOLDING APPROACHING 3 advance",
+            "APPROACHING LANDING 3 land",
+            "LANDING COMPLETE 3 touchdown",
+            "disarmed LANDING",
+        ];
+        assert_eq!(words, expected);
+        let nav = observer.completed(NavTelemetry::default());
+        assert_eq!((nav.state, nav.wp), (Complete, 3));
+        assert_eq!(observer.last_disarm(), Some(DisarmReason::Landing));
+    }
+
+    #[test]
+    fn a_craft_that_disarms_in_flight_ends_its_mission_without_a_reason_that_nobody_told() {
+        let (words, _) = told(&[(true, NavState::Approaching, 0), (false, NavState::Approaching, 0)]);
+        assert_eq!(words[3..], ["APPROACHING IDLE 0 disarm", "disarmed UNKNOWN"]);
+    }
+}

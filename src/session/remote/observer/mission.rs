@@ -1,0 +1,46 @@
+//! The navigator of a remote flight controller, as its `waypoint status` shows it.
+
+use crate::link::proto::fc_client::telemetry::{Mission, MissionPhase};
+use crate::plan::{FlightPlan, HoldPattern};
+use crate::telemetry::{NavState, NavTelemetry, TransitionReason};
+
+/// What a status shows of the navigator; `engaged` is whether the mode is active.
+pub(super) fn nav(mission: &Mission, engaged: bool, plan: Option<&FlightPlan>) -> NavTelemetry {
+    let wp = mission.waypoint.unwrap_or_default();
+    let planned = plan.and_then(|plan| plan.waypoints.get(usize::from(wp)));
+    let (state, reason) = match &mission.phase {
+        Some(MissionPhase::Flying(NavState::Holding)) => {
+            (holding(planned.map(|waypoint| waypoint.pattern)), None)
+        }
+        Some(MissionPhase::Flying(state)) => (*state, None),
+        Some(MissionPhase::Aborted { .. }) => {
+            (NavState::Idle, mission.abort_reason().map(TransitionReason::GivenUp))
+        }
+        Some(MissionPhase::Inactive { .. }) | None => (NavState::Idle, None),
+    };
+    // In a landing they are of something else.
+    let is_under_way = state != NavState::Idle && state != NavState::Landing;
+    let count = mission.count.or_else(|| plan.and_then(|plan| u8::try_from(plan.waypoints.len()).ok()));
+    NavTelemetry {
+        state,
+        engaged: engaged && state != NavState::Idle,
+        reason,
+        wp,
+        next_wp: wp,
+        count: count.unwrap_or_default(),
+        kind: planned.map(|waypoint| waypoint.kind),
+        distance_m: mission.distance_m.filter(|_| is_under_way),
+        bearing_rad: mission.bearing_deg.map(f64::to_radians).filter(|_| is_under_way),
+        eta_s: mission.eta_s.filter(|_| is_under_way),
+        ..NavTelemetry::default()
+    }
+}
+
+/// Firmware that has one word for all holds: the plan says which.
+fn holding(pattern: Option<HoldPattern>) -> NavState {
+    match pattern {
+        Some(HoldPattern::Orbit) => NavState::Orbiting,
+        Some(HoldPattern::Figure8) => NavState::Figure8,
+        Some(HoldPattern::None) | None => NavState::Holding,
+    }
+}

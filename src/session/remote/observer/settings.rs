@@ -1,0 +1,56 @@
+//! The settings of a remote flight controller, as far as they were read.
+
+use crate::firmware::cli::Interpreter;
+use crate::firmware::config::Configuration;
+use crate::firmware::{Firmware, FirmwareOptions};
+use crate::link::proto::fc_client::telemetry::settings;
+use crate::telemetry::snapshot::SettingsView;
+
+/// A setting of firmware whose waypoints count from home; those of the others count from sea level.
+const COUNTS_FROM_HOME: &str = "ap_velocity_p";
+
+/// The settings that were read. A firmware of this program that is set like it says what follows from them.
+#[derive(Debug, Default)]
+pub(super) struct Settings {
+    twin: Option<Box<Firmware>>,
+    waypoints_from_home: bool,
+}
+
+impl Settings {
+    /// Takes in what `get` prints. What this program does not know or allow has no effect on what is shown.
+    pub(super) fn read(&mut self, output: &str) {
+        let twin = self.twin.get_or_insert_with(|| {
+            Box::new(Firmware::new(Configuration::default(), FirmwareOptions::default()))
+        });
+        for (name, value) in settings(output) {
+            self.waypoints_from_home |= name == COUNTS_FROM_HOME;
+            twin.run_cli(&mut Interpreter::default(), &format!("set {name} = {value}"));
+        }
+    }
+
+    pub(super) fn view(&self) -> Option<SettingsView> {
+        self.twin.as_ref().map(|twin| twin.settings_view())
+    }
+
+    pub(super) fn waypoints_from_home(&self) -> bool {
+        self.waypoints_from_home
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_read_is_shown_and_the_rest_is_as_usual() {
+        let mut read = Settings::default();
+        assert!(read.view().is_none());
+        read.read(
+            "ap_waypoint_arrival_radius = 700\r\nAllowed range: 100 - 10000\r\n\r\nap_new_thing = 5\r\n",
+        );
+        let view = read.view().unwrap();
+        assert!((view.arrival_radius_m - 7.0).abs() < 1e-9 && !read.waypoints_from_home());
+        read.read("ap_velocity_p = 30\r\n");
+        assert!(read.waypoints_from_home());
+    }
+}
