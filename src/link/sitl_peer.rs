@@ -90,6 +90,9 @@ impl SitlPeer {
 
     /// The executable ended, or is about to: nothing is sent before it has booted again.
     pub fn went_down(&mut self) {
+        // What it sent last is no sign of the next one's boot.
+        discard(&self.motors);
+        discard(&self.raw);
         self.feed.restart();
         self.is_up = false;
     }
@@ -140,11 +143,7 @@ impl SitlPeer {
                 None => self.stats.wrong_size(),
             }
         }
-        for _ in 0..QUEUED_MAX {
-            if self.raw.recv(&mut buffer).is_err() {
-                break;
-            }
-        }
+        discard(&self.raw);
         newest
     }
 
@@ -174,6 +173,16 @@ impl SitlPeer {
 
     fn micros(&self, now: Instant) -> u64 {
         now.saturating_duration_since(self.started).as_micros() as u64
+    }
+}
+
+/// Drops what waits in a socket.
+fn discard(socket: &UdpSocket) {
+    let mut buffer = [0; BUFFER];
+    for _ in 0..QUEUED_MAX {
+        if socket.recv(&mut buffer).is_err() {
+            break;
+        }
     }
 }
 

@@ -8,7 +8,9 @@
     reason = "other processes live by the wall clock"
 )]
 
+mod child;
 mod feed;
 mod rules;
+mod sockets;
 mod stand_in;
 mod wire;

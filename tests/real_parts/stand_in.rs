@@ -1,4 +1,84 @@
-//! A stand-in for the public executable.
+//! A stand-in for the public executable: what was measured of it, and its faults. One TCP client, a command line that is
+//! left open to the next, a clock that follows the stamps, a start that a state too early does not survive, and a `save`
+//! that ends the program. It flies nothing: its motors stand still.
 
+pub(crate) mod cli;
+pub(crate) mod msp;
 pub(crate) mod packet;
+pub(crate) mod process;
+pub(crate) mod program;
 pub(crate) mod receiver;
+pub(crate) mod serial;
+
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use std::thread::JoinHandle;
+
+use cli::Memory;
+use program::{End, Ports, Shared, Sockets, live};
+use receiver::Seen;
+
+/// One that runs in this process, as if somebody else had started it, and is started again when it reboots.
+pub(crate) struct StandIn {
+    pub(crate) ports: Ports,
+    shared: Arc<Shared>,
+    thread: Option<JoinHandle<Vec<End>>>,
+}
+
+impl StandIn {
+    /// Starts it; its motors go to these ports of the other side.
+    pub(crate) fn start(raw: u16, motors: u16) -> Self {
+        let sockets = Sockets::bind(Ports { raw, motors, fdm: 0, rc: 0, tcp: 0 }).unwrap();
+        let (ports, shared) = (sockets.ports(), Arc::new(Shared::default()));
+        let seen = Arc::clone(&shared);
+        let thread = std::thread::spawn(move || {
+            let (mut memory, mut ends) = (Memory::new(), Vec::new());
+            while ends.last() != Some(&End::Stopped) {
+                // The first one has booted long ago.
+                ends.push(live(&sockets, &mut memory, !ends.is_empty(), &seen));
+            }
+            ends
+        });
+        Self { ports, shared, thread: Some(thread) }
+    }
+
+    /// What it has seen of the other side since it booted.
+    pub(crate) fn seen(&self) -> Seen {
+        *self.shared.seen.lock().unwrap()
+    }
+
+    /// How far its clock is from the wall's, µs.
+    pub(crate) fn clock_error_us(&self) -> f64 {
+        *self.shared.clock_error_us.lock().unwrap()
+    }
+
+    /// Stands still, or goes on.
+    pub(crate) fn hang(&self, hangs: bool) {
+        self.shared.hangs.store(hangs, Ordering::Relaxed);
+    }
+
+    /// Ends it and tells how its lives ended.
+    pub(crate) fn stop(mut self) -> Vec<End> {
+        self.shared.stop.store(true, Ordering::Relaxed);
+        self.thread.take().unwrap().join().unwrap()
+    }
+}
+
+impl Drop for StandIn {
+    fn drop(&mut self) {
+        self.shared.stop.store(true, Ordering::Relaxed);
+        if let Some(thread) = self.thread.take() {
+            // A test that failed has told why.
+            drop(thread.join());
+        }
+    }
+}
+
+/// Ports that were free a moment ago.
+pub(crate) fn free_ports() -> Ports {
+    let udp: [std::net::UdpSocket; 4] =
+        std::array::from_fn(|_| std::net::UdpSocket::bind("127.0.0.1:0").unwrap());
+    let [raw, motors, fdm, rc] = udp.map(|socket| socket.local_addr().unwrap().port());
+    let tcp = std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+    Ports { raw, motors, fdm, rc, tcp }
+}

@@ -1,0 +1,113 @@
+//! The link to an executable over real sockets, with the stand-in at the other end (L-9).
+
+use std::net::{IpAddr, Ipv4Addr, UdpSocket};
+use std::time::{Duration, Instant};
+
+use betadeck::link::proto::sitl_feed::{FeedConfig, FeedState};
+use betadeck::link::{SitlPeer, SitlPorts};
+use betadeck::signals::fdm::{Dialect, MotorOrder, Stamps};
+use betadeck::signals::{RcFrame, SensorFrame, SimTime};
+
+use super::stand_in::program::{End, Ports};
+use super::stand_in::{StandIn, free_ports};
+
+const HOME: (f64, f64, f64) = (40.4635, -79.5182, 300.0);
+
+fn open(ports: Ports, is_up: bool) -> SitlPeer {
+    let config = FeedConfig {
+        dialect: Dialect::SitlGz,
+        stamps: Stamps::Constant,
+        motor_order: MotorOrder::Native,
+        home: HOME,
+    };
+    let Ports { raw, motors, fdm, rc, .. } = ports;
+    let ports = SitlPorts { ip: IpAddr::V4(Ipv4Addr::LOCALHOST), raw, motors, fdm, rc };
+    SitlPeer::open(config, ports, is_up, Instant::now()).unwrap()
+}
+
+/// Feeds for a while, a thousand packets a second as far as the machine keeps up, and fifty of RC.
+fn feed(peer: &mut SitlPeer, seconds: f64) -> u64 {
+    let start = Instant::now();
+    let mut sent = 0_u64;
+    while start.elapsed().as_secs_f64() < seconds {
+        let now = Instant::now();
+        let at = SimTime((now - start).as_micros() as u64);
+        peer.send_state(&SensorFrame { time: at, ..SensorFrame::default() }, now);
+        if sent.is_multiple_of(20) {
+            peer.send_rc(&RcFrame { channels: [1500; 16] }, now);
+        }
+        sent += 1;
+        std::thread::sleep(Duration::from_millis(1));
+        let _motors = peer.take_motors(Instant::now());
+    }
+    sent
+}
+
+/// Longest that a busy machine may need until a second comes in which it keeps up.
+const ROUNDS: u32 = 60;
+
+#[test]
+fn an_executable_is_answered_for_nearly_every_packet_and_its_clock_is_the_walls() {
+    let Ports { raw, motors, .. } = free_ports();
+    let stand_in = StandIn::start(raw, motors);
+    let mut peer = open(stand_in.ports, true);
+    let kept_up = (0..ROUNDS).any(|_| {
+        let before = stand_in.seen();
+        feed(&mut peer, 1.0);
+        let seen = stand_in.seen();
+        let (packets, answered) = (seen.packets - before.packets, seen.answered - before.answered);
+        packets > 100 && answered as f64 >= 0.95 * packets as f64
+    });
+    let seen = stand_in.seen();
+    assert!(kept_up, "{seen:?}");
+    assert_eq!((seen.other_stamps, seen.moved_before_answer), (0, 0), "{seen:?}");
+    assert!(stand_in.clock_error_us().abs() <= 50_000.0, "{}", stand_in.clock_error_us());
+    assert_eq!(peer.state(Instant::now()), FeedState::Answering);
+    assert_eq!(stand_in.stop(), [End::Stopped]);
+}
+
+#[test]
+fn a_silent_executable_is_told_and_found_again() {
+    let Ports { raw, motors, .. } = free_ports();
+    let stand_in = StandIn::start(raw, motors);
+    let mut peer = open(stand_in.ports, true);
+    let until = |peer: &mut SitlPeer, wanted: FeedState| {
+        assert!((0..ROUNDS).any(|_| {
+            feed(peer, 0.5);
+            peer.state(Instant::now()) == wanted
+        }));
+    };
+    until(&mut peer, FeedState::Answering);
+    stand_in.hang(true);
+    until(&mut peer, FeedState::Silent);
+    stand_in.hang(false);
+    until(&mut peer, FeedState::Answering);
+}
+
+#[test]
+fn an_executable_that_is_down_gets_no_state_before_it_is_up_again() {
+    let ports = free_ports();
+    let mut peer = open(ports, false);
+    let (fdm, rc) = (
+        UdpSocket::bind(("127.0.0.1", ports.fdm)).unwrap(),
+        UdpSocket::bind(("127.0.0.1", ports.rc)).unwrap(),
+    );
+    for socket in [&fdm, &rc] {
+        socket.set_nonblocking(true).unwrap();
+    }
+    let count = |socket: &UdpSocket| std::iter::from_fn(|| socket.recv(&mut [0; 512]).ok()).count();
+    assert!(feed(&mut peer, 0.1) > 1);
+    assert_eq!(count(&fdm), 0, "it has not booted: a state now may be its end");
+    assert!(count(&rc) > 0);
+    peer.came_up();
+    feed(&mut peer, 0.1);
+    assert!(count(&fdm) > 1);
+    // The last words of the old one are not the new one's boot.
+    fdm.send_to(&[0; 16], ("127.0.0.1", ports.motors)).unwrap();
+    peer.went_down();
+    feed(&mut peer, 0.1);
+    assert_eq!(count(&fdm), 0);
+    fdm.send_to(&[0; 16], ("127.0.0.1", ports.motors)).unwrap();
+    feed(&mut peer, 0.1);
+    assert!(count(&fdm) > 1, "a motor packet is the sign");
+}

@@ -1,0 +1,117 @@
+//! The stand-in as a process of its own: this test program starts itself, with a variable that says how it misbehaves.
+
+use std::process::ExitCode;
+use std::sync::atomic::Ordering;
+use std::time::Duration;
+
+use super::cli::{Done, Memory};
+use super::program::{End, Ports, Shared, Sockets, live};
+
+/// Ports, and what goes wrong, in the environment of the child. (Names of the program's own are not passed on to it.)
+pub(crate) const VARIABLE: &str = "STAND_IN";
+/// The test that is the child's program.
+const PROGRAM: &str = "stand_in::process::the_program";
+const IMAGE: &str = "eeprom.bin";
+
+/// What goes wrong with it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Trouble {
+    None,
+    /// Ends by a signal two seconds after it has booted.
+    Crashes,
+    /// Stands still two seconds after it has booted.
+    Hangs,
+    /// Binds nothing for three seconds.
+    StartsSlowly,
+    /// Takes no value.
+    RefusesSettings,
+    /// Prints a line, and runs.
+    IsNoSitl,
+}
+
+const TROUBLES: [(Trouble, &str); 6] = [
+    (Trouble::None, "none"),
+    (Trouble::Crashes, "crashes"),
+    (Trouble::Hangs, "hangs"),
+    (Trouble::StartsSlowly, "starts-slowly"),
+    (Trouble::RefusesSettings, "refuses-settings"),
+    (Trouble::IsNoSitl, "is-no-sitl"),
+];
+
+/// The value of [`VARIABLE`].
+pub(crate) fn variable(ports: Ports, trouble: Trouble) -> String {
+    let Ports { raw, motors, fdm, rc, tcp } = ports;
+    let name = TROUBLES.iter().find(|(other, _)| *other == trouble).unwrap().1;
+    format!("{raw},{motors},{fdm},{rc},{tcp},{name}")
+}
+
+/// The executable, and the arguments that make it the stand-in.
+pub(crate) fn command() -> (std::path::PathBuf, [&'static str; 4]) {
+    (std::env::current_exe().unwrap(), [PROGRAM, "--exact", "--ignored", "--nocapture"])
+}
+
+#[test]
+#[ignore = "it is the program of a child that other tests start"]
+fn the_program() {
+    let Ok(variable) = std::env::var(VARIABLE) else { return };
+    let code = run(&variable);
+    std::process::exit(i32::from(code != ExitCode::SUCCESS));
+}
+
+#[expect(clippy::print_stdout, reason = "it is what the program prints")]
+fn run(variable: &str) -> ExitCode {
+    let words: Vec<&str> = variable.split(',').collect();
+    let trouble = TROUBLES.iter().find(|(_, name)| *name == words[5]).unwrap().0;
+    let port = |at: usize| words[at].parse().unwrap();
+    let ports = Ports { raw: port(0), motors: port(1), fdm: port(2), rc: port(3), tcp: port(4) };
+    match trouble {
+        Trouble::StartsSlowly => std::thread::sleep(Duration::from_secs(3)),
+        Trouble::IsNoSitl => {
+            println!("what is this?");
+            std::thread::sleep(Duration::from_secs(3600));
+        }
+        _ => {}
+    }
+    println!("[SITL] The SITL will output to IP 127.0.0.1:{} (Gazebo)", ports.motors);
+    let sockets = match Sockets::bind(ports) {
+        Ok(sockets) => sockets,
+        Err(error) => {
+            println!("bind failed!! {error}");
+            return ExitCode::FAILURE;
+        }
+    };
+    let (mut memory, shared) = (stored(), Shared::default());
+    memory.refuses_settings = trouble == Trouble::RefusesSettings;
+    std::thread::scope(|scope| {
+        scope.spawn(|| {
+            std::thread::sleep(Duration::from_millis(2500));
+            match trouble {
+                Trouble::Crashes => std::process::abort(),
+                Trouble::Hangs => shared.hangs.store(true, Ordering::Relaxed),
+                _ => {}
+            }
+        });
+        match live(&sockets, &mut memory, true, &shared) {
+            End::Reboot => {
+                if let Done::Answered(lines) = memory.run("diff") {
+                    println!("[FLASH_ProgramWord]0x55577effc700 = 0042beb2");
+                    std::fs::write(IMAGE, lines).unwrap();
+                }
+                std::process::exit(0);
+            }
+            End::EarlyState => std::process::abort(),
+            End::Stopped => std::process::exit(0),
+        }
+    })
+}
+
+/// What it kept in its directory.
+fn stored() -> Memory {
+    let mut memory = Memory::new();
+    for line in std::fs::read_to_string(IMAGE).unwrap_or_default().lines() {
+        if !line.starts_with('#') {
+            drop(memory.run(line));
+        }
+    }
+    memory
+}
