@@ -9,7 +9,14 @@
 )]
 
 mod child;
+mod drop_in;
 mod feed;
+#[allow(dead_code, reason = "shared with the tests of the doors")]
+#[path = "../doors/msp.rs"]
+mod msp;
+#[allow(dead_code, reason = "shared with the tests of the doors")]
+#[path = "../doors/program.rs"]
+mod program;
 mod rules;
 mod sockets;
 mod stand_in;
