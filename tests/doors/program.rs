@@ -141,7 +141,7 @@ impl Serve {
 
 /// `betadeck sitl` with its doors on ports of the system's choice.
 pub(crate) struct Sitl {
-    program: Program,
+    pub(crate) program: Program,
     pub(crate) fdm: SocketAddr,
     pub(crate) rc: SocketAddr,
     pub(crate) tcp: SocketAddr,

@@ -158,6 +158,6 @@ fn until_a_simulator_speaks_the_same_motors_are_sent_again_and_nobody_there_is_n
     link.motors = UdpSocket::bind(place).unwrap();
     link.motors.set_read_timeout(Some(PATIENCE)).unwrap();
     assert!((0..2).all(|_| receive(&link.motors) == first));
-    let said = link.sitl.seen();
+    let said = link.sitl.program.seen();
     assert!(said.iter().all(|line| !line.to_lowercase().contains("error")), "{said:#?}");
 }

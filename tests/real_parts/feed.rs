@@ -2,8 +2,8 @@
 
 use betadeck::geo::LatLon;
 use betadeck::link::proto::fdm::pressure_pa;
-use betadeck::link::proto::servo;
 use betadeck::link::proto::sitl_feed::{FeedConfig, FeedState, SitlFeed};
+use betadeck::link::proto::{rc, servo};
 use betadeck::signals::fdm::{Dialect, MotorOrder, Stamps};
 use betadeck::signals::{GpsSample, SensorFrame, SimTime};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -104,4 +104,25 @@ fn stamps_of_simulated_time_are_no_clock_for_it() {
     let (mut receiver, end) = feed_for(60, Stamps::Sim);
     assert!(receiver.seen.other_stamps > 50_000);
     assert!((receiver.clock_us(end) - end as f64).abs() > SECOND as f64);
+}
+
+#[test]
+fn a_hundred_thousand_datagrams_of_noise_turn_no_motor_beyond_its_range() {
+    let (mut feed, mut delays) = (feed(Stamps::Constant), Delays(3));
+    for k in 0..100_000_u64 {
+        let size = delays.next() as usize % 1500;
+        let noise: Vec<u8> = (0..size).map(|at| (delays.0 >> (at % 57)) as u8 ^ at as u8).collect();
+        match feed.answered(&noise, k) {
+            Some(motors) => {
+                assert!(size >= 16 && motors.0.iter().all(|motor| (0.0..=1.0).contains(motor)), "{motors:?}");
+            }
+            None => assert!(
+                size < 16
+                    || noise[..16]
+                        .chunks(4)
+                        .any(|value| { !f32::from_le_bytes(value.try_into().unwrap()).is_finite() })
+            ),
+        }
+        assert_eq!(rc::decode(&noise).is_some(), size >= 40);
+    }
 }

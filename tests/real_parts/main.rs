@@ -8,6 +8,7 @@
     reason = "other processes live by the wall clock"
 )]
 
+mod checks;
 mod child;
 mod drop_in;
 mod feed;
@@ -17,6 +18,7 @@ mod msp;
 #[allow(dead_code, reason = "shared with the tests of the doors")]
 #[path = "../doors/program.rs"]
 mod program;
+mod real;
 mod rules;
 mod sockets;
 mod stand_in;
