@@ -97,6 +97,19 @@ impl Vehicle {
         Ok(Self::build(FlightController::Remote(Box::default()), physics, true))
     }
 
+    /// A vehicle of which nothing is here: flight controller and craft are elsewhere, and only the flight controller tells of
+    /// them. Nothing boots.
+    ///
+    /// # Errors
+    /// None with the usual step rate.
+    pub fn elsewhere() -> Result<Self, WorldError> {
+        let clock = World::new(WorldConfig { link: FaultLink::External, ..WorldConfig::default() })?;
+        let physics = Physics::External(Box::new(ExternalPhysics::new(clock)));
+        let mut vehicle = Self::build(FlightController::Remote(Box::default()), physics, true);
+        vehicle.events.clear();
+        Ok(vehicle)
+    }
+
     fn build(controller: FlightController, physics: Physics, live: bool) -> Self {
         let boot = EventKind::Boot {
             seed: physics.seed(),
@@ -176,7 +189,8 @@ impl Vehicle {
         self.physics.seed()
     }
 
-    /// The frame whose origin is the boot place; `None` before an external simulator has told where that is.
+    /// The frame whose origin is the boot place; `None` before an external simulator has told where that is, or before
+    /// [`Self::set_origin`].
     #[must_use]
     pub fn local_frame(&self) -> Option<&LocalFrame> {
         self.physics.local_frame()
@@ -306,6 +320,13 @@ impl Vehicle {
         }
     }
 
+    /// Positions of a vehicle of [`Vehicle::elsewhere`] count from here on; anybody else's keep their boot place.
+    pub fn set_origin(&mut self, origin: LocalFrame) {
+        if let Some(external) = self.physics.external_mut() {
+            external.set_frame(origin);
+        }
+    }
+
     /// Moves the events since the last call into `sink`, oldest first.
     pub fn drain_events(&mut self, sink: impl FnMut(Event)) {
         self.events.drain(..).for_each(sink);
@@ -388,102 +409,4 @@ fn embedded(configuration: Configuration, options: FirmwareOptions) -> FlightCon
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::geo::LatLon;
-    use crate::pilot::StickInput;
-    use crate::sim::Fault;
-    use crate::telemetry::TransitionReason;
-
-    fn config() -> VehicleConfig {
-        VehicleConfig {
-            world: WorldConfig::default(),
-            firmware: FirmwareOptions::default(),
-            configuration: Configuration::default(),
-            live: false,
-        }
-    }
-
-    fn vehicle() -> Vehicle {
-        Vehicle::new(config()).unwrap()
-    }
-
-    fn run(vehicle: &mut Vehicle, until_s: f64) {
-        while vehicle.time().as_secs_f64() < until_s {
-            vehicle.tick();
-        }
-    }
-
-    #[test]
-    fn lost_events_are_told() {
-        let mut vehicle = vehicle();
-        for _ in 0..100 {
-            // Refused, for the craft is not armed.
-            assert!(vehicle.controller_mut().return_to_home().is_err());
-        }
-        vehicle.tick();
-        let mut notices = Vec::new();
-        vehicle.drain_events(|event| {
-            if let EventKind::Notice(notice) = event.kind {
-                notices.push(notice.to_string());
-            }
-        });
-        assert_eq!(notices, ["Too many events of the firmware came between two steps; lost: the last 36."]);
-    }
-
-    #[test]
-    fn after_a_reset_faults_and_sticks_count_from_the_next_engagement() {
-        counts_from_the_next_engagement(vehicle());
-        counts_from_the_next_engagement(Vehicle::with_external_physics(config()).unwrap());
-    }
-
-    fn counts_from_the_next_engagement(mut vehicle: Vehicle) {
-        vehicle.transmitter_mut().inputs_mut().push(StickInput {
-            channel: 0,
-            value_us: 1900,
-            at_s: 0.5,
-            for_s: Some(0.2),
-            from_boot: false,
-        });
-        vehicle.change_world(WorldCommand::parse("fault=gps-loss@0.5").unwrap()).unwrap();
-        for engaged_s in [1.0, 3.0] {
-            run(&mut vehicle, engaged_s);
-            assert_eq!(vehicle.engaged_at(), None);
-            let engaged = NavEvent::State {
-                from: NavState::Idle,
-                to: NavState::Approaching,
-                wp: 0,
-                kind: None,
-                reason: TransitionReason::Reset,
-                guard: None,
-                target: LatLon::default(),
-                target_alt_m: 0.0,
-            };
-            vehicle.note_nav_event(&engaged, vehicle.time());
-            run(&mut vehicle, engaged_s + 0.4);
-            let stick = |vehicle: &Vehicle| {
-                let facts = vehicle.controller.pilot_facts(vehicle.time());
-                vehicle.transmitter.clone().frame(&facts, vehicle.engaged_at()).unwrap().channels[0]
-            };
-            assert_eq!((stick(&vehicle), vehicle.snapshot().world.faults.len()), (1500, 0));
-            run(&mut vehicle, engaged_s + 0.6);
-            assert_eq!((stick(&vehicle), vehicle.snapshot().world.faults.len()), (1900, 1));
-            vehicle.reset_craft();
-        }
-    }
-
-    #[test]
-    fn a_craft_put_back_home_knows_nothing_of_the_fall() {
-        let mut vehicle = vehicle();
-        run(&mut vehicle, 4.0);
-        vehicle.change_world(WorldCommand::FaultOn(Fault::Teleport([0.0, 0.0, 30.0]), None)).unwrap();
-        // A slow tick, so that barometer and GPS have just spoken.
-        run(&mut vehicle, 5.0);
-        vehicle.reset_craft();
-        run(&mut vehicle, 15.0);
-        let estimate = vehicle.embedded().unwrap().altitude_m();
-        assert!(estimate.abs() < 1.0, "{estimate}");
-        let flags = vehicle.embedded().unwrap().arming_flags();
-        assert!(!flags.has(crate::telemetry::ArmingFlag::Angle), "{flags:?}");
-    }
-}
+mod tests;

@@ -16,6 +16,8 @@ use crate::telemetry::{
 pub struct Snapshot {
     /// Simulated time since boot.
     pub time: SimTime,
+    /// The place from which positions count, when it is known.
+    pub origin: Option<LatLon>,
     /// What the world knows; `None` with an external simulator that does not tell.
     pub truth: Option<TruthView>,
     /// What the firmware believes.

@@ -36,7 +36,7 @@ impl MapPoint {
     }
 }
 
-/// The boot place as the origin of the map; home or the first waypoint when the world does not tell.
+/// The place from which positions count as the origin of the map; home or the first waypoint while there is none.
 #[must_use]
 pub(super) fn origin(state: &AppState) -> Option<LocalFrame> {
     let vehicle = &state.view.vehicle;
@@ -47,7 +47,7 @@ pub(super) fn origin(state: &AppState) -> Option<LocalFrame> {
     }
     let first =
         || state.shown_plan().waypoints.iter().find(|wp| wp.kind.uses_position()).map(|wp| wp.position);
-    let place = vehicle.craft.home.or_else(first)?;
+    let place = vehicle.origin.or(vehicle.craft.home).or_else(first)?;
     Some(LocalFrame::new(place.lat_deg(), place.lon_deg(), 0.0))
 }
 

@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 
 use super::Vehicle;
 use crate::firmware::Firmware;
-use crate::geo::offset_to_degrees;
+use crate::geo::{LatLon, offset_to_degrees};
 use crate::telemetry::NavTelemetry;
 use crate::telemetry::snapshot::{EstimateView, Snapshot};
 
@@ -16,6 +16,7 @@ impl Vehicle {
         let engaged = nav.as_ref().is_some_and(|nav| nav.engaged);
         Snapshot {
             time: self.time(),
+            origin: self.local_frame().map(|frame| LatLon::from_degrees(frame.lat_deg, frame.lon_deg)),
             truth: self.physics.truth_view(self.controller.motors()),
             estimate: self.estimate_view(),
             craft: self.controller.craft_view(),

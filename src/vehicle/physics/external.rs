@@ -43,7 +43,7 @@ impl ExternalPhysics {
     }
 
     pub(super) fn frame(&self) -> Option<&LocalFrame> {
-        self.track.frame()
+        self.track.frame.as_ref()
     }
 
     pub(super) fn truth_view(&self, motors: [f64; 4]) -> Option<TruthView> {
@@ -67,6 +67,11 @@ impl ExternalPhysics {
         self.track.see(pose);
     }
 
+    /// Positions count from here, though nobody says where the craft is.
+    pub(in crate::vehicle) fn set_frame(&mut self, frame: LocalFrame) {
+        self.track.frame = Some(frame);
+    }
+
     /// The craft is put somewhere else and starts where it is seen next.
     pub(in crate::vehicle) fn reset(&mut self) {
         self.track = Track::default();
@@ -77,19 +82,16 @@ impl ExternalPhysics {
 /// Where the craft was seen.
 #[derive(Debug, Clone, Default)]
 struct Track {
-    /// The newest pose and the frame at the first one.
-    seen: Option<(Pose, LocalFrame)>,
+    /// Counts from the place where it was seen first.
+    frame: Option<LocalFrame>,
+    /// The newest pose.
+    pose: Option<Pose>,
 }
 
 impl Track {
-    /// The frame whose origin is the place where the craft was seen first.
-    fn frame(&self) -> Option<&LocalFrame> {
-        self.seen.as_ref().map(|(_, frame)| frame)
-    }
-
     /// The craft's motion as the simulator tells it.
     fn truth_view(&self, motors: [f64; 4]) -> Option<TruthView> {
-        let (pose, frame) = self.seen.as_ref()?;
+        let (pose, frame) = (self.pose.as_ref()?, self.frame.as_ref()?);
         let (lat_deg, lon_deg) = pose.place_deg?;
         let enu = frame.to_enu(lat_deg, lon_deg, pose.alt_m);
         let nose = pose.attitude * Vector3::x();
@@ -115,12 +117,10 @@ impl Track {
     }
 
     fn see(&mut self, pose: Pose) {
-        let frame = match (&self.seen, pose.place_deg) {
-            (Some((_, frame)), _) => *frame,
-            (None, Some((lat_deg, lon_deg))) => LocalFrame::new(lat_deg, lon_deg, pose.alt_m),
-            (None, None) => return,
-        };
-        self.seen = Some((pose, frame));
+        if let (None, Some((lat_deg, lon_deg))) = (&self.frame, pose.place_deg) {
+            self.frame = Some(LocalFrame::new(lat_deg, lon_deg, pose.alt_m));
+        }
+        self.pose = Some(pose);
     }
 }
 

@@ -1,0 +1,116 @@
+//! Tests of the vehicle.
+
+use super::*;
+use crate::geo::LatLon;
+use crate::pilot::StickInput;
+use crate::sim::Fault;
+use crate::telemetry::TransitionReason;
+
+fn config() -> VehicleConfig {
+    VehicleConfig {
+        world: WorldConfig::default(),
+        firmware: FirmwareOptions::default(),
+        configuration: Configuration::default(),
+        live: false,
+    }
+}
+
+fn vehicle() -> Vehicle {
+    Vehicle::new(config()).unwrap()
+}
+
+fn run(vehicle: &mut Vehicle, until_s: f64) {
+    while vehicle.time().as_secs_f64() < until_s {
+        vehicle.tick();
+    }
+}
+
+#[test]
+fn lost_events_are_told() {
+    let mut vehicle = vehicle();
+    for _ in 0..100 {
+        // Refused, for the craft is not armed.
+        assert!(vehicle.controller_mut().return_to_home().is_err());
+    }
+    vehicle.tick();
+    let mut notices = Vec::new();
+    vehicle.drain_events(|event| {
+        if let EventKind::Notice(notice) = event.kind {
+            notices.push(notice.to_string());
+        }
+    });
+    assert_eq!(notices, ["Too many events of the firmware came between two steps; lost: the last 36."]);
+}
+
+#[test]
+fn after_a_reset_faults_and_sticks_count_from_the_next_engagement() {
+    counts_from_the_next_engagement(vehicle());
+    counts_from_the_next_engagement(Vehicle::with_external_physics(config()).unwrap());
+}
+
+fn counts_from_the_next_engagement(mut vehicle: Vehicle) {
+    vehicle.transmitter_mut().inputs_mut().push(StickInput {
+        channel: 0,
+        value_us: 1900,
+        at_s: 0.5,
+        for_s: Some(0.2),
+        from_boot: false,
+    });
+    vehicle.change_world(WorldCommand::parse("fault=gps-loss@0.5").unwrap()).unwrap();
+    for engaged_s in [1.0, 3.0] {
+        run(&mut vehicle, engaged_s);
+        assert_eq!(vehicle.engaged_at(), None);
+        let engaged = NavEvent::State {
+            from: NavState::Idle,
+            to: NavState::Approaching,
+            wp: 0,
+            kind: None,
+            reason: TransitionReason::Reset,
+            guard: None,
+            target: LatLon::default(),
+            target_alt_m: 0.0,
+        };
+        vehicle.note_nav_event(&engaged, vehicle.time());
+        run(&mut vehicle, engaged_s + 0.4);
+        let stick = |vehicle: &Vehicle| {
+            let facts = vehicle.controller.pilot_facts(vehicle.time());
+            vehicle.transmitter.clone().frame(&facts, vehicle.engaged_at()).unwrap().channels[0]
+        };
+        assert_eq!((stick(&vehicle), vehicle.snapshot().world.faults.len()), (1500, 0));
+        run(&mut vehicle, engaged_s + 0.6);
+        assert_eq!((stick(&vehicle), vehicle.snapshot().world.faults.len()), (1900, 1));
+        vehicle.reset_craft();
+    }
+}
+
+#[test]
+fn a_craft_put_back_home_knows_nothing_of_the_fall() {
+    let mut vehicle = vehicle();
+    run(&mut vehicle, 4.0);
+    vehicle.change_world(WorldCommand::FaultOn(Fault::Teleport([0.0, 0.0, 30.0]), None)).unwrap();
+    // A slow tick, so that barometer and GPS have just spoken.
+    run(&mut vehicle, 5.0);
+    vehicle.reset_craft();
+    run(&mut vehicle, 15.0);
+    let estimate = vehicle.embedded().unwrap().altitude_m();
+    assert!(estimate.abs() < 1.0, "{estimate}");
+    let flags = vehicle.embedded().unwrap().arming_flags();
+    assert!(!flags.has(crate::telemetry::ArmingFlag::Angle), "{flags:?}");
+}
+
+#[test]
+fn of_a_vehicle_elsewhere_nothing_is_made_up() {
+    let mut vehicle = Vehicle::elsewhere().unwrap();
+    run(&mut vehicle, 1.0);
+    let snapshot = vehicle.snapshot();
+    assert_eq!((snapshot.truth, snapshot.origin, snapshot.nav), (None, None, None));
+    assert_eq!(snapshot.craft, crate::telemetry::snapshot::CraftView::default());
+    let mut events = 0;
+    vehicle.drain_events(|_| events += 1);
+    assert_eq!(events, 0);
+
+    let place = LatLon::new(473_977_000, 85_456_000);
+    vehicle.set_origin(LocalFrame::new(place.lat_deg(), place.lon_deg(), 488.0));
+    let snapshot = vehicle.snapshot();
+    assert_eq!((snapshot.origin, snapshot.truth), (Some(place), None), "a place is not the craft's");
+}
