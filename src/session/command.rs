@@ -109,6 +109,8 @@ pub enum Command {
     CancelReturn,
     /// Put the craft back home, disarmed; plan and settings are kept.
     ResetCraft,
+    /// Let the craft outside be changed over the connection of this number, until that ends.
+    PermitChanges(u32),
     /// Change the air, the noise or a fault: `wind=5@270`, `fault=motor,,2:0.8`, `end=all`…
     World {
         /// What to change.

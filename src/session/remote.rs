@@ -11,6 +11,7 @@
 
 mod identify;
 mod observer;
+mod permission;
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -28,6 +29,7 @@ use crate::telemetry::{EndpointStatus, Mode};
 use crate::vehicle::{FrameOut, LateAnswer, RemoteRequest, Ticket, Vehicle};
 use identify::{Identification, Question};
 use observer::Observer;
+pub use permission::{Access, Denial, Impact, NOT_PERMITTED, NOTHING_MOVES, NOTHING_SIMULATED};
 
 /// The message that restarts a flight controller.
 const REBOOT: u16 = 68;
@@ -71,6 +73,10 @@ pub struct RemoteView {
     pub state: RemoteState,
     /// A SITL executable that the physics of this program feeds; else a craft of its own, at which only reading is free.
     pub is_sitl: bool,
+    /// What may be done with it.
+    pub access: Access,
+    /// The number of the present connection: a permission is for one.
+    pub connection: u32,
 }
 
 /// What is told of a remote flight controller. `Display` gives a sentence.
@@ -130,6 +136,10 @@ pub struct RemoteLink {
     /// It has answered since its program was started first.
     has_answered: bool,
     motors: FeedState,
+    /// How many connections there were.
+    connection: u32,
+    /// The user has permitted changes over this connection.
+    may_change: bool,
     notices: Vec<RemoteNotice>,
 }
 
@@ -149,6 +159,8 @@ impl RemoteLink {
             started: now,
             has_answered: false,
             motors: FeedState::Waiting,
+            connection: 0,
+            may_change: false,
             notices: Vec::new(),
         }
     }
@@ -162,7 +174,34 @@ impl RemoteLink {
     /// What a screen shows of it.
     #[must_use]
     pub fn view(&self) -> RemoteView {
-        RemoteView { name: self.ends.name.clone(), state: self.state.clone(), is_sitl: self.is_fed() }
+        RemoteView {
+            name: self.ends.name.clone(),
+            state: self.state.clone(),
+            is_sitl: self.is_fed(),
+            access: self.access(),
+            connection: self.connection,
+        }
+    }
+
+    /// What may be done with it.
+    #[must_use]
+    pub fn access(&self) -> Access {
+        match (self.is_fed(), self.may_change) {
+            (true, _) => Access::Everything,
+            (false, true) => Access::Changing,
+            (false, false) => Access::Reading,
+        }
+    }
+
+    /// The number of the present connection.
+    #[must_use]
+    pub fn connection(&self) -> u32 {
+        self.connection
+    }
+
+    /// The user permits changes over this connection; an earlier one's permission means nothing.
+    pub fn permit_changes(&mut self, connection: u32) {
+        self.may_change |= connection == self.connection;
     }
 
     /// What it is called in sentences.
@@ -259,6 +298,8 @@ impl RemoteLink {
                 Some(StreamEvent::Bytes(bytes)) => self.client.push(&bytes, since),
                 Some(StreamEvent::Connected) => {
                     self.client.connected();
+                    self.connection += 1;
+                    self.may_change = false;
                     if let Some(peer) = &mut self.ends.peer {
                         peer.came_up();
                     }

@@ -1,13 +1,14 @@
 //! The thread that owns the vehicle: takes commands and requests, runs the due ticks, publishes views and events.
 //!
 //! `commands` carries out what the user interface asks, `console` its command line, `requests` what comes over the links;
-//! `late` passes on what a remote flight controller answers; `rewind` shows earlier instants and flies on from them;
-//! `publishing` makes the view.
+//! `limits` keeps off what may not be done with a real craft; `late` passes on what a remote flight controller answers;
+//! `rewind` shows earlier instants and flies on from them; `publishing` makes the view.
 #![allow(clippy::disallowed_methods, reason = "this is where wall time meets simulated time")]
 
 mod commands;
 mod console;
 mod late;
+mod limits;
 mod publishing;
 mod remote;
 mod requests;
@@ -156,6 +157,8 @@ struct Session {
     was_paused: bool,
     /// A script has sent RC.
     rc_received: bool,
+    /// The connection over which a client was refused a change last: told once each.
+    refused_over: Option<u32>,
     /// Something other than time changed what the view shows.
     changed: bool,
     /// Clients asked more than one round of the loop has time for.
@@ -207,6 +210,7 @@ impl Session {
             run_on: None,
             was_paused: false,
             rc_received: false,
+            refused_over: None,
             changed: true,
             more_waits: false,
             quit: false,

@@ -60,6 +60,7 @@ impl Session {
 
     fn carry_out(&mut self, command: Command, now: Duration) {
         let Some(command) = self.refuse_while_rewound(command) else { return };
+        let Some(command) = self.refuse_to_real_craft(command) else { return };
         match command {
             Command::Pause(_) | Command::Step(_) | Command::Speed(_) | Command::Seek(_) | Command::FlyOn
                 if self.simulator.is_some() =>
@@ -121,6 +122,11 @@ impl Session {
             }
             Command::CancelReturn => self.vehicle.controller_mut().cancel_command(),
             Command::ResetCraft => self.reset_craft(),
+            Command::PermitChanges(connection) => {
+                if let Some(remote) = &mut self.remote {
+                    remote.permit_changes(connection);
+                }
+            }
             Command::World { line, reply } => {
                 let changed = self.change_world(&line);
                 drop(reply.send(changed));

@@ -4,12 +4,14 @@
 use std::task::{Context, Poll};
 use std::time::{Duration, Instant};
 
+use super::limits::refuse_request;
 use super::{SLICE, Session};
 use crate::firmware::cli::Interpreter;
 use crate::link::Request;
 use crate::link::proto::fdm::Packet;
 use crate::session::SPEED_RANGE;
 use crate::session::event::{EventSender, SessionEvent};
+use crate::session::remote::RemoteLink;
 use crate::session::request_handler::Handled;
 use crate::session::simulator::{RC_REPEAT_US, Simulator};
 use crate::signals::RcSource;
@@ -23,6 +25,7 @@ impl Session {
     /// Handles the requests that wait; gives the ticks that an external simulator made the craft fly.
     pub(super) fn handle_requests(&mut self, context: &mut Context<'_>) -> u64 {
         // Otherwise the next view is due soon.
+        let access = self.access();
         let time_stands_still = self.pacer.is_paused() || !self.follows_wall_clock();
         let Some(endpoints) = &mut self.endpoints else { return 0 };
         let mut flown = 0;
@@ -41,6 +44,18 @@ impl Session {
             };
             // A simulator's packets change the view like time does, at its own rhythm.
             self.changed |= time_stands_still && !matches!(request, Request::Fdm { .. });
+            let request = match refuse_request(request, access) {
+                Ok(request) => request,
+                Err(denial) => {
+                    let connection = self.remote.as_ref().map(RemoteLink::connection);
+                    if self.refused_over != connection {
+                        self.refused_over = connection;
+                        let notice = format!("A program at a door was refused: {denial}");
+                        self.events.notice(&mut self.vehicle, notice);
+                    }
+                    continue;
+                }
+            };
             report_first_packets(
                 &request,
                 &mut self.rc_received,

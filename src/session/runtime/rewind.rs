@@ -96,6 +96,7 @@ impl Session {
             | Command::Speed(_)
             | Command::CopyVehicle(_)
             | Command::RecordedFlight(_)
+            | Command::PermitChanges(_)
             | Command::Quit => return Some(command),
             Command::Cli { reply, .. } => {
                 let (text, advice) = ("###ERROR: REWOUND###".to_owned(), Some(REWOUND.to_owned()));
