@@ -2,6 +2,7 @@
 
 mod check;
 mod config;
+mod connect;
 mod convert;
 mod doctor;
 mod doors;

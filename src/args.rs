@@ -6,6 +6,7 @@
 mod betaloop;
 mod check;
 mod config_file;
+mod connect;
 mod convert;
 mod display;
 mod doors;
@@ -30,6 +31,7 @@ use crate::did_you_mean;
 pub use betaloop::{Betaloop, BetaloopError};
 pub use check::CheckArgs;
 pub use config_file::{ConfigCommand, KeyHelp, Origin, origins, template};
+pub use connect::ConnectArgs;
 pub use convert::ConvertArgs;
 pub use display::{CharsetChoice, DisplayArgs, ThemeChoice, UnitsChoice};
 pub use doors::{DoorArgs, ServeArgs, SitlArgs, UdpPorts, sitl_usage_error};
@@ -89,6 +91,10 @@ pub struct TuiArgs {
     /// The doors.
     #[command(flatten)]
     pub doors: DoorArgs,
+
+    /// The flight controller outside, when nothing is simulated.
+    #[command(flatten)]
+    pub connect: ConnectArgs,
 
     /// Which firmware flies.
     #[command(flatten)]

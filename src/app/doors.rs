@@ -44,22 +44,22 @@ pub(super) struct Opened {
 /// # Errors
 /// When there is no socket for the motors of an external simulator.
 pub(super) async fn open(
-    LiveArgs { doors: args, firmware, physics, flight }: LiveArgs<'_>,
+    LiveArgs { doors: args, connect, firmware, physics, flight }: LiveArgs<'_>,
 ) -> Result<Option<Opened>, AppError> {
-    if args.no_ports && !physics.is_external() {
-        return Ok(None);
-    }
     let wanted = |port: u16| (!args.no_ports).then_some(port);
     // Ports that a firmware outside has are not ours.
     let own = |port: u16| wanted(port).filter(|_| firmware.is_none());
-    let config = ListenConfig {
-        listen: args.listen,
-        tcp_port: own(args.tcp_port()),
-        ws_port: wanted(args.ws_port()),
-        rc_port: own(args.udp_ports().rc),
-        fdm_port: physics.is_external().then_some(args.udp_ports().fdm),
-        allow_origin: args.allow_origin.clone(),
+    let fdm_port = physics.is_external().then_some(args.udp_ports().fdm);
+    let (tcp_port, ws_port, rc_port) = match connect {
+        // To a real craft only the doors are open that were asked for, and none for RC.
+        Some(_) => (args.tcp_port, args.ws_port, None),
+        None => (own(args.tcp_port()), wanted(args.ws_port()), own(args.udp_ports().rc)),
     };
+    if [tcp_port, ws_port, rc_port, fdm_port].iter().all(Option::is_none) {
+        return Ok(None);
+    }
+    let allow_origin = args.allow_origin.clone();
+    let config = ListenConfig { listen: args.listen, tcp_port, ws_port, rc_port, fdm_port, allow_origin };
     let links = Links::open(&config).await;
     let doors = &links.doors;
     let mut notices: Vec<String> = doors.problems().map(|problem| format!("{problem}.")).collect();
@@ -70,7 +70,9 @@ pub(super) async fn open(
         ));
     }
     if let Some(address) = args.listen.filter(|address| !address.is_loopback()) {
-        notices.push(format!("The doors listen on {address}: everybody on that network can fly this craft."));
+        let can = if connect.is_some() { "read" } else { "fly" };
+        notices
+            .push(format!("The doors listen on {address}: everybody on that network can {can} this craft."));
     }
     let addresses = EndpointAddresses {
         ws: doors.address(EndpointKind::WebSocket),
@@ -156,8 +158,12 @@ mod tests {
         let doors = DoorArgs { no_ports: true, udp_ports: Some(ports), ..DoorArgs::default() };
         let flight = FlightArgs::default();
         let embedded = PhysicsArgs::default();
-        let of = |physics| LiveArgs { doors: &doors, firmware: None, physics, flight: &flight };
+        let of =
+            |physics| LiveArgs { doors: &doors, connect: None, firmware: None, physics, flight: &flight };
         assert!(open(of(&embedded)).await.unwrap().is_none());
+        let place = "tcp:localhost:1".parse().unwrap();
+        let closed = LiveArgs { doors: &DoorArgs::default(), connect: Some(&place), ..of(&embedded) };
+        assert!(open(closed).await.unwrap().is_none(), "a craft outside has the doors that are asked for");
         let external = PhysicsArgs { physics: Some(PhysicsChoice::External), ..PhysicsArgs::default() };
         let opened = open(of(&external)).await.unwrap().unwrap();
         let views = opened.endpoints.status.borrow().clone();

@@ -1,6 +1,7 @@
 //! Starts the session of `betadeck` and `serve`, which flies in real time behind its doors.
 
 use super::AppError;
+use super::connect;
 use super::doors::{self, OpenDoors};
 use super::firmware::RemoteFirmware;
 use super::firmware::link::{self, OpenLink};
@@ -8,6 +9,7 @@ use super::setup;
 use tempfile::TempDir;
 
 use crate::args::{DoorArgs, FlightArgs, PhysicsArgs, Speed};
+use crate::link::FcPlace;
 use crate::session::{self, FlownBefore, Handle, SessionConfig, SessionEvent};
 use crate::storage::Store;
 use crate::vehicle::Vehicle;
@@ -19,6 +21,8 @@ const TAKEOFF_M: f64 = 10.0;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LiveArgs<'a> {
     pub(super) doors: &'a DoorArgs,
+    /// The flight controller outside, when nothing is simulated.
+    pub(super) connect: Option<&'a FcPlace>,
     /// The firmware outside, if it is not the embedded one that flies.
     pub(super) firmware: Option<&'a RemoteFirmware>,
     pub(super) physics: &'a PhysicsArgs,
@@ -59,7 +63,7 @@ pub(super) async fn start(
         speed: args.flight.speed.map_or(1.0, |Speed(speed)| speed),
         takeoff_m: TAKEOFF_M,
         endpoints,
-        remote,
+        remote: remote.or_else(|| args.connect.map(connect::link)),
         first_events,
     };
     let session = session::start_at(config, flown)

@@ -58,7 +58,13 @@ pub(super) fn run(args: &OpenArgs, keymap: Keymap) -> Result<u8, AppError> {
         notices,
         plain: false,
         display: &args.display,
-        live: LiveArgs { doors: &doors, firmware: None, physics: &physics, flight: &flight_args },
+        live: LiveArgs {
+            doors: &doors,
+            connect: None,
+            firmware: None,
+            physics: &physics,
+            flight: &flight_args,
+        },
     };
     tui::show(screen, keymap)
 }

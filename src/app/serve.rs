@@ -40,6 +40,7 @@ pub(super) fn run(args: &ServeArgs) -> Result<u8, AppError> {
         let stop = stop_signal::stop_in_time()
             .map_err(|error| AppError::environment(format!("cannot listen for signals: {error}")))?;
         let options = LiveArgs {
+            connect: None,
             doors: &args.doors,
             firmware: firmware.as_ref(),
             physics: &args.physics,

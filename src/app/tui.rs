@@ -4,6 +4,7 @@
 use std::io::IsTerminal as _;
 use std::path::{Path, PathBuf};
 
+use super::connect;
 use super::error::{self, AppError};
 use super::firmware::{self, Beside};
 use super::line_history::LineHistory;
@@ -53,6 +54,9 @@ pub(super) struct Screen<'a> {
 /// Opens the user interface; returns its exit code when the user has left it.
 pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
     require_terminal(args.plain)?;
+    if let Some(place) = &args.connect.connect {
+        return connect::run(args, place, keymap);
+    }
     let plan = match &args.plan {
         Some(plan) => setup::read_plan(plan)?,
         None => setup::read_plan(&PlanArg::Builtin(
@@ -88,6 +92,7 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
         display: &args.display,
         live: LiveArgs {
             doors: &args.doors,
+            connect: None,
             firmware: firmware.as_ref(),
             physics: &args.physics,
             flight: &args.flight,

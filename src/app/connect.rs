@@ -1,0 +1,57 @@
+//! `betadeck --connect`: the ground station of a flight controller outside, with nothing simulated.
+#![allow(clippy::disallowed_methods, reason = "answers are awaited in wall time")]
+
+use std::time::Instant;
+
+use super::AppError;
+use super::live::LiveArgs;
+use super::setup;
+use super::tui::{self, Screen};
+use crate::args::{ConnectArgs, PlanArg, TuiArgs};
+use crate::link::{FcPlace, FcStream};
+use crate::plan::format::PlanFile;
+use crate::session::{RemoteEnds, RemoteLink};
+use crate::storage::Store;
+use crate::ui::keymap::Keymap;
+use crate::vehicle::Vehicle;
+
+/// Opens the user interface over the flight controller at `place`; returns its exit code when the user has left it.
+pub(super) fn run(args: &TuiArgs, place: &FcPlace, keymap: Keymap) -> Result<u8, AppError> {
+    let plan = match &args.plan {
+        Some(plan) => setup::read_plan(plan)?,
+        // What the craft has is downloaded.
+        None => PlanFile { name: "new".to_owned(), ..PlanFile::default() },
+    };
+    let mut notices: Vec<String> = plan.notes.iter().map(ToString::to_string).collect();
+    notices.extend(ConnectArgs::idle_options(&args.doors, &args.firmware.link, &args.physics, &args.flight));
+    let path = match &args.plan {
+        Some(PlanArg::File(path, _)) => Some(path.as_path()),
+        _ => None,
+    };
+    let screen = Screen {
+        plan,
+        path,
+        vehicle: Vehicle::elsewhere().map_err(AppError::internal)?,
+        // It keeps its configuration itself.
+        store: Store::in_memory(),
+        directory: setup::store_directory(&args.flight)?,
+        flown: None,
+        notices,
+        plain: args.plain,
+        display: &args.display,
+        live: LiveArgs {
+            doors: &args.doors,
+            connect: Some(place),
+            firmware: None,
+            physics: &args.physics,
+            flight: &args.flight,
+        },
+    };
+    tui::show(screen, keymap)
+}
+
+/// The link to the flight controller at `place`, which is connected from now on.
+pub(super) fn link(place: &FcPlace) -> RemoteLink {
+    let stream = FcStream::open(place.clone());
+    RemoteLink::new(RemoteEnds { name: place.to_string(), stream, peer: None, child: None }, Instant::now())
+}
