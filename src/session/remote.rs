@@ -12,9 +12,9 @@
 mod identify;
 mod observer;
 mod permission;
+mod view;
 
 use std::collections::BTreeMap;
-use std::fmt;
 use std::task::{Context, Poll};
 use std::time::{Duration, Instant};
 
@@ -30,6 +30,7 @@ use crate::vehicle::{FrameOut, LateAnswer, RemoteRequest, Ticket, Vehicle};
 use identify::{Identification, Question};
 use observer::Observer;
 pub use permission::{Access, Denial, Impact, NOT_PERMITTED, NOTHING_MOVES, NOTHING_SIMULATED};
+pub use view::{RemoteNotice, RemoteState, RemoteView};
 
 /// The message that restarts a flight controller.
 const REBOOT: u16 = 68;
@@ -47,63 +48,6 @@ pub struct RemoteEnds {
     pub peer: Option<SitlPeer>,
     /// Its process, when it is a child of this program.
     pub child: Option<SitlChild>,
-}
-
-/// How far a flight controller is known.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum RemoteState {
-    /// Its program starts, or no connection was made yet.
-    Connecting,
-    /// It is asked what it is and how it is set.
-    Identifying,
-    /// It answers and tells.
-    Ready,
-    /// The connection is gone; another is made by itself.
-    Lost,
-    /// It is of no use: why, as a sentence. Nothing follows.
-    Unusable(String),
-}
-
-/// What a screen shows of a remote flight controller.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct RemoteView {
-    /// What it is called: a file, or where it is.
-    pub name: String,
-    /// How far it is known.
-    pub state: RemoteState,
-    /// A SITL executable that the physics of this program feeds; else a craft of its own, at which only reading is free.
-    pub is_sitl: bool,
-    /// What may be done with it.
-    pub access: Access,
-    /// The number of the present connection: a permission is for one.
-    pub connection: u32,
-}
-
-/// What is told of a remote flight controller. `Display` gives a sentence.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum RemoteNotice {
-    /// A line that its program printed.
-    Output(String),
-    /// A sentence.
-    Told(String),
-    /// It does not speak any more, or not as it should: a sentence.
-    Lost(String),
-    /// It started anew, so that what was set and not stored is gone: a sentence.
-    Restarted(String),
-    /// It is of no use: a sentence.
-    Failed(String),
-}
-
-impl fmt::Display for RemoteNotice {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Output(line) => write!(f, "[firmware] {line}"),
-            Self::Told(sentence)
-            | Self::Lost(sentence)
-            | Self::Restarted(sentence)
-            | Self::Failed(sentence) => f.write_str(sentence),
-        }
-    }
 }
 
 /// What an answer is for.
