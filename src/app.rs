@@ -1,6 +1,7 @@
 //! From arguments to the tasks of one mode.
 
 mod check;
+mod compare;
 mod config;
 mod connect;
 mod convert;
@@ -76,7 +77,7 @@ fn outcome(arguments: Vec<OsString>) -> u8 {
 /// Whether the configuration file matters to a command.
 fn reads_layers(command: Option<&Command>) -> bool {
     match command {
-        None | Some(Command::Fly(_) | Command::Serve(_) | Command::Sitl(_)) => true,
+        None | Some(Command::Fly(_) | Command::Compare(_) | Command::Serve(_) | Command::Sitl(_)) => true,
         Some(
             Command::Check(_)
             | Command::Open(_)
@@ -96,6 +97,7 @@ fn dispatch(cli: Cli, keymap: Keymap) -> Result<u8, AppError> {
         Some(Command::Fly(args)) => fly::run(&args),
         Some(Command::Check(args)) => check::run(&args),
         Some(Command::Open(args)) => open::run(&args, keymap),
+        Some(Command::Compare(args)) => compare::run(&args),
         Some(Command::Sitl(args)) => sitl::run(&args),
         Some(Command::Serve(args)) => serve::run(&args),
         Some(Command::Plan(PlanCommand::Show { plan })) => plan::show(&plan),

@@ -5,6 +5,7 @@
 
 mod betaloop;
 mod check;
+mod compare;
 mod config_file;
 mod connect;
 mod convert;
@@ -30,6 +31,7 @@ use crate::did_you_mean;
 
 pub use betaloop::{Betaloop, BetaloopError};
 pub use check::CheckArgs;
+pub use compare::CompareArgs;
 pub use config_file::{ConfigCommand, KeyHelp, Origin, origins, template};
 pub use connect::ConnectArgs;
 pub use convert::ConvertArgs;
@@ -136,6 +138,13 @@ pub enum Command {
     ]))]
     Open(Box<OpenArgs>),
 
+    /// Flies a plan on the embedded firmware and on another one, in the same air, and tells the differences
+    #[command(before_help = help::examples(&[
+        ("betadeck compare square --firmware obj/main/betaflight_SITL.elf", "your build beside the embedded firmware"),
+        ("betadeck compare square --firmware new.elf --firmware old.elf --svg tracks.svg", "your build beside the release"),
+    ]))]
+    Compare(Box<CompareArgs>),
+
     /// Firmware and physics in real time with all doors open, without a screen
     #[command(before_help = help::examples(&[
         ("betadeck serve", "the Betaflight App connects to ws://localhost:6761, scripts send RC to UDP 9004"),
@@ -216,6 +225,7 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>, layers: &Layers) -> 
     let typed = Cli::from_arg_matches(&matches)?;
     let combination = match &typed.command {
         Some(Command::Fly(fly)) => fly.check(),
+        Some(Command::Compare(compare)) => compare.check(),
         Some(Command::Convert(convert)) => convert.check(),
         Some(
             Command::Serve(_)

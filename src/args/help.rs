@@ -17,6 +17,17 @@ Exit codes: 0 the mission truly completed, 1 it did not, 2 wrong usage or input,
 Each option can also be set in the configuration file (wind = \"5@270\") and in the environment
 (BETADECK_WIND=5@270); the command line wins over the environment, that over the file.";
 
+/// The end of the help of `compare`.
+pub(super) const COMPARE: &str = "\
+Everything is measured from truth, alike for both; the embedded firmware flies as fast as the machine allows and once,
+for each of its flights is the same; one outside flies in real time.
+
+Exit codes: 0 every flight completed, 1 one did not, 2 wrong usage or input, 3 file or port trouble,
+4 internal error, 130 interrupted.
+
+Each option can also be set in the configuration file (wind = \"5@270\") and in the environment
+(BETADECK_WIND=5@270); the command line wins over the environment, that over the file.";
+
 /// The end of the help of `check`.
 pub(super) const CHECK: &str = "\
 docs/scenarios.md says how a scenario is written.

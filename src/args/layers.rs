@@ -32,7 +32,7 @@ pub struct Layers {
 type Found = (String, Vec<String>);
 
 /// Commands whose options come from all layers; the empty name is the terminal user interface.
-pub(super) const FLYING: [&str; 4] = ["", "fly", "serve", "sitl"];
+pub(super) const FLYING: [&str; 5] = ["", "fly", "compare", "serve", "sitl"];
 
 /// Parses again with what the layers add to the command line.
 pub(super) fn apply(

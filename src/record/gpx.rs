@@ -7,6 +7,7 @@ mod utc;
 
 use std::io::{self, Write};
 
+use super::xml::escaped;
 use crate::geo::Degrees7;
 use crate::plan::FlightPlan;
 use crate::signals::SimTime;
@@ -124,23 +125,6 @@ impl<W: Write> GpxWriter<W> {
         self.out.flush()?;
         Ok(self.out)
     }
-}
-
-/// Text that is safe inside XML elements and attributes.
-fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            // XML 1.0 cannot hold them, not even escaped.
-            c if c.is_control() && !matches!(c, '\t' | '\n') => {}
-            c => out.push(c),
-        }
-    }
-    out
 }
 
 #[cfg(test)]

@@ -16,6 +16,12 @@ pub(super) type Centi = Decimals<2>;
 /// Degrees of latitude and longitude: to about a millimetre.
 pub(super) type Place = Decimals<8>;
 
+impl<const D: i32> From<f64> for Decimals<D> {
+    fn from(value: f64) -> Self {
+        Self(value)
+    }
+}
+
 impl<const D: i32> Serialize for Decimals<D> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         if !self.0.is_finite() {

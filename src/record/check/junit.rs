@@ -1,6 +1,7 @@
 //! Checked flights as a JUnit file: a testsuite a scenario, a testcase a case and seed.
 
 use super::{CheckedFlight, Compared, Summary, complaint};
+use crate::record::xml::escaped;
 
 /// The whole file.
 #[must_use]
@@ -93,19 +94,4 @@ fn failure(head: &str, lines: &[String], open: &str) -> String {
         escaped(message),
         escaped(&body)
     )
-}
-
-/// Text inside XML; characters that XML does not know are left out.
-fn escaped(text: &str) -> String {
-    text.chars()
-        .filter(|&c| !c.is_control() || c == '\n' || c == '\t')
-        .map(|c| match c {
-            '&' => "&amp;".to_owned(),
-            '<' => "&lt;".to_owned(),
-            '>' => "&gt;".to_owned(),
-            '"' => "&quot;".to_owned(),
-            '\u{fffe}' | '\u{ffff}' => String::new(),
-            other => other.to_string(),
-        })
-        .collect()
 }

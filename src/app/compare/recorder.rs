@@ -1,0 +1,67 @@
+//! Takes down where a craft truly flies.
+
+use nalgebra::Vector2;
+
+use crate::flight::{Flight, FlightEnd, Report};
+use crate::record::compare::{Track, TrackSample};
+use crate::telemetry::{Event, EventKind};
+use crate::vehicle::Vehicle;
+
+/// Between two samples, µs.
+const INTERVAL_US: u64 = 50_000;
+
+/// A track that is being flown.
+#[derive(Debug)]
+pub(super) struct Recorder {
+    track: Track,
+    /// Altitude of the craft that stands at home, m.
+    standing_m: f64,
+}
+
+impl Recorder {
+    /// Of a craft that stands at home.
+    pub(super) fn new(vehicle: &Vehicle) -> Self {
+        Self { track: Track::default(), standing_m: place(vehicle).map_or(0.0, |(_, alt_m)| alt_m) }
+    }
+
+    /// Flies one tick and takes down where that led; a value ends the flight.
+    pub(super) fn tick(&mut self, flight: &mut Flight) -> Option<FlightEnd> {
+        let mut touched_down = false;
+        let end = flight.tick(|report| {
+            if let Report::Event(Event { kind: EventKind::Touchdown { .. }, .. }) = report {
+                touched_down = true;
+            }
+        });
+        self.look(flight, touched_down);
+        end
+    }
+
+    fn look(&mut self, flight: &Flight, touched_down: bool) {
+        let vehicle = flight.vehicle();
+        let now = vehicle.time();
+        let (Some(engaged), Some((ne, alt_m))) = (flight.engaged_at(), place(vehicle)) else { return };
+        let time_s = now.seconds_since(engaged);
+        if touched_down {
+            self.track.touchdown = Some((time_s, ne));
+        }
+        if now.0.is_multiple_of(INTERVAL_US) {
+            self.track.samples.push(TrackSample { time_s, ne, alt_m: alt_m - self.standing_m });
+        }
+    }
+
+    /// The track of a flight that is over.
+    pub(super) fn finish(self, end: FlightEnd) -> Track {
+        Track {
+            result: end.verdict.result.to_string(),
+            reason: end.verdict.reason,
+            flown_s: (!self.track.samples.is_empty()).then_some(end.flown_s),
+            ..self.track
+        }
+    }
+}
+
+/// North and east of home and above it, m.
+fn place(vehicle: &Vehicle) -> Option<(Vector2<f64>, f64)> {
+    let position = vehicle.world()?.truth().pos_enu;
+    Some((Vector2::new(position.y, position.x), position.z))
+}

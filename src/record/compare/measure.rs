@@ -1,0 +1,184 @@
+//! What is measured of a flight.
+
+use nalgebra::Vector2;
+
+use super::passage::{Passage, passages};
+use super::route::Route;
+use super::track::{Track, TrackSample, distance_to_segment};
+use crate::plan::WaypointType;
+
+/// The sine of the smallest turn that is a corner, of about 10°.
+const CORNER: f64 = 0.17;
+
+/// What is measured of a flight; waypoints by their index in the plan.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Measure {
+    /// Seconds from the engagement until a waypoint was reached.
+    TimeTo(u8),
+    /// Seconds from the engagement until the craft touched the ground.
+    TouchdownTime,
+    /// Seconds from the engagement to the end.
+    Flown,
+    /// Greatest distance from the straight leg to a waypoint, m.
+    CrossTrackMax(u8),
+    /// Root mean square of that distance, m.
+    CrossTrackRms(u8),
+    /// How far the craft came beyond the new leg when it turned at a waypoint, m.
+    Overshoot(u8),
+    /// Altitude less that of the plan where a waypoint was reached, m.
+    AltitudeError(u8),
+    /// Distance of the touchdown from the LAND point, m.
+    TouchdownDistance,
+}
+
+impl Measure {
+    /// All that a route can give, in the order in which they are shown.
+    pub(super) fn all(route: &Route) -> impl Iterator<Item = Self> + '_ {
+        let of_each = |measure: fn(u8) -> Self| route.points.iter().map(move |point| measure(point.wp));
+        of_each(Self::TimeTo)
+            .chain([Self::TouchdownTime, Self::Flown])
+            .chain(of_each(Self::CrossTrackMax))
+            .chain(of_each(Self::CrossTrackRms))
+            .chain(of_each(Self::Overshoot))
+            .chain(of_each(Self::AltitudeError))
+            .chain([Self::TouchdownDistance])
+    }
+
+    /// What it is, for people.
+    pub(super) fn title(self) -> String {
+        match self {
+            Self::TimeTo(wp) => format!("time to WP{wp}"),
+            Self::TouchdownTime => "time to the touchdown".to_owned(),
+            Self::Flown => "time to the end".to_owned(),
+            Self::CrossTrackMax(wp) => format!("cross-track max, leg to WP{wp}"),
+            Self::CrossTrackRms(wp) => format!("cross-track RMS, leg to WP{wp}"),
+            Self::Overshoot(wp) => format!("overshoot at WP{wp}"),
+            Self::AltitudeError(wp) => format!("altitude error at WP{wp}"),
+            Self::TouchdownDistance => "touchdown beside the LAND point".to_owned(),
+        }
+    }
+
+    /// Its name in JSON, and the waypoint.
+    pub(super) fn key(self) -> (&'static str, Option<u8>) {
+        match self {
+            Self::TimeTo(wp) => ("time_to_wp_s", Some(wp)),
+            Self::TouchdownTime => ("touchdown_s", None),
+            Self::Flown => ("flown_s", None),
+            Self::CrossTrackMax(wp) => ("cross_track_max_m", Some(wp)),
+            Self::CrossTrackRms(wp) => ("cross_track_rms_m", Some(wp)),
+            Self::Overshoot(wp) => ("overshoot_m", Some(wp)),
+            Self::AltitudeError(wp) => ("alt_error_m", Some(wp)),
+            Self::TouchdownDistance => ("touchdown_distance_m", None),
+        }
+    }
+
+    /// Its unit.
+    pub(super) fn unit(self) -> &'static str {
+        match self {
+            Self::TimeTo(_) | Self::TouchdownTime | Self::Flown => "s",
+            Self::CrossTrackMax(_)
+            | Self::CrossTrackRms(_)
+            | Self::Overshoot(_)
+            | Self::AltitudeError(_)
+            | Self::TouchdownDistance => "m",
+        }
+    }
+}
+
+/// What a flight measures; what it did not come to is left out.
+pub(super) fn measures(route: &Route, track: &Track) -> Vec<(Measure, f64)> {
+    let mut found = Vec::new();
+    found.extend(track.flown_s.map(|flown_s| (Measure::Flown, flown_s)));
+    if let Some((time_s, ne)) = track.touchdown {
+        found.push((Measure::TouchdownTime, time_s));
+        let land = route.points.iter().find(|point| point.kind == WaypointType::Land);
+        let distance = land.and_then(|point| point.ne).map(|land| (ne - land).norm());
+        found.extend(distance.map(|distance| (Measure::TouchdownDistance, distance)));
+    }
+    let passed = passages(route, track);
+    for (index, passage) in passed.iter().enumerate() {
+        let wp = passage.point.wp;
+        let Some(reached) = track.samples.get(passage.reached) else { continue };
+        found.push((Measure::TimeTo(wp), reached.time_s));
+        found.push((Measure::AltitudeError(wp), reached.alt_m - passage.point.alt_m));
+        let before = index.checked_sub(1).and_then(|before| passed.get(before));
+        let Some(leg) = Leg::new(before, passage, track) else { continue };
+        let flown = track.samples.get(leg.first..=passage.reached).unwrap_or_default();
+        if let Some((most_m, rms_m)) = leg.cross_track_m(flown) {
+            found.push((Measure::CrossTrackMax(wp), most_m));
+            found.push((Measure::CrossTrackRms(wp), rms_m));
+        }
+        let overshoot_m = leg.overshoot_m(passage, passed.get(index + 1), &track.samples);
+        found.extend(overshoot_m.map(|overshoot_m| (Measure::Overshoot(wp), overshoot_m)));
+    }
+    found
+}
+
+/// The straight way to a waypoint.
+#[derive(Debug, Clone, Copy)]
+struct Leg {
+    from: Vector2<f64>,
+    to: Vector2<f64>,
+    /// The first sample that flies it.
+    first: usize,
+}
+
+impl Leg {
+    /// The leg to `passage` from the waypoint before it, or from where the autopilot engaged. `None` when it has no straight
+    /// way: to a TAKEOFF, or from a waypoint that was left out.
+    fn new(before: Option<&Passage>, passage: &Passage, track: &Track) -> Option<Self> {
+        let to = passage.point.ne?;
+        let Some(before) = before else {
+            let engaged = track.samples.first().filter(|_| passage.index == 0)?;
+            return Some(Self { from: engaged.ne, to, first: 0 });
+        };
+        if before.index + 1 != passage.index {
+            return None;
+        }
+        // From a pattern the craft leaves where it is.
+        let place = before.point.ne.filter(|_| before.point.pattern_m == 0.0);
+        let left = track.samples.get(before.left)?;
+        Some(Self { from: place.unwrap_or(left.ne), to, first: before.left })
+    }
+
+    /// Greatest and root mean square distance from the leg, m.
+    fn cross_track_m(&self, flown: &[TrackSample]) -> Option<(f64, f64)> {
+        let distances = flown.iter().map(|sample| distance_to_segment(sample.ne, self.from, self.to));
+        let most_m = distances.clone().reduce(f64::max)?;
+        Some((
+            most_m,
+            (distances.map(|distance| distance * distance).sum::<f64>() / flown.len() as f64).sqrt(),
+        ))
+    }
+
+    /// How far the craft came beyond the next leg, to the outside of the corner; at a place that is held, or the last one,
+    /// beyond the place itself.
+    fn overshoot_m(&self, at: &Passage, next: Option<&Passage>, samples: &[TrackSample]) -> Option<f64> {
+        if at.point.pattern_m > 0.0 || at.point.kind == WaypointType::Land {
+            return None;
+        }
+        let way_in = (self.to - self.from).try_normalize(1e-3)?;
+        let stays = at.point.holds || next.is_none();
+        let last = match next {
+            Some(_) if at.point.holds => at.left,
+            Some(next) => next.reached,
+            None => samples.len().saturating_sub(1),
+        };
+        let outside = match next.and_then(|next| next.point.ne) {
+            Some(ahead) if !stays => outside_of_corner(way_in, (ahead - self.to).try_normalize(1e-3)?)?,
+            _ => way_in,
+        };
+        let beyond = samples.get(at.reached..=last)?.iter().map(|sample| (sample.ne - self.to).dot(&outside));
+        Some(beyond.fold(0.0, f64::max))
+    }
+}
+
+/// The direction across the way out that points to the outside of the corner; of a turn back, the way in. `None` when there
+/// is no corner.
+fn outside_of_corner(way_in: Vector2<f64>, way_out: Vector2<f64>) -> Option<Vector2<f64>> {
+    let across = way_in - way_out * way_in.dot(&way_out);
+    match across.try_normalize(CORNER) {
+        None if way_in.dot(&way_out) < 0.0 => Some(way_in),
+        outside => outside,
+    }
+}

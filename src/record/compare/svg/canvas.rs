@@ -1,0 +1,139 @@
+//! Metres on the ground as pixels of a picture.
+
+use std::fmt::Write as _;
+
+use nalgebra::Vector2;
+
+use crate::record::xml::escaped;
+
+/// Longer side of the map, px.
+const SIDE: f64 = 800.0;
+/// Around the map, px; the names of waypoints stand there, too.
+const MARGIN: f64 = 60.0;
+/// Least extent of the ground that is shown, m.
+const LEAST_M: f64 = 20.0;
+/// Places of a line that are nearer to each other are not drawn, px.
+const STEP: f64 = 1.2;
+/// Widest scale bar, as a share of the map.
+const BAR: f64 = 0.3;
+
+/// Where things are in the picture.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Canvas {
+    /// Of the south-west corner of the map, m north and east.
+    low: Vector2<f64>,
+    /// Of the north-east corner.
+    high: Vector2<f64>,
+    px_per_m: f64,
+    /// Height above the map, px.
+    top: f64,
+}
+
+impl Canvas {
+    /// A picture in which all the places are, below `top` px for texts.
+    pub(super) fn around(places: impl Iterator<Item = Vector2<f64>>, top: f64) -> Self {
+        let (mut low, mut high) = (Vector2::zeros(), Vector2::zeros());
+        for place in places.filter(|place| place.iter().all(|value| value.is_finite())) {
+            low = low.inf(&place);
+            high = high.sup(&place);
+        }
+        let extent = (high - low).max().max(LEAST_M);
+        Self { low, high, px_per_m: SIDE / extent, top }
+    }
+
+    /// Width and height of the picture, px.
+    fn size(&self) -> (f64, f64) {
+        let (north, east) = ((self.high - self.low).x, (self.high - self.low).y);
+        let width = (self.length(east) + 2.0 * MARGIN).max(SIDE / 2.0);
+        (width, self.top + self.length(north) + 2.0 * MARGIN)
+    }
+
+    /// A length, px.
+    pub(super) fn length(&self, metres: f64) -> f64 {
+        metres * self.px_per_m
+    }
+
+    /// A place, px to the right and down.
+    pub(super) fn place(&self, ne: Vector2<f64>) -> (f64, f64) {
+        let (right, down) = (ne.y - self.low.y, self.high.x - ne.x);
+        (MARGIN + self.length(right), self.top + MARGIN + self.length(down))
+    }
+
+    /// A place as a line has it.
+    pub(super) fn point(&self, ne: Vector2<f64>) -> String {
+        let (x, y) = self.place(ne);
+        format!("{x:.1},{y:.1}")
+    }
+
+    /// The points of a line, of those that are too near to each other only one.
+    pub(super) fn line(&self, places: impl Iterator<Item = Vector2<f64>>) -> String {
+        let mut drawn: Vec<String> = Vec::new();
+        let mut last: Option<Vector2<f64>> = None;
+        for place in places {
+            if last.is_none_or(|last| self.length((place - last).norm()) >= STEP) {
+                drawn.push(self.point(place));
+                last = Some(place);
+            }
+        }
+        drawn.join(" ")
+    }
+
+    /// The beginning of the document.
+    pub(super) fn head(&self, title: &str) -> String {
+        let (width, height) = self.size();
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width:.0}\" height=\"{height:.0}\" \
+             viewBox=\"0 0 {width:.0} {height:.0}\" font-family=\"sans-serif\" font-size=\"12\">\n\
+             <title>{}</title>\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n",
+            escaped(title)
+        )
+    }
+
+    /// A bar of a round length, and which way north is.
+    pub(super) fn scale_bar(&self, text: &mut String) {
+        let metres = round_length(BAR * SIDE / self.px_per_m);
+        let (_, height) = self.size();
+        let (x, y) = (16.0, height - 16.0);
+        let end = x + self.length(metres);
+        let _ = writeln!(
+            text,
+            "<path d=\"M {x:.1} {:.1} V {y:.1} H {end:.1} V {:.1}\" fill=\"none\" stroke=\"#000000\"/>\n\
+             <text x=\"{:.1}\" y=\"{:.1}\">{metres} m</text>\n\
+             <text x=\"{:.1}\" y=\"{:.1}\">north ↑</text>",
+            y - 6.0,
+            y - 6.0,
+            x + 4.0,
+            y - 4.0,
+            end + 16.0,
+            y
+        );
+    }
+}
+
+/// The longest of 1, 2, 5, 10, 20, 50 … that is not longer.
+fn round_length(most: f64) -> f64 {
+    let power = 10_f64.powf(most.max(1.0).log10().floor());
+    [5.0, 2.0].into_iter().map(|factor| factor * power).find(|length| *length <= most).unwrap_or(power)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bars_have_round_lengths() {
+        for (most, length) in [(0.3, 1.0), (1.0, 1.0), (4.9, 2.0), (6.0, 5.0), (99.0, 50.0), (100.0, 100.0)] {
+            assert!((round_length(most) - length).abs() < 1e-9, "{most}");
+        }
+    }
+
+    #[test]
+    fn north_is_up_and_east_to_the_right() {
+        let canvas = Canvas::around([Vector2::new(100.0, 50.0)].into_iter(), 40.0);
+        let (x, y) = canvas.place(Vector2::zeros());
+        let (north_east_x, north_east_y) = canvas.place(Vector2::new(100.0, 50.0));
+        assert!((north_east_x - x - 400.0).abs() < 1e-9 && (y - north_east_y - 800.0).abs() < 1e-9);
+        let (width, height) = canvas.size();
+        assert!((0.0..width).contains(&north_east_x) && (0.0..height).contains(&y));
+    }
+}

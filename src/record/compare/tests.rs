@@ -1,0 +1,195 @@
+use nalgebra::Vector2;
+
+use super::*;
+use crate::geo::LocalFrame;
+use crate::plan::{FlightPlan, HoldPattern, WaypointType};
+use crate::telemetry::snapshot::SettingsView;
+
+const LAT_DEG: f64 = 40.4635;
+const LON_DEG: f64 = -79.5182;
+
+fn frame() -> LocalFrame {
+    LocalFrame::new(LAT_DEG, LON_DEG, 300.0)
+}
+
+fn settings() -> SettingsView {
+    SettingsView {
+        arrival_radius_m: 3.0,
+        hold_radius_m: 5.0,
+        orbit_radius_m: 20.0,
+        ..SettingsView::default()
+    }
+}
+
+/// A plan of these places, m north and east of home, all 10 m high.
+fn plan(places: &[(f64, f64, WaypointType)]) -> FlightPlan {
+    let mut plan = FlightPlan::default();
+    for (north, east, kind) in places {
+        let (lat, lon, _) = frame().to_geodetic(nalgebra::Vector3::new(*east, *north, 0.0));
+        plan.waypoints.push(crate::plan::Waypoint {
+            position: crate::geo::LatLon::new((lat * 1e7).round() as i32, (lon * 1e7).round() as i32),
+            alt_cm: 1000,
+            kind: *kind,
+            ..crate::plan::Waypoint::default()
+        });
+    }
+    plan
+}
+
+fn route(places: &[(f64, f64, WaypointType)]) -> Route {
+    Route::new(&plan(places), &frame(), &settings())
+}
+
+/// A track along straight lines between these places at 10 m/s, ten samples a second, 10 m high.
+fn track(places: &[(f64, f64)]) -> Track {
+    let mut samples: Vec<TrackSample> = Vec::new();
+    for ends in places.windows(2) {
+        let [from, to] = [ends[0], ends[1]].map(|(north, east)| Vector2::new(north, east));
+        let steps = ((to - from).norm() as usize).max(1);
+        for step in 0..steps {
+            let ne = from + (to - from) * (step as f64 / steps as f64);
+            samples.push(TrackSample { time_s: samples.len() as f64 / 10.0, ne, alt_m: 10.0 });
+        }
+    }
+    let end = samples.len() as f64 / 10.0;
+    Track { samples, result: "complete".to_owned(), flown_s: Some(end), ..Track::default() }
+}
+
+fn value(found: &[(Measure, f64)], measure: Measure) -> f64 {
+    found.iter().find(|(of, _)| *of == measure).unwrap_or_else(|| panic!("no {measure:?} in {found:?}")).1
+}
+
+fn assert_near(value: f64, expected: f64, tolerance: f64) {
+    assert!((value - expected).abs() <= tolerance, "{value}, expected {expected}");
+}
+
+use WaypointType::{Flyover, Hold, Land};
+
+#[test]
+fn a_square_flown_with_an_overshoot_of_six_metres() {
+    let route =
+        route(&[(100.0, 0.0, Flyover), (100.0, 100.0, Flyover), (0.0, 100.0, Flyover), (0.0, 0.0, Land)]);
+    let flown = track(&[
+        (0.0, 0.0),
+        (106.0, 0.0),
+        (106.0, 20.0),
+        (100.0, 30.0),
+        (100.0, 100.0),
+        (0.0, 100.0),
+        (0.0, 0.0),
+    ]);
+    let found = measures(&route, &flown);
+    assert_near(value(&found, Measure::TimeTo(0)), 9.9, 0.11);
+    assert_near(value(&found, Measure::Overshoot(0)), 6.0, 0.01);
+    assert_near(value(&found, Measure::CrossTrackMax(1)), 6.0, 0.6);
+    assert_near(value(&found, Measure::CrossTrackMax(0)), 0.0, 0.01);
+    assert_near(value(&found, Measure::Overshoot(1)), 0.0, 0.01);
+    assert_near(value(&found, Measure::CrossTrackRms(2)), 0.0, 0.01);
+    assert_near(value(&found, Measure::AltitudeError(3)), 0.0, 1e-9);
+    assert!(!found.iter().any(|(measure, _)| matches!(measure, Measure::TouchdownDistance)));
+}
+
+#[test]
+fn a_place_that_is_flown_twice_is_passed_in_the_order_of_the_plan() {
+    let route =
+        route(&[(50.0, 0.0, Flyover), (100.0, 0.0, Flyover), (50.0, 0.0, Flyover), (50.0, 80.0, Flyover)]);
+    let flown = track(&[(0.0, 0.0), (100.0, 0.0), (50.0, 0.0), (50.0, 90.0)]);
+    let found = measures(&route, &flown);
+    for (wp, time) in [(0, 4.9), (1, 9.9), (2, 14.9), (3, 22.9)] {
+        assert_near(value(&found, Measure::TimeTo(wp)), time, 0.11);
+    }
+    // It turns back on the spot, and flies on beyond the last one.
+    assert_near(value(&found, Measure::Overshoot(1)), 0.0, 0.01);
+    assert_near(value(&found, Measure::Overshoot(3)), 9.0, 1.01);
+}
+
+#[test]
+fn what_was_not_reached_is_left_out() {
+    let route = route(&[(50.0, 0.0, Flyover), (50.0, 300.0, Flyover), (0.0, 0.0, Land)]);
+    let flown = track(&[(0.0, 0.0), (50.0, 0.0), (50.0, 100.0)]);
+    let found = measures(&route, &flown);
+    value(&found, Measure::TimeTo(0));
+    let beyond = |measure: &Measure| {
+        matches!(measure, Measure::TimeTo(1 | 2) | Measure::CrossTrackMax(1 | 2) | Measure::Overshoot(1))
+    };
+    assert!(!found.iter().any(|(measure, _)| beyond(measure)), "{found:?}");
+    assert_eq!(measures(&route, &Track::default()), []);
+}
+
+#[test]
+fn an_orbit_is_reached_at_its_ring_and_left_from_it() {
+    let mut plan = plan(&[(100.0, 0.0, Hold), (0.0, 0.0, Land)]);
+    plan.waypoints[0].pattern = HoldPattern::Orbit;
+    let route = Route::new(&plan, &frame(), &settings());
+    let mut places = vec![(0.0, 0.0), (80.0, 0.0)];
+    let ring = |degrees: f64| (100.0 - 20.0 * degrees.to_radians().cos(), 20.0 * degrees.to_radians().sin());
+    places.extend((1..=36).map(|step| ring(f64::from(step) * 20.0)));
+    places.extend([(0.0, 0.0)]);
+    let mut flown = track(&places);
+    flown.touchdown = Some((40.0, Vector2::new(3.0, 4.0)));
+    let found = measures(&route, &flown);
+    assert_near(value(&found, Measure::TimeTo(0)), 7.9, 0.11);
+    assert_near(value(&found, Measure::CrossTrackMax(1)), 0.0, 0.5);
+    assert_near(value(&found, Measure::TouchdownDistance), 5.0, 0.01);
+    assert!(!found.iter().any(|(measure, _)| matches!(measure, Measure::Overshoot(_))));
+}
+
+fn comparison(name: &str) -> Comparison {
+    let route = route(&[(100.0, 0.0, Flyover), (100.0, 100.0, Flyover), (0.0, 0.0, Land)]);
+    let straight = track(&[(0.0, 0.0), (100.0, 0.0), (100.0, 100.0), (0.0, 0.0)]);
+    let wide = |by: f64| track(&[(0.0, 0.0), (100.0 + by, 0.0), (100.0 + by, 100.0), (0.0, 0.0)]);
+    let sides = [
+        Side { name: "embedded".to_owned(), repeatable: true, flights: vec![straight] },
+        Side { name: name.to_owned(), repeatable: false, flights: vec![wide(2.0), wide(4.0)] },
+    ];
+    Comparison::new("square", "calm, seed 1", route, sides)
+}
+
+#[test]
+fn the_table_has_values_spreads_and_differences() {
+    insta::assert_snapshot!(comparison("sitl.elf").text());
+}
+
+#[test]
+fn the_json_has_the_same_numbers() {
+    let json: serde_json::Value = serde_json::from_str(&comparison("sitl.elf").json()).unwrap();
+    assert_eq!(json["firmware"][1]["flights"].as_array().unwrap().len(), 2);
+    let overshoot = json["measures"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .find(|line| line["measure"] == "overshoot_m" && line["wp"] == 0)
+        .unwrap();
+    let near = |value: &serde_json::Value, expected| assert_near(value.as_f64().unwrap(), expected, 0.01);
+    near(&overshoot["a"]["mean"], 0.0);
+    assert_eq!(overshoot["a"]["spread"], serde_json::Value::Null);
+    near(&overshoot["b"]["mean"], 3.0);
+    near(&overshoot["difference"]["spread"], 2.0_f64.sqrt());
+    let between = json["tracks_apart_rms_m"]["between"]["mean"].as_f64().unwrap();
+    assert!((1.0..4.0).contains(&between), "{between}");
+}
+
+#[test]
+fn names_are_escaped_in_the_picture() {
+    let svg = comparison("<b> & \"c\"").svg();
+    assert!(svg.contains("B: &lt;b&gt; &amp; &quot;c&quot;</text>"), "{svg}");
+    assert_eq!(
+        svg.matches("stroke=\"#d55e00\" stroke-width=\"0.8\"").count(),
+        1,
+        "the second flight is thin"
+    );
+    assert!(svg.contains(">WP0</text>") && svg.contains(">WP2 LAND</text>") && svg.contains(" m</text>"));
+    // Every element is closed: as many ends as beginnings.
+    assert_eq!(svg.matches('<').count(), svg.matches('>').count());
+    assert!(svg.trim_end().ends_with("</svg>"));
+    assert!(!svg.contains("NaN") && !svg.contains("inf"));
+}
+
+#[test]
+fn flights_without_a_track_are_shown_all_the_same() {
+    let refused = Track { result: "refused".to_owned(), reason: "no fix".to_owned(), ..Track::default() };
+    let side = |name: &str| Side { name: name.to_owned(), repeatable: false, flights: vec![refused.clone()] };
+    let comparison = Comparison::new("x", "calm", route(&[(9.0, 0.0, Flyover)]), [side("a"), side("b")]);
+    assert!(comparison.text().contains("B: refused: no fix"), "{}", comparison.text());
+    assert!(comparison.svg().contains("</svg>"));
+}

@@ -1,0 +1,106 @@
+//! The comparison as a table for people.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+use super::{Comparison, Side, Statistics};
+
+/// What stands for a value that is not known.
+const UNKNOWN: &str = "—";
+
+/// The table.
+pub(super) fn table(comparison: &Comparison) -> String {
+    let [first, second] = &comparison.sides;
+    let mut text = format!("{}, {}\n", comparison.plan, comparison.conditions);
+    for (letter, side) in ["A", "B"].iter().zip([first, second]) {
+        let _ = writeln!(text, "{letter}: {}, {}", side.name, flights(side));
+    }
+    text.push('\n');
+    let mut lines = vec![
+        ["".to_owned(), "".to_owned(), "A".to_owned(), "B".to_owned(), "B − A".to_owned()],
+        ["result".to_owned(), "".to_owned(), results(first), results(second), String::new()],
+    ];
+    for row in &comparison.rows {
+        let [a, b] = row.sides.map(|side| side.map_or_else(|| UNKNOWN.to_owned(), plain));
+        let difference = row.difference().map_or_else(|| UNKNOWN.to_owned(), signed);
+        lines.push([row.measure.title(), row.measure.unit().to_owned(), a, b, difference]);
+    }
+    let apart = &comparison.apart;
+    let [a, b] = apart.among.map(|side| side.map(plain).unwrap_or_default());
+    let between = apart.between.map_or_else(|| UNKNOWN.to_owned(), plain);
+    lines.push(["tracks apart, RMS".to_owned(), "m".to_owned(), a, b, between]);
+    text.push_str(&aligned(&lines));
+    for (letter, side) in ["A", "B"].iter().zip([first, second]) {
+        for flight in side.flights.iter().filter(|flight| flight.result != "complete") {
+            let _ = writeln!(text, "{letter}: {}: {}", flight.result, flight.reason);
+        }
+    }
+    text.push_str(
+        "\nMeasured from truth. Tracks apart: from each place of one track to the nearest of the other, both ways; below A and \
+         B\namong the flights of that firmware.",
+    );
+    if comparison.sides.iter().any(|side| side.flights.len() > 1) {
+        text.push_str(" Behind ±: the standard deviation.");
+    }
+    text.push('\n');
+    text
+}
+
+/// How often it was flown.
+fn flights(side: &Side) -> String {
+    match side.flights.len() {
+        1 if side.repeatable => "one flight, which is the same each time".to_owned(),
+        1 => "one flight".to_owned(),
+        count => format!("{count} flights"),
+    }
+}
+
+/// The results, the same ones counted.
+fn results(side: &Side) -> String {
+    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+    for flight in &side.flights {
+        *counts.entry(&flight.result).or_default() += 1;
+    }
+    let all = side.flights.len();
+    let told = counts.iter().map(|(result, count)| match all {
+        1 => (*result).to_owned(),
+        _ => format!("{result} {count}/{all}"),
+    });
+    told.collect::<Vec<_>>().join(", ")
+}
+
+/// `12.34 ± 0.05`.
+fn plain(value: Statistics) -> String {
+    format!("{}{}", rounded(value.mean), spread(value))
+}
+
+/// `+0.12 ± 0.05`.
+fn signed(value: Statistics) -> String {
+    let sign = if rounded(value.mean).starts_with('-') { "" } else { "+" };
+    format!("{sign}{}{}", rounded(value.mean), spread(value))
+}
+
+fn spread(value: Statistics) -> String {
+    value.spread.map_or_else(String::new, |spread| format!(" ± {}", rounded(spread)))
+}
+
+/// To the hundredth, never `-0.00`.
+fn rounded(value: f64) -> String {
+    format!("{:.2}", (value * 100.0).round() / 100.0 + 0.0)
+}
+
+/// Columns as wide as their widest cell: names to the left, values to the right.
+fn aligned(lines: &[[String; 5]]) -> String {
+    let width = |column: usize| {
+        let cells = lines.iter().filter_map(|line| line.get(column));
+        cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
+    };
+    let [title, unit, a, b, difference] = [0, 1, 2, 3, 4].map(width);
+    let mut text = String::new();
+    for [name, of, first, second, apart] in lines {
+        let line = format!("{name:<title$}  {of:<unit$}  {first:>a$}  {second:>b$}  {apart:>difference$}");
+        text.push_str(line.trim_end());
+        text.push('\n');
+    }
+    text
+}
