@@ -7,6 +7,7 @@ use std::time::Instant;
 use super::endpoint_stats::EndpointStats;
 use super::proto::rc;
 use super::proto::sitl_feed::{FeedConfig, FeedState, SitlFeed};
+use crate::signals::fdm::Dialect;
 use crate::signals::{MotorCommand, RcFrame, SensorFrame};
 use crate::telemetry::{EndpointKind, EndpointState, EndpointStatus};
 
@@ -95,6 +96,10 @@ impl SitlPeer {
         discard(&self.raw);
         self.feed.restart();
         self.is_up = false;
+        // What it sent before it ended must not pass for its boot.
+        for socket in [&self.motors, &self.raw] {
+            while socket.recv(&mut [0; BUFFER]).is_ok() {}
+        }
     }
 
     /// The executable has booted.
@@ -151,6 +156,12 @@ impl SitlPeer {
     #[must_use]
     pub fn state(&self, now: Instant) -> FeedState {
         self.feed.state(self.micros(now))
+    }
+
+    /// What its packets mean.
+    #[must_use]
+    pub fn dialect(&self) -> Dialect {
+        self.feed.dialect()
     }
 
     /// Its line among the endpoints.

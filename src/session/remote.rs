@@ -12,6 +12,7 @@
 mod identify;
 mod observer;
 mod permission;
+mod self_check;
 mod view;
 
 use std::collections::BTreeMap;
@@ -30,6 +31,7 @@ use crate::vehicle::{FrameOut, LateAnswer, RemoteRequest, Ticket, Vehicle};
 use identify::{Identification, Question};
 use observer::Observer;
 pub use permission::{Access, Denial, Impact, NOT_PERMITTED, NOTHING_MOVES, NOTHING_SIMULATED};
+use self_check::{AtRest, SelfCheck};
 pub use view::{RemoteNotice, RemoteState, RemoteView};
 
 /// The message that restarts a flight controller.
@@ -84,6 +86,7 @@ pub struct RemoteLink {
     connection: u32,
     /// The user has permitted changes over this connection.
     may_change: bool,
+    self_check: SelfCheck,
     notices: Vec<RemoteNotice>,
 }
 
@@ -105,6 +108,7 @@ impl RemoteLink {
             motors: FeedState::Waiting,
             connection: 0,
             may_change: false,
+            self_check: SelfCheck::default(),
             notices: Vec::new(),
         }
     }
@@ -412,6 +416,7 @@ impl RemoteLink {
             Ok(false) => {}
             Ok(true) => {
                 self.state = RemoteState::Ready;
+                self.self_check = SelfCheck::default();
                 self.schedule.refresh();
                 self.notices.push(RemoteNotice::Told(self.observer.introduction(&self.ends.name)));
             }
@@ -440,9 +445,35 @@ impl RemoteLink {
             ));
         }
         self.client.set_armed(self.observer.is_armed());
+        if let Some(finding) = self.check_at_rest(vehicle, now) {
+            self.notices.push(RemoteNotice::Lost(finding));
+        }
         let frame = vehicle.world().map(|world| *world.local_frame());
         let Some(mailbox) = vehicle.controller_mut().remote_mut() else { return };
         self.observer.deliver(mailbox, frame.as_ref());
+    }
+}
+
+impl RemoteLink {
+    /// Checks once, some time after it has begun to answer, whether it shows the craft at rest as it is.
+    fn check_at_rest(&mut self, vehicle: &Vehicle, now: Instant) -> Option<String> {
+        let peer = self.ends.peer.as_ref()?;
+        let answers = self.state == RemoteState::Ready && self.motors == FeedState::Answering;
+        if !self.self_check.is_due(answers, now) {
+            return None;
+        }
+        let snapshot = vehicle.snapshot();
+        let truth = snapshot.truth.filter(|truth| truth.on_ground && !truth.crashed)?;
+        if snapshot.craft.armed != Some(false) {
+            return None;
+        }
+        self_check::finding(&AtRest {
+            sent: peer.dialect(),
+            truth,
+            told: snapshot.estimate,
+            trusts_mag: self.observer.trusts_mag(),
+            place: snapshot.craft.gps.map(|gps| gps.position),
+        })
     }
 }
 

@@ -100,7 +100,7 @@ impl Talk {
                 }
                 Answer::Line { text, .. } => {
                     assert!(text.len() <= LONGEST_ANSWER, "{} bytes", text.len());
-                    Mission::parse(text);
+                    let _ = Mission::parse(text);
                     settings(text).count();
                 }
                 Answer::NotAnswered(_) => {}

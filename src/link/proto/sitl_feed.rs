@@ -66,6 +66,12 @@ impl SitlFeed {
         Self { config, frame: SensorFrame::default(), alt_amsl_m, gps: None, answered_us: None }
     }
 
+    /// What its packets mean.
+    #[must_use]
+    pub fn dialect(&self) -> Dialect {
+        self.config.dialect
+    }
+
     /// The executable started anew: its first position is the centre of the mirror again.
     pub fn restart(&mut self) {
         *self = Self::new(self.config);

@@ -30,7 +30,7 @@ pub(super) enum Question {
     Plan,
 }
 
-const QUESTIONS: [Question; 12] = [
+const QUESTIONS: [Question; 13] = [
     Question::ApiVersion,
     Question::Variant,
     Question::Version,
@@ -40,6 +40,7 @@ const QUESTIONS: [Question; 12] = [
     Question::ModeRanges,
     Question::ModeLinks,
     Question::Settings("ap_"),
+    Question::Settings("trust_mag"),
     Question::Settings("alt_hold_"),
     Question::Settings("min_check"),
     Question::Plan,

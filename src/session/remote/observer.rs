@@ -141,6 +141,11 @@ impl Observer {
         self.settings.waypoints_from_home()
     }
 
+    /// Whether its heading is that of the magnetometer, so that it is known at rest.
+    pub(super) fn trusts_mag(&self) -> bool {
+        self.settings.trusts_mag()
+    }
+
     /// Whether it holds and flies plans, as far as it has told.
     #[must_use]
     pub fn has_plans(&self) -> bool {

@@ -4,6 +4,8 @@
 use std::task::{Context, Poll};
 use std::time::{Duration, Instant};
 
+use tokio::sync::oneshot;
+
 use super::Session;
 use super::late::WaitingInterface;
 use crate::firmware::cli::Interpreter;
@@ -15,6 +17,9 @@ use crate::session::upload::{LIST, Upload, plan_of_list};
 use crate::sim::WorldCommand;
 use crate::telemetry::LinkState;
 use crate::vehicle::Answer;
+
+/// The message that stores the configuration.
+const EEPROM_WRITE: u16 = 250;
 
 impl Session {
     pub(super) fn take_commands(&mut self, now: Duration, context: &mut Context<'_>) {
@@ -108,7 +113,7 @@ impl Session {
                     }
                 }
             }
-            Command::Save { reply } => drop(reply.send(self.save())),
+            Command::Save { reply } => self.save(reply),
             Command::Pilot(on) => self.set_pilot(on),
             Command::ReturnHome => {
                 if let Err(refusal) = self.vehicle.controller_mut().return_to_home() {
@@ -160,16 +165,17 @@ impl Session {
         }
     }
 
-    /// As a ground station does it by MSP: the craft goes on without a restart.
-    fn save(&mut self) -> Result<(), String> {
+    /// As a ground station does it by MSP: the craft goes on without a restart. A remote flight controller stores by itself.
+    fn save(&mut self, reply: oneshot::Sender<Result<(), String>>) {
         let controller = self.vehicle.controller_mut();
-        if controller.configuration().is_none() {
-            return Err("This flight controller saves by itself: `save` in the CLI (5) does it.".to_owned());
-        }
         if controller.is_armed() {
-            return Err("Not saved while the craft is armed: `a` disarms it on the ground.".to_owned());
+            let refusal = "Not saved while the craft is armed: `a` disarms it on the ground.".to_owned();
+            drop(reply.send(Err(refusal)));
+        } else if controller.configuration().is_some() {
+            drop(reply.send(self.persistence.save(controller)));
+        } else if let Answer::Later(ticket) = controller.run_msp(EEPROM_WRITE, &[], None) {
+            self.late_answers.expect(ticket, WaitingInterface::Save { reply }, Instant::now());
         }
-        self.persistence.save(controller)
     }
 
     fn change_world(&mut self, line: &str) -> Result<(), String> {

@@ -29,6 +29,11 @@ pub(super) enum WaitingInterface {
         /// Gets the plan.
         reply: oneshot::Sender<Result<Box<FlightPlan>, String>>,
     },
+    /// Storing the configuration.
+    Save {
+        /// Gets whether it is stored.
+        reply: oneshot::Sender<Result<(), String>>,
+    },
     /// An upload, which goes on with the answer.
     Upload {
         /// What is left of it.
@@ -57,6 +62,10 @@ impl Session {
                 (Some(WaitingInterface::Download { reply }), LateAnswer::Cli(said)) => {
                     drop(reply.send(plan_of_list(&said).map(Box::new)));
                 }
+                (Some(WaitingInterface::Save { reply }), LateAnswer::Msp(stored)) => {
+                    let refusal = || "Not saved: the flight controller refuses to store now.".to_owned();
+                    drop(reply.send(stored.map(drop).ok_or_else(refusal)));
+                }
                 (_, answer) => {
                     if let Some(endpoints) = &mut self.endpoints {
                         endpoints.handler.deliver(ticket, answer);
@@ -70,7 +79,9 @@ impl Session {
                     drop(reply.send(CliOutput { text: no_answer_line(), ..CliOutput::default() }));
                 }
                 WaitingInterface::Download { reply } => drop(reply.send(Err(NO_ANSWER.to_owned()))),
-                WaitingInterface::Upload { reply, .. } => drop(reply.send(Err(NO_ANSWER.to_owned()))),
+                WaitingInterface::Upload { reply, .. } | WaitingInterface::Save { reply } => {
+                    drop(reply.send(Err(NO_ANSWER.to_owned())));
+                }
             }
         }
         if let Some(endpoints) = &mut self.endpoints {
@@ -82,7 +93,9 @@ impl Session {
     pub(super) fn upload_under_way(&self) -> Option<UploadView> {
         self.late_answers.recipients().find_map(|recipient| match recipient {
             WaitingInterface::Upload { upload, .. } => Some(upload.lines_sent()),
-            WaitingInterface::Line { .. } | WaitingInterface::Download { .. } => None,
+            WaitingInterface::Line { .. }
+            | WaitingInterface::Download { .. }
+            | WaitingInterface::Save { .. } => None,
         })
     }
 

@@ -9,11 +9,15 @@ use crate::telemetry::snapshot::SettingsView;
 /// A setting of firmware whose waypoints count from home; those of the others count from sea level.
 const COUNTS_FROM_HOME: &str = "ap_velocity_p";
 
+/// The setting that has it believe its magnetometer.
+const TRUSTS_MAG: &str = "trust_mag";
+
 /// The settings that were read. A firmware of this program that is set like it says what follows from them.
 #[derive(Debug, Default)]
 pub(super) struct Settings {
     twin: Option<Box<Firmware>>,
     waypoints_from_home: bool,
+    trusts_mag: bool,
 }
 
 impl Settings {
@@ -24,12 +28,20 @@ impl Settings {
         });
         for (name, value) in settings(output) {
             self.waypoints_from_home |= name == COUNTS_FROM_HOME;
+            if name == TRUSTS_MAG {
+                self.trusts_mag = value == "ON";
+            }
             twin.run_cli(&mut Interpreter::default(), &format!("set {name} = {value}"));
         }
     }
 
     pub(super) fn view(&self) -> Option<SettingsView> {
         self.twin.as_ref().map(|twin| twin.settings_view())
+    }
+
+    /// Whether its heading is that of the magnetometer.
+    pub(super) fn trusts_mag(&self) -> bool {
+        self.trusts_mag
     }
 
     pub(super) fn waypoints_from_home(&self) -> bool {

@@ -1,0 +1,170 @@
+//! Whether a SITL executable understands its packets: a craft at rest shows it.
+
+use std::time::{Duration, Instant};
+
+use nalgebra::Vector3;
+
+use crate::geo::{LatLon, distance_bearing};
+use crate::link::proto::fdm::{Gravity, State};
+use crate::signals::fdm::Dialect;
+use crate::telemetry::snapshot::{EstimateView, TruthView};
+
+/// How far roll and pitch may be off, degrees.
+const LEAN_DEG: f64 = 2.0;
+/// How far the heading may be off, degrees; the magnetic field that an executable computes points 2° east of north.
+const HEADING_DEG: f64 = 5.0;
+/// How near a heading must be to that of another dialect for it to be named, degrees.
+const NEAR_DEG: f64 = 15.0;
+/// How far its GPS may show the craft from where it stands, m.
+const PLACE_M: f64 = 50.0;
+
+/// How long it has to answer before what it shows has settled.
+const SETTLED: Duration = Duration::from_secs(8);
+
+/// When the check is due.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) enum SelfCheck {
+    /// It does not answer yet.
+    #[default]
+    Waiting,
+    /// It answers; at this instant.
+    At(Instant),
+    /// It was made.
+    Done,
+}
+
+impl SelfCheck {
+    /// Whether the check is to be made now, once.
+    pub(super) fn is_due(&mut self, answers: bool, now: Instant) -> bool {
+        match *self {
+            Self::Waiting if answers => *self = Self::At(now + SETTLED),
+            Self::At(_) if !answers => *self = Self::Waiting,
+            Self::At(due) if now >= due => {
+                *self = Self::Done;
+                return true;
+            }
+            Self::Waiting | Self::At(_) | Self::Done => {}
+        }
+        false
+    }
+}
+
+/// What an executable shows of a craft at rest.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct AtRest {
+    /// The dialect of the packets.
+    pub(super) sent: Dialect,
+    /// The craft as it is.
+    pub(super) truth: TruthView,
+    /// The craft as the executable has it.
+    pub(super) told: EstimateView,
+    /// Its heading is that of the magnetometer, so that it is known at rest.
+    pub(super) trusts_mag: bool,
+    /// Where its GPS shows the craft.
+    pub(super) place: Option<LatLon>,
+}
+
+/// What is wrong, as a sentence; `None` when all is well.
+pub(super) fn finding(at_rest: &AtRest) -> Option<String> {
+    let AtRest { sent, truth, told, trusts_mag, place } = *at_rest;
+    let (Some(roll), Some(pitch), Some(heading)) = (told.roll_deg, told.pitch_deg, told.heading_deg) else {
+        return None;
+    };
+    let leans = (roll - truth.roll_deg).abs() > LEAN_DEG || (pitch - truth.pitch_deg).abs() > LEAN_DEG;
+    let turned = trusts_mag && off_by(heading, truth.heading_deg) > HEADING_DEG;
+    if leans || turned {
+        let way_out = match fitting_dialect(sent, &truth, heading).filter(|_| trusts_mag) {
+            Some(fits) => format!("--fdm-dialect {fits} would fit"),
+            None => "another --fdm-dialect may fit".to_owned(),
+        };
+        return Some(format!(
+            "The firmware does not understand the packets as {sent}: the craft stands at roll {:.0}, pitch {:.0}, heading \
+             {:.0} degrees, and it shows {roll:.0}, {pitch:.0}, {heading:.0}; {way_out}.",
+            truth.roll_deg, truth.pitch_deg, truth.heading_deg
+        ));
+    }
+    let (distance_m, _) = distance_bearing(LatLon::from_degrees(truth.lat_deg, truth.lon_deg), place?);
+    (distance_m > PLACE_M).then(|| {
+        format!(
+            "The firmware shows the craft {distance_m:.0} m from where it stands: something else fed it before, and it \
+             mirrors positions about the first that it got; start it anew."
+        )
+    })
+}
+
+/// The dialect as which a packet of `sent` shows this heading.
+fn fitting_dialect(sent: Dialect, truth: &TruthView, heading_deg: f64) -> Option<Dialect> {
+    let yaw = (90.0 - truth.heading_deg).to_radians();
+    let state = State {
+        stamp_s: 1.0,
+        rate_flu: Vector3::zeros(),
+        specific_force_flu: Vector3::zeros(),
+        attitude: nalgebra::UnitQuaternion::from_axis_angle(&Vector3::z_axis(), yaw),
+        vel_enu: Vector3::zeros(),
+        lon_deg: truth.lon_deg,
+        lat_deg: truth.lat_deg,
+        alt_m: 0.0,
+        pressure_pa: 101_325.0,
+    };
+    // An executable that reads `read` shows this heading; it is shown the true one when it is sent what it reads.
+    [Dialect::SitlGz, Dialect::GzPlugin, Dialect::Legacy].into_iter().filter(|read| *read != sent).find(
+        |read| {
+            let seen = read.decode(&sent.encode(&state), Gravity::Included).attitude * Vector3::x();
+            off_by(heading_deg, seen.x.atan2(seen.y).to_degrees()) < NEAR_DEG
+        },
+    )
+}
+
+/// The angle between two headings, degrees.
+fn off_by(a_deg: f64, b_deg: f64) -> f64 {
+    let off = (a_deg - b_deg).rem_euclid(360.0);
+    off.min(360.0 - off)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at_rest(heading_deg: f64, roll_deg: f64, told_heading_deg: f64) -> AtRest {
+        let truth = TruthView { lat_deg: 40.0, lon_deg: -80.0, heading_deg, ..TruthView::default() };
+        let told = EstimateView {
+            roll_deg: Some(roll_deg),
+            pitch_deg: Some(0.3),
+            heading_deg: Some(told_heading_deg),
+            ..EstimateView::default()
+        };
+        let place = Some(LatLon::from_degrees(40.0, -80.0));
+        AtRest { sent: Dialect::SitlGz, truth, told, trusts_mag: true, place }
+    }
+
+    #[test]
+    fn a_firmware_that_understands_is_content_with_two_degrees_of_declination() {
+        assert_eq!(finding(&at_rest(0.0, 0.4, 358.0)), None);
+        let untold = EstimateView::default();
+        assert_eq!(finding(&AtRest { told: untold, ..at_rest(0.0, 0.0, 0.0) }), None);
+    }
+
+    #[test]
+    fn the_dialect_that_would_fit_is_named() {
+        // Builds without the bridge take the quaternion for that of a world turned by half a turn.
+        let sentence = finding(&at_rest(0.0, 0.0, 180.0)).unwrap();
+        assert!(sentence.contains("as sitl-gz") && sentence.contains("--fdm-dialect"), "{sentence}");
+        let east = finding(&at_rest(90.0, 0.0, 270.0)).unwrap();
+        assert!(east.contains(" would fit."), "{east}");
+    }
+
+    #[test]
+    fn without_a_trusted_magnetometer_the_heading_is_no_evidence_but_a_lean_is() {
+        let unknown_heading = AtRest { trusts_mag: false, ..at_rest(0.0, 0.0, 90.0) };
+        assert_eq!(finding(&unknown_heading), None);
+        let sentence = finding(&AtRest { trusts_mag: false, ..at_rest(0.0, 9.0, 0.0) }).unwrap();
+        assert!(sentence.contains("another --fdm-dialect may fit"), "{sentence}");
+    }
+
+    #[test]
+    fn a_firmware_that_something_else_fed_before_is_found_by_its_place() {
+        let place = Some(LatLon::from_degrees(40.01, -80.0));
+        let sentence = finding(&AtRest { place, ..at_rest(0.0, 0.0, 0.0) }).unwrap();
+        assert!(sentence.contains("1113 m") && sentence.contains("start it anew"), "{sentence}");
+    }
+}
