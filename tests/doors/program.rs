@@ -172,11 +172,6 @@ impl Sitl {
         Self { program, fdm: udp[0], rc: udp[1], tcp: tcp.unwrap() }
     }
 
-    /// All lines so far.
-    pub(crate) fn seen(&mut self) -> &[String] {
-        self.program.seen()
-    }
-
     /// The number of its process.
     pub(crate) fn id(&self) -> u32 {
         self.program.id()
