@@ -2,6 +2,7 @@
 //!
 //! Pure data and rules.
 
+mod altitude_reference;
 pub mod builtin;
 mod cli_lines;
 pub mod edit;
@@ -12,6 +13,7 @@ pub mod review;
 pub mod validate;
 mod waypoint;
 
+pub use altitude_reference::{AltitudeReference, HomeAltitudeUnknown};
 pub(crate) use cli_lines::waypoint_values;
 pub use cli_lines::{plan_lines, upload_lines};
 pub use waypoint::{HoldPattern, Waypoint, WaypointType};

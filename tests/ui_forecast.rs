@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use betadeck::session::{
     Command, Forecast, ForecastEnd, ForecastJob, ForecastKind, ForecastReply, ForecastRequest,
-    ForecastResult, PathPoint, WHAT_IFS, WorstXte,
+    ForecastResult, PathPoint, UploadReport, WHAT_IFS, WorstXte,
 };
 use betadeck::telemetry::{InFlightCommand, Snapshot};
 use betadeck::ui::{AppState, Effect, Msg, draw, update};
@@ -277,7 +277,7 @@ fn an_upload_in_flight_takes_effect_at_the_next_engagement_or_by_going_there() {
     press(&mut state, '1');
     press(&mut state, 'U');
     let id = state.editor.plan().id();
-    update(&mut state, Msg::UploadReply { id, count: 4, result: Ok(()) });
+    update(&mut state, Msg::UploadReply { id, count: 4, result: Ok(UploadReport::default()) });
     let told = state.notice.as_ref().map(|notice| notice.text.clone()).unwrap_or_default();
     assert!(told.contains("at the next engagement; `G` continues on it"), "{told}");
     let open = state.plan().clone();

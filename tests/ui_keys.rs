@@ -2,8 +2,8 @@
 
 use std::time::Duration;
 
-use betadeck::session::Command;
 use betadeck::session::command::CliOutput;
+use betadeck::session::{Command, UploadReport};
 use betadeck::ui::editor::FileRequest;
 use betadeck::ui::keymap::KeyPress;
 use betadeck::ui::{AppState, Effect, MapMode, Msg, Panel, Popup, layout, update};
@@ -76,7 +76,8 @@ fn f_uploads_first_when_the_craft_has_no_plan_and_stops_the_pilot_when_it_flies(
     update(&mut state, Msg::View(view.clone()));
     let [Effect::Upload { id, plan, .. }] = &press(&mut state, 'F')[..] else { panic!("an upload first") };
     assert_eq!(plan.waypoints.len(), 4);
-    let effects = update(&mut state, Msg::UploadReply { id: *id, count: 4, result: Ok(()) });
+    let effects =
+        update(&mut state, Msg::UploadReply { id: *id, count: 4, result: Ok(UploadReport::default()) });
     assert!(matches!(effects[..], [Effect::Send(Command::Pilot(true))]));
 
     view.pilot = Some("climbing");

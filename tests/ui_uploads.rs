@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use betadeck::session::UploadReport;
 use betadeck::session::command::UploadView;
 use betadeck::ui::editor::{FileReply, PlanId};
 use betadeck::ui::{AppState, Effect, Msg, Severity, update};
@@ -46,13 +47,26 @@ fn the_plan_panel_shows_how_far_the_upload_is_until_the_craft_was_read_back() {
         keys(&mut state, "(");
         assert!(screen(&state).contains("uploading 3/12"), "{}", screen(&state));
         progress(&mut state, None);
-        update(&mut state, Msg::UploadReply { id, count: 4, result: Ok(()) });
+        update(&mut state, Msg::UploadReply { id, count: 4, result: Ok(UploadReport::default()) });
         let seen = screen(&state);
         assert!(
             seen.contains("✓ Uploaded square.toml: 4 waypoints.") && !seen.contains("uploading"),
             "{seen}"
         );
     }
+}
+
+#[test]
+fn a_conversion_of_altitudes_is_said() {
+    let mut state = state((120, 40));
+    let id = upload(&mut state);
+    update(&mut state, Msg::UploadReply { id, count: 4, result: Ok(UploadReport { added_m: 300.5 }) });
+    let seen = screen(&state);
+    assert!(
+        seen.contains("✓ Uploaded square.toml: 4 waypoints. Its firmware counts altitudes from sea level"),
+        "{seen}"
+    );
+    assert!(seen.contains("300.5 m were added"), "{seen}");
 }
 
 #[test]
@@ -84,7 +98,7 @@ fn an_answer_goes_to_the_plan_that_asked_wherever_it_is_by_then() {
 
     let id = upload(&mut state);
     keys(&mut state, ")");
-    update(&mut state, Msg::UploadReply { id, count: 4, result: Ok(()) });
+    update(&mut state, Msg::UploadReply { id, count: 4, result: Ok(UploadReport::default()) });
     assert!(screen(&state).contains("Uploaded square.toml: 4 waypoints."), "{}", screen(&state));
 }
 

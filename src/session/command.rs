@@ -5,6 +5,7 @@ use std::sync::Arc;
 pub use crate::sim::{COMMAND_WORDS as WORLD_WORDS, FAULTS, FaultInfo, SWITCHES as WORLD_SWITCHES};
 
 use super::remote::RemoteView;
+use super::upload::UploadReport;
 use crate::plan::FlightPlan;
 use crate::signals::{RcFrame, SimTime};
 use crate::telemetry::{EndpointStatus, InFlightCommand, LinkState, LostTime, Snapshot};
@@ -86,8 +87,8 @@ pub enum Command {
         plan: Box<FlightPlan>,
         /// Setting lines that come with the plan file, without `set `.
         settings: Vec<String>,
-        /// Gets `Ok` or the sentence of the first refusal.
-        reply: tokio::sync::oneshot::Sender<Result<(), String>>,
+        /// Gets what was done, or the sentence of the first refusal.
+        reply: tokio::sync::oneshot::Sender<Result<UploadReport, String>>,
     },
     /// Read the plan of the craft the way a ground station does.
     Download {

@@ -3,7 +3,7 @@
 use super::command::UploadView;
 use crate::firmware::cli::{CliReply, Interpreter};
 use crate::plan::format::{self, Format};
-use crate::plan::{FlightPlan, upload_lines};
+use crate::plan::{AltitudeReference, FlightPlan, HomeAltitudeUnknown, upload_lines};
 use crate::vehicle::{Answer, FlightController, Ticket};
 
 /// Stores `settings` and `plan` in an embedded flight controller.
@@ -14,8 +14,10 @@ pub fn upload(
     controller: &mut FlightController,
     plan: &FlightPlan,
     settings: &[String],
-) -> Result<(), String> {
-    match Upload::new(plan, settings).send_lines(controller) {
+) -> Result<UploadReport, String> {
+    let reference = controller.altitude_reference();
+    let mut upload = Upload::new(plan, settings, reference).map_err(|unknown| unknown.to_string())?;
+    match upload.send_lines(controller) {
         UploadProgress::Done(result) => result,
         UploadProgress::Waiting(_) => {
             Err("a remote flight controller takes a plan in a session only".to_owned())
@@ -23,10 +25,28 @@ pub fn upload(
     }
 }
 
+/// What was done so that the craft holds a plan.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct UploadReport {
+    /// What was added to every altitude, m, because the craft counts from elsewhere than home.
+    pub added_m: f64,
+}
+
+impl UploadReport {
+    /// How altitudes were converted, as a sentence; `None` when they were not.
+    #[must_use]
+    pub fn conversion(&self) -> Option<String> {
+        let Self { added_m } = *self;
+        (added_m != 0.0).then(|| {
+            format!("Its firmware counts altitudes from sea level: home's {added_m} m were added to each.")
+        })
+    }
+}
+
 /// What prints the plan in the craft.
 pub(super) const LIST: &str = "waypoint list";
 
-/// The plan that an answer to [`LIST`] shows.
+/// The plan that an answer to [`LIST`] shows, as the craft counts its altitudes.
 ///
 /// # Errors
 /// A sentence, when it is none.
@@ -39,11 +59,21 @@ pub(super) fn plan_of_list(reply: &CliReply) -> Result<FlightPlan, String> {
     })
 }
 
+/// The plan that an answer to [`LIST`] shows, its altitudes above home.
+///
+/// # Errors
+/// A sentence, when it is none or when that cannot be known.
+pub(super) fn plan_above_home(reply: &CliReply, reference: AltitudeReference) -> Result<FlightPlan, String> {
+    let plan = plan_of_list(reply)?;
+    reference.plan_of_craft(&plan).map_err(|unknown| unknown.to_string())
+}
+
 /// An upload under way.
 #[derive(Debug)]
 pub(super) struct Upload {
-    /// What the craft is to hold at the end.
+    /// What the craft is to hold at the end, as it counts altitudes.
     plan: FlightPlan,
+    report: UploadReport,
     /// The lines that were not sent yet.
     lines: std::vec::IntoIter<String>,
     total: usize,
@@ -56,21 +86,31 @@ pub(super) struct Upload {
 #[derive(Debug)]
 pub(super) enum UploadProgress {
     /// Through, or refused with this sentence; what came before the refusal stays.
-    Done(Result<(), String>),
+    Done(Result<UploadReport, String>),
     /// It goes on with the answer to the last line, which comes with this ticket.
     Waiting(Ticket),
 }
 
 impl Upload {
-    pub(super) fn new(plan: &FlightPlan, settings: &[String]) -> Self {
-        let lines: Vec<String> = upload_lines(plan, settings).chain([LIST.to_owned()]).collect();
-        Self {
-            plan: plan.clone(),
+    /// An upload to a craft that counts altitudes from there.
+    ///
+    /// # Errors
+    /// When that cannot be known.
+    pub(super) fn new(
+        plan: &FlightPlan,
+        settings: &[String],
+        reference: AltitudeReference,
+    ) -> Result<Self, HomeAltitudeUnknown> {
+        let plan = reference.plan_for_craft(plan)?;
+        let lines: Vec<String> = upload_lines(&plan, settings).chain([LIST.to_owned()]).collect();
+        Ok(Self {
+            plan,
+            report: UploadReport { added_m: reference.added_m()? },
             total: lines.len(),
             lines: lines.into_iter(),
             sent: String::new(),
             interpreter: Interpreter::default(),
-        }
+        })
     }
 
     /// How many lines were sent, the reading back among them, and of how many.
@@ -89,7 +129,7 @@ impl Upload {
                 Answer::Later(ticket) => return UploadProgress::Waiting(ticket),
             }
         }
-        UploadProgress::Done(Ok(()))
+        UploadProgress::Done(Ok(self.report))
     }
 
     /// Takes the answer to the last line and goes on.
@@ -114,7 +154,7 @@ impl Upload {
     fn read_back(&self, reply: &CliReply) -> UploadProgress {
         UploadProgress::Done(plan_of_list(reply).and_then(|held| {
             if held == self.plan {
-                return Ok(());
+                return Ok(self.report);
             }
             let (sent, held) = (&self.plan.waypoints, &held.waypoints);
             let differs = std::iter::zip(sent, held).position(|(sent, held)| sent != held);
@@ -166,7 +206,8 @@ mod tests {
             [&taken, &taken, &taken, &lost],
         ] {
             let mut controller = FlightController::Remote(Box::default());
-            let mut upload = Upload::new(&plan, &["ap_max_angle = 33".to_owned()]);
+            let settings = ["ap_max_angle = 33".to_owned()];
+            let mut upload = Upload::new(&plan, &settings, AltitudeReference::Home).unwrap();
             let mut progress = upload.send_lines(&mut controller);
             for (line, answer) in std::iter::zip(lines, answers) {
                 assert!(matches!(progress, UploadProgress::Waiting(_)), "{progress:?}");

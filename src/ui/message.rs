@@ -8,7 +8,7 @@ use crossterm::event::{KeyEvent, MouseEvent};
 use super::editor::{FileReply, FileRequest, PlanId};
 use crate::plan::FlightPlan;
 use crate::session::command::{CliOutput, Command, SessionView};
-use crate::session::{Event, ForecastJob, ForecastReply};
+use crate::session::{Event, ForecastJob, ForecastReply, UploadReport};
 
 /// Something that happened outside.
 #[derive(Debug)]
@@ -35,8 +35,8 @@ pub enum Msg {
         id: PlanId,
         /// How many waypoints it had.
         count: usize,
-        /// The sentence of the first refusal otherwise.
-        result: Result<(), String>,
+        /// What was done, or the sentence of the first refusal.
+        result: Result<UploadReport, String>,
     },
     /// The session answered a change of the world.
     WorldReply {

@@ -12,7 +12,7 @@ use crate::firmware::cli::{BuildInfo, CliReply, Interpreter, StorageFacts};
 use crate::firmware::config::Configuration;
 use crate::firmware::msp::{Outcome, UtcTime};
 use crate::pilot::PilotFacts;
-use crate::plan::FlightPlan;
+use crate::plan::{AltitudeReference, FlightPlan};
 use crate::signals::{MotorCommand, RcFrame, RcSource, SensorFrame, SimTime};
 use crate::telemetry::snapshot::{CraftView, EstimateView, ModeRange, SettingsView};
 use crate::telemetry::{
@@ -332,6 +332,15 @@ impl FlightController {
         match self {
             Self::Embedded(embedded) => Some(embedded.firmware.stored_plan()),
             Self::Remote(remote) => remote.telemetry().stored_plan.as_ref(),
+        }
+    }
+
+    /// From where the altitudes of its waypoints count.
+    #[must_use]
+    pub fn altitude_reference(&self) -> AltitudeReference {
+        match self {
+            Self::Embedded(_) => AltitudeReference::Home,
+            Self::Remote(remote) => remote.telemetry().altitude_reference,
         }
     }
 

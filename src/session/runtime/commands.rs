@@ -13,7 +13,7 @@ use crate::flight::forecast;
 use crate::session::command::{
     Command, PLACE_IS_EXTERNAL, Seek, TIME_IS_EXTERNAL, TIME_IS_THE_FIRMWARES, UPLOADING, VehicleCopy,
 };
-use crate::session::upload::{LIST, Upload, plan_of_list};
+use crate::session::upload::{LIST, Upload, plan_above_home};
 use crate::sim::WorldCommand;
 use crate::telemetry::LinkState;
 use crate::vehicle::Answer;
@@ -100,13 +100,22 @@ impl Session {
                 drop(reply.send(Err(UPLOADING.to_owned())));
             }
             Command::Upload { plan, settings, reply } => {
-                let mut upload = Box::new(Upload::new(&plan, &settings));
-                let progress = upload.send_lines(self.vehicle.controller_mut());
-                self.report_upload(upload, progress, reply, Instant::now());
+                let reference = self.vehicle.controller().altitude_reference();
+                match Upload::new(&plan, &settings, reference) {
+                    Ok(mut upload) => {
+                        let progress = upload.send_lines(self.vehicle.controller_mut());
+                        self.report_upload(Box::new(upload), progress, reply, Instant::now());
+                    }
+                    Err(unknown) => drop(reply.send(Err(unknown.to_string()))),
+                }
             }
             Command::Download { reply } => {
-                match self.vehicle.controller_mut().run_cli(&mut Interpreter::default(), LIST) {
-                    Answer::Now(answer) => drop(reply.send(plan_of_list(&answer).map(Box::new))),
+                let controller = self.vehicle.controller_mut();
+                let reference = controller.altitude_reference();
+                match controller.run_cli(&mut Interpreter::default(), LIST) {
+                    Answer::Now(answer) => {
+                        drop(reply.send(plan_above_home(&answer, reference).map(Box::new)))
+                    }
                     Answer::Later(ticket) => {
                         let waiting = WaitingInterface::Download { reply };
                         self.late_answers.expect(ticket, waiting, Instant::now());

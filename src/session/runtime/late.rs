@@ -11,7 +11,7 @@ use crate::plan::FlightPlan;
 use crate::session::command::{CliOutput, UploadView};
 use crate::session::hazards;
 use crate::session::late_answers::{NO_ANSWER, no_answer_line};
-use crate::session::upload::{Upload, UploadProgress, plan_of_list};
+use crate::session::upload::{Upload, UploadProgress, UploadReport, plan_above_home};
 use crate::vehicle::LateAnswer;
 
 /// A part of the user interface that awaits the answer of a remote flight controller.
@@ -39,7 +39,7 @@ pub(super) enum WaitingInterface {
         /// What is left of it.
         upload: Box<Upload>,
         /// Gets its result.
-        reply: oneshot::Sender<Result<(), String>>,
+        reply: oneshot::Sender<Result<UploadReport, String>>,
     },
 }
 
@@ -60,7 +60,8 @@ impl Session {
                     self.report_upload(upload, progress, reply, now);
                 }
                 (Some(WaitingInterface::Download { reply }), LateAnswer::Cli(said)) => {
-                    drop(reply.send(plan_of_list(&said).map(Box::new)));
+                    let reference = self.vehicle.controller().altitude_reference();
+                    drop(reply.send(plan_above_home(&said, reference).map(Box::new)));
                 }
                 (Some(WaitingInterface::Save { reply }), LateAnswer::Msp(stored)) => {
                     let refusal = || "Not saved: the flight controller refuses to store now.".to_owned();
@@ -104,7 +105,7 @@ impl Session {
         &mut self,
         upload: Box<Upload>,
         progress: UploadProgress,
-        reply: oneshot::Sender<Result<(), String>>,
+        reply: oneshot::Sender<Result<UploadReport, String>>,
         now: Instant,
     ) {
         match progress {

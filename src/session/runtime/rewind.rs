@@ -102,7 +102,8 @@ impl Session {
                 let (text, advice) = ("###ERROR: REWOUND###".to_owned(), Some(REWOUND.to_owned()));
                 drop(reply.send(CliOutput { text, advice, restarted: false }));
             }
-            Command::Upload { reply, .. } | Command::World { reply, .. } | Command::Save { reply } => {
+            Command::Upload { reply, .. } => drop(reply.send(Err(REWOUND.to_owned()))),
+            Command::World { reply, .. } | Command::Save { reply } => {
                 drop(reply.send(Err(REWOUND.to_owned())));
             }
             Command::Download { reply } => drop(reply.send(Err(REWOUND.to_owned()))),

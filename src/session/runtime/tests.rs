@@ -3,11 +3,12 @@ use tokio::sync::oneshot;
 use super::*;
 use crate::firmware::config::Configuration;
 use crate::firmware::{Firmware, FirmwareOptions};
-use crate::plan::{FlightPlan, Waypoint};
+use crate::plan::{AltitudeReference, FlightPlan, Waypoint};
+use crate::session::UploadReport;
 use crate::session::command::{Seek, UPLOADING, UploadView};
 use crate::signals::SimTime;
 use crate::sim::WorldConfig;
-use crate::vehicle::{LateAnswer, RemoteRequest, VehicleConfig};
+use crate::vehicle::{LateAnswer, RemoteRequest, RemoteTelemetry, VehicleConfig};
 
 /// A session whose flight controller runs elsewhere: `firmware`, which is asked by hand.
 struct Rig {
@@ -40,7 +41,7 @@ impl Rig {
     }
 
     /// Asks for the upload of these waypoints; gets the result.
-    fn upload(&mut self, waypoints: usize) -> oneshot::Receiver<Result<(), String>> {
+    fn upload(&mut self, waypoints: usize) -> oneshot::Receiver<Result<UploadReport, String>> {
         let mut plan = Box::new(FlightPlan::default());
         plan.waypoints.extend((0..waypoints).map(|_| Waypoint { alt_cm: 2000, ..Waypoint::default() }));
         let (reply, result) = oneshot::channel();
@@ -93,9 +94,31 @@ fn an_upload_to_a_remote_flight_controller_shows_how_far_it_is_until_it_was_read
         assert!(rig.session.changed, "it is published");
         assert_eq!(rig.answer(|_, _| {}), 1, "one line after the other");
     }
-    assert_eq!((rig.shown(), result.try_recv().unwrap()), (None, Ok(())));
+    assert_eq!((rig.shown(), result.try_recv().unwrap()), (None, Ok(UploadReport::default())));
     assert_eq!(rig.firmware.stored_plan().waypoints.len(), 2);
     assert_eq!(rig.firmware.parameters().nav.max_angle, 33);
+}
+
+#[test]
+fn a_craft_that_counts_from_sea_level_gets_and_gives_altitudes_from_there() {
+    let mut rig = Rig::new();
+    let tell = |rig: &mut Rig, home_m| {
+        let altitude_reference = AltitudeReference::SeaLevel { home_m };
+        rig.mailbox().deliver_telemetry(RemoteTelemetry { altitude_reference, ..RemoteTelemetry::default() });
+    };
+    tell(&mut rig, None);
+    let refused = rig.upload(2).try_recv().unwrap().unwrap_err();
+    assert!(refused.contains("sea level") && refused.ends_with("wait for a GPS fix."), "{refused}");
+    tell(&mut rig, Some(300.0));
+    let mut result = rig.upload(2);
+    while rig.answer(|_, _| {}) > 0 {}
+    assert_eq!(result.try_recv().unwrap(), Ok(UploadReport { added_m: 300.0 }));
+    assert_eq!(rig.firmware.stored_plan().waypoints[1].alt_cm, 32_000);
+    let (reply, mut plan) = oneshot::channel();
+    rig.commands.try_send(Command::Download { reply }).unwrap();
+    rig.take_commands();
+    assert_eq!(rig.answer(|_, _| {}), 1);
+    assert_eq!(plan.try_recv().unwrap().unwrap().waypoints[1].alt_cm, 2000);
 }
 
 #[test]
@@ -119,7 +142,7 @@ fn the_lines_of_two_uploads_do_not_mix() {
     let (mut first, mut second) = (rig.upload(3), rig.upload(1));
     assert_eq!(second.try_recv().unwrap(), Err(UPLOADING.to_owned()));
     while rig.answer(|_, _| {}) > 0 {}
-    assert_eq!(first.try_recv().unwrap(), Ok(()));
+    assert_eq!(first.try_recv().unwrap(), Ok(UploadReport::default()));
     assert_eq!(rig.firmware.stored_plan().waypoints.len(), 3);
 }
 

@@ -1,6 +1,6 @@
 //! The flight as a whole: the scripted pilot, the upload of the plan, the speed of the simulation.
 
-use crate::session::Command;
+use crate::session::{Command, UploadReport};
 use crate::ui::action::{Action, EditAction};
 use crate::ui::app_state::AppState;
 use crate::ui::editor::{OpenPlan, PlanId};
@@ -60,13 +60,13 @@ pub(super) fn uploaded(
     state: &mut AppState,
     id: PlanId,
     count: usize,
-    result: Result<(), String>,
+    result: Result<UploadReport, String>,
 ) -> Vec<Effect> {
     let fly = state.fly_after_upload.take_if(|asked| *asked == id).is_some();
     let open = state.editor.plan_of(id);
     let title = open.map_or_else(|| "a plan that is closed now".to_owned(), OpenPlan::title);
     match result {
-        Ok(()) => {
+        Ok(report) => {
             let flies = open.is_some_and(|open| state.flies(&open.document().plan));
             // The next picture shows the new plan; whether another one flies is known already.
             let then = if state.flies_stored_plan() && !flies {
@@ -75,7 +75,8 @@ pub(super) fn uploaded(
             } else {
                 String::new()
             };
-            let text = format!("Uploaded {title}: {count} waypoints.{then}");
+            let converted = report.conversion().map_or_else(String::new, |sentence| format!(" {sentence}"));
+            let text = format!("Uploaded {title}: {count} waypoints.{converted}{then}");
             state.notify(Severity::Good, text);
             if fly { vec![Effect::Send(Command::Pilot(true))] } else { Vec::new() }
         }

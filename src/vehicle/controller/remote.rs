@@ -9,7 +9,7 @@ use strum::{EnumCount as _, IntoEnumIterator as _};
 
 use super::{LateAnswer, Ticket};
 use crate::pilot::PilotFacts;
-use crate::plan::FlightPlan;
+use crate::plan::{AltitudeReference, FlightPlan};
 use crate::signals::{MotorCommand, RcFrame, RcSource, SensorFrame, SimTime};
 use crate::telemetry::snapshot::{CraftView, EstimateView, SettingsView};
 use crate::telemetry::{DisarmReason, FirmwareEvent, Mode, NavTelemetry};
@@ -60,8 +60,10 @@ pub struct RemoteTelemetry {
     pub nav: Option<NavTelemetry>,
     /// Its settings.
     pub settings: Option<SettingsView>,
-    /// The plan it has stored.
+    /// The plan it has stored, its altitudes above home.
     pub stored_plan: Option<FlightPlan>,
+    /// From where it counts the altitudes of waypoints itself.
+    pub altitude_reference: AltitudeReference,
     /// Why it was disarmed last, as far as can be told.
     pub last_disarm: Option<DisarmReason>,
 }

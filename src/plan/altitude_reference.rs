@@ -1,0 +1,98 @@
+//! From where a craft counts the altitudes of its waypoints. Plans here count from home.
+
+use super::{FlightPlan, WaypointType};
+
+/// From where a craft counts the altitudes of its waypoints.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum AltitudeReference {
+    /// From home.
+    #[default]
+    Home,
+    /// From mean sea level.
+    SeaLevel {
+        /// Home's altitude above it, m; `None` when it is not known yet.
+        home_m: Option<f64>,
+    },
+}
+
+/// Altitudes count from sea level, and home's is not known. `Display` is a sentence.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "Its firmware counts the altitudes of waypoints from sea level, and that of home is not known yet: wait for a GPS fix."
+)]
+pub struct HomeAltitudeUnknown;
+
+impl AltitudeReference {
+    /// What is added to an altitude above home, m.
+    ///
+    /// # Errors
+    /// When nobody knows.
+    pub fn added_m(self) -> Result<f64, HomeAltitudeUnknown> {
+        match self {
+            Self::Home => Ok(0.0),
+            Self::SeaLevel { home_m } => home_m.ok_or(HomeAltitudeUnknown),
+        }
+    }
+
+    /// A plan as the craft counts it.
+    ///
+    /// # Errors
+    /// When that cannot be known.
+    pub fn plan_for_craft(self, plan: &FlightPlan) -> Result<FlightPlan, HomeAltitudeUnknown> {
+        Ok(raised(plan, centimetres(self.added_m()?)))
+    }
+
+    /// A plan of the craft, counted from home.
+    ///
+    /// # Errors
+    /// When that cannot be known.
+    pub fn plan_of_craft(self, plan: &FlightPlan) -> Result<FlightPlan, HomeAltitudeUnknown> {
+        Ok(raised(plan, -centimetres(self.added_m()?)))
+    }
+}
+
+fn centimetres(metres: f64) -> i32 {
+    (metres * 100.0).round() as i32
+}
+
+/// The plan with every altitude that means something higher by this much.
+fn raised(plan: &FlightPlan, by_cm: i32) -> FlightPlan {
+    let mut plan = plan.clone();
+    for waypoint in &mut plan.waypoints {
+        if waypoint.kind.is_positional() || waypoint.kind == WaypointType::AltChange {
+            waypoint.alt_cm = waypoint.alt_cm.saturating_add(by_cm);
+        }
+    }
+    plan
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::Waypoint;
+
+    #[test]
+    fn altitudes_that_mean_something_are_converted_there_and_back() {
+        use strum::IntoEnumIterator as _;
+        let mut plan = FlightPlan::default();
+        plan.waypoints.extend(WaypointType::iter().map(|kind| Waypoint {
+            kind,
+            alt_cm: 4000,
+            ..Waypoint::default()
+        }));
+        for (reference, there) in [
+            (AltitudeReference::Home, 4000),
+            (AltitudeReference::SeaLevel { home_m: Some(300.25) }, 34_025),
+            (AltitudeReference::SeaLevel { home_m: Some(-20.0) }, 2000),
+        ] {
+            let converted = reference.plan_for_craft(&plan).unwrap();
+            for waypoint in &converted.waypoints {
+                let unused = [WaypointType::Delay, WaypointType::YawRate].contains(&waypoint.kind);
+                assert_eq!(waypoint.alt_cm, if unused { 4000 } else { there }, "{waypoint:?}");
+            }
+            assert_eq!(reference.plan_of_craft(&converted), Ok(plan.clone()));
+        }
+        let unknown = AltitudeReference::SeaLevel { home_m: None };
+        assert_eq!(unknown.plan_for_craft(&plan), Err(HomeAltitudeUnknown));
+    }
+}
