@@ -13,7 +13,7 @@ pub mod review;
 pub mod validate;
 mod waypoint;
 
-pub use altitude_reference::{AltitudeReference, HomeAltitudeUnknown};
+pub use altitude_reference::{AltitudeError, AltitudeReference};
 pub(crate) use cli_lines::waypoint_values;
 pub use cli_lines::{plan_lines, upload_lines};
 pub use waypoint::{HoldPattern, Waypoint, WaypointType};

@@ -5,8 +5,10 @@ use super::{FlightPlan, WaypointType};
 /// From where a craft counts the altitudes of its waypoints.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum AltitudeReference {
-    /// From home.
+    /// It has not told yet.
     #[default]
+    Untold,
+    /// From home.
     Home,
     /// From mean sea level.
     SeaLevel {
@@ -15,22 +17,31 @@ pub enum AltitudeReference {
     },
 }
 
-/// Altitudes count from sea level, and home's is not known. `Display` is a sentence.
+/// Why altitudes cannot be converted. `Display` is a sentence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "Its firmware counts the altitudes of waypoints from sea level, and that of home is not known yet: wait for a GPS fix."
-)]
-pub struct HomeAltitudeUnknown;
+pub enum AltitudeError {
+    /// The reference is not known.
+    #[error(
+        "From where its firmware counts the altitudes of waypoints is not known yet: wait until it has told its settings."
+    )]
+    Untold,
+    /// They count from sea level, and home's is not known.
+    #[error(
+        "Its firmware counts the altitudes of waypoints from sea level, and that of home is not known yet: wait for a GPS fix."
+    )]
+    HomeUnknown,
+}
 
 impl AltitudeReference {
     /// What is added to an altitude above home, m.
     ///
     /// # Errors
     /// When nobody knows.
-    pub fn added_m(self) -> Result<f64, HomeAltitudeUnknown> {
+    pub fn added_m(self) -> Result<f64, AltitudeError> {
         match self {
+            Self::Untold => Err(AltitudeError::Untold),
             Self::Home => Ok(0.0),
-            Self::SeaLevel { home_m } => home_m.ok_or(HomeAltitudeUnknown),
+            Self::SeaLevel { home_m } => home_m.ok_or(AltitudeError::HomeUnknown),
         }
     }
 
@@ -38,7 +49,7 @@ impl AltitudeReference {
     ///
     /// # Errors
     /// When that cannot be known.
-    pub fn plan_for_craft(self, plan: &FlightPlan) -> Result<FlightPlan, HomeAltitudeUnknown> {
+    pub fn plan_for_craft(self, plan: &FlightPlan) -> Result<FlightPlan, AltitudeError> {
         Ok(raised(plan, centimetres(self.added_m()?)))
     }
 
@@ -46,7 +57,7 @@ impl AltitudeReference {
     ///
     /// # Errors
     /// When that cannot be known.
-    pub fn plan_of_craft(self, plan: &FlightPlan) -> Result<FlightPlan, HomeAltitudeUnknown> {
+    pub fn plan_of_craft(self, plan: &FlightPlan) -> Result<FlightPlan, AltitudeError> {
         Ok(raised(plan, -centimetres(self.added_m()?)))
     }
 }
@@ -93,6 +104,7 @@ mod tests {
             assert_eq!(reference.plan_of_craft(&converted), Ok(plan.clone()));
         }
         let unknown = AltitudeReference::SeaLevel { home_m: None };
-        assert_eq!(unknown.plan_for_craft(&plan), Err(HomeAltitudeUnknown));
+        assert_eq!(unknown.plan_for_craft(&plan), Err(AltitudeError::HomeUnknown));
+        assert_eq!(AltitudeReference::default().plan_of_craft(&plan), Err(AltitudeError::Untold));
     }
 }

@@ -3,7 +3,7 @@
 use super::command::UploadView;
 use crate::firmware::cli::{CliReply, Interpreter};
 use crate::plan::format::{self, Format};
-use crate::plan::{AltitudeReference, FlightPlan, HomeAltitudeUnknown, upload_lines};
+use crate::plan::{AltitudeError, AltitudeReference, FlightPlan, upload_lines};
 use crate::vehicle::{Answer, FlightController, Ticket};
 
 /// Stores `settings` and `plan` in an embedded flight controller.
@@ -15,13 +15,15 @@ pub fn upload(
     plan: &FlightPlan,
     settings: &[String],
 ) -> Result<UploadReport, String> {
+    const IN_A_SESSION_ONLY: &str = "a remote flight controller takes a plan in a session only";
+    if controller.embedded().is_none() {
+        return Err(IN_A_SESSION_ONLY.to_owned());
+    }
     let reference = controller.altitude_reference();
     let mut upload = Upload::new(plan, settings, reference).map_err(|unknown| unknown.to_string())?;
     match upload.send_lines(controller) {
         UploadProgress::Done(result) => result,
-        UploadProgress::Waiting(_) => {
-            Err("a remote flight controller takes a plan in a session only".to_owned())
-        }
+        UploadProgress::Waiting(_) => Err(IN_A_SESSION_ONLY.to_owned()),
     }
 }
 
@@ -100,7 +102,7 @@ impl Upload {
         plan: &FlightPlan,
         settings: &[String],
         reference: AltitudeReference,
-    ) -> Result<Self, HomeAltitudeUnknown> {
+    ) -> Result<Self, AltitudeError> {
         let plan = reference.plan_for_craft(plan)?;
         let lines: Vec<String> = upload_lines(&plan, settings).chain([LIST.to_owned()]).collect();
         Ok(Self {

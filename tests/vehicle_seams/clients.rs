@@ -7,10 +7,11 @@ use std::time::{Duration, Instant};
 
 use betadeck::link::proto::command_line::{LineReply, LineSource};
 use betadeck::link::{ClientId, ListenConfig, Listeners, Request};
-use betadeck::plan::{FlightPlan, Waypoint};
+use betadeck::plan::{AltitudeReference, FlightPlan, Waypoint};
 use betadeck::session::{Command, Handled, Persistence, RequestHandler, SessionConfig, start, upload};
 use betadeck::signals::RcFrame;
 use betadeck::storage::Store;
+use betadeck::vehicle::RemoteTelemetry;
 use tokio::sync::{mpsc, oneshot};
 
 use super::*;
@@ -154,8 +155,13 @@ fn a_flight_without_a_session_cannot_upload_to_a_remote_flight_controller() {
 
 #[tokio::test]
 async fn an_upload_to_a_silent_flight_controller_fails_in_a_sentence() {
+    let mut vehicle = Vehicle::with_remote_controller(WorldConfig::default()).unwrap();
+    // It told how it is set, and nothing since.
+    let altitude_reference = AltitudeReference::Home;
+    let told = RemoteTelemetry { altitude_reference, ..RemoteTelemetry::default() };
+    vehicle.controller_mut().remote_mut().unwrap().deliver_telemetry(told);
     let session = start(SessionConfig {
-        vehicle: Vehicle::with_remote_controller(WorldConfig::default()).unwrap(),
+        vehicle,
         store: Store::in_memory(),
         starter_modes: true,
         speed: 1.0,

@@ -5,6 +5,7 @@ use std::collections::VecDeque;
 use betadeck::firmware::cli::Interpreter;
 use betadeck::firmware::config::Configuration;
 use betadeck::firmware::{Firmware, FirmwareOptions};
+use betadeck::plan::AltitudeReference;
 use betadeck::signals::MotorCommand;
 use betadeck::telemetry::snapshot::EstimateView;
 use betadeck::vehicle::{FrameOut, LateAnswer, RemoteController, RemoteRequest, RemoteTelemetry, Ticket};
@@ -69,6 +70,8 @@ impl StandIn {
         }
         let EstimateView { roll_deg, pitch_deg, heading_deg, .. } = self.firmware.estimate_view();
         let estimate = EstimateView { roll_deg, pitch_deg, heading_deg, ..EstimateView::default() };
-        mailbox.deliver_telemetry(RemoteTelemetry { estimate, ..RemoteTelemetry::default() });
+        let altitude_reference = AltitudeReference::Home;
+        let told = RemoteTelemetry { estimate, altitude_reference, ..RemoteTelemetry::default() };
+        mailbox.deliver_telemetry(told);
     }
 }

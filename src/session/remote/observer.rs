@@ -11,7 +11,7 @@ use crate::link::proto::fc_client::Answer;
 use crate::link::proto::fc_client::telemetry::{
     ApiVersion, BoardInfo, BuildInfo, Mission, Observation, Origin, version,
 };
-use crate::plan::FlightPlan;
+use crate::plan::{AltitudeReference, FlightPlan};
 use crate::session::upload::plan_of_list;
 use crate::telemetry::Mode;
 use crate::vehicle::{RemoteController, RemoteTelemetry};
@@ -105,7 +105,9 @@ impl Observer {
             return;
         }
         let origin = frame.map(origin_of).or(self.first_fix);
-        let stored_plan = self.stored_plan.clone().map(|plan| self.above_home(plan, origin));
+        let altitude_reference = self.altitude_reference(origin);
+        let stored_plan =
+            self.stored_plan.as_ref().and_then(|plan| altitude_reference.plan_of_craft(plan).ok());
         let craft = self.observation.craft_view();
         let engaged = self.observation.is_active(Mode::Autopilot);
         let told = self.mission.as_ref().map(|told| mission::nav(told, engaged, stored_plan.as_ref()));
@@ -118,21 +120,20 @@ impl Observer {
             nav: told.map(|nav| self.events.completed(nav)),
             settings: self.settings.view(),
             stored_plan,
+            altitude_reference,
             last_disarm: self.events.last_disarm(),
         });
     }
 
-    /// A plan as everything here has it: altitudes above home.
-    fn above_home(&self, mut plan: FlightPlan, origin: Option<Origin>) -> FlightPlan {
-        if let Some(origin) = origin
-            && !self.counts_from_home()
-        {
-            let home_cm = (origin.alt_amsl_m * 100.0).round() as i32;
-            for waypoint in &mut plan.waypoints {
-                waypoint.alt_cm = waypoint.alt_cm.saturating_sub(home_cm);
-            }
+    /// From where it counts the altitudes of waypoints.
+    fn altitude_reference(&self, origin: Option<Origin>) -> AltitudeReference {
+        if !self.settings.tell_altitude_reference() {
+            AltitudeReference::Untold
+        } else if self.counts_from_home() {
+            AltitudeReference::Home
+        } else {
+            AltitudeReference::SeaLevel { home_m: origin.map(|origin| origin.alt_amsl_m) }
         }
-        plan
     }
 
     /// Whether its waypoints' altitudes count from home; else from sea level.

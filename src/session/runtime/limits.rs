@@ -23,7 +23,8 @@ impl Session {
                 let (text, advice) = ("###ERROR: NOT DONE###".to_owned(), Some(sentence));
                 drop(reply.send(CliOutput { text, advice, restarted: false }));
             }
-            Command::Upload { reply, .. } | Command::Save { reply } | Command::World { reply, .. } => {
+            Command::Upload { reply, .. } => drop(reply.send(Err(sentence))),
+            Command::Save { reply } | Command::World { reply, .. } => {
                 drop(reply.send(Err(sentence)));
             }
             _ => self.notice(sentence),

@@ -35,7 +35,11 @@ impl Rig {
             remote: None,
             first_events: Vec::new(),
         };
-        let session = Session::new(config, None, taken, mpsc::unbounded_channel().0);
+        let mut session = Session::new(config, None, taken, mpsc::unbounded_channel().0);
+        if let Some(mailbox) = session.vehicle.controller_mut().remote_mut() {
+            let altitude_reference = AltitudeReference::Home;
+            mailbox.deliver_telemetry(RemoteTelemetry { altitude_reference, ..RemoteTelemetry::default() });
+        }
         let firmware = Firmware::new(Configuration::default(), FirmwareOptions::default());
         Self { session, commands, firmware, console: Interpreter::default() }
     }
@@ -109,6 +113,9 @@ fn a_craft_that_counts_from_sea_level_gets_and_gives_altitudes_from_there() {
     tell(&mut rig, None);
     let refused = rig.upload(2).try_recv().unwrap().unwrap_err();
     assert!(refused.contains("sea level") && refused.ends_with("wait for a GPS fix."), "{refused}");
+    rig.mailbox().deliver_telemetry(RemoteTelemetry::default());
+    let refused = rig.upload(2).try_recv().unwrap().unwrap_err();
+    assert!(refused.ends_with("wait until it has told its settings."), "{refused}");
     tell(&mut rig, Some(300.0));
     let mut result = rig.upload(2);
     while rig.answer(|_, _| {}) > 0 {}

@@ -8,6 +8,8 @@ use crate::telemetry::snapshot::SettingsView;
 
 /// A setting of firmware whose waypoints count from home; those of the others count from sea level.
 const COUNTS_FROM_HOME: &str = "ap_velocity_p";
+/// What the names of the autopilot's settings begin with.
+const AUTOPILOT: &str = "ap_";
 
 /// The setting that has it believe its magnetometer.
 const TRUSTS_MAG: &str = "trust_mag";
@@ -16,6 +18,8 @@ const TRUSTS_MAG: &str = "trust_mag";
 #[derive(Debug, Default)]
 pub(super) struct Settings {
     twin: Option<Box<Firmware>>,
+    /// Those of the autopilot were among them.
+    knows_autopilot: bool,
     waypoints_from_home: bool,
     trusts_mag: bool,
 }
@@ -27,6 +31,7 @@ impl Settings {
             Box::new(Firmware::new(Configuration::default(), FirmwareOptions::default()))
         });
         for (name, value) in settings(output) {
+            self.knows_autopilot |= name.starts_with(AUTOPILOT);
             self.waypoints_from_home |= name == COUNTS_FROM_HOME;
             if name == TRUSTS_MAG {
                 self.trusts_mag = value == "ON";
@@ -44,6 +49,11 @@ impl Settings {
         self.trusts_mag
     }
 
+    /// Whether it is known from where altitudes of waypoints count.
+    pub(super) fn tell_altitude_reference(&self) -> bool {
+        self.knows_autopilot
+    }
+
     pub(super) fn waypoints_from_home(&self) -> bool {
         self.waypoints_from_home
     }
@@ -56,12 +66,15 @@ mod tests {
     #[test]
     fn what_was_read_is_shown_and_the_rest_is_as_usual() {
         let mut read = Settings::default();
-        assert!(read.view().is_none());
+        assert!(read.view().is_none() && !read.tell_altitude_reference());
+        read.read("alt_hold_climb_rate = 50\r\n");
+        assert!(!read.tell_altitude_reference());
         read.read(
             "ap_waypoint_arrival_radius = 700\r\nAllowed range: 100 - 10000\r\n\r\nap_new_thing = 5\r\n",
         );
         let view = read.view().unwrap();
         assert!((view.arrival_radius_m - 7.0).abs() < 1e-9 && !read.waypoints_from_home());
+        assert!(read.tell_altitude_reference());
         read.read("ap_velocity_p = 30\r\n");
         assert!(read.waypoints_from_home());
     }
