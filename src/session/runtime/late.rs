@@ -80,9 +80,8 @@ impl Session {
                     drop(reply.send(CliOutput { text: no_answer_line(), ..CliOutput::default() }));
                 }
                 WaitingInterface::Download { reply } => drop(reply.send(Err(NO_ANSWER.to_owned()))),
-                WaitingInterface::Upload { reply, .. } | WaitingInterface::Save { reply } => {
-                    drop(reply.send(Err(NO_ANSWER.to_owned())));
-                }
+                WaitingInterface::Upload { reply, .. } => drop(reply.send(Err(NO_ANSWER.to_owned()))),
+                WaitingInterface::Save { reply } => drop(reply.send(Err(NO_ANSWER.to_owned()))),
             }
         }
         if let Some(endpoints) = &mut self.endpoints {
