@@ -29,6 +29,11 @@ pub(super) struct LiveArgs<'a> {
     pub(super) flight: &'a FlightArgs,
 }
 
+/// What is said of a session that ended although nobody asked it to.
+pub(super) fn ended_by_itself() -> AppError {
+    AppError::internal("the session ended by itself")
+}
+
 /// Opens the doors and starts the session behind them; `notices` are told first. No doors are open with `--no-ports`. A
 /// directory that comes with it is that of the firmware outside, to be kept until the session has ended.
 ///

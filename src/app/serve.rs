@@ -66,7 +66,7 @@ async fn report(
         tokio::select! {
             () = &mut stop => break Ok(error::INTERRUPTED),
             event = session.events.recv() => match event {
-                None => break Err(AppError::internal("the session ended by itself")),
+                None => break Err(live::ended_by_itself()),
                 Some(event) => {
                     if let Err(problem) = output.event(&event) {
                         break problem;
@@ -77,8 +77,10 @@ async fn report(
     };
     drop(session.commands.send(Command::Quit).await);
     drop(session.commands);
-    drop(session.thread.join());
-    outcome
+    match session.thread.join() {
+        Ok(Some(why)) => Err(AppError::environment(why)),
+        Ok(None) | Err(_) => outcome,
+    }
 }
 
 /// Where the events go.

@@ -174,12 +174,15 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
             let tui = Tui::enter(config.mouse).map_err(problem)?;
             ui::run(tui, link, files, config, stop).await.map_err(problem)
         };
-        // The session ends with its last sender; its thread has nothing left to say.
-        drop(session.thread.join());
+        // The session ends with its last sender, or by itself.
+        let why = session.thread.join();
         if let Some(doors) = doors {
             doors.close().await;
         }
-        ending
+        match why {
+            Ok(Some(why)) => Err(AppError::environment(why)),
+            Ok(None) | Err(_) => ending,
+        }
     })?;
     runtime.shutdown_background();
     // The last edits are kept before the program ends.
@@ -188,7 +191,7 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
         Ending::Quit => Ok(0),
         // Closing the terminal also sends a signal; which of the two is seen first is chance.
         Ending::Signal | Ending::TerminalLost => Ok(error::INTERRUPTED),
-        Ending::SessionEnded => Err(AppError::internal("the session ended by itself")),
+        Ending::SessionEnded => Err(live::ended_by_itself()),
     }
 }
 

@@ -105,8 +105,9 @@ pub struct Handle {
     pub view: watch::Receiver<SessionView>,
     /// Every event, in order.
     pub events: mpsc::UnboundedReceiver<Event>,
-    /// The thread; it ends on [`Command::Quit`] or when all senders are gone.
-    pub thread: std::thread::JoinHandle<()>,
+    /// The thread; it ends on [`Command::Quit`] or when all senders are gone, and by itself when there is nothing to fly
+    /// with: then it gives the sentence why.
+    pub thread: std::thread::JoinHandle<Option<String>>,
 }
 
 /// Starts the session's thread.
@@ -164,6 +165,8 @@ struct Session {
     /// Clients asked more than one round of the loop has time for.
     more_waits: bool,
     quit: bool,
+    /// Why there is nothing to fly with.
+    failure: Option<String>,
 }
 
 /// Wakes the session's thread when a command or a request comes.
@@ -214,6 +217,7 @@ impl Session {
             changed: true,
             more_waits: false,
             quit: false,
+            failure: None,
         };
         if let Some((events, show)) = flown {
             session.begin_with(events, show);
@@ -224,7 +228,7 @@ impl Session {
         session
     }
 
-    fn run(&mut self, view: &watch::Sender<SessionView>) {
+    fn run(&mut self, view: &watch::Sender<SessionView>) -> Option<String> {
         let waker = Waker::from(Arc::new(ThreadWaker(std::thread::current())));
         let mut context = Context::from_waker(&waker);
         let start = Instant::now();
@@ -264,6 +268,7 @@ impl Session {
                 std::thread::park_timeout(self.sleep_from(now, start.elapsed()));
             }
         }
+        self.failure.take()
     }
 
     /// Until an external simulator speaks, and without one, time passes with the wall clock.

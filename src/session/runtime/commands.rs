@@ -114,7 +114,7 @@ impl Session {
                 let reference = controller.altitude_reference();
                 match controller.run_cli(&mut Interpreter::default(), LIST) {
                     Answer::Now(answer) => {
-                        drop(reply.send(plan_above_home(&answer, reference).map(Box::new)))
+                        drop(reply.send(plan_above_home(&answer, reference).map(Box::new)));
                     }
                     Answer::Later(ticket) => {
                         let waiting = WaitingInterface::Download { reply };

@@ -14,6 +14,12 @@ impl Session {
         let Some(remote) = &mut self.remote else { return };
         for notice in remote.exchange(&mut self.vehicle, Some(context), Instant::now()) {
             self.changed = true;
+            if let RemoteNotice::Failed(sentence) = &notice
+                && remote.is_fed()
+            {
+                self.failure = Some(sentence.clone());
+                self.quit = true;
+            }
             let restarted = matches!(notice, RemoteNotice::Restarted(_));
             self.events.report(&mut self.vehicle, SessionEvent::Remote(notice));
             if restarted {

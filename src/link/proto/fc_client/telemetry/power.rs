@@ -48,9 +48,9 @@ impl BatteryReading {
         Some(Self { cells, voltage_v, drawn_mah, current_a, state })
     }
 
-    /// Whether there is a battery that is measured.
+    /// Whether there is a battery that is measured: one that was just found may have no voltage yet.
     #[must_use]
     pub fn is_present(&self) -> bool {
-        self.state != Some(BatteryState::NotPresent)
+        self.state != Some(BatteryState::NotPresent) && (self.cells != Some(0) || self.voltage_v > 0.0)
     }
 }
