@@ -12,7 +12,7 @@ use crate::args::{OutputFile, ServeArgs};
 use crate::plan::format::PlanFile;
 use crate::printable;
 use crate::record::{json, sentence};
-use crate::session::{Command, Event, Handle};
+use crate::session::{Command, Event, Handle, RemoteNotice, SessionEvent};
 
 /// Serves until a signal ends it; every event is a line of output.
 pub(super) fn run(args: &ServeArgs) -> Result<u8, AppError> {
@@ -55,7 +55,7 @@ pub(super) fn run(args: &ServeArgs) -> Result<u8, AppError> {
     })
 }
 
-/// Writes events until a signal arrives or the output is gone.
+/// Writes events until a signal arrives, the output is gone or the firmware outside is of no use.
 async fn report(
     mut session: Handle,
     output: &mut Output,
@@ -70,6 +70,10 @@ async fn report(
                 Some(event) => {
                     if let Err(problem) = output.event(&event) {
                         break problem;
+                    }
+                    // Nobody is here to choose another firmware.
+                    if let SessionEvent::Remote(RemoteNotice::Failed(reason)) = event.kind {
+                        break Err(AppError::environment(reason));
                     }
                 }
             },

@@ -60,6 +60,23 @@ impl Program {
         }
     }
 
+    /// Waits for its end and gives the exit code.
+    #[allow(dead_code, reason = "only some of those that share this file wait for an end")]
+    pub(crate) fn end(&mut self) -> i32 {
+        let end = Instant::now() + PATIENCE;
+        while Instant::now() < end {
+            if let Some(status) = self.child.try_wait().unwrap() {
+                // What it said last is still on its way.
+                while let Ok(line) = self.lines.recv_timeout(Duration::from_secs(1)) {
+                    self.seen.push(line);
+                }
+                return status.code().unwrap_or(-1);
+            }
+            std::thread::sleep(Duration::from_millis(10));
+        }
+        panic!("no end after:\n{}", self.seen.join("\n"))
+    }
+
     /// All lines so far.
     pub(crate) fn seen(&mut self) -> &[String] {
         self.seen.extend(self.lines.try_iter());

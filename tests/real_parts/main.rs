@@ -12,6 +12,7 @@ mod checks;
 mod child;
 mod drop_in;
 mod feed;
+mod lossy;
 #[allow(dead_code, reason = "shared with the tests of the doors")]
 #[path = "../doors/msp.rs"]
 mod msp;
@@ -20,6 +21,7 @@ mod msp;
 mod program;
 mod real;
 mod rules;
+mod served;
 mod sockets;
 mod stand_in;
 mod wire;

@@ -28,14 +28,15 @@ pub(crate) struct StandIn {
 impl StandIn {
     /// Starts it; its motors go to these ports of the other side.
     pub(crate) fn start(raw: u16, motors: u16) -> Self {
-        let sockets = Sockets::bind(Ports { raw, motors, fdm: 0, rc: 0, tcp: 0 }).unwrap();
+        let mut sockets = Sockets::bind(Ports { raw, motors, fdm: 0, rc: 0, tcp: 0 }).unwrap();
+        sockets.listen().unwrap();
         let (ports, shared) = (sockets.ports(), Arc::new(Shared::default()));
         let seen = Arc::clone(&shared);
         let thread = std::thread::spawn(move || {
             let (mut memory, mut ends) = (Memory::new(), Vec::new());
             while ends.last() != Some(&End::Stopped) {
                 // The first one has booted long ago.
-                ends.push(live(&sockets, &mut memory, !ends.is_empty(), &seen));
+                ends.push(live(&mut sockets, &mut memory, !ends.is_empty(), &seen));
             }
             ends
         });

@@ -72,8 +72,9 @@ fn run(variable: &str) -> ExitCode {
         }
         _ => {}
     }
+    println!("process {}", std::process::id());
     println!("[SITL] The SITL will output to IP 127.0.0.1:{} (Gazebo)", ports.motors);
-    let sockets = match Sockets::bind(ports) {
+    let mut sockets = match Sockets::bind(ports) {
         Ok(sockets) => sockets,
         Err(error) => {
             println!("bind failed!! {error}");
@@ -91,7 +92,7 @@ fn run(variable: &str) -> ExitCode {
                 _ => {}
             }
         });
-        match live(&sockets, &mut memory, true, &shared) {
+        match live(&mut sockets, &mut memory, true, &shared) {
             End::Reboot => {
                 if let Done::Answered(lines) = memory.run("diff") {
                     println!("[FLASH_ProgramWord]0x55577effc700 = 0042beb2");

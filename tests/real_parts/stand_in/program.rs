@@ -21,7 +21,9 @@ const WAIT: Duration = Duration::from_micros(300);
 pub(crate) struct Sockets {
     fdm: UdpSocket,
     rc: UdpSocket,
-    tcp: TcpListener,
+    /// Bound when it has booted, not before.
+    tcp: Option<TcpListener>,
+    tcp_port: u16,
     /// Where its motors go: values, pulses.
     motors: SocketAddr,
     raw: SocketAddr,
@@ -38,15 +40,22 @@ pub(crate) struct Ports {
 }
 
 impl Sockets {
-    /// Binds; ports 0 are the system's choice.
+    /// Binds the sockets of packets; ports 0 are the system's choice.
     pub(crate) fn bind(ports: Ports) -> std::io::Result<Self> {
-        let here = |port: u16| SocketAddr::from(([127, 0, 0, 1], port));
         let (fdm, rc) = (UdpSocket::bind(here(ports.fdm))?, UdpSocket::bind(here(ports.rc))?);
-        let tcp = TcpListener::bind(here(ports.tcp))?;
-        for done in [fdm.set_nonblocking(true), rc.set_nonblocking(true), tcp.set_nonblocking(true)] {
-            done?;
-        }
-        Ok(Self { fdm, rc, tcp, motors: here(ports.motors), raw: here(ports.raw) })
+        fdm.set_nonblocking(true)?;
+        rc.set_nonblocking(true)?;
+        let (motors, raw) = (here(ports.motors), here(ports.raw));
+        Ok(Self { fdm, rc, tcp: None, tcp_port: ports.tcp, motors, raw })
+    }
+
+    /// Takes clients from now on.
+    pub(crate) fn listen(&mut self) -> std::io::Result<()> {
+        let tcp = TcpListener::bind(here(self.tcp_port))?;
+        tcp.set_nonblocking(true)?;
+        self.tcp_port = tcp.local_addr()?.port();
+        self.tcp = Some(tcp);
+        Ok(())
     }
 
     /// The ports that were bound.
@@ -56,7 +65,7 @@ impl Sockets {
             motors: self.motors.port(),
             fdm: self.fdm.local_addr().unwrap().port(),
             rc: self.rc.local_addr().unwrap().port(),
-            tcp: self.tcp.local_addr().unwrap().port(),
+            tcp: self.tcp_port,
         }
     }
 
@@ -73,6 +82,10 @@ impl Sockets {
             drop(self.fdm.send_to(&pulses, self.raw));
         }
     }
+}
+
+fn here(port: u16) -> SocketAddr {
+    SocketAddr::from(([127, 0, 0, 1], port))
 }
 
 /// Why a life ended.
@@ -96,9 +109,12 @@ pub(crate) struct Shared {
 }
 
 /// Lives once: boots, answers, until it is stopped or reboots. The memory is what it keeps.
-pub(crate) fn live(sockets: &Sockets, memory: &mut Memory, boots: bool, shared: &Shared) -> End {
+pub(crate) fn live(sockets: &mut Sockets, memory: &mut Memory, boots: bool, shared: &Shared) -> End {
     let start = Instant::now();
     let boot = Duration::from_micros(BOOT_US);
+    if boots {
+        sockets.tcp = None;
+    }
     let mut life = Life {
         sockets,
         start: if boots { start } else { start.checked_sub(boot).unwrap_or(start) },
@@ -114,7 +130,7 @@ pub(crate) fn live(sockets: &Sockets, memory: &mut Memory, boots: bool, shared: 
 }
 
 struct Life<'a> {
-    sockets: &'a Sockets,
+    sockets: &'a mut Sockets,
     start: Instant,
     receiver: Receiver,
     serial: Serial,
@@ -148,6 +164,9 @@ impl Life<'_> {
             }
             if !std::mem::replace(&mut booted, true) {
                 self.sockets.send_motors(true);
+                if self.sockets.tcp.is_none() {
+                    self.sockets.listen().unwrap();
+                }
             }
             self.take_rc(now);
             if now >= self.mixer_at + MIXER_US {
@@ -196,7 +215,7 @@ impl Life<'_> {
 
     /// One turn of the serial port: one client, every other one is accepted and closed.
     fn serve(&mut self, now: u64) {
-        while let Ok((client, _)) = self.sockets.tcp.accept() {
+        while let Some(Ok((client, _))) = self.sockets.tcp.as_ref().map(TcpListener::accept) {
             if self.client.is_none() && client.set_nonblocking(true).is_ok() {
                 self.client = Some(client);
             }

@@ -1,0 +1,174 @@
+//! `betadeck serve` with a firmware outside, a process of its own behind real sockets: `betadeck sitl`, and the stand-in with
+//! each of its troubles.
+
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+
+use super::lossy::LossyLink;
+use super::program::{PATIENCE, Program};
+use super::stand_in::process::{self, Trouble, VARIABLE};
+use super::stand_in::program::Ports;
+use super::stand_in::{StandIn, free_ports};
+
+/// A served firmware.
+struct Served {
+    program: Program,
+}
+
+impl Served {
+    /// With the firmware on these ports; `firmware` names it.
+    fn start(ports: Ports, firmware: &[&str]) -> Self {
+        let Ports { raw, motors, fdm, rc, tcp } = ports;
+        let (udp, tcp) = (format!("{raw},{motors},{fdm},{rc}"), tcp.to_string());
+        let doors = ["serve", "--json", "-", "--ws-port", "0", "--udp-ports", &udp, "--tcp-port", &tcp];
+        Self { program: Program::start(&[&doors[..], firmware].concat()) }
+    }
+
+    /// With the drop-in as the child.
+    fn drop_in(ports: Ports, more: &[&str]) -> Self {
+        let Ports { raw, motors, fdm, rc, tcp } = ports;
+        let (udp, tcp) = (format!("--udp-ports={raw},{motors},{fdm},{rc}"), format!("--tcp-port={tcp}"));
+        let mut firmware = vec!["--firmware", env!("CARGO_BIN_EXE_betadeck")];
+        for argument in ["sitl", &udp, &tcp, "--ws-port=0"] {
+            firmware.extend(["--firmware-arg", argument]);
+        }
+        firmware.extend(more);
+        Self::start(ports, &firmware)
+    }
+
+    /// With the stand-in as the child.
+    fn stand_in(ports: Ports, trouble: Trouble) -> Self {
+        let (program, arguments) = process::command();
+        let variable = format!("{VARIABLE}={}", process::variable(ports, trouble));
+        let program = program.display().to_string();
+        let mut firmware = vec!["--fresh", "--firmware", "/usr/bin/env"];
+        for argument in [&variable[..], &program].into_iter().chain(arguments) {
+            firmware.extend(["--firmware-arg", argument]);
+        }
+        Self::start(ports, &firmware)
+    }
+
+    /// The text of the next notice that holds these words.
+    fn notice(&mut self, words: &str) -> String {
+        self.program.wait(words, |line| {
+            let event: Value = serde_json::from_str(line).ok()?;
+            let text = event["text"].as_str().filter(|_| event["event"] == "notice")?;
+            text.contains(words).then(|| text.to_owned())
+        })
+    }
+
+    /// The exit code, and the last lines before it.
+    fn end(&mut self) -> (i32, String) {
+        let code = self.program.end();
+        (code, self.program.seen().join("\n"))
+    }
+}
+
+fn is_running(pid: i32) -> bool {
+    rustix::process::test_kill_process(rustix::process::Pid::from_raw(pid).unwrap()).is_ok()
+}
+
+#[test]
+fn the_drop_in_is_a_firmware_outside() {
+    let mut served = Served::drop_in(free_ports(), &["--fresh"]);
+    served.notice(" answers: Betaflight ");
+    served.program.wait("fix", |line| line.contains("\"gps_fix\"").then_some(()));
+}
+
+#[test]
+fn a_firmware_that_crashes_is_started_again() {
+    let mut served = Served::stand_in(free_ports(), Trouble::Crashes);
+    for _ in 0..2 {
+        served.notice(" answers: Betaflight ");
+        served.notice("ended by signal 6: it is started again");
+    }
+}
+
+#[test]
+fn a_firmware_that_hangs_is_told() {
+    let mut served = Served::stand_in(free_ports(), Trouble::Hangs);
+    served.notice(" answers: Betaflight ");
+    served.notice("has sent no motors for a second");
+}
+
+#[test]
+fn a_firmware_may_start_slowly() {
+    let mut served = Served::stand_in(free_ports(), Trouble::StartsSlowly);
+    served.notice(" answers: Betaflight ");
+}
+
+#[test]
+fn a_port_in_use_is_told_and_ends_the_program() {
+    let ports = free_ports();
+    let _taken = std::net::UdpSocket::bind(("127.0.0.1", ports.fdm)).unwrap();
+    let (code, said) = Served::stand_in(ports, Trouble::None).end();
+    assert_eq!(code, 3, "{said}");
+    assert!(said.contains(&format!("the firmware cannot have UDP port {}", ports.fdm)), "{said}");
+}
+
+#[test]
+fn our_own_motor_port_in_use_is_told_and_ends_the_program() {
+    let ports = free_ports();
+    let _taken = std::net::UdpSocket::bind(("127.0.0.1", ports.motors)).unwrap();
+    let (code, said) = Served::stand_in(ports, Trouble::None).end();
+    assert_eq!(code, 3, "{said}");
+    assert!(
+        said.contains("cannot take the motors of the firmware") && said.contains("--udp-ports"),
+        "{said}"
+    );
+}
+
+#[test]
+fn a_program_that_is_no_sitl_is_told_and_ends_the_program() {
+    let (code, said) = Served::stand_in(free_ports(), Trouble::IsNoSitl).end();
+    assert_eq!(code, 3, "{said}");
+    assert!(said.contains("SITL executable of Betaflight"), "{said}");
+}
+
+#[test]
+fn a_firmware_does_not_outlive_a_program_that_is_killed() {
+    let mut served = Served::stand_in(free_ports(), Trouble::None);
+    let line = served.notice("process ");
+    let pid = line.rsplit(' ').next().unwrap().parse().unwrap();
+    served.notice(" answers: Betaflight ");
+    assert!(is_running(pid));
+    // Killed, not asked to end.
+    drop(served);
+    let end = Instant::now() + PATIENCE;
+    while is_running(pid) {
+        assert!(Instant::now() < end, "{pid} is an orphan");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+#[test]
+fn one_that_runs_already_is_taken_and_its_reboot_survived() {
+    let Ports { raw, motors, .. } = free_ports();
+    let stand_in = StandIn::start(raw, motors);
+    let mut served = Served::start(stand_in.ports, &["--fresh", "--firmware", "attach"]);
+    served.notice(" answers: Betaflight ");
+    stand_in.hang(true);
+    served.notice("has sent no motors for a second");
+    stand_in.hang(false);
+    served.notice("sends motors again");
+}
+
+#[test]
+fn a_tenth_of_the_packets_may_be_lost() {
+    let Ports { raw, motors, .. } = free_ports();
+    let lossy = LossyLink::new(motors);
+    let stand_in = StandIn::start(raw, lossy.motors_port());
+    lossy.leads_to(stand_in.ports.fdm);
+    let ports = Ports { fdm: lossy.fdm_port(), motors, ..stand_in.ports };
+    let mut served = Served::start(ports, &["--fresh", "--firmware", "attach"]);
+    served.notice(" answers: Betaflight ");
+    while lossy.lost() < 500 {
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    let seen = stand_in.seen();
+    assert_eq!((seen.other_stamps, seen.moved_before_answer), (0, 0), "{seen:?}");
+    assert!(stand_in.clock_error_us().abs() < 50_000.0);
+    let said = served.program.seen();
+    assert!(said.iter().all(|line| !line.contains("no motors")), "{said:#?}");
+}
