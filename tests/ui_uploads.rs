@@ -60,7 +60,10 @@ fn the_plan_panel_shows_how_far_the_upload_is_until_the_craft_was_read_back() {
 fn a_conversion_of_altitudes_is_said() {
     let mut state = state((120, 40));
     let id = upload(&mut state);
-    update(&mut state, Msg::UploadReply { id, count: 4, result: Ok(UploadReport { added_m: 300.5 }) });
+    update(
+        &mut state,
+        Msg::UploadReply { id, count: 4, result: Ok(UploadReport { added_m: 300.5, refused: Vec::new() }) },
+    );
     let seen = screen(&state);
     assert!(
         seen.contains("✓ Uploaded square.toml: 4 waypoints. Its firmware counts altitudes from sea level"),

@@ -28,20 +28,36 @@ pub fn upload(
 }
 
 /// What was done so that the craft holds a plan.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct UploadReport {
     /// What was added to every altitude, m, because the craft counts from elsewhere than home.
     pub added_m: f64,
+    /// Settings of the plan that a firmware outside does not know or take, with what it says.
+    pub refused: Vec<String>,
 }
 
 impl UploadReport {
     /// How altitudes were converted, as a sentence; `None` when they were not.
     #[must_use]
     pub fn conversion(&self) -> Option<String> {
-        let Self { added_m } = *self;
+        let added_m = self.added_m;
         (added_m != 0.0).then(|| {
             format!("Its firmware counts altitudes from sea level: home's {added_m} m were added to each.")
         })
+    }
+
+    /// What the user is to know of it, as sentences; `None` when the craft holds what was sent.
+    #[must_use]
+    pub fn remark(&self) -> Option<String> {
+        let refused = (!self.refused.is_empty()).then(|| {
+            format!(
+                "Its firmware did not take {} of the settings: {}.",
+                self.refused.len(),
+                self.refused.join("; ")
+            )
+        });
+        let sentences: Vec<String> = self.conversion().into_iter().chain(refused).collect();
+        (!sentences.is_empty()).then(|| sentences.join(" "))
     }
 }
 
@@ -107,7 +123,7 @@ impl Upload {
         let lines: Vec<String> = upload_lines(&plan, settings).chain([LIST.to_owned()]).collect();
         Ok(Self {
             plan,
-            report: UploadReport { added_m: reference.added_m()? },
+            report: UploadReport { added_m: reference.added_m()?, refused: Vec::new() },
             total: lines.len(),
             lines: lines.into_iter(),
             sent: String::new(),
@@ -131,7 +147,7 @@ impl Upload {
                 Answer::Later(ticket) => return UploadProgress::Waiting(ticket),
             }
         }
-        UploadProgress::Done(Ok(self.report))
+        UploadProgress::Done(Ok(self.report.clone()))
     }
 
     /// Takes the answer to the last line and goes on.
@@ -142,6 +158,11 @@ impl Upload {
     ) -> UploadProgress {
         match reply.failed {
             _ if self.is_last() => self.read_back(reply),
+            // Another version has other settings: the plan can be flown all the same.
+            true if let Some(setting) = self.sent.strip_prefix("set ") => {
+                self.report.refused.push(format!("{setting} ({})", complaint(&reply.text)));
+                self.send_lines(controller)
+            }
             true => self.refused(reply),
             false => self.send_lines(controller),
         }
@@ -156,7 +177,7 @@ impl Upload {
     fn read_back(&self, reply: &CliReply) -> UploadProgress {
         UploadProgress::Done(plan_of_list(reply).and_then(|held| {
             if held == self.plan {
-                return Ok(self.report);
+                return Ok(self.report.clone());
             }
             let (sent, held) = (&self.plan.waypoints, &held.waypoints);
             let differs = std::iter::zip(sent, held).position(|(sent, held)| sent != held);
@@ -178,6 +199,14 @@ impl Upload {
     }
 }
 
+/// What a refusal says: the words of its first line, without the marks around them.
+fn complaint(text: &str) -> String {
+    let line = text.trim().lines().next().unwrap_or_default();
+    let words =
+        line.trim().trim_matches('#').trim_start_matches("ERROR IN set: ").trim_start_matches("ERROR: ");
+    words.to_lowercase()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -193,6 +222,31 @@ mod tests {
                 other => panic!("{other:?}"),
             })
             .collect()
+    }
+
+    #[test]
+    fn a_setting_that_another_version_does_not_take_is_told_and_the_plan_uploaded() {
+        let plan = FlightPlan { waypoints: std::iter::once(Waypoint::default()).collect() };
+        let mut controller = FlightController::Remote(Box::default());
+        let settings = ["ap_position_cutoff = 5".to_owned()];
+        let mut upload = Upload::new(&plan, &settings, AltitudeReference::Home).unwrap();
+        let mut progress = upload.send_lines(&mut controller);
+        let text = "###ERROR IN set: INVALID VALUE###\r\nAllowed range: 10 - 50\r\n".to_owned();
+        let list: String = plan_lines(&plan).map(|line| line + "\r\n").collect();
+        for reply in [
+            CliReply { text, failed: true, ..CliReply::default() },
+            CliReply::default(),
+            CliReply::default(),
+            CliReply { text: list, ..CliReply::default() },
+        ] {
+            assert!(matches!(progress, UploadProgress::Waiting(_)), "{progress:?}");
+            progress = upload.take_answer(&reply, &mut controller);
+        }
+        let UploadProgress::Done(Ok(report)) = progress else { panic!("{progress:?}") };
+        assert_eq!(
+            report.remark().unwrap(),
+            "Its firmware did not take 1 of the settings: ap_position_cutoff = 5 (invalid value)."
+        );
     }
 
     #[test]

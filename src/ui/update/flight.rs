@@ -75,7 +75,7 @@ pub(super) fn uploaded(
             } else {
                 String::new()
             };
-            let converted = report.conversion().map_or_else(String::new, |sentence| format!(" {sentence}"));
+            let converted = report.remark().map_or_else(String::new, |sentence| format!(" {sentence}"));
             let text = format!("Uploaded {title}: {count} waypoints.{converted}{then}");
             state.notify(Severity::Good, text);
             if fly { vec![Effect::Send(Command::Pilot(true))] } else { Vec::new() }
