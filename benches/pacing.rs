@@ -18,7 +18,7 @@ mod program;
 
 use std::net::UdpSocket;
 use std::process::ExitCode;
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use program::{PATIENCE, Program, Sitl};
 

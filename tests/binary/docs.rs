@@ -8,7 +8,7 @@ use betadeck::args::{self, Layers};
 use crate::support::{Sandbox, plan};
 
 /// Pages with commands for users.
-const PAGES: [&str; 7] = [
+const PAGES: [&str; 8] = [
     "README.md",
     "plans/README.md",
     "docs/headless.md",
@@ -16,6 +16,7 @@ const PAGES: [&str; 7] = [
     "docs/modes.md",
     "docs/autopilot.md",
     "docs/physics.md",
+    "docs/real-parts.md",
 ];
 
 /// The lines of a page's shell blocks that call the program.
@@ -44,7 +45,9 @@ fn every_command_of_the_documentation_is_understood_and_those_that_end_do_as_tol
             args::parse(words.clone(), &Layers::default())
                 .unwrap_or_else(|error| panic!("{page}: {line}\n{error}"));
             let name = words.get(1).and_then(|word| word.to_str()).unwrap_or_default();
-            if !["fly", "plan", "convert", "completions", "man"].contains(&name) {
+            // A firmware outside is not at hand.
+            let needs_parts = line.contains("--firmware");
+            if needs_parts || !["fly", "plan", "convert", "completions", "man"].contains(&name) {
                 continue;
             }
             for (file, text) in [("my-plan.txt", guide.as_str()), ("diff.txt", &guide)] {
