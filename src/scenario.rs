@@ -16,6 +16,7 @@ pub mod expression;
 mod file;
 pub mod happening;
 mod input;
+mod insight;
 mod judge;
 mod library;
 pub mod quantity;
@@ -31,7 +32,8 @@ pub use case::{
 pub use draft::Draft;
 pub use file::{FORMAT, Files, TABLES, read, seed_range};
 pub use input::{Action, FORMS, TimedInput};
-pub use judge::{Judgement, Margin, Outcome, compare, judge};
+pub use insight::Insight;
+pub use judge::{Judgement, Margin, Outcome, compare, judge, skip};
 pub use library::{BuiltinFiles, BuiltinScenario, SCENARIOS};
 pub use run::{CaseFlight, Flown};
 pub use trace::{NearestGuard, Sample, Stay, Trace};

@@ -35,4 +35,4 @@ pub use remote::{
 pub use request_handler::{Handled, RequestHandler};
 pub use runtime::{Endpoints, FlownBefore, Handle, SessionConfig, start, start_at};
 pub use simulator::SimulatorNotice;
-pub use upload::{UploadReport, upload};
+pub use upload::{Upload, UploadProgress, UploadReport, upload};

@@ -3,6 +3,7 @@
 mod load;
 mod output;
 mod progress;
+mod remote;
 mod run;
 mod watch;
 
@@ -10,7 +11,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::error::{self, AppError};
-use super::firmware::{self, Beside};
+use super::firmware::{self, Beside, RemoteFirmware};
 use super::interrupt::interrupt_flag;
 use super::setup;
 use crate::args::{CheckArgs, FlightArgs, PhysicsArgs};
@@ -36,19 +37,24 @@ pub(super) fn run(args: &CheckArgs) -> Result<u8, AppError> {
     let firmware = firmware::choose(&args.firmware, beside, &mut notices)?;
     notices.extend(args.firmware_ports.idle_options(firmware.is_some()));
     notices.iter().for_each(|notice| error::tell(notice));
-    if firmware.is_some() {
-        return Err(firmware::not_linked());
+    if firmware.is_some() && args.jobs.is_some_and(|jobs| jobs > 1) {
+        error::tell("--jobs has no effect: a firmware outside flies one flight after the other.");
     }
     let interrupted = interrupt_flag()?;
     if args.watch {
-        return watch::run(args, &interrupted);
+        return watch::run(args, firmware.as_ref(), &interrupted);
     }
     let loaded = load::load(args)?;
-    fly(&loaded, args, &interrupted)
+    fly(&loaded, args, firmware.as_ref(), &interrupted)
 }
 
 /// Flies what was loaded, once.
-fn fly(loaded: &Loaded, args: &CheckArgs, interrupted: &Arc<AtomicBool>) -> Result<u8, AppError> {
+fn fly(
+    loaded: &Loaded,
+    args: &CheckArgs,
+    firmware: Option<&RemoteFirmware>,
+    interrupted: &Arc<AtomicBool>,
+) -> Result<u8, AppError> {
     let jobs = run::jobs(loaded, args);
     if jobs.is_empty() {
         return Err(AppError::input(match &args.filter {
@@ -63,7 +69,7 @@ fn fly(loaded: &Loaded, args: &CheckArgs, interrupted: &Arc<AtomicBool>) -> Resu
     let mut flights: Vec<CheckedFlight> = Vec::new();
     let stop = AtomicBool::new(false);
     let started = run::Stopwatch::start();
-    run::all(loaded, &jobs, args, interrupted, &stop, |flight, done| {
+    let told = |flight: CheckedFlight, done| {
         if let Err(error) = output.flight(&flight, done, jobs.len()) {
             problem.get_or_insert(error);
             stop.store(true, Ordering::Relaxed);
@@ -72,7 +78,11 @@ fn fly(loaded: &Loaded, args: &CheckArgs, interrupted: &Arc<AtomicBool>) -> Resu
             stop.store(true, Ordering::Relaxed);
         }
         flights.push(flight);
-    })?;
+    };
+    match firmware {
+        None => run::all(loaded, &jobs, args, interrupted, &stop, told),
+        Some(firmware) => remote::all(loaded, &jobs, firmware, interrupted, &stop, told),
+    }?;
     if let Some(problem) = problem {
         return Err(problem);
     }

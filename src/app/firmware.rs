@@ -2,6 +2,7 @@
 
 mod executable;
 pub(super) mod link;
+pub(super) mod run;
 
 use std::path::{Path, PathBuf};
 
@@ -138,11 +139,6 @@ pub(super) fn check(
         stamps: link.stamps(),
         may_write: link.yes,
     }))
-}
-
-/// What is said as long as nothing speaks with a firmware outside.
-pub(super) fn not_linked() -> AppError {
-    AppError::internal("no link to a firmware outside")
 }
 
 /// The executable that a file of the launcher names.

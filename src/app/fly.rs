@@ -2,8 +2,10 @@
 #![allow(clippy::disallowed_methods, reason = "measures the wall time of the flight and paces it when asked")]
 
 mod output;
+mod remote;
 
-use std::sync::atomic::Ordering;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use super::error::{self, AppError};
@@ -14,12 +16,11 @@ use crate::args::{FlyArgs, PhysicsArgs};
 use crate::flight::setup::{BootLines, PhysicsSource};
 use crate::flight::{Flight, FlightEnd, FlightOptions, FlightResult};
 use crate::plan::format::PlanFile;
-use crate::plan::review::Finding;
-use crate::plan::validate::check_plan;
 use crate::record::End;
 use crate::session::{Event, Pacer, hazards, upload};
 use crate::signals::SimTime;
 use crate::storage::Store;
+use crate::vehicle::Vehicle;
 use output::Output;
 
 /// Ticks between two looks at the clock and at an interrupt.
@@ -28,7 +29,7 @@ const SLICE: u64 = 4096;
 /// Flies and reports; the exit code says whether the mission completed.
 pub(super) fn run(args: &FlyArgs) -> Result<u8, AppError> {
     let plan = setup::read_plan(&args.plan)?;
-    refuse_unflyable(&plan)?;
+    setup::refuse_unflyable(&plan)?;
     let mut notices: Vec<String> = plan.notes.iter().map(ToString::to_string).collect();
     let beside = Beside {
         ports: (&args.firmware_ports).into(),
@@ -37,38 +38,20 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, AppError> {
     };
     let firmware = firmware::choose(&args.firmware, beside, &mut notices)?;
     notices.extend(args.firmware_ports.idle_options(firmware.is_some()));
-    if firmware.is_some() {
-        return Err(firmware::not_linked());
-    }
     let mut store = open_store(args)?;
     let stored = setup::stored(&mut store, &mut notices);
     let mut setup = setup::from_args(&args.flight, PhysicsSource::Embedded, plan.clone(), stored)?;
     setup.world.faults = args.faults().collect();
     setup.boot_lines.push(BootLines::settings("--set", &args.set));
     setup.stick_inputs.clone_from(&args.stick);
-    let mut vehicle = setup::build(setup, &mut notices)?;
-    // A plan that the craft refuses is invalid input.
-    upload(vehicle.controller_mut(), &plan.plan, &[]).map_err(AppError::input)?;
-    notices.extend(hazards(vehicle.controller()));
-    let mut first_events: Vec<Event> = Vec::new();
-    vehicle.drain_events(|event| first_events.push(event.into()));
-    first_events.extend(notices.into_iter().map(|notice| Event::notice(vehicle.time(), notice)));
-    let options = FlightOptions {
-        takeoff_m: args.takeoff_m(),
-        timeout: SimTime::from_secs_f64(args.timeout_s()),
-        samples_hz: args.samples.unwrap_or(0.0),
-        tolerance_m: args.tolerance_m(),
+    setup.remote_controller = firmware.is_some();
+    let vehicle = setup::build(setup, &mut notices)?;
+    let start = Start { args, plan, vehicle, notices, interrupted: interrupt_flag()? };
+    let flown = match &firmware {
+        None => embedded(start)?,
+        Some(firmware) => remote::fly(start, firmware)?,
     };
-    let flight = Flight::new(vehicle, &options).map_err(|mode| {
-        AppError::input(format!(
-            "no channel switches {mode}: the pilot needs one; set it with an aux line in --settings"
-        ))
-    })?;
-    let mut output = Output::open(args, flight.vehicle(), &plan)?;
-    for event in &first_events {
-        output.event(event)?;
-    }
-    let (end, wall) = fly(flight, args.speed(), &mut output)?;
+    let Some(Flown { end, wall, output }) = flown else { return Ok(error::INTERRUPTED) };
     let end_record = End {
         result: end.verdict.result.to_string(),
         reason: end.verdict.reason,
@@ -80,12 +63,51 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, AppError> {
     Ok(exit_code(end.verdict.result))
 }
 
-/// No craft flies a plan that is refused whatever its settings are, so there is nothing to wait for.
-fn refuse_unflyable(plan: &PlanFile) -> Result<(), AppError> {
-    check_plan(&plan.plan).map_err(|fault| {
-        plan.notes.iter().for_each(|note| error::tell(&note.to_string()));
-        AppError::input(format!("{}: {}", plan.name, Finding::Fault(fault)))
-    })
+/// What a flight starts from.
+struct Start<'a> {
+    args: &'a FlyArgs,
+    plan: PlanFile,
+    vehicle: Vehicle,
+    /// What is told first.
+    notices: Vec<String>,
+    /// Raised by signals.
+    interrupted: Arc<AtomicBool>,
+}
+
+/// A flight that is over.
+struct Flown {
+    end: FlightEnd,
+    /// Wall time from the engagement to the end, or from the start when it did not engage.
+    wall: Duration,
+    output: Output,
+}
+
+impl Start<'_> {
+    fn options(&self) -> FlightOptions {
+        FlightOptions {
+            takeoff_m: self.args.takeoff_m(),
+            timeout: SimTime::from_secs_f64(self.args.timeout_s()),
+            samples_hz: self.args.samples.unwrap_or(0.0),
+            tolerance_m: self.args.tolerance_m(),
+        }
+    }
+}
+
+/// Opens the outputs and tells what has happened so far.
+fn open_output(
+    args: &FlyArgs,
+    plan: &PlanFile,
+    vehicle: &mut Vehicle,
+    notices: Vec<String>,
+) -> Result<Output, AppError> {
+    let mut output = Output::open(args, vehicle, plan)?;
+    let mut first_events: Vec<Event> = Vec::new();
+    vehicle.drain_events(|event| first_events.push(event.into()));
+    first_events.extend(notices.into_iter().map(|notice| Event::notice(vehicle.time(), notice)));
+    for event in &first_events {
+        output.event(event)?;
+    }
+    Ok(output)
 }
 
 fn exit_code(result: FlightResult) -> u8 {
@@ -116,9 +138,26 @@ fn open_store(args: &FlyArgs) -> Result<Store, AppError> {
     }
 }
 
+/// Flies with the embedded firmware.
+fn embedded(mut start: Start<'_>) -> Result<Option<Flown>, AppError> {
+    // A plan that the craft refuses is invalid input.
+    upload(start.vehicle.controller_mut(), &start.plan.plan, &[]).map_err(AppError::input)?;
+    start.notices.extend(hazards(start.vehicle.controller()));
+    let options = start.options();
+    let Start { args, plan, vehicle, notices, interrupted } = start;
+    let mut flight = setup::start_flight(vehicle, &options)?;
+    let mut output = open_output(args, &plan, flight.vehicle_mut(), notices)?;
+    let (end, wall) = fly(flight, args.speed(), &interrupted, &mut output)?;
+    Ok(Some(Flown { end, wall, output }))
+}
+
 /// Runs the flight to its end; the wall time counts from the engagement, or from boot when there was none.
-fn fly(mut flight: Flight, speed: f64, output: &mut Output) -> Result<(FlightEnd, Duration), AppError> {
-    let interrupted = interrupt_flag()?;
+fn fly(
+    mut flight: Flight,
+    speed: f64,
+    interrupted: &AtomicBool,
+    output: &mut Output,
+) -> Result<(FlightEnd, Duration), AppError> {
     let started = Instant::now();
     let mut engaged: Option<Instant> = None;
     let mut pacer = Pacer::new(flight.vehicle().step_us(), speed);

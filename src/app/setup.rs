@@ -3,15 +3,17 @@
 use std::path::{Path, PathBuf};
 
 use super::output_file::KeptFiles;
-use super::{AppError, input_file};
+use super::{AppError, error, input_file};
 use crate::args::{AttitudeChoice, DoorArgs, FlightArgs, OnOff, PhysicsArgs, PlanArg, is_descriptor};
 use crate::firmware::AttitudeSource;
 use crate::firmware::cli::BuildInfo;
 use crate::firmware::config::Configuration;
-use crate::flight::FlightSetup;
 use crate::flight::setup::{BootLines, PhysicsSource, check_setting};
+use crate::flight::{Flight, FlightOptions, FlightSetup};
 use crate::plan::builtin::BuiltinPlan;
 use crate::plan::format::{self, PlanFile};
+use crate::plan::review::Finding;
+use crate::plan::validate::check_plan;
 use crate::record::UtcSeconds;
 use crate::sim::{Airframe, Home, WorldConfig};
 use crate::storage::Store;
@@ -85,6 +87,23 @@ pub(super) fn build(setup: FlightSetup, notices: &mut Vec<String>) -> Result<Veh
     let (vehicle, found) = setup.build().map_err(|error| AppError::input(error.to_string()))?;
     notices.extend(found.iter().map(ToString::to_string));
     Ok(vehicle)
+}
+
+/// The flight of the plan that the craft has stored.
+pub(super) fn start_flight(vehicle: Vehicle, options: &FlightOptions) -> Result<Flight, AppError> {
+    Flight::new(vehicle, options).map_err(|mode| {
+        AppError::input(format!(
+            "no channel switches {mode}: the pilot needs one; set it with an aux line in --settings"
+        ))
+    })
+}
+
+/// No craft flies a plan that is refused whatever its settings are, so there is nothing to wait for.
+pub(super) fn refuse_unflyable(plan: &PlanFile) -> Result<(), AppError> {
+    check_plan(&plan.plan).map_err(|fault| {
+        plan.notes.iter().for_each(|note| error::tell(&note.to_string()));
+        AppError::input(format!("{}: {}", plan.name, Finding::Fault(fault)))
+    })
 }
 
 /// The embedded world, but for step rate, seed and faults.

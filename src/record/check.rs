@@ -5,7 +5,7 @@ mod junit;
 mod markdown;
 mod sentences;
 
-use crate::scenario::{Judgement, Outcome};
+use crate::scenario::{Insight, Judgement, Outcome};
 use crate::signals::SimTime;
 
 pub use json::{flight_line, summary_line};
@@ -57,18 +57,32 @@ pub struct CheckedFlight {
     pub wall_s: f64,
     /// Equal for flights that are the same to the last bit.
     pub hash: u64,
+    /// What was known of the flight controller.
+    pub told: Insight,
 }
 
 impl CheckedFlight {
     /// Whether every expectation was met.
     #[must_use]
     pub fn passed(&self) -> bool {
-        self.problem.is_none() && self.judgements.iter().all(|judgement| judgement.outcome.is_met())
+        self.problem.is_none() && !self.judgements.iter().any(|judgement| judgement.outcome.is_failure())
+    }
+
+    /// Expectations that need what the flight controller does not tell.
+    #[must_use]
+    pub fn skipped(&self) -> usize {
+        self.judgements.iter().filter(|judgement| is_skipped(judgement)).count()
+    }
+
+    /// Whether nothing of it was judged, for all that is expected needs what the flight controller does not tell.
+    #[must_use]
+    pub fn is_skipped(&self) -> bool {
+        self.problem.is_none() && !self.judgements.is_empty() && self.judgements.iter().all(is_skipped)
     }
 
     /// The expectations that were not met.
     pub fn failures(&self) -> impl Iterator<Item = &Judgement> {
-        self.judgements.iter().filter(|judgement| !judgement.outcome.is_met())
+        self.judgements.iter().filter(|judgement| judgement.outcome.is_failure())
     }
 
     /// The expectation with the smallest margin, as a share of what it allows.
@@ -185,13 +199,21 @@ impl Summary {
     pub fn passed(&self) -> bool {
         self.flights.len() == self.wanted
             && self.flights.iter().all(CheckedFlight::passed)
-            && self.compared.iter().all(|compared| compared.judgement.outcome.is_met())
+            && !self.compared.iter().any(|compared| compared.judgement.outcome.is_failure())
     }
 
-    /// Flights that passed.
+    /// Flights that passed, those of which nothing was judged not among them.
     #[must_use]
     pub fn passed_flights(&self) -> usize {
-        self.flights.iter().filter(|flight| flight.passed()).count()
+        self.flights.iter().filter(|flight| flight.passed() && !flight.is_skipped()).count()
+    }
+
+    /// Flights of which nothing was judged, and skipped expectations of all.
+    #[must_use]
+    pub fn skipped(&self) -> (usize, usize) {
+        let flights = self.flights.iter().filter(|flight| flight.is_skipped()).count();
+        let compared = self.compared.iter().filter(|compared| is_skipped(&compared.judgement)).count();
+        (flights, compared + self.flights.iter().map(CheckedFlight::skipped).sum::<usize>())
     }
 
     /// Simulated seconds of all flights.
@@ -225,6 +247,10 @@ impl Summary {
     }
 }
 
+fn is_skipped(judgement: &Judgement) -> bool {
+    matches!(judgement.outcome, Outcome::Skipped(_))
+}
+
 /// What was seen instead of what was expected, as one sentence.
 #[must_use]
 pub fn complaint(judgement: &Judgement) -> String {
@@ -235,6 +261,7 @@ pub fn complaint(judgement: &Judgement) -> String {
             format!("{}: {sentence}; {guard}", judgement.label)
         }
         Outcome::NeverJudged(why) => format!("{}: never judged, {why}", judgement.label),
+        Outcome::Skipped(needed) => format!("{}: skipped, {}", judgement.label, needed.missing()),
     }
 }
 

@@ -202,6 +202,18 @@ pub enum Occurrence {
 }
 
 impl Condition {
+    /// The parameters and measures in it.
+    #[must_use]
+    pub fn names(&self) -> Vec<String> {
+        let mut names = Vec::new();
+        self.each_number(&mut |number| {
+            if let Number::Name(name) = number {
+                names.push(name.clone());
+            }
+        });
+        names
+    }
+
     /// Calls `visit` for every number in it, those inside other numbers included.
     fn each_number(&self, visit: &mut impl FnMut(&Number)) {
         match self {

@@ -9,6 +9,7 @@ mod samples;
 use super::case::{Case, Compare, Expectation, Expected, Statistic, Window};
 use super::expression::{Condition, Evaluator, Instant, Number};
 use super::happening::{Happening, Pattern};
+use super::insight::{Insight, Needs};
 use super::run::Flown;
 use super::trace::Trace;
 use crate::signals::SimTime;
@@ -25,18 +26,39 @@ pub fn judge(case: &Case, flown: &Flown) -> (Vec<Judgement>, Vec<(String, f64)>)
         let value = measures::take(&measure.measured, &Evaluator::new(&flown.trace, &names));
         names.push((measure.name.clone(), value));
     }
+    let needs = Needs::of(case);
+    // What was not told cannot be measured.
+    names.retain(|(name, _)| needs.measure(name) <= flown.told);
     let evaluator = Evaluator::new(&flown.trace, &names);
     let mut judgements: Vec<Judgement> = case
         .expectations
         .iter()
-        .map(|expectation| Judgement {
-            label: expectation.label.clone(),
-            line: expectation.line,
-            outcome: judge_one(expectation, flown, &evaluator),
+        .map(|expectation| {
+            let outcome = match needs.expectation(expectation) {
+                needed if needed > flown.told => Outcome::Skipped(needed),
+                _ => judge_one(expectation, flown, &evaluator),
+            };
+            judgement(expectation, outcome)
         })
         .collect();
-    judgements.extend(inputs::judge(case, &flown.trace));
+    if needs.flight(case) <= flown.told {
+        judgements.extend(inputs::judge(case, &flown.trace));
+    }
     (judgements, names)
+}
+
+/// The judgements of a flight that is not flown with a flight controller outside, all skipped, as its inputs or its end need
+/// what none of them tells; `None` when it can be flown.
+#[must_use]
+pub fn skip(case: &Case) -> Option<Vec<Judgement>> {
+    let needed = Needs::of(case).flight(case);
+    let skipped =
+        case.expectations.iter().map(|expectation| judgement(expectation, Outcome::Skipped(needed)));
+    (needed > Insight::Mission).then(|| skipped.collect())
+}
+
+fn judgement(expectation: &Expectation, outcome: Outcome) -> Judgement {
+    Judgement { label: expectation.label.clone(), line: expectation.line, outcome }
 }
 
 /// A statistic over a part of a flight; `None` when its instants did not come.
@@ -49,11 +71,17 @@ pub(super) fn statistic(
     measures::over(window, statistic, number, evaluator)
 }
 
-/// Judges what is expected of several flights together: `names` are their measures as `CASE.MEASURE`.
+/// Judges what is expected of several flights together: `names` are their measures as `CASE.MEASURE`, and `told` is what was
+/// known of all of them.
 #[must_use]
-pub fn compare(compare: &Compare, names: &[(String, f64)]) -> Judgement {
+pub fn compare(compare: &Compare, names: &[(String, f64)], told: Insight) -> Judgement {
     let trace = Trace::of_nothing();
-    let outcome = that(&compare.that, &Evaluator::new(&trace, names));
+    let is_known = |name: &str| names.iter().any(|(known, _)| known == name);
+    let outcome = if told < Insight::Inner && !compare.that.names().iter().all(|name| is_known(name)) {
+        Outcome::Skipped(Insight::Inner)
+    } else {
+        that(&compare.that, &Evaluator::new(&trace, names))
+    };
     Judgement { label: compare.label.clone(), line: compare.line, outcome }
 }
 

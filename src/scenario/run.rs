@@ -6,6 +6,7 @@ mod log;
 use super::case::{Air, Case};
 use super::expression::{Evaluator, Search};
 use super::happening::{EventName, Happening};
+use super::insight::Insight;
 use super::sampling::{Origin, sample};
 use super::trace::Trace;
 use crate::flight::{Flight, FlightEnd, FlightOptions, FlightResult, Report};
@@ -25,6 +26,8 @@ pub struct Flown {
     pub reason: String,
     /// When the flight ended; the record may go on.
     pub ended_at: SimTime,
+    /// What was known of the flight controller.
+    pub told: Insight,
 }
 
 /// The flight of a case under way.
@@ -39,6 +42,7 @@ pub struct CaseFlight<'a> {
     end: Option<FlightEnd>,
     /// The scenario ended the flight: its word for the result and the reason.
     stopped: Option<(&'static str, String)>,
+    told: Insight,
     sample_us: u64,
     standing_m: f64,
     is_over: bool,
@@ -53,6 +57,15 @@ impl<'a> CaseFlight<'a> {
         let mut setup = case.setup_in(air);
         setup.stored.plan = setup.plan.plan.clone();
         let (vehicle, _) = setup.build().map_err(|error| error.to_string())?;
+        Self::of_vehicle(case, vehicle)
+    }
+
+    /// The same for a vehicle that stands at home with the plan of the case.
+    ///
+    /// # Errors
+    /// A sentence, when nobody can switch what the pilot needs.
+    pub fn of_vehicle(case: &'a Case, vehicle: Vehicle) -> Result<Self, String> {
+        let told = if vehicle.embedded().is_some() { Insight::Inner } else { Insight::Telemetry };
         let standing_m = vehicle.world().map_or(0.0, |world| world.truth().pos_enu.z);
         let trace = Trace::new(case.setup.plan.plan.clone(), vehicle.local_frame().copied());
         // The limits of the scenario decide when to give up.
@@ -75,6 +88,7 @@ impl<'a> CaseFlight<'a> {
             ends: case.ends.as_ref().map(Search::new),
             end: None,
             stopped: None,
+            told,
             sample_us,
             standing_m,
             is_over: false,
@@ -161,6 +175,9 @@ impl<'a> CaseFlight<'a> {
         let origin = Origin { standing_m: self.standing_m, engaged_at: self.trace.engaged_at };
         let vehicle = self.flight.vehicle();
         let sample = sample(vehicle, origin);
+        if vehicle.controller().nav().is_some() {
+            self.told = self.told.max(Insight::Mission);
+        }
         if let Some(nav) = vehicle.controller().nav()
             && nav.engaged
         {
@@ -227,6 +244,6 @@ impl<'a> CaseFlight<'a> {
             Some((word, reason)) => (word.to_owned(), reason),
             None => (end.verdict.result.to_string(), end.verdict.reason),
         };
-        Flown { trace: self.trace, result, reason, ended_at: end.time }
+        Flown { trace: self.trace, result, reason, ended_at: end.time, told: self.told }
     }
 }

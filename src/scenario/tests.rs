@@ -282,9 +282,12 @@ that = 'fast.air - slow.air in -1..1 m/s'
     let winds: Vec<f64> = scenario.cases[2].airs.iter().map(|air| air.wind.speed_mps).collect();
     assert_eq!(winds, [1.0, 2.0, 0.0]);
     let names = [("fast.air".to_owned(), 3.0), ("slow.air".to_owned(), 2.5)];
-    assert!(compare(&scenario.compares[0], &names).outcome.is_met());
+    assert!(compare(&scenario.compares[0], &names, Insight::Inner).outcome.is_met());
     let names = [("fast.air".to_owned(), 3.0), ("slow.air".to_owned(), f64::NAN)];
-    assert!(matches!(compare(&scenario.compares[0], &names).outcome, Outcome::NeverJudged(_)));
+    assert!(matches!(
+        compare(&scenario.compares[0], &names, Insight::Inner).outcome,
+        Outcome::NeverJudged(_)
+    ));
 }
 
 #[test]
@@ -382,4 +385,80 @@ proptest::proptest! {
         let _ = read("test.toml", &text, None, &mut NoFiles);
         let _ = read("test.toml", &format!("{STANDING}[[expect]]\nalways = {text}"), None, &mut NoFiles);
     }
+}
+
+/// What becomes of the expectations of one flight when this is told of it.
+fn judged_by<const N: usize>(told: [Insight; N], expectations: &str) -> [Vec<Outcome>; N] {
+    let scenario = scenario(&format!("{STANDING}{expectations}"));
+    let case = &scenario.cases[0];
+    let mut flown = CaseFlight::new(case, &case.airs[0]).unwrap().fly();
+    assert_eq!(flown.told, Insight::Inner);
+    told.map(|told| {
+        flown.told = told;
+        judge(case, &flown).0.into_iter().map(|judgement| judgement.outcome).collect()
+    })
+}
+
+#[test]
+fn what_a_flight_controller_does_not_tell_is_skipped_and_the_rest_judged() {
+    use Insight::{Inner, Mission, Telemetry, Truth};
+    let expected = [
+        (Mission, "result = 'stopped'"),
+        (Truth, "always = 'altitude < 1 m and on_ground'\nfrom = 'boot'"),
+        (Truth, "max = 'distance(wp 0) < 1 km'\nfrom = 'boot'"),
+        (Truth, "no_event = 'touchdown'\nfrom = 'boot'"),
+        (Telemetry, "never = 'armed or mode AUTOPILOT'\nfrom = 'boot'"),
+        (Telemetry, "no_event = 'mode AUTOPILOT on'\nfrom = 'boot'"),
+        (Telemetry, "never = 'fix'\nfrom = 'boot'"),
+        (Truth, "that = 'rate(altitude) = 0 +- 1 m/s'\nat = '1 s after when boot_time > 1 s'"),
+        (Mission, "never = 'state ORBITING 0'\nfrom = 'boot'"),
+        (Mission, "no_event = 'engaged'\nfrom = 'boot'"),
+        (Inner, "no_event = 'engage_refused'\nfrom = 'boot'"),
+        (Inner, "always = 'throttle < 2100 us and speed < 9 m/s'\nfrom = 'boot'"),
+        (Inner, "no_event = 'disarmed CRASH_PROTECTION'\nfrom = 'boot'"),
+    ];
+    let text: String = expected.iter().map(|(_, text)| format!("[[expect]]\n{text}\n")).collect();
+    let told = [Telemetry, Mission, Inner];
+    for (told, outcomes) in std::iter::zip(told, judged_by(told, &text)) {
+        for ((needed, expectation), outcome) in
+            std::iter::zip(expected, outcomes.into_iter().rev().take(13).rev())
+        {
+            let is_right = if needed > told { outcome == Outcome::Skipped(needed) } else { outcome.is_met() };
+            assert!(is_right, "{expectation} of which {told:?} is told: {outcome:?}");
+        }
+    }
+}
+
+#[test]
+fn a_measure_of_what_is_not_told_is_left_out_and_what_builds_on_it_skipped() {
+    let text = "[[measure]]\nname = 'high'\nmax = 'throttle'\nfrom = 'boot'\n[[measure]]\nname = 'double'\n\
+                value = 'high * 2'\n[[measure]]\nname = 'wide'\nmax = 'speed'\nfrom = 'boot'\n\
+                [[expect]]\nthat = 'double > 0 us'\n[[expect]]\nthat = 'wide < 1 m/s'\n";
+    let [outcomes] = judged_by([Insight::Mission], text);
+    assert_eq!(outcomes[outcomes.len() - 2], Outcome::Skipped(Insight::Inner));
+    assert!(outcomes.last().unwrap().is_met());
+}
+
+#[test]
+fn a_flight_whose_inputs_only_the_embedded_firmware_takes_is_not_flown() {
+    let with = |input: &str| scenario(&format!("{STANDING}[[input]]\nat = 'boot'\ndo = '{input}'\n"));
+    let skipped = |input: &str| skip(&with(input).cases[0]);
+    assert_eq!(skipped("wind 5@270"), None);
+    assert_eq!(skipped("switch AUTOPILOT on"), None);
+    let judgements = skipped("hold here").unwrap();
+    assert!(!judgements.is_empty());
+    assert!(judgements.iter().all(|judgement| judgement.outcome == Outcome::Skipped(Insight::Inner)));
+}
+
+#[test]
+fn most_of_the_built_in_scenarios_can_be_flown_with_a_firmware_outside() {
+    let guide: Vec<&BuiltinScenario> =
+        SCENARIOS.iter().filter(|scenario| scenario.name.starts_with("guide-")).collect();
+    assert_eq!(guide.len(), 8);
+    let flown = guide.iter().filter(|builtin| {
+        let read = read(builtin.name, builtin.text, None, &mut BuiltinFiles);
+        let scenario = read.unwrap_or_else(|errors| panic!("{}", report(&errors)));
+        scenario.cases.iter().any(|case| skip(case).is_none())
+    });
+    assert!(flown.count() >= 6);
 }

@@ -12,6 +12,7 @@
 mod identify;
 mod observer;
 mod permission;
+mod reply;
 mod self_check;
 mod view;
 
@@ -19,11 +20,11 @@ use std::collections::BTreeMap;
 use std::task::{Context, Poll};
 use std::time::{Duration, Instant};
 
-use crate::firmware::cli::{CliAction, CliReply};
 use crate::link::proto::fc_client::polling::{Poll as Subject, Schedule};
 use crate::link::proto::fc_client::{Answer, Ask, AskId, FcClient};
 use crate::link::proto::sitl_feed::FeedState;
 use crate::link::{ChildEvent, FcStream, SitlChild, SitlPeer, StreamEvent};
+use crate::session::upload::LIST;
 use crate::signals::MotorCommand;
 use crate::telemetry::switch::Switch;
 use crate::telemetry::{EndpointStatus, Mode};
@@ -31,6 +32,7 @@ use crate::vehicle::{FrameOut, LateAnswer, RemoteRequest, Ticket, Vehicle};
 use identify::{Identification, Question};
 use observer::Observer;
 pub use permission::{Access, Denial, Impact, NOT_PERMITTED, NOTHING_MOVES, NOTHING_SIMULATED};
+use reply::cli_reply;
 use self_check::{AtRest, SelfCheck};
 pub use view::{RemoteNotice, RemoteState, RemoteView};
 
@@ -57,6 +59,8 @@ pub struct RemoteEnds {
 enum Purpose {
     /// A line that somebody in this program asked for.
     Line(Ticket),
+    /// The line that shows the plan, likewise.
+    Plan(Ticket),
     /// A message likewise.
     Message(Ticket),
     /// To know what it is.
@@ -328,7 +332,10 @@ impl RemoteLink {
             let Some(mailbox) = vehicle.controller_mut().remote_mut() else { return };
             let Some((ticket, request)) = mailbox.take_request() else { return };
             match request {
-                RemoteRequest::Cli(line) => self.ask(Purpose::Line(ticket), Ask::Line(line)),
+                RemoteRequest::Cli(line) => {
+                    let purpose = if line == LIST { Purpose::Plan(ticket) } else { Purpose::Line(ticket) };
+                    self.ask(purpose, Ask::Line(line));
+                }
                 RemoteRequest::Msp { code, payload } => {
                     self.ask(Purpose::Message(ticket), Ask::Msp { code, payload });
                 }
@@ -389,6 +396,11 @@ impl RemoteLink {
             let Some(mailbox) = vehicle.controller_mut().remote_mut() else { return };
             match purpose {
                 Purpose::Line(ticket) => mailbox.deliver_answer(ticket, LateAnswer::Cli(cli_reply(answer))),
+                Purpose::Plan(ticket) => {
+                    // An upload ends with it: the plan is another one than it was.
+                    self.observer.learn(Question::Plan, &answer);
+                    mailbox.deliver_answer(ticket, LateAnswer::Cli(cli_reply(answer)));
+                }
                 Purpose::Message(ticket) => {
                     let payload = if let Answer::Msp(payload) = answer { payload } else { None };
                     mailbox.deliver_answer(ticket, LateAnswer::Msp(payload));
@@ -474,20 +486,5 @@ impl RemoteLink {
             trusts_mag: self.observer.trusts_mag(),
             place: snapshot.craft.gps.map(|gps| gps.position),
         })
-    }
-}
-
-/// The answer to a line as the command line of an embedded flight controller gives it.
-fn cli_reply(answer: Answer) -> CliReply {
-    match answer {
-        Answer::Line { text, failed, restarted } => {
-            let actions =
-                if restarted { vec![CliAction::Restart { close_links: false }] } else { Vec::new() };
-            CliReply { text, actions, failed }
-        }
-        Answer::NotAnswered(why) => {
-            CliReply { text: format!("###ERROR: {why}###\r\n"), failed: true, ..CliReply::default() }
-        }
-        Answer::Msp(_) => CliReply::default(),
     }
 }

@@ -88,7 +88,7 @@ pub(super) fn plan_above_home(reply: &CliReply, reference: AltitudeReference) ->
 
 /// An upload under way.
 #[derive(Debug)]
-pub(super) struct Upload {
+pub struct Upload {
     /// What the craft is to hold at the end, as it counts altitudes.
     plan: FlightPlan,
     report: UploadReport,
@@ -102,7 +102,7 @@ pub(super) struct Upload {
 
 /// What sending on led to.
 #[derive(Debug)]
-pub(super) enum UploadProgress {
+pub enum UploadProgress {
     /// Through, or refused with this sentence; what came before the refusal stays.
     Done(Result<UploadReport, String>),
     /// It goes on with the answer to the last line, which comes with this ticket.
@@ -114,7 +114,7 @@ impl Upload {
     ///
     /// # Errors
     /// When that cannot be known.
-    pub(super) fn new(
+    pub fn new(
         plan: &FlightPlan,
         settings: &[String],
         reference: AltitudeReference,
@@ -137,7 +137,7 @@ impl Upload {
     }
 
     /// Sends lines until one is refused or its answer comes later.
-    pub(super) fn send_lines(&mut self, controller: &mut FlightController) -> UploadProgress {
+    pub fn send_lines(&mut self, controller: &mut FlightController) -> UploadProgress {
         while let Some(line) = self.lines.next() {
             self.sent = line;
             match controller.run_cli(&mut self.interpreter, &self.sent) {
@@ -151,11 +151,7 @@ impl Upload {
     }
 
     /// Takes the answer to the last line and goes on.
-    pub(super) fn take_answer(
-        &mut self,
-        reply: &CliReply,
-        controller: &mut FlightController,
-    ) -> UploadProgress {
+    pub fn take_answer(&mut self, reply: &CliReply, controller: &mut FlightController) -> UploadProgress {
         match reply.failed {
             _ if self.is_last() => self.read_back(reply),
             // Another version has other settings: the plan can be flown all the same.

@@ -2,7 +2,7 @@
 
 use crate::rig::{assert_fails, assert_met, builtin, case_of, case_with, fly, judged, with_settings};
 use betadeck::plan::WaypointType;
-use betadeck::scenario::{Action, Outcome, compare, judge};
+use betadeck::scenario::{Action, Insight, Outcome, compare, judge};
 use betadeck::telemetry::InFlightCommand;
 
 #[test]
@@ -46,7 +46,7 @@ fn guide_2_sees_that_cutting_corners_gains_nothing() {
     // The FLYBY are flown as FLYOVER.
     flyover.name = "flyby".to_owned();
     both.extend(names("flyby", &flyover));
-    let judgement = compare(&scenario.compares[0], &both);
+    let judgement = compare(&scenario.compares[0], &both, Insight::Inner);
     assert_fails(&[judgement], &scenario.compares[0].label, "0.000 s, 0.50 s to 10.00 s");
 }
 

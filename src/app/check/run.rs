@@ -11,7 +11,7 @@ use super::{Comparisons, Loaded};
 use crate::app::AppError;
 use crate::args::CheckArgs;
 use crate::record::check::{CheckedFlight, Compared};
-use crate::scenario::{self, Case, CaseFlight, Scenario};
+use crate::scenario::{self, Air, Case, CaseFlight, Flown, Scenario};
 
 /// A flight to be flown: indices of its scenario, case and air, and which repetition it is.
 #[derive(Debug, Clone, Copy)]
@@ -114,22 +114,9 @@ pub(super) fn all(
 fn one(loaded: &Loaded, job: Job, is_stopped: &impl Fn() -> bool) -> Option<CheckedFlight> {
     /// Ticks between two looks at the interrupt.
     const SLICE: u32 = 4096;
-    let scenario = loaded.scenarios.get(job.scenario)?;
-    let case = scenario.cases.get(job.case)?;
-    let air = case.airs.get(job.air)?;
-    let started = Instant::now();
-    let mut checked = CheckedFlight {
-        scenario: scenario.name.clone(),
-        file: scenario.file.clone(),
-        case: case.name.clone(),
-        base: case.base.clone(),
-        variant: case.variant.clone(),
-        seed: air.seed,
-        seeds: case.airs.len(),
-        seed_is_given: loaded.seeds_are_given,
-        repetition: job.repetition,
-        ..CheckedFlight::default()
-    };
+    let (case, air) = job.of(loaded)?;
+    let started = Stopwatch::start();
+    let mut checked = job.not_flown_yet(loaded)?;
     let mut flight = match CaseFlight::new(case, air) {
         Ok(flight) => flight,
         Err(problem) => {
@@ -149,18 +136,51 @@ fn one(loaded: &Loaded, job: Job, is_stopped: &impl Fn() -> bool) -> Option<Chec
             return None;
         }
     }
-    let flown = flight.finish();
+    Some(judged(checked, case, flight.finish(), &started))
+}
+
+/// The flight that was flown, judged.
+pub(super) fn judged(flight: CheckedFlight, case: &Case, flown: Flown, started: &Stopwatch) -> CheckedFlight {
     let (judgements, measures) = scenario::judge(case, &flown);
-    checked.judgements = judgements;
-    checked.measures = measures;
-    checked.hash = flown.trace.hash();
-    checked.engaged_at = flown.trace.engaged_at;
-    checked.flown_s = flown.trace.end().as_secs_f64();
-    checked.ended_at = flown.ended_at;
-    checked.result = flown.result;
-    checked.reason = flown.reason;
-    checked.wall_s = started.elapsed().as_secs_f64();
-    Some(checked)
+    CheckedFlight {
+        told: flown.told,
+        judgements,
+        measures,
+        hash: flown.trace.hash(),
+        engaged_at: flown.trace.engaged_at,
+        flown_s: flown.trace.end().as_secs_f64(),
+        ended_at: flown.ended_at,
+        result: flown.result,
+        reason: flown.reason,
+        wall_s: started.seconds(),
+        ..flight
+    }
+}
+
+impl Job {
+    /// Its case and air.
+    pub(super) fn of<'l>(&self, loaded: &'l Loaded) -> Option<(&'l Case, &'l Air)> {
+        let case = loaded.scenarios.get(self.scenario)?.cases.get(self.case)?;
+        Some((case, case.airs.get(self.air)?))
+    }
+
+    /// What is known of it before it is flown.
+    pub(super) fn not_flown_yet(&self, loaded: &Loaded) -> Option<CheckedFlight> {
+        let scenario = loaded.scenarios.get(self.scenario)?;
+        let (case, air) = self.of(loaded)?;
+        Some(CheckedFlight {
+            scenario: scenario.name.clone(),
+            file: scenario.file.clone(),
+            case: case.name.clone(),
+            base: case.base.clone(),
+            variant: case.variant.clone(),
+            seed: air.seed,
+            seeds: case.airs.len(),
+            seed_is_given: loaded.seeds_are_given,
+            repetition: self.repetition,
+            ..CheckedFlight::default()
+        })
+    }
 }
 
 /// What the first repetition of a flight was like.
@@ -221,7 +241,10 @@ pub(super) fn compared(loaded: &Loaded, flights: &[CheckedFlight], is_filtered: 
                         measures.map(|(name, value)| (format!("{}.{name}", flight.base), *value))
                     })
                     .collect();
-                scenario.compares.iter().for_each(|compare| tell(seed, scenario::compare(compare, &names)));
+                let told = group(seed).map(|flight| flight.told).min().unwrap_or_default();
+                for compare in &scenario.compares {
+                    tell(seed, scenario::compare(compare, &names, told));
+                }
             }
             if whole.is_empty() && !is_filtered {
                 scenario.compares.iter().for_each(|compare| tell(first, compare.never_judged()));

@@ -8,13 +8,18 @@ use std::time::{Duration, SystemTime};
 
 use super::{fly, load};
 use crate::app::error::{self, AppError};
+use crate::app::firmware::RemoteFirmware;
 use crate::args::CheckArgs;
 
 /// How often the files are looked at.
 const INTERVAL: Duration = Duration::from_millis(200);
 
 /// Flies, waits for a change, and flies again, until a signal.
-pub(super) fn run(args: &CheckArgs, interrupted: &Arc<AtomicBool>) -> Result<u8, AppError> {
+pub(super) fn run(
+    args: &CheckArgs,
+    firmware: Option<&RemoteFirmware>,
+    interrupted: &Arc<AtomicBool>,
+) -> Result<u8, AppError> {
     if args.what.is_empty() {
         return Err(AppError::input("--watch needs files: built-in scenarios do not change"));
     }
@@ -29,7 +34,7 @@ pub(super) fn run(args: &CheckArgs, interrupted: &Arc<AtomicBool>) -> Result<u8,
                         files.push(file.clone());
                     }
                 }
-                fly(&loaded, args, interrupted)?;
+                fly(&loaded, args, firmware, interrupted)?;
             }
             Err(error) => error::tell(&error.message),
         }

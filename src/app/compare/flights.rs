@@ -1,23 +1,23 @@
 //! Flights of one plan, each from the same start.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::recorder::Recorder;
-use crate::app::firmware::{self, RemoteFirmware};
+use crate::app::error;
+use crate::app::firmware::RemoteFirmware;
+use crate::app::firmware::run::{RemoteRun, Seen, Stopped};
 use crate::app::interrupt::interrupt_flag;
 use crate::app::{AppError, setup};
-use crate::args::CompareArgs;
+use crate::args::{CompareArgs, Speed};
 use crate::firmware::config::Configuration;
 use crate::flight::setup::{BootLines, PhysicsSource};
-use crate::flight::{Flight, FlightOptions, FlightSetup};
+use crate::flight::{FlightOptions, FlightSetup};
 use crate::plan::format::PlanFile;
-use crate::plan::review::Finding;
-use crate::plan::validate::check_plan;
 use crate::record::compare::{Route, Track};
-use crate::session::upload;
+use crate::session::{Event, RemoteNotice, SessionEvent, upload};
 use crate::signals::SimTime;
-use crate::vehicle::Vehicle;
 
 /// Ticks between two looks at an interrupt.
 const SLICE: u64 = 4096;
@@ -29,6 +29,10 @@ pub(super) struct Flights {
     setup: FlightSetup,
     options: FlightOptions,
     route: Route,
+    /// Times real time of a firmware outside.
+    speed: f64,
+    /// Where a firmware outside keeps its configuration; `None` = nowhere for long.
+    state: Option<PathBuf>,
     interrupted: Arc<AtomicBool>,
 }
 
@@ -36,8 +40,7 @@ impl Flights {
     /// Reads the plan and the settings; what the user should know is added to `notices`.
     pub(super) fn new(args: &CompareArgs, notices: &mut Vec<String>) -> Result<Self, AppError> {
         let plan = setup::read_plan(&args.plan)?;
-        check_plan(&plan.plan)
-            .map_err(|fault| AppError::input(format!("{}: {}", plan.name, Finding::Fault(fault))))?;
+        setup::refuse_unflyable(&plan)?;
         notices.extend(plan.notes.iter().map(ToString::to_string));
         let mut setup =
             setup::from_args(&args.flight, PhysicsSource::Embedded, plan.clone(), Configuration::default())?;
@@ -55,6 +58,8 @@ impl Flights {
                 samples_hz: 0.0,
                 tolerance_m: args.tolerance_m(),
             },
+            speed: args.flight.speed.map_or(1.0, |Speed(speed)| speed),
+            state: args.flight.state_dir.clone(),
             interrupted: interrupt_flag()?,
         })
     }
@@ -73,17 +78,24 @@ impl Flights {
     pub(super) fn fly(&self, firmware: Option<&RemoteFirmware>) -> Result<Option<Track>, AppError> {
         match firmware {
             None => self.fly_embedded(),
-            Some(_) => Err(firmware::not_linked()),
+            Some(firmware) => match self.fly_remote(firmware) {
+                Ok(track) => Ok(Some(track)),
+                Err(Stopped::Interrupted) => Ok(None),
+                Err(Stopped::Failed(error)) => Err(error),
+            },
         }
     }
 
     fn fly_embedded(&self) -> Result<Option<Track>, AppError> {
         let mut vehicle = setup::build(self.setup.clone(), &mut Vec::new())?;
         upload(vehicle.controller_mut(), &self.plan.plan, &[]).map_err(AppError::input)?;
-        let (mut flight, mut recorder) = self.start(vehicle)?;
+        let mut recorder = Recorder::new(&vehicle);
+        let mut flight = setup::start_flight(vehicle, &self.options)?;
         loop {
             for _ in 0..SLICE {
-                if let Some(end) = recorder.tick(&mut flight) {
+                let end = flight.tick(|report| recorder.hear(&report));
+                recorder.look(&flight);
+                if let Some(end) = end {
                     return Ok(Some(recorder.finish(end)));
                 }
             }
@@ -93,13 +105,38 @@ impl Flights {
         }
     }
 
-    fn start(&self, vehicle: Vehicle) -> Result<(Flight, Recorder), AppError> {
-        let flight = Flight::new(vehicle, &self.options).map_err(|mode| {
-            AppError::input(format!(
-                "no channel switches {mode}: the pilot needs one; set it with an aux line in --settings"
-            ))
+    /// Each flight starts the firmware anew, as nothing else makes it forget the one before.
+    fn fly_remote(&self, firmware: &RemoteFirmware) -> Result<Track, Stopped> {
+        let setup = FlightSetup { remote_controller: true, ..self.setup.clone() };
+        let mut vehicle = setup::build(setup, &mut Vec::new())?;
+        let (state, speed) = (self.state.as_deref(), self.speed);
+        let interrupted = Arc::clone(&self.interrupted);
+        let mut run = RemoteRun::start(firmware, &vehicle, state, speed, interrupted, &mut Vec::new())?;
+        let mut tell = |event: &Event| {
+            told(event);
+            Ok(())
+        };
+        run.wait_until_ready(&mut vehicle, &mut tell)?;
+        run.upload(&mut vehicle, &self.plan.plan, &mut tell)?;
+        let mut recorder = Recorder::new(&vehicle);
+        let mut flight = setup::start_flight(vehicle, &self.options)?;
+        let end = run.fly(&mut flight, &mut |seen| {
+            match seen {
+                Seen::Report(report) => recorder.hear(&report),
+                Seen::Told(event) => told(&event),
+                Seen::Ticked(flight) => recorder.look(flight),
+            }
+            Ok(())
         })?;
-        let recorder = Recorder::new(flight.vehicle());
-        Ok((flight, recorder))
+        Ok(recorder.finish(end))
+    }
+}
+
+/// Says what the user should know of the firmware; what its program prints is not of interest here.
+fn told(event: &Event) {
+    if let SessionEvent::Remote(notice) = &event.kind
+        && !matches!(notice, RemoteNotice::Output(_))
+    {
+        error::tell(&notice.to_string());
     }
 }

@@ -16,27 +16,27 @@ pub(super) struct Recorder {
     track: Track,
     /// Altitude of the craft that stands at home, m.
     standing_m: f64,
+    /// The craft touched the ground since it was looked at last.
+    touched_down: bool,
 }
 
 impl Recorder {
     /// Of a craft that stands at home.
     pub(super) fn new(vehicle: &Vehicle) -> Self {
-        Self { track: Track::default(), standing_m: place(vehicle).map_or(0.0, |(_, alt_m)| alt_m) }
+        let standing_m = place(vehicle).map_or(0.0, |(_, alt_m)| alt_m);
+        Self { track: Track::default(), standing_m, touched_down: false }
     }
 
-    /// Flies one tick and takes down where that led; a value ends the flight.
-    pub(super) fn tick(&mut self, flight: &mut Flight) -> Option<FlightEnd> {
-        let mut touched_down = false;
-        let end = flight.tick(|report| {
-            if let Report::Event(Event { kind: EventKind::Touchdown { .. }, .. }) = report {
-                touched_down = true;
-            }
-        });
-        self.look(flight, touched_down);
-        end
+    /// Hears what happens.
+    pub(super) fn hear(&mut self, report: &Report<'_>) {
+        if let Report::Event(Event { kind: EventKind::Touchdown { .. }, .. }) = report {
+            self.touched_down = true;
+        }
     }
 
-    fn look(&mut self, flight: &Flight, touched_down: bool) {
+    /// Looks at the craft, once a tick.
+    pub(super) fn look(&mut self, flight: &Flight) {
+        let touched_down = std::mem::take(&mut self.touched_down);
         let vehicle = flight.vehicle();
         let now = vehicle.time();
         let (Some(engaged), Some((ne, alt_m))) = (flight.engaged_at(), place(vehicle)) else { return };

@@ -22,6 +22,7 @@ pub fn flight_line(flight: &CheckedFlight) -> String {
         "seed": flight.seed,
         "repetition": flight.repetition,
         "passed": flight.passed(),
+        "skipped": flight.skipped(),
         "result": flight.result,
         "reason": flight.reason,
         "problem": flight.problem,
@@ -45,6 +46,7 @@ pub fn summary_line(summary: &Summary) -> Vec<String> {
         .into_iter()
         .map(|(name, passed, flights)| json!({"case": name, "passed": passed, "flights": flights}))
         .collect();
+    let (skipped_flights, skipped) = summary.skipped();
     lines.push(
         json!({
             "event": "summary",
@@ -52,6 +54,8 @@ pub fn summary_line(summary: &Summary) -> Vec<String> {
             "flights": summary.flights.len(),
             "flights_passed": summary.passed_flights(),
             "flights_wanted": summary.wanted,
+            "flights_skipped": skipped_flights,
+            "skipped": skipped,
             "slow_left_out": summary.left_out,
             "cases": cases,
             "flown_s": summary.flown_s(),
@@ -102,6 +106,10 @@ fn expectation(judgement: &Judgement, flight: Option<&CheckedFlight>) -> Value {
         Outcome::NeverJudged(why) => {
             object.insert("outcome".to_owned(), json!("never_judged"));
             object.insert("sentence".to_owned(), json!(why));
+        }
+        Outcome::Skipped(needed) => {
+            object.insert("outcome".to_owned(), json!("skipped"));
+            object.insert("sentence".to_owned(), json!(needed.missing()));
         }
     }
     Value::Object(object)

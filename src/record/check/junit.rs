@@ -1,7 +1,8 @@
 //! Checked flights as a JUnit file: a testsuite a scenario, a testcase a case and seed.
 
-use super::{CheckedFlight, Compared, Summary, complaint};
+use super::{CheckedFlight, Compared, Summary, complaint, is_skipped};
 use crate::record::xml::escaped;
+use crate::scenario::Outcome;
 
 /// The whole file.
 #[must_use]
@@ -14,11 +15,13 @@ pub fn junit(summary: &Summary) -> String {
             scenarios.push(scenario);
         }
     }
-    let failures = summary.flights.len() - summary.passed_flights()
-        + summary.compared.iter().filter(|compared| !compared.judgement.outcome.is_met()).count();
+    let failures = summary.flights.iter().filter(|flight| !flight.passed()).count()
+        + summary.compared.iter().filter(|compared| compared.judgement.outcome.is_failure()).count();
     let tests = summary.flights.len() + summary.compared.len();
+    let skipped = summary.flights.iter().filter(|flight| flight.is_skipped()).count()
+        + summary.compared.iter().filter(|compared| is_skipped(&compared.judgement)).count();
     let mut text = format!(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"betadeck\" tests=\"{tests}\" failures=\"{failures}\" time=\"{:.3}\">\n",
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"betadeck\" tests=\"{tests}\" failures=\"{failures}\" skipped=\"{skipped}\" time=\"{:.3}\">\n",
         summary.wall_s
     );
     for (scenario, file) in scenarios {
@@ -33,10 +36,12 @@ pub fn junit(summary: &Summary) -> String {
             .filter(|compared| (compared.scenario.as_str(), compared.file.as_str()) == (scenario, file))
             .collect();
         let failed = flights.iter().filter(|flight| !flight.passed()).count()
-            + compared.iter().filter(|compared| !compared.judgement.outcome.is_met()).count();
+            + compared.iter().filter(|compared| compared.judgement.outcome.is_failure()).count();
+        let skipped = flights.iter().filter(|flight| flight.is_skipped()).count()
+            + compared.iter().filter(|compared| is_skipped(&compared.judgement)).count();
         let time: f64 = flights.iter().map(|flight| flight.wall_s).sum();
         text.push_str(&format!(
-            "  <testsuite name=\"{}\" tests=\"{}\" failures=\"{failed}\" time=\"{time:.3}\">\n",
+            "  <testsuite name=\"{}\" tests=\"{}\" failures=\"{failed}\" skipped=\"{skipped}\" time=\"{time:.3}\">\n",
             escaped(scenario),
             flights.len() + compared.len()
         ));
@@ -59,6 +64,16 @@ fn testcase(flight: &CheckedFlight) -> String {
         flight.seed,
         flight.wall_s
     );
+    if flight.is_skipped() {
+        let why = flight.judgements.first().map(complaint).unwrap_or_default();
+        return format!("{head}>\n      <skipped message=\"{}\"/>\n    </testcase>\n", escaped(&why));
+    }
+    if flight.passed() && flight.skipped() > 0 {
+        let skipped: Vec<String> =
+            flight.judgements.iter().filter(|one| is_skipped(one)).map(complaint).collect();
+        let out = escaped(&skipped.join("\n"));
+        return format!("{head}>\n      <system-out>{out}</system-out>\n    </testcase>\n");
+    }
     if flight.passed() {
         return format!("{head}/>\n");
     }
@@ -77,8 +92,13 @@ fn comparison(compared: &Compared) -> String {
         escaped(&variant),
         compared.seed
     );
-    if compared.judgement.outcome.is_met() {
-        return format!("{head}/>\n");
+    match &compared.judgement.outcome {
+        Outcome::Met(_) => return format!("{head}/>\n"),
+        Outcome::Skipped(needed) => {
+            let why = escaped(needed.missing());
+            return format!("{head}>\n      <skipped message=\"{why}\"/>\n    </testcase>\n");
+        }
+        Outcome::Failed { .. } | Outcome::NeverJudged(_) => {}
     }
     failure(&head, &[complaint(&compared.judgement)], "")
 }

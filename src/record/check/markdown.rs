@@ -7,8 +7,17 @@ use crate::scenario::Outcome;
 #[must_use]
 pub fn markdown(summary: &Summary) -> String {
     let word = if summary.passed() { "✅ All flights passed" } else { "❌ Some flights failed" };
+    let (skipped_flights, skipped) = summary.skipped();
+    // Only a flight controller outside makes any.
+    let with_skipped = skipped > 0;
+    let told = if with_skipped {
+        format!(", {skipped_flights} skipped whole, {skipped} expectations skipped")
+    } else {
+        String::new()
+    };
+    let (title, line_below) = if with_skipped { ("| skipped ", "| --- ") } else { ("", "") };
     let mut text = format!(
-        "### {word}\n\n{} of {} flights passed; {:.0} s flown in {:.1} s.\n\n| scenario | passed | tightest expectation | left |\n| --- | --- | --- | --- |\n",
+        "### {word}\n\n{} of {} flights passed{told}; {:.0} s flown in {:.1} s.\n\n| scenario | passed {title}| tightest expectation | left |\n| --- | --- {line_below}| --- | --- |\n",
         summary.passed_flights(),
         summary.wanted,
         summary.flown_s(),
@@ -25,6 +34,9 @@ pub fn markdown(summary: &Summary) -> String {
         let tightest =
             flights.iter().min_by(|a, b| share(a).total_cmp(&share(b))).and_then(|flight| flight.tightest());
         let mark = if passed == all { "✅" } else { "❌" };
+        let all_of = flights.iter().map(|flight| flight.judgements.len()).sum::<usize>();
+        let skipped = flights.iter().map(super::CheckedFlight::skipped).sum::<usize>();
+        let skipped = if with_skipped { format!("| {skipped} of {all_of} ") } else { String::new() };
         let (label, left) = match tightest.and_then(|tightest| Some((tightest, tightest.outcome.margin()?))) {
             Some((tightest, margin)) => (
                 format!("{} ({})", tightest.label, margin.shown()),
@@ -33,7 +45,7 @@ pub fn markdown(summary: &Summary) -> String {
             None => (String::new(), String::new()),
         };
         text.push_str(&format!(
-            "| {mark} {} | {passed} of {all} | {} | {left} |\n",
+            "| {mark} {} | {passed} of {all} {skipped}| {} | {left} |\n",
             cell(&name),
             cell(&label)
         ));
@@ -54,7 +66,7 @@ pub fn markdown(summary: &Summary) -> String {
             }
         }
     }
-    for compared in summary.compared.iter().filter(|compared| !compared.judgement.outcome.is_met()) {
+    for compared in summary.compared.iter().filter(|compared| compared.judgement.outcome.is_failure()) {
         text.push_str(&format!(
             "- **{}**\n  - {}\n",
             line(&compared.title()),

@@ -10,7 +10,11 @@ const MANY: usize = 20;
 /// The lines of a flight: one when it passed; else what was seen, and how to open the worst moment.
 #[must_use]
 pub fn flight_lines(flight: &CheckedFlight) -> Vec<String> {
-    let mark = if flight.passed() { "✓" } else { "✗" };
+    let mark = match flight.passed() {
+        true if flight.is_skipped() => "–",
+        true => "✓",
+        false => "✗",
+    };
     let title = flight.title();
     let first = match (flight.passed(), flight.tightest()) {
         (true, Some(tightest)) => match tightest.outcome.margin() {
@@ -23,11 +27,14 @@ pub fn flight_lines(flight: &CheckedFlight) -> Vec<String> {
             ),
             None => format!("{mark} {title}: {}", flight.result),
         },
+        (true, None) if flight.is_skipped() && flight.result.is_empty() => {
+            format!("{mark} {title}: not flown")
+        }
         (true, None) => format!("{mark} {title}: {}", flight.result),
         (false, _) if flight.result.is_empty() => format!("{mark} {title}"),
         (false, _) => format!("{mark} {title}: {}, {}", flight.result, flight.reason),
     };
-    let mut lines = vec![first];
+    let mut lines = vec![format!("{first}{}", skipped(flight))];
     lines.extend(flight.problem.iter().map(|problem| format!("    {problem}")));
     for judgement in flight.failures() {
         lines.push(format!("    line {}: {}", judgement.line, complaint(judgement)));
@@ -36,6 +43,18 @@ pub fn flight_lines(flight: &CheckedFlight) -> Vec<String> {
         }
     }
     lines
+}
+
+/// How many expectations were skipped and why, as the end of a line.
+fn skipped(flight: &CheckedFlight) -> String {
+    let needed = flight.judgements.iter().filter_map(|judgement| match judgement.outcome {
+        Outcome::Skipped(needed) => Some(needed),
+        Outcome::Met(_) | Outcome::Failed { .. } | Outcome::NeverJudged(_) => None,
+    });
+    needed.max().map_or_else(String::new, |needed| {
+        let (skipped, all) = (flight.skipped(), flight.judgements.len());
+        format!("; {skipped} of {all} expectations skipped, {}", needed.missing())
+    })
 }
 
 /// Of cases with many flights: how far the numbers of each expectation spread.
@@ -78,7 +97,11 @@ pub fn summary_lines(summary: &Summary) -> Vec<String> {
     }
     lines.extend(spreads(summary));
     for compared in &summary.compared {
-        let mark = if compared.judgement.outcome.is_met() { "✓" } else { "✗" };
+        let mark = match &compared.judgement.outcome {
+            Outcome::Met(_) => "✓",
+            Outcome::Skipped(_) => "–",
+            Outcome::Failed { .. } | Outcome::NeverJudged(_) => "✗",
+        };
         match compared.judgement.outcome.margin() {
             Some(margin) => lines.push(format!(
                 "{mark} {}: {} ({}, {:.0} % left)",
@@ -93,9 +116,16 @@ pub fn summary_lines(summary: &Summary) -> Vec<String> {
     let flown = summary.flown_s();
     let flights = if summary.flights.len() == 1 { "flight" } else { "flights" };
     let mut last = format!("{} of {} {flights} passed", summary.passed_flights(), summary.flights.len());
-    let failed = summary.compared.iter().filter(|compared| !compared.judgement.outcome.is_met()).count();
+    let failed = summary.compared.iter().filter(|compared| compared.judgement.outcome.is_failure()).count();
     if failed > 0 {
         last.push_str(&format!(", {failed} comparisons failed"));
+    }
+    match summary.skipped() {
+        (0, 0) => {}
+        (0, expectations) => last.push_str(&format!(", {expectations} expectations skipped")),
+        (flights, expectations) => {
+            last.push_str(&format!(", {flights} skipped whole, {expectations} expectations skipped"));
+        }
     }
     if summary.flights.len() < summary.wanted {
         last.push_str(&format!(", {} were not flown", summary.wanted - summary.flights.len()));

@@ -141,3 +141,43 @@ fn what_was_said_is_no_markup_in_the_markdown_summary() {
     assert!(text.contains(r"\`set ap\_max|x\` \[was\] refused\\"), "{text}");
     assert!(text.contains("`` betadeck open 'a`b.toml' --case 'x|y' --at boot+2.00 ``"), "{text}");
 }
+
+#[test]
+fn skipped_expectations_are_counted_in_every_form() {
+    let skipped = |label: &str| Judgement {
+        label: label.to_owned(),
+        line: 9,
+        outcome: Outcome::Skipped(Insight::Inner),
+    };
+    let mut half = flight(1, 5.0);
+    half.judgements.push(skipped("throttle < 1900 µs"));
+    let whole = CheckedFlight {
+        judgements: vec![skipped("a"), skipped("b")],
+        result: String::new(),
+        ..flight(2, 5.0)
+    };
+    assert!(half.passed() && !half.is_skipped() && whole.passed() && whole.is_skipped());
+    assert!(
+        flight_lines(&half)[0]
+            .ends_with("; 1 of 2 expectations skipped, only the embedded firmware shows it")
+    );
+    assert_eq!(
+        flight_lines(&whole)[0],
+        "– a <b> & \"c\" | *d* · one, noise real · seed 2: not flown; 2 of 2 expectations skipped, only the embedded \
+         firmware shows it"
+    );
+    let line: serde_json::Value = serde_json::from_str(&flight_line(&half)).unwrap();
+    assert_eq!((&line["skipped"], &line["expectations"][1]["outcome"]), (&1.into(), &"skipped".into()));
+    let summary = Summary::new(vec![half, whole], Vec::new(), 2, 0, 1.0);
+    assert!(summary.passed());
+    let last = summary_lines(&summary).pop().unwrap();
+    assert!(last.starts_with("1 of 2 flights passed, 1 skipped whole, 3 expectations skipped; "), "{last}");
+    let xml = junit(&summary);
+    assert!(xml.contains("tests=\"2\" failures=\"0\" skipped=\"1\""), "{xml}");
+    assert!(xml.contains("<skipped message=\"a: skipped, only the embedded firmware shows it\"/>"), "{xml}");
+    assert!(xml.contains("<system-out>throttle &lt; 1900 µs: skipped, only"), "{xml}");
+    let text = markdown(&summary);
+    assert!(text.contains("| scenario | passed | skipped | tightest expectation | left |"), "{text}");
+    assert!(text.contains("| 3 of 4 |"), "{text}");
+    assert!(!markdown(&self::summary([1.0].into_iter())).contains("skipped"));
+}

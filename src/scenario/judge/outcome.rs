@@ -1,5 +1,6 @@
 //! What became of an expectation.
 
+use crate::scenario::Insight;
 use crate::scenario::expression::Verdict;
 use crate::scenario::quantity::{Dimension, shown};
 use crate::scenario::trace::Trace;
@@ -32,6 +33,8 @@ pub enum Outcome {
     },
     /// What it waits for did not happen.
     NeverJudged(String),
+    /// It was not judged, for it needs what this flight controller does not tell.
+    Skipped(Insight),
 }
 
 /// How far a number was from its bound.
@@ -50,12 +53,18 @@ impl Outcome {
         matches!(self, Self::Met(_))
     }
 
+    /// Whether it was judged and not met, or could have been judged and was not.
+    #[must_use]
+    pub fn is_failure(&self) -> bool {
+        !matches!(self, Self::Met(_) | Self::Skipped(_))
+    }
+
     /// The tightest number, if it was met and has one.
     #[must_use]
     pub fn margin(&self) -> Option<&Margin> {
         match self {
             Self::Met(margin) => margin.as_ref(),
-            Self::Failed { .. } | Self::NeverJudged(_) => None,
+            Self::Failed { .. } | Self::NeverJudged(_) | Self::Skipped(_) => None,
         }
     }
 

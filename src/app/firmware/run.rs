@@ -1,0 +1,228 @@
+//! Flies with a firmware outside in real time, without a session.
+#![allow(
+    clippy::disallowed_methods,
+    reason = "the firmware's clock is the wall clock, which paces the flight"
+)]
+
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use tempfile::TempDir;
+use tokio::runtime::Runtime;
+
+use super::RemoteFirmware;
+use super::link::{self, OpenLink};
+use crate::app::AppError;
+use crate::firmware::cli::CliReply;
+use crate::flight::{Flight, FlightEnd, Report};
+use crate::plan::FlightPlan;
+use crate::session::{
+    Event, Pacer, RemoteLink, RemoteNotice, RemoteState, SessionEvent, Upload, UploadProgress,
+};
+use crate::vehicle::{LateAnswer, Ticket, Vehicle};
+
+/// Most ticks between two exchanges.
+const SLICE: u64 = 50;
+
+/// A firmware outside under way. It ends with this.
+#[derive(Debug)]
+pub(in crate::app) struct RemoteRun {
+    link: RemoteLink,
+    pacer: Pacer,
+    started: Instant,
+    interrupted: Arc<AtomicBool>,
+    /// Behind the link, whose program runs in it.
+    _directory: Option<TempDir>,
+    _runtime: Runtime,
+}
+
+/// Why a run came to no end of its own.
+#[derive(Debug)]
+pub(in crate::app) enum Stopped {
+    /// By a signal.
+    Interrupted,
+    /// By an error.
+    Failed(AppError),
+}
+
+impl From<AppError> for Stopped {
+    fn from(error: AppError) -> Self {
+        Self::Failed(error)
+    }
+}
+
+/// What is seen of a flight.
+#[derive(Debug)]
+pub(in crate::app) enum Seen<'a> {
+    /// What the flight reports.
+    Report(Report<'a>),
+    /// What is told of the firmware.
+    Told(Event),
+    /// The flight after a tick.
+    Ticked(&'a Flight),
+}
+
+impl RemoteRun {
+    /// Starts the firmware for `vehicle`; what is to be known of it is added to `notices`.
+    pub(in crate::app) fn start(
+        firmware: &RemoteFirmware,
+        vehicle: &Vehicle,
+        state: Option<&Path>,
+        speed: f64,
+        interrupted: Arc<AtomicBool>,
+        notices: &mut Vec<String>,
+    ) -> Result<Self, AppError> {
+        let runtime = tokio::runtime::Builder::new_multi_thread()
+            .worker_threads(1)
+            .enable_all()
+            .build()
+            .map_err(|error| AppError::environment(format!("cannot start: {error}")))?;
+        let opened = {
+            let _inside = runtime.enter();
+            link::open(firmware, vehicle, state)?
+        };
+        notices.extend(opened.notice());
+        let OpenLink { link, directory, .. } = opened;
+        Ok(Self {
+            link,
+            pacer: Pacer::new(vehicle.step_us(), speed),
+            started: Instant::now(),
+            interrupted,
+            _directory: directory,
+            _runtime: runtime,
+        })
+    }
+
+    /// Waits until the firmware answers and has told how it is set.
+    pub(in crate::app) fn wait_until_ready(
+        &mut self,
+        vehicle: &mut Vehicle,
+        tell: &mut impl FnMut(&Event) -> Result<(), AppError>,
+    ) -> Result<(), Stopped> {
+        while *self.link.state() != RemoteState::Ready {
+            self.wait(vehicle, tell)?;
+        }
+        Ok(())
+    }
+
+    /// Gives the plan to the craft.
+    pub(in crate::app) fn upload(
+        &mut self,
+        vehicle: &mut Vehicle,
+        plan: &FlightPlan,
+        tell: &mut impl FnMut(&Event) -> Result<(), AppError>,
+    ) -> Result<(), Stopped> {
+        let reference = vehicle.controller().altitude_reference();
+        let mut upload =
+            Upload::new(plan, &[], reference).map_err(|unknown| AppError::input(unknown.to_string()))?;
+        let mut progress = upload.send_lines(vehicle.controller_mut());
+        loop {
+            let waits_for = match progress {
+                UploadProgress::Done(result) => {
+                    let report = result.map_err(AppError::input)?;
+                    if let Some(told) = report.conversion() {
+                        tell(&Event::notice(vehicle.time(), told))?;
+                    }
+                    return Ok(());
+                }
+                UploadProgress::Waiting(ticket) => ticket,
+            };
+            let said = self.answer(vehicle, waits_for, tell)?;
+            progress = upload.take_answer(&said, vehicle.controller_mut());
+        }
+    }
+
+    /// The answer to a line; a line that is never answered is answered so by the link.
+    fn answer(
+        &mut self,
+        vehicle: &mut Vehicle,
+        waits_for: Ticket,
+        tell: &mut impl FnMut(&Event) -> Result<(), AppError>,
+    ) -> Result<CliReply, Stopped> {
+        loop {
+            self.wait(vehicle, tell)?;
+            match vehicle.controller_mut().take_answer() {
+                Some((ticket, LateAnswer::Cli(said))) if ticket == waits_for => return Ok(said),
+                _ => {}
+            }
+        }
+    }
+
+    /// Flies to the end.
+    pub(in crate::app) fn fly(
+        &mut self,
+        flight: &mut Flight,
+        see: &mut impl FnMut(Seen<'_>) -> Result<(), AppError>,
+    ) -> Result<FlightEnd, Stopped> {
+        loop {
+            for _ in 0..self.due() {
+                let mut seen = Ok(());
+                let end = flight.tick(|report| {
+                    if seen.is_ok() {
+                        seen = see(Seen::Report(report));
+                    }
+                });
+                seen.and_then(|()| see(Seen::Ticked(flight)))?;
+                if let Some(end) = end {
+                    return Ok(end);
+                }
+            }
+            for event in self.exchange(flight.vehicle_mut())? {
+                see(Seen::Told(event))?;
+            }
+            self.rest();
+        }
+    }
+
+    /// Lets time pass for a craft that stands.
+    fn wait(
+        &mut self,
+        vehicle: &mut Vehicle,
+        tell: &mut impl FnMut(&Event) -> Result<(), AppError>,
+    ) -> Result<(), Stopped> {
+        for _ in 0..self.due() {
+            vehicle.tick();
+        }
+        let mut told = Ok(());
+        vehicle.drain_events(|event| {
+            if told.is_ok() {
+                told = tell(&event.into());
+            }
+        });
+        told?;
+        for event in self.exchange(vehicle)? {
+            tell(&event)?;
+        }
+        self.rest();
+        Ok(())
+    }
+
+    /// Ticks that are due now.
+    pub(in crate::app) fn due(&mut self) -> u64 {
+        self.pacer.due(self.started.elapsed(), SLICE)
+    }
+
+    /// Exchanges with the firmware what came of the ticks, and gives what is told of it.
+    pub(in crate::app) fn exchange(&mut self, vehicle: &mut Vehicle) -> Result<Vec<Event>, Stopped> {
+        if self.interrupted.load(Ordering::Relaxed) {
+            return Err(Stopped::Interrupted);
+        }
+        let mut told = Vec::new();
+        for notice in self.link.exchange(vehicle, None, Instant::now()) {
+            if let RemoteNotice::Failed(sentence) = notice {
+                return Err(AppError::environment(sentence).into());
+            }
+            told.push(Event { time: vehicle.time(), kind: SessionEvent::Remote(notice) });
+        }
+        Ok(told)
+    }
+
+    /// Sleeps until the next tick is due.
+    pub(in crate::app) fn rest(&self) {
+        let now = self.started.elapsed();
+        let next = self.pacer.next_due().unwrap_or(now + Duration::from_millis(1));
+        std::thread::sleep(next.saturating_sub(now));
+    }
+}

@@ -1,0 +1,294 @@
+//! What must be known of a flight to judge it: truth is always known, of a flight controller outside only what it tells.
+
+use super::case::{Case, Expectation, Expected, Measured, Window};
+use super::expression::{Anchor, Bound, Comparison, Condition, Instant, Number, Place};
+use super::happening::{EventName, Pattern};
+use super::input::Action;
+use super::signal::{Flag, Signal};
+use crate::telemetry::{DisarmReason, PlanSource};
+
+/// How much of a flight controller must be known, the least first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
+pub enum Insight {
+    /// Nothing: the simulated world tells it.
+    #[default]
+    Truth,
+    /// What every flight controller tells: modes, arming, fix, where it believes to be.
+    Telemetry,
+    /// What one tells that has a command for the progress of its mission: state and waypoint.
+    Mission,
+    /// What only the embedded one shows: guards, setpoints, estimates, reasons.
+    Inner,
+}
+
+impl Insight {
+    /// What is missing, as the end of a sentence.
+    #[must_use]
+    pub fn missing(self) -> &'static str {
+        match self {
+            Self::Truth | Self::Telemetry => "this flight controller tells nothing",
+            Self::Mission => "this firmware does not tell how far its mission is",
+            Self::Inner => "only the embedded firmware shows it",
+        }
+    }
+}
+
+impl Signal {
+    /// What must be known for it.
+    #[must_use]
+    pub fn insight(self) -> Insight {
+        match self {
+            Self::Time
+            | Self::BootTime
+            | Self::North
+            | Self::East
+            | Self::Altitude
+            | Self::Speed
+            | Self::SpeedNorth
+            | Self::SpeedEast
+            | Self::Climb
+            | Self::Roll
+            | Self::Pitch
+            | Self::Heading
+            | Self::Course
+            | Self::Lean
+            | Self::Force
+            | Self::Motor1
+            | Self::Motor2
+            | Self::Motor3
+            | Self::Motor4
+            | Self::Battery
+            | Self::Current
+            | Self::Charge
+            | Self::BatteryUsed
+            | Self::Wind => Insight::Truth,
+            Self::EstNorth | Self::EstEast | Self::EstAltitude | Self::Satellites | Self::Cell => {
+                Insight::Telemetry
+            }
+            Self::Waypoint | Self::WpDistance => Insight::Mission,
+            Self::CrossTrack
+            | Self::TargetAltitude
+            | Self::SpeedSetpoint
+            | Self::HomeDistance
+            | Self::FenceMargin
+            | Self::HoldRemaining
+            | Self::TouchdownHeld
+            | Self::Hover
+            | Self::RollDemand
+            | Self::PitchDemand
+            | Self::Throttle => Insight::Inner,
+        }
+    }
+}
+
+impl Flag {
+    /// What must be known for it.
+    #[must_use]
+    pub fn insight(self) -> Insight {
+        match self {
+            Self::OnGround | Self::Crashed => Insight::Truth,
+            Self::Armed | Self::Fix | Self::RxLink => Insight::Telemetry,
+            Self::Engaged => Insight::Mission,
+            Self::Climbing | Self::StickOverride | Self::CannotHold => Insight::Inner,
+        }
+    }
+}
+
+impl EventName {
+    /// What must be known to see it.
+    #[must_use]
+    pub fn insight(self) -> Insight {
+        match self {
+            Self::Fault
+            | Self::Contact
+            | Self::Touchdown
+            | Self::Crash
+            | Self::BatteryEmpty
+            | Self::Input => Insight::Truth,
+            Self::Armed
+            | Self::Disarmed
+            | Self::Mode
+            | Self::RxLoss
+            | Self::RxRecovered
+            | Self::GpsFix
+            | Self::GpsLost => Insight::Telemetry,
+            Self::Engaged | Self::End => Insight::Mission,
+            Self::Plan
+            | Self::Refused
+            | Self::Geofence
+            | Self::Failsafe
+            | Self::Battery
+            | Self::CannotHold
+            | Self::HeadingDoubt
+            | Self::Limited
+            | Self::Climbing
+            | Self::Notice
+            | Self::Reply
+            | Self::Refusal => Insight::Inner,
+        }
+    }
+}
+
+/// What the parts of a case need.
+#[derive(Debug)]
+pub(super) struct Needs<'a> {
+    /// Of its measures, those first on which others build; parameters need nothing.
+    measures: Vec<(&'a str, Insight)>,
+}
+
+impl<'a> Needs<'a> {
+    pub(super) fn of(case: &'a Case) -> Self {
+        let mut needs = Self { measures: Vec::new() };
+        for measure in &case.measures {
+            let insight = needs.measured(&measure.measured);
+            needs.measures.push((&measure.name, insight));
+        }
+        needs
+    }
+
+    /// What must be known to carry out the inputs of a case and to end its flight in time. A flight without them shows
+    /// nothing of what it is to show.
+    pub(super) fn flight(&self, case: &Case) -> Insight {
+        let inputs = case.inputs.iter().map(|input| self.instant(&input.at).max(action(&input.action)));
+        let end = case.ends.as_ref().map_or(Insight::Truth, |end| self.instant(end));
+        inputs.fold(end, Insight::max)
+    }
+
+    pub(super) fn measure(&self, name: &str) -> Insight {
+        let found = self.measures.iter().find(|(known, _)| *known == name);
+        found.map_or(Insight::Truth, |&(_, insight)| insight)
+    }
+
+    pub(super) fn expectation(&self, expectation: &Expectation) -> Insight {
+        let expected = match &expectation.expected {
+            Expected::Result(_) | Expected::States(_) => Insight::Mission,
+            Expected::Event { pattern, within, with, .. } => {
+                let instant = within.as_ref().map_or(Insight::Truth, |(_, _, instant)| self.instant(instant));
+                let with = with.as_ref().map_or(Insight::Truth, |with| self.condition(with));
+                happening(pattern).max(instant).max(with)
+            }
+            Expected::NoEvent(pattern) => happening(pattern),
+            Expected::Always(condition, _)
+            | Expected::Eventually(condition)
+            | Expected::Mostly(condition, _)
+            | Expected::That(condition) => self.condition(condition),
+            Expected::Statistic(_, comparison) => self.comparison(comparison),
+            Expected::At(instant, condition) => self.instant(instant).max(self.condition(condition)),
+        };
+        expected.max(self.window(&expectation.window))
+    }
+
+    fn measured(&self, measured: &Measured) -> Insight {
+        match measured {
+            Measured::Over(window, _, number) => self.window(window).max(self.number(number)),
+            Measured::At(instant, number) => self.instant(instant).max(self.number(number)),
+            Measured::Time(from, to) => self.instant(from).max(self.instant(to)),
+            Measured::Of(number) => self.number(number),
+        }
+    }
+
+    fn window(&self, window: &Window) -> Insight {
+        let ends = window.from.iter().chain(&window.until);
+        ends.map(|instant| self.instant(instant)).fold(Insight::Truth, Insight::max)
+    }
+
+    fn instant(&self, instant: &Instant) -> Insight {
+        let anchor = match &instant.anchor {
+            Anchor::Boot | Anchor::Last => Insight::Truth,
+            Anchor::Happening(pattern) => happening(pattern),
+            Anchor::When(condition) => self.condition(condition),
+        };
+        anchor.max(instant.after.as_deref().map_or(Insight::Truth, |after| self.instant(after)))
+    }
+
+    fn condition(&self, condition: &Condition) -> Insight {
+        match condition {
+            Condition::Compare(comparison) => self.comparison(comparison),
+            Condition::Flag(flag) => flag.insight(),
+            Condition::State(..) => Insight::Mission,
+            Condition::Mode(_) => Insight::Telemetry,
+            Condition::Flying(_) => Insight::Inner,
+            Condition::Not(inner) => self.condition(inner),
+            Condition::All(parts) | Condition::Any(parts) => {
+                parts.iter().map(|part| self.condition(part)).fold(Insight::Truth, Insight::max)
+            }
+        }
+    }
+
+    fn comparison(&self, comparison: &Comparison) -> Insight {
+        let bound = match &comparison.bound {
+            Bound::AtMost(number, _) | Bound::AtLeast(number, _) | Bound::Equal(number) => {
+                self.number(number)
+            }
+            Bound::Between(first, second) | Bound::Around(first, second) => {
+                self.number(first).max(self.number(second))
+            }
+        };
+        self.number(&comparison.left).max(bound)
+    }
+
+    fn number(&self, number: &Number) -> Insight {
+        match number {
+            // The happening that it is a number of was told.
+            Number::Literal(..) | Number::Field(_) => Insight::Truth,
+            Number::Signal(signal) => signal.insight(),
+            Number::Name(name) => self.measure(name),
+            Number::Negative(inner) | Number::Rate(inner) => self.number(inner),
+            Number::Join(_, left, right) => self.number(left).max(self.number(right)),
+            Number::Call(_, arguments) => {
+                arguments.iter().map(|argument| self.number(argument)).fold(Insight::Truth, Insight::max)
+            }
+            Number::Distance(place) | Number::Bearing(place) => self.place(place),
+            Number::Apart(from, to)
+            | Number::Along(from, to)
+            | Number::Across(from, to)
+            | Number::Past(from, to) => self.place(from).max(self.place(to)),
+            Number::Since(instant) => self.instant(instant),
+            Number::At(inner, instant) => self.number(inner).max(self.instant(instant)),
+        }
+    }
+
+    fn place(&self, place: &Place) -> Insight {
+        match place {
+            Place::Home | Place::Offset(..) | Place::Waypoint(_, PlanSource::Stored) => Insight::Truth,
+            Place::Waypoint(..) | Place::Target => Insight::Inner,
+            Place::CraftAt(instant) => self.instant(instant),
+        }
+    }
+}
+
+/// What must be known to see such a happening.
+fn happening(pattern: &Pattern) -> Insight {
+    /// Reasons that can be told from outside.
+    const SEEN: [DisarmReason; 3] = [DisarmReason::Landing, DisarmReason::Switch, DisarmReason::Failsafe];
+    match pattern {
+        Pattern::State { source: None | Some(PlanSource::Stored), reason: None, .. } => Insight::Mission,
+        Pattern::State { .. } => Insight::Inner,
+        Pattern::Event { name: EventName::Disarmed, words, .. } if !words.is_empty() => {
+            let is_seen =
+                |word: &String| SEEN.iter().any(|reason| reason.to_string().eq_ignore_ascii_case(word));
+            if words.iter().all(is_seen) { Insight::Mission } else { Insight::Inner }
+        }
+        Pattern::Event { name, .. } => name.insight(),
+    }
+}
+
+/// What is needed to do it: the world and the transmitter are here, orders are taken by the embedded firmware only.
+fn action(action: &Action) -> Insight {
+    match action {
+        Action::World(_)
+        | Action::Stick { .. }
+        | Action::Release(_)
+        | Action::Sticks(_)
+        | Action::Switch(..)
+        | Action::CutRc(_)
+        | Action::RestoreRc
+        | Action::Pilot(_)
+        | Action::PilotOff => Insight::Truth,
+        Action::Cli(_)
+        | Action::Upload(_)
+        | Action::ReturnHome
+        | Action::CancelReturn
+        | Action::InFlight(_) => Insight::Inner,
+    }
+}
