@@ -19,7 +19,8 @@ mod upload;
 
 pub use crate::flight::FlightResult as ForecastResult;
 pub use crate::flight::forecast::{
-    Forecast, ForecastEnd, ForecastKind, LegTime, PHYSICS_IS_EXTERNAL, PathPoint, WHAT_IFS, WhatIf, WorstXte,
+    CONTROLLER_IS_REMOTE, Forecast, ForecastEnd, ForecastKind, LegTime, PHYSICS_IS_EXTERNAL, PathPoint,
+    WHAT_IFS, WhatIf, WorstXte,
 };
 pub use command::{Command, Seek, SessionView};
 pub use event::{EndpointAddresses, Event, SessionEvent};

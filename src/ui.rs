@@ -19,7 +19,7 @@
 //!
 //! Inside: `action` is what keys can do, `keymap` which key means what, `command` what can be typed behind `:`; `editor` holds the open plans;
 //! `update` is what messages do, one file a subject; `panel` draws, one file a panel, `popup` what lies over them, which `prompt` asks line by line where there is no screen;
-//! `transmitter` moves the virtual sticks.
+//! `transmitter` moves the virtual sticks, `permission` asks before a real craft is changed, `status_message` says what to do next.
 //!
 //! May use: ratatui, crossterm, the session's snapshots, events and commands, and plans. Never firmware internals,
 //! the simulator or sockets.
@@ -49,6 +49,7 @@ mod map_point;
 mod message;
 mod notice;
 mod panel;
+mod permission;
 mod popup;
 mod prompt;
 mod run;

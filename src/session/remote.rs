@@ -21,7 +21,7 @@ use std::task::{Context, Poll};
 use std::time::{Duration, Instant};
 
 use crate::link::proto::fc_client::polling::{Poll as Subject, Schedule};
-use crate::link::proto::fc_client::{Answer, Ask, AskId, FcClient};
+use crate::link::proto::fc_client::{Answer, Ask, AskId, FcClient, Unanswered};
 use crate::link::proto::sitl_feed::FeedState;
 use crate::link::{ChildEvent, FcStream, SitlChild, SitlPeer, StreamEvent};
 use crate::session::upload::LIST;
@@ -31,9 +31,10 @@ use crate::telemetry::{EndpointStatus, Mode};
 use crate::vehicle::{FrameOut, LateAnswer, RemoteRequest, Ticket, Vehicle};
 use identify::{Identification, Question};
 use observer::Observer;
+use permission::Permission;
 pub use permission::{Access, Denial, Impact, NOT_PERMITTED, NOTHING_MOVES, NOTHING_SIMULATED};
 use reply::cli_reply;
-use self_check::{AtRest, SelfCheck};
+use self_check::SelfCheck;
 pub use view::{RemoteNotice, RemoteState, RemoteView};
 
 /// The message that restarts a flight controller.
@@ -86,11 +87,8 @@ pub struct RemoteLink {
     /// It has answered since its program was started first.
     has_answered: bool,
     motors: FeedState,
-    /// How many connections there were.
-    connection: u32,
-    /// The user has permitted changes over this connection.
-    may_change: bool,
     self_check: SelfCheck,
+    permission: Permission,
     notices: Vec<RemoteNotice>,
 }
 
@@ -110,9 +108,8 @@ impl RemoteLink {
             started: now,
             has_answered: false,
             motors: FeedState::Waiting,
-            connection: 0,
-            may_change: false,
             self_check: SelfCheck::default(),
+            permission: Permission::default(),
             notices: Vec::new(),
         }
     }
@@ -131,29 +128,35 @@ impl RemoteLink {
             state: self.state.clone(),
             is_sitl: self.is_fed(),
             access: self.access(),
-            connection: self.connection,
+            has_plans: self.observer.has_plans(),
+            opens_cli: self.opens_cli(),
+            in_cli: self.client.is_in_cli(),
+            connection: self.connection(),
         }
     }
 
     /// What may be done with it.
     #[must_use]
     pub fn access(&self) -> Access {
-        match (self.is_fed(), self.may_change) {
-            (true, _) => Access::Everything,
-            (false, true) => Access::Changing,
-            (false, false) => Access::Reading,
-        }
+        if self.is_fed() { Access::Everything } else { self.permission.access() }
     }
 
     /// The number of the present connection.
     #[must_use]
     pub fn connection(&self) -> u32 {
-        self.connection
+        self.permission.connection()
+    }
+
+    /// Whether a line opens the interactive command line, which stays open then.
+    #[must_use]
+    pub fn opens_cli(&self) -> bool {
+        self.permission.opens_cli() && !self.client.is_in_cli()
     }
 
     /// The user permits changes over this connection; an earlier one's permission means nothing.
     pub fn permit_changes(&mut self, connection: u32) {
-        self.may_change |= connection == self.connection;
+        self.permission.permit(connection);
+        self.client.set_cli(self.permission.cli());
     }
 
     /// What it is called in sentences.
@@ -250,12 +253,13 @@ impl RemoteLink {
                 Some(StreamEvent::Bytes(bytes)) => self.client.push(&bytes, since),
                 Some(StreamEvent::Connected) => {
                     self.client.connected();
-                    self.connection += 1;
-                    self.may_change = false;
+                    self.permission.connected();
+                    self.client.set_cli(self.permission.cli());
                     if let Some(peer) = &mut self.ends.peer {
                         peer.came_up();
                     }
-                    if !matches!(self.state, RemoteState::Unusable(_)) {
+                    // Another one may be connected where the one before was of no use.
+                    if !self.is_fed() || !matches!(self.state, RemoteState::Unusable(_)) {
                         self.state = RemoteState::Identifying;
                         self.identification = Identification::default();
                     }
@@ -267,6 +271,7 @@ impl RemoteLink {
 
     fn lose(&mut self, reason: &str) {
         self.client.disconnected();
+        self.permission.lost();
         self.observer.forget();
         match self.state {
             RemoteState::Unusable(_) => {}
@@ -382,6 +387,12 @@ impl RemoteLink {
                 let next = self.schedule.next(self.observer.is_armed(), since);
                 next.map(|subject| (Purpose::Polled(subject), subject.ask()))
             }
+            // A board that still starts, or a plug that is put into another one, answers later.
+            RemoteState::Unusable(_) if !self.is_fed() => self
+                .identification
+                .next()
+                .filter(|question| *question == Question::ApiVersion)
+                .map(|question| (Purpose::Identity(question), question.ask())),
             RemoteState::Connecting | RemoteState::Lost | RemoteState::Unusable(_) => None,
         };
         if let Some((purpose, ask)) = next {
@@ -393,6 +404,9 @@ impl RemoteLink {
         while let Some((id, answer)) = self.client.next_answer() {
             let Some(purpose) = self.waiting.remove(&id) else { continue };
             self.has_answered |= !matches!(answer, Answer::NotAnswered(_));
+            if answer == Answer::NotAnswered(Unanswered::CliClosed) && !self.observer.is_armed() {
+                self.permission.needs_prompt();
+            }
             let Some(mailbox) = vehicle.controller_mut().remote_mut() else { return };
             match purpose {
                 Purpose::Line(ticket) => mailbox.deliver_answer(ticket, LateAnswer::Cli(cli_reply(answer))),
@@ -425,7 +439,11 @@ impl RemoteLink {
 
     fn identify(&mut self, question: Question, answer: &Answer) {
         match self.identification.take(question, answer, &mut self.observer) {
-            Ok(false) => {}
+            Ok(false) => {
+                if matches!((&self.state, answer), (RemoteState::Unusable(_), Answer::Msp(Some(_)))) {
+                    self.state = RemoteState::Identifying;
+                }
+            }
             Ok(true) => {
                 self.state = RemoteState::Ready;
                 self.self_check = SelfCheck::default();
@@ -460,31 +478,13 @@ impl RemoteLink {
         if let Some(finding) = self.check_at_rest(vehicle, now) {
             self.notices.push(RemoteNotice::Lost(finding));
         }
-        let frame = vehicle.world().map(|world| *world.local_frame());
+        if vehicle.local_frame().is_none()
+            && let Some(frame) = self.observer.first_fix()
+        {
+            vehicle.set_origin(frame);
+        }
+        let frame = vehicle.local_frame().copied();
         let Some(mailbox) = vehicle.controller_mut().remote_mut() else { return };
         self.observer.deliver(mailbox, frame.as_ref());
-    }
-}
-
-impl RemoteLink {
-    /// Checks once, some time after it has begun to answer, whether it shows the craft at rest as it is.
-    fn check_at_rest(&mut self, vehicle: &Vehicle, now: Instant) -> Option<String> {
-        let peer = self.ends.peer.as_ref()?;
-        let answers = self.state == RemoteState::Ready && self.motors == FeedState::Answering;
-        if !self.self_check.is_due(answers, now) {
-            return None;
-        }
-        let snapshot = vehicle.snapshot();
-        let truth = snapshot.truth.filter(|truth| truth.on_ground && !truth.crashed)?;
-        if snapshot.craft.armed != Some(false) {
-            return None;
-        }
-        self_check::finding(&AtRest {
-            sent: peer.dialect(),
-            truth,
-            told: snapshot.estimate,
-            trusts_mag: self.observer.trusts_mag(),
-            place: snapshot.craft.gps.map(|gps| gps.position),
-        })
     }
 }

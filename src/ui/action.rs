@@ -4,6 +4,7 @@ use super::panel::Panel;
 
 mod edit;
 mod enabled;
+mod real_craft;
 mod table;
 
 pub use edit::EditAction;
@@ -49,6 +50,8 @@ pub enum Action {
     Upload,
     /// Edit the plan.
     Edit(EditAction),
+    /// Let the craft outside be changed.
+    AllowChanges,
     /// Put the craft back home.
     ResetCraft,
     /// Fly ahead as things stand, or end that.

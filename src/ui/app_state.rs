@@ -20,6 +20,7 @@ use super::keymap::Keymap;
 use super::knobs::KnobsState;
 use super::layout::Slots;
 use super::log_view::LogView;
+use super::message::Effect;
 use super::panel::Panel;
 use super::popup::{CommandLine, Popup};
 use super::stick_recording::StickRecording;
@@ -152,6 +153,10 @@ pub struct AppState {
     pub timeline: TimelineState,
     /// The newest notice.
     pub notice: Option<Notice>,
+    /// What is to be done once changes of the craft outside are permitted.
+    pub held: Vec<Effect>,
+    /// The connection over which the user has permitted changes.
+    pub permitted: Option<u32>,
     /// When Ctrl-C was pressed last.
     pub cancelled: Option<Duration>,
     /// Sticks sent that the session has not confirmed yet, and when.
@@ -223,6 +228,8 @@ impl AppState {
             track: Track::default(),
             timeline: TimelineState::default(),
             notice: None,
+            held: Vec::new(),
+            permitted: None,
             cancelled: None,
             sticks_sent: None,
             fly_after_upload: None,

@@ -144,6 +144,14 @@ impl CliState {
         std::mem::take(&mut self.reports).then(|| (severity, said.join(" ")))
     }
 
+    /// The line that was to be run is not, nor are those behind it: why.
+    pub fn not_run(&mut self, why: &str) {
+        self.waiting = false;
+        self.reports = false;
+        self.queue.clear();
+        self.push(CliLineKind::Note, why.to_owned());
+    }
+
     fn push(&mut self, kind: CliLineKind, text: String) {
         if self.lines.len() == MAX_SCROLLBACK {
             self.lines.pop_front();

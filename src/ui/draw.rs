@@ -16,7 +16,7 @@ use super::panel::{self, span};
 use super::popup::{Popup, command_line, go_to, map_menu, palette, what_if};
 use super::text_wrap::wrapped;
 use super::theme::{Charset, Role};
-use super::{hint_bar, notice, status_bar, timeline, tutorial};
+use super::{hint_bar, notice, permission, status_bar, timeline, tutorial};
 use crate::printable;
 
 /// Draws the state. Reads only.
@@ -68,6 +68,10 @@ pub fn draw(state: &AppState, frame: &mut Frame<'_>) {
             }
             Popup::Quit => {
                 quit_question(state, area, buffer);
+                None
+            }
+            Popup::Permission => {
+                permission::draw(state, area, buffer);
                 None
             }
             Popup::Plots { selected } => {

@@ -11,6 +11,7 @@ use super::action::{Action, EditAction, enabled, is_wrecked};
 use super::app_state::AppState;
 use super::panel::Panel;
 use super::panel::span;
+use super::permission;
 use super::status_bar::sides;
 use super::theme::{Role, Theme};
 use super::transmitter;
@@ -108,6 +109,18 @@ fn hint_actions(state: &AppState) -> Vec<(&'static [Action], &'static str)> {
         ]),
         Panel::Log => hints.extend([(&[Action::Search] as &[_], "search"), (&[Action::Filter], "filter")]),
         Panel::Map | Panel::State => {}
+    }
+    if permission::real_craft(state).is_some() {
+        if state.focus != Panel::Plan {
+            hints.push((&[Action::Upload], "upload"));
+        }
+        hints.extend([
+            (&[Action::Edit(EditAction::Download)] as &[_], "download"),
+            (&[Action::Show(Panel::Cli)], "CLI"),
+            (&[Action::CommandLine], "command"),
+        ]);
+        hints.retain(|(actions, _)| actions.iter().all(|&action| enabled(state, action).is_ok()));
+        return hints;
     }
     let wrecked = is_wrecked(state);
     if wrecked {

@@ -30,6 +30,8 @@ pub enum Popup {
     },
     /// "The craft is armed. Quit?"
     Quit,
+    /// "This changes the flight controller. Go on?"
+    Permission,
     /// The plots that can be shown.
     Plots {
         /// Index of the selected one.

@@ -9,6 +9,7 @@ use super::app_state::AppState;
 use super::command;
 use super::editor::{EditorPopup, OpenPlan, Question};
 use super::message::{Effect, Msg};
+use super::permission;
 use super::popup::Popup;
 use super::update::update;
 use crate::session::WHAT_IFS;
@@ -49,6 +50,7 @@ pub(super) fn question(state: &AppState) -> Option<Vec<String>> {
             Some(list("What if, from this instant on?".to_owned(), choices))
         }
         Popup::Quit => Some(vec!["The craft is armed and flying ends here. Quit? y yes, n no.".to_owned()]),
+        Popup::Permission => Some(vec![format!("{} y yes, n no.", permission::question(state))]),
         Popup::Help { .. }
         | Popup::Plots { .. }
         | Popup::CommandLine
@@ -90,6 +92,13 @@ pub(super) fn answer(state: &mut AppState, line: &str) -> Result<Answered, Strin
         Some(Popup::Quit) if !matches!(line, "n" | "no" | "") => {
             return Err("Answer y to end, n to fly on.".to_owned());
         }
+        Some(Popup::Permission) if line == "y" || line == "yes" => {
+            return Ok(press(state, KeyCode::Char('y')).into());
+        }
+        Some(Popup::Permission) if matches!(line, "n" | "no" | "") => {
+            return Ok(press(state, KeyCode::Char('n')).into());
+        }
+        Some(Popup::Permission) => return Err("Answer y to go on, n to change nothing.".to_owned()),
         Some(Popup::GoTo(_) | Popup::WhatIf { .. }) if !line.is_empty() => {
             let effects = match state.popups.last() {
                 Some(Popup::GoTo(_)) => command::flight::go_to_waypoint(state, line)?,

@@ -1,5 +1,7 @@
 //! The message on top of the State panel: what keeps the craft from flying, or how it flies, and what to do now.
 
+mod remote;
+
 use crate::telemetry::{ArmingFlag, ArmingFlags, CannotHold, HoldLimit, LinkState, Mode, NavState, Refusal};
 
 use super::action::{Action, EditAction};
@@ -73,6 +75,9 @@ pub fn current(state: &AppState) -> Option<StatusMessage> {
         let action =
             format!("{} flies on from here, {} goes to the end", key(Action::FlyOn), key(Action::Newest));
         return message(Severity::Info, condition, action);
+    }
+    if let Some(told) = state.view.remote.as_ref().and_then(|outside| remote::current(state, outside)) {
+        return Some(told);
     }
     match state.view.simulator {
         Some(LinkState::Silent) => {

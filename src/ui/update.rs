@@ -20,6 +20,7 @@ use super::log_view;
 use super::map_point;
 use super::message::{Effect, Msg};
 use super::panel::Panel;
+use super::permission;
 use super::popup::{Palette, Popup};
 use super::stick_recording;
 use super::track::TrackPoint;
@@ -55,7 +56,10 @@ pub fn update(state: &mut AppState, msg: Msg) -> Vec<Effect> {
     // These ask for nothing: their effects would not be carried out.
     let is_followed = !matches!(msg, Msg::Clock(_) | Msg::Resize(..));
     let is_picture = matches!(msg, Msg::View(_));
-    let mut effects = take(state, msg);
+    let connection = permission::real_craft(state).map(|remote| remote.connection);
+    let effects = take(state, msg);
+    let mut effects = permission::hold(state, effects);
+    permission::follow(state, connection);
     if is_followed {
         tutorial::follow(state);
         effects.extend(forecast::follow_plan(state));
@@ -355,7 +359,12 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
             }
             Vec::new()
         }
-        Action::Quit if state.view.vehicle.craft.is_armed() => {
+        Action::AllowChanges => {
+            permission::ask(state);
+            Vec::new()
+        }
+        // One that is real flies on without this program.
+        Action::Quit if state.view.vehicle.craft.is_armed() && permission::real_craft(state).is_none() => {
             state.popups.push(Popup::Quit);
             Vec::new()
         }

@@ -98,6 +98,13 @@ impl Observer {
         }
     }
 
+    /// The frame of the place where the craft was seen first.
+    pub(super) fn first_fix(&self) -> Option<LocalFrame> {
+        self.first_fix.map(|Origin { position, alt_amsl_m }| {
+            LocalFrame::new(position.lat_deg(), position.lon_deg(), alt_amsl_m)
+        })
+    }
+
     /// Delivers what is new: telemetry, and the events that it shows. `frame` is that of the boot place, when there is a
     /// world.
     pub(super) fn deliver(&mut self, mailbox: &mut RemoteController, frame: Option<&LocalFrame>) {

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::firmware::msp::{Access as MessageAccess, MESSAGES};
+use crate::link::proto::fc_client::CliAccess;
 
 /// Why an order that would move a craft outside is not carried out.
 pub const NOTHING_MOVES: &str =
@@ -77,6 +78,58 @@ impl Access {
     #[must_use]
     pub fn is_limited(self) -> bool {
         self != Self::Everything
+    }
+}
+
+/// What the user has permitted over the present connection.
+#[derive(Debug, Default)]
+pub(super) struct Permission {
+    /// The number of the connection.
+    connection: u32,
+    may_change: bool,
+    /// The command line has no framing: a line opens it, and it stays open.
+    opens_cli: bool,
+}
+
+impl Permission {
+    /// There is a new connection, over which nothing is permitted yet.
+    pub(super) fn connected(&mut self) {
+        *self = Self { connection: self.connection + 1, ..Self::default() };
+    }
+
+    /// The connection is gone.
+    pub(super) fn lost(&mut self) {
+        self.may_change = false;
+    }
+
+    /// The user permits changes over a connection; one that is gone does not matter any more.
+    pub(super) fn permit(&mut self, connection: u32) {
+        self.may_change |= connection == self.connection;
+    }
+
+    /// A line was not taken though the craft is disarmed: the command line has to be opened for lines.
+    pub(super) fn needs_prompt(&mut self) {
+        self.opens_cli = true;
+    }
+
+    /// The number of the connection.
+    pub(super) fn connection(&self) -> u32 {
+        self.connection
+    }
+
+    /// Whether a line opens the command line, which is a change itself.
+    pub(super) fn opens_cli(&self) -> bool {
+        self.opens_cli
+    }
+
+    /// How lines reach the command line.
+    pub(super) fn cli(&self) -> CliAccess {
+        if self.opens_cli && self.may_change { CliAccess::Interactive } else { CliAccess::Framed }
+    }
+
+    /// What may be done with a real craft.
+    pub(super) fn access(&self) -> Access {
+        if self.may_change { Access::Changing } else { Access::Reading }
     }
 }
 
@@ -156,6 +209,12 @@ const SET_PASSTHROUGH: u16 = 245;
 const REBOOT: u16 = 68;
 
 impl Impact {
+    /// At least a change, if `changes`.
+    #[must_use]
+    pub fn or_changes(self, changes: bool) -> Self {
+        if changes { self.max(Self::Changes) } else { self }
+    }
+
     /// What a line of the command line does; of several lines the worst.
     #[must_use]
     pub fn of_line(line: &str) -> Self {
@@ -330,6 +389,34 @@ mod tests {
         assert_eq!((of(68), Impact::of_message(68, &[0])), (Impact::Changes, Impact::Changes));
         assert_eq!(Impact::of_message(68, &[1]), Impact::Forbidden(TAKES_PORT));
         assert_eq!(of(245), Impact::Forbidden(TAKES_PORT));
+    }
+
+    #[test]
+    fn a_permission_is_for_one_connection() {
+        let mut permission = Permission::default();
+        permission.connected();
+        assert_eq!((permission.access(), permission.connection()), (Access::Reading, 1));
+        permission.permit(1);
+        assert_eq!(permission.access(), Access::Changing);
+        permission.lost();
+        assert_eq!(permission.access(), Access::Reading);
+        permission.connected();
+        permission.permit(1);
+        assert_eq!(permission.access(), Access::Reading, "that was for the connection before");
+        permission.permit(2);
+        assert_eq!(permission.access(), Access::Changing);
+    }
+
+    #[test]
+    fn the_prompt_is_opened_with_permission_only() {
+        let mut permission = Permission::default();
+        permission.connected();
+        permission.needs_prompt();
+        assert_eq!(permission.cli(), CliAccess::Framed);
+        permission.permit(1);
+        assert_eq!(permission.cli(), CliAccess::Interactive);
+        assert_eq!(Impact::of_line("get").or_changes(permission.opens_cli()), Impact::Changes);
+        assert_eq!(Impact::of_line("motor 1 1500").or_changes(true), MOVES);
     }
 
     #[test]

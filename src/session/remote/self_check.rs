@@ -4,10 +4,13 @@ use std::time::{Duration, Instant};
 
 use nalgebra::Vector3;
 
+use super::{RemoteLink, RemoteState};
 use crate::geo::{LatLon, distance_bearing};
 use crate::link::proto::fdm::{Gravity, State};
+use crate::link::proto::sitl_feed::FeedState;
 use crate::signals::fdm::Dialect;
 use crate::telemetry::snapshot::{EstimateView, TruthView};
+use crate::vehicle::Vehicle;
 
 /// How far roll and pitch may be off, degrees.
 const LEAN_DEG: f64 = 2.0;
@@ -20,6 +23,29 @@ const PLACE_M: f64 = 50.0;
 
 /// How long it has to answer before what it shows has settled.
 const SETTLED: Duration = Duration::from_secs(8);
+
+impl RemoteLink {
+    /// Checks once, some time after it has begun to answer, whether it shows the craft at rest as it is.
+    pub(super) fn check_at_rest(&mut self, vehicle: &Vehicle, now: Instant) -> Option<String> {
+        let peer = self.ends.peer.as_ref()?;
+        let answers = self.state == RemoteState::Ready && self.motors == FeedState::Answering;
+        if !self.self_check.is_due(answers, now) {
+            return None;
+        }
+        let snapshot = vehicle.snapshot();
+        let truth = snapshot.truth.filter(|truth| truth.on_ground && !truth.crashed)?;
+        if snapshot.craft.armed != Some(false) {
+            return None;
+        }
+        finding(&AtRest {
+            sent: peer.dialect(),
+            truth,
+            told: snapshot.estimate,
+            trusts_mag: self.observer.trusts_mag(),
+            place: snapshot.craft.gps.map(|gps| gps.position),
+        })
+    }
+}
 
 /// When the check is due.
 #[derive(Debug, Clone, Copy, Default)]

@@ -30,6 +30,12 @@ pub struct RemoteView {
     pub is_sitl: bool,
     /// What may be done with it.
     pub access: Access,
+    /// It holds and flies plans, as far as it has told.
+    pub has_plans: bool,
+    /// Its command line has no framing: a line opens it, and it stays open.
+    pub opens_cli: bool,
+    /// Its command line is open, and telemetry rests.
+    pub in_cli: bool,
     /// The number of the present connection: a permission is for one.
     pub connection: u32,
 }

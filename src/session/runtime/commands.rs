@@ -176,10 +176,11 @@ impl Session {
 
     /// As a ground station does it by MSP: the craft goes on without a restart. A remote flight controller stores by itself.
     fn save(&mut self, reply: oneshot::Sender<Result<(), String>>) {
+        let is_real = self.access().is_limited();
         let controller = self.vehicle.controller_mut();
         if controller.is_armed() {
-            let refusal = "Not saved while the craft is armed: `a` disarms it on the ground.".to_owned();
-            drop(reply.send(Err(refusal)));
+            let way = if is_real { "its transmitter disarms it" } else { "`a` disarms it" };
+            drop(reply.send(Err(format!("Not saved while the craft is armed: {way} on the ground."))));
         } else if controller.configuration().is_some() {
             drop(reply.send(self.persistence.save(controller)));
         } else if let Answer::Later(ticket) = controller.run_msp(EEPROM_WRITE, &[], None) {

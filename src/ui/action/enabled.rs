@@ -1,13 +1,15 @@
 //! Which actions make sense now, and why the others do not.
 
-use crate::session::PHYSICS_IS_EXTERNAL;
-use crate::session::command::{NOT_RECORDED, PLACE_IS_EXTERNAL, REWOUND, TIME_IS_EXTERNAL};
+use crate::session::command::{
+    NOT_RECORDED, PLACE_IS_EXTERNAL, REWOUND, TIME_IS_EXTERNAL, TIME_IS_THE_FIRMWARES,
+};
+use crate::session::{Access, CONTROLLER_IS_REMOTE, PHYSICS_IS_EXTERNAL};
 use crate::telemetry::{LinkState, Mode, NavState};
 use crate::ui::app_state::AppState;
 use crate::ui::stick_recording;
 use crate::ui::transmitter;
 
-use super::Action;
+use super::{Action, real_craft};
 
 /// Whether the action makes sense now, else why not, in one sentence with the way out.
 ///
@@ -15,7 +17,25 @@ use super::Action;
 /// The sentence.
 pub fn enabled(state: &AppState, action: Action) -> Result<(), String> {
     let craft = &state.view.vehicle.craft;
+    let remote = state.view.remote.as_ref();
+    if let Some(sentence) = remote.and_then(|remote| real_craft::refusal(remote, action)) {
+        return Err(sentence.to_owned());
+    }
     match action {
+        Action::Pause | Action::Step | Action::Tick | Action::Slower | Action::Faster | Action::RealTime
+            if remote.is_some() =>
+        {
+            Err(TIME_IS_THE_FIRMWARES.to_owned())
+        }
+        Action::AllowChanges => match remote.map(|remote| remote.access) {
+            Some(Access::Reading) => Ok(()),
+            Some(Access::Changing) => {
+                Err("Changes are permitted already, until the connection ends.".to_owned())
+            }
+            Some(Access::Everything) | None => {
+                Err("The craft is simulated: changes need no permission.".to_owned())
+            }
+        },
         Action::Pause | Action::Step | Action::Tick | Action::Slower | Action::Faster | Action::RealTime
             if state.view.simulator.is_some() =>
         {
@@ -29,6 +49,7 @@ pub fn enabled(state: &AppState, action: Action) -> Result<(), String> {
         }
         Action::GoTo | Action::HoldHere | Action::Resume => can_command(state, action),
         Action::LookAhead if state.forecast.looks_ahead() => Ok(()),
+        Action::LookAhead | Action::WhatIf if remote.is_some() => Err(CONTROLLER_IS_REMOTE.to_owned()),
         Action::LookAhead | Action::WhatIf if state.view.simulator.is_some() => {
             Err(PHYSICS_IS_EXTERNAL.to_owned())
         }

@@ -9,6 +9,9 @@ pub(super) fn speed(state: &mut AppState, _: &str, argument: &str) -> Result<Vec
     if state.view.simulator.is_some() {
         return Err(crate::session::command::TIME_IS_EXTERNAL.to_owned());
     }
+    if state.view.remote.is_some() {
+        return Err(crate::session::command::TIME_IS_THE_FIRMWARES.to_owned());
+    }
     let (slowest, fastest) = SPEED_RANGE.into_inner();
     let factor =
         match argument.trim_end_matches(['x', '×']) {

@@ -14,6 +14,7 @@ use crate::ui::forecast;
 use crate::ui::graphs::PLOTS;
 use crate::ui::history::LineField;
 use crate::ui::message::Effect;
+use crate::ui::permission;
 use crate::ui::popup::palette::Entry;
 use crate::ui::popup::{Popup, command_line, go_to, palette, what_if};
 
@@ -48,6 +49,14 @@ pub(super) fn key(state: &mut AppState, event: KeyEvent, found: Option<Action>) 
             }
         },
         Some(Popup::Quit) => quit_key(state, event),
+        Some(Popup::Permission) => match event.code {
+            KeyCode::Char('y' | 'Y') => permission::permit(state),
+            KeyCode::Char('n' | 'N' | 'q') | KeyCode::Esc => {
+                permission::decline(state);
+                Vec::new()
+            }
+            _ => Vec::new(),
+        },
         Some(Popup::Plots { selected }) => {
             match event.code {
                 KeyCode::Up | KeyCode::Char('k') => *selected = selected.saturating_sub(1),

@@ -9,6 +9,7 @@ use crate::ui::app_state::AppState;
 use crate::ui::command;
 use crate::ui::forecast;
 use crate::ui::message::{Effect, Msg};
+use crate::ui::permission;
 use crate::ui::popup::Popup;
 use crate::ui::prompt;
 use crate::ui::update::update;
@@ -34,7 +35,8 @@ impl<W: Write> Lines<W> {
     pub(super) fn enter(&mut self, state: &mut AppState, line: &str) -> io::Result<Vec<Effect>> {
         let is_asked = state.editor.popup.is_some() || !state.popups.is_empty();
         if !is_asked {
-            return self.said(command::run(state, line));
+            let effects = self.said(command::run(state, line))?;
+            return Ok(permission::hold(state, effects));
         }
         let answered = self.said(prompt::answer(state, line))?;
         if let Some(told) = answered.told {

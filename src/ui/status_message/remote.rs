@@ -1,0 +1,69 @@
+//! What to know of a flight controller outside: its connection, and the state of a real craft.
+
+use super::{StatusMessage, message, most_useful_flag};
+use crate::session::{RemoteState, RemoteView};
+use crate::ui::action::{Action, EditAction};
+use crate::ui::app_state::AppState;
+use crate::ui::event_log::Severity;
+use crate::ui::panel::Panel;
+
+/// What the connection lets the user know first, and of a real craft all; `None` = as with any other craft.
+pub(super) fn current(state: &AppState, remote: &RemoteView) -> Option<StatusMessage> {
+    let name = &remote.name;
+    let is_real = remote.access.is_limited();
+    match &remote.state {
+        RemoteState::Unusable(sentence) if is_real => {
+            message(Severity::Fault, sentence, "plug in another one, or name another place with --connect")
+        }
+        RemoteState::Unusable(sentence) => {
+            message(Severity::Fault, sentence, format!("{} ends the program", state.key(Action::Quit)))
+        }
+        RemoteState::Connecting => {
+            let action = if is_real { "plug it in; it is tried again" } else { "wait until it has started" };
+            message(Severity::Warn, format!("No connection to {name} yet."), action)
+        }
+        RemoteState::Lost => {
+            let condition = format!("The connection to {name} is lost.");
+            message(Severity::Fault, condition, "it is made again by itself; what is shown is old")
+        }
+        RemoteState::Identifying => {
+            message(Severity::Info, format!("{name} is asked what it is."), "wait a moment")
+        }
+        RemoteState::Ready if is_real => ready(state, remote),
+        RemoteState::Ready => None,
+    }
+}
+
+/// A real craft that answers.
+fn ready(state: &AppState, remote: &RemoteView) -> Option<StatusMessage> {
+    let vehicle = &state.view.vehicle;
+    let craft = &vehicle.craft;
+    let [cli, download, upload] =
+        [Action::Show(Panel::Cli), Action::Edit(EditAction::Download), Action::Upload]
+            .map(|action| state.key(action));
+    if remote.in_cli {
+        let action = format!("{cli} CLI: `exit` leaves it, which restarts the craft");
+        return message(Severity::Warn, "The command line is open: telemetry rests.", action);
+    }
+    if craft.is_armed() {
+        if craft.failsafe_stage.is_some_and(|stage| stage > 0) {
+            return message(Severity::Fault, "Failsafe: the RC link is lost.", "its own rules bring it down");
+        }
+        return message(Severity::Warn, "Armed.", "its own transmitter flies and disarms it");
+    }
+    if craft.armed.is_none() {
+        let condition = "The flight controller does not tell whether it is armed.";
+        return message(Severity::Warn, condition, "wait for it to speak");
+    }
+    if craft.gps_fix == Some(false) {
+        return message(Severity::Warn, "No GPS fix yet.", "wait for satellites");
+    }
+    if let Some(flag) = most_useful_flag(craft.arming_flags()) {
+        return message(Severity::Warn, format!("Arming is blocked: {flag}."), flag.hint());
+    }
+    if vehicle.stored_plan.as_ref().is_some_and(|plan| plan.waypoints.is_empty()) {
+        return message(Severity::Info, "The craft has no plan.", format!("{upload} uploads the open one"));
+    }
+    let action = format!("{download} downloads its plan, {cli} opens the CLI");
+    message(Severity::Good, "Disarmed; nothing blocks arming.", action)
+}
