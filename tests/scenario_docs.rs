@@ -53,21 +53,30 @@ fn events() -> String {
                 format!("`{name}` ({help}{unit})")
             })
             .collect();
-        format!("| `{}` | {} | {words} | {} |", info.name, info.help, fields.join(", "))
+        format!(
+            "| `{}` | {} | {words} | {} | {} |",
+            info.name,
+            info.help,
+            fields.join(", "),
+            info.event.insight()
+        )
     };
-    rows("| event | when | words behind it | numbers for `with` |", EVENTS.iter().map(row))
+    rows("| event | when | words behind it | numbers for `with` | needs |", EVENTS.iter().map(row))
 }
 
 fn flags() -> String {
-    rows("| flag | says |", Flag::iter().map(|flag| format!("| `{flag}` | {} |", flag.help())))
+    rows(
+        "| flag | says | needs |",
+        Flag::iter().map(|flag| format!("| `{flag}` | {} | {} |", flag.help(), flag.insight())),
+    )
 }
 
 fn signals() -> String {
     let row = |info: &betadeck::scenario::signal::SignalInfo| {
         let unit = info.dimension.unit().map_or("", |unit| unit.name);
-        format!("| `{}` | {unit} | {} |", info.name, info.help)
+        format!("| `{}` | {unit} | {} | {} |", info.name, info.help, info.signal.insight())
     };
-    rows("| signal | unit | is |", SIGNALS.iter().map(row))
+    rows("| signal | unit | is | needs |", SIGNALS.iter().map(row))
 }
 
 fn units() -> String {

@@ -8,7 +8,8 @@ use super::signal::{Flag, Signal};
 use crate::telemetry::{DisarmReason, PlanSource};
 
 /// How much of a flight controller must be known, the least first.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, strum::Display)]
+#[strum(serialize_all = "lowercase")]
 pub enum Insight {
     /// Nothing: the simulated world tells it.
     #[default]

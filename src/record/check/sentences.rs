@@ -57,6 +57,10 @@ fn skipped(flight: &CheckedFlight) -> String {
     })
 }
 
+fn counted(expectations: usize) -> String {
+    if expectations == 1 { "1 expectation".to_owned() } else { format!("{expectations} expectations") }
+}
+
 /// Of cases with many flights: how far the numbers of each expectation spread.
 fn spreads(summary: &Summary) -> Vec<String> {
     let mut lines = Vec::new();
@@ -122,9 +126,9 @@ pub fn summary_lines(summary: &Summary) -> Vec<String> {
     }
     match summary.skipped() {
         (0, 0) => {}
-        (0, expectations) => last.push_str(&format!(", {expectations} expectations skipped")),
+        (0, expectations) => last.push_str(&format!(", {} skipped", counted(expectations))),
         (flights, expectations) => {
-            last.push_str(&format!(", {flights} skipped whole, {expectations} expectations skipped"));
+            last.push_str(&format!(", {flights} skipped whole, {} skipped", counted(expectations)));
         }
     }
     if summary.flights.len() < summary.wanted {
