@@ -1,5 +1,6 @@
 //! Which firmware the options and the launcher's file name, checked before anything is started.
 
+mod configuration;
 mod executable;
 pub(super) mod link;
 pub(super) mod run;
@@ -27,6 +28,8 @@ pub(super) struct RemoteFirmware {
     pub(super) ports: FirmwarePorts,
     /// How the packets to it are stamped.
     pub(super) stamps: Stamps,
+    /// The lines of `--settings`.
+    pub(super) settings: Vec<String>,
     /// A configuration that it had before may be changed without asking.
     pub(super) may_write: bool,
 }
@@ -137,6 +140,10 @@ pub(super) fn check(
         executable,
         ports: beside.ports.check()?,
         stamps: link.stamps(),
+        settings: match &beside.flight.settings {
+            Some(path) => input_file::read(path)?.lines().map(str::to_owned).collect(),
+            None => Vec::new(),
+        },
         may_write: link.yes,
     }))
 }

@@ -12,6 +12,7 @@
 mod identify;
 mod observer;
 mod permission;
+mod provision;
 mod reply;
 mod self_check;
 mod view;
@@ -33,6 +34,7 @@ use identify::{Identification, Question};
 use observer::Observer;
 use permission::Permission;
 pub use permission::{Access, Denial, Impact, NOT_PERMITTED, NOTHING_MOVES, NOTHING_SIMULATED};
+pub use provision::Provision;
 use reply::cli_reply;
 use self_check::SelfCheck;
 pub use view::{RemoteNotice, RemoteState, RemoteView};
@@ -66,6 +68,8 @@ enum Purpose {
     Message(Ticket),
     /// To know what it is.
     Identity(Question),
+    /// To set it.
+    Provision,
     /// To show how it is.
     Polled(Subject),
     /// Nothing: what it causes is seen elsewhere.
@@ -89,6 +93,7 @@ pub struct RemoteLink {
     motors: FeedState,
     self_check: SelfCheck,
     permission: Permission,
+    provision: Option<Provision>,
     notices: Vec<RemoteNotice>,
 }
 
@@ -110,6 +115,7 @@ impl RemoteLink {
             motors: FeedState::Waiting,
             self_check: SelfCheck::default(),
             permission: Permission::default(),
+            provision: None,
             notices: Vec::new(),
         }
     }
@@ -380,9 +386,10 @@ impl RemoteLink {
         }
         let since = now.saturating_duration_since(self.started);
         let next = match self.state {
-            RemoteState::Identifying => {
-                self.identification.next().map(|question| (Purpose::Identity(question), question.ask()))
-            }
+            RemoteState::Identifying => match self.identification.next() {
+                Some(question) => Some((Purpose::Identity(question), question.ask())),
+                None => self.ask_to_provision().map(|ask| (Purpose::Provision, ask)),
+            },
             RemoteState::Ready => {
                 let next = self.schedule.next(self.observer.is_armed(), since);
                 next.map(|subject| (Purpose::Polled(subject), subject.ask()))
@@ -420,6 +427,7 @@ impl RemoteLink {
                     mailbox.deliver_answer(ticket, LateAnswer::Msp(payload));
                 }
                 Purpose::Identity(question) => self.identify(question, &answer),
+                Purpose::Provision => self.take_provision_answer(&answer),
                 Purpose::Polled(subject) => {
                     self.schedule.answered(subject, &answer);
                     match (subject, &answer) {
@@ -444,12 +452,8 @@ impl RemoteLink {
                     self.state = RemoteState::Identifying;
                 }
             }
-            Ok(true) => {
-                self.state = RemoteState::Ready;
-                self.self_check = SelfCheck::default();
-                self.schedule.refresh();
-                self.notices.push(RemoteNotice::Told(self.observer.introduction(&self.ends.name)));
-            }
+            Ok(true) if self.provision.is_some() => self.go_on_with_provision(),
+            Ok(true) => self.become_ready(),
             Err(why) => self.give_up(format!("{}: {why}", self.ends.name)),
         }
     }

@@ -7,12 +7,12 @@ use std::time::Instant;
 
 use tempfile::TempDir;
 
-use super::RemoteFirmware;
+use super::{RemoteFirmware, configuration};
 use crate::app::AppError;
 use crate::args::UdpPorts;
 use crate::link::proto::sitl_feed::FeedConfig;
 use crate::link::{ChildConfig, FcPlace, FcStream, SitlChild, SitlPeer, SitlPorts};
-use crate::session::{RemoteEnds, RemoteLink};
+use crate::session::{Provision, RemoteEnds, RemoteLink};
 use crate::vehicle::Vehicle;
 
 /// Where a firmware keeps its configuration below the state directory: not where ours is, which it would overwrite.
@@ -93,7 +93,12 @@ pub(in crate::app) fn open(
     );
     let stream = FcStream::open(FcPlace::Tcp { host: ip.to_string(), port: ports.tcp });
     let ends = RemoteEnds { name, stream, peer: Some(peer), child };
-    Ok(OpenLink { link: RemoteLink::new(ends, now), is_fresh, stored_in, directory })
+    let mut link = RemoteLink::new(ends, now);
+    let lines = configuration::lines(&firmware.settings, is_fresh)?;
+    if !lines.is_empty() {
+        link.provision(Provision::new(lines, is_fresh || firmware.may_write));
+    }
+    Ok(OpenLink { link, is_fresh, stored_in, directory })
 }
 
 fn start(program: PathBuf, arguments: Vec<String>, directory: PathBuf) -> Result<SitlChild, AppError> {

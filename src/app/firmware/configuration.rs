@@ -1,0 +1,69 @@
+//! What a firmware outside is set to before it flies.
+
+use crate::app::AppError;
+use crate::firmware::cli::Interpreter;
+use crate::firmware::config::Configuration;
+use crate::firmware::{Firmware, FirmwareOptions};
+use crate::plan::builtin::{BuiltinPlan, DEMO};
+
+/// A row of `aux` that binds no switch ends like this.
+const UNUSED: &str = "900 900 0 0";
+
+/// The command lines for a firmware: those of the user, and before them, for one without a configuration of its own, the
+/// guide's settings and, unless the user's lines bind switches, the starter modes.
+pub(super) fn lines(settings: &[String], is_fresh: bool) -> Result<Vec<String>, AppError> {
+    let mut lines = Vec::new();
+    if is_fresh {
+        lines.extend(guide_settings()?);
+        if !settings.iter().any(|line| line.trim_start().starts_with("aux ")) {
+            lines.extend(starter_modes());
+        }
+    }
+    lines.extend_from_slice(settings);
+    Ok(lines)
+}
+
+/// Those of the plan that the guide flies.
+fn guide_settings() -> Result<impl Iterator<Item = String>, AppError> {
+    let missing = || AppError::internal("the demo plan is missing");
+    let plan = BuiltinPlan::find(DEMO).and_then(|plan| plan.read().ok()).ok_or_else(missing)?;
+    Ok(plan.settings.into_iter().map(|setting| format!("set {setting}")))
+}
+
+/// The rows of `aux` that the embedded firmware gets at its first boot.
+fn starter_modes() -> Vec<String> {
+    let mut configuration = Configuration::default();
+    configuration.starter_modes();
+    let mut firmware = Firmware::new(configuration, FirmwareOptions::default());
+    let rows = firmware.run_cli(&mut Interpreter::default(), "aux").text;
+    rows.lines().filter(|row| row.starts_with("aux") && !row.ends_with(UNUSED)).map(str::to_owned).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_firmware_without_a_configuration_gets_the_guides_and_switches() {
+        let of_user = ["set ap_max_angle = 30".to_owned()];
+        assert_eq!(lines(&of_user, false).expect("lines"), of_user);
+        let fresh = lines(&of_user, true).expect("lines");
+        assert_eq!(fresh.iter().filter(|line| line.starts_with("set ap_")).count(), 25);
+        let aux: Vec<&str> =
+            fresh.iter().map(String::as_str).filter(|line| line.starts_with("aux")).collect();
+        assert_eq!(
+            aux,
+            [
+                "aux 0 0 0 1700 2100 0 0",
+                "aux 1 56 1 1700 2100 0 0",
+                "aux 2 1 2 1700 2100 0 0",
+                "aux 3 3 2 1700 2100 0 0",
+                "aux 4 11 2 1700 2100 0 0"
+            ]
+        );
+        assert_eq!(fresh.last(), of_user.last(), "the user has the last word");
+        let bound = ["aux 0 0 3 1700 2100 0 0".to_owned()];
+        let fresh = lines(&bound, true).expect("lines");
+        assert_eq!(fresh.iter().filter(|line| line.starts_with("aux")).count(), 1);
+    }
+}

@@ -1,0 +1,256 @@
+//! Sets a flight controller outside as lines say: looks what it holds, writes what differs, saves, and looks again.
+//!
+//! ```text
+//! look ─▶ nothing differs ───────────────────────────────▶ done
+//!      ─▶ it may not be written: the differences are told ─▶ done
+//!      ─▶ write ─▶ save ─▶ restart ─▶ look again ──────────▶ done
+//! ```
+
+mod held;
+mod report;
+#[cfg(test)]
+mod tests;
+mod wish;
+
+use std::collections::VecDeque;
+
+use held::{Held, Question};
+use report::{ProvisionReport, RefusedLine};
+use wish::Wish;
+
+use super::self_check::SelfCheck;
+use super::{Identification, RemoteLink, RemoteNotice, RemoteState};
+use crate::link::proto::fc_client::{Answer, Ask, Unanswered};
+
+/// Stores what was written, and restarts.
+const SAVE: &str = "save";
+/// What a firmware says of a setting that it does not have.
+const UNKNOWN_NAME: &str = "INVALID NAME";
+/// How often a lost connection has it begin anew.
+const MOST_LOST: usize = 3;
+
+/// A flight controller that is being set.
+#[derive(Debug)]
+pub struct Provision {
+    wishes: Vec<Wish>,
+    may_write: bool,
+    phase: Phase,
+    /// What was asked last and is not answered yet.
+    asked: Option<Asked>,
+    held: Held,
+    report: ProvisionReport,
+    restarted: bool,
+    /// Connections that were lost before it was written.
+    lost: usize,
+}
+
+#[derive(Debug)]
+enum Phase {
+    /// These questions are left; `written` when everything was.
+    Look { left: VecDeque<Question>, written: bool },
+    /// The numbers of the wishes that are left.
+    Write { left: VecDeque<usize> },
+    /// It restarts.
+    Restart,
+    /// Through, or given up for this reason.
+    Done(Result<(), String>),
+}
+
+#[derive(Debug)]
+enum Asked {
+    Question(Question),
+    Wish(usize),
+    Save,
+}
+
+impl Provision {
+    /// Sets what these command lines say; with `may_write` unset they are only compared with what the flight controller
+    /// holds. Comments, `save` and batches are passed over.
+    #[must_use]
+    pub fn new<L: AsRef<str>>(lines: impl IntoIterator<Item = L>, may_write: bool) -> Self {
+        let wishes = wish::wishes(lines);
+        let left = held::questions(&wishes);
+        Self {
+            wishes,
+            may_write,
+            phase: Phase::Look { left, written: false },
+            asked: None,
+            held: Held::default(),
+            report: ProvisionReport::default(),
+            restarted: false,
+            lost: 0,
+        }
+    }
+
+    /// What to ask next; `None` while an answer or a restart is awaited, and at the end.
+    fn next(&mut self) -> Option<Ask> {
+        if self.asked.is_some() {
+            return None;
+        }
+        loop {
+            let asked = match &mut self.phase {
+                Phase::Restart | Phase::Done(_) => return None,
+                Phase::Look { left, .. } => left.pop_front().map(Asked::Question),
+                Phase::Write { left } => Some(left.pop_front().map_or(Asked::Save, Asked::Wish)),
+            };
+            match asked {
+                Some(asked) => {
+                    let line = self.line_of(&asked);
+                    self.asked = Some(asked);
+                    return Some(Ask::Line(line));
+                }
+                None => self.conclude(),
+            }
+        }
+    }
+
+    /// Takes the answer to what was asked last.
+    fn take(&mut self, answer: &Answer) {
+        let Some(asked) = self.asked.take() else { return };
+        if let (Answer::NotAnswered(Unanswered::LinkLost), true) = (answer, self.lost < MOST_LOST) {
+            self.lost += 1;
+            return self.begin();
+        }
+        let Answer::Line { text, failed, restarted } = answer else {
+            let why = match answer {
+                Answer::NotAnswered(why) => why.to_string(),
+                _ => "the flight controller gave another answer than that to a line".to_owned(),
+            };
+            self.phase = Phase::Done(Err(format!("`{}` was not answered: {why}", self.line_of(&asked))));
+            return;
+        };
+        match asked {
+            Asked::Question(question) => self.held.learn(question, text, *failed),
+            Asked::Wish(at) if *failed => self.refused(at, text),
+            Asked::Wish(_) => self.report.written += 1,
+            Asked::Save if *failed => {
+                self.report.refused.push(RefusedLine::new(SAVE, text));
+                self.phase = Phase::Done(Ok(()));
+            }
+            Asked::Save if *restarted => {
+                self.restarted = true;
+                self.phase = Phase::Restart;
+            }
+            Asked::Save => self.look_again(),
+        }
+    }
+
+    /// The flight controller has restarted and answers again.
+    fn reconnected(&mut self) {
+        if let Phase::Restart = self.phase {
+            self.look_again();
+        }
+    }
+
+    /// What became of it, at the end; or why it was given up, as a part of a sentence.
+    fn result(&self) -> Option<Result<&ProvisionReport, &str>> {
+        match &self.phase {
+            Phase::Done(Ok(())) => Some(Ok(&self.report)),
+            Phase::Done(Err(why)) => Some(Err(why)),
+            Phase::Look { .. } | Phase::Write { .. } | Phase::Restart => None,
+        }
+    }
+
+    /// Whether something was written and no restart followed, so that what was known of the flight controller is old.
+    fn is_changed_without_restart(&self) -> bool {
+        self.report.written > 0 && !self.restarted
+    }
+
+    fn line_of(&self, asked: &Asked) -> String {
+        match asked {
+            Asked::Question(question) => question.line(),
+            Asked::Wish(at) => self.wishes.get(*at).map_or_else(String::new, |wish| wish.line().to_owned()),
+            Asked::Save => SAVE.to_owned(),
+        }
+    }
+
+    fn refused(&mut self, at: usize, text: &str) {
+        match &self.wishes[at] {
+            Wish::Setting { name, .. } if text.contains(UNKNOWN_NAME) => self.held.is_unknown(name),
+            wish => self.report.refused.push(RefusedLine::new(wish.line(), text)),
+        }
+    }
+
+    /// From the beginning: what was written and not saved is gone.
+    fn begin(&mut self) {
+        self.report = ProvisionReport::default();
+        self.phase = Phase::Look { left: held::questions(&self.wishes), written: false };
+    }
+
+    fn look_again(&mut self) {
+        self.phase = Phase::Look { left: held::questions(&self.wishes), written: true };
+    }
+
+    /// Everything was looked at.
+    fn conclude(&mut self) {
+        self.report.unknown = self.held.unknown(&self.wishes);
+        self.report.differences = self.held.differences(&self.wishes);
+        let Phase::Look { written, .. } = self.phase else { return };
+        let must_write = !self.report.differences.is_empty() || self.wishes.iter().any(Wish::cannot_be_read);
+        self.phase = if written || !must_write || !self.may_write {
+            Phase::Done(Ok(()))
+        } else {
+            let known = |at: &usize| !self.held.has_not(&self.wishes[*at]);
+            Phase::Write { left: (0..self.wishes.len()).filter(known).collect() }
+        };
+        self.report.may_not_write = !written && must_write && !self.may_write;
+    }
+}
+
+impl RemoteLink {
+    /// Sets the flight controller once it is known, before it counts as ready.
+    pub fn provision(&mut self, provision: Provision) {
+        self.provision = Some(provision);
+    }
+
+    /// It is known and set: from now on it is asked how it is.
+    pub(super) fn become_ready(&mut self) {
+        self.state = RemoteState::Ready;
+        self.self_check = SelfCheck::default();
+        self.schedule.refresh();
+        self.notices.push(RemoteNotice::Told(self.observer.introduction(&self.ends.name)));
+    }
+
+    /// It is known what it is, perhaps after a restart.
+    pub(super) fn go_on_with_provision(&mut self) {
+        if let Some(provision) = &mut self.provision {
+            provision.reconnected();
+        }
+        self.end_provision();
+    }
+
+    pub(super) fn ask_to_provision(&mut self) -> Option<Ask> {
+        let ask = self.provision.as_mut()?.next();
+        self.end_provision();
+        ask
+    }
+
+    pub(super) fn take_provision_answer(&mut self, answer: &Answer) {
+        if let Some(provision) = &mut self.provision {
+            provision.take(answer);
+        }
+        self.end_provision();
+    }
+
+    /// Tells what came of it, once it is over.
+    fn end_provision(&mut self) {
+        let Some(provision) = self.provision.take_if(|provision| provision.result().is_some()) else {
+            return;
+        };
+        match provision.result() {
+            Some(Ok(report)) if report.is_as_wanted() => {
+                self.notices.extend(report.sentences().into_iter().map(RemoteNotice::Told));
+            }
+            Some(Ok(report)) => self.notices.extend(report.sentences().into_iter().map(RemoteNotice::Lost)),
+            Some(Err(why)) => {
+                self.notices.push(RemoteNotice::Lost(format!("The firmware could not be set: {why}.")));
+            }
+            None => {}
+        }
+        if provision.is_changed_without_restart() {
+            self.identification = Identification::default();
+        } else {
+            self.become_ready();
+        }
+    }
+}

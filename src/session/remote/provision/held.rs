@@ -1,0 +1,155 @@
+//! What a flight controller holds, as far as it was asked, compared with what is wanted.
+
+use std::collections::{BTreeMap, VecDeque};
+
+use super::report::Difference;
+use super::wish::{self, Wish};
+use crate::link::proto::fc_client::telemetry::setting;
+use crate::plan::FlightPlan;
+use crate::plan::format::{self, Format};
+
+/// What is asked to look.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Question {
+    Setting(String),
+    Aux,
+    Plan,
+}
+
+impl Question {
+    pub(super) fn line(&self) -> String {
+        match self {
+            Self::Setting(name) => format!("get {name}"),
+            Self::Aux => "aux".to_owned(),
+            Self::Plan => "waypoint list".to_owned(),
+        }
+    }
+}
+
+/// The questions that tell whether wishes are fulfilled, each once.
+pub(super) fn questions(wishes: &[Wish]) -> VecDeque<Question> {
+    let mut questions = VecDeque::new();
+    for wish in wishes {
+        let question = match wish {
+            Wish::Setting { name, .. } => Question::Setting(name.clone()),
+            Wish::Aux { .. } => Question::Aux,
+            Wish::Plan { .. } => Question::Plan,
+            Wish::Other { .. } => continue,
+        };
+        if !questions.contains(&question) {
+            questions.push_back(question);
+        }
+    }
+    questions
+}
+
+/// What was learnt.
+#[derive(Debug, Default)]
+pub(super) struct Held {
+    /// `None` for a setting that the firmware does not have.
+    settings: BTreeMap<String, Option<String>>,
+    aux: Vec<Vec<u16>>,
+    plan: Option<FlightPlan>,
+}
+
+impl Held {
+    pub(super) fn learn(&mut self, question: Question, output: &str, failed: bool) {
+        match question {
+            Question::Setting(name) => {
+                let value = setting(output, &name).filter(|_| !failed).map(str::to_owned);
+                self.settings.insert(name, value);
+            }
+            Question::Aux => {
+                let rows = output.lines().filter_map(|line| line.trim().strip_prefix("aux "));
+                self.aux = rows.filter_map(wish::aux_row).collect();
+            }
+            // Some releases print nothing when there is no plan.
+            Question::Plan if failed => self.plan = None,
+            Question::Plan if output.trim().is_empty() => self.plan = Some(FlightPlan::default()),
+            Question::Plan => {
+                self.plan = format::parse("the craft", output, Format::CliText).ok().map(|file| file.plan);
+            }
+        }
+    }
+
+    /// A line showed that the firmware does not have this setting.
+    pub(super) fn is_unknown(&mut self, name: &str) {
+        self.settings.insert(name.to_owned(), None);
+    }
+
+    /// Whether a wish is a setting that the firmware does not have.
+    pub(super) fn has_not(&self, wish: &Wish) -> bool {
+        matches!(wish, Wish::Setting { name, .. } if self.settings.get(name) == Some(&None))
+    }
+
+    /// The settings among the wishes that the firmware does not have.
+    pub(super) fn unknown(&self, wishes: &[Wish]) -> Vec<String> {
+        let mut names = Vec::new();
+        for wish in wishes.iter().filter(|wish| self.has_not(wish)) {
+            if let Wish::Setting { name, .. } = wish
+                && !names.contains(name)
+            {
+                names.push(name.clone());
+            }
+        }
+        names
+    }
+
+    /// Where what is held is not what is wanted; of two wishes for the same the last counts.
+    pub(super) fn differences(&self, wishes: &[Wish]) -> Vec<Difference> {
+        let mut differences: Vec<Difference> = Vec::new();
+        for (at, wish) in wishes.iter().enumerate() {
+            let is_overruled = wishes[at + 1..].iter().any(|later| replaces(later, wish));
+            if is_overruled || self.has_not(wish) {
+                continue;
+            }
+            let held = match wish {
+                Wish::Setting { name, value, .. } => {
+                    let held = self.settings.get(name).cloned().flatten().unwrap_or_default();
+                    (!same_value(&held, value)).then_some(held)
+                }
+                Wish::Aux { row, .. } => {
+                    let held = self.aux.iter().find(|held| held.first() == row.first());
+                    let is_same =
+                        held.is_some_and(|held| std::iter::zip(held, row).all(|(held, row)| held == row));
+                    (!is_same).then(|| held.map(|row| spaced(row)).unwrap_or_default())
+                }
+                Wish::Plan { .. } | Wish::Other { .. } => None,
+            };
+            differences.extend(held.map(|held| Difference { line: wish.line().to_owned(), held }));
+        }
+        if let Some(wanted) = wish::plan(wishes)
+            && self.plan.as_ref() != Some(&wanted)
+        {
+            let held = match &self.plan {
+                None => "none that can be read".to_owned(),
+                Some(held) if held.waypoints.is_empty() => "no plan".to_owned(),
+                Some(held) => format!("another one of {} waypoints", held.waypoints.len()),
+            };
+            differences.push(Difference { line: "waypoint list".to_owned(), held });
+        }
+        differences
+    }
+}
+
+/// Whether a wish is for the same as an earlier one.
+fn replaces(later: &Wish, earlier: &Wish) -> bool {
+    match (later, earlier) {
+        (Wish::Setting { name, .. }, Wish::Setting { name: of, .. }) => name == of,
+        (Wish::Aux { row, .. }, Wish::Aux { row: of, .. }) => row.first() == of.first(),
+        _ => false,
+    }
+}
+
+/// Whether two texts are the same value: `on` is `ON`, `05` is `5`.
+fn same_value(one: &str, other: &str) -> bool {
+    match (one.parse::<i64>(), other.parse::<i64>()) {
+        (Ok(one), Ok(other)) => one == other,
+        _ => one.eq_ignore_ascii_case(other),
+    }
+}
+
+fn spaced(row: &[u16]) -> String {
+    let numbers: Vec<String> = row.iter().map(ToString::to_string).collect();
+    format!("aux {}", numbers.join(" "))
+}
