@@ -4,7 +4,7 @@
 
 use nalgebra::Vector2;
 
-use crate::geo::LatLon;
+use crate::geo::{GRAVITY, LatLon};
 use crate::plan::FlightPlan;
 use crate::signals::{RC_CHANNELS, RcSource, SimTime};
 use crate::telemetry::{
@@ -254,6 +254,14 @@ pub struct SettingsView {
     pub raised_stick_us: u16,
     /// The throttle stick that brings the craft down gently in ALTHOLD, µs; `None` when no stick does.
     pub sink_stick_us: Option<u16>,
+}
+
+impl SettingsView {
+    /// Radius of a coordinated turn at this speed, m: R = V² / (g·tan θ) with the greatest lean.
+    #[must_use]
+    pub fn turn_radius_m(&self, speed_mps: f64) -> f64 {
+        speed_mps * speed_mps / (GRAVITY * self.max_angle_deg.to_radians().tan()).max(0.1)
+    }
 }
 
 /// The air and what is wrong with the craft.

@@ -90,7 +90,12 @@ impl Run {
         match self.target.kind {
             WaypointType::Flyover | WaypointType::Flyby => {
                 let (distance_m, at) = closest.get()?;
-                let turn = guard.filter(|_| reason == TransitionReason::TurnRadius).map(|guard| guard.limit);
+                let turn = match (self.target.kind, guard) {
+                    (_, Some(guard)) => (reason == TransitionReason::TurnRadius).then_some(guard.limit),
+                    // A remote firmware does not tell where it began the turn: as late as the speed allowed.
+                    (WaypointType::Flyby, None) => Some(self.settings.turn_radius_m(craft.speed_mps)),
+                    (_, None) => None,
+                };
                 let (miss_m, radius_m) = match turn {
                     Some(turn_radius_m) => ((distance_m - turn_radius_m).max(0.0), 0.0),
                     None => (distance_m, self.settings.arrival_radius_m),

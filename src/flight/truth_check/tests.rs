@@ -96,6 +96,18 @@ fn a_flyover_is_measured_at_its_closest_and_a_flyby_from_its_turn_radius() {
 }
 
 #[test]
+fn a_flyby_of_a_firmware_that_tells_no_turn_radius_is_measured_from_that_of_its_speed() {
+    let mut bench = Bench::new(WaypointType::Flyby);
+    bench.enter(NavState::Approaching, TransitionReason::Reset, None);
+    for north_m in [-30.0, -7.0] {
+        bench.fly_to(north_m);
+    }
+    bench.enter(NavState::Arrived, TransitionReason::Arrival, None);
+    let truth = bench.waypoints()[0];
+    assert!(truth.miss_m <= 7.0 && truth.radius_m == 0.0, "{truth:?}");
+}
+
+#[test]
 fn a_waypoint_that_is_left_by_a_command_does_not_count() {
     let mut bench = Bench::new(WaypointType::Hold);
     bench.enter(NavState::Approaching, TransitionReason::Reset, None);

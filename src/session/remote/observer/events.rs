@@ -17,6 +17,8 @@ pub(super) struct EventObserver {
     rc_link: Option<bool>,
     state: NavState,
     wp: u8,
+    /// The mission was completed by a landing.
+    landed: bool,
     last_disarm: Option<DisarmReason>,
 }
 
@@ -40,6 +42,7 @@ impl EventObserver {
         {
             if armed {
                 self.last_disarm = None;
+                self.landed = false;
                 events.push(FirmwareEvent::Armed);
             } else {
                 self.disarm(craft, plan, &mut events);
@@ -83,6 +86,7 @@ impl EventObserver {
                 self.enter(NavState::Complete, self.wp, TransitionReason::Touchdown, plan, events);
                 DisarmReason::Landing
             }
+            NavState::Complete if self.landed => DisarmReason::Landing,
             state => {
                 if !matches!(state, NavState::Idle | NavState::Complete) {
                     self.enter(NavState::Idle, self.wp, TransitionReason::Disarm, plan, events);
@@ -118,6 +122,7 @@ impl EventObserver {
         }
         if nav.state != self.state {
             let reason = match nav.state {
+                NavState::Complete if self.state == NavState::Landing => TransitionReason::Touchdown,
                 NavState::Idle => nav.reason.unwrap_or(TransitionReason::Disengage),
                 NavState::Approaching | NavState::Complete => TransitionReason::Advance,
                 NavState::Arrived => TransitionReason::Arrival,
@@ -148,6 +153,7 @@ impl EventObserver {
             target: waypoint.map_or_else(LatLon::default, |waypoint| waypoint.position),
             target_alt_m: waypoint.map_or(0.0, |waypoint| f64::from(waypoint.alt_cm) / 100.0),
         }));
+        self.landed = self.state == NavState::Landing && to == NavState::Complete;
         (self.state, self.wp) = (to, wp);
     }
 }
@@ -228,6 +234,14 @@ mod tests {
         assert_eq!(words, expected);
         let nav = observer.completed(NavTelemetry::default());
         assert_eq!((nav.state, nav.wp), (Complete, 3));
+        assert_eq!(observer.last_disarm(), Some(DisarmReason::Landing));
+    }
+
+    #[test]
+    fn a_firmware_that_tells_of_its_touchdown_before_it_disarms_has_landed_too() {
+        use NavState::{Complete, Landing};
+        let (words, observer) = told(&[(true, Landing, 3), (true, Complete, 3), (false, Complete, 3)]);
+        assert_eq!(words[words.len() - 2..], ["LANDING COMPLETE 3 touchdown", "disarmed LANDING"]);
         assert_eq!(observer.last_disarm(), Some(DisarmReason::Landing));
     }
 

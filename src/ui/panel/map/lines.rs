@@ -3,9 +3,9 @@
 use ratatui::style::Color;
 use ratatui::widgets::canvas::{Context, Line as CanvasLine};
 
-use crate::geo::GRAVITY;
 use crate::plan::{HoldPattern, Waypoint, WaypointType};
 use crate::telemetry::NavTelemetry;
+use crate::telemetry::snapshot::SettingsView;
 use crate::ui::app_state::AppState;
 use crate::ui::forecast;
 use crate::ui::map_edit::{self, MapItem, Moving};
@@ -183,7 +183,7 @@ fn figure(
             let previous = at.checked_sub(1).map_or(scene.home, |before| scene.spots[before].place);
             match scene.spots.get(at + 1) {
                 Some(next) => {
-                    let radius = turn_radius(&spot.wp, settings.max_velocity_mps, settings.max_angle_deg);
+                    let radius = turn_radius(&spot.wp, settings);
                     cut_corner(previous, spot.place, next.place, radius, painter);
                 }
                 None => painter.circle(spot.place, settings.arrival_radius_m, false),
@@ -194,13 +194,12 @@ fn figure(
     }
 }
 
-/// Radius of a coordinated turn at the speed of the leg, m: R = V² / (g·tan θ).
-fn turn_radius(wp: &Waypoint, max_velocity_mps: f64, max_angle_deg: f64) -> f64 {
-    let speed = match wp.speed_cms {
-        0 => max_velocity_mps,
+/// Radius of the turn at the speed of the leg, m.
+fn turn_radius(wp: &Waypoint, settings: &SettingsView) -> f64 {
+    settings.turn_radius_m(match wp.speed_cms {
+        0 => settings.max_velocity_mps,
         cms => f64::from(cms) / 100.0,
-    };
-    speed * speed / (GRAVITY * max_angle_deg.to_radians().tan()).max(0.1)
+    })
 }
 
 /// The curve that leaves one leg and joins the next at `radius` from the corner.
@@ -233,6 +232,8 @@ mod tests {
     #[test]
     fn the_turn_radius_is_that_of_a_coordinated_turn() {
         let wp = Waypoint { speed_cms: 500, ..Waypoint::default() };
-        assert!((turn_radius(&wp, 10.0, 25.0) - 5.47).abs() < 0.01);
+        let settings =
+            SettingsView { max_velocity_mps: 10.0, max_angle_deg: 25.0, ..SettingsView::default() };
+        assert!((turn_radius(&wp, &settings) - 5.47).abs() < 0.01);
     }
 }
