@@ -4,6 +4,8 @@
 mod check;
 mod cli;
 #[cfg(unix)]
+mod connect;
+#[cfg(unix)]
 mod docs;
 #[cfg(unix)]
 mod editor;

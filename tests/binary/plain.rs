@@ -13,14 +13,14 @@ const PLAIN: [&str; 4] = ["--plain", "--fresh", "--no-ports", "--speed=max"];
 const NEVER: Duration = Duration::from_secs(60);
 
 /// A running program that is spoken with; killed when dropped.
-struct Dialogue {
+pub(crate) struct Dialogue {
     child: Child,
     input: ChildStdin,
     output: Receiver<String>,
 }
 
 impl Dialogue {
-    fn start(sandbox: &Sandbox, arguments: &[&str]) -> Self {
+    pub(crate) fn start(sandbox: &Sandbox, arguments: &[&str]) -> Self {
         let mut command = sandbox.command(arguments);
         let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().expect("it runs");
         let lines = BufReader::new(child.stdout.take().expect("its output")).lines();
@@ -35,13 +35,13 @@ impl Dialogue {
         Self { input: child.stdin.take().expect("its input"), child, output }
     }
 
-    fn say(&mut self, line: &str) {
+    pub(crate) fn say(&mut self, line: &str) {
         writeln!(self.input, "{line}").expect("it listens");
     }
 
     /// Waits for a line with this text; gives what was written up to it.
     #[track_caller]
-    fn hear(&mut self, text: &str) -> Vec<String> {
+    pub(crate) fn hear(&mut self, text: &str) -> Vec<String> {
         let mut heard = Vec::new();
         loop {
             let line = self.output.recv_timeout(NEVER);
@@ -54,7 +54,7 @@ impl Dialogue {
         }
     }
 
-    fn end(mut self) -> Option<i32> {
+    pub(crate) fn end(mut self) -> Option<i32> {
         self.child.wait().expect("an exit status").code()
     }
 }

@@ -21,7 +21,8 @@ const ANY: &[u8] = b"\r\n\x03\x04\x11\x13\x1a\x7f\x00\xff$M<";
 
 #[tokio::test]
 async fn every_byte_goes_through_unchanged_and_a_cable_that_was_pulled_comes_back() {
-    let mut cable = Cable::plugged_in();
+    let mut cable = Cable::unplugged();
+    cable.plug_in();
     let place = format!("serial:{},57600", cable.device().display());
     let mut stream = open(&place);
     assert_eq!((stream.place.as_str(), stream.bytes_per_s), (place.as_str(), Some(5760)));

@@ -16,11 +16,9 @@ pub(crate) struct Cable {
 }
 
 impl Cable {
-    /// A cable that is plugged in.
-    pub(crate) fn plugged_in() -> Self {
-        let mut cable = Self { directory: tempfile::tempdir().unwrap(), far_end: None };
-        cable.plug_in();
-        cable
+    /// A cable that is not plugged in.
+    pub(crate) fn unplugged() -> Self {
+        Self { directory: tempfile::tempdir().expect("a directory"), far_end: None }
     }
 
     /// The device file.
@@ -30,18 +28,22 @@ impl Cable {
 
     /// Plugs the cable in: the device is there.
     pub(crate) fn plug_in(&mut self) {
-        let far_end = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC).unwrap();
-        grantpt(&far_end).unwrap();
-        unlockpt(&far_end).unwrap();
-        let name = ptsname(&far_end, Vec::new()).unwrap().into_string().unwrap();
-        fcntl_setfl(&far_end, OFlags::NONBLOCK).unwrap();
-        std::os::unix::fs::symlink(name, self.device()).unwrap();
+        let far_end = openpt(OpenptFlags::RDWR | OpenptFlags::NOCTTY | OpenptFlags::CLOEXEC)
+            .expect("a pseudo-terminal");
+        grantpt(&far_end).expect("a pseudo-terminal");
+        unlockpt(&far_end).expect("a pseudo-terminal");
+        let name = ptsname(&far_end, Vec::new())
+            .expect("a pseudo-terminal")
+            .into_string()
+            .expect("a pseudo-terminal");
+        fcntl_setfl(&far_end, OFlags::NONBLOCK).expect("a pseudo-terminal");
+        std::os::unix::fs::symlink(name, self.device()).expect("a pseudo-terminal");
         self.far_end = Some(far_end.into());
     }
 
     /// Pulls the cable: the device is gone, and whoever has it open notices.
     pub(crate) fn pull(&mut self) {
-        std::fs::remove_file(self.device()).unwrap();
+        std::fs::remove_file(self.device()).expect("a pseudo-terminal");
         self.far_end = None;
     }
 

@@ -87,3 +87,84 @@ pub(super) fn refuse_request(request: Request, access: Access) -> Result<Request
 fn answer<T>(reply: oneshot::Sender<T>, value: T) {
     drop(reply.send(value));
 }
+
+#[cfg(test)]
+mod tests {
+    use std::time::Instant;
+
+    use super::*;
+    use crate::link::ClientId;
+    use crate::link::proto::command_line::LineSource;
+    use crate::plan::FlightPlan;
+    use crate::signals::RcFrame;
+    use crate::telemetry::InFlightCommand;
+
+    const MOVES: Impact = Impact::Forbidden(NOTHING_MOVES);
+    const SIMULATED: Impact = Impact::Forbidden(NOTHING_SIMULATED);
+
+    #[test]
+    fn commands_of_the_interface_are_held_to_the_rule_too() {
+        fn channel<T>() -> oneshot::Sender<T> {
+            oneshot::channel().0
+        }
+        let line = |line: &str| Command::Cli { line: line.to_owned(), reply: channel() };
+        for (command, impact) in [
+            (line("get"), Impact::Reads),
+            (line("save"), Impact::Changes),
+            (line("motor 1 1500"), MOVES),
+            (
+                Command::Upload {
+                    plan: Box::new(FlightPlan::default()),
+                    settings: Vec::new(),
+                    reply: channel(),
+                },
+                Impact::Changes,
+            ),
+            (Command::Save { reply: channel() }, Impact::Changes),
+            (Command::Download { reply: channel() }, Impact::Reads),
+            (Command::Sticks(RcFrame::SAFE), MOVES),
+            (Command::CutRc(true), MOVES),
+            (Command::Pilot(true), MOVES),
+            (Command::ReturnHome, MOVES),
+            (Command::CancelReturn, MOVES),
+            (Command::InFlight(InFlightCommand::HoldHere), MOVES),
+            (Command::ResetCraft, SIMULATED),
+            (Command::World { line: "wind=5@270".to_owned(), reply: channel() }, SIMULATED),
+            (Command::PermitChanges(1), Impact::Reads),
+            (Command::Quit, Impact::Reads),
+        ] {
+            assert_eq!(impact_of(&command), impact, "{command:?}");
+        }
+    }
+
+    #[test]
+    fn a_refused_client_is_answered() {
+        let client = ClientId(1);
+        let (reply, answer) = oneshot::channel();
+        let message = Request::Msp { client, code: 214, payload: vec![0; 8], reply };
+        assert_eq!(refuse_request(message, Access::Changing).unwrap_err(), Denial::Never(NOTHING_MOVES));
+        assert_eq!(answer.blocking_recv(), Ok(None));
+
+        let (reply, answer) = oneshot::channel();
+        let line = Request::Cli { client, line: "set a = 1".to_owned(), source: LineSource::Framed, reply };
+        assert_eq!(refuse_request(line, Access::Reading).unwrap_err(), Denial::NotPermitted);
+        let said = answer.blocking_recv().unwrap();
+        assert!(
+            said.refused && said.text.starts_with("###ERROR: Changes are not permitted"),
+            "{}",
+            said.text
+        );
+    }
+
+    #[test]
+    fn scripts_never_reach_a_real_craft_and_always_a_simulated_one() {
+        let from = "127.0.0.1:1".parse().unwrap();
+        let rc = || Request::Rc { stamp_s: 0.0, frame: RcFrame::SAFE, from, at: Instant::now() };
+        for access in [Access::Reading, Access::Changing] {
+            assert!(refuse_request(rc(), access).is_err());
+            let restart = Request::Restart { client: ClientId(1) };
+            assert_eq!(refuse_request(restart, access).is_ok(), access == Access::Changing);
+        }
+        assert!(refuse_request(rc(), Access::Everything).is_ok());
+    }
+}
