@@ -9,12 +9,17 @@ use crate::plan::builtin::{BuiltinPlan, DEMO};
 /// A row of `aux` that binds no switch ends like this.
 const UNUSED: &str = "900 900 0 0";
 
+/// Without a trusted compass a craft that has not flown forward yet has no heading, and a SITL computes a magnetic field that
+/// points 2° east.
+const COMPASS: [&str; 2] = ["set trust_mag = ON", "set mag_declination = 20"];
+
 /// The command lines for a firmware: those of the user, and before them, for one without a configuration of its own, the
-/// guide's settings and, unless the user's lines bind switches, the starter modes.
+/// guide's settings, a compass and, unless the user's lines bind switches, the starter modes.
 pub(super) fn lines(settings: &[String], is_fresh: bool) -> Result<Vec<String>, AppError> {
     let mut lines = Vec::new();
     if is_fresh {
         lines.extend(guide_settings()?);
+        lines.extend(COMPASS.map(str::to_owned));
         if !settings.iter().any(|line| line.trim_start().starts_with("aux ")) {
             lines.extend(starter_modes());
         }
@@ -49,6 +54,7 @@ mod tests {
         assert_eq!(lines(&of_user, false).expect("lines"), of_user);
         let fresh = lines(&of_user, true).expect("lines");
         assert_eq!(fresh.iter().filter(|line| line.starts_with("set ap_")).count(), 25);
+        assert!(fresh.contains(&"set trust_mag = ON".to_owned()), "{fresh:?}");
         let aux: Vec<&str> =
             fresh.iter().map(String::as_str).filter(|line| line.starts_with("aux")).collect();
         assert_eq!(
