@@ -12,7 +12,7 @@ use crate::args::{OutputFile, ServeArgs};
 use crate::plan::format::PlanFile;
 use crate::printable;
 use crate::record::{json, sentence};
-use crate::session::{Command, Event, Handle, RemoteNotice, SessionEvent};
+use crate::session::{Command, Event, Handle};
 
 /// Serves until a signal ends it; every event is a line of output.
 pub(super) fn run(args: &ServeArgs) -> Result<u8, AppError> {
@@ -55,7 +55,7 @@ pub(super) fn run(args: &ServeArgs) -> Result<u8, AppError> {
     })
 }
 
-/// Writes events until a signal arrives, the output is gone or the firmware outside is of no use.
+/// Writes events until a signal arrives, the output is gone.
 async fn report(
     mut session: Handle,
     output: &mut Output,
@@ -70,10 +70,6 @@ async fn report(
                 Some(event) => {
                     if let Err(problem) = output.event(&event) {
                         break problem;
-                    }
-                    // Nobody is here to choose another firmware.
-                    if let SessionEvent::Remote(RemoteNotice::Failed(reason)) = event.kind {
-                        break Err(AppError::environment(reason));
                     }
                 }
             },
