@@ -2,7 +2,7 @@
 
 use std::io;
 use std::net::{IpAddr, SocketAddr, UdpSocket};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use super::endpoint_stats::EndpointStats;
 use super::proto::rc;
@@ -15,6 +15,8 @@ use crate::telemetry::{EndpointKind, EndpointState, EndpointStatus};
 const BUFFER: usize = 128;
 /// Most packets that are taken from a socket in one go.
 const QUEUED_MAX: usize = 4096;
+/// After its first motor packet an executable is certainly ready.
+const BOOT: Duration = Duration::from_millis(500);
 
 /// Where a SITL executable listens, and where it sends to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,14 +54,16 @@ pub struct SitlPeer {
     fdm: SocketAddr,
     rc: SocketAddr,
     started: Instant,
-    /// It is up: states that come while it boots may crash it.
+    /// It is up: states that come while it boots may crash it, or leave it deaf.
     is_up: bool,
+    /// When its first motor packet came, which it sends shortly before it is ready.
+    boots_since: Option<Instant>,
     stats: EndpointStats,
 }
 
 impl SitlPeer {
-    /// Sockets for an executable; `is_up` when it has started long ago, else its first motor packet tells that it has
-    /// booted, or [`Self::came_up`].
+    /// Sockets for an executable; `is_up` when it has started long ago, else [`Self::came_up`] tells that it has booted, or
+    /// its first motor packet of half a second ago.
     ///
     /// # Errors
     /// When a port for motors is not free.
@@ -77,6 +81,7 @@ impl SitlPeer {
             rc: SocketAddr::new(ports.ip, ports.rc),
             started: now,
             is_up,
+            boots_since: None,
             stats: EndpointStats::new(now),
         })
     }
@@ -96,19 +101,23 @@ impl SitlPeer {
         discard(&self.raw);
         self.feed.restart();
         self.is_up = false;
-        // What it sent before it ended must not pass for its boot.
-        for socket in [&self.motors, &self.raw] {
-            while socket.recv(&mut [0; BUFFER]).is_ok() {}
-        }
+        self.boots_since = None;
     }
 
     /// The executable has booted.
     pub fn came_up(&mut self) {
-        self.is_up = true;
+        if !self.is_up {
+            self.is_up = true;
+            // The motors of its boot answered nothing.
+            self.feed.restart();
+        }
     }
 
     /// Sends what the sensors measured. Without an executable it is lost.
     pub fn send_state(&mut self, frame: &SensorFrame, now: Instant) {
+        if self.boots_since.is_some_and(|since| now.saturating_duration_since(since) >= BOOT) {
+            self.came_up();
+        }
         self.feed.sense(frame);
         if self.is_up {
             let packet = self.feed.packet(self.micros(now));
@@ -142,7 +151,7 @@ impl SitlPeer {
             match self.feed.answered(&buffer[..size], now_us) {
                 Some(motors) => {
                     self.stats.packet(now);
-                    self.is_up = true;
+                    self.boots_since.get_or_insert(now);
                     newest = Some(motors);
                 }
                 None => self.stats.wrong_size(),

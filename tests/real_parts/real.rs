@@ -80,6 +80,7 @@ impl Executable {
         };
         tcp.set_read_timeout(Some(PATIENCE)).unwrap();
         self.tcp = Some(tcp);
+        self.peer.came_up();
     }
 
     /// It is about to end: waits for the next boot.

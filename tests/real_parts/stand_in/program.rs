@@ -10,6 +10,8 @@ use super::cli::Memory;
 use super::receiver::{BOOT_US, Receiver, Seen, Taken};
 use super::serial::Serial;
 
+/// Its first motor packet goes out shortly before it is ready, µs.
+const BOOT_PACKET_US: u64 = BOOT_US - 10_000;
 /// The mixer's period and the serial port's, µs.
 const MIXER_US: u64 = 1000;
 const SERIAL_US: u64 = 10_000;
@@ -145,7 +147,7 @@ impl Life<'_> {
     }
 
     fn run(&mut self, shared: &Shared) -> End {
-        let mut booted = false;
+        let (mut sent, mut booted) = (false, false);
         while !shared.stop.load(Ordering::Relaxed) {
             if shared.hangs.load(Ordering::Relaxed) {
                 std::thread::sleep(WAIT);
@@ -155,6 +157,9 @@ impl Life<'_> {
             let now = self.wall_us();
             *shared.seen.lock().unwrap() = self.receiver.seen;
             *shared.clock_error_us.lock().unwrap() = self.receiver.clock_us(now) - now as f64;
+            if now >= BOOT_PACKET_US && !std::mem::replace(&mut sent, true) {
+                self.sockets.send_motors(true);
+            }
             if now < BOOT_US {
                 if self.receiver.seen.before_boot > 0 {
                     return End::EarlyState;
@@ -162,11 +167,8 @@ impl Life<'_> {
                 std::thread::sleep(WAIT);
                 continue;
             }
-            if !std::mem::replace(&mut booted, true) {
-                self.sockets.send_motors(true);
-                if self.sockets.tcp.is_none() {
-                    self.sockets.listen().unwrap();
-                }
+            if !std::mem::replace(&mut booted, true) && self.sockets.tcp.is_none() {
+                self.sockets.listen().unwrap();
             }
             self.take_rc(now);
             if now >= self.mixer_at + MIXER_US {
