@@ -1,6 +1,6 @@
 //! Which firmware the options and the launcher's file name, checked before anything is started.
 
-mod configuration;
+pub(super) mod configuration;
 mod executable;
 pub(super) mod link;
 pub(super) mod run;
@@ -28,10 +28,20 @@ pub(super) struct RemoteFirmware {
     pub(super) ports: FirmwarePorts,
     /// How the packets to it are stamped.
     pub(super) stamps: Stamps,
-    /// The lines of `--settings`.
+    /// Command lines by which it is set: those of `--settings`, and what a flight adds.
     pub(super) settings: Vec<String>,
     /// A configuration that it had before may be changed without asking.
     pub(super) may_write: bool,
+}
+
+impl RemoteFirmware {
+    /// The same, set to a plan's settings before and to those of `--set` after the lines of its own.
+    pub(super) fn with_settings(&self, plan: &[String], set: &[String]) -> Self {
+        let line = |setting: &String| format!("set {setting}");
+        let own = self.settings.iter().cloned();
+        let settings = plan.iter().map(line).chain(own).chain(set.iter().map(line)).collect();
+        Self { settings, ..self.clone() }
+    }
 }
 
 /// How a firmware outside is reached, and how its packets are read.

@@ -36,7 +36,8 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, AppError> {
         flight: &args.flight,
         physics: &PhysicsArgs::default(),
     };
-    let firmware = firmware::choose(&args.firmware, beside, &mut notices)?;
+    let firmware = firmware::choose(&args.firmware, beside, &mut notices)?
+        .map(|firmware| firmware.with_settings(&plan.settings, &args.set));
     notices.extend(args.firmware_ports.idle_options(firmware.is_some()));
     let mut store = open_store(args)?;
     let stored = setup::stored(&mut store, &mut notices);

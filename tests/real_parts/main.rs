@@ -12,6 +12,7 @@ mod checks;
 mod child;
 mod drop_in;
 mod feed;
+mod headless;
 mod lossy;
 #[allow(dead_code, reason = "shared with the tests of the doors")]
 #[path = "../doors/msp.rs"]

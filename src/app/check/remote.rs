@@ -53,9 +53,12 @@ fn fly(
     let mut setup = case.setup_in(air);
     setup.remote_controller = true;
     let plan = setup.plan.plan.clone();
+    let mut firmware = firmware.with_settings(&setup.plan.settings, &[]);
+    let of_case = setup.boot_lines.iter().flat_map(|lines| lines.text.lines());
+    firmware.settings.extend(of_case.map(str::to_owned));
     let mut vehicle = setup::build(setup, &mut Vec::new())?;
     let mut remote =
-        RemoteRun::start(firmware, &vehicle, None, 1.0, Arc::clone(interrupted), &mut Vec::new())?;
+        RemoteRun::start(&firmware, &vehicle, None, 1.0, Arc::clone(interrupted), &mut Vec::new())?;
     let mut quiet = |_: &Event| Ok(());
     remote.wait_until_ready(&mut vehicle, &mut quiet)?;
     remote.upload(&mut vehicle, &plan, &mut quiet)?;

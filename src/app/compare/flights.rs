@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use super::recorder::Recorder;
 use crate::app::error;
 use crate::app::firmware::RemoteFirmware;
+use crate::app::firmware::configuration::guide_settings;
 use crate::app::firmware::run::{RemoteRun, Seen, Stopped};
 use crate::app::interrupt::interrupt_flag;
 use crate::app::{AppError, setup};
@@ -29,6 +30,8 @@ pub(super) struct Flights {
     setup: FlightSetup,
     options: FlightOptions,
     route: Route,
+    /// Settings that come last.
+    set: Vec<String>,
     /// Times real time of a firmware outside.
     speed: f64,
     /// Where a firmware outside keeps its configuration; `None` = nowhere for long.
@@ -37,13 +40,21 @@ pub(super) struct Flights {
 }
 
 impl Flights {
-    /// Reads the plan and the settings; what the user should know is added to `notices`.
-    pub(super) fn new(args: &CompareArgs, notices: &mut Vec<String>) -> Result<Self, AppError> {
+    /// Reads the plan and the settings; what the user should know is added to `notices`. `beside_fresh` is whether a firmware
+    /// outside gets the guide's settings first: then the embedded one gets them, too.
+    pub(super) fn new(
+        args: &CompareArgs,
+        beside_fresh: bool,
+        notices: &mut Vec<String>,
+    ) -> Result<Self, AppError> {
         let plan = setup::read_plan(&args.plan)?;
         setup::refuse_unflyable(&plan)?;
         notices.extend(plan.notes.iter().map(ToString::to_string));
         let mut setup =
             setup::from_args(&args.flight, PhysicsSource::Embedded, plan.clone(), Configuration::default())?;
+        if beside_fresh {
+            setup.plan.settings = guide_settings()?.into_iter().chain(setup.plan.settings).collect();
+        }
         setup.boot_lines.push(BootLines::settings("--set", &args.set));
         let vehicle = setup::build(setup.clone(), notices)?;
         let frame = vehicle.local_frame().ok_or_else(|| AppError::internal("the craft is nowhere"))?;
@@ -58,6 +69,7 @@ impl Flights {
                 samples_hz: 0.0,
                 tolerance_m: args.tolerance_m(),
             },
+            set: args.set.clone(),
             speed: args.flight.speed.map_or(1.0, |Speed(speed)| speed),
             state: args.flight.state_dir.clone(),
             interrupted: interrupt_flag()?,
@@ -111,7 +123,8 @@ impl Flights {
         let mut vehicle = setup::build(setup, &mut Vec::new())?;
         let (state, speed) = (self.state.as_deref(), self.speed);
         let interrupted = Arc::clone(&self.interrupted);
-        let mut run = RemoteRun::start(firmware, &vehicle, state, speed, interrupted, &mut Vec::new())?;
+        let firmware = firmware.with_settings(&self.plan.settings, &self.set);
+        let mut run = RemoteRun::start(&firmware, &vehicle, state, speed, interrupted, &mut Vec::new())?;
         let mut tell = |event: &Event| {
             told(event);
             Ok(())

@@ -18,7 +18,7 @@ const COMPASS: [&str; 2] = ["set trust_mag = ON", "set mag_declination = 20"];
 pub(super) fn lines(settings: &[String], is_fresh: bool) -> Result<Vec<String>, AppError> {
     let mut lines = Vec::new();
     if is_fresh {
-        lines.extend(guide_settings()?);
+        lines.extend(guide_settings()?.into_iter().map(|setting| format!("set {setting}")));
         lines.extend(COMPASS.map(str::to_owned));
         if !settings.iter().any(|line| line.trim_start().starts_with("aux ")) {
             lines.extend(starter_modes());
@@ -29,10 +29,10 @@ pub(super) fn lines(settings: &[String], is_fresh: bool) -> Result<Vec<String>, 
 }
 
 /// Those of the plan that the guide flies.
-fn guide_settings() -> Result<impl Iterator<Item = String>, AppError> {
+pub(in crate::app) fn guide_settings() -> Result<Vec<String>, AppError> {
     let missing = || AppError::internal("the demo plan is missing");
     let plan = BuiltinPlan::find(DEMO).and_then(|plan| plan.read().ok()).ok_or_else(missing)?;
-    Ok(plan.settings.into_iter().map(|setting| format!("set {setting}")))
+    Ok(plan.settings)
 }
 
 /// The rows of `aux` that the embedded firmware gets at its first boot.
