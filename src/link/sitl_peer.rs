@@ -122,6 +122,7 @@ impl SitlPeer {
         if self.is_up {
             let packet = self.feed.packet(self.micros(now));
             self.send(&packet.to_bytes(), self.fdm);
+            self.feed.sent(self.micros(now));
         }
     }
 

@@ -17,7 +17,8 @@ const STAMP_S: f64 = 1.0;
 /// How long after its first answer the executable is shown the true home, s: the first position that it processes is
 /// the centre of the mirror.
 const AT_HOME_US: u64 = 200_000;
-/// Silence after which the motors stop, s.
+/// Silence after which the motors stop, µs. What counts is how long packets have gone without an answer: nobody answers
+/// while this program is held up and sends none.
 const SILENCE_US: u64 = 1_000_000;
 /// What stands for latitude and longitude without a fix, degrees: out of range, so that the executable skips the GPS.
 const NO_FIX_DEG: f64 = 999.0;
@@ -54,8 +55,10 @@ pub struct SitlFeed {
     alt_amsl_m: f64,
     /// The newest solution of the GPS, and when it was delivered.
     gps: Option<(GpsSample, SimTime)>,
-    /// When the first motor packet came, and the newest, µs of wall time.
-    answered_us: Option<(u64, u64)>,
+    /// When the first motor packet came, µs of wall time.
+    first_answer_us: Option<u64>,
+    /// Since when packets are without an answer, µs of wall time.
+    unanswered_us: Option<u64>,
 }
 
 impl SitlFeed {
@@ -63,7 +66,14 @@ impl SitlFeed {
     #[must_use]
     pub fn new(config: FeedConfig) -> Self {
         let (_, _, alt_amsl_m) = config.home;
-        Self { config, frame: SensorFrame::default(), alt_amsl_m, gps: None, answered_us: None }
+        Self {
+            config,
+            frame: SensorFrame::default(),
+            alt_amsl_m,
+            gps: None,
+            first_answer_us: None,
+            unanswered_us: None,
+        }
     }
 
     /// What its packets mean.
@@ -120,26 +130,33 @@ impl SitlFeed {
         })
     }
 
+    /// A packet was sent at `now_us` of wall time.
+    pub fn sent(&mut self, now_us: u64) {
+        self.unanswered_us.get_or_insert(now_us);
+    }
+
     /// The motor command of a packet that came at `now_us` of wall time; `None` when it is none.
     pub fn answered(&mut self, datagram: &[u8], now_us: u64) -> Option<MotorCommand> {
         let values = self.config.motor_order.in_native_order(servo::decode(datagram)?);
-        let (first_us, _) = self.answered_us.unwrap_or((now_us, now_us));
-        self.answered_us = Some((first_us, now_us));
+        self.first_answer_us.get_or_insert(now_us);
+        self.unanswered_us = None;
         Some(MotorCommand(values.map(|value| f64::from(value).clamp(0.0, 1.0))))
     }
 
     /// Whether it answers.
     #[must_use]
     pub fn state(&self, now_us: u64) -> FeedState {
-        match self.answered_us {
-            None => FeedState::Waiting,
-            Some((_, last_us)) if now_us.saturating_sub(last_us) >= SILENCE_US => FeedState::Silent,
-            Some(_) => FeedState::Answering,
+        let is_silent =
+            self.unanswered_us.is_some_and(|since_us| now_us.saturating_sub(since_us) >= SILENCE_US);
+        match (self.first_answer_us, is_silent) {
+            (None, _) => FeedState::Waiting,
+            (Some(_), true) => FeedState::Silent,
+            (Some(_), false) => FeedState::Answering,
         }
     }
 
     fn is_at_home(&self, now_us: u64) -> bool {
-        self.answered_us.is_none_or(|(first_us, _)| now_us.saturating_sub(first_us) < AT_HOME_US)
+        self.first_answer_us.is_none_or(|first_us| now_us.saturating_sub(first_us) < AT_HOME_US)
     }
 
     fn at_home(&self) -> Position {
@@ -276,7 +293,23 @@ mod tests {
         let mut feed = feed(Dialect::SitlGz);
         assert_eq!(feed.state(5000 * MS), FeedState::Waiting);
         motors(&mut feed, 5000);
-        assert_eq!(feed.state(5999 * MS), FeedState::Answering);
-        assert_eq!(feed.state(6000 * MS), FeedState::Silent);
+        for ms in 5001..5900 {
+            feed.sent(ms * MS);
+        }
+        assert_eq!(feed.state(6000 * MS), FeedState::Answering);
+        assert_eq!(feed.state(6001 * MS), FeedState::Silent);
+        motors(&mut feed, 6002);
+        assert_eq!(feed.state(6002 * MS), FeedState::Answering);
+    }
+
+    #[test]
+    fn who_was_not_asked_is_not_silent() {
+        let mut feed = feed(Dialect::SitlGz);
+        feed.sent(1000 * MS);
+        motors(&mut feed, 1001);
+        // This program was held up for three seconds.
+        assert_eq!(feed.state(4000 * MS), FeedState::Answering);
+        feed.sent(4000 * MS);
+        assert_eq!(feed.state(4001 * MS), FeedState::Answering);
     }
 }
