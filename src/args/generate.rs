@@ -84,7 +84,9 @@ mod tests {
     fn every_shell_gets_a_script() {
         for shell in clap_complete::Shell::value_variants() {
             let script = String::from_utf8(completions(*shell)).unwrap();
-            assert!(script.contains("rx-loss-at"), "{shell}");
+            for word in ["rx-loss-at", "firmware-arg", "compare"] {
+                assert!(script.contains(word), "{shell} {word}");
+            }
         }
     }
 
@@ -94,6 +96,8 @@ mod tests {
         assert!(page.starts_with(".ie") && page.contains(".TH betadeck 1"), "{page}");
         for word in [
             "\"BETADECK FLY\"",
+            "\"BETADECK COMPARE\"",
+            "fdm\\-stamps",
             "\"BETADECK PLAN SHOW\"",
             "rx\\-loss\\-at",
             "state\\-dir",

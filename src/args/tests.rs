@@ -90,6 +90,27 @@ fn the_firmware_can_be_outside() {
 }
 
 #[test]
+fn compare_takes_one_or_two_firmwares() {
+    let compare = |line: &str, layers: &Layers| match parse_line(line, layers).unwrap().command {
+        Some(Command::Compare(compare)) => *compare,
+        other => panic!("{other:?}"),
+    };
+    let none = Layers::default();
+    let two = compare(
+        "betadeck compare square --firmware embedded --firmware ./x.elf --set ap_max_angle=25",
+        &none,
+    );
+    assert_eq!(two.firmware, [FirmwareChoice::Embedded, FirmwareChoice::Executable("./x.elf".into())]);
+    assert_eq!((two.repeat(), two.set.len()), (3, 1));
+    let of_launcher = compare("betadeck compare square --betaloop config.txt", &none);
+    assert!(of_launcher.firmware.is_empty() && of_launcher.link.betaloop.is_some());
+    let file = layers(&[], "seed = 9\ntakeoff = 5");
+    let layered = compare("betadeck compare square --firmware attach --repeat 5", &file);
+    assert_eq!((layered.flight.seed, layered.repeat()), (Some(9), 5));
+    assert!((layered.takeoff_m() - 5.0).abs() < 1e-9 && (layered.timeout_s() - 1800.0).abs() < 1e-9);
+}
+
+#[test]
 fn defaults_of_fly() {
     let fly = fly("betadeck fly -");
     assert_eq!(fly.plan, PlanArg::Stdin(None));
@@ -120,6 +141,11 @@ fn wrong_values_say_what_is_allowed() {
         ("betadeck fly square --firmware attach --betaloop x", "cannot be used with"),
         ("betadeck fly square --firmware=", "the path of a SITL executable"),
         ("betadeck serve --fdm-stamps none", "--fdm-stamps <STAMPS>"),
+        ("betadeck compare square", "--firmware <WHICH>"),
+        ("betadeck compare square --firmware a --firmware b --firmware c", "given once, to compare with"),
+        ("betadeck compare square --firmware a --timeout 9000", "allowed are 1 to 7200 s"),
+        ("betadeck compare square --firmware a --repeat 0", "1..=100"),
+        ("betadeck comparre square --firmware a", "did you mean betadeck compare?"),
         ("betadeck fly square --home 95,1", "latitude 95 is out of range"),
         ("betadeck fly square --arm-assist maybe", "possible values: on, off"),
         ("betadeck flly square", "did you mean betadeck fly?"),
