@@ -84,25 +84,17 @@ impl Held {
 
     /// The settings among the wishes that the firmware does not have.
     pub(super) fn unknown(&self, wishes: &[Wish]) -> Vec<String> {
-        let mut names = Vec::new();
-        for wish in wishes.iter().filter(|wish| self.has_not(wish)) {
-            if let Wish::Setting { name, .. } = wish
-                && !names.contains(name)
-            {
-                names.push(name.clone());
-            }
-        }
-        names
+        let names = wishes.iter().filter(|wish| self.has_not(wish)).filter_map(|wish| match wish {
+            Wish::Setting { name, .. } => Some(name.clone()),
+            Wish::Aux { .. } | Wish::Plan { .. } | Wish::Other { .. } => None,
+        });
+        names.collect()
     }
 
-    /// Where what is held is not what is wanted; of two wishes for the same the last counts.
+    /// Where what is held is not what is wanted.
     pub(super) fn differences(&self, wishes: &[Wish]) -> Vec<Difference> {
         let mut differences: Vec<Difference> = Vec::new();
-        for (at, wish) in wishes.iter().enumerate() {
-            let is_overruled = wishes[at + 1..].iter().any(|later| replaces(later, wish));
-            if is_overruled || self.has_not(wish) {
-                continue;
-            }
+        for wish in wishes.iter().filter(|wish| !self.has_not(wish)) {
             let held = match wish {
                 Wish::Setting { name, value, .. } => {
                     let held = self.settings.get(name).cloned().flatten().unwrap_or_default();
@@ -129,15 +121,6 @@ impl Held {
             differences.push(Difference { line: "waypoint list".to_owned(), held });
         }
         differences
-    }
-}
-
-/// Whether a wish is for the same as an earlier one.
-fn replaces(later: &Wish, earlier: &Wish) -> bool {
-    match (later, earlier) {
-        (Wish::Setting { name, .. }, Wish::Setting { name: of, .. }) => name == of,
-        (Wish::Aux { row, .. }, Wish::Aux { row: of, .. }) => row.first() == of.first(),
-        _ => false,
     }
 }
 

@@ -72,7 +72,7 @@ impl ProvisionReport {
         let differ: Vec<String> = differ.collect();
         if self.may_not_write {
             sentences.push(format!(
-                "The firmware has a configuration, which is not changed unasked: {}.",
+                "The firmware has a configuration, which is not changed unasked (--yes permits it): {}.",
                 if differ.is_empty() { "its settings may differ".to_owned() } else { differ.join("; ") }
             ));
         } else if !differ.is_empty() {

@@ -31,13 +31,22 @@ impl Wish {
         }
     }
 
+    /// Whether it is for the same as an earlier one.
+    fn replaces(&self, earlier: &Self) -> bool {
+        match (self, earlier) {
+            (Self::Setting { name, .. }, Self::Setting { name: of, .. }) => name == of,
+            (Self::Aux { row, .. }, Self::Aux { row: of, .. }) => row.first() == of.first(),
+            _ => false,
+        }
+    }
+
     /// Whether nobody can tell if it is fulfilled.
     pub(super) fn cannot_be_read(&self) -> bool {
         matches!(self, Self::Other { .. })
     }
 }
 
-/// The wishes of these lines.
+/// The wishes of these lines; of two for the same the last counts.
 pub(super) fn wishes<L: AsRef<str>>(lines: impl IntoIterator<Item = L>) -> Vec<Wish> {
     let mut in_profile = false;
     let mut wishes = Vec::new();
@@ -51,7 +60,7 @@ pub(super) fn wishes<L: AsRef<str>>(lines: impl IntoIterator<Item = L>) -> Vec<W
             continue;
         }
         in_profile |= PROFILES.contains(&word.as_str());
-        wishes.push(match word.as_str() {
+        let wish = match word.as_str() {
             "set" if !in_profile => match rest.split_once('=') {
                 Some((name, value)) => {
                     let (name, value) = (name.trim().to_ascii_lowercase(), value.trim().to_owned());
@@ -65,7 +74,9 @@ pub(super) fn wishes<L: AsRef<str>>(lines: impl IntoIterator<Item = L>) -> Vec<W
             },
             "waypoint" => Wish::Plan { line },
             _ => Wish::Other { line },
-        });
+        };
+        wishes.retain(|earlier| !wish.replaces(earlier));
+        wishes.push(wish);
     }
     wishes
 }
