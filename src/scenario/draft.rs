@@ -110,7 +110,11 @@ fn parse(name: &str, text: &str) -> Result<Scenario, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::flight::FlightSetup;
     use crate::plan::builtin::BuiltinPlan;
+    use crate::signals::SimTime;
+    use crate::sim::WorldCommand;
+    use crate::timeline::RecordedFlight;
 
     #[test]
     fn a_plan_becomes_a_scenario_that_passes() {
@@ -123,5 +127,19 @@ mod tests {
         let (case, air) = (&scenario.cases[0], scenario.cases[0].airs[0]);
         let flown = CaseFlight::new(case, &air).unwrap().fly();
         assert!(judge(case, &flown).0.iter().all(|judgement| judgement.outcome.is_met()));
+    }
+
+    #[test]
+    fn what_was_wrong_at_the_start_of_a_recorded_flight_is_wrong_in_its_scenario() {
+        let (mut start, _) = FlightSetup::default().build().unwrap();
+        for line in ["fault=motor,,2:0.9", "fault=gps-loss@boot+20,3"] {
+            start.change_world(WorldCommand::parse(line).unwrap()).unwrap();
+        }
+        let until = SimTime::from_secs_f64(2.0);
+        let flight = RecordedFlight { start, inputs: Vec::new(), until };
+        let text = Draft::of_recorded("wrong", flight).unwrap().finish().unwrap();
+        for part in ["fault motor,,2:0.9", "fault gps-loss@boot+20,3"] {
+            assert!(text.contains(part), "{part}\n{text}");
+        }
     }
 }
