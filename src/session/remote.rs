@@ -22,7 +22,7 @@ use std::task::{Context, Poll};
 use std::time::{Duration, Instant};
 
 use crate::link::proto::fc_client::polling::{Poll as Subject, Schedule};
-use crate::link::proto::fc_client::{Answer, Ask, AskId, FcClient, Unanswered};
+use crate::link::proto::fc_client::{Answer, Ask, AskId, FcClient};
 use crate::link::proto::sitl_feed::FeedState;
 use crate::link::{ChildEvent, FcStream, SitlChild, SitlPeer, StreamEvent};
 use crate::session::upload::LIST;
@@ -156,7 +156,8 @@ impl RemoteLink {
     /// Whether a line opens the interactive command line, which stays open then.
     #[must_use]
     pub fn opens_cli(&self) -> bool {
-        self.permission.opens_cli() && !self.client.is_in_cli()
+        let is_disarmed = self.observer.armed() == Some(false);
+        self.permission.opens_cli() && is_disarmed && !self.client.is_in_cli()
     }
 
     /// The user permits changes over this connection; an earlier one's permission means nothing.
@@ -411,8 +412,10 @@ impl RemoteLink {
         while let Some((id, answer)) = self.client.next_answer() {
             let Some(purpose) = self.waiting.remove(&id) else { continue };
             self.has_answered |= !matches!(answer, Answer::NotAnswered(_));
-            if answer == Answer::NotAnswered(Unanswered::CliClosed) && !self.observer.is_armed() {
-                self.permission.needs_prompt();
+            if matches!(purpose, Purpose::Line(_) | Purpose::Identity(Question::Settings(_) | Question::Plan))
+            {
+                self.permission.line_answered(&answer);
+                self.client.set_cli(self.permission.cli());
             }
             let Some(mailbox) = vehicle.controller_mut().remote_mut() else { return };
             match purpose {

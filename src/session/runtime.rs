@@ -284,8 +284,9 @@ impl Session {
             self.real_time.advance(wall, simulated);
         }
         let wanted = if self.simulator.is_some() { 1.0 } else { self.pacer.speed() };
-        // While time stands still there is no speed to tell.
+        // While time stands still there is no speed to tell, and a real craft does not wait for it.
         if !self.pacer.is_paused()
+            && !self.access().is_limited()
             && let Some(notice) = self.real_time.notice(now, wanted, self.pacer.achieved())
         {
             self.notice(notice.to_string());

@@ -161,6 +161,11 @@ impl Observer {
         self.stored_plan.is_some() || built_in == Some(true)
     }
 
+    /// Whether it is armed, once it has told.
+    pub(super) fn armed(&self) -> Option<bool> {
+        self.observation.armed()
+    }
+
     /// Whether it is known to be armed.
     #[must_use]
     pub fn is_armed(&self) -> bool {

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::firmware::msp::{Access as MessageAccess, MESSAGES};
-use crate::link::proto::fc_client::CliAccess;
+use crate::link::proto::fc_client::{Answer, CliAccess, Unanswered};
 
 /// Why an order that would move a craft outside is not carried out.
 pub const NOTHING_MOVES: &str =
@@ -87,8 +87,19 @@ pub(super) struct Permission {
     /// The number of the connection.
     connection: u32,
     may_change: bool,
-    /// The command line has no framing: a line opens it, and it stays open.
-    opens_cli: bool,
+    /// What became of lines so far.
+    lines: Lines,
+}
+
+/// What became of the lines of a connection.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+enum Lines {
+    #[default]
+    NoneYet,
+    /// None was answered: the craft is armed, or its command line has no framing.
+    Closed,
+    /// One was answered.
+    Work,
 }
 
 impl Permission {
@@ -107,9 +118,13 @@ impl Permission {
         self.may_change |= connection == self.connection;
     }
 
-    /// A line was not taken though the craft is disarmed: the command line has to be opened for lines.
-    pub(super) fn needs_prompt(&mut self) {
-        self.opens_cli = true;
+    /// Takes in what became of a line.
+    pub(super) fn line_answered(&mut self, answer: &Answer) {
+        self.lines = match answer {
+            Answer::Line { .. } => Lines::Work,
+            Answer::NotAnswered(Unanswered::CliClosed) if self.lines == Lines::NoneYet => Lines::Closed,
+            Answer::NotAnswered(_) | Answer::Msp(_) => self.lines,
+        };
     }
 
     /// The number of the connection.
@@ -117,14 +132,14 @@ impl Permission {
         self.connection
     }
 
-    /// Whether a line opens the command line, which is a change itself.
+    /// Whether a line would have to open the command line of a disarmed craft, which is a change itself.
     pub(super) fn opens_cli(&self) -> bool {
-        self.opens_cli
+        self.lines == Lines::Closed
     }
 
     /// How lines reach the command line.
     pub(super) fn cli(&self) -> CliAccess {
-        if self.opens_cli && self.may_change { CliAccess::Interactive } else { CliAccess::Framed }
+        if self.opens_cli() && self.may_change { CliAccess::Interactive } else { CliAccess::Framed }
     }
 
     /// What may be done with a real craft.
@@ -411,12 +426,24 @@ mod tests {
     fn the_prompt_is_opened_with_permission_only() {
         let mut permission = Permission::default();
         permission.connected();
-        permission.needs_prompt();
-        assert_eq!(permission.cli(), CliAccess::Framed);
+        permission.line_answered(&Answer::NotAnswered(Unanswered::Silent));
+        assert!(!permission.opens_cli(), "silence is no refusal");
+        permission.line_answered(&Answer::NotAnswered(Unanswered::CliClosed));
+        assert_eq!((permission.opens_cli(), permission.cli()), (true, CliAccess::Framed));
         permission.permit(1);
         assert_eq!(permission.cli(), CliAccess::Interactive);
         assert_eq!(Impact::of_line("get").or_changes(permission.opens_cli()), Impact::Changes);
         assert_eq!(Impact::of_line("motor 1 1500").or_changes(true), MOVES);
+    }
+
+    #[test]
+    fn where_a_line_was_answered_the_prompt_stays_closed() {
+        let mut permission = Permission::default();
+        permission.connected();
+        permission.permit(1);
+        permission.line_answered(&Answer::Line { text: String::new(), failed: true, restarted: false });
+        permission.line_answered(&Answer::NotAnswered(Unanswered::CliClosed));
+        assert_eq!((permission.opens_cli(), permission.cli()), (false, CliAccess::Framed));
     }
 
     #[test]
