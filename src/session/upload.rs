@@ -72,6 +72,10 @@ pub(super) fn plan_of_list(reply: &CliReply) -> Result<FlightPlan, String> {
     if reply.failed {
         return Err(format!("the craft refused `{LIST}`: {}", reply.text.trim()));
     }
+    // Some releases print nothing when there is no plan.
+    if reply.text.trim().is_empty() {
+        return Ok(FlightPlan::default());
+    }
     format::parse("the craft", &reply.text, Format::CliText).map(|file| file.plan).map_err(|errors| {
         errors.first().map_or_else(String::new, |error| format!("the craft's plan cannot be read: {error}"))
     })
@@ -243,6 +247,13 @@ mod tests {
             report.remark().unwrap(),
             "Its firmware did not take 1 of the settings: ap_position_cutoff = 5 (invalid value)."
         );
+    }
+
+    #[test]
+    fn a_craft_that_prints_nothing_has_no_plan() {
+        assert_eq!(plan_of_list(&CliReply::default()), Ok(FlightPlan::default()));
+        let refused = CliReply { failed: true, ..CliReply::default() };
+        assert!(plan_of_list(&refused).is_err());
     }
 
     #[test]
