@@ -108,7 +108,7 @@ impl Flights {
                 let end = flight.tick(|report| recorder.hear(&report));
                 recorder.look(&flight);
                 if let Some(end) = end {
-                    return Ok(Some(recorder.finish(end)));
+                    return Ok(Some(recorder.finish(&flight, end)));
                 }
             }
             if self.interrupted.load(Ordering::Relaxed) {
@@ -141,7 +141,7 @@ impl Flights {
             }
             Ok(())
         })?;
-        Ok(recorder.finish(end))
+        Ok(recorder.finish(&flight, end))
     }
 }
 

@@ -4,6 +4,7 @@ use nalgebra::Vector2;
 
 use crate::flight::{Flight, FlightEnd, Report};
 use crate::record::compare::{Track, TrackSample};
+use crate::signals::SimTime;
 use crate::telemetry::{Event, EventKind};
 use crate::vehicle::Vehicle;
 
@@ -16,6 +17,9 @@ pub(super) struct Recorder {
     track: Track,
     /// Altitude of the craft that stands at home, m.
     standing_m: f64,
+    /// When the pilot switched the autopilot on: a firmware outside tells of its engagement later than it engages.
+    switched_at: Option<SimTime>,
+    was_switching: bool,
     /// The craft touched the ground since it was looked at last.
     touched_down: bool,
 }
@@ -24,7 +28,13 @@ impl Recorder {
     /// Of a craft that stands at home.
     pub(super) fn new(vehicle: &Vehicle) -> Self {
         let standing_m = place(vehicle).map_or(0.0, |(_, alt_m)| alt_m);
-        Self { track: Track::default(), standing_m, touched_down: false }
+        Self {
+            track: Track::default(),
+            standing_m,
+            switched_at: None,
+            was_switching: false,
+            touched_down: false,
+        }
     }
 
     /// Hears what happens.
@@ -39,8 +49,19 @@ impl Recorder {
         let touched_down = std::mem::take(&mut self.touched_down);
         let vehicle = flight.vehicle();
         let now = vehicle.time();
-        let (Some(engaged), Some((ne, alt_m))) = (flight.engaged_at(), place(vehicle)) else { return };
-        let time_s = now.seconds_since(engaged);
+        let switching = vehicle.transmitter().pilot_doing() == Some("engaging");
+        if switching
+            && !std::mem::replace(&mut self.was_switching, switching)
+            && flight.engaged_at().is_none()
+        {
+            // Again, when it was refused before.
+            self.switched_at = Some(now);
+            self.track.samples.clear();
+        }
+        self.was_switching = switching;
+        let begin = self.switched_at.or(flight.engaged_at());
+        let (Some(begin), Some((ne, alt_m))) = (begin, place(vehicle)) else { return };
+        let time_s = now.seconds_since(begin);
         if touched_down {
             self.track.touchdown = Some((time_s, ne));
         }
@@ -50,11 +71,16 @@ impl Recorder {
     }
 
     /// The track of a flight that is over.
-    pub(super) fn finish(self, end: FlightEnd) -> Track {
+    pub(super) fn finish(self, flight: &Flight, end: FlightEnd) -> Track {
+        let Some(engaged_at) = flight.engaged_at() else {
+            let result = end.verdict.result.to_string();
+            return Track { result, reason: end.verdict.reason, ..Track::default() };
+        };
+        let begin = self.switched_at.unwrap_or(engaged_at);
         Track {
             result: end.verdict.result.to_string(),
             reason: end.verdict.reason,
-            flown_s: (!self.track.samples.is_empty()).then_some(end.flown_s),
+            flown_s: Some(end.time.seconds_since(begin)),
             ..self.track
         }
     }

@@ -2,7 +2,7 @@
 
 use nalgebra::{Vector2, Vector3};
 
-/// A flight of the plan from its engagement on.
+/// A flight of the plan from its engagement on, which is when the pilot switched the autopilot on.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Track {
     /// Where the craft was, at a steady rhythm.
