@@ -8,9 +8,6 @@ use super::msp;
 use super::program::{PATIENCE, Sitl};
 use super::wire;
 
-/// Most rounds until a busy machine lets one be undisturbed.
-const ROUNDS: usize = 20;
-
 /// A simulator's sockets, and the drop-in that sends to them.
 struct Link {
     motors: UdpSocket,
@@ -44,11 +41,9 @@ impl Link {
     }
 
     /// Sends a state and waits for the motors.
-    fn step(&mut self) -> Duration {
+    fn step(&mut self) {
         self.send();
-        let sent = Instant::now();
         assert_eq!(self.motors.recv(&mut [0; 100]).expect("motors"), 16);
-        sent.elapsed()
     }
 
     /// How many packets of pulses have come.
@@ -94,27 +89,17 @@ impl Link {
 }
 
 #[test]
-fn every_state_is_answered_by_one_packet_on_each_port_within_about_a_millisecond() {
+fn every_state_is_answered_by_one_packet_on_each_port_and_nothing_more() {
     let mut link = Link::open();
     link.settle();
-    let mut medians = Vec::new();
-    for _ in 0..ROUNDS {
-        let (mut delays, mut pulses) = (Vec::new(), 0);
-        for _ in 0..3000 {
-            delays.push(link.step());
-            pulses += link.pulses();
-        }
-        let end = Instant::now() + Duration::from_millis(90);
-        assert!(!link.motors_until(end), "a packet that nobody asked for");
-        assert_eq!(pulses + link.pulses(), 3000);
-        delays.sort_unstable();
-        medians.push(delays[1500]);
-        if delays[1500] <= Duration::from_micros(1200) {
-            return;
-        }
-        link.settle();
+    let mut pulses = 0;
+    for _ in 0..3000 {
+        link.step();
+        pulses += link.pulses();
     }
-    panic!("the machine is too busy, or the answers are late: {medians:?}");
+    let end = Instant::now() + Duration::from_millis(90);
+    assert!(!link.motors_until(end), "a packet that nobody asked for");
+    assert_eq!(pulses + link.pulses(), 3000);
 }
 
 #[test]
