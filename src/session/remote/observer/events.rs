@@ -107,6 +107,11 @@ impl EventObserver {
         if (nav.state, nav.wp) == (from, wp) {
             return;
         }
+        // The mission is asked between two questions for the modes: at the touchdown it may be over before they say so.
+        let may_have_landed = from == NavState::Landing && self.modes.has(Mode::Autopilot);
+        if may_have_landed && nav.state == NavState::Idle && nav.reason.is_none() {
+            return;
+        }
         let starts = matches!(from, NavState::Idle | NavState::Complete) && nav.state != NavState::Idle;
         if starts {
             if let Some(plan) = plan {
@@ -243,6 +248,28 @@ mod tests {
         let (words, observer) = told(&[(true, Landing, 3), (true, Complete, 3), (false, Complete, 3)]);
         assert_eq!(words[words.len() - 2..], ["LANDING COMPLETE 3 touchdown", "disarmed LANDING"]);
         assert_eq!(observer.last_disarm(), Some(DisarmReason::Landing));
+    }
+
+    #[test]
+    fn a_mission_that_is_over_before_the_craft_tells_that_it_has_disarmed_has_landed() {
+        use NavState::{Idle, Landing};
+        let mut observer = EventObserver::default();
+        let mut words = Vec::new();
+        let mut modes = ModeFlags::default();
+        modes.set(Mode::Autopilot, true);
+        for (armed, state, autopilot) in [(true, Landing, true), (true, Idle, true), (false, Idle, false)] {
+            modes.set(Mode::Autopilot, autopilot);
+            let craft = CraftView { armed: Some(armed), modes: Some(modes), ..CraftView::default() };
+            let nav = NavTelemetry { state, wp: 3, next_wp: 3, ..NavTelemetry::default() };
+            for event in observer.follow(&craft, Some(&nav), None) {
+                match event {
+                    FirmwareEvent::Nav(NavEvent::State { to, .. }) => words.push(to.to_string()),
+                    FirmwareEvent::Disarmed(reason) => words.push(format!("disarmed {reason}")),
+                    _ => {}
+                }
+            }
+        }
+        assert_eq!(words[words.len() - 2..], ["COMPLETE", "disarmed LANDING"], "{words:?}");
     }
 
     #[test]
