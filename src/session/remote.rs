@@ -438,7 +438,7 @@ impl RemoteLink {
                             self.observer.take_message(code, payload);
                         }
                         (Subject::Mission, Answer::Line { text, failed: false, .. }) => {
-                            self.observer.take_mission(text);
+                            self.notices.extend(self.observer.take_mission(text).map(RemoteNotice::Lost));
                         }
                         _ => {}
                     }

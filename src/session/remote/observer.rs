@@ -9,7 +9,7 @@ use crate::firmware::cli::CliReply;
 use crate::geo::LocalFrame;
 use crate::link::proto::fc_client::Answer;
 use crate::link::proto::fc_client::telemetry::{
-    ApiVersion, BoardInfo, BuildInfo, Mission, Observation, Origin, version,
+    ApiVersion, BoardInfo, BuildInfo, Mission, MissionPhase, Observation, Origin, version,
 };
 use crate::plan::{AltitudeReference, FlightPlan};
 use crate::session::upload::plan_of_list;
@@ -90,11 +90,19 @@ impl Observer {
         }
     }
 
-    /// Takes in the output of `waypoint status`.
-    pub(super) fn take_mission(&mut self, output: &str) {
-        if let Some(mission) = Mission::parse(output) {
-            self.mission = Some(mission);
-            self.changed = true;
+    /// Takes in the output of `waypoint status`; gives a sentence when the mission was given up since the last.
+    pub(super) fn take_mission(&mut self, output: &str) -> Option<String> {
+        let mission = Mission::parse(output)?;
+        self.changed = true;
+        let before = self.mission.replace(mission).and_then(|mission| mission.phase);
+        match self.mission.as_ref().and_then(|mission| mission.phase.as_ref()) {
+            Some(MissionPhase::Aborted { cause })
+                if !matches!(before, Some(MissionPhase::Aborted { .. })) =>
+            {
+                let cause = if cause.is_empty() { "it does not say why" } else { cause };
+                Some(format!("The firmware gave its mission up: {cause}."))
+            }
+            _ => None,
         }
     }
 
@@ -192,4 +200,20 @@ impl Observer {
 fn origin_of(frame: &LocalFrame) -> Origin {
     let (lat_deg, lon_deg, alt_amsl_m) = frame.to_geodetic(nalgebra::Vector3::zeros());
     Origin { position: crate::geo::LatLon::from_degrees(lat_deg, lon_deg), alt_amsl_m }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mission_that_is_given_up_is_told_once_with_its_cause() {
+        let mut observer = Observer::default();
+        let status = |state: &str| format!("Waypoint count: 2\r\n\nRuntime status:\r\n  state: {state}\r\n");
+        assert_eq!(observer.take_mission(&status("TARGETING")), None);
+        let aborted = status("ABORTED") + "  abort reason: MAG FAULT\r\n";
+        let told = "The firmware gave its mission up: MAG FAULT.".to_owned();
+        assert_eq!(observer.take_mission(&aborted), Some(told));
+        assert_eq!(observer.take_mission(&aborted), None);
+    }
 }
