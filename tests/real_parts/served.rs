@@ -129,9 +129,13 @@ fn a_program_that_is_no_sitl_is_told_and_ends_the_program() {
 #[test]
 fn a_firmware_does_not_outlive_a_program_that_is_killed() {
     let mut served = Served::stand_in(free_ports(), Trouble::None);
-    let line = served.notice("process ");
-    let pid = line.rsplit(' ').next().unwrap().parse().unwrap();
+    // It has been set by now, and restarted for that: its last process counts.
     served.notice(" answers: Betaflight ");
+    let pid_of = |line: &String| -> Option<i32> {
+        let event: Value = serde_json::from_str(line).ok()?;
+        event["text"].as_str()?.split_once("process ")?.1.parse().ok()
+    };
+    let pid = served.program.seen().iter().rev().find_map(pid_of).unwrap();
     assert!(is_running(pid));
     // Killed, not asked to end.
     drop(served);
