@@ -5,6 +5,7 @@ pub mod command;
 mod event;
 mod forecaster;
 mod hazards;
+mod landing_gains;
 mod late_answers;
 mod links;
 mod pacer;
@@ -30,7 +31,7 @@ pub use links::{Links, MotorTargets, MotorsError};
 pub use pacer::{Pacer, SPEED_RANGE};
 pub use persistence::Persistence;
 pub use remote::{
-    Access, Denial, Impact, NOT_PERMITTED, NOTHING_MOVES, NOTHING_SIMULATED, Provision, RemoteEnds,
+    Access, Denial, Impact, NOT_PERMITTED, NOTHING_MOVES, NOTHING_SIMULATED, Provision, ProvisionLines, RemoteEnds,
     RemoteLink, RemoteNotice, RemoteState, RemoteView,
 };
 pub use request_handler::{Handled, RequestHandler};

@@ -34,7 +34,7 @@ pub(super) fn run(args: &CompareArgs) -> Result<u8, AppError> {
     let starts_fresh =
         |firmware: &RemoteFirmware| firmware.executable.is_some() && args.flight.state_dir.is_none();
     let beside_fresh = found.iter().flatten().any(starts_fresh);
-    let flights = Flights::new(args, beside_fresh, &mut notices)?;
+    let flights = Flights::new(args, found.contains(&None), beside_fresh, &mut notices)?;
     notices.iter().for_each(|notice| error::tell(notice));
     let mut sides = Vec::new();
     for (name, firmware) in names.into_iter().zip(&found) {

@@ -12,6 +12,7 @@ use crate::args::{
     Betaloop, BetaloopError, DoorArgs, FdmDialect, FirmwareArgs, FirmwareChoice, FirmwareLinkArgs,
     FirmwarePortArgs, FlightArgs, PhysicsArgs, UdpPorts,
 };
+use crate::session::ProvisionLines;
 use crate::signals::fdm::{Dialect, MotorOrder, Stamps};
 
 /// The launcher's file in the working directory.
@@ -28,8 +29,8 @@ pub(super) struct RemoteFirmware {
     pub(super) ports: FirmwarePorts,
     /// How the packets to it are stamped.
     pub(super) stamps: Stamps,
-    /// Command lines by which it is set: those of `--settings`, and what a flight adds.
-    pub(super) settings: Vec<String>,
+    /// Command lines by which it is set: the user's are those of `--settings`, and what a flight adds.
+    pub(super) lines: ProvisionLines,
     /// A configuration that it had before may be changed without asking.
     pub(super) may_write: bool,
 }
@@ -38,9 +39,10 @@ impl RemoteFirmware {
     /// The same, set to a plan's settings before and to those of `--set` after the lines of its own.
     pub(super) fn with_settings(&self, plan: &[String], set: &[String]) -> Self {
         let line = |setting: &String| format!("set {setting}");
-        let own = self.settings.iter().cloned();
-        let settings = plan.iter().map(line).chain(own).chain(set.iter().map(line)).collect();
-        Self { settings, ..self.clone() }
+        let mut firmware = self.clone();
+        firmware.lines.usual.extend(plan.iter().map(line));
+        firmware.lines.of_user.extend(set.iter().map(line));
+        firmware
     }
 }
 
@@ -150,9 +152,12 @@ pub(super) fn check(
         executable,
         ports: beside.ports.check()?,
         stamps: link.stamps(),
-        settings: match &beside.flight.settings {
-            Some(path) => input_file::read(path)?.lines().map(str::to_owned).collect(),
-            None => Vec::new(),
+        lines: ProvisionLines {
+            usual: Vec::new(),
+            of_user: match &beside.flight.settings {
+                Some(path) => input_file::read(path)?.lines().map(str::to_owned).collect(),
+                None => Vec::new(),
+            },
         },
         may_write: link.yes,
     }))

@@ -37,13 +37,16 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, AppError> {
         physics: &PhysicsArgs::default(),
     };
     let firmware = firmware::choose(&args.firmware, beside, &mut notices)?
-        .map(|firmware| firmware.with_settings(&plan.settings, &args.set));
+        .map(|firmware| firmware.with_settings(&plan.settings, &args.mission.set));
+    if firmware.is_none() {
+        setup::check_set(&args.mission.set)?;
+    }
     notices.extend(args.firmware_ports.idle_options(firmware.is_some()));
     let mut store = open_store(args)?;
     let stored = setup::stored(&mut store, &mut notices);
     let mut setup = setup::from_args(&args.flight, PhysicsSource::Embedded, plan.clone(), stored)?;
     setup.world.faults = args.faults().collect();
-    setup.boot_lines.push(BootLines::settings("--set", &args.set));
+    setup.boot_lines.push(BootLines::settings("--set", &args.mission.set));
     setup.stick_inputs.clone_from(&args.stick);
     setup.remote_controller = firmware.is_some();
     let vehicle = setup::build(setup, &mut notices)?;
@@ -85,12 +88,7 @@ struct Flown {
 
 impl Start<'_> {
     fn options(&self) -> FlightOptions {
-        FlightOptions {
-            takeoff_m: self.args.takeoff_m(),
-            timeout: SimTime::from_secs_f64(self.args.timeout_s()),
-            samples_hz: self.args.samples.unwrap_or(0.0),
-            tolerance_m: self.args.tolerance_m(),
-        }
+        setup::flight_options(&self.args.mission, self.args.samples.unwrap_or(0.0))
     }
 }
 

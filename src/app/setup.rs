@@ -4,17 +4,20 @@ use std::path::{Path, PathBuf};
 
 use super::output_file::KeptFiles;
 use super::{AppError, error, input_file};
-use crate::args::{AttitudeChoice, DoorArgs, FlightArgs, OnOff, PhysicsArgs, PlanArg, is_descriptor};
+use crate::args::{
+    AttitudeChoice, DoorArgs, FlightArgs, MissionArgs, OnOff, PhysicsArgs, PlanArg, is_descriptor,
+};
 use crate::firmware::AttitudeSource;
 use crate::firmware::cli::BuildInfo;
 use crate::firmware::config::Configuration;
 use crate::flight::setup::{BootLines, PhysicsSource, check_setting};
 use crate::flight::{Flight, FlightOptions, FlightSetup};
 use crate::plan::builtin::BuiltinPlan;
-use crate::plan::format::{self, PlanFile};
+use crate::plan::format::{self, PlanFile, SettingPart};
 use crate::plan::review::Finding;
 use crate::plan::validate::check_plan;
 use crate::record::UtcSeconds;
+use crate::signals::SimTime;
 use crate::sim::{Airframe, Home, WorldConfig};
 use crate::storage::Store;
 use crate::vehicle::Vehicle;
@@ -87,6 +90,40 @@ pub(super) fn build(setup: FlightSetup, notices: &mut Vec<String>) -> Result<Veh
     let (vehicle, found) = setup.build().map_err(|error| AppError::input(error.to_string()))?;
     notices.extend(found.iter().map(ToString::to_string));
     Ok(vehicle)
+}
+
+/// How a plan is flown and judged; so many samples a second are reported.
+pub(super) fn flight_options(args: &MissionArgs, samples_hz: f64) -> FlightOptions {
+    FlightOptions {
+        takeoff_m: args.takeoff_m(),
+        timeout: SimTime::from_secs_f64(args.timeout_s()),
+        samples_hz,
+        tolerance_m: args.tolerance_m(),
+    }
+}
+
+/// The settings of `--set` that the embedded firmware has, checked, when another one flies beside it; what it does not have is
+/// added to `notices`.
+pub(super) fn set_of_embedded(settings: &[String], notices: &mut Vec<String>) -> Result<Vec<String>, AppError> {
+    let is_unknown = |setting: &&String| {
+        let (name, value) = setting.split_once(" = ").unwrap_or((setting, ""));
+        check_setting(name, value).is_err_and(|fault| fault.part == SettingPart::Name)
+    };
+    let (unknown, known): (Vec<&String>, Vec<&String>) = settings.iter().partition(is_unknown);
+    notices.extend(unknown.iter().map(|setting| {
+        format!("The embedded firmware does not have `{setting}`: only the other one is set so.")
+    }));
+    let known: Vec<String> = known.into_iter().cloned().collect();
+    check_set(&known)?;
+    Ok(known)
+}
+
+/// Whether the embedded firmware takes the settings of `--set`.
+pub(super) fn check_set(settings: &[String]) -> Result<(), AppError> {
+    settings.iter().try_for_each(|setting| {
+        let (name, value) = setting.split_once(" = ").unwrap_or((setting, ""));
+        check_setting(name, value).map_err(|fault| AppError::input(format!("--set {name}={value}: {fault}")))
+    })
 }
 
 /// The flight of the plan that the craft has stored.

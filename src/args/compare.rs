@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use super::firmware::{FirmwareChoice, FirmwareLinkArgs, FirmwarePortArgs};
 use super::plan_arg::PlanArg;
 use super::value::{self, OutputFile};
-use super::{FlightArgs, help};
+use super::{FlightArgs, MissionArgs, help};
 
 /// Longest flight that is compared, s: its whole track is kept.
 const LONGEST_S: f64 = 7200.0;
@@ -41,21 +41,9 @@ pub struct CompareArgs {
     #[arg(long, value_name = "FILE", value_parser = value::output_path, help_heading = "Output")]
     pub svg: Option<PathBuf>,
 
-    /// Altitude of the pilot's climb before the autopilot is engaged, m [default: 10]
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = value::takeoff, help_heading = "Flight")]
-    pub takeoff: Option<f64>,
-
-    /// How far beyond its own radius a waypoint may truly be missed, and beside its altitude, m [default: 10]
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = value::tolerance, help_heading = "Flight")]
-    pub tolerance: Option<f64>,
-
-    /// Gives up after this many simulated seconds since boot, 7200 at most [default: 1800]
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = value::timeout, help_heading = "Flight")]
-    pub timeout: Option<f64>,
-
-    /// Sets a setting after all other sources, such as ap_max_angle=25; repeatable
-    #[arg(long, value_name = "NAME=VALUE", value_parser = value::setting, help_heading = "Flight")]
-    pub set: Vec<String>,
+    /// How the plan is flown and judged.
+    #[command(flatten)]
+    pub mission: MissionArgs,
 
     /// What flies, where and in which air.
     #[command(flatten)]
@@ -63,24 +51,6 @@ pub struct CompareArgs {
 }
 
 impl CompareArgs {
-    /// Altitude of the pilot's climb, m.
-    #[must_use]
-    pub fn takeoff_m(&self) -> f64 {
-        self.takeoff.unwrap_or(10.0)
-    }
-
-    /// How far truth may be off beyond a waypoint's own radius, m.
-    #[must_use]
-    pub fn tolerance_m(&self) -> f64 {
-        self.tolerance.unwrap_or(10.0)
-    }
-
-    /// Simulated seconds after boot at which a flight is given up.
-    #[must_use]
-    pub fn timeout_s(&self) -> f64 {
-        self.timeout.unwrap_or(1800.0).min(LONGEST_S)
-    }
-
     /// Flights of a firmware outside.
     #[must_use]
     pub fn repeat(&self) -> u32 {
@@ -92,7 +62,7 @@ impl CompareArgs {
         if self.firmware.len() > 2 {
             return Err("--firmware is given once, to compare with the embedded one, or twice".to_owned());
         }
-        if self.timeout.is_some_and(|seconds| seconds > LONGEST_S) {
+        if self.mission.timeout.is_some_and(|seconds| seconds > LONGEST_S) {
             return Err(format!("--timeout: allowed are 1 to {LONGEST_S} s here, for whole tracks are kept"));
         }
         Ok(())

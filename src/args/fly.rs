@@ -7,7 +7,7 @@ use crate::sim::ScheduledFault;
 
 use super::plan_arg::PlanArg;
 use super::value::{self, OutputFile};
-use super::{FirmwareArgs, FirmwarePortArgs, FlightArgs, Speed, help};
+use super::{FirmwareArgs, FirmwarePortArgs, FlightArgs, MissionArgs, Speed, help};
 
 /// The options of `fly`.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
@@ -27,25 +27,9 @@ pub struct FlyArgs {
     #[arg(long, value_name = "FILE", value_parser = value::output_path, help_heading = "Output")]
     pub gpx: Option<PathBuf>,
 
-    /// Altitude of the pilot's climb before the autopilot is engaged, m [default: 10]
-    ///
-    /// With 0 the pilot raises the throttle and engages at once: the autopilot does the climb.
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = value::takeoff, help_heading = "Flight")]
-    pub takeoff: Option<f64>,
-
-    /// How far beyond its own radius a waypoint may truly be missed, and beside its altitude, m [default: 10]
-    ///
-    /// More makes the result `missed`: whatever the firmware believes, the truth decides.
-    #[arg(long, value_name = "METRES", allow_negative_numbers = true, value_parser = value::tolerance, help_heading = "Flight")]
-    pub tolerance: Option<f64>,
-
-    /// Gives up after this many simulated seconds since boot [default: 1800]
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = value::timeout, help_heading = "Flight")]
-    pub timeout: Option<f64>,
-
-    /// Sets a setting after all other sources, such as ap_max_angle=25; repeatable
-    #[arg(long, value_name = "NAME=VALUE", value_parser = value::setting, help_heading = "Flight")]
-    pub set: Vec<String>,
+    /// How the plan is flown and judged.
+    #[command(flatten)]
+    pub mission: MissionArgs,
 
     /// Moves a stick or switch: a channel (roll, pitch, throttle, yaw, aux1…aux12), µs, when, how long; repeatable
     #[arg(long, value_name = "CH=VALUE@T[,FOR]", help_heading = "Flight")]
@@ -86,24 +70,6 @@ impl FlyArgs {
     #[must_use]
     pub fn speed(&self) -> f64 {
         self.flight.speed.map_or(f64::INFINITY, |Speed(speed)| speed)
-    }
-
-    /// Altitude of the pilot's climb, m.
-    #[must_use]
-    pub fn takeoff_m(&self) -> f64 {
-        self.takeoff.unwrap_or(10.0)
-    }
-
-    /// How far truth may be off beyond a waypoint's own radius, m.
-    #[must_use]
-    pub fn tolerance_m(&self) -> f64 {
-        self.tolerance.unwrap_or(10.0)
-    }
-
-    /// Simulated seconds after boot at which the flight is given up.
-    #[must_use]
-    pub fn timeout_s(&self) -> f64 {
-        self.timeout.unwrap_or(1800.0)
     }
 
     /// What is wrong with the combination of what was typed.

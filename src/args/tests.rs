@@ -58,12 +58,12 @@ fn fly_reads_every_option() {
     );
     assert_eq!(fly.json, Some(OutputFile::Stdout));
     assert_eq!(fly.faults().count(), 4);
-    assert_eq!(fly.set, ["ap_max_angle = 25", "gps_sbas_mode = AUTO"]);
+    assert_eq!(fly.mission.set, ["ap_max_angle = 25", "gps_sbas_mode = AUTO"]);
     assert!(
         (fly.speed() - 2.0).abs() < 1e-9
-            && fly.takeoff_m().abs() < 1e-9
-            && (fly.tolerance_m() - 2.5).abs() < 1e-9
-            && (fly.timeout_s() - 60.0).abs() < 1e-9
+            && fly.mission.takeoff_m().abs() < 1e-9
+            && (fly.mission.tolerance_m() - 2.5).abs() < 1e-9
+            && (fly.mission.timeout_s() - 60.0).abs() < 1e-9
     );
     assert_eq!(fly.flight.home.unwrap().to_string(), "-40.0000000,-79.0000000,300");
     assert!(fly.flight.fresh && fly.flight.arm_assist.is_some_and(OnOff::is_on));
@@ -101,13 +101,13 @@ fn compare_takes_one_or_two_firmwares() {
         &none,
     );
     assert_eq!(two.firmware, [FirmwareChoice::Embedded, FirmwareChoice::Executable("./x.elf".into())]);
-    assert_eq!((two.repeat(), two.set.len()), (3, 1));
+    assert_eq!((two.repeat(), two.mission.set.len()), (3, 1));
     let of_launcher = compare("betadeck compare square --betaloop config.txt", &none);
     assert!(of_launcher.firmware.is_empty() && of_launcher.link.betaloop.is_some());
     let file = layers(&[], "seed = 9\ntakeoff = 5");
     let layered = compare("betadeck compare square --firmware attach --repeat 5", &file);
     assert_eq!((layered.flight.seed, layered.repeat()), (Some(9), 5));
-    assert!((layered.takeoff_m() - 5.0).abs() < 1e-9 && (layered.timeout_s() - 1800.0).abs() < 1e-9);
+    assert!((layered.mission.takeoff_m() - 5.0).abs() < 1e-9 && (layered.mission.timeout_s() - 1800.0).abs() < 1e-9);
 }
 
 #[test]
@@ -115,8 +115,8 @@ fn defaults_of_fly() {
     let fly = fly("betadeck fly -");
     assert_eq!(fly.plan, PlanArg::Stdin(None));
     assert!(fly.speed().is_infinite());
-    assert!((fly.takeoff_m() - 10.0).abs() < 1e-9 && (fly.timeout_s() - 1800.0).abs() < 1e-9);
-    assert!((fly.tolerance_m() - 10.0).abs() < 1e-9);
+    assert!((fly.mission.takeoff_m() - 10.0).abs() < 1e-9 && (fly.mission.timeout_s() - 1800.0).abs() < 1e-9);
+    assert!((fly.mission.tolerance_m() - 10.0).abs() < 1e-9);
 }
 
 #[test]
@@ -189,10 +189,10 @@ fn the_command_line_wins_over_environment_over_file() {
     assert_eq!(fly.flight.seed, Some(2));
     assert_eq!(fly.flight.rate, Some(500));
     assert_eq!(fly.flight.wind.unwrap().to_string(), "5@270");
-    assert!((fly.takeoff_m() - 12.5).abs() < 1e-9 && (fly.tolerance_m() - 3.0).abs() < 1e-9);
-    assert_eq!(fly.set, ["ap_max_angle = 11", "ap_max_angle = 12"]);
+    assert!((fly.mission.takeoff_m() - 12.5).abs() < 1e-9 && (fly.mission.tolerance_m() - 3.0).abs() < 1e-9);
+    assert_eq!(fly.mission.set, ["ap_max_angle = 11", "ap_max_angle = 12"]);
     assert!(fly.rx_loss_at.is_some() && fly.flight.arm_assist == Some(OnOff::On));
-    assert_eq!(fly_over("betadeck fly square --set ap_max_angle=13", &layers).set, ["ap_max_angle = 13"]);
+    assert_eq!(fly_over("betadeck fly square --set ap_max_angle=13", &layers).mission.set, ["ap_max_angle = 13"]);
     // The terminal has no --takeoff: the key is for others.
     let cli = parse_line("betadeck", &layers).unwrap();
     assert_eq!(cli.tui.flight.seed, Some(2));

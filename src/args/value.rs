@@ -3,7 +3,6 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use crate::flight::setup::check_setting;
 use crate::plan::format::{Format, setting_line};
 use crate::sim::{Noise, ParseError, ScheduledFault, Switches, Turbulence, Wind, step_us};
 
@@ -155,11 +154,9 @@ pub(super) fn gps_loss(text: &str) -> Result<ScheduledFault, String> {
     fault(&format!("gps-loss@{text}"))
 }
 
-/// A setting that the craft takes, `NAME=VALUE`, kept as `name = value`.
+/// A setting `NAME=VALUE`, kept as `name = value`. Which there are is the flying firmware's business.
 pub(super) fn setting(text: &str) -> Result<String, String> {
-    let line = setting_line(text).ok_or("write NAME=VALUE, such as ap_max_angle=25")?;
-    let (name, value) = line.split_once(" = ").unwrap_or((&line, ""));
-    check_setting(name, value).map(|()| line.clone()).map_err(|fault| fault.to_string())
+    setting_line(text).ok_or_else(|| "write NAME=VALUE, such as ap_max_angle=25".to_owned())
 }
 
 /// The seed of all randomness.
@@ -237,11 +234,7 @@ mod tests {
     fn settings_are_normalised() {
         assert_eq!(setting("ap_max_angle=25"), Ok("ap_max_angle = 25".to_owned()));
         assert!(setting("ap_max_angle 25").is_err());
-        assert_eq!(
-            setting("ap_max_angle=999").unwrap_err(),
-            "ap_max_angle 999 is out of range; allowed: 10 to 70"
-        );
-        assert!(setting("ap_max_angel=9").unwrap_err().contains("did you mean ap_max_angle?"));
+        assert_eq!(setting("ap_of_tomorrow=5"), Ok("ap_of_tomorrow = 5".to_owned()));
     }
 
     #[test]

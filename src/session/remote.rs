@@ -15,16 +15,17 @@ mod permission;
 mod provision;
 mod reply;
 mod self_check;
+mod stream;
 mod view;
 
 use std::collections::BTreeMap;
-use std::task::{Context, Poll};
+use std::task::Context;
 use std::time::{Duration, Instant};
 
 use crate::link::proto::fc_client::polling::{Poll as Subject, Schedule};
 use crate::link::proto::fc_client::{Answer, Ask, AskId, FcClient};
 use crate::link::proto::sitl_feed::FeedState;
-use crate::link::{ChildEvent, FcStream, SitlChild, SitlPeer, StreamEvent};
+use crate::link::{ChildEvent, FcStream, SitlChild, SitlPeer};
 use crate::session::upload::LIST;
 use crate::signals::MotorCommand;
 use crate::telemetry::switch::Switch;
@@ -34,7 +35,7 @@ use identify::{Identification, Question};
 use observer::Observer;
 use permission::Permission;
 pub use permission::{Access, Denial, Impact, NOT_PERMITTED, NOTHING_MOVES, NOTHING_SIMULATED};
-pub use provision::Provision;
+pub use provision::{Provision, ProvisionLines};
 use reply::cli_reply;
 use self_check::SelfCheck;
 pub use view::{RemoteNotice, RemoteState, RemoteView};
@@ -163,7 +164,13 @@ impl RemoteLink {
     /// The user permits changes over this connection; an earlier one's permission means nothing.
     pub fn permit_changes(&mut self, connection: u32) {
         self.permission.permit(connection);
+        self.tell_client();
+    }
+
+    /// The client does what is permitted now.
+    fn tell_client(&mut self) {
         self.client.set_cli(self.permission.cli());
+        self.client.set_may_leave_cli(self.access() != Access::Reading);
     }
 
     /// What it is called in sentences.
@@ -242,62 +249,6 @@ impl RemoteLink {
             self.notices.push(RemoteNotice::Failed(sentence.clone()));
             self.state = RemoteState::Unusable(sentence);
             self.ends.child = None;
-        }
-    }
-
-    fn read_stream(&mut self, mut context: Option<&mut Context<'_>>, now: Instant) {
-        let since = now.saturating_duration_since(self.started);
-        loop {
-            let event = match &mut context {
-                Some(context) => match self.ends.stream.from.poll_recv(context) {
-                    Poll::Ready(event) => event,
-                    Poll::Pending => None,
-                },
-                None => self.ends.stream.from.try_recv().ok(),
-            };
-            match event {
-                None => return,
-                Some(StreamEvent::Bytes(bytes)) => self.client.push(&bytes, since),
-                Some(StreamEvent::Connected) => {
-                    self.client.connected();
-                    self.permission.connected();
-                    self.client.set_cli(self.permission.cli());
-                    if let Some(peer) = &mut self.ends.peer {
-                        peer.came_up();
-                    }
-                    // Another one may be connected where the one before was of no use.
-                    if !self.is_fed() || !matches!(self.state, RemoteState::Unusable(_)) {
-                        self.state = RemoteState::Identifying;
-                        self.identification = Identification::default();
-                    }
-                }
-                Some(StreamEvent::Lost(reason)) => self.lose(&reason),
-            }
-        }
-    }
-
-    fn lose(&mut self, reason: &str) {
-        self.client.disconnected();
-        self.permission.lost();
-        self.observer.forget();
-        match self.state {
-            RemoteState::Unusable(_) => {}
-            // Its own program may still be starting: that is told when it takes too long.
-            RemoteState::Connecting if self.ends.child.is_some() => {}
-            RemoteState::Connecting => {
-                let notice = format!("No connection to {}: {reason}; it is tried again.", self.ends.name);
-                self.notices.push(RemoteNotice::Lost(notice));
-            }
-            RemoteState::Identifying | RemoteState::Ready | RemoteState::Lost => {
-                if self.state != RemoteState::Lost {
-                    let notice = format!(
-                        "The connection to {} is lost: {reason}; it is made again by itself.",
-                        self.ends.name
-                    );
-                    self.notices.push(RemoteNotice::Lost(notice));
-                }
-                self.state = RemoteState::Lost;
-            }
         }
     }
 
@@ -415,7 +366,7 @@ impl RemoteLink {
             if matches!(purpose, Purpose::Line(_) | Purpose::Identity(Question::Settings(_) | Question::Plan))
             {
                 self.permission.line_answered(&answer);
-                self.client.set_cli(self.permission.cli());
+                self.tell_client();
             }
             let Some(mailbox) = vehicle.controller_mut().remote_mut() else { return };
             match purpose {
@@ -458,14 +409,6 @@ impl RemoteLink {
             Ok(true) if self.provision.is_some() => self.go_on_with_provision(),
             Ok(true) => self.become_ready(),
             Err(why) => self.give_up(format!("{}: {why}", self.ends.name)),
-        }
-    }
-
-    fn write_stream(&mut self) {
-        let output = self.client.take_output();
-        if !output.is_empty() {
-            // A full queue means a stream that carries nothing any more: the client gives the request up.
-            drop(self.ends.stream.to.try_send(output));
         }
     }
 

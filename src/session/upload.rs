@@ -1,6 +1,7 @@
 //! Uploads a plan as a ground station does, through the command line, and reads it back; downloads one the same way.
 
 use super::command::UploadView;
+use super::landing_gains::{landing_gain, landing_gains_told};
 use crate::firmware::cli::{CliReply, Interpreter};
 use crate::plan::format::{self, Format};
 use crate::plan::{AltitudeError, AltitudeReference, FlightPlan, upload_lines};
@@ -32,6 +33,8 @@ pub fn upload(
 pub struct UploadReport {
     /// What was added to every altitude, m, because the craft counts from elsewhere than home.
     pub added_m: f64,
+    /// Settings that the craft got instead of the guide's, because it falls in LAND with them.
+    pub landing_gains: Vec<String>,
     /// Settings of the plan that a firmware outside does not know or take, with what it says.
     pub refused: Vec<String>,
 }
@@ -56,7 +59,7 @@ impl UploadReport {
                 self.refused.join("; ")
             )
         });
-        let sentences: Vec<String> = self.conversion().into_iter().chain(refused).collect();
+        let sentences: Vec<String> = self.conversion().into_iter().chain(landing_gains_told(&self.landing_gains)).chain(refused).collect();
         (!sentences.is_empty()).then(|| sentences.join(" "))
     }
 }
@@ -124,10 +127,20 @@ impl Upload {
         reference: AltitudeReference,
     ) -> Result<Self, AltitudeError> {
         let plan = reference.plan_for_craft(plan)?;
-        let lines: Vec<String> = upload_lines(&plan, settings).chain([LIST.to_owned()]).collect();
+        let mut settings = settings.to_vec();
+        let mut landing_gains = Vec::new();
+        if matches!(reference, AltitudeReference::SeaLevel { .. }) {
+            for setting in &mut settings {
+                if let Some(instead) = landing_gain(setting) {
+                    setting.clone_from(&instead);
+                    landing_gains.push(instead);
+                }
+            }
+        }
+        let lines: Vec<String> = upload_lines(&plan, &settings).chain([LIST.to_owned()]).collect();
         Ok(Self {
             plan,
-            report: UploadReport { added_m: reference.added_m()?, refused: Vec::new() },
+            report: UploadReport { added_m: reference.added_m()?, landing_gains, refused: Vec::new() },
             total: lines.len(),
             lines: lines.into_iter(),
             sent: String::new(),

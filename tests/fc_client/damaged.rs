@@ -89,6 +89,21 @@ fn a_prompt_that_an_earlier_client_left_open_is_left() {
 }
 
 #[test]
+fn a_prompt_that_an_earlier_client_left_open_is_not_left_unasked() {
+    let mut bench = Bench::new(Manners::default());
+    bench.client.set_cli(betadeck::link::proto::fc_client::CliAccess::Interactive);
+    bench.line("version");
+    bench.client.connected();
+    bench.client.set_may_leave_cli(false);
+    let ran = bench.board.ran.len();
+    assert_eq!(bench.ask(read(ATTITUDE)), Answer::NotAnswered(Unanswered::InCli));
+    assert_eq!(bench.board.ran.len(), ran, "nothing was typed: {:?}", bench.board.ran);
+    bench.client.set_may_leave_cli(true);
+    assert!(bench.msp(ATTITUDE).is_some());
+    assert_eq!(bench.board.ran.last().unwrap(), "exit noreboot");
+}
+
+#[test]
 fn garbage_that_begins_like_a_long_frame_costs_one_repetition() {
     let mut bench = Bench::new(Manners::default());
     let mut first = true;

@@ -55,7 +55,7 @@ fn fly(
     let plan = setup.plan.plan.clone();
     let mut firmware = firmware.with_settings(&setup.plan.settings, &[]);
     let of_case = setup.boot_lines.iter().flat_map(|lines| lines.text.lines());
-    firmware.settings.extend(of_case.map(str::to_owned));
+    firmware.lines.of_user.extend(of_case.map(str::to_owned));
     let mut vehicle = setup::build(setup, &mut Vec::new())?;
     let mut remote =
         RemoteRun::start(&firmware, &vehicle, None, 1.0, Arc::clone(interrupted), &mut Vec::new())?;

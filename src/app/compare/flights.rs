@@ -41,9 +41,10 @@ pub(super) struct Flights {
 
 impl Flights {
     /// Reads the plan and the settings; what the user should know is added to `notices`. `beside_fresh` is whether a firmware
-    /// outside gets the guide's settings first: then the embedded one gets them, too.
+    /// outside gets the guide's settings first: then the embedded one, if it flies, gets them, too.
     pub(super) fn new(
         args: &CompareArgs,
+        embedded_flies: bool,
         beside_fresh: bool,
         notices: &mut Vec<String>,
     ) -> Result<Self, AppError> {
@@ -55,7 +56,11 @@ impl Flights {
         if beside_fresh {
             setup.plan.settings = guide_settings()?.into_iter().chain(setup.plan.settings).collect();
         }
-        setup.boot_lines.push(BootLines::settings("--set", &args.set));
+        // Two firmwares outside fly: only the radii of the embedded one are asked for, to draw the plan.
+        let unheard = &mut Vec::new();
+        let set = setup::set_of_embedded(&args.mission.set, if embedded_flies { &mut *notices } else { unheard });
+        let set = if embedded_flies { set? } else { set.unwrap_or_default() };
+        setup.boot_lines.push(BootLines::settings("--set", &set));
         let vehicle = setup::build(setup.clone(), notices)?;
         let frame = vehicle.local_frame().ok_or_else(|| AppError::internal("the craft is nowhere"))?;
         let settings = vehicle.controller().settings_view().unwrap_or_default();
@@ -63,13 +68,8 @@ impl Flights {
             route: Route::new(&plan.plan, frame, &settings),
             plan,
             setup,
-            options: FlightOptions {
-                takeoff_m: args.takeoff_m(),
-                timeout: SimTime::from_secs_f64(args.timeout_s()),
-                samples_hz: 0.0,
-                tolerance_m: args.tolerance_m(),
-            },
-            set: args.set.clone(),
+            options: setup::flight_options(&args.mission, 0.0),
+            set: args.mission.set.clone(),
             speed: args.flight.speed.map_or(1.0, |Speed(speed)| speed),
             state: args.flight.state_dir.clone(),
             interrupted: interrupt_flag()?,

@@ -5,6 +5,7 @@ use crate::firmware::cli::Interpreter;
 use crate::firmware::config::Configuration;
 use crate::firmware::{Firmware, FirmwareOptions};
 use crate::plan::builtin::{BuiltinPlan, DEMO};
+use crate::session::ProvisionLines;
 
 /// A row of `aux` that binds no switch ends like this.
 const UNUSED: &str = "900 900 0 0";
@@ -13,18 +14,18 @@ const UNUSED: &str = "900 900 0 0";
 /// points 2° east.
 const COMPASS: [&str; 2] = ["set trust_mag = ON", "set mag_declination = 20"];
 
-/// The command lines for a firmware: those of the user, and before them, for one without a configuration of its own, the
-/// guide's settings, a compass and, unless the user's lines bind switches, the starter modes.
-pub(super) fn lines(settings: &[String], is_fresh: bool) -> Result<Vec<String>, AppError> {
-    let mut lines = Vec::new();
+/// The command lines for a firmware: these, and before them, for one without a configuration of its own, the guide's
+/// settings, a compass and, unless the user's lines bind switches, the starter modes.
+pub(super) fn lines(wanted: &ProvisionLines, is_fresh: bool) -> Result<ProvisionLines, AppError> {
+    let mut lines = ProvisionLines { usual: Vec::new(), of_user: wanted.of_user.clone() };
     if is_fresh {
-        lines.extend(guide_settings()?.into_iter().map(|setting| format!("set {setting}")));
-        lines.extend(COMPASS.map(str::to_owned));
-        if !settings.iter().any(|line| line.trim_start().starts_with("aux ")) {
-            lines.extend(starter_modes());
+        lines.usual.extend(guide_settings()?.into_iter().map(|setting| format!("set {setting}")));
+        lines.usual.extend(COMPASS.map(str::to_owned));
+        if !wanted.of_user.iter().any(|line| line.trim_start().starts_with("aux ")) {
+            lines.usual.extend(starter_modes());
         }
     }
-    lines.extend_from_slice(settings);
+    lines.usual.extend_from_slice(&wanted.usual);
     Ok(lines)
 }
 
@@ -50,10 +51,13 @@ mod tests {
 
     #[test]
     fn a_firmware_without_a_configuration_gets_the_guides_and_switches() {
-        let of_user = ["set ap_max_angle = 30".to_owned()];
+        let of_user =
+            ProvisionLines { usual: Vec::new(), of_user: vec!["set ap_max_angle = 30".to_owned()] };
         assert_eq!(lines(&of_user, false).expect("lines"), of_user);
         let fresh = lines(&of_user, true).expect("lines");
-        assert_eq!(fresh.iter().filter(|line| line.starts_with("set ap_")).count(), 25);
+        assert_eq!(fresh.of_user, of_user.of_user);
+        let fresh = fresh.usual;
+        assert_eq!(fresh.iter().filter(|line| line.starts_with("set ap_")).count(), 24);
         assert!(fresh.contains(&"set trust_mag = ON".to_owned()), "{fresh:?}");
         let aux: Vec<&str> =
             fresh.iter().map(String::as_str).filter(|line| line.starts_with("aux")).collect();
@@ -67,9 +71,9 @@ mod tests {
                 "aux 4 11 2 1700 2100 0 0"
             ]
         );
-        assert_eq!(fresh.last(), of_user.last(), "the user has the last word");
-        let bound = ["aux 0 0 3 1700 2100 0 0".to_owned()];
+        let bound =
+            ProvisionLines { usual: Vec::new(), of_user: vec!["aux 0 0 3 1700 2100 0 0".to_owned()] };
         let fresh = lines(&bound, true).expect("lines");
-        assert_eq!(fresh.iter().filter(|line| line.starts_with("aux")).count(), 1);
+        assert!(!fresh.usual.iter().any(|line| line.starts_with("aux")), "{fresh:?}");
     }
 }

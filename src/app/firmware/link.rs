@@ -94,7 +94,7 @@ pub(in crate::app) fn open(
     let stream = FcStream::open(FcPlace::Tcp { host: ip.to_string(), port: ports.tcp });
     let ends = RemoteEnds { name, stream, peer: Some(peer), child };
     let mut link = RemoteLink::new(ends, now);
-    let lines = configuration::lines(&firmware.settings, is_fresh)?;
+    let lines = configuration::lines(&firmware.lines, is_fresh)?;
     if !lines.is_empty() {
         link.provision(Provision::new(lines, is_fresh || firmware.may_write));
     }

@@ -40,7 +40,7 @@ const MAX_QUEUE: usize = 256;
 const API_VERSION: u16 = 1;
 /// Opens the framed command line.
 const STX: u8 = 0x02;
-/// Ends a command line that an earlier client left open, without a restart.
+/// Ends a command line that an earlier client left open; releases that know the word do not restart.
 const LEAVE_CLI: &[u8] = b"\nexit noreboot\n";
 
 /// The client.
@@ -48,6 +48,8 @@ const LEAVE_CLI: &[u8] = b"\nexit noreboot\n";
 pub struct FcClient {
     connected: bool,
     access: CliAccess,
+    /// A command line that an earlier client left open may be left, which restarts some releases.
+    may_leave_cli: bool,
     armed: bool,
     /// The prompt is open.
     in_prompt: bool,
@@ -87,6 +89,7 @@ impl Default for FcClient {
         Self {
             connected: false,
             access: CliAccess::default(),
+            may_leave_cli: true,
             armed: false,
             in_prompt: false,
             knows_messages: None,
@@ -128,6 +131,12 @@ impl FcClient {
     /// How lines reach the command line from now on.
     pub fn set_cli(&mut self, access: CliAccess) {
         self.access = access;
+    }
+
+    /// Whether a command line that an earlier client left open may be left from now on; some releases restart on that. Where
+    /// it may not, requests are answered by [`Unanswered::InCli`].
+    pub fn set_may_leave_cli(&mut self, may: bool) {
+        self.may_leave_cli = may;
     }
 
     /// Whether the craft is armed, as far as is known: then its command line does not open.
@@ -397,12 +406,14 @@ impl FcClient {
         let Some((id, exchange)) = self.exchange.take() else { return };
         if !matches!(exchange, Exchange::Synchronise(_)) {
             self.answer(id, Answer::NotAnswered(Unanswered::Silent));
-        } else if self.echoes.seen && !self.echoes.answered {
+        } else if self.echoes.seen && !self.echoes.answered && self.may_leave_cli {
             self.echoes.answered = true;
             self.output.extend(LEAVE_CLI);
             self.start_next(now);
         } else if let Some((id, _)) = self.queue.pop_front() {
-            self.answer(Some(id), Answer::NotAnswered(Unanswered::Silent));
+            let is_open = self.echoes.seen && !self.echoes.answered;
+            let why = if is_open { Unanswered::InCli } else { Unanswered::Silent };
+            self.answer(Some(id), Answer::NotAnswered(why));
         }
     }
 }

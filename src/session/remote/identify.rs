@@ -99,6 +99,13 @@ impl Identification {
         match (question, answer) {
             // The connection is gone: everything is asked again over the next.
             (_, Answer::NotAnswered(Unanswered::LinkLost)) => return Ok(false),
+            (Question::ApiVersion, Answer::NotAnswered(Unanswered::InCli)) => {
+                return Err(
+                    "another program left its command line open, and leaving it may restart the board: \
+                     the command allow-changes permits that"
+                        .to_owned(),
+                );
+            }
             (Question::ApiVersion, Answer::NotAnswered(_)) => {
                 return Err(
                     "nothing there answers MSP: is it a flight controller, and the right port and speed?"

@@ -157,6 +157,11 @@ impl Observer {
         self.settings.waypoints_from_home()
     }
 
+    /// Whether its altitude loop has no limit in LAND, as in upstream's master, which counts altitudes from sea level.
+    pub(super) fn falls_in_land(&self) -> bool {
+        self.settings.tell_altitude_reference() && !self.counts_from_home()
+    }
+
     /// Whether its heading is that of the magnetometer, so that it is known at rest.
     pub(super) fn trusts_mag(&self) -> bool {
         self.settings.trusts_mag()

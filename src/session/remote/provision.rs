@@ -7,6 +7,7 @@
 //! ```
 
 mod held;
+mod lines;
 mod report;
 #[cfg(test)]
 mod tests;
@@ -15,6 +16,7 @@ mod wish;
 use std::collections::VecDeque;
 
 use held::{Held, Question};
+pub use lines::ProvisionLines;
 use report::{ProvisionReport, RefusedLine};
 use wish::Wish;
 
@@ -32,6 +34,7 @@ const MOST_LOST: usize = 3;
 /// A flight controller that is being set.
 #[derive(Debug)]
 pub struct Provision {
+    lines: ProvisionLines,
     wishes: Vec<Wish>,
     may_write: bool,
     phase: Phase,
@@ -40,6 +43,8 @@ pub struct Provision {
     held: Held,
     report: ProvisionReport,
     restarted: bool,
+    /// Settings in place of the guide's.
+    landing_gains: Vec<String>,
     /// Connections that were lost before it was written.
     lost: usize,
 }
@@ -67,10 +72,11 @@ impl Provision {
     /// Sets what these command lines say; with `may_write` unset they are only compared with what the flight controller
     /// holds. Comments, `save` and batches are passed over.
     #[must_use]
-    pub fn new<L: AsRef<str>>(lines: impl IntoIterator<Item = L>, may_write: bool) -> Self {
-        let wishes = wish::wishes(lines);
+    pub fn new(lines: ProvisionLines, may_write: bool) -> Self {
+        let wishes = wish::wishes(lines.in_order());
         let left = held::questions(&wishes);
         Self {
+            lines,
             wishes,
             may_write,
             phase: Phase::Look { left, written: false },
@@ -78,8 +84,22 @@ impl Provision {
             held: Held::default(),
             report: ProvisionReport::default(),
             restarted: false,
+            landing_gains: Vec::new(),
             lost: 0,
         }
+    }
+
+    /// The flight controller turned out to be one that falls in LAND with the guide's altitude gains.
+    fn replace_falling_gains(&mut self) {
+        let replaced = self.lines.replace_falling_gains();
+        if replaced.is_empty() {
+            return;
+        }
+        self.wishes = wish::wishes(self.lines.in_order());
+        let is_wished = |setting: &String| {
+            self.wishes.iter().any(|wish| wish.line().strip_prefix("set ") == Some(setting.as_str()))
+        };
+        self.landing_gains = replaced.into_iter().filter(is_wished).collect();
     }
 
     /// What to ask next; `None` while an answer or a restart is awaited, and at the end.
@@ -184,6 +204,7 @@ impl Provision {
     /// Everything was looked at.
     fn conclude(&mut self) {
         self.report.unknown = self.held.unknown(&self.wishes);
+        self.report.landing_gains.clone_from(&self.landing_gains);
         self.report.differences = self.held.differences(&self.wishes);
         let Phase::Look { written, .. } = self.phase else { return };
         let must_write = !self.report.differences.is_empty() || self.wishes.iter().any(Wish::cannot_be_read);
@@ -220,7 +241,11 @@ impl RemoteLink {
     }
 
     pub(super) fn ask_to_provision(&mut self) -> Option<Ask> {
-        let ask = self.provision.as_mut()?.next();
+        let provision = self.provision.as_mut()?;
+        if self.observer.falls_in_land() {
+            provision.replace_falling_gains();
+        }
+        let ask = provision.next();
         self.end_provision();
         ask
     }

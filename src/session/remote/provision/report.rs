@@ -1,5 +1,7 @@
 //! What came of setting a flight controller.
 
+use crate::session::landing_gains::landing_gains_told;
+
 /// What came of it.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(super) struct ProvisionReport {
@@ -11,6 +13,8 @@ pub(super) struct ProvisionReport {
     pub(super) refused: Vec<RefusedLine>,
     /// Where it holds something else than is wanted.
     pub(super) differences: Vec<Difference>,
+    /// Settings that it gets instead of the guide's, so that it lands.
+    pub(super) landing_gains: Vec<String>,
     /// Something differs and nothing was written, because nobody allowed it.
     pub(super) may_not_write: bool,
 }
@@ -51,6 +55,7 @@ impl ProvisionReport {
     #[must_use]
     pub(super) fn sentences(&self) -> Vec<String> {
         let mut sentences = Vec::new();
+        sentences.extend(landing_gains_told(&self.landing_gains).filter(|_| !self.may_not_write));
         if self.written > 0 && self.is_as_wanted() {
             sentences
                 .push(format!("The firmware took {} lines of settings, read back as written.", self.written));

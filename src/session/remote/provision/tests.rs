@@ -54,8 +54,13 @@ fn wanted() -> Vec<String> {
     GUIDE.lines().chain(MODES).chain(PLAN.lines()).map(str::to_owned).collect()
 }
 
+fn of_user<L: AsRef<str>>(lines: impl IntoIterator<Item = L>) -> ProvisionLines {
+    let of_user = lines.into_iter().map(|line| line.as_ref().to_owned()).collect();
+    ProvisionLines { usual: Vec::new(), of_user }
+}
+
 fn set(craft: &mut Craft, lines: &[String], may_write: bool) -> ProvisionReport {
-    let mut provision = Provision::new(lines, may_write);
+    let mut provision = Provision::new(of_user(lines), may_write);
     craft.run(&mut provision);
     provision.result().unwrap().unwrap().clone()
 }
@@ -126,7 +131,7 @@ fn of_two_wishes_for_the_same_the_last_counts() {
 
 #[test]
 fn a_save_that_is_refused_ends_it_and_a_lost_answer_too() {
-    let mut provision = Provision::new(["set ap_max_angle = 20"], true);
+    let mut provision = Provision::new(of_user(["set ap_max_angle = 20"]), true);
     let line = |text: &str, failed| Answer::Line { text: text.to_owned(), failed, restarted: false };
     let armed = "###ERROR IN save: NOT WHILE ARMED###\r\n";
     for answer in [line("ap_max_angle = 30\r\n", false), line("", false), line(armed, true)] {
@@ -135,7 +140,7 @@ fn a_save_that_is_refused_ends_it_and_a_lost_answer_too() {
     }
     let report = provision.result().unwrap().unwrap();
     assert_eq!(report.refused[0].reason, "ERROR IN save: NOT WHILE ARMED");
-    let mut lost = Provision::new(["set ap_max_angle = 20"], true);
+    let mut lost = Provision::new(of_user(["set ap_max_angle = 20"]), true);
     for _ in 0..=MOST_LOST {
         assert!(lost.result().is_none(), "it begins anew");
         assert_eq!(lost.next(), Some(Ask::Line("get ap_max_angle".to_owned())));
@@ -144,4 +149,19 @@ fn a_save_that_is_refused_ends_it_and_a_lost_answer_too() {
     let why = lost.result().unwrap().unwrap_err();
     assert!(why.starts_with("`get ap_max_angle` was not answered: there is no connection"), "{why}");
     assert_eq!(lost.next(), None);
+}
+
+#[test]
+fn a_firmware_that_falls_in_land_gets_other_gains_than_the_guides_and_the_user_has_the_last_word() {
+    let mut craft = Craft::new();
+    let usual: Vec<String> = GUIDE.lines().map(str::to_owned).collect();
+    let of_user = vec!["set ap_altitude_d = 20".to_owned()];
+    let mut provision = Provision::new(ProvisionLines { usual, of_user }, true);
+    provision.replace_falling_gains();
+    craft.run(&mut provision);
+    let report = provision.result().unwrap().unwrap();
+    let parameters = craft.firmware.parameters();
+    assert_eq!((parameters.nav.altitude_p, parameters.nav.altitude_d), (2, 20));
+    let told = report.sentences().join(" ");
+    assert!(told.contains("falls in LAND") && told.contains("gets ap_altitude_p = 2 instead"), "{told}");
 }

@@ -1,0 +1,52 @@
+//! Altitude gains for firmware that falls in LAND with those of the test guide.
+//!
+//! Upstream's master, whose waypoint altitudes count from sea level, sets the target of LAND 200 m below the craft and limits
+//! neither the error of its altitude loop nor the answer to it: 20 000 cm · 0.005 µs/cm · `ap_altitude_p` is 5000 µs with
+//! the guide's 50. The motors go to `ap_throttle_min`, and the craft comes down at 18 m/s. With little P against much D it
+//! comes down at 2 m/s (measured).
+
+/// A gain that the guide gives, and the one for landing.
+struct Gain {
+    name: &'static str,
+    of_guide: &'static str,
+    for_landing: &'static str,
+}
+
+const GAINS: [Gain; 2] = [
+    Gain { name: "ap_altitude_p", of_guide: "50", for_landing: "2" },
+    Gain { name: "ap_altitude_d", of_guide: "20", for_landing: "200" },
+];
+
+/// The setting `NAME = VALUE` for such a firmware, when it is one of the guide's that lets it fall. Other values are somebody's
+/// choice.
+pub(super) fn landing_gain(setting: &str) -> Option<String> {
+    let (name, value) = setting.split_once('=')?;
+    let (name, value) = (name.trim(), value.trim());
+    let gain = GAINS.iter().find(|gain| gain.name.eq_ignore_ascii_case(name) && gain.of_guide == value)?;
+    Some(format!("{} = {}", gain.name, gain.for_landing))
+}
+
+/// Tells the user that these settings were given instead of the guide's; `None` when there are none.
+pub(super) fn landing_gains_told(settings: &[String]) -> Option<String> {
+    (!settings.is_empty()).then(|| {
+        format!(
+            "This firmware falls in LAND with the guide's altitude gains, so it gets {} instead; --set and --settings have \
+             the last word.",
+            settings.join(" and ")
+        )
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_guides_gains_are_replaced_and_those_somebody_chose_stay() {
+        assert_eq!(landing_gain("ap_altitude_p = 50").as_deref(), Some("ap_altitude_p = 2"));
+        assert_eq!(landing_gain("AP_ALTITUDE_D=20").as_deref(), Some("ap_altitude_d = 200"));
+        for stays in ["ap_altitude_p = 30", "ap_altitude_i = 30", "ap_altitude_p", "ap_altitude_p = 500"] {
+            assert_eq!(landing_gain(stays), None, "{stays}");
+        }
+    }
+}

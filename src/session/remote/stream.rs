@@ -1,0 +1,82 @@
+//! Moves the bytes of a flight controller's serial port, and follows its connection.
+
+use std::task::{Context, Poll};
+use std::time::Instant;
+
+use super::{Identification, RemoteLink, RemoteNotice, RemoteState};
+use crate::link::StreamEvent;
+
+/// Most pieces that are read between two steps, so that a peer that floods does not hold the craft up.
+const MOST_READ: usize = 64;
+
+impl RemoteLink {
+    /// Takes what has come over the serial port.
+    pub(super) fn read_stream(&mut self, mut context: Option<&mut Context<'_>>, now: Instant) {
+        let since = now.saturating_duration_since(self.started);
+        for _ in 0..MOST_READ {
+            let event = match &mut context {
+                Some(context) => match self.ends.stream.from.poll_recv(context) {
+                    Poll::Ready(event) => event,
+                    Poll::Pending => None,
+                },
+                None => self.ends.stream.from.try_recv().ok(),
+            };
+            match event {
+                None => return,
+                Some(StreamEvent::Bytes(bytes)) => self.client.push(&bytes, since),
+                Some(StreamEvent::Connected) => {
+                    self.client.connected();
+                    self.permission.connected();
+                    self.tell_client();
+                    if let Some(peer) = &mut self.ends.peer {
+                        peer.came_up();
+                    }
+                    // Another one may be connected where the one before was of no use.
+                    if !self.is_fed() || !matches!(self.state, RemoteState::Unusable(_)) {
+                        self.state = RemoteState::Identifying;
+                        self.identification = Identification::default();
+                    }
+                }
+                Some(StreamEvent::Lost(reason)) => self.lose(&reason),
+            }
+        }
+        // The queue did not say that it wakes anybody.
+        if let Some(context) = context {
+            context.waker().wake_by_ref();
+        }
+    }
+
+    fn lose(&mut self, reason: &str) {
+        self.client.disconnected();
+        self.permission.lost();
+        self.observer.forget();
+        match self.state {
+            RemoteState::Unusable(_) => {}
+            // Its own program may still be starting: that is told when it takes too long.
+            RemoteState::Connecting if self.ends.child.is_some() => {}
+            RemoteState::Connecting => {
+                let notice = format!("No connection to {}: {reason}; it is tried again.", self.ends.name);
+                self.notices.push(RemoteNotice::Lost(notice));
+            }
+            RemoteState::Identifying | RemoteState::Ready | RemoteState::Lost => {
+                if self.state != RemoteState::Lost {
+                    let notice = format!(
+                        "The connection to {} is lost: {reason}; it is made again by itself.",
+                        self.ends.name
+                    );
+                    self.notices.push(RemoteNotice::Lost(notice));
+                }
+                self.state = RemoteState::Lost;
+            }
+        }
+    }
+
+    /// Sends what the client wants to send.
+    pub(super) fn write_stream(&mut self) {
+        let output = self.client.take_output();
+        if !output.is_empty() {
+            // A full queue means a stream that carries nothing any more: the client gives the request up.
+            drop(self.ends.stream.to.try_send(output));
+        }
+    }
+}
