@@ -17,7 +17,6 @@ fn remote() -> RemoteView {
     RemoteView {
         name: "serial:/dev/ttyACM0".to_owned(),
         state: RemoteState::Ready,
-        is_sitl: false,
         access: Access::Reading,
         has_plans: true,
         opens_cli: false,

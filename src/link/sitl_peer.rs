@@ -62,17 +62,12 @@ pub struct SitlPeer {
 }
 
 impl SitlPeer {
-    /// Sockets for an executable; `is_up` when it has started long ago, else [`Self::came_up`] tells that it has booted, or
-    /// its first motor packet of half a second ago.
+    /// Sockets for an executable, which gets nothing before [`Self::came_up`] tells that it has booted, or its first motor
+    /// packet of half a second ago does.
     ///
     /// # Errors
     /// When a port for motors is not free.
-    pub fn open(
-        config: FeedConfig,
-        ports: SitlPorts,
-        is_up: bool,
-        now: Instant,
-    ) -> Result<Self, MotorsInError> {
+    pub fn open(config: FeedConfig, ports: SitlPorts, now: Instant) -> Result<Self, MotorsInError> {
         Ok(Self {
             feed: SitlFeed::new(config),
             motors: bind(SocketAddr::new(ports.ip, ports.motors))?,
@@ -80,18 +75,10 @@ impl SitlPeer {
             fdm: SocketAddr::new(ports.ip, ports.fdm),
             rc: SocketAddr::new(ports.ip, ports.rc),
             started: now,
-            is_up,
+            is_up: false,
             boots_since: None,
             stats: EndpointStats::new(now),
         })
-    }
-
-    /// The ports that motors come to: values, pulses.
-    ///
-    /// # Errors
-    /// When the system does not tell.
-    pub fn motor_ports(&self) -> io::Result<(u16, u16)> {
-        Ok((self.motors.local_addr()?.port(), self.raw.local_addr()?.port()))
     }
 
     /// The executable ended, or is about to: nothing is sent before it has booted again.

@@ -133,7 +133,6 @@ impl RemoteLink {
         RemoteView {
             name: self.ends.name.clone(),
             state: self.state.clone(),
-            is_sitl: self.is_fed(),
             access: self.access(),
             has_plans: self.observer.has_plans(),
             opens_cli: self.opens_cli(),
@@ -206,7 +205,7 @@ impl RemoteLink {
         now: Instant,
     ) -> Vec<RemoteNotice> {
         self.follow_program(vehicle);
-        self.read_stream(context, now);
+        self.read_stream(vehicle, context, now);
         self.exchange_frames(vehicle, now);
         self.take_requests(vehicle);
         self.ask_what_is_due(now);
@@ -229,19 +228,25 @@ impl RemoteLink {
                     self.ends.name
                 )),
                 ChildEvent::Ended(end) => {
-                    if let Some(peer) = &mut self.ends.peer {
-                        peer.went_down();
-                    }
-                    vehicle.remote_restarted();
-                    self.observer.restarted();
-                    self.notices.push(RemoteNotice::Restarted(if end.is_reboot() {
+                    let notice = if end.is_reboot() {
                         "The firmware restarts; the craft stands at home again.".to_owned()
                     } else {
                         format!("The firmware ended {end}: it is started again, and the craft stands at home again.")
-                    }));
+                    };
+                    self.begin_anew(vehicle, notice);
                 }
             }
         }
+    }
+
+    /// The executable ended: another life of it begins at home.
+    fn begin_anew(&mut self, vehicle: &mut Vehicle, notice: String) {
+        if let Some(peer) = &mut self.ends.peer {
+            peer.went_down();
+        }
+        vehicle.remote_restarted();
+        self.observer.restarted();
+        self.notices.push(RemoteNotice::Restarted(notice));
     }
 
     fn give_up(&mut self, sentence: String) {

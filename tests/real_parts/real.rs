@@ -51,7 +51,7 @@ impl Executable {
         };
         let ip = IpAddr::V4(Ipv4Addr::LOCALHOST);
         let ports = SitlPorts { ip, raw: 9001, motors: 9002, fdm: FDM, rc: 9004 };
-        let peer = SitlPeer::open(config, ports, false, Instant::now()).unwrap();
+        let peer = SitlPeer::open(config, ports, Instant::now()).unwrap();
         let directory = tempfile::tempdir().unwrap();
         let config = ChildConfig {
             program,

@@ -8,7 +8,7 @@ use serde_json::Value;
 use super::lossy::LossyLink;
 use super::program::{PATIENCE, Program};
 use super::stand_in::process::{self, Trouble, VARIABLE};
-use super::stand_in::program::Ports;
+use super::stand_in::program::{End, Ports};
 use super::stand_in::{StandIn, free_ports};
 
 /// A served firmware.
@@ -148,6 +148,24 @@ fn a_firmware_does_not_outlive_a_program_that_is_killed() {
 
 #[test]
 fn one_that_runs_already_is_taken_and_its_reboot_survived() {
+    let Ports { raw, motors, .. } = free_ports();
+    let stand_in = StandIn::start(raw, motors);
+    let directory = tempfile::tempdir().unwrap();
+    let lines = directory.path().join("lines.txt");
+    std::fs::write(&lines, "set ap_max_angle = 33\n").unwrap();
+    let settings = lines.to_str().unwrap();
+    let firmware = ["--fresh", "--firmware", "attach", "--yes", "--settings", settings];
+    let mut served = Served::start(stand_in.ports, &firmware);
+    served.notice("ended or restarts");
+    served.notice("took 1 lines of settings, read back as written");
+    served.notice(" answers: Betaflight ");
+    let seen = stand_in.seen();
+    assert_eq!(seen.before_boot, 0, "no state disturbed its boot: {seen:?}");
+    assert_eq!(stand_in.stop(), [End::Reboot, End::Stopped]);
+}
+
+#[test]
+fn one_that_runs_already_and_hangs_is_told() {
     let Ports { raw, motors, .. } = free_ports();
     let stand_in = StandIn::start(raw, motors);
     let mut served = Served::start(stand_in.ports, &["--fresh", "--firmware", "attach"]);

@@ -22,7 +22,11 @@ fn open(ports: Ports, is_up: bool) -> SitlPeer {
     };
     let Ports { raw, motors, fdm, rc, .. } = ports;
     let ports = SitlPorts { ip: IpAddr::V4(Ipv4Addr::LOCALHOST), raw, motors, fdm, rc };
-    SitlPeer::open(config, ports, is_up, Instant::now()).unwrap()
+    let mut peer = SitlPeer::open(config, ports, Instant::now()).unwrap();
+    if is_up {
+        peer.came_up();
+    }
+    peer
 }
 
 /// Feeds for a while, a thousand packets a second as far as the machine keeps up, and fifty of RC.

@@ -13,10 +13,14 @@ pub(crate) mod serial;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use std::thread::JoinHandle;
+use std::time::Duration;
 
 use cli::Memory;
 use program::{End, Ports, Shared, Sockets, live};
 use receiver::Seen;
+
+/// How long it takes to be started again.
+const RESTART: Duration = Duration::from_millis(300);
 
 /// One that runs in this process, as if somebody else had started it, and is started again when it reboots.
 pub(crate) struct StandIn {
@@ -35,6 +39,11 @@ impl StandIn {
         let thread = std::thread::spawn(move || {
             let (mut memory, mut ends) = (Memory::new(), Vec::new());
             while ends.last() != Some(&End::Stopped) {
+                if !ends.is_empty() {
+                    // Somebody starts it again, and what came meanwhile went nowhere.
+                    std::thread::sleep(RESTART);
+                    sockets.forget();
+                }
                 // The first one has booted long ago.
                 ends.push(live(&mut sockets, &mut memory, !ends.is_empty(), &seen));
             }

@@ -67,9 +67,8 @@ pub(in crate::app) fn open(
         motor_order: ports.motor_order,
         home: home.ok_or_else(|| AppError::internal("a firmware outside needs the embedded physics"))?,
     };
-    let is_running = firmware.executable.is_none();
     let now = Instant::now();
-    let peer = SitlPeer::open(feed, SitlPorts { ip, raw, motors, fdm, rc }, is_running, now)
+    let peer = SitlPeer::open(feed, SitlPorts { ip, raw, motors, fdm, rc }, now)
         .map_err(|error| AppError::environment(error.to_string()))?;
     let (mut directory, mut is_fresh, mut child, mut stored_in) = (None, false, None, None);
     if let Some(program) = &firmware.executable {

@@ -5,13 +5,19 @@ use std::time::Instant;
 
 use super::{Identification, RemoteLink, RemoteNotice, RemoteState};
 use crate::link::StreamEvent;
+use crate::vehicle::Vehicle;
 
 /// Most pieces that are read between two steps, so that a peer that floods does not hold the craft up.
 const MOST_READ: usize = 64;
 
 impl RemoteLink {
     /// Takes what has come over the serial port.
-    pub(super) fn read_stream(&mut self, mut context: Option<&mut Context<'_>>, now: Instant) {
+    pub(super) fn read_stream(
+        &mut self,
+        vehicle: &mut Vehicle,
+        mut context: Option<&mut Context<'_>>,
+        now: Instant,
+    ) {
         let since = now.saturating_duration_since(self.started);
         for _ in 0..MOST_READ {
             let event = match &mut context {
@@ -37,7 +43,7 @@ impl RemoteLink {
                         self.identification = Identification::default();
                     }
                 }
-                Some(StreamEvent::Lost(reason)) => self.lose(&reason),
+                Some(StreamEvent::Lost(reason)) => self.lose(&reason, vehicle),
             }
         }
         // The queue did not say that it wakes anybody.
@@ -46,7 +52,7 @@ impl RemoteLink {
         }
     }
 
-    fn lose(&mut self, reason: &str) {
+    fn lose(&mut self, reason: &str, vehicle: &mut Vehicle) {
         self.client.disconnected();
         self.permission.lost();
         self.observer.forget();
@@ -57,6 +63,15 @@ impl RemoteLink {
             RemoteState::Connecting => {
                 let notice = format!("No connection to {}: {reason}; it is tried again.", self.ends.name);
                 self.notices.push(RemoteNotice::Lost(notice));
+            }
+            // One that somebody else started closes its port when it ends, to be started again.
+            RemoteState::Identifying | RemoteState::Ready if self.is_fed() && self.ends.child.is_none() => {
+                let notice = format!(
+                    "{} ended or restarts: when it is there again, the craft stands at home.",
+                    self.ends.name
+                );
+                self.begin_anew(vehicle, notice);
+                self.state = RemoteState::Lost;
             }
             RemoteState::Identifying | RemoteState::Ready | RemoteState::Lost => {
                 if self.state != RemoteState::Lost {

@@ -26,8 +26,6 @@ pub struct RemoteView {
     pub name: String,
     /// How far it is known.
     pub state: RemoteState,
-    /// A SITL executable that the physics of this program feeds; else a craft of its own, at which only reading is free.
-    pub is_sitl: bool,
     /// What may be done with it.
     pub access: Access,
     /// It holds and flies plans, as far as it has told.

@@ -60,6 +60,13 @@ impl Sockets {
         Ok(())
     }
 
+    /// Drops what waits, and the clients' port.
+    pub(crate) fn forget(&mut self) {
+        self.tcp = None;
+        let mut buffer = [0; 512];
+        while self.fdm.recv(&mut buffer).is_ok() || self.rc.recv(&mut buffer).is_ok() {}
+    }
+
     /// The ports that were bound.
     pub(crate) fn ports(&self) -> Ports {
         Ports {
