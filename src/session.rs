@@ -31,8 +31,8 @@ pub use links::{Links, MotorTargets, MotorsError};
 pub use pacer::{Pacer, SPEED_RANGE};
 pub use persistence::Persistence;
 pub use remote::{
-    Access, Denial, Impact, NOT_PERMITTED, NOTHING_MOVES, NOTHING_SIMULATED, Provision, ProvisionLines, RemoteEnds,
-    RemoteLink, RemoteNotice, RemoteState, RemoteView,
+    Access, Denial, EXCHANGE_PAUSE, Impact, NOT_PERMITTED, NOTHING_MOVES, NOTHING_SIMULATED, Provision,
+    ProvisionLines, RemoteEnds, RemoteLink, RemoteNotice, RemoteState, RemoteView,
 };
 pub use request_handler::{Handled, RequestHandler};
 pub use runtime::{Endpoints, FlownBefore, Handle, SessionConfig, start, start_at};

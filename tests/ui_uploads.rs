@@ -62,7 +62,11 @@ fn a_conversion_of_altitudes_is_said() {
     let id = upload(&mut state);
     update(
         &mut state,
-        Msg::UploadReply { id, count: 4, result: Ok(UploadReport { added_m: 300.5, refused: Vec::new() }) },
+        Msg::UploadReply {
+            id,
+            count: 4,
+            result: Ok(UploadReport { added_m: 300.5, ..UploadReport::default() }),
+        },
     );
     let seen = screen(&state);
     assert!(

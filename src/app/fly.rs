@@ -18,7 +18,6 @@ use crate::flight::{Flight, FlightEnd, FlightOptions, FlightResult};
 use crate::plan::format::PlanFile;
 use crate::record::End;
 use crate::session::{Event, Pacer, hazards, upload};
-use crate::signals::SimTime;
 use crate::storage::Store;
 use crate::vehicle::Vehicle;
 use output::Output;

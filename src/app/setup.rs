@@ -104,7 +104,10 @@ pub(super) fn flight_options(args: &MissionArgs, samples_hz: f64) -> FlightOptio
 
 /// The settings of `--set` that the embedded firmware has, checked, when another one flies beside it; what it does not have is
 /// added to `notices`.
-pub(super) fn set_of_embedded(settings: &[String], notices: &mut Vec<String>) -> Result<Vec<String>, AppError> {
+pub(super) fn set_of_embedded(
+    settings: &[String],
+    notices: &mut Vec<String>,
+) -> Result<Vec<String>, AppError> {
     let is_unknown = |setting: &&String| {
         let (name, value) = setting.split_once(" = ").unwrap_or((setting, ""));
         check_setting(name, value).is_err_and(|fault| fault.part == SettingPart::Name)

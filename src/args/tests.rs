@@ -107,7 +107,10 @@ fn compare_takes_one_or_two_firmwares() {
     let file = layers(&[], "seed = 9\ntakeoff = 5");
     let layered = compare("betadeck compare square --firmware attach --repeat 5", &file);
     assert_eq!((layered.flight.seed, layered.repeat()), (Some(9), 5));
-    assert!((layered.mission.takeoff_m() - 5.0).abs() < 1e-9 && (layered.mission.timeout_s() - 1800.0).abs() < 1e-9);
+    assert!(
+        (layered.mission.takeoff_m() - 5.0).abs() < 1e-9
+            && (layered.mission.timeout_s() - 1800.0).abs() < 1e-9
+    );
 }
 
 #[test]
@@ -192,7 +195,10 @@ fn the_command_line_wins_over_environment_over_file() {
     assert!((fly.mission.takeoff_m() - 12.5).abs() < 1e-9 && (fly.mission.tolerance_m() - 3.0).abs() < 1e-9);
     assert_eq!(fly.mission.set, ["ap_max_angle = 11", "ap_max_angle = 12"]);
     assert!(fly.rx_loss_at.is_some() && fly.flight.arm_assist == Some(OnOff::On));
-    assert_eq!(fly_over("betadeck fly square --set ap_max_angle=13", &layers).mission.set, ["ap_max_angle = 13"]);
+    assert_eq!(
+        fly_over("betadeck fly square --set ap_max_angle=13", &layers).mission.set,
+        ["ap_max_angle = 13"]
+    );
     // The terminal has no --takeoff: the key is for others.
     let cli = parse_line("betadeck", &layers).unwrap();
     assert_eq!(cli.tui.flight.seed, Some(2));

@@ -155,6 +155,12 @@ impl SitlPeer {
         self.feed.state(self.micros(now))
     }
 
+    /// Whether the craft is to wait for it: see [`SitlFeed::waits`].
+    #[must_use]
+    pub fn waits(&self, now: Instant) -> bool {
+        self.feed.waits(self.micros(now))
+    }
+
     /// What its packets mean.
     #[must_use]
     pub fn dialect(&self) -> Dialect {

@@ -114,6 +114,12 @@ impl Pacer {
         Some(self.handed_out + Duration::from_secs_f64(wait_s))
     }
 
+    /// Whether a step was due that was not handed out.
+    #[must_use]
+    pub fn is_behind(&self) -> bool {
+        self.carry >= 1.0
+    }
+
     /// Wall time that was dropped since this was asked last.
     pub fn take_lost(&mut self) -> Duration {
         std::mem::take(&mut self.lost)

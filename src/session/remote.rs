@@ -42,6 +42,10 @@ pub use view::{RemoteNotice, RemoteState, RemoteView};
 
 /// The message that restarts a flight controller.
 const REBOOT: u16 = 68;
+/// Simulated time between two exchanges at real time, µs.
+const EXCHANGE_US: f64 = 1000.0;
+/// Least wall time between two exchanges: time that was missed is caught up with at twice the speed.
+pub const EXCHANGE_PAUSE: Duration = Duration::from_micros(500);
 /// How long a program may take until it answers for the first time.
 const FIRST_ANSWER: Duration = Duration::from_secs(10);
 
@@ -188,6 +192,17 @@ impl RemoteLink {
     #[must_use]
     pub fn is_fed(&self) -> bool {
         self.ends.peer.is_some()
+    }
+
+    /// Most steps of `step_us` at `speed` times real time that may be flown before the next exchange: motors are not to stand
+    /// still for many steps where it is the machine that was held up.
+    #[must_use]
+    pub fn most_steps(&self, step_us: u64, speed: f64, now: Instant) -> u64 {
+        match &self.ends.peer {
+            None => u64::MAX,
+            Some(peer) if peer.waits(now) => 0,
+            Some(_) => ((EXCHANGE_US / step_us as f64 * speed).ceil() as u64).max(1),
+        }
     }
 
     /// Its lines among the endpoints.

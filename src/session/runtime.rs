@@ -28,7 +28,7 @@ use super::late_answers::LateAnswers;
 use super::pacer::Pacer;
 use super::persistence::Persistence;
 use super::real_time::RealTime;
-use super::remote::RemoteLink;
+use super::remote::{EXCHANGE_PAUSE, RemoteLink};
 use super::request_handler::RequestHandler;
 use super::simulator::Simulator;
 use crate::firmware::cli::Interpreter;
@@ -241,7 +241,7 @@ impl Session {
             let flown = self.handle_requests(&mut context);
             let now = start.elapsed();
             self.record_flood();
-            let due = if self.follows_wall_clock() { self.pacer.due(now, SLICE) } else { 0 };
+            let due = if self.follows_wall_clock() { self.pacer.due(now, self.most_steps()) } else { 0 };
             let ticks = flown + self.advance(due, now);
             self.exchange_with_remote(&mut context);
             let after = start.elapsed();
@@ -269,6 +269,13 @@ impl Session {
             }
         }
         self.failure.take()
+    }
+
+    /// Most steps of one round.
+    fn most_steps(&self) -> u64 {
+        let (step_us, speed) = (self.vehicle.step_us(), self.pacer.speed());
+        let of_remote = self.remote.as_ref().map(|remote| remote.most_steps(step_us, speed, Instant::now()));
+        SLICE.min(of_remote.unwrap_or(SLICE))
     }
 
     /// Until an external simulator speaks, and without one, time passes with the wall clock.
@@ -300,7 +307,7 @@ impl Session {
             && remote.is_fed()
             && let Some(due) = self.pacer.next_due()
         {
-            return due.saturating_sub(present);
+            return if self.pacer.is_behind() { EXCHANGE_PAUSE } else { due.saturating_sub(present) };
         }
         self.longest_sleep().saturating_sub(present.saturating_sub(now))
     }

@@ -59,7 +59,12 @@ impl UploadReport {
                 self.refused.join("; ")
             )
         });
-        let sentences: Vec<String> = self.conversion().into_iter().chain(landing_gains_told(&self.landing_gains)).chain(refused).collect();
+        let sentences: Vec<String> = self
+            .conversion()
+            .into_iter()
+            .chain(landing_gains_told(&self.landing_gains))
+            .chain(refused)
+            .collect();
         (!sentences.is_empty()).then(|| sentences.join(" "))
     }
 }

@@ -18,7 +18,6 @@ use crate::flight::{FlightOptions, FlightSetup};
 use crate::plan::format::PlanFile;
 use crate::record::compare::{Route, Track};
 use crate::session::{Event, RemoteNotice, SessionEvent, upload};
-use crate::signals::SimTime;
 
 /// Ticks between two looks at an interrupt.
 const SLICE: u64 = 4096;
@@ -58,7 +57,8 @@ impl Flights {
         }
         // Two firmwares outside fly: only the radii of the embedded one are asked for, to draw the plan.
         let unheard = &mut Vec::new();
-        let set = setup::set_of_embedded(&args.mission.set, if embedded_flies { &mut *notices } else { unheard });
+        let set =
+            setup::set_of_embedded(&args.mission.set, if embedded_flies { &mut *notices } else { unheard });
         let set = if embedded_flies { set? } else { set.unwrap_or_default() };
         setup.boot_lines.push(BootLines::settings("--set", &set));
         let vehicle = setup::build(setup.clone(), notices)?;

@@ -51,8 +51,7 @@ mod tests {
 
     #[test]
     fn a_firmware_without_a_configuration_gets_the_guides_and_switches() {
-        let of_user =
-            ProvisionLines { usual: Vec::new(), of_user: vec!["set ap_max_angle = 30".to_owned()] };
+        let of_user = ProvisionLines { usual: Vec::new(), of_user: vec!["set ap_max_angle = 30".to_owned()] };
         assert_eq!(lines(&of_user, false).expect("lines"), of_user);
         let fresh = lines(&of_user, true).expect("lines");
         assert_eq!(fresh.of_user, of_user.of_user);
@@ -71,8 +70,7 @@ mod tests {
                 "aux 4 11 2 1700 2100 0 0"
             ]
         );
-        let bound =
-            ProvisionLines { usual: Vec::new(), of_user: vec!["aux 0 0 3 1700 2100 0 0".to_owned()] };
+        let bound = ProvisionLines { usual: Vec::new(), of_user: vec!["aux 0 0 3 1700 2100 0 0".to_owned()] };
         let fresh = lines(&bound, true).expect("lines");
         assert!(!fresh.usual.iter().any(|line| line.starts_with("aux")), "{fresh:?}");
     }

@@ -19,7 +19,7 @@ use crate::firmware::cli::CliReply;
 use crate::flight::{Flight, FlightEnd, Report};
 use crate::plan::FlightPlan;
 use crate::session::{
-    Event, Pacer, RemoteLink, RemoteNotice, RemoteState, SessionEvent, Upload, UploadProgress,
+    EXCHANGE_PAUSE, Event, Pacer, RemoteLink, RemoteNotice, RemoteState, SessionEvent, Upload, UploadProgress,
 };
 use crate::vehicle::{LateAnswer, Ticket, Vehicle};
 
@@ -31,6 +31,7 @@ const SLICE: u64 = 50;
 pub(in crate::app) struct RemoteRun {
     link: RemoteLink,
     pacer: Pacer,
+    step_us: u64,
     started: Instant,
     interrupted: Arc<AtomicBool>,
     /// Behind the link, whose program runs in it.
@@ -88,6 +89,7 @@ impl RemoteRun {
         Ok(Self {
             link,
             pacer: Pacer::new(vehicle.step_us(), speed),
+            step_us: vehicle.step_us(),
             started: Instant::now(),
             interrupted,
             _directory: directory,
@@ -201,7 +203,8 @@ impl RemoteRun {
 
     /// Ticks that are due now.
     pub(in crate::app) fn due(&mut self) -> u64 {
-        self.pacer.due(self.started.elapsed(), SLICE)
+        let most = self.link.most_steps(self.step_us, self.pacer.speed(), Instant::now());
+        self.pacer.due(self.started.elapsed(), SLICE.min(most))
     }
 
     /// Exchanges with the firmware what came of the ticks, and gives what is told of it.
@@ -223,6 +226,7 @@ impl RemoteRun {
     pub(in crate::app) fn rest(&self) {
         let now = self.started.elapsed();
         let next = self.pacer.next_due().unwrap_or(now + Duration::from_millis(1));
-        std::thread::sleep(next.saturating_sub(now));
+        let pause = if self.pacer.is_behind() { EXCHANGE_PAUSE } else { next.saturating_sub(now) };
+        std::thread::sleep(pause);
     }
 }

@@ -20,6 +20,8 @@ const AT_HOME_US: u64 = 200_000;
 /// Silence after which the motors stop, µs. What counts is how long packets have gone without an answer: nobody answers
 /// while this program is held up and sends none.
 const SILENCE_US: u64 = 1_000_000;
+/// Wall time without an answer after which the craft waits for one, µs: motors that stand for longer let it tip over.
+const PATIENCE_US: u64 = 10_000;
 /// What stands for latitude and longitude without a fix, degrees: out of range, so that the executable skips the GPS.
 const NO_FIX_DEG: f64 = 999.0;
 
@@ -59,6 +61,8 @@ pub struct SitlFeed {
     first_answer_us: Option<u64>,
     /// Since when packets are without an answer, µs of wall time.
     unanswered_us: Option<u64>,
+    /// When the newest packet was sent, µs of wall time.
+    sent_us: u64,
 }
 
 impl SitlFeed {
@@ -73,6 +77,7 @@ impl SitlFeed {
             gps: None,
             first_answer_us: None,
             unanswered_us: None,
+            sent_us: 0,
         }
     }
 
@@ -133,6 +138,7 @@ impl SitlFeed {
     /// A packet was sent at `now_us` of wall time.
     pub fn sent(&mut self, now_us: u64) {
         self.unanswered_us.get_or_insert(now_us);
+        self.sent_us = now_us;
     }
 
     /// The motor command of a packet that came at `now_us` of wall time; `None` when it is none.
@@ -153,6 +159,16 @@ impl SitlFeed {
             (Some(_), true) => FeedState::Silent,
             (Some(_), false) => FeedState::Answering,
         }
+    }
+
+    /// Whether the craft is to wait: an executable that answered and is held up now would find it elsewhere. Every 10 ms a
+    /// step is flown all the same, for its packet or the answer may have been lost.
+    #[must_use]
+    pub fn waits(&self, now_us: u64) -> bool {
+        let is_late = |since_us| now_us.saturating_sub(since_us) >= PATIENCE_US;
+        self.state(now_us) == FeedState::Answering
+            && self.unanswered_us.is_some_and(is_late)
+            && !is_late(self.sent_us)
     }
 
     fn is_at_home(&self, now_us: u64) -> bool {
@@ -224,6 +240,26 @@ mod tests {
     /// Latitude on the wire.
     fn latitude(feed: &SitlFeed, ms: u64) -> f64 {
         feed.packet(ms * MS).fields[15]
+    }
+
+    #[test]
+    fn a_craft_waits_for_an_executable_that_is_held_up_and_asks_again_meanwhile() {
+        let mut feed = feed(Dialect::SitlGz);
+        feed.sent(0);
+        assert!(!feed.waits(50 * MS), "it boots");
+        motors(&mut feed, 50);
+        let mut flown = 0;
+        for ms in 51..1051 {
+            if !feed.waits(ms * MS) {
+                feed.sent(ms * MS);
+                flown += 1;
+            }
+        }
+        // Ten at once, then one in ten.
+        assert!((105..=115).contains(&flown), "{flown}");
+        assert!(!feed.waits(1060 * MS), "it is silent, which is told and has its own rule");
+        motors(&mut feed, 1061);
+        assert!(!feed.waits(1062 * MS));
     }
 
     #[test]

@@ -119,7 +119,7 @@ fn a_craft_that_counts_from_sea_level_gets_and_gives_altitudes_from_there() {
     tell(&mut rig, Some(300.0));
     let mut result = rig.upload(2);
     while rig.answer(|_, _| {}) > 0 {}
-    assert_eq!(result.try_recv().unwrap(), Ok(UploadReport { added_m: 300.0, refused: Vec::new() }));
+    assert_eq!(result.try_recv().unwrap(), Ok(UploadReport { added_m: 300.0, ..UploadReport::default() }));
     assert_eq!(rig.firmware.stored_plan().waypoints[1].alt_cm, 32_000);
     let (reply, mut plan) = oneshot::channel();
     rig.commands.try_send(Command::Download { reply }).unwrap();
