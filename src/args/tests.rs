@@ -133,7 +133,7 @@ fn wrong_values_say_what_is_allowed() {
         ("betadeck fly square --rate 100", "2.5 ms"),
         ("betadeck fly square --fault motr@1", "motor"),
         ("betadeck fly square --samples 10", "--samples needs --json"),
-        ("betadeck fly square --set ap_max_angel=1", "did you mean ap_max_angle?"),
+        ("betadeck fly square --set ap_max_angle", "write NAME=VALUE"),
         ("betadeck fly square --gust -1", "out of range"),
         ("betadeck fly square --wind -5@20", "wind"),
         ("betadeck fly square --rx-loss-at -1", "time T -1 is out of range"),
