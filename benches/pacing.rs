@@ -1,6 +1,8 @@
 //! How evenly a firmware outside is fed: the intervals of the packets to it against the steps of a millisecond, and its
 //! time, which is in the stamps here, against the wall clock. `betadeck sitl` flies; the packets pass through this program.
 //!
+//! Beside it, in the same time, a thread that only sleeps to every millisecond: what the machine itself makes of one.
+//!
 //! `cargo bench --bench pacing -- [--seconds N] [--p99-ms LIMIT]`; with a limit, a 99th percentile beyond it makes the exit
 //! code 1.
 
@@ -18,7 +20,10 @@ mod program;
 
 use std::net::UdpSocket;
 use std::process::ExitCode;
-use std::time::Instant;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
 
 use program::{PATIENCE, Program, Sitl};
 
@@ -82,16 +87,44 @@ fn ahead_s(packets: &[Packet]) -> f64 {
     packets.iter().map(|packet| packet.stamp_s - packet.at_s).fold(f64::NEG_INFINITY, f64::max)
 }
 
+/// Sleeps to every millisecond until it is stopped; gives how far each wake-up was off the one before, less the step, s.
+fn sleep_beside(stop: &Arc<AtomicBool>) -> JoinHandle<Vec<f64>> {
+    let stop = Arc::clone(stop);
+    std::thread::spawn(move || {
+        let (start, mut woken) = (Instant::now(), Vec::new());
+        while !stop.load(Ordering::Relaxed) {
+            let next = ((start.elapsed().as_secs_f64() / STEP_S).floor() + 1.0) * STEP_S;
+            std::thread::sleep(Duration::from_secs_f64(next).saturating_sub(start.elapsed()));
+            woken.push(start.elapsed().as_secs_f64());
+        }
+        off_the_step(&woken)
+    })
+}
+
+/// How far the intervals between these instants are off the step, s, sorted.
+fn off_the_step(at_s: &[f64]) -> Vec<f64> {
+    let mut off_s: Vec<f64> = at_s.windows(2).map(|pair| (pair[1] - pair[0] - STEP_S).abs()).collect();
+    off_s.sort_unstable_by(f64::total_cmp);
+    off_s
+}
+
+/// The value (ms) below which so many thousandths are.
+fn at_ms(sorted_s: &[f64], thousandths: usize) -> f64 {
+    1e3 * sorted_s[(sorted_s.len() * thousandths / 1000).min(sorted_s.len() - 1)]
+}
+
 fn main() -> ExitCode {
     // `cargo test` only looks whether it runs.
     let usual = if std::env::args().any(|argument| argument == "--bench") { 20.0 } else { 1.0 };
     let seconds = option("--seconds").unwrap_or(usual);
+    let stop = Arc::new(AtomicBool::new(false));
+    let sleeper = sleep_beside(&stop);
     let packets = record(seconds);
-    let mut off_s: Vec<f64> =
-        packets.windows(2).map(|pair| (pair[1].at_s - pair[0].at_s - STEP_S).abs()).collect();
-    off_s.sort_unstable_by(f64::total_cmp);
-    let at_ms = |thousandths: usize| 1e3 * off_s[(off_s.len() * thousandths / 1000).min(off_s.len() - 1)];
-    let (p50, p99, worst) = (at_ms(500), at_ms(990), at_ms(1000));
+    stop.store(true, Ordering::Relaxed);
+    let bare_s = sleeper.join().expect("the sleeper ends");
+    let off_s = off_the_step(&packets.iter().map(|packet| packet.at_s).collect::<Vec<_>>());
+    let (p50, p99, worst) = (at_ms(&off_s, 500), at_ms(&off_s, 990), at_ms(&off_s, 1000));
+    let (bare_p50, bare_p99) = (at_ms(&bare_s, 500), at_ms(&bare_s, 990));
     let steps = ((packets[packets.len() - 1].stamp_s - packets[0].stamp_s) / STEP_S).round();
     let ends = ENDS.min(packets.len() / 4);
     let drift_ms = 1e3 * (ahead_s(&packets[packets.len() - ends..]) - ahead_s(&packets[..ends]));
@@ -99,6 +132,11 @@ fn main() -> ExitCode {
         "{:>7} packets in {seconds:.0} s, {:.2} % of the steps; off the millisecond by p50 {p50:.3} ms  p99 {p99:.3} ms  worst {worst:.3} ms",
         packets.len(),
         100.0 * packets.len() as f64 / (steps + 1.0)
+    );
+    println!(
+        "a bare sleep meanwhile: p50 {bare_p50:.3} ms  p99 {bare_p99:.3} ms  worst {:.3} ms; the packets' p99 is {:.2} times that",
+        at_ms(&bare_s, 1000),
+        p99 / bare_p99
     );
     println!("drift against the wall clock {drift_ms:+.3} ms");
     let limit_ms = option("--p99-ms").unwrap_or(f64::INFINITY);

@@ -240,3 +240,36 @@ fn a_firmware_without_plans_says_so() {
     let state = connected(|remote| remote.has_plans = false);
     assert!(action::enabled(&state, Action::Upload).unwrap_err().contains("has no waypoints"));
 }
+
+#[test]
+fn over_a_simulated_craft_with_a_firmware_outside_only_what_can_work_is_offered() {
+    let flying = |change: fn(&mut RemoteView)| {
+        connected(|remote| {
+            remote.access = Access::Everything;
+            change(remote);
+        })
+    };
+    let state = flying(|_| {});
+    for action in [Action::GoTo, Action::HoldHere, Action::Resume] {
+        let why = action::enabled(&state, action).unwrap_err();
+        assert!(why.contains("takes no such order"), "{action:?}: {why}");
+    }
+    assert_eq!(action::enabled(&state, Action::Fly), Ok(()));
+    for (change, reason) in [
+        ((|remote| remote.state = RemoteState::Identifying) as fn(&mut RemoteView), "wait until it answers"),
+        (|remote| remote.has_plans = false, "has no waypoints"),
+    ] {
+        let why = action::enabled(&flying(change), Action::Fly).unwrap_err();
+        assert!(why.contains(reason), "{why}");
+    }
+}
+
+#[test]
+fn a_plan_that_the_firmware_outside_has_not_told_is_not_flown_unseen() {
+    let mut state = connected(|remote| remote.access = Access::Everything);
+    let mut view = state.view.clone();
+    std::sync::Arc::make_mut(&mut view.vehicle).stored_plan = None;
+    update(&mut state, Msg::View(view));
+    let effects = press(&mut state, KeyCode::Char('F'));
+    assert!(effects.iter().any(|effect| matches!(effect, Effect::Upload { .. })), "{effects:?}");
+}

@@ -340,7 +340,9 @@ impl AppState {
     #[must_use]
     pub fn flies_older_plan(&self) -> bool {
         let stored = self.view.vehicle.stored_plan.as_ref();
-        self.flies_stored_plan()
+        // Which plan a flight controller outside flies is not told.
+        self.view.remote.is_none()
+            && self.flies_stored_plan()
             && stored.is_some_and(|stored| !stored.waypoints.is_empty() && !self.flies(stored))
     }
 

@@ -3,7 +3,7 @@
 use crate::session::command::{
     NOT_RECORDED, PLACE_IS_EXTERNAL, REWOUND, TIME_IS_EXTERNAL, TIME_IS_THE_FIRMWARES,
 };
-use crate::session::{Access, CONTROLLER_IS_REMOTE, PHYSICS_IS_EXTERNAL};
+use crate::session::{Access, CONTROLLER_IS_REMOTE, PHYSICS_IS_EXTERNAL, RemoteState};
 use crate::telemetry::{LinkState, Mode, NavState};
 use crate::ui::app_state::AppState;
 use crate::ui::stick_recording;
@@ -65,8 +65,11 @@ pub fn enabled(state: &AppState, action: Action) -> Result<(), String> {
                 "The craft stands disarmed, so there is no flight to look ahead to: `{fly}` flies the plan."
             ))
         }
-        Action::Arm => transmitter::can_arm(state),
-        Action::Autopilot => transmitter::switch(state, Mode::Autopilot).map(drop),
+        Action::Arm => transmitter::can_arm(state).map_err(|why| or_not_known_yet(state, why)),
+        Action::Autopilot => {
+            let switch = transmitter::switch(state, Mode::Autopilot);
+            switch.map(drop).map_err(|why| or_not_known_yet(state, why))
+        }
         Action::Play => stick_recording::can_play(state),
         Action::Throttle if state.view.vehicle.is_engaged() => Err(format!(
             "The autopilot has the throttle: `{}` switches it off.",
@@ -97,6 +100,14 @@ pub fn enabled(state: &AppState, action: Action) -> Result<(), String> {
             ))
         }
         _ => Ok(()),
+    }
+}
+
+/// A switch that is missing may only not be known yet.
+fn or_not_known_yet(state: &AppState, why: String) -> String {
+    match &state.view.remote {
+        Some(remote) if remote.state != RemoteState::Ready => real_craft::NOT_KNOWN_YET.to_owned(),
+        _ => why,
     }
 }
 

@@ -8,12 +8,22 @@ use super::{Action, EditAction};
 const NO_PLANS: &str =
     "This flight controller has no waypoints: its firmware was built without flight plans (FLIGHT_PLAN).";
 
+/// Why the navigator of another program takes no orders.
+const NO_ORDERS: &str = "A firmware outside takes no such order in flight: switch the autopilot off and fly there, or upload another plan.";
+
+/// Why a firmware that has not told how it is set is not flown.
+pub(super) const NOT_KNOWN_YET: &str =
+    "The firmware outside has not told what it is and which switches it has: wait until it answers.";
+
 /// Why an action makes no sense with this flight controller outside.
 pub(super) fn refusal(remote: &RemoteView, action: Action) -> Option<&'static str> {
     let is_real = remote.access.is_limited();
     match action {
         _ if is_real && moves(action) => Some(NOTHING_MOVES),
         _ if is_real && changes_world(action) => Some(NOTHING_SIMULATED),
+        Action::GoTo | Action::HoldHere | Action::Resume => Some(NO_ORDERS),
+        Action::Fly if remote.state != RemoteState::Ready => Some(NOT_KNOWN_YET),
+        Action::Fly if !remote.has_plans => Some(NO_PLANS),
         Action::Upload | Action::Edit(EditAction::Download)
             if remote.state == RemoteState::Ready && !remote.has_plans =>
         {

@@ -21,7 +21,7 @@ pub(super) fn fly(state: &mut AppState) -> Vec<Effect> {
         let text = format!("The simulation is paused: {} goes on.", state.key(Action::Pause));
         state.notify(Severity::Info, text);
     }
-    if state.view.vehicle.stored_plan.as_ref().is_none_or(|plan| !plan.waypoints.is_empty()) {
+    if state.view.vehicle.stored_plan.as_ref().is_some_and(|plan| !plan.waypoints.is_empty()) {
         if !state.plan().waypoints.is_empty() && !state.plan_is_on_craft() {
             let text = format!(
                 "Flying the plan in the craft, which is not {}: {} uploads it.",
@@ -69,11 +69,13 @@ pub(super) fn uploaded(
         Ok(report) => {
             let flies = open.is_some_and(|open| state.flies(&open.document().plan));
             // The next picture shows the new plan; whether another one flies is known already.
-            let then = if state.flies_stored_plan() && !flies {
-                let key = state.key(Action::GoTo);
-                format!(" It takes effect at the next engagement; `{key}` continues on it now.")
-            } else {
-                String::new()
+            let then = match state.flies_stored_plan() && !flies {
+                false => String::new(),
+                true if state.view.remote.is_some() => " It takes effect at the next engagement.".to_owned(),
+                true => {
+                    let key = state.key(Action::GoTo);
+                    format!(" It takes effect at the next engagement; `{key}` continues on it now.")
+                }
             };
             let converted = report.remark().map_or_else(String::new, |sentence| format!(" {sentence}"));
             let text = format!("Uploaded {title}: {count} waypoints.{converted}{then}");
