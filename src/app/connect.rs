@@ -24,13 +24,9 @@ pub(super) fn run(args: &TuiArgs, place: &FcPlace, keymap: Keymap) -> Result<u8,
     };
     let mut notices: Vec<String> = plan.notes.iter().map(ToString::to_string).collect();
     notices.extend(ConnectArgs::idle_options(&args.doors, &args.firmware.link, &args.physics, &args.flight));
-    let path = match &args.plan {
-        Some(PlanArg::File(path, _)) => Some(path.as_path()),
-        _ => None,
-    };
     let screen = Screen {
         plan,
-        path,
+        path: args.plan.as_ref().and_then(PlanArg::path),
         vehicle: Vehicle::elsewhere().map_err(AppError::internal)?,
         // It keeps its configuration itself.
         store: Store::in_memory(),

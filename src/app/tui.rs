@@ -76,13 +76,9 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
     let mut setup = setup::for_session(&args.flight, &args.physics, &args.doors, on_the_ground, stored)?;
     setup.remote_controller = firmware.is_some();
     let vehicle = setup::build(setup, &mut notices)?;
-    let path = match &args.plan {
-        Some(PlanArg::File(path, _)) => Some(path.as_path()),
-        _ => None,
-    };
     let screen = Screen {
         plan,
-        path,
+        path: args.plan.as_ref().and_then(PlanArg::path),
         vehicle,
         store,
         directory: setup::store_directory(&args.flight)?,

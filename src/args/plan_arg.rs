@@ -68,6 +68,15 @@ impl PlanArg {
         }
     }
 
+    /// Its file, when it comes from one.
+    #[must_use]
+    pub fn path(&self) -> Option<&Path> {
+        match self {
+            Self::File(path, _) => Some(path),
+            Self::Builtin(_) | Self::Stdin(_) => None,
+        }
+    }
+
     /// The name to show in messages: the file as given, `-`, or the built-in plan's name.
     #[must_use]
     pub fn display_name(&self) -> String {
