@@ -78,3 +78,60 @@ fn a_firmware_that_does_not_want_to_end_is_ended() {
     let pid = rustix::process::Pid::from_raw(pid).unwrap();
     assert!(rustix::process::test_kill_process(pid).is_err());
 }
+
+/// Waits for a file of the firmware's directory, and reads it.
+fn written(directory: &TempDir, name: &str) -> String {
+    loop {
+        match std::fs::read_to_string(directory.path().join("firmware").join(name)) {
+            Ok(text) if text.ends_with('\n') => return text,
+            _ => std::thread::sleep(Duration::from_millis(5)),
+        }
+    }
+}
+
+#[test]
+fn a_firmware_that_prints_without_end_is_shown_in_part_and_its_end_is_told() {
+    let script = "yes | head -n 300000; echo through > done; exit 3";
+    let (mut child, directory) = start("/bin/sh", &["-c", script]);
+    // Nobody takes anything meanwhile.
+    written(&directory, "done");
+    let (mut lines, mut not_shown) = (0, 0);
+    loop {
+        match next(&mut child) {
+            ChildEvent::Started => {}
+            ChildEvent::Line(line) => {
+                assert_eq!(line, "y");
+                lines += 1;
+            }
+            ChildEvent::NotShown(count) => not_shown += count,
+            ended => break assert_eq!(ended, ChildEvent::Ended(ChildEnd::Code(3))),
+        }
+    }
+    assert!((1..1000).contains(&lines), "{lines} were kept");
+    assert_eq!(lines + not_shown, 300_000);
+}
+
+#[test]
+fn a_script_that_started_the_firmware_ends_together_with_it() {
+    let (child, directory) = start("/bin/sh", &["-c", "sleep 1000 & echo $! > pid; wait"]);
+    let pid: i32 = written(&directory, "pid").trim().parse().unwrap();
+    drop(child);
+    let pid = rustix::process::Pid::from_raw(pid).unwrap();
+    // Whose child it became takes its end in at some time.
+    while rustix::process::test_kill_process(pid).is_ok() {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn one_that_went_its_own_way_with_the_output_does_not_hold_up_the_end() {
+    let (mut child, directory) = start("/bin/sh", &["-c", "setsid sleep 1000 & echo $! > pid; exit 5"]);
+    let pid: i32 = written(&directory, "pid").trim().parse().unwrap();
+    assert_eq!(next(&mut child), ChildEvent::Started);
+    assert_eq!(next(&mut child), ChildEvent::Ended(ChildEnd::Code(5)));
+    drop(child);
+    // It has left what is ended here, as it may.
+    let pid = rustix::process::Pid::from_raw(pid).unwrap();
+    rustix::process::kill_process(pid, rustix::process::Signal::KILL).unwrap();
+}

@@ -3,21 +3,24 @@
 //!
 //! A thread of its own waits for the child. What the child prints and how it ends are told in order.
 
+mod events;
+mod group;
 mod launch;
 
 use std::io::{BufRead as _, BufReader, Read};
 use std::path::PathBuf;
 use std::process::{Child, ExitStatus};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, mpsc};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
+use events::Events;
 pub use launch::{LaunchError, launch_firmware};
 
 /// Between two looks at the child.
 const LOOK: Duration = Duration::from_millis(20);
-/// How long a child may take to end when it is asked to.
+/// How long a child may take to end when it is asked to, and its output when it has ended.
 const GRACE: Duration = Duration::from_millis(500);
 /// Before a child that ended is started again.
 const PAUSE: Duration = Duration::from_millis(100);
@@ -49,6 +52,8 @@ pub enum ChildEvent {
     Started,
     /// A line of its output.
     Line(String),
+    /// So many lines of its output are not told: it prints more than can be read.
+    NotShown(u64),
     /// It ended; it is started again.
     Ended(ChildEnd),
     /// It cannot be started: why, as a part of a sentence. Nothing follows.
@@ -95,7 +100,7 @@ impl From<ExitStatus> for ChildEnd {
 /// The child and the thread that waits for it. Dropping it ends both.
 #[derive(Debug)]
 pub struct SitlChild {
-    events: mpsc::Receiver<ChildEvent>,
+    events: Arc<Events>,
     stop: Arc<AtomicBool>,
     keeper: Option<JoinHandle<()>>,
 }
@@ -106,16 +111,16 @@ impl SitlChild {
     /// # Errors
     /// When the system gives no thread.
     pub fn start(config: ChildConfig) -> std::io::Result<Self> {
-        let (tell, events) = mpsc::channel();
+        let events = Arc::new(Events::default());
         let stop = Arc::new(AtomicBool::new(false));
-        let keeper = Keeper { config, tell, stop: Arc::clone(&stop) };
+        let keeper = Keeper { config, events: Arc::clone(&events), stop: Arc::clone(&stop) };
         let keeper = std::thread::Builder::new().name("firmware".to_owned()).spawn(move || keeper.run())?;
         Ok(Self { events, stop, keeper: Some(keeper) })
     }
 
     /// What happened since.
     pub fn take_event(&mut self) -> Option<ChildEvent> {
-        self.events.try_recv().ok()
+        self.events.take(now())
     }
 }
 
@@ -132,7 +137,7 @@ impl Drop for SitlChild {
 /// Waits for the child and starts it again.
 struct Keeper {
     config: ChildConfig,
-    tell: mpsc::Sender<ChildEvent>,
+    events: Arc<Events>,
     stop: Arc<AtomicBool>,
 }
 
@@ -149,10 +154,7 @@ impl Keeper {
                 child.stderr.take().map(|output| self.listen(output)),
             ];
             let ended = self.wait(&mut child);
-            for reader in readers.into_iter().flatten() {
-                // It ends with the child's output.
-                drop(reader.join());
-            }
+            read_to_the_end(readers.into_iter().flatten());
             match ended {
                 Ok(Some(end)) => {
                     if let ChildEnd::Code(code) = end
@@ -170,26 +172,31 @@ impl Keeper {
     }
 
     fn tell(&self, event: ChildEvent) {
-        // Nobody listens only while the program ends.
-        drop(self.tell.send(event));
+        self.events.add(event);
     }
 
     fn is_stopped(&self) -> bool {
         self.stop.load(Ordering::Relaxed)
     }
 
-    /// How the child ended; `None` when it was ended from here.
+    /// How the child ended; `None` when it was ended from here. What it started ends with it.
     fn wait(&self, child: &mut Child) -> std::io::Result<Option<ChildEnd>> {
-        loop {
-            if let Some(status) = child.try_wait()? {
-                return Ok(Some(status.into()));
+        let by_itself = loop {
+            if group::has_ended(child)? {
+                break true;
             }
             if self.is_stopped() {
-                end(child)?;
-                return Ok(None);
+                group::ask_to_end(child);
+                let until = now() + GRACE;
+                while now() < until && !group::has_ended(child)? {
+                    sleep(LOOK);
+                }
+                break false;
             }
             sleep(LOOK);
-        }
+        };
+        let status = group::reap(child)?;
+        Ok(by_itself.then(|| status.into()))
     }
 
     fn pause(&self, pause: Duration) {
@@ -201,41 +208,30 @@ impl Keeper {
 
     /// Tells the lines of an output until it ends.
     fn listen(&self, output: impl Read + Send + 'static) -> JoinHandle<()> {
-        let tell = self.tell.clone();
+        let events = Arc::clone(&self.events);
         std::thread::spawn(move || {
             let mut output = BufReader::new(output);
             let mut line = Vec::new();
             while matches!(output.by_ref().take(LINE_MAX).read_until(b'\n', &mut line), Ok(1..)) {
-                let text = String::from_utf8_lossy(&line).trim_end().to_owned();
-                line.clear();
-                if !text.is_empty()
-                    && !NOT_TOLD.iter().any(|start| text.starts_with(start))
-                    && tell.send(ChildEvent::Line(text)).is_err()
-                {
-                    return;
+                let text = line.trim_ascii_end();
+                if !text.is_empty() && !NOT_TOLD.iter().any(|start| text.starts_with(start.as_bytes())) {
+                    events.add_line(text, now());
                 }
+                line.clear();
             }
         })
     }
 }
 
-/// Asks the child to end, and ends it when it does not.
-fn end(child: &mut Child) -> std::io::Result<()> {
-    #[cfg(unix)]
-    if let Some(pid) = rustix::process::Pid::from_raw(child.id() as i32) {
-        // It may have ended by itself meanwhile.
-        let _gone = rustix::process::kill_process(pid, rustix::process::Signal::TERM);
-        let until = now() + GRACE;
-        while now() < until {
-            if child.try_wait()?.is_some() {
-                return Ok(());
-            }
+/// Waits for those who read the output of a child that has ended. One whose output somebody else still holds, who has left
+/// the child's group, is left to it.
+fn read_to_the_end(readers: impl Iterator<Item = JoinHandle<()>>) {
+    let until = now() + GRACE;
+    for reader in readers {
+        while !reader.is_finished() && now() < until {
             sleep(LOOK);
         }
     }
-    child.kill()?;
-    child.wait()?;
-    Ok(())
 }
 
 #[allow(clippy::disallowed_methods, reason = "a thread of its own waits for a process")]

@@ -46,6 +46,8 @@ const REBOOT: u16 = 68;
 const EXCHANGE_US: f64 = 1000.0;
 /// Least wall time between two exchanges: time that was missed is caught up with at twice the speed.
 pub const EXCHANGE_PAUSE: Duration = Duration::from_micros(500);
+/// Most events of its program between two steps, so that one that prints much does not hold the craft up.
+const MOST_EVENTS: usize = 64;
 /// How long a program may take until it answers for the first time.
 const FIRST_ANSWER: Duration = Duration::from_secs(10);
 
@@ -233,10 +235,14 @@ impl RemoteLink {
 
     /// Tells what became of its program since.
     fn follow_program(&mut self, vehicle: &mut Vehicle) {
-        while let Some(event) = self.ends.child.as_mut().and_then(SitlChild::take_event) {
+        for _ in 0..MOST_EVENTS {
+            let Some(event) = self.ends.child.as_mut().and_then(SitlChild::take_event) else { return };
             match event {
                 ChildEvent::Started => {}
                 ChildEvent::Line(line) => self.notices.push(RemoteNotice::Output(line)),
+                ChildEvent::NotShown(count) => self
+                    .notices
+                    .push(RemoteNotice::Told(format!("Lines of the firmware's output that were not shown: {count}."))),
                 ChildEvent::Failed(reason) => self.give_up(format!("{} cannot be started: {reason}.", self.ends.name)),
                 ChildEvent::Ended(end) if !self.has_answered => self.give_up(format!(
                     "{} ended {end} before it answered: is it a SITL executable of Betaflight, and are its ports free?",
