@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use betadeck::link::proto::fc_client::{Answer, Ask, AskId, FcClient, Unanswered};
+use betadeck::link::proto::fc_client::{Answer, Ask, AskId, CliAccess, FcClient, Unanswered};
 use betadeck::link::proto::msp::{Form, Frame, Kind};
 use proptest::prelude::*;
 
@@ -60,6 +60,74 @@ fn a_line_by_message_that_was_given_up_does_not_answer_the_next() {
         panic!("no answer")
     };
     assert!(text.starts_with("ap_max_velocity = "), "{text}");
+}
+
+/// How long a line is waited for whose output never ends, a byte of it coming after each of these pauses.
+fn endless(access: CliAccess, pause: Duration) -> (Duration, Answer) {
+    let mut client = FcClient::default();
+    client.connected();
+    client.set_cli(access);
+    client.ask(AskId(7), Ask::Line("dump".to_owned()));
+    let mut now = Duration::ZERO;
+    client.poll(now);
+    if access == CliAccess::Framed {
+        let api = Frame { form: Form::V1, kind: Kind::Reply, code: 1, payload: vec![0, 1, 49] };
+        client.push(&api.to_bytes(), now);
+        client.push(&[0x02], now);
+    } else {
+        let api = Frame { form: Form::V1, kind: Kind::Reply, code: 1, payload: vec![0, 1, 40] };
+        client.push(&api.to_bytes(), now);
+        client.push(b"\r\nEntering CLI Mode, type 'exit' to return, or 'help'\r\n\r\n# ", now);
+        now += Duration::from_millis(100);
+        client.poll(now);
+    }
+    assert!(String::from_utf8_lossy(&client.take_output()).contains("dump\n"), "the line was sent");
+    let begun = now;
+    loop {
+        now += pause;
+        client.push(b"x", now);
+        if let Some((AskId(7), answer)) = client.next_answer() {
+            return (now - begun, answer);
+        }
+    }
+}
+
+#[test]
+fn an_output_without_end_is_given_up() {
+    for access in [CliAccess::Framed, CliAccess::Interactive] {
+        let silent = Answer::NotAnswered(Unanswered::Silent);
+        let (slow, answer) = endless(access, Duration::from_secs(3));
+        assert_eq!(answer, silent);
+        assert!(slow <= Duration::from_secs(63), "a byte now and then: {slow:?}");
+        // More than is kept within seconds: then it has to end.
+        let (fast, answer) = endless(access, Duration::from_micros(10));
+        assert_eq!(answer, silent);
+        assert!(fast < Duration::from_secs(10), "without a pause: {fast:?}");
+    }
+}
+
+#[test]
+fn pages_without_end_are_given_up() {
+    let mut client = FcClient::default();
+    client.connected();
+    client.ask(AskId(7), Ask::MessageLine("dump".to_owned()));
+    let reply = |code, payload: &[u8]| {
+        let form = if code > 254 { Form::V2 } else { Form::V1 };
+        Frame { form, kind: Kind::Reply, code, payload: payload.to_vec() }.to_bytes()
+    };
+    client.poll(Duration::ZERO);
+    client.push(&reply(1, &[0, 1, 49]), Duration::ZERO);
+    let mut now = Duration::ZERO;
+    let answer = loop {
+        now += Duration::from_secs(3);
+        // Of 65535 bytes one at a time.
+        client.push(&reply(0x3012, &[0xff, 0xff, 0, b'x']), now);
+        if let Some((_, answer)) = client.next_answer() {
+            break answer;
+        }
+    };
+    assert_eq!(answer, Answer::NotAnswered(Unanswered::Silent));
+    assert!(now <= Duration::from_secs(63), "{now:?}");
 }
 
 #[test]

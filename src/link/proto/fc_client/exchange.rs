@@ -9,6 +9,9 @@ use super::message_line::MessageLine;
 use super::prompt_line::PromptLine;
 use super::request::Request;
 
+/// How long a line may take with all of its output, however steadily that comes.
+pub(super) const LONGEST: Duration = Duration::from_secs(60);
+
 /// What is under way; one at a time.
 #[derive(Debug)]
 pub(super) enum Exchange {

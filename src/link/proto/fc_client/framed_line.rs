@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::exchange::LineProgress;
+use super::exchange::{LONGEST, LineProgress};
 use super::line_text;
 
 const ETX: u8 = 0x03;
@@ -22,13 +22,14 @@ pub(super) struct FramedLine {
     pub(super) line: String,
     open: bool,
     output: Vec<u8>,
-    /// When something was sent or came last.
+    begun: Duration,
+    /// When something was sent, or came last that was kept.
     active: Duration,
 }
 
 impl FramedLine {
     pub(super) fn new(line: String, now: Duration) -> Self {
-        Self { line, open: false, output: Vec::new(), active: now }
+        Self { line, open: false, output: Vec::new(), begun: now, active: now }
     }
 
     /// Whether the command line is open, and every byte belongs to it.
@@ -38,9 +39,9 @@ impl FramedLine {
 
     /// Takes a byte: STX first, then output.
     pub(super) fn push(&mut self, byte: u8, now: Duration, output: &mut Vec<u8>) -> LineProgress {
-        self.active = now;
         if !self.open {
             self.open = true;
+            self.active = now;
             output.extend(self.line.as_bytes());
             output.extend([b'\n', ETX]);
             return LineProgress::Waiting;
@@ -53,6 +54,7 @@ impl FramedLine {
         }
         if self.output.len() < MAX_OUTPUT {
             self.output.push(byte);
+            self.active = now;
         }
         LineProgress::Waiting
     }
@@ -75,7 +77,7 @@ impl FramedLine {
             true if self.announces_restart() => RESTART_QUIET,
             true => PAUSE,
         };
-        self.active + patience
+        (self.active + patience).min(self.begun + LONGEST)
     }
 
     /// The line and its output so far, once it was sent.

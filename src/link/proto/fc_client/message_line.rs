@@ -2,7 +2,8 @@
 
 use std::time::Duration;
 
-use super::request::{Request, Waiting};
+use super::exchange::LONGEST;
+use super::request::Request;
 use super::{Answer, line_text};
 use crate::link::proto::command_message::{CLI_COMMAND, CUT, REFUSED};
 use crate::link::proto::msp::{Frame, MAX_REQUEST};
@@ -20,6 +21,7 @@ pub(super) struct MessageLine {
     line: String,
     request: Request,
     output: Vec<u8>,
+    begun: Duration,
 }
 
 /// What a frame is to the line.
@@ -46,7 +48,7 @@ impl MessageLine {
     /// Sends a line.
     pub(super) fn send(line: &str, now: Duration, output: &mut Vec<u8>) -> Self {
         let request = Request::send(CLI_COMMAND, line.as_bytes(), now, output);
-        Self { line: line.to_owned(), request, output: Vec::new() }
+        Self { line: line.to_owned(), request, output: Vec::new(), begun: now }
     }
 
     /// Takes a frame, and asks for the next page when there is one.
@@ -80,12 +82,12 @@ impl MessageLine {
     }
 
     /// Whether the reply is late; it is not asked for again, for a line may do something.
-    pub(super) fn is_overdue(&mut self, now: Duration) -> bool {
-        self.request.poll(now, &mut Vec::new()) == Waiting::Overdue
+    pub(super) fn is_overdue(&self, now: Duration) -> bool {
+        now >= self.due()
     }
 
     /// When the reply is late.
     pub(super) fn due(&self) -> Duration {
-        self.request.due()
+        self.request.due().min(self.begun + LONGEST)
     }
 }

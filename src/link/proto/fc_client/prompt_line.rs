@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use super::exchange::LineProgress;
+use super::exchange::{LONGEST, LineProgress};
 use super::framed_line::{MAX_OUTPUT, RESTART_QUIET, end_of};
 use super::line_text;
 
@@ -27,14 +27,15 @@ pub(super) struct PromptLine {
     /// The prompt is open and the line was typed.
     typed: bool,
     output: Vec<u8>,
-    /// When something was sent or came last.
+    begun: Duration,
+    /// When something was sent, or came last that was kept.
     active: Duration,
 }
 
 impl PromptLine {
     /// Types a line at the open prompt, or opens it first.
     pub(super) fn new(line: String, open: bool, now: Duration, output: &mut Vec<u8>) -> Self {
-        let mut new = Self { line, typed: false, output: Vec::new(), active: now };
+        let mut new = Self { line, typed: false, output: Vec::new(), begun: now, active: now };
         if open {
             new.type_line(now, output);
         } else {
@@ -53,9 +54,9 @@ impl PromptLine {
 
     /// Takes a byte of the output.
     pub(super) fn push(&mut self, byte: u8, now: Duration) {
-        self.active = now;
         if self.output.len() < MAX_OUTPUT {
             self.output.push(byte);
+            self.active = now;
         }
     }
 
@@ -91,7 +92,7 @@ impl PromptLine {
         } else {
             OPENING
         };
-        self.active + patience
+        (self.active + patience).min(self.begun + LONGEST)
     }
 
     /// The line and its output so far, once it was typed.
