@@ -5,8 +5,9 @@ use std::time::{Duration, Instant};
 
 use crate::vehicle::Ticket;
 
-/// How long an answer is awaited, wall time. A flight controller that stores its configuration is silent for a second.
-const ANSWER_TIMEOUT: Duration = Duration::from_secs(5);
+/// How long an answer is awaited, wall time. The client of the flight controller's serial port answers each request itself,
+/// that it gave up as well, and one request may take a minute: this is for answers that were lost after that.
+const ANSWER_TIMEOUT: Duration = Duration::from_secs(600);
 
 /// What is said in place of an answer that did not come.
 pub(super) const NO_ANSWER: &str = "the flight controller does not answer";

@@ -104,6 +104,20 @@ fn an_upload_to_a_remote_flight_controller_shows_how_far_it_is_until_it_was_read
 }
 
 #[test]
+fn an_upload_waits_for_a_slow_line_and_fails_in_a_sentence_where_nobody_answers() {
+    let mut rig = Rig::new();
+    let mut result = rig.upload(2);
+    // As long as the client of the serial port waits for a line with much output.
+    rig.session.take_late_answers(Instant::now() + Duration::from_secs(90));
+    assert!(result.try_recv().is_err(), "it is still awaited");
+    while rig.answer(|_, _| {}) > 0 {}
+    assert_eq!(result.try_recv().unwrap(), Ok(UploadReport::default()));
+    let mut result = rig.upload(2);
+    rig.session.take_late_answers(Instant::now() + Duration::from_secs(3600));
+    assert_eq!(result.try_recv().unwrap(), Err("the flight controller does not answer".to_owned()));
+}
+
+#[test]
 fn a_craft_that_counts_from_sea_level_gets_and_gives_altitudes_from_there() {
     let mut rig = Rig::new();
     let tell = |rig: &mut Rig, home_m| {
