@@ -25,6 +25,12 @@ const PAUSE_FIRST: Duration = Duration::from_millis(200);
 /// Longest pause between two attempts.
 const PAUSE_LONGEST: Duration = Duration::from_secs(2);
 
+/// Why most connections end.
+const CLOSED: &str = "the other end closed the connection";
+/// Why one ends that has just been made, most likely.
+const CLOSED_AT_ONCE: &str = "the other end closed the connection at once, as one does that serves a single client: close the \
+                              other program that is connected to it";
+
 /// What comes from the stream.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum StreamEvent {
@@ -73,7 +79,7 @@ enum Ended {
 
 impl Ended {
     fn closed() -> Self {
-        Self::Lost("the other end closed the connection".to_owned())
+        Self::Lost(CLOSED.to_owned())
     }
 }
 
@@ -128,13 +134,20 @@ async fn connect(
     if from.send(StreamEvent::Connected).await.is_err() {
         return Ended::Dropped;
     }
-    match connection {
-        Connection::Serial(port) => match pump(port, to, from).await {
+    let (begun, mut heard) = (Instant::now(), false);
+    let ended = match connection {
+        Connection::Serial(port) => match pump(port, to, from, &mut heard).await {
             Ended::Lost(_) => Ended::Lost("it was unplugged".to_owned()),
             Ended::Dropped => Ended::Dropped,
         },
-        Connection::Tcp(stream) => pump(stream, to, from).await,
-        Connection::WebSocket(socket) => ws::pump(*socket, to, from).await,
+        Connection::Tcp(stream) => pump(stream, to, from, &mut heard).await,
+        Connection::WebSocket(socket) => ws::pump(*socket, to, from, &mut heard).await,
+    };
+    match ended {
+        Ended::Lost(why) if why == CLOSED && !heard && begun.elapsed() < PAUSE_LONGEST => {
+            Ended::Lost(CLOSED_AT_ONCE.to_owned())
+        }
+        ended => ended,
     }
 }
 
@@ -146,11 +159,13 @@ enum Connection {
     WebSocket(Box<ws::Socket>),
 }
 
-/// Moves bytes until the connection is lost or nobody wants them any more. Reading goes on while a write is held up.
+/// Moves bytes until the connection is lost or nobody wants them any more; `heard` tells whether any came. Reading goes on
+/// while a write is held up.
 async fn pump(
     stream: impl AsyncRead + AsyncWrite,
     to: &mut mpsc::Receiver<Vec<u8>>,
     from: &mpsc::Sender<StreamEvent>,
+    heard: &mut bool,
 ) -> Ended {
     let (mut reader, mut writer) = tokio::io::split(stream);
     let read = async {
@@ -159,6 +174,7 @@ async fn pump(
             match reader.read(&mut chunk).await {
                 Ok(0) => return Ended::closed(),
                 Ok(count) => {
+                    *heard = true;
                     if from.send(StreamEvent::Bytes(chunk[..count].to_vec())).await.is_err() {
                         return Ended::Dropped;
                     }
@@ -189,7 +205,7 @@ fn reason(error: &io::Error) -> String {
         ErrorKind::ConnectionReset
         | ErrorKind::BrokenPipe
         | ErrorKind::ConnectionAborted
-        | ErrorKind::UnexpectedEof => "the other end closed the connection".to_owned(),
+        | ErrorKind::UnexpectedEof => CLOSED.to_owned(),
         _ => {
             let text = error.to_string();
             text.split(" (os error").next().unwrap_or_default().to_owned()

@@ -95,6 +95,14 @@ pub struct RemoteLink {
     waiting: BTreeMap<AskId, Purpose>,
     next_ask: u64,
     started: Instant,
+    /// When the first connection was made.
+    first_connected: Option<Instant>,
+    /// When the present connection was made, until it has been told that nothing comes over it.
+    connected: Option<Instant>,
+    /// Something came over the present connection, or the last one.
+    heard: bool,
+    /// Why the connection was lost, as it was told last; nothing has come over one since.
+    told_loss: Option<String>,
     /// It has answered since its program was started first.
     has_answered: bool,
     motors: FeedState,
@@ -118,6 +126,10 @@ impl RemoteLink {
             waiting: BTreeMap::new(),
             next_ask: 0,
             started: now,
+            first_connected: None,
+            connected: None,
+            heard: false,
+            told_loss: None,
             has_answered: false,
             motors: FeedState::Waiting,
             self_check: SelfCheck::default(),
@@ -426,6 +438,10 @@ impl RemoteLink {
     }
 
     fn identify(&mut self, question: Question, answer: &Answer) {
+        // A simulated one that stands at a breakpoint is asked again: how long it may stand is looked at elsewhere.
+        if self.is_fed() && matches!((question, answer), (Question::ApiVersion, Answer::NotAnswered(_))) {
+            return;
+        }
         match self.identification.take(question, answer, &mut self.observer) {
             Ok(false) => {
                 if matches!((&self.state, answer), (RemoteState::Unusable(_), Answer::Msp(Some(_)))) {
@@ -440,16 +456,7 @@ impl RemoteLink {
 
     /// Delivers what was observed since, and what follows from it.
     fn observe(&mut self, vehicle: &mut Vehicle, now: Instant) {
-        if self.ends.child.is_some()
-            && !self.has_answered
-            && now.saturating_duration_since(self.started) >= FIRST_ANSWER
-        {
-            self.give_up(format!(
-                "{} has not answered for {} s: is it a SITL executable of Betaflight, and are its ports free?",
-                self.ends.name,
-                FIRST_ANSWER.as_secs()
-            ));
-        }
+        self.tell_silence(now);
         self.client.set_armed(self.observer.is_armed());
         if let Some(finding) = self.check_at_rest(vehicle, now) {
             self.notices.push(RemoteNotice::Lost(finding));
@@ -462,5 +469,32 @@ impl RemoteLink {
         let frame = vehicle.local_frame().copied();
         let Some(mailbox) = vehicle.controller_mut().remote_mut() else { return };
         self.observer.deliver(mailbox, frame.as_ref());
+    }
+
+    /// Gives up a program that has never answered, and tells of one that does not answer any more.
+    fn tell_silence(&mut self, now: Instant) {
+        let is_over = |since: Instant| now.saturating_duration_since(since) >= FIRST_ANSWER;
+        let started = self.ends.child.is_some().then_some(self.started);
+        if !self.is_fed() || matches!(self.state, RemoteState::Unusable(_)) {
+            return;
+        }
+        if !self.has_answered && self.first_connected.or(started).is_some_and(is_over) {
+            let why = match &self.told_loss {
+                Some(reason) => format!(": {reason}."),
+                None => ": is it a SITL executable of Betaflight, and are its ports free?".to_owned(),
+            };
+            self.give_up(format!(
+                "{} has not answered for {} s{why}",
+                self.ends.name,
+                FIRST_ANSWER.as_secs()
+            ));
+        } else if !self.heard && self.connected.is_some_and(is_over) {
+            self.connected = None;
+            self.notices.push(RemoteNotice::Lost(format!(
+                "{} takes the connection and has said nothing for {} s: it is asked until it does.",
+                self.ends.name,
+                FIRST_ANSWER.as_secs()
+            )));
+        }
     }
 }

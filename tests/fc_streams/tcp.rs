@@ -37,10 +37,25 @@ async fn a_refusal_is_told_once_until_somebody_answers() {
     assert_eq!(lost(&mut stream).await, "nobody listens there (connection refused)");
     let listener = TcpListener::bind(address).await.unwrap();
     connected(&mut stream).await;
-    drop(listener.accept().await.unwrap());
-    drop(listener);
+    let (mut peer, _) = listener.accept().await.unwrap();
+    peer.write_all(b"here").await.unwrap();
+    assert_eq!(bytes(&mut stream, 4).await, b"here");
+    drop((peer, listener));
     assert_eq!(lost(&mut stream).await, "the other end closed the connection");
     assert_eq!(lost(&mut stream).await, "nobody listens there (connection refused)");
+}
+
+#[tokio::test]
+async fn one_that_serves_another_client_is_told_to_do_so() {
+    let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+    let mut stream = open(&format!("tcp:{}", listener.local_addr().unwrap()));
+    for _ in 0..3 {
+        drop(listener.accept().await.unwrap());
+        connected(&mut stream).await;
+        let reason = lost(&mut stream).await;
+        assert!(reason.contains("closed the connection at once"), "{reason}");
+        assert!(reason.contains("serves a single client: close the other program"), "{reason}");
+    }
 }
 
 #[tokio::test]

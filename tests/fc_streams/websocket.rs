@@ -6,7 +6,9 @@ use tokio_tungstenite::WebSocketStream;
 use tokio_tungstenite::tungstenite::Message;
 use tokio_tungstenite::tungstenite::handshake::server::{ErrorResponse, Request, Response};
 
-use crate::{bytes, connected, lost, open, send};
+use betadeck::link::StreamEvent;
+
+use crate::{bytes, connected, lost, next, open, send};
 
 /// A server that chooses the sub-protocol `binary`, or none.
 async fn serve(listener: &TcpListener, chooses: bool) -> (WebSocketStream<TcpStream>, Option<String>) {
@@ -49,6 +51,23 @@ async fn messages_are_bytes_and_a_closed_socket_comes_back() {
         socket.close(None).await.unwrap();
         assert_eq!(lost(&mut stream).await, "the other end closed the connection");
     }
+}
+
+#[tokio::test]
+async fn a_long_message_comes_in_pieces() {
+    let listener = TcpListener::bind("127.0.0.1:0").await.unwrap();
+    let mut stream = open(&format!("ws:{}", listener.local_addr().unwrap()));
+    let (mut socket, _) = serve(&listener, true).await;
+    connected(&mut stream).await;
+    let long: Vec<u8> = (0..100_000_u32).map(|number| number as u8).collect();
+    socket.send(Message::binary(long.clone())).await.unwrap();
+    let mut all = Vec::new();
+    while all.len() < long.len() {
+        let StreamEvent::Bytes(piece) = next(&mut stream).await else { panic!("it is connected") };
+        assert!(piece.len() <= 4096, "{} bytes at once", piece.len());
+        all.extend(piece);
+    }
+    assert_eq!(all, long);
 }
 
 #[tokio::test]

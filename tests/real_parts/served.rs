@@ -177,6 +177,56 @@ fn one_that_runs_already_and_hangs_is_told() {
 }
 
 #[test]
+fn one_that_stands_at_a_breakpoint_is_waited_for() {
+    let Ports { raw, motors, .. } = free_ports();
+    let stand_in = StandIn::start(raw, motors);
+    // The system takes the connection for it meanwhile.
+    stand_in.hang(true);
+    let mut served = Served::start(stand_in.ports, &["--fresh", "--firmware", "attach"]);
+    std::thread::sleep(Duration::from_secs(5));
+    stand_in.hang(false);
+    served.notice(" answers: Betaflight ");
+}
+
+#[test]
+fn one_that_stands_for_ever_ends_the_program() {
+    let Ports { raw, motors, .. } = free_ports();
+    let stand_in = StandIn::start(raw, motors);
+    stand_in.hang(true);
+    let (code, said) = Served::start(stand_in.ports, &["--fresh", "--firmware", "attach"]).end();
+    assert_eq!(code, 3, "{said}");
+    assert!(said.contains("has not answered for 10 s: is it a SITL executable of Betaflight"), "{said}");
+}
+
+#[test]
+fn one_that_serves_another_client_says_why_it_is_lost_and_says_it_once() {
+    let Ports { raw, motors, .. } = free_ports();
+    let stand_in = StandIn::start(raw, motors);
+    let other = std::net::TcpStream::connect(("127.0.0.1", stand_in.ports.tcp)).unwrap();
+    std::thread::sleep(Duration::from_millis(100));
+    let mut served = Served::start(stand_in.ports, &["--fresh", "--firmware", "attach"]);
+    let told = served.notice("closed the connection at once");
+    assert!(told.contains("close the other program"), "{told}");
+    // Several more attempts.
+    std::thread::sleep(Duration::from_secs(7));
+    let said = served.program.seen();
+    let lost = |line: &&String| line.contains("closed the connection") || line.contains("ended or restarts");
+    assert_eq!(said.iter().filter(lost).count(), 1, "{said:#?}");
+    drop(other);
+    served.notice(" answers: Betaflight ");
+}
+
+#[test]
+fn a_firmware_that_prints_without_end_does_not_stop_the_program() {
+    let ports = free_ports();
+    let (code, said) = Served::start(ports, &["--fresh", "--firmware", "/usr/bin/yes"]).end();
+    assert_eq!(code, 3, "{said}");
+    assert!(said.contains("has not answered for 10 s") && said.contains("were not shown"), "{said}");
+    let lines = said.lines().filter(|line| line.contains("[firmware] y") || line.contains("\"y\"")).count();
+    assert!((1..10_000).contains(&lines), "{lines} of them");
+}
+
+#[test]
 fn a_tenth_of_the_packets_may_be_lost() {
     let Ports { raw, motors, .. } = free_ports();
     let lossy = LossyLink::new(motors);

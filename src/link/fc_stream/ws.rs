@@ -15,7 +15,7 @@ use tokio_tungstenite::tungstenite::{Bytes, Message};
 use tokio_tungstenite::{Connector, MaybeTlsStream, WebSocketStream, connect_async_tls_with_config};
 
 use super::tcp::CONNECT_TIMEOUT;
-use super::{Ended, StreamEvent, reason};
+use super::{CHUNK, CLOSED, Ended, StreamEvent, reason};
 
 /// The sub-protocol under which firmware and bridges speak bytes.
 const BINARY: &str = "binary";
@@ -81,11 +81,12 @@ async fn tls_config() -> Result<Arc<ClientConfig>, String> {
     Ok(Arc::new(config))
 }
 
-/// Moves bytes until the connection is lost or nobody wants them any more.
+/// Moves bytes until the connection is lost or nobody wants them any more; `heard` tells whether any came.
 pub(super) async fn pump(
     socket: Socket,
     to: &mut mpsc::Receiver<Vec<u8>>,
     from: &mpsc::Sender<StreamEvent>,
+    heard: &mut bool,
 ) -> Ended {
     let (mut sink, mut stream) = socket.split();
     let read = async {
@@ -98,8 +99,12 @@ pub(super) async fn pump(
                 Some(Ok(Message::Close(_))) | None => return Ended::closed(),
                 Some(Err(error)) => return Ended::Lost(refusal(&error)),
             };
-            if from.send(StreamEvent::Bytes(bytes.into())).await.is_err() {
-                return Ended::Dropped;
+            *heard = true;
+            // A message may be long, and whoever takes the pieces takes as many between two steps as over a slow line.
+            for piece in bytes.chunks(CHUNK) {
+                if from.send(StreamEvent::Bytes(piece.to_vec())).await.is_err() {
+                    return Ended::Dropped;
+                }
             }
         }
     };
@@ -123,9 +128,7 @@ fn refusal(error: &Error) -> String {
     match error {
         Error::ConnectionClosed
         | Error::AlreadyClosed
-        | Error::Protocol(ProtocolError::ResetWithoutClosingHandshake) => {
-            "the other end closed the connection".to_owned()
-        }
+        | Error::Protocol(ProtocolError::ResetWithoutClosingHandshake) => CLOSED.to_owned(),
         Error::Io(error) => match error.get_ref().and_then(|error| error.downcast_ref::<rustls::Error>()) {
             Some(rustls::Error::InvalidCertificate(why)) => {
                 format!("its certificate is not trusted ({why})")

@@ -29,8 +29,15 @@ impl RemoteLink {
             };
             match event {
                 None => return,
-                Some(StreamEvent::Bytes(bytes)) => self.client.push(&bytes, since),
+                Some(StreamEvent::Bytes(bytes)) => {
+                    self.heard = true;
+                    self.told_loss = None;
+                    self.client.push(&bytes, since);
+                }
                 Some(StreamEvent::Connected) => {
+                    self.first_connected.get_or_insert(now);
+                    self.connected = Some(now);
+                    self.heard = false;
                     self.client.connected();
                     self.permission.connected();
                     self.tell_client();
@@ -54,6 +61,7 @@ impl RemoteLink {
 
     fn lose(&mut self, reason: &str, vehicle: &mut Vehicle) {
         self.client.disconnected();
+        self.connected = None;
         self.permission.lost();
         self.observer.forget();
         match self.state {
@@ -65,7 +73,9 @@ impl RemoteLink {
                 self.notices.push(RemoteNotice::Lost(notice));
             }
             // One that somebody else started closes its port when it ends, to be started again.
-            RemoteState::Identifying | RemoteState::Ready if self.is_fed() && self.ends.child.is_none() => {
+            RemoteState::Identifying | RemoteState::Ready
+                if self.is_fed() && self.ends.child.is_none() && self.heard =>
+            {
                 let notice = format!(
                     "{} ended or restarts: when it is there again, the craft stands at home.",
                     self.ends.name
@@ -74,12 +84,17 @@ impl RemoteLink {
                 self.state = RemoteState::Lost;
             }
             RemoteState::Identifying | RemoteState::Ready | RemoteState::Lost => {
-                if self.state != RemoteState::Lost {
+                // One that is closed as soon as it is made is told once.
+                if self.state != RemoteState::Lost && self.told_loss.as_deref() != Some(reason) {
                     let notice = format!(
                         "The connection to {} is lost: {reason}; it is made again by itself.",
                         self.ends.name
                     );
                     self.notices.push(RemoteNotice::Lost(notice));
+                    self.told_loss = Some(reason.to_owned());
+                }
+                if let Some(peer) = self.ends.peer.as_mut().filter(|_| !self.heard) {
+                    peer.went_down();
                 }
                 self.state = RemoteState::Lost;
             }
