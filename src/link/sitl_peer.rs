@@ -15,6 +15,10 @@ use crate::telemetry::{EndpointKind, EndpointState, EndpointStatus};
 const BUFFER: usize = 128;
 /// Most packets that are taken from a socket in one go.
 const QUEUED_MAX: usize = 4096;
+/// Between two frames of the transmitter.
+const RC_PERIOD: Duration = Duration::from_millis(20);
+/// The link of the transmitter was up where its newest frame is no older, µs.
+const RC_IS_UP_US: u64 = 60_000;
 /// After its first motor packet an executable is certainly ready.
 const BOOT: Duration = Duration::from_millis(500);
 
@@ -58,7 +62,17 @@ pub struct SitlPeer {
     is_up: bool,
     /// When its first motor packet came, which it sends shortly before it is ready.
     boots_since: Option<Instant>,
+    /// The newest frame of the transmitter.
+    newest_rc: Option<SentRc>,
     stats: EndpointStats,
+}
+
+/// A frame of the transmitter, when it was measured, and when it was sent last.
+#[derive(Debug, Clone, Copy)]
+struct SentRc {
+    frame: RcFrame,
+    measured: Instant,
+    sent: Instant,
 }
 
 impl SitlPeer {
@@ -77,6 +91,7 @@ impl SitlPeer {
             started: now,
             is_up: false,
             boots_since: None,
+            newest_rc: None,
             stats: EndpointStats::new(now),
         })
     }
@@ -120,6 +135,28 @@ impl SitlPeer {
 
     /// Sends a frame of the transmitter.
     pub fn send_rc(&mut self, frame: &RcFrame, now: Instant) {
+        self.newest_rc = Some(SentRc { frame: *frame, measured: now, sent: now });
+        self.send_rc_frame(frame, now);
+    }
+
+    /// While the craft waits, its transmitter does so too: its newest frame is sent again in the rhythm of RC, or the executable
+    /// takes the link for lost as soon as it goes on.
+    pub fn repeat_rc(&mut self, now: Instant) {
+        let Some(SentRc { frame, measured, sent }) = self.newest_rc else { return };
+        let Some(since_us) =
+            self.feed.unanswered_since_us().filter(|_| self.feed.is_held_up(self.micros(now)))
+        else {
+            return;
+        };
+        // A link that was cut before stays so.
+        let was_up = self.micros(measured) + RC_IS_UP_US >= since_us;
+        if was_up && now.saturating_duration_since(sent) >= RC_PERIOD {
+            self.newest_rc = Some(SentRc { frame, measured, sent: now });
+            self.send_rc_frame(&frame, now);
+        }
+    }
+
+    fn send_rc_frame(&self, frame: &RcFrame, now: Instant) {
         let stamp_s = self.micros(now) as f64 * 1e-6;
         self.send(&rc::encode(stamp_s, frame), self.rc);
     }

@@ -316,6 +316,7 @@ impl RemoteLink {
         if let Some(frame) = state {
             peer.send_state(&frame, now);
         }
+        peer.repeat_rc(now);
         let motors = peer.state(now);
         if motors == FeedState::Silent && self.motors == FeedState::Answering {
             mailbox.deliver_motors(MotorCommand::default());

@@ -119,3 +119,28 @@ fn an_executable_that_is_down_gets_no_state_before_it_is_up_again() {
         count(&fdm) > 1
     }));
 }
+
+#[test]
+fn an_executable_that_is_held_up_still_hears_the_transmitter_unless_that_was_cut() {
+    for is_cut in [false, true] {
+        let ports = free_ports();
+        let mut peer = open(ports, true);
+        let rc = UdpSocket::bind(("127.0.0.1", ports.rc)).unwrap();
+        rc.set_nonblocking(true).unwrap();
+        let heard = || std::iter::from_fn(|| rc.recv(&mut [0; 512]).ok()).count();
+        let start = Instant::now();
+        let at = |ms| start + Duration::from_millis(ms);
+        peer.send_rc(&RcFrame::default(), at(0));
+        // It answers once.
+        rc.send_to(&[0; 16], ("127.0.0.1", ports.motors)).unwrap();
+        while peer.take_motors(at(1)).is_none() {}
+        let held_from = if is_cut { 200 } else { 10 };
+        peer.send_state(&SensorFrame::default(), at(held_from));
+        assert_eq!(heard(), 1);
+        for ms in held_from..held_from + 100 {
+            peer.repeat_rc(at(ms));
+        }
+        let repeated = heard();
+        assert!(if is_cut { repeated == 0 } else { (3..=5).contains(&repeated) }, "{repeated}");
+    }
+}

@@ -165,10 +165,20 @@ impl SitlFeed {
     /// step is flown all the same, for its packet or the answer may have been lost.
     #[must_use]
     pub fn waits(&self, now_us: u64) -> bool {
+        self.is_held_up(now_us) && now_us.saturating_sub(self.sent_us) < PATIENCE_US
+    }
+
+    /// Whether the executable has not answered for longer than motors may stand still, and not as long as to be silent.
+    #[must_use]
+    pub fn is_held_up(&self, now_us: u64) -> bool {
         let is_late = |since_us| now_us.saturating_sub(since_us) >= PATIENCE_US;
-        self.state(now_us) == FeedState::Answering
-            && self.unanswered_us.is_some_and(is_late)
-            && !is_late(self.sent_us)
+        self.state(now_us) == FeedState::Answering && self.unanswered_us.is_some_and(is_late)
+    }
+
+    /// Since when packets are without an answer, µs of wall time.
+    #[must_use]
+    pub fn unanswered_since_us(&self) -> Option<u64> {
+        self.unanswered_us
     }
 
     fn is_at_home(&self, now_us: u64) -> bool {
