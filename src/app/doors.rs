@@ -70,9 +70,7 @@ pub(super) async fn open(
         ));
     }
     if let Some(address) = args.listen.filter(|address| !address.is_loopback()) {
-        let can = if connect.is_some() { "read" } else { "fly" };
-        notices
-            .push(format!("The doors listen on {address}: everybody on that network can {can} this craft."));
+        notices.push(beyond_loopback(address, connect.is_some()));
     }
     let addresses = EndpointAddresses {
         ws: doors.address(EndpointKind::WebSocket),
@@ -88,6 +86,15 @@ pub(super) async fn open(
     let stop = CancellationToken::new();
     let keeper = tokio::spawn(keep(doors, view_tx, stop.clone()));
     Ok(Some(Opened { doors: OpenDoors { stop, keeper }, endpoints, addresses, notices }))
+}
+
+/// Who can do what at doors that are open to others than this machine.
+fn beyond_loopback(address: IpAddr, is_real_craft: bool) -> String {
+    let can = match is_real_craft {
+        true => "read this craft, and change it once you permit changes",
+        false => "fly this craft",
+    };
+    format!("The doors listen on {address}: everybody on that network can {can}.")
 }
 
 /// The link to the simulator that moves the craft.
@@ -175,5 +182,16 @@ mod tests {
             opened.notices
         );
         opened.doors.close().await;
+    }
+
+    #[test]
+    fn what_a_network_can_do_at_the_doors_of_a_craft_is_told_whole() {
+        let address = IpAddr::V4(Ipv4Addr::UNSPECIFIED);
+        let of_real_craft = beyond_loopback(address, true);
+        assert!(
+            of_real_craft.ends_with("can read this craft, and change it once you permit changes."),
+            "{of_real_craft}"
+        );
+        assert!(beyond_loopback(address, false).ends_with("can fly this craft."));
     }
 }
