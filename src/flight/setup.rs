@@ -144,9 +144,17 @@ impl FlightSetup {
     /// The vehicle at boot whose flight controller runs outside.
     fn build_remote(self) -> Result<(Vehicle, Vec<SetupNotice>), SetupError> {
         let (home, notice) = self.boot_home();
+        let WorldConfig { faults, switches, .. } = &self.world;
+        let idle = faults.iter().filter(|scheduled| !scheduled.fault.acts_on_controller_outside(switches));
+        let mut notices: Vec<SetupNotice> = notice.into_iter().collect();
+        for notice in idle.map(|scheduled| SetupNotice::IdleFault(scheduled.fault.kind())) {
+            if !notices.contains(&notice) {
+                notices.push(notice);
+            }
+        }
         let mut vehicle = Vehicle::with_remote_controller(WorldConfig { home, ..self.world })?;
         *vehicle.transmitter_mut().inputs_mut() = self.stick_inputs;
-        Ok((vehicle, notice.into_iter().collect()))
+        Ok((vehicle, notices))
     }
 }
 
@@ -243,5 +251,27 @@ mod tests {
         assert_eq!(asked.firmware_options().attitude, AttitudeSource::Estimated);
         let (vehicle, _) = asked.build().unwrap();
         assert!(!vehicle.embedded().unwrap().modes().has(Mode::Arm));
+    }
+
+    #[test]
+    fn a_fault_that_a_firmware_outside_cannot_notice_is_told_at_the_start() {
+        let told = |switches: &str, remote_controller: bool| {
+            let faults = ["mag-off@20", "gps-loss@20", "mag-bias@1,,30", "battery@5", "battery@9", "motor@9"];
+            let mut setup = FlightSetup { remote_controller, ..FlightSetup::default() };
+            setup.world.faults = faults.map(|fault| fault.parse().unwrap()).to_vec();
+            setup.world.switches.set(switches).unwrap();
+            let notices = setup.build().unwrap().1;
+            let faults = notices.iter().filter(|notice| matches!(notice, SetupNotice::IdleFault(_)));
+            faults.map(ToString::to_string).collect::<Vec<_>>()
+        };
+        assert_eq!(told("battery_sag=off", false), [""; 0]);
+        let notices = told("battery_sag=off", true);
+        assert_eq!(
+            notices[0],
+            "The fault mag-off has no effect: a firmware outside is not told what the magnetometer measures."
+        );
+        let named = |name: &str| notices.iter().filter(|notice| notice.contains(name)).count();
+        assert_eq!((notices.len(), named("mag-bias"), named("battery_sag=on")), (3, 1, 1), "{notices:?}");
+        assert_eq!(told("battery_sag=on", true).len(), 2);
     }
 }

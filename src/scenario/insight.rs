@@ -5,6 +5,7 @@ use super::expression::{Anchor, Bound, Comparison, Condition, Instant, Number, P
 use super::happening::{EventName, Pattern};
 use super::input::Action;
 use super::signal::{Flag, Signal};
+use crate::sim::{Fault, Switches};
 use crate::telemetry::{DisarmReason, PlanSource};
 
 /// How much of a flight controller must be known, the least first.
@@ -150,7 +151,9 @@ impl<'a> Needs<'a> {
     /// What must be known to carry out the inputs of a case and to end its flight in time. A flight without them shows
     /// nothing of what it is to show.
     pub(super) fn flight(&self, case: &Case) -> Insight {
-        let inputs = case.inputs.iter().map(|input| self.instant(&input.at).max(action(&input.action)));
+        let switches = &case.setup.world.switches;
+        let inputs =
+            case.inputs.iter().map(|input| self.instant(&input.at).max(action(&input.action, switches)));
         let end = case.ends.as_ref().map_or(Insight::Truth, |end| self.instant(end));
         inputs.fold(end, Insight::max)
     }
@@ -274,9 +277,12 @@ fn happening(pattern: &Pattern) -> Insight {
     }
 }
 
-/// What is needed to do it: the world and the transmitter are here, orders are taken by the embedded firmware only.
-fn action(action: &Action) -> Insight {
+/// What is needed to do it: the world and the transmitter are here; some faults do nothing to a firmware outside, and orders are
+/// taken by the embedded one only.
+fn action(action: &Action, switches: &Switches) -> Insight {
+    let is_idle = |fault: &Fault| !fault.acts_on_controller_outside(switches);
     match action {
+        Action::World(command) if command.fault().is_some_and(is_idle) => Insight::Inner,
         Action::World(_)
         | Action::Stick { .. }
         | Action::Release(_)

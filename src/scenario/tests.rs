@@ -445,6 +445,10 @@ fn a_flight_whose_inputs_only_the_embedded_firmware_takes_is_not_flown() {
     let skipped = |input: &str| skip(&with(input).cases[0]);
     assert_eq!(skipped("wind 5@270"), None);
     assert_eq!(skipped("switch AUTOPILOT on"), None);
+    assert_eq!(skipped("fault gps-loss,6"), None);
+    assert_eq!(skipped("end mag-off"), None);
+    assert!(skipped("fault mag-off").is_some() && skipped("fault mag-bias@3,,20").is_some());
+    assert!(skipped("fault battery,,-1").is_some());
     let judgements = skipped("hold here").unwrap();
     assert!(!judgements.is_empty());
     assert!(judgements.iter().all(|judgement| judgement.outcome == Outcome::Skipped(Insight::Inner)));

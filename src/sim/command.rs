@@ -37,6 +37,16 @@ pub enum WorldCommand {
 }
 
 impl WorldCommand {
+    /// The fault that it begins, now or later.
+    #[must_use]
+    pub fn fault(&self) -> Option<&Fault> {
+        match self {
+            Self::FaultOn(fault, _) => Some(fault),
+            Self::Schedule(scheduled) => Some(&scheduled.fault),
+            _ => None,
+        }
+    }
+
     /// Whether the command is about faults and nothing else.
     pub(super) fn is_about_faults(&self) -> bool {
         matches!(self, Self::FaultOn(..) | Self::FaultOff(_) | Self::ClearFaults | Self::Schedule(_))

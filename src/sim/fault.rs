@@ -9,6 +9,7 @@ use nalgebra::Vector3;
 
 use super::airframe::ROTORS;
 use super::config::{Wind, WorldError};
+use super::switches::Switches;
 use crate::telemetry::{FaultKind, FaultValue};
 
 mod effects;
@@ -252,6 +253,17 @@ impl Fault {
     #[must_use]
     pub fn is_on_the_way_in(&self) -> bool {
         self.needs_link() || matches!(self, Self::RxLoss | Self::GpsLoss)
+    }
+
+    /// Whether the fault does something when the flight controller runs outside: it is told of motion, position, pressure and
+    /// RC, but neither of the magnetic field nor of the battery, which can act by weak motors only.
+    #[must_use]
+    pub fn acts_on_controller_outside(&self, switches: &Switches) -> bool {
+        match self {
+            Self::MagOff | Self::MagBias(_) => false,
+            Self::Battery(_) => switches.battery_sag,
+            _ => true,
+        }
     }
 
     /// What distinguishes faults that can be on together; of faults with the same key the later takes the place of the

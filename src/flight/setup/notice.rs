@@ -4,6 +4,7 @@ use std::fmt;
 
 use crate::firmware::config::Configuration;
 use crate::geo::LatLon;
+use crate::telemetry::FaultKind;
 
 /// Something that was decided for the user, or that is probably a mistake; `Display` is the sentence.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,6 +27,8 @@ pub enum SetupNotice {
         /// How far one is from the other, m.
         distance_m: f64,
     },
+    /// A fault that does nothing, as the flight controller runs outside.
+    IdleFault(FaultKind),
 }
 
 impl fmt::Display for SetupNotice {
@@ -42,6 +45,14 @@ impl fmt::Display for SetupNotice {
                 let kilometres = distance_m / 1000.0;
                 write!(f, "The plan's first waypoint, {first}, is {kilometres:.0} km from home, {home}.")
             }
+            Self::IdleFault(FaultKind::Battery) => f.write_str(
+                "The fault battery has no effect: a firmware outside is not told of the battery (with --world \
+                 battery_sag=on a weak one slows the motors).",
+            ),
+            Self::IdleFault(kind) => write!(
+                f,
+                "The fault {kind} has no effect: a firmware outside is not told what the magnetometer measures."
+            ),
         }
     }
 }
