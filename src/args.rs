@@ -257,6 +257,7 @@ pub fn layer_problems(layers: &Layers) -> Vec<String> {
         let lines = [
             &["betadeck"][..],
             &["betadeck", "fly", "square"],
+            &["betadeck", "compare", "square"],
             &["betadeck", "serve"],
             &["betadeck", "sitl"],
         ];

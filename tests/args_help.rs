@@ -24,6 +24,7 @@ fn short_help() {
 #[test]
 fn long_help() {
     insta::assert_snapshot!("fly_long", help(&["fly"], true));
+    insta::assert_snapshot!("compare_long", help(&["compare"], true));
     insta::assert_snapshot!("convert_long", help(&["convert"], true));
     insta::assert_snapshot!("plan_show_long", help(&["plan", "show"], true));
 }

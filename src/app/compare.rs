@@ -1,78 +1,118 @@
 //! `betadeck compare`: the same plan, air and seed on two firmwares.
 
 mod flights;
+mod outputs;
 mod recorder;
 
-use std::io::Write as _;
-
 use super::error::{self, AppError};
-use super::firmware::{self, Beside, RemoteFirmware};
-use super::{output_file, setup};
-use crate::args::{CompareArgs, FirmwareChoice, FlightArgs, OutputFile, PhysicsArgs};
+use super::firmware::{Beside, Chosen, RemoteFirmware};
+use crate::args::{CompareArgs, FirmwareChoice, FlightArgs, PhysicsArgs};
 use crate::record::compare::{Comparison, Side};
 use flights::Flights;
+use outputs::Outputs;
+
+/// A firmware that is compared.
+#[derive(Debug)]
+struct Compared {
+    /// What it is called.
+    name: String,
+    /// `None` = the embedded one.
+    firmware: Option<RemoteFirmware>,
+    /// How often it is flown.
+    times: u32,
+}
 
 /// Flies and compares; the exit code says whether all flights completed.
 pub(super) fn run(args: &CompareArgs) -> Result<u8, AppError> {
     let mut notices = Vec::new();
-    let choices = choices(args, &mut notices)?;
-    let physics = PhysicsArgs::default();
-    let beside = Beside { ports: (&args.firmware_ports).into(), flight: &args.flight, physics: &physics };
-    let mut found: Vec<Option<RemoteFirmware>> = Vec::new();
-    for choice in &choices {
-        found.push(firmware::check(choice, &args.link, beside)?);
-    }
-    let names = names(&choices);
-    let outside = found.iter().any(Option::is_some);
+    let compared = compared(args, &mut notices)?;
+    let outside = compared.iter().any(|one| one.firmware.is_some());
     notices.extend(args.firmware_ports.idle_options(outside));
     if args.flight.speed.is_some() && !outside {
         notices.push(
             "--speed has no effect: the embedded firmware is flown as fast as the machine allows.".to_owned(),
         );
     }
-    let mut outputs = Outputs::open(args)?;
-    let starts_fresh =
-        |firmware: &RemoteFirmware| firmware.executable.is_some() && args.flight.state_dir.is_none();
-    let beside_fresh = found.iter().flatten().any(starts_fresh);
-    let flights = Flights::new(args, found.contains(&None), beside_fresh, &mut notices)?;
+    let flights = Flights::new(args, &compared, &mut notices)?;
+    let outputs = Outputs::prepare(args)?;
     notices.iter().for_each(|notice| error::tell(notice));
-    let mut sides = Vec::new();
-    for (name, firmware) in names.into_iter().zip(&found) {
-        let repeatable = firmware.is_none();
-        let times = if repeatable { 1 } else { args.repeat() };
-        let mut side = Side { name, repeatable, flights: Vec::new() };
-        for time in 1..=times {
-            let Some(track) = flights.fly(firmware.as_ref())? else { return Ok(error::INTERRUPTED) };
-            error::tell(&format!(
-                "{}, flight {time} of {times}: {}: {}",
-                side.name, track.result, track.reason
-            ));
-            side.flights.push(track);
-        }
-        sides.push(side);
-    }
+    let mut sides = compared.each_ref().map(|one| Side {
+        name: one.name.clone(),
+        repeatable: one.firmware.is_none(),
+        flights: Vec::new(),
+    });
+    let flown = fly(&flights, &compared, &mut sides);
+    let has_flown = sides.iter().any(|side| !side.flights.is_empty());
     let all_complete = sides.iter().flat_map(|side| &side.flights).all(|flight| flight.result == "complete");
-    let sides: [Side; 2] = sides.try_into().map_err(|_| AppError::internal("two firmwares are compared"))?;
     let comparison = Comparison::new(flights.plan_name(), &conditions(&args.flight), flights.route(), sides);
+    if !matches!(flown, Ok(true)) && has_flown {
+        error::tell(&format!("Not all was flown. So far:\n\n{}", comparison.text()));
+    }
+    if !flown? {
+        return Ok(error::INTERRUPTED);
+    }
     outputs.write(&comparison)?;
     Ok(if all_complete { 0 } else { error::FAILED })
 }
 
-/// The two that are compared: with one, the first is the embedded one.
-fn choices(args: &CompareArgs, notices: &mut Vec<String>) -> Result<[FirmwareChoice; 2], AppError> {
-    let of_file =
-        args.link.betaloop.as_deref().map(|file| firmware::of_launcher(file, notices)).transpose()?;
-    match (&args.firmware[..], of_file) {
-        ([first, second], _) => Ok([first.clone(), second.clone()]),
-        ([other], _) => Ok([FirmwareChoice::Embedded, other.clone()]),
-        (_, Some(other)) => Ok([FirmwareChoice::Embedded, other]),
-        (_, None) => Err(AppError::input("name the firmware to compare with: --firmware PATH")),
+/// Flies each firmware as often as it is to be flown; `false` when that was interrupted. What was flown before stays.
+fn fly(flights: &Flights, compared: &[Compared; 2], sides: &mut [Side; 2]) -> Result<bool, AppError> {
+    for (one, side) in compared.iter().zip(sides) {
+        for time in 1..=one.times {
+            let Some(track) = flights.fly(one.firmware.as_ref())? else { return Ok(false) };
+            let times = one.times;
+            error::tell(&format!(
+                "{}, flight {time} of {times}: {}: {}",
+                one.name, track.result, track.reason
+            ));
+            side.flights.push(track);
+        }
     }
+    Ok(true)
+}
+
+/// The two that are compared, checked.
+fn compared(args: &CompareArgs, notices: &mut Vec<String>) -> Result<[Compared; 2], AppError> {
+    let chosen = choose(args, notices)?;
+    let choices = chosen.each_ref().map(|chosen| &chosen.choice);
+    if choices.iter().all(|choice| choice.is_remote()) && choices.contains(&&FirmwareChoice::Attach) {
+        return Err(AppError::input(
+            "--firmware attach is compared with the embedded firmware only: a second one outside would need the same \
+             ports; name the executables of both",
+        ));
+    }
+    let started = choices.iter().find(|choice| matches!(choice, FirmwareChoice::Executable(_)));
+    let outermost = started.or(choices.iter().find(|choice| choice.is_remote()));
+    notices.extend(args.link.idle_options(outermost.unwrap_or(&&FirmwareChoice::Embedded)));
+    let physics = PhysicsArgs::default();
+    let beside = Beside { ports: (&args.firmware_ports).into(), flight: &args.flight, physics: &physics };
+    let [first, second] = names(choices);
+    let one = |name: String, chosen: &Chosen| -> Result<Compared, AppError> {
+        let times = args.flights_of(&chosen.choice).map_err(AppError::input)?;
+        Ok(Compared { name, firmware: chosen.check(&args.link, beside)?, times })
+    };
+    let [a, b] = &chosen;
+    Ok([one(first, a)?, one(second, b)?])
+}
+
+/// The two that are compared: with one, the first is the embedded one; with none, the second is that of the launcher.
+fn choose(args: &CompareArgs, notices: &mut Vec<String>) -> Result<[Chosen; 2], AppError> {
+    let other = match &args.firmware[..] {
+        [first, second] => return Ok([first, second].map(|choice| Chosen::by_option(choice.clone()))),
+        [other] => Chosen::by_option(other.clone()),
+        _ => Chosen::by_launcher(args.link.betaloop.as_deref(), notices)?,
+    };
+    if !other.choice.is_remote() {
+        return Err(AppError::input(
+            "name the firmware to compare with: --firmware PATH, or --betaloop FILE for that of the launcher",
+        ));
+    }
+    Ok([Chosen::by_option(FirmwareChoice::Embedded), other])
 }
 
 /// What they are called: by their files, with the path where the files are called alike.
-fn names(choices: &[FirmwareChoice; 2]) -> [String; 2] {
-    let short = choices.each_ref().map(|choice| match choice {
+fn names(choices: [&FirmwareChoice; 2]) -> [String; 2] {
+    let short = choices.map(|choice| match choice {
         FirmwareChoice::Embedded => "embedded".to_owned(),
         FirmwareChoice::Attach => "the running one".to_owned(),
         FirmwareChoice::Executable(path) => {
@@ -97,47 +137,4 @@ fn conditions(flight: &FlightArgs) -> String {
     told.extend(flight.noise.map(|noise| format!("noise {noise}")));
     told.push(format!("seed {}", flight.seed.unwrap_or(1)));
     told.join(", ")
-}
-
-/// Where the comparison goes.
-#[derive(Debug)]
-struct Outputs<'a> {
-    args: &'a CompareArgs,
-    json: Option<std::fs::File>,
-    svg: Option<std::fs::File>,
-}
-
-impl<'a> Outputs<'a> {
-    /// Opens the files, so that no flight is flown for nothing.
-    fn open(args: &'a CompareArgs) -> Result<Self, AppError> {
-        let mut kept = setup::kept_files(&args.flight, Some(&args.plan));
-        let json = match &args.json {
-            Some(OutputFile::File(path)) => Some(("--json", path)),
-            Some(OutputFile::Stdout) | None => None,
-        };
-        let svg = args.svg.as_ref().map(|path| ("--svg", path));
-        for (option, path) in json.iter().chain(&svg) {
-            kept.claim(option, path)?;
-        }
-        let create = |file: Option<(&str, &std::path::PathBuf)>| {
-            file.map(|(_, path)| output_file::create(path)).transpose()
-        };
-        Ok(Self { args, json: create(json)?, svg: create(svg)? })
-    }
-
-    fn write(&mut self, comparison: &Comparison) -> Result<(), AppError> {
-        let failed = |error| AppError::environment(format!("cannot write the output: {error}"));
-        let json = format!("{}\n", comparison.json());
-        if let Some(file) = &mut self.json {
-            file.write_all(json.as_bytes()).map_err(failed)?;
-        }
-        if let Some(file) = &mut self.svg {
-            file.write_all(comparison.svg().as_bytes()).map_err(failed)?;
-        }
-        match &self.args.json {
-            Some(OutputFile::Stdout) => error::write_stdout(json.as_bytes()),
-            Some(OutputFile::File(_)) | None => error::print(&comparison.text()),
-        }?;
-        Ok(())
-    }
 }

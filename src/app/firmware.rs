@@ -114,29 +114,64 @@ pub(super) fn choose(
     beside: Beside<'_>,
     notices: &mut Vec<String>,
 ) -> Result<Option<RemoteFirmware>, AppError> {
-    let (choice, file) = match (&args.firmware, &args.link.betaloop) {
-        (Some(choice), _) => (choice.clone(), None),
-        (None, Some(file)) => (of_launcher(file, notices)?, Some(file.as_path())),
+    let chosen = match &args.firmware {
+        Some(choice) => Chosen::by_option(choice.clone()),
         // Who asks for an external simulator asks for the embedded firmware.
-        (None, None) if beside.physics.is_external() => (FirmwareChoice::Embedded, None),
-        (None, None) => (of_launcher_here(notices)?, Some(Path::new(LAUNCHER_FILE))),
-    };
-    notices.extend(args.link.idle_options(&choice));
-    check(&choice, &args.link, beside).map_err(|error| match file {
-        None => error,
-        Some(file) => {
-            let message = format!(
-                "{} (the firmware is that of {}; --firmware embedded flies the embedded one)",
-                error.message,
-                file.display()
-            );
-            AppError { message, ..error }
+        None if args.link.betaloop.is_none() && beside.physics.is_external() => {
+            Chosen::by_option(FirmwareChoice::Embedded)
         }
-    })
+        None => Chosen::by_launcher(args.link.betaloop.as_deref(), notices)?,
+    };
+    notices.extend(args.link.idle_options(&chosen.choice));
+    chosen.check(&args.link, beside)
 }
 
-/// One firmware, checked.
-pub(super) fn check(
+/// A firmware that was chosen.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Chosen {
+    /// Which.
+    pub(super) choice: FirmwareChoice,
+    /// The launcher's file, if that names it.
+    file: Option<PathBuf>,
+}
+
+impl Chosen {
+    /// By `--firmware`.
+    pub(super) fn by_option(choice: FirmwareChoice) -> Self {
+        Self { choice, file: None }
+    }
+
+    /// By a file of the launcher, else by that in the working directory, which may be missing or of another program: then it
+    /// is the embedded one.
+    pub(super) fn by_launcher(file: Option<&Path>, notices: &mut Vec<String>) -> Result<Self, AppError> {
+        let choice = match file {
+            Some(file) => of_launcher(file, notices)?,
+            None => of_launcher_here(notices)?,
+        };
+        Ok(Self { choice, file: Some(file.unwrap_or(Path::new(LAUNCHER_FILE)).to_owned()) })
+    }
+
+    /// What has to be right before it is started; `None` = the embedded one.
+    pub(super) fn check(
+        &self,
+        link: &FirmwareLinkArgs,
+        beside: Beside<'_>,
+    ) -> Result<Option<RemoteFirmware>, AppError> {
+        check(&self.choice, link, beside).map_err(|error| match &self.file {
+            None => error,
+            Some(file) => {
+                let message = format!(
+                    "{} (the firmware is that of {}; --firmware embedded flies the embedded one)",
+                    error.message,
+                    file.display()
+                );
+                AppError { message, ..error }
+            }
+        })
+    }
+}
+
+fn check(
     choice: &FirmwareChoice,
     link: &FirmwareLinkArgs,
     beside: Beside<'_>,
@@ -164,7 +199,7 @@ pub(super) fn check(
 }
 
 /// The executable that a file of the launcher names.
-pub(super) fn of_launcher(file: &Path, notices: &mut Vec<String>) -> Result<FirmwareChoice, AppError> {
+fn of_launcher(file: &Path, notices: &mut Vec<String>) -> Result<FirmwareChoice, AppError> {
     let text = input_file::read(&from_home(file))?;
     let betaloop = Betaloop::read(&text)
         .map_err(|error| AppError::input(format!("--betaloop {}: {error}", file.display())))?;

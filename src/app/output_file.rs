@@ -1,12 +1,16 @@
 //! Creates the files that the options name for output, but never over what is read or stored.
 
+mod whole;
+
 use std::ffi::OsString;
 use std::fs::File;
+use std::io;
 use std::os::unix::fs::MetadataExt as _;
 use std::path::{Path, PathBuf};
 
 use super::AppError;
 use crate::storage;
+pub(super) use whole::{FinalOutput, replace};
 
 /// The files that no output may replace, under whatever name or link.
 #[derive(Debug, Default)]
@@ -49,8 +53,16 @@ impl KeptFiles {
 
 /// Creates a file that was claimed.
 pub(super) fn create(path: &Path) -> Result<File, AppError> {
-    File::create(path)
-        .map_err(|error| AppError::environment(format!("cannot write {}: {error}", path.display())))
+    File::create(path).map_err(|error| cannot_write(path, &error))
+}
+
+fn cannot_write(path: &Path, error: &io::Error) -> AppError {
+    AppError::environment(format!("cannot write {}: {error}", path.display()))
+}
+
+/// The directory that a path's name stands in.
+fn directory_of(path: &Path) -> &Path {
+    path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 /// Whether two paths lead to one file; links count, and of files that are not there yet the place.
@@ -66,8 +78,7 @@ fn is_same(a: &Path, b: &Path) -> bool {
 /// Where a file would be created: its real directory and name, links followed.
 fn place(path: &Path) -> Option<(PathBuf, OsString)> {
     let path = storage::link_target(path);
-    let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    Some((parent.canonicalize().ok()?, path.file_name()?.to_owned()))
+    Some((directory_of(&path).canonicalize().ok()?, path.file_name()?.to_owned()))
 }
 
 #[cfg(test)]

@@ -12,13 +12,19 @@ const LONGEST_S: f64 = 7200.0;
 
 /// The options of `compare`.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
-#[command(after_help = help::COMPARE)]
+// Each flight starts from defaults anyway.
+#[command(
+    after_help = help::COMPARE,
+    mut_arg("state_dir", |option| option.hide(true)),
+    mut_arg("fresh", |option| option.hide(true))
+)]
 pub struct CompareArgs {
     /// Plan to fly: a built-in plan's name or a file (*.toml, *.txt, - for standard input)
     pub plan: PlanArg,
 
     /// What flies beside the embedded firmware, or with two the one beside the other: PATH, attach, embedded
-    #[arg(long, value_name = "WHICH", required_unless_present = "betaloop", help_heading = "Firmware")]
+    /// [default: that of --betaloop]
+    #[arg(long, value_name = "WHICH", help_heading = "Firmware")]
     pub firmware: Vec<FirmwareChoice>,
 
     /// How they are started and fed.
@@ -29,7 +35,7 @@ pub struct CompareArgs {
     #[command(flatten)]
     pub firmware_ports: FirmwarePortArgs,
 
-    /// Flights of each firmware outside, which are never quite the same [default: 3]
+    /// Flights of each firmware outside, which are never quite the same [default: 3; attach: 1]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100), help_heading = "Flight")]
     pub repeat: Option<u32>,
 
@@ -51,16 +57,31 @@ pub struct CompareArgs {
 }
 
 impl CompareArgs {
-    /// Flights of a firmware outside.
-    #[must_use]
-    pub fn repeat(&self) -> u32 {
-        self.repeat.unwrap_or(3)
+    /// How often a firmware is flown. The embedded one flies the same each time; one that is running already cannot be
+    /// made to forget the flight before.
+    ///
+    /// # Errors
+    /// Why it cannot be flown as often as was asked for.
+    pub fn flights_of(&self, firmware: &FirmwareChoice) -> Result<u32, String> {
+        match (firmware, self.repeat) {
+            (FirmwareChoice::Embedded, _) | (FirmwareChoice::Attach, None | Some(1)) => Ok(1),
+            (FirmwareChoice::Executable(_), times) => Ok(times.unwrap_or(3)),
+            (FirmwareChoice::Attach, Some(times)) => Err(format!(
+                "--repeat {times}: a firmware that is running already (--firmware attach) is not started anew for each \
+                 flight, so it flies once; write --repeat 1, or name its executable"
+            )),
+        }
     }
 
     /// What is wrong with the combination of what was typed.
     pub(super) fn check(&self) -> Result<(), String> {
         if self.firmware.len() > 2 {
             return Err("--firmware is given once, to compare with the embedded one, or twice".to_owned());
+        }
+        if self.flight.state_dir.is_some() {
+            return Err("--state-dir: in compare each flight starts from defaults, so that all start alike; give what \
+                        differs from them with --settings FILE"
+                .to_owned());
         }
         if self.mission.timeout.is_some_and(|seconds| seconds > LONGEST_S) {
             return Err(format!("--timeout: allowed are 1 to {LONGEST_S} s here, for whole tracks are kept"));

@@ -45,7 +45,7 @@ pub struct FlightArgs {
     #[arg(long, value_name = "SOURCE", hide_possible_values = true, help_heading = "Craft")]
     pub attitude: Option<AttitudeChoice>,
 
-    /// Lets a script arm that holds the ARM switch on from its first packet: on, off [default: on; fly: off]
+    /// Lets a script arm that holds the ARM switch on from its first packet: on, off [default: on; fly, compare: off]
     #[arg(long, value_name = "SWITCH", hide_possible_values = true, help_heading = "Craft")]
     pub arm_assist: Option<OnOff>,
 

@@ -20,7 +20,8 @@ Each option can also be set in the configuration file (wind = \"5@270\") and in 
 /// The end of the help of `compare`.
 pub(super) const COMPARE: &str = "\
 Everything is measured from truth, alike for both; the embedded firmware flies as fast as the machine allows and once,
-for each of its flights is the same; one outside flies in real time.
+for each of its flights is the same; one outside flies in real time. Each flight starts from defaults, an executable
+anew in an empty folder; attach takes one as it runs, and once.
 
 Exit codes: 0 every flight completed, 1 one did not, 2 wrong usage or input, 3 file or port trouble,
 4 internal error, 130 interrupted.
@@ -33,7 +34,10 @@ pub(super) const CHECK: &str = "\
 docs/scenarios.md says how a scenario is written.
 
 Exit codes: 0 every expectation was met, 1 one was not, 2 wrong usage or scenario, 3 file trouble,
-4 internal error, 130 interrupted.";
+4 internal error, 130 interrupted.
+
+Which firmware flies can also be set in the configuration file (firmware = \"PATH\") and in the environment
+(BETADECK_FIRMWARE=PATH), as can each option below Firmware; what else makes a flight is in the scenario.";
 
 /// The examples of a command, for the top of its help: what to type and what it does.
 pub(super) fn examples(examples: &[(&str, &str)]) -> String {

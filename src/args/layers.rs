@@ -1,8 +1,8 @@
 //! The layers under the command line: environment and configuration file.
 //!
 //! Every long option of a command that flies is a key in the file (`wind = "5@270"`) and a variable in the environment
-//! (`BETADECK_WIND`). What a layer gives for an option that no higher layer gave is parsed by the option's own parser,
-//! as if it had been typed.
+//! (`BETADECK_WIND`); of `check` those of the firmware are. What a layer gives for an option that no higher layer gave is
+//! parsed by the option's own parser, as if it had been typed.
 
 use std::collections::BTreeMap;
 use std::ffi::OsString;
@@ -33,6 +33,10 @@ type Found = (String, Vec<String>);
 
 /// Commands whose options come from all layers; the empty name is the terminal user interface.
 pub(super) const FLYING: [&str; 5] = ["", "fly", "compare", "serve", "sitl"];
+/// The command of which only the firmware comes from all layers: the rest of a flight is its scenario's.
+const CHECK: &str = "check";
+/// The heading of the options that say which firmware flies.
+const FIRMWARE: &str = "Firmware";
 
 /// Parses again with what the layers add to the command line.
 pub(super) fn apply(
@@ -44,7 +48,7 @@ pub(super) fn apply(
     command.build();
     let (name, typed) = matches.subcommand().unwrap_or(("", matches));
     let mut sources = BTreeMap::new();
-    if FLYING.contains(&name) {
+    if FLYING.contains(&name) || name == CHECK {
         let unknown = layers.unknown_keys(command);
         if !unknown.is_empty() {
             return Err(problem(&unknown.join("\n")));
@@ -60,11 +64,14 @@ pub(super) fn apply(
     Cli::from_arg_matches(&matches)
 }
 
-/// The options of a command that the layers can give.
+/// The options of a command that the layers can give; a hidden one is not for it.
 pub(super) fn options(command: &clap::Command) -> impl Iterator<Item = &Arg> {
+    let of_firmware_only = command.get_name() == CHECK;
     command
         .get_arguments()
-        .filter(|arg| !arg.is_positional() && !matches!(arg.get_long(), Some("help" | "version")))
+        .filter(|arg| !arg.is_positional() && !arg.is_hide_set())
+        .filter(|arg| !matches!(arg.get_long(), Some("help" | "version")))
+        .filter(move |arg| !of_firmware_only || arg.get_help_heading() == Some(FIRMWARE))
 }
 
 fn is_typed(matches: &ArgMatches, option: &Arg) -> bool {

@@ -101,16 +101,68 @@ fn compare_takes_one_or_two_firmwares() {
         &none,
     );
     assert_eq!(two.firmware, [FirmwareChoice::Embedded, FirmwareChoice::Executable("./x.elf".into())]);
-    assert_eq!((two.repeat(), two.mission.set.len()), (3, 1));
+    let times = |args: &CompareArgs| {
+        args.firmware.iter().map(|firmware| args.flights_of(firmware)).collect::<Result<Vec<u32>, _>>()
+    };
+    assert_eq!((times(&two), two.mission.set.len()), (Ok(vec![1, 3]), 1));
     let of_launcher = compare("betadeck compare square --betaloop config.txt", &none);
     assert!(of_launcher.firmware.is_empty() && of_launcher.link.betaloop.is_some());
     let file = layers(&[], "seed = 9\ntakeoff = 5");
-    let layered = compare("betadeck compare square --firmware attach --repeat 5", &file);
-    assert_eq!((layered.flight.seed, layered.repeat()), (Some(9), 5));
+    let layered = compare("betadeck compare square --firmware ./x.elf --repeat 5", &file);
+    assert_eq!((layered.flight.seed, times(&layered)), (Some(9), Ok(vec![5])));
     assert!(
         (layered.mission.takeoff_m() - 5.0).abs() < 1e-9
             && (layered.mission.timeout_s() - 1800.0).abs() < 1e-9
     );
+}
+
+#[test]
+fn a_firmware_that_runs_already_is_compared_by_one_flight() {
+    let times = |line: &str| match parse_line(line, &Layers::default()).unwrap().command {
+        Some(Command::Compare(compare)) => compare.flights_of(&compare.firmware[0]),
+        other => panic!("{other:?}"),
+    };
+    assert_eq!(times("betadeck compare square --firmware attach"), Ok(1));
+    assert_eq!(times("betadeck compare square --firmware attach --repeat 1"), Ok(1));
+    let sentence = times("betadeck compare square --firmware attach --repeat 3").unwrap_err();
+    assert!(sentence.contains("is not started anew") && sentence.contains("--repeat 1"), "{sentence}");
+}
+
+#[test]
+fn a_comparison_starts_from_defaults_wherever_the_craft_is_stored() {
+    // The key is for the other commands.
+    let stored = layers(&[], "state-dir = \"x\"");
+    match parse_line("betadeck compare square --firmware ./x.elf", &stored).unwrap().command {
+        Some(Command::Compare(compare)) => assert_eq!(compare.flight.state_dir, None),
+        other => panic!("{other:?}"),
+    }
+    let text = refusal("betadeck compare square --firmware ./x.elf --state-dir x", &Layers::default());
+    assert!(text.contains("each flight starts from defaults"), "{text}");
+}
+
+#[test]
+fn the_firmware_of_all_layers_reaches_check_and_nothing_else_does() {
+    let check = |line: &str, layers: &Layers| match parse_line(line, layers).unwrap().command {
+        Some(Command::Check(check)) => *check,
+        other => panic!("{other:?}"),
+    };
+    let file = layers(
+        &[],
+        "firmware = \"./a.elf\"\nfirmware-arg = [\"-x\"]\nyes = true\nudp-ports = \"1,2,3,4\"\nseed = 9\njson = \"x\"\n",
+    );
+    let layered = check("betadeck check guide-1", &file);
+    assert_eq!(layered.firmware.firmware, Some(FirmwareChoice::Executable("./a.elf".into())));
+    assert_eq!(
+        (&layered.firmware.link.firmware_arg[..], layered.firmware.link.yes),
+        (&["-x".to_owned()][..], true)
+    );
+    assert_eq!((layered.firmware_ports.udp_ports.map(|ports| ports.rc), layered.json), (Some(4), None));
+    let both = Layers { environment: layers(&[("BETADECK_FIRMWARE", "attach")], "").environment, ..file };
+    assert_eq!(check("betadeck check guide-1", &both).firmware.firmware, Some(FirmwareChoice::Attach));
+    let typed = check("betadeck check guide-1 --firmware embedded", &both);
+    assert_eq!(typed.firmware.firmware, Some(FirmwareChoice::Embedded));
+    let typed = check("betadeck check guide-1 --betaloop config.txt", &both);
+    assert_eq!((typed.firmware.firmware, typed.firmware.link.betaloop), (None, Some("config.txt".into())));
 }
 
 #[test]
@@ -144,7 +196,6 @@ fn wrong_values_say_what_is_allowed() {
         ("betadeck fly square --firmware attach --betaloop x", "cannot be used with"),
         ("betadeck fly square --firmware=", "the path of a SITL executable"),
         ("betadeck serve --fdm-stamps none", "--fdm-stamps <STAMPS>"),
-        ("betadeck compare square", "--firmware <WHICH>"),
         ("betadeck compare square --firmware a --firmware b --firmware c", "given once, to compare with"),
         ("betadeck compare square --firmware a --timeout 9000", "allowed are 1 to 7200 s"),
         ("betadeck compare square --firmware a --repeat 0", "1..=100"),

@@ -3,6 +3,7 @@
 
 mod check;
 mod cli;
+mod compare;
 #[cfg(unix)]
 mod connect;
 #[cfg(unix)]

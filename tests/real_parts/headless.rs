@@ -128,3 +128,20 @@ fn what_cannot_fly_is_told_before_anything_starts() {
         assert!(said.contains(part), "{arguments:?}: {said}");
     }
 }
+
+#[test]
+fn a_comparison_that_is_interrupted_tells_what_was_flown() {
+    let directory = tempfile::tempdir().unwrap();
+    let plan = write(directory.path(), "hop.toml", PLAN);
+    let picture = write(directory.path(), "tracks.svg", "before");
+    let mut program = start(&["compare", &plan, "--takeoff", "4", "--svg", &picture]);
+    program.wait("end of the first flight", |line| {
+        line.starts_with("embedded, flight 1 of 1: complete").then_some(())
+    });
+    let id = program.id().to_string();
+    assert!(std::process::Command::new("kill").args(["-s", "INT", &id]).status().unwrap().success());
+    assert_eq!(program.end(), 130);
+    let said = program.seen().join("\n");
+    assert!(said.contains("A: embedded, one flight") && said.contains("B: betadeck, not flown"), "{said}");
+    assert_eq!(std::fs::read_to_string(picture).unwrap(), "before");
+}

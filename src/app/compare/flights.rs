@@ -1,9 +1,9 @@
 //! Flights of one plan, each from the same start.
 
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use super::Compared;
 use super::recorder::Recorder;
 use crate::app::error;
 use crate::app::firmware::RemoteFirmware;
@@ -33,26 +33,26 @@ pub(super) struct Flights {
     set: Vec<String>,
     /// Times real time of a firmware outside.
     speed: f64,
-    /// Where a firmware outside keeps its configuration; `None` = nowhere for long.
-    state: Option<PathBuf>,
     interrupted: Arc<AtomicBool>,
 }
 
 impl Flights {
-    /// Reads the plan and the settings; what the user should know is added to `notices`. `beside_fresh` is whether a firmware
-    /// outside gets the guide's settings first: then the embedded one, if it flies, gets them, too.
+    /// Reads the plan and the settings; what the user should know is added to `notices`.
     pub(super) fn new(
         args: &CompareArgs,
-        embedded_flies: bool,
-        beside_fresh: bool,
+        compared: &[Compared],
         notices: &mut Vec<String>,
     ) -> Result<Self, AppError> {
+        let embedded_flies = compared.iter().any(|one| one.firmware.is_none());
+        let executable_flies =
+            compared.iter().flat_map(|one| &one.firmware).any(|firmware| firmware.executable.is_some());
         let plan = setup::read_plan(&args.plan)?;
         setup::refuse_unflyable(&plan)?;
         notices.extend(plan.notes.iter().map(ToString::to_string));
         let mut setup =
             setup::from_args(&args.flight, PhysicsSource::Embedded, plan.clone(), Configuration::default())?;
-        if beside_fresh {
+        // An executable starts without a configuration and gets the guide's settings: so does the embedded one beside it.
+        if executable_flies {
             setup.plan.settings = guide_settings()?.into_iter().chain(setup.plan.settings).collect();
         }
         // Two firmwares outside fly: only the radii of the embedded one are asked for, to draw the plan.
@@ -71,7 +71,6 @@ impl Flights {
             options: setup::flight_options(&args.mission, 0.0),
             set: args.mission.set.clone(),
             speed: args.flight.speed.map_or(1.0, |Speed(speed)| speed),
-            state: args.flight.state_dir.clone(),
             interrupted: interrupt_flag()?,
         })
     }
@@ -117,14 +116,13 @@ impl Flights {
         }
     }
 
-    /// Each flight starts the firmware anew, as nothing else makes it forget the one before.
+    /// Each flight starts an executable anew, in an empty directory, as nothing else makes it forget the one before.
     fn fly_remote(&self, firmware: &RemoteFirmware) -> Result<Track, Stopped> {
         let setup = FlightSetup { remote_controller: true, ..self.setup.clone() };
         let mut vehicle = setup::build(setup, &mut Vec::new())?;
-        let (state, speed) = (self.state.as_deref(), self.speed);
         let interrupted = Arc::clone(&self.interrupted);
         let firmware = firmware.with_settings(&self.plan.settings, &self.set);
-        let mut run = RemoteRun::start(&firmware, &vehicle, state, speed, interrupted, &mut Vec::new())?;
+        let mut run = RemoteRun::start(&firmware, &vehicle, None, self.speed, interrupted, &mut Vec::new())?;
         let mut tell = |event: &Event| {
             told(event);
             Ok(())

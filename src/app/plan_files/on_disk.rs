@@ -1,11 +1,9 @@
 //! Plan files and directories as they are on disk.
 
-use std::fs::{File, OpenOptions};
-use std::io::Write as _;
 use std::os::unix::fs::MetadataExt as _;
 use std::path::Path;
 
-use crate::app::input_file;
+use crate::app::{input_file, output_file};
 use crate::flight::setup::check_setting;
 use crate::plan::edit::PlanDocument;
 use crate::plan::format::{self, Format, PlanFile};
@@ -72,30 +70,9 @@ pub(super) fn write(path: &Path, document: PlanDocument) -> Result<Vec<String>, 
             "{name} is write-protected: save under another name, or allow it with chmod u+w."
         ));
     }
-    replace(&target, &written.text).map_err(|error| format!("Cannot write {name}: {error}."))?;
+    output_file::replace(&target, written.text.as_bytes())
+        .map_err(|error| format!("Cannot write {name}: {error}."))?;
     Ok(written.lost)
-}
-
-fn replace(path: &Path, text: &str) -> std::io::Result<()> {
-    let mut temporary = path.file_name().unwrap_or_default().to_owned();
-    temporary.push(format!(".{}.tmp", std::process::id()));
-    let temporary = path.with_file_name(temporary);
-    let write = || {
-        let mut file = OpenOptions::new().write(true).create_new(true).open(&temporary)?;
-        file.write_all(text.as_bytes())?;
-        if let Ok(there) = path.metadata() {
-            file.set_permissions(there.permissions())?;
-        }
-        file.sync_all()?;
-        std::fs::rename(&temporary, path)
-    };
-    let written = write();
-    if written.is_err() {
-        std::fs::remove_file(&temporary).ok();
-    }
-    written?;
-    let directory = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    File::open(directory)?.sync_all()
 }
 
 /// The directories and plan files of a directory.

@@ -49,6 +49,7 @@ pub(super) fn table(comparison: &Comparison) -> String {
 /// How often it was flown.
 fn flights(side: &Side) -> String {
     match side.flights.len() {
+        0 => "not flown".to_owned(),
         1 if side.repeatable => "one flight, which is the same each time".to_owned(),
         1 => "one flight".to_owned(),
         count => format!("{count} flights"),
@@ -62,6 +63,9 @@ fn results(side: &Side) -> String {
         *counts.entry(&flight.result).or_default() += 1;
     }
     let all = side.flights.len();
+    if all == 0 {
+        return UNKNOWN.to_owned();
+    }
     let told = counts.iter().map(|(result, count)| match all {
         1 => (*result).to_owned(),
         _ => format!("{result} {count}/{all}"),

@@ -1,0 +1,48 @@
+//! Where a comparison goes.
+
+use crate::app::output_file::FinalOutput;
+use crate::app::{AppError, error, setup};
+use crate::args::{CompareArgs, OutputFile};
+use crate::record::compare::Comparison;
+
+/// Where a comparison goes.
+#[derive(Debug)]
+pub(super) struct Outputs {
+    /// JSON stands on standard output in place of the table.
+    json_on_stdout: bool,
+    json: Option<FinalOutput>,
+    svg: Option<FinalOutput>,
+}
+
+impl Outputs {
+    /// Sees that the files can be written, so that no flight is flown for nothing; they stay as they are.
+    pub(super) fn prepare(args: &CompareArgs) -> Result<Self, AppError> {
+        let json = match &args.json {
+            Some(OutputFile::File(path)) => Some(path),
+            Some(OutputFile::Stdout) | None => None,
+        };
+        let mut kept = setup::kept_files(&args.flight, Some(&args.plan));
+        for (option, path) in [("--json", json), ("--svg", args.svg.as_ref())] {
+            path.map_or(Ok(()), |path| kept.claim(option, path))?;
+        }
+        Ok(Self {
+            json_on_stdout: args.json == Some(OutputFile::Stdout),
+            json: json.map(|path| FinalOutput::prepare(path)).transpose()?,
+            svg: args.svg.as_deref().map(FinalOutput::prepare).transpose()?,
+        })
+    }
+
+    /// Writes it everywhere; what cannot be written keeps nothing else from being written.
+    pub(super) fn write(self, comparison: &Comparison) -> Result<(), AppError> {
+        let json = format!("{}\n", comparison.json());
+        let shown = match self.json_on_stdout {
+            true => error::write_stdout(json.as_bytes()),
+            false => error::print(&comparison.text()),
+        };
+        let to =
+            |file: Option<FinalOutput>, text: &str| file.map_or(Ok(()), |file| file.write(text.as_bytes()));
+        let written = [to(self.json, &json), to(self.svg, &comparison.svg())];
+        shown?;
+        written.into_iter().collect()
+    }
+}

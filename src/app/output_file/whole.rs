@@ -1,0 +1,189 @@
+//! Files that are written at the end, as a whole.
+
+use std::fs::{File, OpenOptions};
+use std::io::{self, ErrorKind, Write as _};
+use std::path::{Path, PathBuf};
+
+use rustix::fs::{Access, access};
+
+use super::{cannot_write, directory_of};
+use crate::app::AppError;
+use crate::storage;
+
+/// An output that is written as a whole at the end. Until then a file that is there stays as it is.
+#[derive(Debug)]
+pub(in crate::app) struct FinalOutput {
+    path: PathBuf,
+    place: Place,
+}
+
+/// Where an output goes.
+#[derive(Debug)]
+enum Place {
+    /// A regular file, there or not yet, links followed.
+    Regular(PathBuf),
+    /// A device, a pipe or an open descriptor.
+    Stream(File),
+}
+
+impl FinalOutput {
+    /// The output to a path that was claimed; nothing is written yet.
+    ///
+    /// # Errors
+    /// Why it cannot be written.
+    pub(in crate::app) fn prepare(path: &Path) -> Result<Self, AppError> {
+        let place = Place::of(path).map_err(|error| cannot_write(path, &error))?;
+        Ok(Self { path: path.to_owned(), place })
+    }
+
+    /// Writes it.
+    pub(in crate::app) fn write(self, contents: &[u8]) -> Result<(), AppError> {
+        let written = match self.place {
+            Place::Regular(target) => match replace(&target, contents) {
+                // The file may be written, but not its directory.
+                Err(error)
+                    if matches!(error.kind(), ErrorKind::PermissionDenied | ErrorKind::ResourceBusy) =>
+                {
+                    std::fs::write(&target, contents)
+                }
+                written => written,
+            },
+            Place::Stream(mut file) => file.write_all(contents),
+        };
+        written.map_err(|error| cannot_write(&self.path, &error))
+    }
+}
+
+impl Place {
+    fn of(path: &Path) -> io::Result<Self> {
+        let target = storage::link_target(path);
+        match path.metadata() {
+            Ok(there) if there.is_file() && !is_of_system(path) => {
+                access(&target, Access::WRITE_OK)?;
+                Ok(Self::Regular(target))
+            }
+            // What a descriptor has got already stays before it.
+            Ok(_) => Ok(Self::Stream(OpenOptions::new().append(true).open(path)?)),
+            Err(error) if error.kind() == ErrorKind::NotFound => {
+                if target.as_os_str().as_encoded_bytes().ends_with(b"/") {
+                    return Err(ErrorKind::IsADirectory.into());
+                }
+                access(directory_of(&target), Access::WRITE_OK | Access::EXEC_OK)?;
+                Ok(Self::Regular(target))
+            }
+            Err(error) => Err(error),
+        }
+    }
+}
+
+/// Replaces a file as a whole, or creates it: it is never there in part.
+pub(in crate::app) fn replace(path: &Path, contents: &[u8]) -> io::Result<()> {
+    let mut temporary = path.file_name().unwrap_or_default().to_owned();
+    temporary.push(format!(".{}.tmp", std::process::id()));
+    let temporary = path.with_file_name(temporary);
+    let write = || {
+        let mut file = OpenOptions::new().write(true).create_new(true).open(&temporary)?;
+        file.write_all(contents)?;
+        if let Ok(there) = path.metadata() {
+            file.set_permissions(there.permissions())?;
+        }
+        file.sync_all()?;
+        std::fs::rename(&temporary, path)
+    };
+    let written = write();
+    if written.is_err() {
+        std::fs::remove_file(&temporary).ok();
+    }
+    written?;
+    File::open(directory_of(path))?.sync_all()
+}
+
+/// Whether a path leads through a directory in which the names are devices and open descriptors.
+fn is_of_system(path: &Path) -> bool {
+    const MOST_LINKS: usize = 40;
+    let next = |path: &PathBuf| {
+        let target = std::fs::read_link(path).ok()?;
+        Some(directory_of(path).join(target))
+    };
+    let lies_there = |path: PathBuf| {
+        let directory = directory_of(&path).canonicalize();
+        directory.is_ok_and(|directory| directory.starts_with("/dev") || directory.starts_with("/proc"))
+    };
+    std::iter::successors(Some(path.to_owned()), next).take(MOST_LINKS).any(lies_there)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::os::unix::fs::{MetadataExt as _, PermissionsExt as _};
+
+    use super::*;
+
+    #[test]
+    fn a_file_stays_as_it_is_until_the_output_is_written_as_a_whole() {
+        let directory = tempfile::tempdir().expect("a directory");
+        let at = |name: &str| directory.path().join(name);
+        std::fs::write(at("tracks.svg"), "before").expect("written");
+        std::os::unix::fs::symlink("tracks.svg", at("link")).expect("a link");
+        std::os::unix::fs::symlink("later", at("dangling")).expect("a link");
+        let read = |name: &str| std::fs::read_to_string(at(name)).ok();
+        for (name, target) in [("link", "tracks.svg"), ("new", "new"), ("dangling", "later")] {
+            let before = read(target);
+            let dropped = FinalOutput::prepare(&at(name)).expect("writable");
+            drop(dropped);
+            let output = FinalOutput::prepare(&at(name)).expect("writable");
+            assert_eq!(read(target), before, "{name}");
+            output.write(b"after").expect("written");
+            assert_eq!(read(target).as_deref(), Some("after"), "{name}");
+        }
+        assert!(at("link").is_symlink() && at("dangling").is_symlink());
+        let names = std::fs::read_dir(directory.path()).expect("readable").count();
+        assert_eq!(names, 5, "nothing else is left");
+    }
+
+    #[test]
+    fn where_nothing_can_be_written_is_told_before() {
+        let directory = tempfile::tempdir().expect("a directory");
+        let at = |name: &str| directory.path().join(name);
+        for path in [directory.path().to_owned(), at("none/x.svg"), at("x.svg/")] {
+            let error = FinalOutput::prepare(&path).expect_err("refused");
+            assert_eq!(error.code, 3, "{error}");
+        }
+        std::fs::write(at("kept"), "before").expect("written");
+        let protected = std::fs::Permissions::from_mode(0o400);
+        std::fs::set_permissions(at("kept"), protected).expect("permitted");
+        // Nothing is protected from root.
+        if OpenOptions::new().write(true).open(at("kept")).is_err() {
+            assert_eq!(FinalOutput::prepare(&at("kept")).expect_err("refused").code, 3);
+        }
+    }
+
+    #[test]
+    fn devices_pipes_and_descriptors_are_written_to_and_not_replaced() {
+        let directory = tempfile::tempdir().expect("a directory");
+        let fifo = directory.path().join("fifo");
+        rustix::fs::mknodat(rustix::fs::CWD, &fifo, rustix::fs::FileType::Fifo, rustix::fs::Mode::RWXU, 0)
+            .expect("a FIFO");
+        let reader = std::thread::spawn({
+            let fifo = fifo.clone();
+            move || std::fs::read_to_string(fifo)
+        });
+        FinalOutput::prepare(&fifo).expect("writable").write(b"lines").expect("written");
+        assert_eq!(reader.join().expect("read").expect("text"), "lines");
+        FinalOutput::prepare(Path::new("/dev/null")).expect("writable").write(b"lines").expect("written");
+        assert!(!fifo.metadata().expect("there").is_file());
+
+        let file = File::create(directory.path().join("redirected")).expect("created");
+        let inode = file.metadata().expect("there").ino();
+        (&file).write_all(b"first ").expect("written");
+        let descriptor = format!("/dev/fd/{}", std::os::fd::AsRawFd::as_raw_fd(&file));
+        // Through a link of the user's, as /dev/stdout is one of the system's.
+        let link = directory.path().join("stdout");
+        std::os::unix::fs::symlink(&descriptor, &link).expect("a link");
+        for path in [Path::new(&descriptor), &link] {
+            FinalOutput::prepare(path).expect("writable").write(b"more ").expect("written");
+        }
+        let path = directory.path().join("redirected");
+        assert_eq!(std::fs::read_to_string(&path).expect("text"), "first more more ");
+        assert_eq!(path.metadata().expect("there").ino(), inode);
+    }
+}
