@@ -37,12 +37,17 @@ impl Served {
         Self::start(ports, &firmware)
     }
 
-    /// With the stand-in as the child.
+    /// With the stand-in as the child, which keeps nothing.
     fn stand_in(ports: Ports, trouble: Trouble) -> Self {
+        Self::stand_in_kept(ports, trouble, &["--fresh"])
+    }
+
+    /// With the stand-in as the child, which keeps its configuration as these options say.
+    fn stand_in_kept(ports: Ports, trouble: Trouble, kept: &[&str]) -> Self {
         let (program, arguments) = process::command();
         let variable = format!("{VARIABLE}={}", process::variable(ports, trouble));
         let program = program.display().to_string();
-        let mut firmware = vec!["--fresh", "--firmware", "/usr/bin/env"];
+        let mut firmware = [kept, &["--firmware", "/usr/bin/env"]].concat();
         for argument in [&variable[..], &program].into_iter().chain(arguments) {
             firmware.extend(["--firmware-arg", argument]);
         }
@@ -224,6 +229,42 @@ fn a_firmware_that_prints_without_end_does_not_stop_the_program() {
     assert!(said.contains("has not answered for 10 s") && said.contains("were not shown"), "{said}");
     let lines = said.lines().filter(|line| line.contains("[firmware] y") || line.contains("\"y\"")).count();
     assert!((1..10_000).contains(&lines), "{lines} of them");
+}
+
+/// What is told of a firmware that keeps this, and the lines that it keeps after that; `set_by` was written when it was set.
+fn started_with(kept: &str, set_by: Option<&str>) -> (String, String) {
+    let state = tempfile::tempdir().unwrap();
+    let directory = state.path().join("firmware");
+    std::fs::create_dir(&directory).unwrap();
+    std::fs::write(directory.join("eeprom.bin"), kept).unwrap();
+    if let Some(set_by) = set_by {
+        std::fs::write(directory.join("provisioned"), set_by).unwrap();
+    }
+    let kept = ["--state-dir", state.path().to_str().unwrap()];
+    let mut served = Served::stand_in_kept(free_ports(), Trouble::None, &kept);
+    served.notice(" answers: Betaflight ");
+    assert!(directory.join("provisioned").exists());
+    let said = served.program.seen().join("\n");
+    (said, std::fs::read_to_string(directory.join("eeprom.bin")).unwrap())
+}
+
+#[test]
+fn a_firmware_that_was_ended_before_it_was_set_is_set_at_its_next_start() {
+    // As it is written at the first boot, or by another build for which the old one is of no use.
+    for set_by in [None, Some("/elsewhere/betaflight_SITL.elf\n1\n")] {
+        let (said, kept) = started_with("# Betaflight / SITL\nwaypoint clear\n", set_by);
+        assert!(said.contains("Nothing was ever changed in the firmware's configuration"), "{said}");
+        assert!(kept.contains("aux 0 0 0 1700 2100") && kept.contains("set trust_mag = ON"), "{kept}");
+    }
+}
+
+#[test]
+fn a_configuration_of_the_users_own_is_left_alone() {
+    for own in ["set ap_max_angle = 33\n", "aux 3 0 4 1700 2100 0 0\n"] {
+        let (said, kept) = started_with(own, None);
+        assert!(!said.contains("Nothing was ever changed") && !said.contains("took"), "{said}");
+        assert_eq!(kept, own);
+    }
 }
 
 #[test]

@@ -3,7 +3,7 @@
 
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener, UdpSocket};
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Instant, SystemTime};
 
 use tempfile::TempDir;
 
@@ -19,6 +19,9 @@ use crate::vehicle::Vehicle;
 const DIRECTORY: &str = "firmware";
 /// The file in which it keeps it.
 const STORED: &str = "eeprom.bin";
+/// The file beside it that says by which executable it was made when it was set from here. A firmware writes its configuration at
+/// its first start already, and one of another layout begins anew.
+const PROVISIONED: &str = "provisioned";
 
 /// An open link.
 #[derive(Debug)]
@@ -70,7 +73,7 @@ pub(in crate::app) fn open(
     let now = Instant::now();
     let peer = SitlPeer::open(feed, SitlPorts { ip, raw, motors, fdm, rc }, now)
         .map_err(|error| AppError::environment(error.to_string()))?;
-    let (mut directory, mut is_fresh, mut child, mut stored_in) = (None, false, None, None);
+    let (mut directory, mut is_fresh, mut child, mut stored_in, mut note) = (None, false, None, None, None);
     if let Some(program) = &firmware.executable {
         check_free(SocketAddr::new(ip, ports.tcp), &[fdm, rc])?;
         let place = match state {
@@ -84,6 +87,7 @@ pub(in crate::app) fn open(
         };
         is_fresh = !place.join(STORED).exists();
         stored_in = Some(place.clone());
+        note = Some((place.join(PROVISIONED), identity(program)));
         child = Some(start(program.clone(), firmware.arguments.clone(), place)?);
     }
     let name = firmware.executable.as_ref().and_then(|program| program.file_name()).map_or_else(
@@ -94,10 +98,28 @@ pub(in crate::app) fn open(
     let ends = RemoteEnds { name, stream, peer: Some(peer), child };
     let mut link = RemoteLink::new(ends, now);
     let lines = configuration::lines(&firmware.lines, is_fresh)?;
-    if !lines.is_empty() {
-        link.provision(Provision::new(lines, is_fresh || firmware.may_write));
+    let is_set =
+        |(file, words): &(PathBuf, String)| std::fs::read_to_string(file).is_ok_and(|noted| noted == *words);
+    match note {
+        None if lines.is_empty() => {}
+        None => link.provision(Provision::new(lines, firmware.may_write)),
+        Some(note) if !is_fresh && lines.is_empty() && is_set(&note) => {}
+        Some(note) => {
+            let mut provision = Provision::new(lines, is_fresh || firmware.may_write);
+            if !is_fresh && !is_set(&note) {
+                provision = provision.or_when_bare(configuration::lines(&firmware.lines, true)?);
+            }
+            link.provision(provision.noted_in(note.0, note.1));
+        }
     }
     Ok(OpenLink { link, is_fresh, stored_in, directory })
+}
+
+/// What tells an executable from others and from earlier builds of it.
+fn identity(program: &Path) -> String {
+    let modified = std::fs::metadata(program).and_then(|file| file.modified()).ok();
+    let since = modified.and_then(|modified| modified.duration_since(SystemTime::UNIX_EPOCH).ok());
+    format!("{}\n{}\n", program.display(), since.unwrap_or_default().as_nanos())
 }
 
 fn start(program: PathBuf, arguments: Vec<String>, directory: PathBuf) -> Result<SitlChild, AppError> {

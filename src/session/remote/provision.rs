@@ -5,6 +5,8 @@
 //!      ─▶ it may not be written: the differences are told ─▶ done
 //!      ─▶ write ─▶ save ─▶ restart ─▶ look again ──────────▶ done
 //! ```
+//!
+//! Where it is not known whether it was ever set, it is asked first what is changed in its configuration.
 
 mod held;
 mod lines;
@@ -14,6 +16,7 @@ mod tests;
 mod wish;
 
 use std::collections::VecDeque;
+use std::path::PathBuf;
 
 use held::{Held, Question};
 pub use lines::ProvisionLines;
@@ -45,6 +48,11 @@ pub struct Provision {
     restarted: bool,
     /// Settings in place of the guide's.
     landing_gains: Vec<String>,
+    /// What it gets in place of the lines when nothing was ever changed in its configuration, until that is known.
+    when_bare: Option<ProvisionLines>,
+    was_bare: bool,
+    /// A file that says that it was set, and with which words.
+    note: Option<(PathBuf, String)>,
     /// Connections that were lost before it was written.
     lost: usize,
 }
@@ -85,8 +93,27 @@ impl Provision {
             report: ProvisionReport::default(),
             restarted: false,
             landing_gains: Vec::new(),
+            when_bare: None,
+            was_bare: false,
+            note: None,
             lost: 0,
         }
+    }
+
+    /// One in whose configuration nothing was ever changed is set by these lines instead, which may be written: whether it was
+    /// set before is not known.
+    #[must_use]
+    pub fn or_when_bare(mut self, lines: ProvisionLines) -> Self {
+        self.when_bare = Some(lines);
+        self.begin();
+        self
+    }
+
+    /// Once it is through, `file` holds these words.
+    #[must_use]
+    pub fn noted_in(mut self, file: PathBuf, words: String) -> Self {
+        self.note = Some((file, words));
+        self
     }
 
     /// The flight controller turned out to be one that falls in LAND with the guide's altitude gains.
@@ -132,6 +159,10 @@ impl Provision {
             return self.begin();
         }
         let Answer::Line { text, failed, restarted } = answer else {
+            if let Asked::Question(Question::Changes) = asked {
+                // It is left as it is.
+                return;
+            }
             let why = match answer {
                 Answer::NotAnswered(why) => why.to_string(),
                 _ => "the flight controller gave another answer than that to a line".to_owned(),
@@ -193,8 +224,12 @@ impl Provision {
 
     /// From the beginning: what was written and not saved is gone.
     fn begin(&mut self) {
-        self.report = ProvisionReport::default();
-        self.phase = Phase::Look { left: held::questions(&self.wishes), written: false };
+        self.report = ProvisionReport { was_bare: self.was_bare, ..ProvisionReport::default() };
+        let left = match self.when_bare {
+            Some(_) => VecDeque::from([Question::Changes]),
+            None => held::questions(&self.wishes),
+        };
+        self.phase = Phase::Look { left, written: false };
     }
 
     fn look_again(&mut self) {
@@ -203,6 +238,15 @@ impl Provision {
 
     /// Everything was looked at.
     fn conclude(&mut self) {
+        if let Some(lines) = self.when_bare.take() {
+            if self.held.is_bare() {
+                self.wishes = wish::wishes(lines.in_order());
+                self.lines = lines;
+                self.may_write = true;
+                self.was_bare = true;
+            }
+            return self.begin();
+        }
         self.report.unknown = self.held.unknown(&self.wishes);
         self.report.landing_gains.clone_from(&self.landing_gains);
         self.report.differences = self.held.differences(&self.wishes);
@@ -271,6 +315,12 @@ impl RemoteLink {
                 self.notices.push(RemoteNotice::Lost(format!("The firmware could not be set: {why}.")));
             }
             None => {}
+        }
+        if let (Some(Ok(_)), Some((file, words))) = (provision.result(), &provision.note)
+            && let Err(error) = std::fs::write(file, words)
+        {
+            let place = file.display();
+            self.notices.push(RemoteNotice::Lost(format!("Cannot write {place}: {error}.")));
         }
         if provision.is_changed_without_restart() {
             self.identification = Identification::default();

@@ -134,6 +134,8 @@ pub(crate) fn live(sockets: &mut Sockets, memory: &mut Memory, boots: bool, shar
         serial_at: 0,
     };
     let end = life.run(shared);
+    // The end of a process closes its port together with its connections.
+    life.sockets.tcp = None;
     memory.clone_from(&life.serial.memory);
     end
 }

@@ -8,12 +8,30 @@ use crate::link::proto::fc_client::telemetry::setting;
 use crate::plan::FlightPlan;
 use crate::plan::format::{self, Format};
 
+/// Words in the output of `diff` that stand there when nothing was changed.
+const NO_CHANGE: [&str; 10] = [
+    "batch",
+    "defaults",
+    "board_name",
+    "manufacturer_id",
+    "mcu_id",
+    "signature",
+    "profile",
+    "rateprofile",
+    "battery_profile",
+    "save",
+];
+/// A plan without waypoints is shown like this.
+const NO_PLAN: &str = "waypoint clear";
+
 /// What is asked to look.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Question {
     Setting(String),
     Aux,
     Plan,
+    /// What is not as in a fresh configuration.
+    Changes,
 }
 
 impl Question {
@@ -22,6 +40,7 @@ impl Question {
             Self::Setting(name) => format!("get {name}"),
             Self::Aux => "aux".to_owned(),
             Self::Plan => "waypoint list".to_owned(),
+            Self::Changes => "diff".to_owned(),
         }
     }
 }
@@ -50,6 +69,8 @@ pub(super) struct Held {
     settings: BTreeMap<String, Option<String>>,
     aux: Vec<Vec<u16>>,
     plan: Option<FlightPlan>,
+    /// Nothing was changed in its configuration.
+    is_bare: bool,
 }
 
 impl Held {
@@ -63,6 +84,7 @@ impl Held {
                 let rows = output.lines().filter_map(|line| line.trim().strip_prefix("aux "));
                 self.aux = rows.filter_map(wish::aux_row).collect();
             }
+            Question::Changes => self.is_bare = !failed && tells_of_no_change(output),
             // Some releases print nothing when there is no plan.
             Question::Plan if failed => self.plan = None,
             Question::Plan if output.trim().is_empty() => self.plan = Some(FlightPlan::default()),
@@ -70,6 +92,11 @@ impl Held {
                 self.plan = format::parse("the craft", output, Format::CliText).ok().map(|file| file.plan);
             }
         }
+    }
+
+    /// Whether it told that nothing was changed in its configuration.
+    pub(super) fn is_bare(&self) -> bool {
+        self.is_bare
     }
 
     /// A line showed that the firmware does not have this setting.
@@ -122,6 +149,16 @@ impl Held {
         }
         differences
     }
+}
+
+/// Whether the output of `diff` has no line that changes anything.
+fn tells_of_no_change(output: &str) -> bool {
+    let lines = output.lines().map(|line| line.split_once('#').map_or(line, |(code, _)| code).trim());
+    let mut changes = lines.filter(|line| {
+        let word = line.split_ascii_whitespace().next();
+        word.is_some_and(|word| !NO_CHANGE.contains(&word)) && *line != NO_PLAN
+    });
+    !output.trim().is_empty() && changes.next().is_none()
 }
 
 /// Whether two texts are the same value: `on` is `ON`, `05` is `5`.

@@ -5,6 +5,8 @@ use crate::session::landing_gains::landing_gains_told;
 /// What came of it.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(super) struct ProvisionReport {
+    /// Nothing was ever changed in its configuration, so that it was set as a fresh one is.
+    pub(super) was_bare: bool,
     /// Lines that were written and taken.
     pub(super) written: usize,
     /// Settings that this firmware does not have.
@@ -55,6 +57,12 @@ impl ProvisionReport {
     #[must_use]
     pub(super) fn sentences(&self) -> Vec<String> {
         let mut sentences = Vec::new();
+        if self.was_bare {
+            sentences.push(
+                "Nothing was ever changed in the firmware's configuration: it is set as a fresh one is."
+                    .to_owned(),
+            );
+        }
         sentences.extend(landing_gains_told(&self.landing_gains).filter(|_| !self.may_not_write));
         if self.written > 0 && self.is_as_wanted() {
             sentences

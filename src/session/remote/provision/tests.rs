@@ -165,3 +165,40 @@ fn a_firmware_that_falls_in_land_gets_other_gains_than_the_guides_and_the_user_h
     let told = report.sentences().join(" ");
     assert!(told.contains("falls in LAND") && told.contains("gets ap_altitude_p = 2 instead"), "{told}");
 }
+
+/// Sets one of which nobody knows whether it was ever set, which it is by a switch for ARM.
+fn set_unsure(craft: &mut Craft) -> ProvisionReport {
+    let fresh = ProvisionLines { usual: vec![MODES[0].to_owned()], of_user: Vec::new() };
+    let mut provision = Provision::new(ProvisionLines::default(), false).or_when_bare(fresh);
+    craft.run(&mut provision);
+    provision.result().unwrap().unwrap().clone()
+}
+
+#[test]
+fn one_that_was_never_set_is_set_as_a_fresh_one_is() {
+    let mut craft = Craft::new();
+    let report = set_unsure(&mut craft);
+    assert_eq!((report.was_bare, report.written), (true, 1));
+    assert_eq!(craft.firmware.mode_ranges().len(), 1);
+    assert!(report.sentences()[0].contains("set as a fresh one is"), "{:?}", report.sentences());
+}
+
+#[test]
+fn one_with_a_setting_a_switch_or_a_plan_of_its_own_is_left_alone() {
+    let waypoint = PLAN.lines().find(|line| line.starts_with("waypoint insert")).unwrap();
+    for own in ["set ap_max_angle = 33", "aux 0 0 0 1700 2100 0 0", waypoint] {
+        let mut craft = Craft::new();
+        craft.answer(own);
+        craft.ran.clear();
+        let modes = craft.firmware.mode_ranges().len();
+        assert_eq!(set_unsure(&mut craft), ProvisionReport::default(), "{own}");
+        assert_eq!((craft.firmware.mode_ranges().len(), &craft.ran[..]), (modes, &["diff".to_owned()][..]));
+    }
+    // Nor is one that does not tell.
+    let fresh = ProvisionLines { usual: vec![MODES[0].to_owned()], of_user: Vec::new() };
+    let mut provision = Provision::new(ProvisionLines::default(), false).or_when_bare(fresh);
+    assert_eq!(provision.next(), Some(Ask::Line("diff".to_owned())));
+    provision.take(&Answer::NotAnswered(Unanswered::CliClosed));
+    assert_eq!(provision.next(), None);
+    assert_eq!(provision.result(), Some(Ok(&ProvisionReport::default())));
+}
