@@ -166,6 +166,27 @@ impl Compared {
     }
 }
 
+/// The flights of a case, counted.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct CaseCount {
+    /// `guide-7 · crosswind`.
+    pub name: String,
+    /// Those that passed.
+    pub passed: usize,
+    /// Those of which nothing was judged.
+    pub skipped: usize,
+    /// All.
+    pub flights: usize,
+}
+
+impl CaseCount {
+    /// Whether one of them failed.
+    #[must_use]
+    pub fn has_failures(&self) -> bool {
+        self.passed + self.skipped < self.flights
+    }
+}
+
 /// All flights of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Summary {
@@ -222,10 +243,18 @@ impl Summary {
         self.flights.iter().map(|flight| flight.flown_s).sum()
     }
 
-    /// The cases with several seeds or repetitions: name, flights that passed, flights.
+    /// Whether flights were flown or passed over and nothing of any was judged.
     #[must_use]
-    pub fn cases(&self) -> Vec<(String, usize, usize)> {
-        let mut cases: Vec<(String, usize, usize)> = Vec::new();
+    pub fn is_skipped(&self) -> bool {
+        !self.flights.is_empty()
+            && self.flights.iter().all(CheckedFlight::is_skipped)
+            && self.compared.iter().all(|compared| is_skipped(&compared.judgement))
+    }
+
+    /// The cases in their order, each with its seeds and repetitions counted.
+    #[must_use]
+    pub fn cases(&self) -> Vec<CaseCount> {
+        let mut cases: Vec<CaseCount> = Vec::new();
         let mut file = "";
         for flight in &self.flights {
             let name = if flight.case.is_empty() {
@@ -233,13 +262,15 @@ impl Summary {
             } else {
                 format!("{} · {}", flight.scenario, flight.case)
             };
-            let passed = usize::from(flight.passed());
+            let skipped = usize::from(flight.is_skipped());
+            let passed = usize::from(flight.passed()) - skipped;
             match cases.last_mut() {
-                Some((known, good, all)) if *known == name && file == flight.file => {
-                    *good += passed;
-                    *all += 1;
+                Some(known) if known.name == name && file == flight.file => {
+                    known.passed += passed;
+                    known.skipped += skipped;
+                    known.flights += 1;
                 }
-                _ => cases.push((name, passed, 1)),
+                _ => cases.push(CaseCount { name, passed, skipped, flights: 1 }),
             }
             file = &flight.file;
         }

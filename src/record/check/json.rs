@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::{CheckedFlight, Compared, Summary};
+use super::{CaseCount, CheckedFlight, Compared, Summary};
 use crate::scenario::{Judgement, Outcome};
 use crate::signals::SimTime;
 
@@ -44,7 +44,9 @@ pub fn summary_line(summary: &Summary) -> Vec<String> {
     let cases: Vec<Value> = summary
         .cases()
         .into_iter()
-        .map(|(name, passed, flights)| json!({"case": name, "passed": passed, "flights": flights}))
+        .map(|CaseCount { name, passed, skipped, flights }| {
+            json!({"case": name, "passed": passed, "skipped": skipped, "flights": flights})
+        })
         .collect();
     let (skipped_flights, skipped) = summary.skipped();
     lines.push(

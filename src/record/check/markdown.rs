@@ -6,7 +6,11 @@ use crate::scenario::Outcome;
 /// The whole summary.
 #[must_use]
 pub fn markdown(summary: &Summary) -> String {
-    let word = if summary.passed() { "✅ All flights passed" } else { "❌ Some flights failed" };
+    let word = match summary.passed() {
+        true if summary.is_skipped() => "– Nothing was judged",
+        true => "✅ All flights passed",
+        false => "❌ Some flights failed",
+    };
     let (skipped_flights, skipped) = summary.skipped();
     // Only a flight controller outside makes any.
     let with_skipped = skipped > 0;
@@ -24,7 +28,8 @@ pub fn markdown(summary: &Summary) -> String {
         summary.wall_s
     );
     let mut index = 0;
-    for (name, passed, all) in summary.cases() {
+    for case in summary.cases() {
+        let (passed, all) = (case.passed, case.flights);
         let flights = &summary.flights[index..index + all];
         index += all;
         let share = |flight: &super::CheckedFlight| {
@@ -33,7 +38,11 @@ pub fn markdown(summary: &Summary) -> String {
         };
         let tightest =
             flights.iter().min_by(|a, b| share(a).total_cmp(&share(b))).and_then(|flight| flight.tightest());
-        let mark = if passed == all { "✅" } else { "❌" };
+        let mark = match case.has_failures() {
+            true => "❌",
+            false if passed == 0 => "–",
+            false => "✅",
+        };
         let all_of = flights.iter().map(|flight| flight.judgements.len()).sum::<usize>();
         let skipped = flights.iter().map(super::CheckedFlight::skipped).sum::<usize>();
         let skipped = if with_skipped { format!("| {skipped} of {all_of} ") } else { String::new() };
@@ -46,7 +55,7 @@ pub fn markdown(summary: &Summary) -> String {
         };
         text.push_str(&format!(
             "| {mark} {} | {passed} of {all} {skipped}| {} | {left} |\n",
-            cell(&name),
+            cell(&case.name),
             cell(&label)
         ));
     }

@@ -65,13 +65,14 @@ fn counted(expectations: usize) -> String {
 fn spreads(summary: &Summary) -> Vec<String> {
     let mut lines = Vec::new();
     let mut first = 0;
-    for (name, _, all) in summary.cases() {
+    for case in summary.cases() {
+        let all = case.flights;
         let flights = &summary.flights[first..first + all];
         first += all;
         if all < MANY {
             continue;
         }
-        lines.push(format!("{name}, {all} flights:"));
+        lines.push(format!("{}, {all} flights:", case.name));
         let labels = flights.first().map_or(&[][..], |flight| flight.judgements.as_slice());
         for label in labels.iter().map(|judgement| judgement.label.as_str()) {
             let mut margins: Vec<Margin> = flights
@@ -94,10 +95,8 @@ fn spreads(summary: &Summary) -> Vec<String> {
 #[must_use]
 pub fn summary_lines(summary: &Summary) -> Vec<String> {
     let mut lines = Vec::new();
-    for (name, passed, all) in summary.cases() {
-        if all > 1 && passed < all {
-            lines.push(format!("{name}: {passed} of {all}"));
-        }
+    for case in summary.cases().iter().filter(|case| case.flights > 1 && case.has_failures()) {
+        lines.push(format!("{}: {} of {}", case.name, case.passed, case.flights));
     }
     lines.extend(spreads(summary));
     for compared in &summary.compared {
@@ -119,7 +118,9 @@ pub fn summary_lines(summary: &Summary) -> Vec<String> {
     }
     let flown = summary.flown_s();
     let flights = if summary.flights.len() == 1 { "flight" } else { "flights" };
-    let mut last = format!("{} of {} {flights} passed", summary.passed_flights(), summary.flights.len());
+    let nothing = if summary.is_skipped() { "nothing was judged: " } else { "" };
+    let mut last =
+        format!("{nothing}{} of {} {flights} passed", summary.passed_flights(), summary.flights.len());
     let failed = summary.compared.iter().filter(|compared| compared.judgement.outcome.is_failure()).count();
     if failed > 0 {
         last.push_str(&format!(", {failed} comparisons failed"));

@@ -181,3 +181,37 @@ fn skipped_expectations_are_counted_in_every_form() {
     assert!(text.contains("| 3 of 4 |"), "{text}");
     assert!(!markdown(&self::summary([1.0].into_iter())).contains("skipped"));
 }
+
+/// A flight of which nothing was judged.
+fn unjudged(seed: u64) -> CheckedFlight {
+    let outcome = Outcome::Skipped(Insight::Inner);
+    let judgements = vec![Judgement { label: "throttle < 1900 µs".to_owned(), line: 9, outcome }];
+    CheckedFlight { judgements, result: String::new(), ..flight(seed, 5.0) }
+}
+
+#[test]
+fn a_flight_of_which_nothing_was_judged_has_not_passed_in_its_case() {
+    let summary = summary_of(vec![flight(1, 5.0), unjudged(2), flight(3, 5.0)]);
+    let [case] = &summary.cases()[..] else { panic!("{summary:?}") };
+    assert_eq!((case.passed, case.skipped, case.flights), (2, 1, 3));
+    assert!(!case.has_failures());
+    let line = summary_line(&summary).pop().unwrap();
+    let line: serde_json::Value = serde_json::from_str(&line).unwrap();
+    assert_eq!((&line["cases"][0]["passed"], &line["cases"][0]["skipped"]), (&2.into(), &1.into()));
+    let text = markdown(&summary);
+    assert!(text.contains("| ✅ ") && text.contains("| 2 of 3 | 1 of 3 |"), "{text}");
+    assert_eq!(summary_lines(&summary).len(), 1, "no case failed: {:?}", summary_lines(&summary));
+}
+
+#[test]
+fn a_run_of_which_nothing_was_judged_does_not_say_that_it_passed() {
+    let summary = summary_of(vec![unjudged(1), unjudged(2)]);
+    let text = markdown(&summary);
+    assert!(text.starts_with("### – Nothing was judged\n"), "{text}");
+    assert!(text.contains("| – a &lt;b>") && text.contains("| 0 of 2 |") && !text.contains('✅'), "{text}");
+    let last = summary_lines(&summary).pop().unwrap();
+    assert!(last.starts_with("nothing was judged: 0 of 2 flights passed, 2 skipped whole, "), "{last}");
+    let failed = summary_of(vec![unjudged(1), flight(2, 11.0)]);
+    assert!(markdown(&failed).starts_with("### ❌ Some flights failed"));
+    assert_eq!(summary_lines(&failed)[0], "a <b> & \"c\" | *d* · one, noise real: 0 of 2");
+}
