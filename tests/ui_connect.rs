@@ -238,7 +238,11 @@ fn the_screen_says_how_the_connection_is() {
 #[test]
 fn a_firmware_without_plans_says_so() {
     let state = connected(|remote| remote.has_plans = false);
-    assert!(action::enabled(&state, Action::Upload).unwrap_err().contains("has no waypoints"));
+    let refusal = action::enabled(&state, Action::Upload).unwrap_err();
+    assert!(
+        refusal.contains("has no waypoints") && refusal.contains("-DENABLE_FLIGHT_PLANNING=1"),
+        "{refusal}"
+    );
 }
 
 #[test]

@@ -5,8 +5,8 @@ use crate::session::{NOTHING_MOVES, NOTHING_SIMULATED, RemoteState, RemoteView};
 use super::{Action, EditAction};
 
 /// Why a plan cannot go to a flight controller that has none.
-const NO_PLANS: &str =
-    "This flight controller has no waypoints: its firmware was built without flight plans (FLIGHT_PLAN).";
+const NO_PLANS: &str = "This flight controller has no waypoints: build its firmware with flight plans, \
+                        EXTRA_FLAGS=\"-DENABLE_FLIGHT_PLANNING=1\" (board or SITL).";
 
 /// Why the navigator of another program takes no orders.
 const NO_ORDERS: &str = "A firmware outside takes no such order in flight: switch the autopilot off and fly there, or upload another plan.";
