@@ -32,7 +32,7 @@ pub use pacer::{Pacer, SPEED_RANGE};
 pub use persistence::Persistence;
 pub use remote::{
     Access, Denial, EXCHANGE_PAUSE, Impact, NOT_PERMITTED, NOTHING_MOVES, NOTHING_SIMULATED, Provision,
-    ProvisionLines, RemoteEnds, RemoteLink, RemoteNotice, RemoteState, RemoteView,
+    ProvisionLines, RemoteEnds, RemoteLink, RemoteNotice, RemoteState, RemoteView, Unset, UnsetLine,
 };
 pub use request_handler::{Handled, RequestHandler};
 pub use runtime::{Endpoints, FlownBefore, Handle, SessionConfig, start, start_at};

@@ -35,7 +35,7 @@ use identify::{Identification, Question};
 use observer::Observer;
 use permission::Permission;
 pub use permission::{Access, Denial, Impact, NOT_PERMITTED, NOTHING_MOVES, NOTHING_SIMULATED};
-pub use provision::{Provision, ProvisionLines};
+pub use provision::{Provision, ProvisionLines, Unset, UnsetLine};
 use reply::cli_reply;
 use self_check::SelfCheck;
 pub use view::{RemoteNotice, RemoteState, RemoteView};
@@ -103,12 +103,13 @@ pub struct RemoteLink {
     heard: bool,
     /// Why the connection was lost, as it was told last; nothing has come over one since.
     told_loss: Option<String>,
-    /// It has answered since its program was started first.
-    has_answered: bool,
+    /// Requests that it has answered since its program was started first; motors are no answer.
+    answers: u64,
     motors: FeedState,
     self_check: SelfCheck,
     permission: Permission,
     provision: Option<Provision>,
+    unset: Option<Unset>,
     notices: Vec<RemoteNotice>,
 }
 
@@ -130,11 +131,12 @@ impl RemoteLink {
             connected: None,
             heard: false,
             told_loss: None,
-            has_answered: false,
+            answers: 0,
             motors: FeedState::Waiting,
             self_check: SelfCheck::default(),
             permission: Permission::default(),
             provision: None,
+            unset: None,
             notices: Vec::new(),
         }
     }
@@ -163,6 +165,12 @@ impl RemoteLink {
     #[must_use]
     pub fn access(&self) -> Access {
         if self.is_fed() { Access::Everything } else { self.permission.access() }
+    }
+
+    /// Requests that it has answered so far; motors are no answer.
+    #[must_use]
+    pub fn answers(&self) -> u64 {
+        self.answers
     }
 
     /// The number of the present connection.
@@ -194,6 +202,12 @@ impl RemoteLink {
     #[must_use]
     pub fn name(&self) -> &str {
         &self.ends.name
+    }
+
+    /// What it was to be set to and is not.
+    #[must_use]
+    pub fn unset(&self) -> Option<&Unset> {
+        self.unset.as_ref()
     }
 
     /// What is known of it.
@@ -256,7 +270,7 @@ impl RemoteLink {
                     .notices
                     .push(RemoteNotice::Told(format!("Lines of the firmware's output that were not shown: {count}."))),
                 ChildEvent::Failed(reason) => self.give_up(format!("{} cannot be started: {reason}.", self.ends.name)),
-                ChildEvent::Ended(end) if !self.has_answered => self.give_up(format!(
+                ChildEvent::Ended(end) if self.answers == 0 => self.give_up(format!(
                     "{} ended {end} before it answered: is it a SITL executable of Betaflight, and are its ports free?",
                     self.ends.name
                 )),
@@ -299,7 +313,6 @@ impl RemoteLink {
         };
         if let Some(motors) = peer.take_motors(now) {
             mailbox.deliver_motors(motors);
-            self.has_answered = true;
         }
         let mut state = None;
         while let Some(frame) = mailbox.take_frame() {
@@ -401,7 +414,7 @@ impl RemoteLink {
     fn take_answers(&mut self, vehicle: &mut Vehicle) {
         while let Some((id, answer)) = self.client.next_answer() {
             let Some(purpose) = self.waiting.remove(&id) else { continue };
-            self.has_answered |= !matches!(answer, Answer::NotAnswered(_));
+            self.answers += u64::from(!matches!(answer, Answer::NotAnswered(_)));
             if matches!(purpose, Purpose::Line(_) | Purpose::Identity(Question::Settings(_) | Question::Plan))
             {
                 self.permission.line_answered(&answer);
@@ -479,16 +492,22 @@ impl RemoteLink {
         if !self.is_fed() || matches!(self.state, RemoteState::Unusable(_)) {
             return;
         }
-        if !self.has_answered && self.first_connected.or(started).is_some_and(is_over) {
-            let why = match &self.told_loss {
-                Some(reason) => format!(": {reason}."),
-                None => ": is it a SITL executable of Betaflight, and are its ports free?".to_owned(),
-            };
-            self.give_up(format!(
-                "{} has not answered for {} s{why}",
-                self.ends.name,
-                FIRST_ANSWER.as_secs()
-            ));
+        // One that somebody else started and another program is connected to has been told so.
+        let is_taken = self.told_loss.is_some() && self.ends.child.is_none();
+        if self.answers == 0 && !is_taken && self.first_connected.or(started).is_some_and(is_over) {
+            let RemoteEnds { name, stream, .. } = &self.ends;
+            let seconds = FIRST_ANSWER.as_secs();
+            self.give_up(match &self.told_loss {
+                Some(reason) => format!("{name} has not answered for {seconds} s: {reason}."),
+                None if self.first_connected.is_none() && self.motors != FeedState::Waiting => format!(
+                    "{name} sends motors, but nothing has answered at {} for {seconds} s: name the port of its command line \
+                     and MSP with --tcp-port.",
+                    stream.place
+                ),
+                None => format!(
+                    "{name} has not answered for {seconds} s: is it a SITL executable of Betaflight, and are its ports free?"
+                ),
+            });
         } else if !self.heard && self.connected.is_some_and(is_over) {
             self.connected = None;
             self.notices.push(RemoteNotice::Lost(format!(

@@ -21,6 +21,7 @@ use std::path::PathBuf;
 use held::{Held, Question};
 pub use lines::ProvisionLines;
 use report::{ProvisionReport, RefusedLine};
+pub use report::{Unset, UnsetLine};
 use wish::Wish;
 
 use super::self_check::SelfCheck;
@@ -307,12 +308,15 @@ impl RemoteLink {
             return;
         };
         match provision.result() {
-            Some(Ok(report)) if report.is_as_wanted() => {
-                self.notices.extend(report.sentences().into_iter().map(RemoteNotice::Told));
+            Some(Ok(report)) => {
+                self.unset = report.unset();
+                let notice = if report.is_as_wanted() { RemoteNotice::Told } else { RemoteNotice::Lost };
+                self.notices.extend(report.sentences().into_iter().map(notice));
             }
-            Some(Ok(report)) => self.notices.extend(report.sentences().into_iter().map(RemoteNotice::Lost)),
             Some(Err(why)) => {
-                self.notices.push(RemoteNotice::Lost(format!("The firmware could not be set: {why}.")));
+                let sentence = format!("The firmware could not be set: {why}.");
+                self.unset = Some(Unset::Everything(sentence.clone()));
+                self.notices.push(RemoteNotice::Lost(sentence));
             }
             None => {}
         }

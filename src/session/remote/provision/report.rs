@@ -21,6 +21,24 @@ pub(super) struct ProvisionReport {
     pub(super) may_not_write: bool,
 }
 
+/// What a flight controller was to be set to and is not.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Unset {
+    /// Nothing was written: why, as a sentence.
+    Everything(String),
+    /// These lines are not in force.
+    Lines(Vec<UnsetLine>),
+}
+
+/// A line that is not in force.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct UnsetLine {
+    /// The line; of a setting that this firmware does not have without its value.
+    pub line: String,
+    /// What it says or holds instead, as a part of a sentence.
+    pub why: String,
+}
+
 /// A line that was refused.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct RefusedLine {
@@ -53,6 +71,29 @@ impl ProvisionReport {
         self.refused.is_empty() && self.differences.is_empty()
     }
 
+    /// What is not as wanted; `None` when all is.
+    pub(super) fn unset(&self) -> Option<Unset> {
+        if self.may_not_write {
+            return Some(Unset::Everything(self.sentences().join(" ")));
+        }
+        let unknown = self.unknown.iter().map(|name| UnsetLine {
+            line: format!("set {name}"),
+            why: "this version of the firmware does not know it".to_owned(),
+        });
+        let refused = self.refused.iter().map(|RefusedLine { line, reason }| UnsetLine {
+            line: line.clone(),
+            why: format!("the firmware refused it: {reason}"),
+        });
+        let is_refused = |line: &String| self.refused.iter().any(|refused| refused.line == *line);
+        let differ = self.differences.iter().filter(|difference| !is_refused(&difference.line));
+        let differ = differ.map(|Difference { line, held }| UnsetLine {
+            line: line.clone(),
+            why: format!("the firmware holds {}", held_text(held)),
+        });
+        let lines: Vec<UnsetLine> = unknown.chain(refused).chain(differ).collect();
+        (!lines.is_empty()).then_some(Unset::Lines(lines))
+    }
+
     /// What there is to tell, as sentences; none when nothing had to be done.
     #[must_use]
     pub(super) fn sentences(&self) -> Vec<String> {
@@ -79,8 +120,7 @@ impl ProvisionReport {
         }
         let differ = self.differences.iter().map(|difference| {
             let Difference { line, held } = difference;
-            let held = if held.is_empty() { "nothing" } else { held };
-            format!("`{line}` is wanted, it holds {held}")
+            format!("`{line}` is wanted, it holds {}", held_text(held))
         });
         let differ: Vec<String> = differ.collect();
         if self.may_not_write {
@@ -93,4 +133,8 @@ impl ProvisionReport {
         }
         sentences
     }
+}
+
+fn held_text(held: &str) -> &str {
+    if held.is_empty() { "nothing" } else { held }
 }

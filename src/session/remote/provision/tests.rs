@@ -79,6 +79,7 @@ fn the_guides_settings_modes_and_plan_are_written_saved_and_read_back() {
     // A second time there is nothing to do, and no restart.
     craft.ran.clear();
     let again = set(&mut craft, &wanted(), true);
+    assert_eq!(again.unset(), None);
     assert_eq!((again, craft.ran.contains(&SAVE.to_owned())), (ProvisionReport::default(), false));
 }
 
@@ -92,6 +93,7 @@ fn without_permission_it_is_only_looked() {
     let sentences = report.sentences().join(" ");
     assert!(sentences.contains("`set ap_max_angle = 25` is wanted, it holds 50"), "{sentences}");
     assert!(sentences.contains("not changed unasked"), "{sentences}");
+    assert_eq!(report.unset(), Some(Unset::Everything(sentences)));
 }
 
 #[test]
@@ -103,6 +105,9 @@ fn what_this_version_does_not_know_is_listed_and_not_written() {
     assert!(report.is_as_wanted() && report.written == 30, "{report:?}");
     assert!(!craft.ran.iter().any(|line| line.starts_with("set ap_l1_period")));
     assert!(report.sentences()[1].contains("does not know ap_position_a, ap_l1_period."));
+    let Some(Unset::Lines(lines)) = report.unset() else { panic!("{report:?}") };
+    let lines: Vec<&str> = lines.iter().map(|unset| &*unset.line).collect();
+    assert_eq!(lines, ["set ap_position_a", "set ap_l1_period"]);
 }
 
 #[test]
@@ -117,6 +122,10 @@ fn a_refused_line_is_told_and_the_others_are_kept() {
     let [difference] = &report.differences[..] else { panic!("{report:?}") };
     assert_eq!((&*difference.line, &*difference.held), ("set ap_max_angle = 999", "50"));
     assert!(report.sentences().iter().any(|sentence| sentence.starts_with("Read back it differs")));
+    let unset = |line: &str, why: &str| UnsetLine { line: line.to_owned(), why: why.to_owned() };
+    let Some(Unset::Lines(lines)) = report.unset() else { panic!("{report:?}") };
+    let refused = "the firmware refused it: ERROR IN set: INVALID VALUE";
+    assert_eq!((lines.len(), &lines[0]), (2, &unset("set ap_max_angle = 999", refused)), "each once");
 }
 
 #[test]
