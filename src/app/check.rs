@@ -4,6 +4,7 @@ mod load;
 mod output;
 mod progress;
 mod remote;
+mod results;
 mod run;
 mod watch;
 
@@ -15,11 +16,12 @@ use super::firmware::{self, Beside, RemoteFirmware};
 use super::interrupt::interrupt_flag;
 use super::setup;
 use crate::args::{CheckArgs, FlightArgs, PhysicsArgs};
-use crate::record::check::{CheckedFlight, Compared, Summary};
+use crate::record::check::{Compared, Summary};
 use crate::scenario::Draft;
 use load::Loaded;
 pub(super) use load::load_one;
 use output::Output;
+use results::Results;
 
 /// Flies and judges; the exit code says whether every expectation was met.
 pub(super) fn run(args: &CheckArgs) -> Result<u8, AppError> {
@@ -64,39 +66,30 @@ fn fly(
             None => "there is nothing to fly: name a slow scenario, or add --slow".to_owned(),
         }));
     }
-    let mut output = Output::open(args, loaded)?;
-    let mut problem = None;
-    let mut flights: Vec<CheckedFlight> = Vec::new();
-    let stop = AtomicBool::new(false);
-    let started = run::Stopwatch::start();
-    let told = |flight: CheckedFlight, done| {
-        if let Err(error) = output.flight(&flight, done, jobs.len()) {
-            problem.get_or_insert(error);
-            stop.store(true, Ordering::Relaxed);
-        }
-        if args.fail_fast && !flight.passed() {
-            stop.store(true, Ordering::Relaxed);
-        }
-        flights.push(flight);
-    };
-    match firmware {
-        None => run::all(loaded, &jobs, args, interrupted, &stop, told),
-        Some(firmware) => remote::all(loaded, &jobs, firmware, interrupted, &stop, told),
-    }?;
-    if let Some(problem) = problem {
-        return Err(problem);
+    if let Some(firmware) = firmware {
+        remote::refuse_many(firmware, jobs.len(), args.watch)?;
     }
+    let stop = AtomicBool::new(false);
+    let mut results = Results::new(Output::open(args, loaded)?, jobs.len(), args.fail_fast, &stop);
+    let started = run::Stopwatch::start();
+    let trouble = match firmware {
+        None => {
+            run::all(loaded, &jobs, args, interrupted, &stop, |flight, done| results.flight(flight, done))?;
+            None
+        }
+        Some(firmware) => remote::all(loaded, &jobs, firmware, interrupted, &mut results),
+    };
+    let (mut output, flights) = results.finish()?;
     let is_interrupted = interrupted.load(Ordering::Relaxed);
     let whole = flights.len() == jobs.len();
     let compared = if whole { run::compared(loaded, &flights, args.filter.is_some()) } else { Vec::new() };
     let summary = Summary::new(flights, compared, jobs.len(), loaded.left_out, started.seconds());
     output.finish(&summary)?;
-    Ok(if is_interrupted {
-        error::INTERRUPTED
-    } else if summary.passed() {
-        0
-    } else {
-        error::FAILED
+    Ok(match trouble {
+        _ if is_interrupted => error::INTERRUPTED,
+        Some(code) => code,
+        None if summary.passed() => 0,
+        None => error::FAILED,
     })
 }
 

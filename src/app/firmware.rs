@@ -3,7 +3,9 @@
 pub(super) mod configuration;
 mod executable;
 pub(super) mod link;
+mod patience;
 pub(super) mod run;
+pub(super) mod told;
 
 use std::path::{Path, PathBuf};
 

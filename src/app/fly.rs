@@ -30,17 +30,15 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, AppError> {
     let plan = setup::read_plan(&args.plan)?;
     setup::refuse_unflyable(&plan)?;
     let mut notices: Vec<String> = plan.notes.iter().map(ToString::to_string).collect();
-    let beside = Beside {
-        ports: (&args.firmware_ports).into(),
-        flight: &args.flight,
-        physics: &PhysicsArgs::default(),
-    };
+    let physics = PhysicsArgs::default();
+    let beside = Beside { ports: (&args.firmware_ports).into(), flight: &args.flight, physics: &physics };
     let firmware = firmware::choose(&args.firmware, beside, &mut notices)?
         .map(|firmware| firmware.with_settings(&plan.settings, &args.mission.set));
     if firmware.is_none() {
         setup::check_set(&args.mission.set)?;
     }
     notices.extend(args.firmware_ports.idle_options(firmware.is_some()));
+    notices.extend(physics.idle_options(&args.flight, firmware.is_some()));
     let mut store = open_store(args)?;
     let stored = setup::stored(&mut store, &mut notices);
     let mut setup = setup::from_args(&args.flight, PhysicsSource::Embedded, plan.clone(), stored)?;
@@ -54,7 +52,7 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, AppError> {
         None => embedded(start)?,
         Some(firmware) => remote::fly(start, firmware)?,
     };
-    let Some(Flown { end, wall, output }) = flown else { return Ok(error::INTERRUPTED) };
+    let Some(Flown { end, wall, output, failure }) = flown else { return Ok(error::INTERRUPTED) };
     let end_record = End {
         result: end.verdict.result.to_string(),
         reason: end.verdict.reason,
@@ -62,8 +60,11 @@ pub(super) fn run(args: &FlyArgs) -> Result<u8, AppError> {
         flown_s: end.flown_s,
         wall_s: wall.as_secs_f64(),
     };
-    output.finish(end.time, &end_record)?;
-    Ok(exit_code(end.verdict.result))
+    let finished = output.finish(end.time, &end_record);
+    match failure {
+        Some(failure) => Err(failure),
+        None => finished.map(|()| exit_code(end.verdict.result)),
+    }
 }
 
 /// What a flight starts from.
@@ -83,6 +84,8 @@ struct Flown {
     /// Wall time from the engagement to the end, or from the start when it did not engage.
     wall: Duration,
     output: Output,
+    /// What ended it before its time.
+    failure: Option<AppError>,
 }
 
 impl Start<'_> {
@@ -99,13 +102,16 @@ fn open_output(
     notices: Vec<String>,
 ) -> Result<Output, AppError> {
     let mut output = Output::open(args, vehicle, plan)?;
-    let mut first_events: Vec<Event> = Vec::new();
-    vehicle.drain_events(|event| first_events.push(event.into()));
-    first_events.extend(notices.into_iter().map(|notice| Event::notice(vehicle.time(), notice)));
-    for event in &first_events {
-        output.event(event)?;
-    }
+    first_events(vehicle, notices).iter().try_for_each(|event| output.event(event))?;
     Ok(output)
+}
+
+/// What has happened to the vehicle so far, and the notices.
+fn first_events(vehicle: &mut Vehicle, notices: Vec<String>) -> Vec<Event> {
+    let mut events: Vec<Event> = Vec::new();
+    vehicle.drain_events(|event| events.push(event.into()));
+    events.extend(notices.into_iter().map(|notice| Event::notice(vehicle.time(), notice)));
+    events
 }
 
 fn exit_code(result: FlightResult) -> u8 {
@@ -146,7 +152,7 @@ fn embedded(mut start: Start<'_>) -> Result<Option<Flown>, AppError> {
     let mut flight = setup::start_flight(vehicle, &options)?;
     let mut output = open_output(args, &plan, flight.vehicle_mut(), notices)?;
     let (end, wall) = fly(flight, args.speed(), &interrupted, &mut output)?;
-    Ok(Some(Flown { end, wall, output }))
+    Ok(Some(Flown { end, wall, output, failure: None }))
 }
 
 /// Runs the flight to its end; the wall time counts from the engagement, or from boot when there was none.

@@ -5,6 +5,19 @@ use std::path::PathBuf;
 use super::value::{self, OutputFile};
 use super::{FirmwareArgs, FirmwarePortArgs, PlanArg, help};
 
+/// What has a firmware outside flown: nothing where the embedded one flies, or none.
+const FIRMWARE_OPTIONS: [&str; 9] = [
+    "firmware",
+    "firmware_arg",
+    "betaloop",
+    "yes",
+    "fdm_stamps",
+    "tcp_port",
+    "udp_ports",
+    "fdm_dialect",
+    "motor_order",
+];
+
 /// The options of `check`.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 #[command(after_help = help::CHECK)]
@@ -14,7 +27,7 @@ pub struct CheckArgs {
     pub what: Vec<String>,
 
     /// Lists the scenarios and their cases instead of flying them
-    #[arg(long, help_heading = "Which")]
+    #[arg(long, conflicts_with_all = FIRMWARE_OPTIONS, help_heading = "Which")]
     pub list: bool,
 
     /// Only flights with this text in `SCENARIO CASE`
@@ -58,7 +71,7 @@ pub struct CheckArgs {
     pub markdown: Option<PathBuf>,
 
     /// Flies this plan and prints a scenario that expects what was seen, with sensible margins
-    #[arg(long, value_name = "PLAN", conflicts_with_all = ["what", "list", "filter", "json", "junit", "markdown"], help_heading = "Output")]
+    #[arg(long, value_name = "PLAN", conflicts_with_all = ["what", "list", "filter", "json", "junit", "markdown"], conflicts_with_all = FIRMWARE_OPTIONS, help_heading = "Output")]
     pub new: Option<PlanArg>,
 
     /// Which firmware flies.

@@ -8,6 +8,9 @@ use crate::flight::{FlightOptions, FlightSetup};
 use crate::sim::{Noise, Turbulence, Wind};
 use crate::telemetry::{NavState, PlanSource};
 
+/// The sources of command lines that stand in the scenario itself: their keys.
+pub(super) const OWN_LINES: [&str; 2] = ["settings", "lines"];
+
 /// A scenario.
 #[derive(Debug, Clone)]
 pub struct Scenario {
@@ -76,6 +79,12 @@ pub struct Air {
 }
 
 impl Case {
+    /// The command lines that the scenario itself gives, without those of settings files.
+    pub fn own_lines(&self) -> impl Iterator<Item = &str> {
+        let own = self.setup.boot_lines.iter().filter(|lines| OWN_LINES.contains(&lines.source.as_str()));
+        own.flat_map(|lines| lines.text.lines())
+    }
+
     /// What the flight of an air starts from.
     #[must_use]
     pub fn setup_in(&self, air: &Air) -> FlightSetup {

@@ -6,6 +6,7 @@ use serde_json::Value;
 
 use super::program::Program;
 use super::stand_in::free_ports;
+use super::stand_in::process::{self, Trouble, VARIABLE};
 use super::stand_in::program::Ports;
 
 /// Flies a little way north and lands there, low and near, for time is real.
@@ -41,14 +42,39 @@ from = \"boot\"
 
 /// A run with the drop-in as the firmware.
 fn start(command: &[&str]) -> Program {
-    let Ports { raw, motors, fdm, rc, tcp } = free_ports();
-    let (udp, tcp) = (format!("--udp-ports={raw},{motors},{fdm},{rc}"), format!("--tcp-port={tcp}"));
+    let [udp, tcp] = port_options(free_ports());
     let mut arguments = command.to_vec();
     arguments.extend(["--firmware", env!("CARGO_BIN_EXE_betadeck"), &udp, &tcp]);
     for argument in ["sitl", &udp, &tcp, "--ws-port=0"] {
         arguments.extend(["--firmware-arg", argument]);
     }
     Program::start(&arguments)
+}
+
+/// The options that name a firmware's ports.
+fn port_options(ports: Ports) -> [String; 2] {
+    let Ports { raw, motors, fdm, rc, tcp } = ports;
+    [format!("--udp-ports={raw},{motors},{fdm},{rc}"), format!("--tcp-port={tcp}")]
+}
+
+/// A run with the stand-in as the firmware, which uses other ports than `named` if they differ.
+fn start_stand_in(command: &[&str], ports: Ports, named: Ports, trouble: Trouble) -> Program {
+    let [udp, tcp] = port_options(named);
+    let (program, arguments) = process::command();
+    let variable = format!("{VARIABLE}={}", process::variable(ports, trouble));
+    let program = program.display().to_string();
+    let mut all = command.to_vec();
+    all.extend(["--firmware", "/usr/bin/env", &udp, &tcp]);
+    for argument in [&variable[..], &program].into_iter().chain(arguments) {
+        all.extend(["--firmware-arg", argument]);
+    }
+    Program::start(&all)
+}
+
+/// The exit code and everything said.
+fn end_said(mut program: Program) -> (i32, String) {
+    let code = program.end();
+    (code, program.seen().join("\n"))
 }
 
 /// The exit code and the last line of JSON.
@@ -121,6 +147,9 @@ fn what_cannot_fly_is_told_before_anything_starts() {
         (&["serve", "--firmware", "attach", "--physics", "external"], 2, "leave out one of the two"),
         (&["compare", "square"], 2, "--firmware"),
         (&["check", "guide-1", "--betaloop", &none], 3, "cannot open"),
+        (&["check", "guide-1", "--firmware", "attach"], 2, "--firmware attach flies one flight"),
+        (&["check", "--list", "--firmware", "attach"], 2, "cannot be used with"),
+        (&["check", "--new", "square", "--yes"], 2, "cannot be used with"),
     ] {
         let mut program = Program::start(arguments);
         assert_eq!(program.end(), code, "{arguments:?}");
@@ -144,4 +173,127 @@ fn a_comparison_that_is_interrupted_tells_what_was_flown() {
     let said = program.seen().join("\n");
     assert!(said.contains("A: embedded, one flight") && said.contains("B: betadeck, not flown"), "{said}");
     assert_eq!(std::fs::read_to_string(picture).unwrap(), "before");
+}
+
+#[test]
+fn a_firmware_that_does_not_run_is_not_waited_for_for_ever_and_old_files_stay() {
+    let directory = tempfile::tempdir().unwrap();
+    let [json, gpx] = ["old.json", "old.gpx"].map(|name| write(directory.path(), name, "old"));
+    let ports = free_ports();
+    let [udp, tcp] = port_options(ports);
+    let options = ["--json", &json, "--gpx", &gpx, "--attitude", "truth", "--firmware", "attach", &udp, &tcp];
+    let (code, said) = end_said(Program::start(&[&["fly", "square"][..], &options].concat()));
+    assert_eq!(code, 3, "{said}");
+    let sentence =
+        format!("nothing has answered at TCP port {} for 15 s: start the firmware first", ports.tcp);
+    for part in [&sentence, "--tcp-port", "--attitude has no effect: the firmware outside decides that"] {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+    assert!([json, gpx].iter().all(|file| std::fs::read_to_string(file).unwrap() == "old"));
+}
+
+#[test]
+fn an_interrupt_before_the_flight_leaves_no_broken_file() {
+    let directory = tempfile::tempdir().unwrap();
+    let gpx = write(directory.path(), "old.gpx", "old");
+    let [udp, tcp] = port_options(free_ports());
+    let mut program = Program::start(&["fly", "square", "--gpx", &gpx, "--firmware", "attach", &udp, &tcp]);
+    program.wait("notice", |line| line.contains("No connection to ").then_some(()));
+    let id = rustix::process::Pid::from_raw(program.id() as i32).unwrap();
+    rustix::process::kill_process(id, rustix::process::Signal::INT).unwrap();
+    assert_eq!(program.end(), 130);
+    assert_eq!(std::fs::read_to_string(gpx).unwrap(), "old");
+}
+
+#[test]
+fn a_firmware_at_another_tcp_port_is_told_with_the_option() {
+    let ports = free_ports();
+    let named = Ports { tcp: free_ports().tcp, ..ports };
+    let (code, said) = end_said(start_stand_in(&["fly", "square"], ports, named, Trouble::None));
+    assert_eq!(code, 3, "{said}");
+    let sentence = format!("sends motors, but nothing has answered at tcp:127.0.0.1:{} for 10 s", named.tcp);
+    assert!(said.contains(&sentence) && said.contains("--tcp-port"), "{said}");
+}
+
+/// A stand-in that somebody else has started and nobody starts again.
+struct Started(std::process::Child);
+
+impl Drop for Started {
+    fn drop(&mut self) {
+        // It may have ended by itself.
+        drop(self.0.kill());
+        drop(self.0.wait());
+    }
+}
+
+#[test]
+fn a_firmware_that_its_save_has_ended_is_to_be_started_again() {
+    let directory = tempfile::tempdir().unwrap();
+    let settings = write(directory.path(), "lines.txt", "set ap_max_angle = 33\n");
+    let ports = free_ports();
+    let (program, arguments) = process::command();
+    let mut command = std::process::Command::new(program);
+    command.args(arguments).env(VARIABLE, process::variable(ports, Trouble::None));
+    command.current_dir(directory.path()).stdout(std::process::Stdio::null());
+    let _started = Started(command.spawn().unwrap());
+    let [udp, tcp] = port_options(ports);
+    let options = ["--firmware", "attach", "--yes", "--settings", &settings, &udp, &tcp];
+    let (code, said) = end_said(Program::start(&[&["fly", "square"][..], &options].concat()));
+    assert_eq!(code, 3, "{said}");
+    assert!(said.contains("start it again and repeat the command"), "{said}");
+}
+
+#[test]
+fn a_firmware_without_waypoints_is_told_how_to_be_built() {
+    let ports = free_ports();
+    let (code, said) = end_said(start_stand_in(&["fly", "square"], ports, ports, Trouble::HasNoPlans));
+    assert_eq!(code, 3, "{said}");
+    assert!(
+        said.contains("has no waypoints: build it with EXTRA_FLAGS=\"-DENABLE_FLIGHT_PLANNING=1\""),
+        "{said}"
+    );
+}
+
+#[test]
+fn flights_that_cannot_be_prepared_have_failed_and_the_reports_are_written() {
+    let directory = tempfile::tempdir().unwrap();
+    let scenario = write(directory.path(), "standing.toml", &format!("seeds = \"1..3\"\n{STANDING}"));
+    let [junit, markdown] = ["report.xml", "summary.md"].map(|name| directory.path().join(name));
+    let [xml, md] = [&junit, &markdown].map(|path| path.display().to_string());
+    let ports = free_ports();
+    let _taken = std::net::UdpSocket::bind(("127.0.0.1", ports.fdm)).unwrap();
+    let command = ["check", &scenario, "--json", "-", "--junit", &xml, "--markdown", &md];
+    let (code, summary) = end(start_stand_in(&command, ports, ports, Trouble::None));
+    assert_eq!((code, &summary["event"]), (3, &"summary".into()), "{summary}");
+    assert_eq!((&summary["flights"], &summary["flights_wanted"]), (&2.into(), &3.into()), "{summary}");
+    let why = format!("the firmware cannot have UDP port {}", ports.fdm);
+    let (xml, md) = (std::fs::read_to_string(junit).unwrap(), std::fs::read_to_string(markdown).unwrap());
+    assert!(xml.contains("tests=\"2\" failures=\"2\"") && xml.contains(&why), "{xml}");
+    assert!(md.contains("Some flights failed") && md.contains(&why), "{md}");
+}
+
+#[test]
+fn a_case_whose_settings_were_refused_says_so() {
+    let directory = tempfile::tempdir().unwrap();
+    let wants = STANDING.replace("[craft]\n", "[craft]\nsettings = [\"ap_max_angle = 33\"]\n");
+    let scenario = write(directory.path(), "standing.toml", &wants);
+    let ports = free_ports();
+    let (code, said) =
+        end_said(start_stand_in(&["check", &scenario], ports, ports, Trouble::RefusesSettings));
+    assert_eq!(code, 1, "{said}");
+    for part in [
+        "The firmware refused `set ap_max_angle = 33`: ERROR IN set: INVALID VALUE.",
+        "the firmware is not set as the case says: `set ap_max_angle = 33`: the firmware refused it",
+    ] {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+}
+
+#[test]
+fn a_check_tells_a_crash_with_its_signal() {
+    let directory = tempfile::tempdir().unwrap();
+    let scenario = write(directory.path(), "standing.toml", STANDING);
+    let ports = free_ports();
+    let mut program = start_stand_in(&["check", &scenario], ports, ports, Trouble::Crashes);
+    program.wait("crash", |line| line.contains("ended by signal 6").then_some(()));
 }

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use super::Loaded;
 use super::progress::Progress;
-use crate::app::error::AppError;
+use crate::app::error::{self, AppError};
 use crate::app::output_file::{self, KeptFiles};
 use crate::args::{CheckArgs, OutputFile};
 use crate::printable;
@@ -64,6 +64,12 @@ impl Output {
         self.json_lines(&[flight_line(flight)])?;
         self.progress.show(done, all, &flight.scenario);
         Ok(())
+    }
+
+    /// Tells on standard error what is to be known meanwhile.
+    pub(super) fn tell(&mut self, sentence: &str) {
+        self.progress.clear();
+        error::tell(sentence);
     }
 
     /// Tells how the run ended, and writes the files.

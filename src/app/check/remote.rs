@@ -4,41 +4,74 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::Loaded;
+use super::results::Results;
 use super::run::{self, Job, Stopwatch};
-use crate::app::AppError;
-use crate::app::firmware::RemoteFirmware;
-use crate::app::firmware::run::{RemoteRun, Stopped};
-use crate::app::setup;
+use crate::app::firmware::run::{RemoteRun, RunOptions, Stopped};
+use crate::app::firmware::{RemoteFirmware, told};
+use crate::app::{AppError, error, setup};
 use crate::record::check::CheckedFlight;
 use crate::scenario::{self, Air, Case, CaseFlight};
-use crate::session::Event;
+use crate::session::{Event, Unset};
 
-/// Flies all of them; `told` gets each result, with how many are flown.
+/// What is said when flights cannot be prepared again and again.
+const NO_MORE: &str = "Two flights in a row could not be prepared: the others are not tried.";
+
+/// A firmware that runs already is not started anew for each flight.
+///
+/// # Errors
+/// When it was asked for more than one.
+pub(super) fn refuse_many(firmware: &RemoteFirmware, flights: usize, watch: bool) -> Result<(), AppError> {
+    if firmware.executable.is_some() || (flights == 1 && !watch) {
+        return Ok(());
+    }
+    let asked = if watch { "--watch flies again".to_owned() } else { format!("these are {flights}") };
+    Err(AppError::input(format!(
+        "--firmware attach flies one flight, for a firmware that runs on keeps what it has estimated in the one before, and \
+         {asked}: choose one (--filter TEXT, --seeds 1..1), or have it started anew for each (--firmware PATH)"
+    )))
+}
+
+/// Flies all of them. A flight that cannot be prepared is one that failed, and the run goes on; two of them in a row, for
+/// which the surroundings are to blame, end it. Gives the exit code when there was such trouble.
 pub(super) fn all(
     loaded: &Loaded,
     jobs: &[Job],
     firmware: &RemoteFirmware,
     interrupted: &Arc<AtomicBool>,
-    stop: &AtomicBool,
-    mut told: impl FnMut(CheckedFlight, usize),
-) -> Result<(), AppError> {
+    results: &mut Results<'_>,
+) -> Option<u8> {
+    let (mut trouble, mut is_in_trouble) = (None, false);
     for (index, job) in jobs.iter().enumerate() {
-        let (Some((case, air)), Some(flight)) = (job.of(loaded), job.not_flown_yet(loaded)) else { continue };
+        let (Some((case, air)), Some(unflown)) = (job.of(loaded), job.not_flown_yet(loaded)) else {
+            continue;
+        };
+        let was_in_trouble = is_in_trouble;
         let flight = match scenario::skip(case) {
-            Some(judgements) => CheckedFlight { judgements, ..flight },
-            None => match fly(case, air, flight, firmware, interrupted) {
-                Ok(flight) => flight,
+            Some(judgements) => CheckedFlight { judgements, ..unflown },
+            None => match fly(case, air, unflown.clone(), firmware, interrupted, results) {
+                Ok(flight) => {
+                    is_in_trouble = false;
+                    flight
+                }
                 // Interrupted in the air: it says nothing.
-                Err(Stopped::Interrupted) => return Ok(()),
-                Err(Stopped::Failed(error)) => return Err(error),
+                Err(Stopped::Interrupted) => return trouble,
+                Err(Stopped::Failed(AppError { code, message })) => {
+                    is_in_trouble = code >= error::ENVIRONMENT;
+                    trouble = trouble.max(is_in_trouble.then_some(code));
+                    CheckedFlight { problem: Some(message), ..unflown }
+                }
             },
         };
-        told(flight, index + 1);
-        if interrupted.load(Ordering::Relaxed) || stop.load(Ordering::Relaxed) {
-            return Ok(());
+        results.flight(flight, index + 1);
+        if interrupted.load(Ordering::Relaxed) || results.is_stopped() {
+            return trouble;
+        }
+        if was_in_trouble && is_in_trouble && index + 1 < jobs.len() {
+            results.tell(NO_MORE);
+            return trouble;
         }
     }
-    Ok(())
+    trouble
 }
 
 /// Flies and judges one.
@@ -48,6 +81,7 @@ fn fly(
     checked: CheckedFlight,
     firmware: &RemoteFirmware,
     interrupted: &Arc<AtomicBool>,
+    results: &mut Results<'_>,
 ) -> Result<CheckedFlight, Stopped> {
     let started = Stopwatch::start();
     let mut setup = case.setup_in(air);
@@ -57,11 +91,15 @@ fn fly(
     let of_case = setup.boot_lines.iter().flat_map(|lines| lines.text.lines());
     firmware.lines.of_user.extend(of_case.map(str::to_owned));
     let mut vehicle = setup::build(setup, &mut Vec::new())?;
-    let mut remote =
-        RemoteRun::start(&firmware, &vehicle, None, 1.0, Arc::clone(interrupted), &mut Vec::new())?;
-    let mut quiet = |_: &Event| Ok(());
-    remote.wait_until_ready(&mut vehicle, &mut quiet)?;
-    remote.upload(&mut vehicle, &plan, &mut quiet)?;
+    let options = RunOptions { state: None, speed: 1.0, interrupted: Arc::clone(interrupted) };
+    let mut tell = |event: &Event| {
+        if let Some(sentence) = told::sentence(event) {
+            results.tell(&sentence);
+        }
+        Ok(())
+    };
+    let mut remote = RemoteRun::prepare(&firmware, &mut vehicle, &plan, options, &mut tell)?;
+    let problem = remote.unset().and_then(|unset| not_as_wanted(case, unset));
     let mut flight = match CaseFlight::of_vehicle(case, vehicle) {
         Ok(flight) => flight,
         Err(problem) => return Ok(CheckedFlight { problem: Some(problem), ..checked }),
@@ -73,8 +111,33 @@ fn fly(
                 flight.tick(|_| {});
             }
         }
-        remote.exchange(flight.vehicle_mut())?;
+        for event in remote.exchange(flight.vehicle_mut())? {
+            tell(&event)?;
+        }
         remote.rest();
     }
-    Ok(run::judged(checked, case, flight.finish(), &started))
+    Ok(CheckedFlight { problem, ..run::judged(checked, case, flight.finish(), &started) })
+}
+
+/// Why the flight is not that of the case: nothing was set, or not what the case itself wants. Lines of a settings file, of
+/// which another version of the firmware refuses some, are told only.
+fn not_as_wanted(case: &Case, unset: &Unset) -> Option<String> {
+    match unset {
+        Unset::Everything(why) => Some(why.clone()),
+        Unset::Lines(lines) => {
+            let own: Vec<&str> = case.own_lines().map(subject).collect();
+            let not_set: Vec<String> = lines
+                .iter()
+                .filter(|unset| own.iter().any(|own| own.eq_ignore_ascii_case(subject(&unset.line))))
+                .map(|unset| format!("`{}`: {}", unset.line, unset.why))
+                .collect();
+            (!not_set.is_empty())
+                .then(|| format!("the firmware is not set as the case says: {}", not_set.join("; ")))
+        }
+    }
+}
+
+/// What a line sets: that of a setting without its value, another one whole.
+fn subject(line: &str) -> &str {
+    line.split('=').next().unwrap_or_default().trim()
 }

@@ -14,12 +14,14 @@ use tokio::runtime::Runtime;
 
 use super::RemoteFirmware;
 use super::link::{self, OpenLink};
+use super::patience::{Patience, Unready};
 use crate::app::AppError;
 use crate::firmware::cli::CliReply;
 use crate::flight::{Flight, FlightEnd, Report};
-use crate::plan::FlightPlan;
+use crate::plan::{AltitudeError, FlightPlan};
 use crate::session::{
-    EXCHANGE_PAUSE, Event, Pacer, RemoteLink, RemoteNotice, RemoteState, SessionEvent, Upload, UploadProgress,
+    EXCHANGE_PAUSE, Event, Pacer, RemoteLink, RemoteNotice, RemoteState, SessionEvent, Unset, Upload,
+    UploadProgress,
 };
 use crate::vehicle::{LateAnswer, Ticket, Vehicle};
 
@@ -34,6 +36,10 @@ pub(in crate::app) struct RemoteRun {
     step_us: u64,
     started: Instant,
     interrupted: Arc<AtomicBool>,
+    /// The port of its command line and MSP.
+    tcp: u16,
+    /// Somebody else started it.
+    is_attached: bool,
     /// Behind the link, whose program runs in it.
     _directory: Option<TempDir>,
     _runtime: Runtime,
@@ -54,6 +60,29 @@ impl From<AppError> for Stopped {
     }
 }
 
+/// What came of it, or nothing when it was interrupted.
+///
+/// # Errors
+/// The error by which it was stopped.
+pub(in crate::app) fn unless_interrupted<T>(result: Result<T, Stopped>) -> Result<Option<T>, AppError> {
+    match result {
+        Ok(done) => Ok(Some(done)),
+        Err(Stopped::Interrupted) => Ok(None),
+        Err(Stopped::Failed(error)) => Err(error),
+    }
+}
+
+/// How a run is flown.
+#[derive(Debug)]
+pub(in crate::app) struct RunOptions<'a> {
+    /// Where the firmware keeps its configuration; `None` = nowhere for long.
+    pub(in crate::app) state: Option<&'a Path>,
+    /// Times real time.
+    pub(in crate::app) speed: f64,
+    /// Raised by signals.
+    pub(in crate::app) interrupted: Arc<AtomicBool>,
+}
+
 /// What is seen of a flight.
 #[derive(Debug)]
 pub(in crate::app) enum Seen<'a> {
@@ -66,6 +95,25 @@ pub(in crate::app) enum Seen<'a> {
 }
 
 impl RemoteRun {
+    /// Starts the firmware for `vehicle`, waits until it answers and is set, and gives it the plan.
+    pub(in crate::app) fn prepare(
+        firmware: &RemoteFirmware,
+        vehicle: &mut Vehicle,
+        plan: &FlightPlan,
+        options: RunOptions<'_>,
+        tell: &mut impl FnMut(&Event) -> Result<(), AppError>,
+    ) -> Result<Self, Stopped> {
+        let RunOptions { state, speed, interrupted } = options;
+        let mut notices = Vec::new();
+        let mut run = Self::start(firmware, vehicle, state, speed, interrupted, &mut notices)?;
+        for notice in notices {
+            tell(&Event::notice(vehicle.time(), notice))?;
+        }
+        run.wait_until_ready(vehicle, tell)?;
+        run.upload(vehicle, plan, tell)?;
+        Ok(run)
+    }
+
     /// Starts the firmware for `vehicle`; what is to be known of it is added to `notices`.
     pub(in crate::app) fn start(
         firmware: &RemoteFirmware,
@@ -92,6 +140,8 @@ impl RemoteRun {
             step_us: vehicle.step_us(),
             started: Instant::now(),
             interrupted,
+            tcp: firmware.ports.tcp,
+            is_attached: firmware.executable.is_none(),
             _directory: directory,
             _runtime: runtime,
         })
@@ -103,10 +153,22 @@ impl RemoteRun {
         vehicle: &mut Vehicle,
         tell: &mut impl FnMut(&Event) -> Result<(), AppError>,
     ) -> Result<(), Stopped> {
+        let mut patience = Patience::new(Instant::now());
         while *self.link.state() != RemoteState::Ready {
             self.wait(vehicle, tell)?;
+            let (answers, connections) = (self.link.answers(), self.link.connection());
+            if let Some(why) = patience.look(answers, connections, Instant::now()) {
+                let (name, tcp, is_attached) = (self.link.name(), self.tcp, self.is_attached);
+                let unready = Unready { name, tcp, is_attached, why };
+                return Err(AppError::environment(unready.to_string()).into());
+            }
         }
         Ok(())
+    }
+
+    /// What the firmware was to be set to and is not.
+    pub(in crate::app) fn unset(&self) -> Option<&Unset> {
+        self.link.unset()
     }
 
     /// Gives the plan to the craft.
@@ -116,14 +178,28 @@ impl RemoteRun {
         plan: &FlightPlan,
         tell: &mut impl FnMut(&Event) -> Result<(), AppError>,
     ) -> Result<(), Stopped> {
+        let name = self.link.name();
+        if !self.link.observer().has_plans() {
+            return Err(AppError::environment(format!(
+                "{name} has no waypoints: build it with EXTRA_FLAGS=\"-DENABLE_FLIGHT_PLANNING=1\""
+            ))
+            .into());
+        }
         let reference = vehicle.controller().altitude_reference();
-        let mut upload =
-            Upload::new(plan, &[], reference).map_err(|unknown| AppError::input(unknown.to_string()))?;
+        let mut upload = Upload::new(plan, &[], reference).map_err(|unknown| {
+            AppError::environment(match unknown {
+                AltitudeError::Untold => format!(
+                    "{name} has told no settings of its autopilot (`get ap_`), so that nobody knows from where it counts \
+                     altitudes: fly a build with waypoints"
+                ),
+                AltitudeError::HomeUnknown => unknown.to_string(),
+            })
+        })?;
         let mut progress = upload.send_lines(vehicle.controller_mut());
         loop {
             let waits_for = match progress {
                 UploadProgress::Done(result) => {
-                    let report = result.map_err(AppError::input)?;
+                    let report = result.map_err(|refusal| self.refused(refusal))?;
                     if let Some(told) = report.conversion() {
                         tell(&Event::notice(vehicle.time(), told))?;
                     }
@@ -133,6 +209,14 @@ impl RemoteRun {
             };
             let said = self.answer(vehicle, waits_for, tell)?;
             progress = upload.take_answer(&said, vehicle.controller_mut());
+        }
+    }
+
+    /// A plan that was not taken: by the craft, or because the craft is not there any more.
+    fn refused(&self, refusal: String) -> AppError {
+        match self.link.state() {
+            RemoteState::Ready => AppError::input(refusal),
+            _ => AppError::environment(refusal),
         }
     }
 

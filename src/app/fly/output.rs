@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::{BufWriter, Write};
 
 use crate::app::error::{self, AppError};
+use crate::app::firmware::told;
 use crate::app::{output_file, setup};
 use crate::args::{FlyArgs, OutputFile};
 use crate::flight::Report;
@@ -13,6 +14,54 @@ use crate::record::{End, GpxHeader, GpxPoint, GpxWriter, UtcSeconds, json, sente
 use crate::session::Event;
 use crate::signals::SimTime;
 use crate::vehicle::Vehicle;
+
+/// What is told before a flight with a firmware outside. The files are created when it begins: one that is never flown leaves
+/// them as they are.
+#[derive(Debug)]
+pub(super) struct Prelude<'a> {
+    args: &'a FlyArgs,
+    /// What the lines of JSON begin with.
+    held: Vec<Event>,
+}
+
+impl<'a> Prelude<'a> {
+    /// Before the flight of these options; what is read must not be among the outputs.
+    pub(super) fn new(args: &'a FlyArgs) -> Result<Self, AppError> {
+        claim(args)?;
+        Ok(Self { args, held: Vec::new() })
+    }
+
+    /// Tells an event: as a sentence on standard output, or with JSON on standard error until the lines begin.
+    pub(super) fn event(&mut self, event: &Event) -> Result<(), AppError> {
+        if self.args.json.is_some() {
+            told::tell(event);
+            self.held.push(event.clone());
+        } else if let Some(line) = sentence::line(event) {
+            error::write_stdout(format!("{}\n", printable::line(&line)).as_bytes())?;
+        }
+        Ok(())
+    }
+
+    /// Opens the outputs: the flight begins.
+    pub(super) fn open(self, vehicle: &Vehicle, plan: &PlanFile) -> Result<Output, AppError> {
+        let mut output = Output::open(self.args, vehicle, plan)?;
+        self.held.iter().try_for_each(|event| output.event(event))?;
+        output.flush()?;
+        Ok(output)
+    }
+}
+
+/// Whether the outputs may be written where the options say; nothing is created when one of them is refused.
+fn claim(args: &FlyArgs) -> Result<(), AppError> {
+    let mut kept = setup::kept_files(&args.flight, Some(&args.plan));
+    if let Some(OutputFile::File(path)) = &args.json {
+        kept.claim("--json", path)?;
+    }
+    if let Some(path) = &args.gpx {
+        kept.claim("--gpx", path)?;
+    }
+    Ok(())
+}
 
 /// Where the reports go.
 pub(super) struct Output {
@@ -25,14 +74,7 @@ pub(super) struct Output {
 impl Output {
     /// Opens what the options name; what is read must not be among it.
     pub(super) fn open(args: &FlyArgs, vehicle: &Vehicle, plan: &PlanFile) -> Result<Self, AppError> {
-        let mut kept = setup::kept_files(&args.flight, Some(&args.plan));
-        // Nothing is created when one of them is refused.
-        if let Some(OutputFile::File(path)) = &args.json {
-            kept.claim("--json", path)?;
-        }
-        if let Some(path) = &args.gpx {
-            kept.claim("--gpx", path)?;
-        }
+        claim(args)?;
         let stdout = || Box::new(std::io::stdout()) as Box<dyn Write>;
         let (target, json): (Box<dyn Write>, bool) = match &args.json {
             None => (stdout(), false),

@@ -3,9 +3,10 @@
 
 use std::time::Instant;
 
-use super::{Flown, Start, open_output};
+use super::output::Prelude;
+use super::{Flown, Start};
 use crate::app::firmware::RemoteFirmware;
-use crate::app::firmware::run::{RemoteRun, Seen, Stopped};
+use crate::app::firmware::run::{RemoteRun, RunOptions, Seen, Stopped, unless_interrupted};
 use crate::app::{AppError, setup};
 use crate::args::Speed;
 use crate::session::{Event, hazards};
@@ -13,24 +14,24 @@ use crate::session::{Event, hazards};
 /// Prepares the firmware and flies; `None` when a signal came before the flight began.
 pub(super) fn fly(start: Start<'_>, firmware: &RemoteFirmware) -> Result<Option<Flown>, AppError> {
     let options = start.options();
-    let Start { args, plan, mut vehicle, mut notices, interrupted } = start;
-    let speed = args.flight.speed.map_or(1.0, |Speed(speed)| speed);
-    let state = args.flight.state_dir.as_deref();
-    let mut run = RemoteRun::start(firmware, &vehicle, state, speed, interrupted, &mut notices)?;
-    let mut output = open_output(args, &plan, &mut vehicle, notices)?;
-    let mut tell = |event: &Event| output.event(event).and_then(|()| output.flush());
-    let prepared = run
-        .wait_until_ready(&mut vehicle, &mut tell)
-        .and_then(|()| run.upload(&mut vehicle, &plan.plan, &mut tell));
-    match prepared {
-        Ok(()) => {}
-        Err(Stopped::Interrupted) => return Ok(None),
-        Err(Stopped::Failed(error)) => return Err(error),
+    let Start { args, plan, mut vehicle, notices, interrupted } = start;
+    let mut prelude = Prelude::new(args)?;
+    for event in super::first_events(&mut vehicle, notices) {
+        prelude.event(&event)?;
     }
+    let run = RunOptions {
+        state: args.flight.state_dir.as_deref(),
+        speed: args.flight.speed.map_or(1.0, |Speed(speed)| speed),
+        interrupted,
+    };
+    let mut tell = |event: &Event| prelude.event(event);
+    let prepared = RemoteRun::prepare(firmware, &mut vehicle, &plan.plan, run, &mut tell);
+    let Some(mut run) = unless_interrupted(prepared)? else { return Ok(None) };
     for hazard in hazards(vehicle.controller()) {
         tell(&Event::notice(vehicle.time(), hazard))?;
     }
     let mut flight = setup::start_flight(vehicle, &options)?;
+    let mut output = prelude.open(flight.vehicle(), &plan)?;
     let started = Instant::now();
     let mut engaged = None;
     let flown = run.fly(&mut flight, &mut |seen| match seen {
@@ -43,10 +44,11 @@ pub(super) fn fly(start: Start<'_>, firmware: &RemoteFirmware) -> Result<Option<
             output.track(flight.vehicle())
         }
     });
-    let end = match flown {
-        Ok(end) => end,
-        Err(Stopped::Interrupted) => flight.interrupt("stopped by a signal"),
-        Err(Stopped::Failed(error)) => return Err(error),
+    let (end, failure) = match flown {
+        Ok(end) => (end, None),
+        Err(Stopped::Interrupted) => (flight.interrupt("stopped by a signal"), None),
+        // What was written until then ends as files of a flight do.
+        Err(Stopped::Failed(error)) => (flight.interrupt(&error.message), Some(error)),
     };
-    Ok(Some(Flown { end, wall: engaged.unwrap_or(started).elapsed(), output }))
+    Ok(Some(Flown { end, wall: engaged.unwrap_or(started).elapsed(), output, failure }))
 }

@@ -7,6 +7,7 @@ use crate::firmware::AttitudeSource;
 use crate::flight::setup::{BootLines, check_setting};
 use crate::flight::{FlightOptions, FlightSetup};
 use crate::plan::format::{PlanFile, TomlTable, setting_line};
+use crate::scenario::case::OWN_LINES;
 use crate::sim::{Airframe, Home, STEP_RATES_HZ, Switches, WorldConfig};
 
 /// What is flown.
@@ -123,8 +124,9 @@ fn boot_lines(
             }
         }
     }
+    let [of_settings, of_lines] = OWN_LINES;
     let mut settings = Vec::new();
-    for (text, span) in layers.lines(section, "settings", reader) {
+    for (text, span) in layers.lines(section, of_settings, reader) {
         let Some(setting) = setting_line(&text) else {
             reader.problem(span, "this is not a setting", "write \"ap_max_angle = 25\"");
             continue;
@@ -137,11 +139,11 @@ fn boot_lines(
         }
         settings.push(setting);
     }
-    all.push(BootLines::settings("settings", &settings));
+    all.push(BootLines::settings(of_settings, &settings));
     let lines: Vec<String> =
-        layers.lines(section, "lines", reader).into_iter().map(|(line, _)| line).collect();
+        layers.lines(section, of_lines, reader).into_iter().map(|(line, _)| line).collect();
     if !lines.is_empty() {
-        all.push(BootLines { source: "lines".to_owned(), text: lines.join("\n") });
+        all.push(BootLines { source: of_lines.to_owned(), text: lines.join("\n") });
     }
     all
 }

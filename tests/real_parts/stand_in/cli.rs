@@ -37,6 +37,8 @@ pub(crate) struct Memory {
     waypoints: Vec<String>,
     /// Refuses every value, as one does that has it locked.
     pub(crate) refuses_settings: bool,
+    /// Was built with flight plans.
+    pub(crate) has_plans: bool,
 }
 
 impl Memory {
@@ -46,6 +48,7 @@ impl Memory {
             modes: [[0, 0, 900, 900]; AUX_SLOTS],
             waypoints: Vec::new(),
             refuses_settings: false,
+            has_plans: true,
         }
     }
 
@@ -65,6 +68,7 @@ impl Memory {
             ["aux"] => (0..AUX_SLOTS).map(|slot| self.aux_line(slot)).collect(),
             ["aux", slot, id, channel, start, end, ..] => self.aux([slot, id, channel, start, end]),
             ["diff", ..] => self.diff(),
+            ["waypoint", ..] if !self.has_plans => format!("ERR_CMD_NA: {line}\r\n"),
             ["waypoint"] | ["waypoint", "list"] => self.list(),
             ["waypoint", "status"] => {
                 format!("Waypoint count: {}\r\n\nRuntime status:\r\n  inactive\r\n", self.waypoints.len())

@@ -27,15 +27,18 @@ pub(crate) enum Trouble {
     RefusesSettings,
     /// Prints a line, and runs.
     IsNoSitl,
+    /// Was built without flight plans.
+    HasNoPlans,
 }
 
-const TROUBLES: [(Trouble, &str); 6] = [
+const TROUBLES: [(Trouble, &str); 7] = [
     (Trouble::None, "none"),
     (Trouble::Crashes, "crashes"),
     (Trouble::Hangs, "hangs"),
     (Trouble::StartsSlowly, "starts-slowly"),
     (Trouble::RefusesSettings, "refuses-settings"),
     (Trouble::IsNoSitl, "is-no-sitl"),
+    (Trouble::HasNoPlans, "has-no-plans"),
 ];
 
 /// The value of [`VARIABLE`].
@@ -83,6 +86,7 @@ fn run(variable: &str) -> ExitCode {
     };
     let (mut memory, shared) = (stored(), Shared::default());
     memory.refuses_settings = trouble == Trouble::RefusesSettings;
+    memory.has_plans = trouble != Trouble::HasNoPlans;
     std::thread::scope(|scope| {
         scope.spawn(|| {
             std::thread::sleep(Duration::from_millis(2500));

@@ -197,7 +197,10 @@ impl Serial {
             2 => b"BTFL".to_vec(),
             3 => [&[26, 12, 0, 15][..], b"2026.12.0-alpha"].concat(),
             4 => [&b"SITL\0\0\0\0\x04SITL"[..], &[0; 34], &[0xfe, 1, 0xe8, 3], &[0; 6]].concat(),
-            5 => [&b"Nov 22 202611:00:530000000"[..], &[0x26, 0x40, 0x2b, 0x40, 0x1c, 0x40]].concat(),
+            5 => {
+                let plans: &[u8] = if self.memory.has_plans { &[0x2b, 0x40] } else { &[] };
+                [&b"Nov 22 202611:00:530000000"[..], &[0x26, 0x40], plans, &[0x1c, 0x40]].concat()
+            }
             68 => {
                 self.reboots = true;
                 vec![0]

@@ -1,0 +1,140 @@
+//! How long a firmware outside is waited for until it is ready.
+
+use std::fmt;
+use std::time::{Duration, Instant};
+
+/// How long it may take from one answer to the next: a program that starts slowly, a `save` and its restart.
+const SILENCE: Duration = Duration::from_secs(15);
+/// Most connections that it may take: one, and another for each restart.
+const MOST_CONNECTIONS: u32 = 5;
+
+/// The wait for a firmware.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Patience {
+    answers: u64,
+    /// When it answered last.
+    since: Instant,
+}
+
+/// Why it is waited for no longer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum NotReady {
+    /// It has never answered.
+    NeverAnswered,
+    /// It has answered, and does not any more.
+    Silent,
+    /// Its connections end as soon as they are made.
+    EndsConnections,
+}
+
+impl Patience {
+    /// The wait from now on.
+    pub(super) fn new(now: Instant) -> Self {
+        Self { answers: 0, since: now }
+    }
+
+    /// Whether it is over, with so many answers over so many connections until now.
+    pub(super) fn look(&mut self, answers: u64, connections: u32, now: Instant) -> Option<NotReady> {
+        if answers > self.answers {
+            *self = Self { answers, since: now };
+        }
+        if connections > MOST_CONNECTIONS {
+            return Some(NotReady::EndsConnections);
+        }
+        (now.saturating_duration_since(self.since) >= SILENCE).then_some(match answers {
+            0 => NotReady::NeverAnswered,
+            _ => NotReady::Silent,
+        })
+    }
+}
+
+/// Why a firmware is not ready. `Display` gives a sentence that says what to do.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Unready<'a> {
+    /// What it is called.
+    pub(super) name: &'a str,
+    /// The port of its command line and MSP.
+    pub(super) tcp: u16,
+    /// Somebody else started it.
+    pub(super) is_attached: bool,
+    /// Why.
+    pub(super) why: NotReady,
+}
+
+impl fmt::Display for Unready<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { name, tcp, is_attached, why } = *self;
+        let seconds = SILENCE.as_secs();
+        match (why, is_attached) {
+            (NotReady::NeverAnswered, true) => write!(
+                f,
+                "nothing has answered at TCP port {tcp} for {seconds} s: start the firmware first, or name the port of its \
+                 command line and MSP with --tcp-port"
+            ),
+            (NotReady::NeverAnswered, false) => write!(
+                f,
+                "{name} has not answered at TCP port {tcp} for {seconds} s: name the port of its command line and MSP with \
+                 --tcp-port"
+            ),
+            (NotReady::Silent, true) => write!(
+                f,
+                "{name} has answered, and has not for {seconds} s: a SITL ends when it saves; start it again and repeat the \
+                 command, for what was saved stays saved"
+            ),
+            (NotReady::Silent, false) => {
+                write!(f, "{name} has answered, and has not for {seconds} s: what it printed may say why")
+            }
+            (NotReady::EndsConnections, true) => write!(
+                f,
+                "{name} ends every connection to TCP port {tcp}: it serves one program at a time, so end the one that is \
+                 connected to it (the Betaflight App, another betadeck)"
+            ),
+            (NotReady::EndsConnections, false) => write!(
+                f,
+                "{name} ends every connection to TCP port {tcp} before it is ready: what it printed may say why"
+            ),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::disallowed_methods, reason = "an instant to count from")]
+
+    use super::*;
+
+    #[test]
+    fn each_answer_gives_it_more_time() {
+        let start = Instant::now();
+        let at = |seconds| start + Duration::from_secs(seconds);
+        let mut patience = Patience::new(start);
+        assert_eq!(patience.look(0, 0, at(14)), None);
+        assert_eq!(patience.look(1, 1, at(14)), None);
+        assert_eq!(patience.look(1, 1, at(28)), None);
+        assert_eq!(patience.look(1, 1, at(29)), Some(NotReady::Silent));
+        assert_eq!(patience.look(2, 2, at(40)), None, "it was only slow");
+        assert_eq!(Patience::new(start).look(0, 0, at(15)), Some(NotReady::NeverAnswered));
+    }
+
+    #[test]
+    fn connections_that_end_again_and_again_are_no_progress() {
+        let start = Instant::now();
+        let mut patience = Patience::new(start);
+        assert_eq!(patience.look(40, MOST_CONNECTIONS, start), None);
+        assert_eq!(patience.look(41, MOST_CONNECTIONS + 1, start), Some(NotReady::EndsConnections));
+    }
+
+    #[test]
+    fn the_sentence_says_what_to_do() {
+        let say = |why, is_attached| {
+            Unready { name: "the firmware at port 6000", tcp: 6000, is_attached, why }.to_string()
+        };
+        let never = say(NotReady::NeverAnswered, true);
+        assert!(never.contains("TCP port 6000") && never.contains("--tcp-port"), "{never}");
+        assert!(never.contains("start the firmware first"), "{never}");
+        let saved = say(NotReady::Silent, true);
+        assert!(saved.contains("start it again and repeat the command"), "{saved}");
+        let taken = say(NotReady::EndsConnections, true);
+        assert!(taken.contains("end the one that is connected to it"), "{taken}");
+    }
+}
