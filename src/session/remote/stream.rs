@@ -7,8 +7,10 @@ use super::{Identification, RemoteLink, RemoteNotice, RemoteState};
 use crate::link::StreamEvent;
 use crate::vehicle::Vehicle;
 
-/// Most pieces that are read between two steps, so that a peer that floods does not hold the craft up.
+/// Most pieces, and bytes, that are read between two steps, so that a peer that floods does not hold the craft up: what is
+/// not read yet holds up the peer.
 const MOST_READ: usize = 64;
+const MOST_BYTES: usize = 8 * 1024;
 
 impl RemoteLink {
     /// Takes what has come over the serial port.
@@ -19,7 +21,11 @@ impl RemoteLink {
         now: Instant,
     ) {
         let since = now.saturating_duration_since(self.started);
+        let mut read = 0;
         for _ in 0..MOST_READ {
+            if read >= MOST_BYTES {
+                break;
+            }
             let event = match &mut context {
                 Some(context) => match self.ends.stream.from.poll_recv(context) {
                     Poll::Ready(event) => event,
@@ -32,6 +38,7 @@ impl RemoteLink {
                 Some(StreamEvent::Bytes(bytes)) => {
                     self.heard = true;
                     self.told_loss = None;
+                    read += bytes.len();
                     self.client.push(&bytes, since);
                 }
                 Some(StreamEvent::Connected) => {
@@ -108,5 +115,31 @@ impl RemoteLink {
             // A full queue means a stream that carries nothing any more: the client gives the request up.
             drop(self.ends.stream.to.try_send(output));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use tokio::sync::mpsc;
+
+    use super::*;
+    use crate::link::FcStream;
+    use crate::session::remote::RemoteEnds;
+    use crate::sim::WorldConfig;
+
+    #[test]
+    #[allow(clippy::disallowed_methods, reason = "an instant to count from")]
+    fn a_peer_that_floods_is_read_a_part_at_a_time() {
+        let ((to, _sent), (pieces, from)) = (mpsc::channel(1), mpsc::channel(MOST_READ));
+        while pieces.try_send(StreamEvent::Bytes(vec![b'$'; 4096])).is_ok() {}
+        let stream = FcStream { to, from, place: "tcp:here:1".to_owned(), bytes_per_s: None };
+        let ends = RemoteEnds { name: "the board".to_owned(), stream, peer: None, child: None };
+        let mut vehicle = Vehicle::with_remote_controller(WorldConfig::default()).unwrap();
+        let now = Instant::now();
+        let mut link = RemoteLink::new(ends, now);
+        link.exchange(&mut vehicle, None, now);
+        assert_eq!(pieces.capacity(), 2, "pieces read");
+        link.exchange(&mut vehicle, None, now);
+        assert_eq!(pieces.capacity(), 4, "pieces read");
     }
 }
