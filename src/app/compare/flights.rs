@@ -5,10 +5,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::Compared;
 use super::recorder::Recorder;
-use crate::app::error;
-use crate::app::firmware::RemoteFirmware;
 use crate::app::firmware::configuration::guide_settings;
-use crate::app::firmware::run::{RemoteRun, Seen, Stopped};
+use crate::app::firmware::run::{RemoteRun, RunOptions, Seen, Stopped, unless_interrupted};
+use crate::app::firmware::{RemoteFirmware, told};
 use crate::app::interrupt::interrupt_flag;
 use crate::app::{AppError, setup};
 use crate::args::{CompareArgs, Speed};
@@ -17,7 +16,7 @@ use crate::flight::setup::{BootLines, PhysicsSource};
 use crate::flight::{FlightOptions, FlightSetup};
 use crate::plan::format::PlanFile;
 use crate::record::compare::{Route, Track};
-use crate::session::{Event, RemoteNotice, SessionEvent, upload};
+use crate::session::{Event, SessionEvent, upload};
 
 /// Ticks between two looks at an interrupt.
 const SLICE: u64 = 4096;
@@ -89,11 +88,7 @@ impl Flights {
     pub(super) fn fly(&self, firmware: Option<&RemoteFirmware>) -> Result<Option<Track>, AppError> {
         match firmware {
             None => self.fly_embedded(),
-            Some(firmware) => match self.fly_remote(firmware) {
-                Ok(track) => Ok(Some(track)),
-                Err(Stopped::Interrupted) => Ok(None),
-                Err(Stopped::Failed(error)) => Err(error),
-            },
+            Some(firmware) => unless_interrupted(self.fly_remote(firmware)),
         }
     }
 
@@ -120,34 +115,27 @@ impl Flights {
     fn fly_remote(&self, firmware: &RemoteFirmware) -> Result<Track, Stopped> {
         let setup = FlightSetup { remote_controller: true, ..self.setup.clone() };
         let mut vehicle = setup::build(setup, &mut Vec::new())?;
-        let interrupted = Arc::clone(&self.interrupted);
         let firmware = firmware.with_settings(&self.plan.settings, &self.set);
-        let mut run = RemoteRun::start(&firmware, &vehicle, None, self.speed, interrupted, &mut Vec::new())?;
+        let options =
+            RunOptions { state: None, speed: self.speed, interrupted: Arc::clone(&self.interrupted) };
+        // That each starts without a configuration goes without saying.
         let mut tell = |event: &Event| {
-            told(event);
+            if matches!(event.kind, SessionEvent::Remote(_)) {
+                told::tell(event);
+            }
             Ok(())
         };
-        run.wait_until_ready(&mut vehicle, &mut tell)?;
-        run.upload(&mut vehicle, &self.plan.plan, &mut tell)?;
+        let mut run = RemoteRun::prepare(&firmware, &mut vehicle, &self.plan.plan, options, &mut tell)?;
         let mut recorder = Recorder::new(&vehicle);
         let mut flight = setup::start_flight(vehicle, &self.options)?;
         let end = run.fly(&mut flight, &mut |seen| {
             match seen {
                 Seen::Report(report) => recorder.hear(&report),
-                Seen::Told(event) => told(&event),
+                Seen::Told(event) => told::tell(&event),
                 Seen::Ticked(flight) => recorder.look(flight),
             }
             Ok(())
         })?;
         Ok(recorder.finish(&flight, end))
-    }
-}
-
-/// Says what the user should know of the firmware; what its program prints is not of interest here.
-fn told(event: &Event) {
-    if let SessionEvent::Remote(notice) = &event.kind
-        && !matches!(notice, RemoteNotice::Output(_))
-    {
-        error::tell(&notice.to_string());
     }
 }

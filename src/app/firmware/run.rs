@@ -115,7 +115,7 @@ impl RemoteRun {
     }
 
     /// Starts the firmware for `vehicle`; what is to be known of it is added to `notices`.
-    pub(in crate::app) fn start(
+    fn start(
         firmware: &RemoteFirmware,
         vehicle: &Vehicle,
         state: Option<&Path>,
@@ -148,7 +148,7 @@ impl RemoteRun {
     }
 
     /// Waits until the firmware answers and has told how it is set.
-    pub(in crate::app) fn wait_until_ready(
+    fn wait_until_ready(
         &mut self,
         vehicle: &mut Vehicle,
         tell: &mut impl FnMut(&Event) -> Result<(), AppError>,
@@ -172,7 +172,7 @@ impl RemoteRun {
     }
 
     /// Gives the plan to the craft.
-    pub(in crate::app) fn upload(
+    fn upload(
         &mut self,
         vehicle: &mut Vehicle,
         plan: &FlightPlan,
