@@ -292,7 +292,9 @@ fn a_case_whose_settings_were_refused_says_so() {
 #[test]
 fn a_check_tells_a_crash_with_its_signal() {
     let directory = tempfile::tempdir().unwrap();
-    let scenario = write(directory.path(), "standing.toml", STANDING);
+    // Its crash comes some seconds after the restart by which it is set.
+    let longer = STANDING.replace("4 s after boot", "20 s after boot");
+    let scenario = write(directory.path(), "standing.toml", &longer);
     let ports = free_ports();
     let mut program = start_stand_in(&["check", &scenario], ports, ports, Trouble::Crashes);
     program.wait("crash", |line| line.contains("ended by signal 6").then_some(()));
