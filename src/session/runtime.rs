@@ -28,7 +28,7 @@ use super::late_answers::LateAnswers;
 use super::pacer::Pacer;
 use super::persistence::Persistence;
 use super::real_time::RealTime;
-use super::remote::{EXCHANGE_PAUSE, RemoteLink};
+use super::remote::{Denial, EXCHANGE_PAUSE, RemoteLink};
 use super::request_handler::RequestHandler;
 use super::simulator::Simulator;
 use crate::firmware::cli::Interpreter;
@@ -158,8 +158,8 @@ struct Session {
     was_paused: bool,
     /// A script has sent RC.
     rc_received: bool,
-    /// The connection over which a client was refused a change last: told once each.
-    refused_over: Option<u32>,
+    /// Why clients were refused something over the present connection: each is told once.
+    refused_over: Vec<(Option<u32>, Denial)>,
     /// Something other than time changed what the view shows.
     changed: bool,
     /// Clients asked more than one round of the loop has time for.
@@ -213,7 +213,7 @@ impl Session {
             run_on: None,
             was_paused: false,
             rc_received: false,
-            refused_over: None,
+            refused_over: Vec::new(),
             changed: true,
             more_waits: false,
             quit: false,

@@ -203,9 +203,17 @@ fn programs_at_a_door_read_but_change_only_what_is_permitted() {
     dialogue.hear("Changes are permitted until the connection ends.");
     assert!(framed_line(door, "set ap_max_angle = 40").contains("set to 40"));
     let channels: Vec<u8> = [1500_u16; 8].iter().flat_map(|us| us.to_le_bytes()).collect();
-    for moving in [200, 214] {
+    for moving in [200, 211, 214] {
         assert!(msp(&mut client, moving, &channels).0, "{moving}");
     }
+    // The App sends this when it connects, and goes on when it is refused.
+    assert!(msp(&mut client, 99, &[1, 0]).0, "SET_ARMING_DISABLED");
+    for (line, told) in
+        [("mo\u{200b}tor 1 1500", "###ERROR: This craft is real"), ("bl\u{e9} rom", "in another program")]
+    {
+        assert!(framed_line(door, line).contains(told), "{line}");
+    }
+    assert_eq!(msp(&mut client, 2, &[]), (false, b"BTFL".to_vec()));
     dialogue.say("quit");
     assert_eq!(dialogue.end(), Some(0));
 }

@@ -22,6 +22,7 @@ mod request;
 pub mod telemetry;
 
 pub use ask::{Answer, Ask, AskId, CliAccess, Unanswered};
+pub use line_text::printable as sent_line;
 
 use std::collections::VecDeque;
 use std::time::Duration;

@@ -48,8 +48,9 @@ impl Session {
                 Ok(request) => request,
                 Err(denial) => {
                     let connection = self.remote.as_ref().map(RemoteLink::connection);
-                    if self.refused_over != connection {
-                        self.refused_over = connection;
+                    self.refused_over.retain(|(over, _)| *over == connection);
+                    if !self.refused_over.contains(&(connection, denial)) {
+                        self.refused_over.push((connection, denial));
                         let notice = format!("A program at a door was refused: {denial}");
                         self.events.notice(&mut self.vehicle, notice);
                     }
