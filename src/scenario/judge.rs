@@ -27,6 +27,7 @@ pub fn judge(case: &Case, flown: &Flown) -> (Vec<Judgement>, Vec<(String, f64)>)
         names.push((measure.name.clone(), value));
     }
     let needs = Needs::of(case);
+    let needed_to_fly = needs.flight(case);
     // What was not told cannot be measured.
     names.retain(|(name, _)| needs.measure(name) <= flown.told);
     let evaluator = Evaluator::new(&flown.trace, &names);
@@ -34,14 +35,15 @@ pub fn judge(case: &Case, flown: &Flown) -> (Vec<Judgement>, Vec<(String, f64)>)
         .expectations
         .iter()
         .map(|expectation| {
-            let outcome = match needs.expectation(expectation) {
+            // A flight whose inputs were not carried out, for nobody told when, shows nothing of what is expected.
+            let outcome = match needs.expectation(expectation).max(needed_to_fly) {
                 needed if needed > flown.told => Outcome::Skipped(needed),
                 _ => judge_one(expectation, flown, &evaluator),
             };
             judgement(expectation, outcome)
         })
         .collect();
-    if needs.flight(case) <= flown.told {
+    if needed_to_fly <= flown.told {
         judgements.extend(inputs::judge(case, &flown.trace));
     }
     (judgements, names)
