@@ -78,7 +78,7 @@ impl Navigator {
     /// A navigator that flies nothing.
     #[must_use]
     pub fn new() -> Self {
-        Self::default()
+        Self { telemetry: NavTelemetry::idle(), ..Self::default() }
     }
 
     /// State of the machine.

@@ -220,7 +220,7 @@ impl Firmware {
             battery_mah: battery.map(|sample| sample.drawn_mah),
             battery_cells: Some(self.battery().cells()).filter(|&cells| cells > 0),
             throttle_us: Some(self.control.state().throttle_us),
-            motors: self.control.state().motors.0,
+            motors: Some(self.control.state().motors.0),
             channels: Some(wire_order),
             rc_source: source,
             rc_age_s: self.receiver().last_frame().map(|last| self.now.seconds_since(last)),

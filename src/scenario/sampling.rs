@@ -95,9 +95,8 @@ impl Values {
 
     fn of_craft(&mut self, craft: &CraftView) {
         self.set_known(Signal::Throttle, craft.throttle_us);
-        for (signal, motor) in
-            [Signal::Motor1, Signal::Motor2, Signal::Motor3, Signal::Motor4].into_iter().zip(craft.motors)
-        {
+        let signals = [Signal::Motor1, Signal::Motor2, Signal::Motor3, Signal::Motor4];
+        for (signal, motor) in signals.into_iter().zip(craft.motors.into_iter().flatten()) {
             self.set(signal, motor);
         }
         self.set_known(Signal::Satellites, craft.sats.map(f64::from));
@@ -123,9 +122,8 @@ impl Values {
         self.set_known(Signal::SpeedSetpoint, nav.speed_setpoint_mps);
         self.set_known(Signal::HomeDistance, nav.home_distance_m);
         self.set_known(Signal::FenceMargin, nav.fence_margin_m);
-        if nav.hold_remaining_ds != ENDLESS_DS {
-            self.set(Signal::HoldRemaining, f64::from(nav.hold_remaining_ds) / 10.0);
-        }
+        let hold_left_ds = nav.hold_remaining_ds.filter(|left_ds| *left_ds != ENDLESS_DS);
+        self.set_known(Signal::HoldRemaining, hold_left_ds.map(|left_ds| f64::from(left_ds) / 10.0));
         self.set_known(Signal::TouchdownHeld, nav.touchdown_held_s);
         self.set(Signal::Hover, nav.hover_us);
         if nav.engaged {

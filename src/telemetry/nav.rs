@@ -206,8 +206,8 @@ pub struct NavTelemetry {
     pub along_m: Option<f64>,
     /// Effective lookahead, m.
     pub lookahead_m: Option<f64>,
-    /// How the aim was chosen.
-    pub l1_mode: L1Mode,
+    /// How the aim was chosen, when it is told.
+    pub l1_mode: Option<L1Mode>,
     /// Aim point, north and east of the origin of the local frame, m.
     pub aim_ne: Option<Vector2<f64>>,
     /// Lateral acceleration of the L1 law, m/s², right positive.
@@ -224,8 +224,8 @@ pub struct NavTelemetry {
     pub speed_setpoint_mps: Option<f64>,
     /// Phase of the hold pattern, rad.
     pub pattern_angle_rad: Option<f64>,
-    /// Hold time left, ds; 65535 = endless, 0 outside a hold.
-    pub hold_remaining_ds: u16,
+    /// Hold time left, ds, when it is told; 65535 = endless, 0 outside a hold.
+    pub hold_remaining_ds: Option<u16>,
     /// The hold was commanded, not planned.
     pub held_by_command: bool,
     /// Distance from home, m.
@@ -248,4 +248,12 @@ pub struct NavTelemetry {
     pub guards: arrayvec::ArrayVec<Guard, 9>,
     /// The demands of this update.
     pub output: NavOutput,
+}
+
+impl NavTelemetry {
+    /// That of a navigator that flies nothing and tells everything.
+    #[must_use]
+    pub fn idle() -> Self {
+        Self { l1_mode: Some(L1Mode::Off), hold_remaining_ds: Some(0), ..Self::default() }
+    }
 }

@@ -136,7 +136,7 @@ pub struct CraftView {
     /// Throttle that drives the mixer, RC µs.
     pub throttle_us: Option<f64>,
     /// Motor outputs M1…M4 in force, 0…1.
-    pub motors: [f64; 4],
+    pub motors: Option<[f64; 4]>,
     /// Channel values the firmware uses, µs (substituted while the link is lost).
     pub channels: Option<[u16; RC_CHANNELS]>,
     /// Who drives the channels; `None` before the first frame.

@@ -359,7 +359,9 @@ impl FlightController {
         match self {
             Self::Embedded(embedded) => embedded.firmware.craft_view(),
             Self::Remote(remote) => {
-                CraftView { motors: remote.motors().0, ..remote.telemetry().craft.clone() }
+                let CraftView { motors, .. } = remote.telemetry().craft;
+                let motors = remote.delivered_motors().map(|command| command.0).or(motors);
+                CraftView { motors, ..remote.telemetry().craft.clone() }
             }
         }
     }

@@ -78,7 +78,7 @@ fn a_hold_by_command_lasts_until_the_next_one() {
     flight.run(60.0);
     let telemetry = flight.nav.telemetry();
     assert_eq!((telemetry.state, telemetry.held_by_command), (NavState::Holding, true));
-    assert_eq!((telemetry.hold_remaining_ds, telemetry.cannot_hold), (u16::MAX, None));
+    assert_eq!((telemetry.hold_remaining_ds, telemetry.cannot_hold), (Some(u16::MAX), None));
     assert!((flight.plant.pos - here).norm() < 2.0, "{} {here}", flight.plant.pos);
     command(&mut flight, Resume).unwrap();
     let telemetry = flight.nav.telemetry();

@@ -120,7 +120,7 @@ fn an_offset_leg_is_cut_into_and_a_far_one_starts_anew() {
     flight.run(0.05);
     let start = flight.nav.telemetry().leg_start.unwrap();
     assert!((distance_bearing(start, offset_to_latlon(HOME, flight.plant.pos)).0) < 1.0);
-    assert_eq!(flight.nav.telemetry().l1_mode, L1Mode::Track);
+    assert_eq!(flight.nav.telemetry().l1_mode, Some(L1Mode::Track));
 }
 
 #[test]

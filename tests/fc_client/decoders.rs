@@ -106,6 +106,9 @@ fn a_battery_with_and_without_its_fine_voltage() {
     assert_eq!((reading.drawn_mah, reading.state), (100.0, Some(BatteryState::Warning)));
     assert!((BatteryReading::decode(&fine[..9]).unwrap().voltage_v - 16.8).abs() < 1e-9);
     assert!(!BatteryReading::decode(&[0, 0, 0, 0, 0, 0, 0, 0, 3]).unwrap().is_present());
+    // Being measured: nothing is known of it yet.
+    assert!(!BatteryReading::decode(&[0, 0, 0, 0, 0, 0, 0, 0, 4, 0, 0]).unwrap().is_present());
+    assert!(BatteryReading::decode(&[0, 0, 0, 0, 0, 0, 0, 0, 4, 0x18, 1]).unwrap().is_present());
 }
 
 #[test]
@@ -173,7 +176,7 @@ proptest! {
         let estimate = observation.estimate_view(None);
         prop_assert!(estimate.heading_deg.is_none_or(|heading| (0.0..360.0).contains(&heading)));
         let craft = observation.craft_view();
-        prop_assert!(craft.motors.iter().all(|motor| (0.0..=1.0).contains(motor)));
+        prop_assert!(craft.motors.iter().flatten().all(|motor| (0.0..=1.0).contains(motor)));
         prop_assert!(craft.mode_ranges().iter().all(|range| range.channel < 16 && range.start_us < range.end_us));
         prop_assert!(BoardInfo::decode(&payload).is_none_or(|board| board.identifier.len() <= 4));
         let _ = (BuildInfo::decode(&payload), version(&payload), variant(&payload), ApiVersion::decode(&payload));

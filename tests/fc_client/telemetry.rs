@@ -75,7 +75,7 @@ fn assert_craft(told: &CraftView, own: &CraftView) {
     assert_near(told.battery_v, own.battery_v, 0.006, "battery V");
     assert_near(told.battery_a, own.battery_a, 0.006, "battery A");
     assert_near(told.battery_mah, own.battery_mah, 0.6, "battery mAh");
-    for (told, own) in std::iter::zip(told.motors, own.motors) {
+    for (told, own) in std::iter::zip(told.motors.expect("told"), own.motors.expect("its own")) {
         assert_near(Some(told), Some(own), 0.0011, "motor");
     }
 }

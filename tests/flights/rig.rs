@@ -179,13 +179,13 @@ impl Rig {
             pitch: truth.pitch_deg(),
             heading: truth.heading_deg(),
             throttle_us: craft.throttle_us.unwrap(),
-            motors: craft.motors,
+            motors: craft.motors.expect("the embedded firmware tells"),
             armed: craft.is_armed(),
             modes: craft.modes.unwrap(),
             state: nav.state,
             wp: nav.wp,
             distance: nav.distance_m.unwrap_or(f64::NAN),
-            hold_remaining_ds: nav.hold_remaining_ds,
+            hold_remaining_ds: nav.hold_remaining_ds.expect("the embedded firmware tells"),
         }
     }
 

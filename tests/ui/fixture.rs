@@ -231,12 +231,12 @@ pub(crate) fn view(flight: &SimpleFlight) -> SessionView {
         nav.distance_m = Some(dn.hypot(de));
         nav.bearing_rad = Some(de.atan2(dn).rem_euclid(std::f64::consts::TAU));
         nav.xte_m = Some(0.31);
-        nav.l1_mode = L1Mode::Track;
+        nav.l1_mode = Some(L1Mode::Track);
         nav.aim_ne = Some(Vector2::new(flight.n + dn * 0.3, flight.e + de * 0.3));
         nav.home_distance_m = Some(flight.n.hypot(flight.e));
         nav.fence_margin_m = Some(500.0 - flight.n.hypot(flight.e));
         nav.eta_s = (flight.state == NavState::Approaching).then(|| dn.hypot(de) / flight.speed.max(0.5));
-        nav.hold_remaining_ds = flight.hold_ds;
+        nav.hold_remaining_ds = Some(flight.hold_ds);
         nav.guards = flight.guards.iter().copied().collect();
         let from = usize::from(flight.wp).checked_sub(1).map_or(HOME, |wp| plan.waypoints[wp].position);
         nav.leg_start = Some(from);

@@ -33,7 +33,7 @@ impl Navigator {
             fence_margin_m: params.fence_m().zip(home_distance_m).map(|(limit, distance)| limit - distance),
             touchdown_held_s: controllers.land.held_us().map(|held| held as f64 * 1e-6),
             hover_us: controllers.altitude.hover_us(),
-            ..NavTelemetry::default()
+            ..NavTelemetry::idle()
         };
         let guards = flown.map_or_else(ArrayVec::new, |(facts, _)| waiting_for(self.state, facts));
         let on_leg = flown.is_some() && self.state == NavState::Approaching;
@@ -47,7 +47,7 @@ impl Navigator {
                 xte_m: path.xte_m.filter(|_| on_leg),
                 along_m: path.along_m.filter(|_| on_leg),
                 lookahead_m: path.lookahead_m.filter(|_| on_leg),
-                l1_mode: if on_leg { path.l1_mode } else { L1Mode::Off },
+                l1_mode: Some(if on_leg { path.l1_mode } else { L1Mode::Off }),
                 aim_ne: Some(path.aim_ne),
                 a_lat_mps2: path.a_lat_mps2.filter(|_| on_leg),
                 target_ne: Some(self.target_ne),
@@ -56,7 +56,7 @@ impl Navigator {
                 speed_setpoint_mps: Some(controllers.position.speed_setpoint_mps()),
                 pattern_angle_rad: matches!(self.state, NavState::Orbiting | NavState::Figure8)
                     .then(|| self.hold.phase_rad()),
-                hold_remaining_ds: self.hold_remaining_ds(now),
+                hold_remaining_ds: Some(self.hold_remaining_ds(now)),
                 held_by_command: self.hold.is_by_command(),
                 eta_s: (on_leg && speed >= ETA_MIN_MPS).then(|| seen.distance_m / speed),
                 stick_override: seen.stick_override,

@@ -35,7 +35,7 @@ impl EndlessWatch {
         if nav.engaged {
             self.quiet_since = None;
             let holds = matches!(nav.state, NavState::Holding | NavState::Orbiting | NavState::Figure8);
-            if !(holds && nav.hold_remaining_ds == ENDLESS_DS) {
+            if !(holds && nav.hold_remaining_ds == Some(ENDLESS_DS)) {
                 self.hold_since = None;
                 return None;
             }

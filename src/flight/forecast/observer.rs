@@ -98,7 +98,7 @@ impl Observer {
             self.legs.push(LegTime { wp: nav.wp, time_s: passed_s });
         }
         // Only where a line is followed: straight to a point there is none to be beside of.
-        if let Some(xte_m) = nav.xte_m.filter(|_| nav.l1_mode == L1Mode::Track).map(f64::abs) {
+        if let Some(xte_m) = nav.xte_m.filter(|_| nav.l1_mode == Some(L1Mode::Track)).map(f64::abs) {
             self.note_xte(xte_m, nav.wp);
         }
         if let Some(margin_m) = nav.fence_margin_m {

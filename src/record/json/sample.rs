@@ -26,7 +26,7 @@ pub(super) struct Fields {
     est_e: Option<Milli>,
     est_alt: Option<Milli>,
     throttle_us: Option<Centi>,
-    motors: [Decimals<4>; 4],
+    motors: Option<[Decimals<4>; 4]>,
     battery_v: Option<Milli>,
     battery_a: Option<Milli>,
     battery_mah: Option<Milli>,
@@ -71,7 +71,7 @@ impl Fields {
             est_e: estimate.e.map(Decimals),
             est_alt: estimate.alt.map(Decimals),
             throttle_us: craft.throttle_us.map(Decimals),
-            motors: craft.motors.map(Decimals),
+            motors: craft.motors.map(|motors| motors.map(Decimals)),
             battery_v: craft.battery_v.map(Decimals),
             battery_a: craft.battery_a.map(Decimals),
             battery_mah: craft.battery_mah.map(Decimals),
@@ -81,11 +81,11 @@ impl Fields {
             dist_m: nav.and_then(|nav| nav.distance_m).map(Decimals),
             bearing: nav.and_then(|nav| nav.bearing_rad).map(|bearing| compass(bearing.to_degrees())),
             xte_m: nav.and_then(|nav| nav.xte_m).map(Decimals),
-            l1_mode: nav.map(|nav| nav.l1_mode.to_string()),
+            l1_mode: nav.and_then(|nav| nav.l1_mode).map(|mode| mode.to_string()),
             target_n: target.map(|target| Decimals(target.x)),
             target_e: target.map(|target| Decimals(target.y)),
             target_alt: nav.and_then(|nav| nav.target_alt_m).map(Decimals),
-            hold_remaining_ds: nav.map(|nav| nav.hold_remaining_ds),
+            hold_remaining_ds: nav.and_then(|nav| nav.hold_remaining_ds),
             wind_n: wind.map(|ne| Decimals(ne.x)),
             wind_e: wind.map(|ne| Decimals(ne.y)),
         }
@@ -97,7 +97,7 @@ mod tests {
     use super::super::sample_line;
     use crate::signals::SimTime;
     use crate::telemetry::snapshot::TruthView;
-    use crate::telemetry::{NavTelemetry, Snapshot};
+    use crate::telemetry::{L1Mode, NavTelemetry, Snapshot};
 
     /// The keys of a sample, in their order.
     const KEYS: [&str; 34] = [
@@ -149,7 +149,19 @@ mod tests {
         }
         assert!(line.starts_with(r#"{"t":0.0015,"event":"sample","lat":null,"lon":null"#), "{line}");
         assert!(line.contains(r#""state":"IDLE","wp":null,"wp_type":null"#), "{line}");
-        assert!(line.contains(r#""l1_mode":"OFF""#), "{line}");
+    }
+
+    #[test]
+    fn what_a_navigator_does_not_tell_is_null() {
+        let nav = Some(NavTelemetry::default());
+        let line = sample_line(&Snapshot { nav: nav.clone(), ..Snapshot::default() });
+        for unknown in ["l1_mode", "hold_remaining_ds", "motors", "xte_m"] {
+            assert!(line.contains(&format!("\"{unknown}\":null")), "{unknown} in {line}");
+        }
+        let nav =
+            nav.map(|nav| NavTelemetry { l1_mode: Some(L1Mode::Off), hold_remaining_ds: Some(0), ..nav });
+        let line = sample_line(&Snapshot { nav, ..Snapshot::default() });
+        assert!(line.contains(r#""l1_mode":"OFF""#) && line.contains(r#""hold_remaining_ds":0"#), "{line}");
     }
 
     #[test]
@@ -167,7 +179,7 @@ mod tests {
         assert!(sample_line(&snapshot).contains(r#""heading":0.0"#));
         let bearing_rad = Some(std::f64::consts::FRAC_PI_2);
         snapshot.nav = Some(NavTelemetry { bearing_rad, ..NavTelemetry::default() });
-        snapshot.craft.motors = [0.502_565_52, 0.0, 1.0, 0.25];
+        snapshot.craft.motors = Some([0.502_565_52, 0.0, 1.0, 0.25]);
         let line = sample_line(&snapshot);
         for part in [
             r#""lat":40.12345679"#,

@@ -184,10 +184,10 @@ pub(super) fn values(vehicle: &Snapshot) -> Values {
     set(Signal::PitchDemand, estimate.pitch_demand_deg);
     set(Signal::Pitch, estimate.pitch_deg);
     set(Signal::Throttle, craft.throttle_us);
-    for (motor, signal) in
-        craft.motors.iter().zip([Signal::Motor1, Signal::Motor2, Signal::Motor3, Signal::Motor4])
+    for (at, signal) in
+        [Signal::Motor1, Signal::Motor2, Signal::Motor3, Signal::Motor4].into_iter().enumerate()
     {
-        set(signal, Some(motor * 100.0));
+        set(signal, craft.motors.map(|motors| motors[at] * 100.0));
     }
     set(Signal::Heading, estimate.heading_deg);
     set(Signal::Distance, nav.and_then(|nav| nav.distance_m));

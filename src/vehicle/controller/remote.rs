@@ -75,7 +75,8 @@ pub struct RemoteController {
     requests: VecDeque<(Ticket, RemoteRequest)>,
     next_ticket: u64,
     rc: [Option<RcFrame>; RcSource::COUNT],
-    motors: MotorCommand,
+    /// `None` as long as nobody has delivered any.
+    motors: Option<MotorCommand>,
     telemetry: RemoteTelemetry,
     events: VecDeque<FirmwareEvent>,
     answers: VecDeque<(Ticket, LateAnswer)>,
@@ -88,7 +89,7 @@ impl Default for RemoteController {
             requests: VecDeque::new(),
             next_ticket: 0,
             rc: [None; RcSource::COUNT],
-            motors: MotorCommand::default(),
+            motors: None,
             telemetry: RemoteTelemetry::default(),
             events: VecDeque::new(),
             answers: VecDeque::new(),
@@ -109,7 +110,7 @@ impl RemoteController {
 
     /// Delivers a motor command, which stays in force until the next.
     pub fn deliver_motors(&mut self, motors: MotorCommand) {
-        self.motors = motors;
+        self.motors = Some(motors);
     }
 
     /// Delivers telemetry in place of what was told before.
@@ -134,7 +135,7 @@ impl RemoteController {
             }
         }
         self.put(FrameOut::Sensors(*frame));
-        self.motors
+        self.motors()
     }
 
     fn put(&mut self, frame: FrameOut) {
@@ -167,7 +168,7 @@ impl RemoteController {
 
     /// It started anew: what was told before means nothing, and its motors stand still.
     pub(in crate::vehicle) fn restarted(&mut self) {
-        self.motors = MotorCommand::default();
+        self.motors = None;
         self.telemetry = RemoteTelemetry::default();
     }
 
@@ -183,7 +184,13 @@ impl RemoteController {
         &self.telemetry
     }
 
+    /// The motor command in force.
     pub(super) fn motors(&self) -> MotorCommand {
+        self.motors.unwrap_or_default()
+    }
+
+    /// The motor command that was delivered last.
+    pub(super) fn delivered_motors(&self) -> Option<MotorCommand> {
         self.motors
     }
 

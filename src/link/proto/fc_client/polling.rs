@@ -100,6 +100,13 @@ impl Schedule {
         self.free_at = Duration::ZERO;
     }
 
+    /// This is old: it is asked next, unless something else was never asked.
+    pub fn hasten(&mut self, poll: Poll) {
+        if let Some(entry) = self.entries.iter_mut().find(|entry| entry.poll == poll) {
+            entry.asked = None;
+        }
+    }
+
     /// What is to be asked now, if anything; from then on it counts as asked. `in_flight`: armed, or a mission is flown.
     pub fn next(&mut self, in_flight: bool, now: Duration) -> Option<Poll> {
         if now < self.free_at {

@@ -5,7 +5,7 @@ use super::{
 };
 use crate::geo::{LatLon, local_offset, offset_to_latlon};
 use crate::signals::RC_CHANNELS;
-use crate::telemetry::snapshot::{CraftView, EstimateView, GpsView};
+use crate::telemetry::snapshot::{CraftView, EstimateView, GpsView, ModeRange};
 use crate::telemetry::{ArmingFlag, ArmingFlags, Mode};
 
 /// The place that displays count from.
@@ -81,6 +81,12 @@ impl Observation {
         self.status.is_some_and(|status| status.modes(&self.box_ids).has(mode))
     }
 
+    /// Whether the channels in use are known.
+    #[must_use]
+    pub fn has_channels(&self) -> bool {
+        self.channels.is_some()
+    }
+
     /// The newest of the GPS.
     #[must_use]
     pub fn gps(&self) -> Option<&RawGps> {
@@ -91,6 +97,12 @@ impl Observation {
     #[must_use]
     pub fn motors(&self) -> Option<[f64; 4]> {
         self.motors
+    }
+
+    /// The conditions of the modes.
+    #[must_use]
+    pub fn mode_ranges(&self) -> Option<Vec<ModeRange>> {
+        self.ranges.as_deref().map(|ranges| mode_ranges(ranges, self.range_links.as_deref()))
     }
 
     /// Modes, arming, receiver and battery, as far as they were told.
@@ -109,11 +121,11 @@ impl Observation {
             gps: self.gps.filter(|gps| gps.fix || gps.position != LatLon::default()).map(gps_view),
             sats: self.gps.map(|gps| gps.sats),
             home: self.home,
-            battery_v: battery.map(|battery| battery.voltage_v),
+            battery_v: battery.map(|battery| battery.voltage_v).filter(|voltage_v| *voltage_v > 0.0),
             battery_a: battery.map(|battery| battery.current_a),
             battery_mah: battery.map(|battery| battery.drawn_mah),
             battery_cells: battery.and_then(|battery| battery.cells),
-            motors: self.motors.unwrap_or_default(),
+            motors: self.motors,
             channels: self.channels,
             rc_link: has_rx_loss.map(|is_lost| !is_lost && !in_failsafe),
             failsafe_stage: has_rx_loss.map(|is_lost| match (in_failsafe, is_lost && armed == Some(true)) {
@@ -121,10 +133,7 @@ impl Observation {
                 (false, true) => 1,
                 (false, false) => 0,
             }),
-            mode_ranges: self
-                .ranges
-                .as_deref()
-                .map(|ranges| mode_ranges(ranges, self.range_links.as_deref())),
+            mode_ranges: self.mode_ranges(),
             ..CraftView::default()
         }
     }

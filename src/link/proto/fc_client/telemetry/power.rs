@@ -48,9 +48,9 @@ impl BatteryReading {
         Some(Self { cells, voltage_v, drawn_mah, current_a, state })
     }
 
-    /// Whether there is a battery that is measured: one that was just found may have no voltage yet.
+    /// Whether there is a battery: its cells were counted, or it has a voltage.
     #[must_use]
     pub fn is_present(&self) -> bool {
-        self.state != Some(BatteryState::NotPresent) && (self.cells != Some(0) || self.voltage_v > 0.0)
+        self.state != Some(BatteryState::NotPresent) && (self.cells.is_some() || self.voltage_v > 0.0)
     }
 }
