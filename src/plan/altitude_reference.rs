@@ -27,7 +27,7 @@ pub enum AltitudeError {
     Untold,
     /// They count from sea level, and home's is not known.
     #[error(
-        "Its firmware counts the altitudes of waypoints from sea level, and that of home is not known yet: wait for a GPS fix."
+        "Its firmware counts the altitudes of waypoints from sea level, and that of home, where it stands disarmed, is not known yet: wait for a GPS fix."
     )]
     HomeUnknown,
 }

@@ -9,35 +9,42 @@
 //!
 //! Nothing here waits: [`RemoteLink::exchange`] is called between two steps.
 
+mod answers;
 mod identify;
 mod observer;
 mod permission;
 mod provision;
+mod refresh;
 mod reply;
+mod rescue;
 mod self_check;
+mod silence;
 mod stream;
+#[cfg(test)]
+mod tests;
 mod view;
 
 use std::collections::BTreeMap;
 use std::task::Context;
 use std::time::{Duration, Instant};
 
+use crate::geo::LocalFrame;
 use crate::link::proto::fc_client::polling::{Poll as Subject, Schedule};
-use crate::link::proto::fc_client::{Answer, Ask, AskId, FcClient};
+use crate::link::proto::fc_client::{Ask, AskId, FcClient};
 use crate::link::proto::sitl_feed::FeedState;
 use crate::link::{ChildEvent, FcStream, SitlChild, SitlPeer};
 use crate::session::upload::LIST;
 use crate::signals::MotorCommand;
-use crate::telemetry::switch::Switch;
-use crate::telemetry::{EndpointStatus, Mode};
-use crate::vehicle::{FrameOut, LateAnswer, RemoteRequest, Ticket, Vehicle};
+use crate::telemetry::EndpointStatus;
+use crate::vehicle::{FrameOut, RemoteRequest, Ticket, Vehicle};
 use identify::{Identification, Question};
-use observer::Observer;
+use observer::{Observer, Simulated};
 use permission::Permission;
 pub use permission::{Access, Denial, Impact, NOT_PERMITTED, NOTHING_MOVES, NOTHING_SIMULATED};
 pub use provision::{Provision, ProvisionLines, Unset, UnsetLine};
-use reply::cli_reply;
+use refresh::Refresh;
 use self_check::SelfCheck;
+use silence::Silence;
 pub use view::{RemoteNotice, RemoteState, RemoteView};
 
 /// The message that restarts a flight controller.
@@ -48,6 +55,8 @@ const EXCHANGE_US: f64 = 1000.0;
 pub const EXCHANGE_PAUSE: Duration = Duration::from_micros(500);
 /// Most events of its program between two steps, so that one that prints much does not hold the craft up.
 const MOST_EVENTS: usize = 64;
+/// How far from the place where a real craft was seen first another one may be seen, for it to be drawn around the same place, m.
+const SAME_FIELD_M: f64 = 1000.0;
 /// How long a program may take until it answers for the first time.
 const FIRST_ANSWER: Duration = Duration::from_secs(10);
 
@@ -67,18 +76,20 @@ pub struct RemoteEnds {
 /// What an answer is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Purpose {
-    /// A line that somebody in this program asked for.
-    Line(Ticket),
+    /// A line that somebody in this program asked for, and whether it may change something.
+    Line(Ticket, bool),
     /// The line that shows the plan, likewise.
     Plan(Ticket),
-    /// A message likewise.
-    Message(Ticket),
+    /// A message, likewise.
+    Message(Ticket, bool),
     /// To know what it is.
     Identity(Question),
     /// To set it.
     Provision,
     /// To show how it is.
     Polled(Subject),
+    /// To know how it is set now.
+    Refreshed(Question),
     /// Nothing: what it causes is seen elsewhere.
     Nothing,
 }
@@ -107,6 +118,8 @@ pub struct RemoteLink {
     answers: u64,
     motors: FeedState,
     self_check: SelfCheck,
+    silence: Silence,
+    refresh: Refresh,
     permission: Permission,
     provision: Option<Provision>,
     unset: Option<Unset>,
@@ -134,6 +147,8 @@ impl RemoteLink {
             answers: 0,
             motors: FeedState::Waiting,
             self_check: SelfCheck::default(),
+            silence: Silence::default(),
+            refresh: Refresh::default(),
             permission: Permission::default(),
             provision: None,
             unset: None,
@@ -250,10 +265,11 @@ impl RemoteLink {
         self.follow_program(vehicle);
         self.read_stream(vehicle, context, now);
         self.exchange_frames(vehicle, now);
+        // First, so that nothing is asked that was answered just now.
+        self.take_answers(vehicle, now);
         self.take_requests(vehicle);
         self.ask_what_is_due(now);
         self.client.poll(now.saturating_duration_since(self.started));
-        self.take_answers(vehicle);
         self.write_stream();
         self.observe(vehicle, now);
         std::mem::take(&mut self.notices)
@@ -348,11 +364,14 @@ impl RemoteLink {
             let Some((ticket, request)) = mailbox.take_request() else { return };
             match request {
                 RemoteRequest::Cli(line) => {
-                    let purpose = if line == LIST { Purpose::Plan(ticket) } else { Purpose::Line(ticket) };
+                    let changes = Impact::of_line(&line) > Impact::Reads;
+                    let purpose =
+                        if line == LIST { Purpose::Plan(ticket) } else { Purpose::Line(ticket, changes) };
                     self.ask(purpose, Ask::Line(line));
                 }
                 RemoteRequest::Msp { code, payload } => {
-                    self.ask(Purpose::Message(ticket), Ask::Msp { code, payload });
+                    let changes = Impact::of_message(code, &payload) == Impact::Changes;
+                    self.ask(Purpose::Message(ticket, changes), Ask::Msp { code, payload });
                 }
                 RemoteRequest::ReturnHome => self.switch_rescue(vehicle, true),
                 RemoteRequest::CancelReturn => self.switch_rescue(vehicle, false),
@@ -360,19 +379,6 @@ impl RemoteLink {
                     self.ask(Purpose::Nothing, Ask::Msp { code: REBOOT, payload: Vec::new() });
                 }
             }
-        }
-    }
-
-    /// A firmware outside has no command to fly home, but a mode.
-    fn switch_rescue(&mut self, vehicle: &mut Vehicle, on: bool) {
-        match Switch::of(Mode::GpsRescue, &vehicle.controller().mode_ranges()) {
-            Some(Switch { channel, on_us, off_us }) => {
-                vehicle.transmitter_mut().sticks_mut().channels[channel] = if on { on_us } else { off_us };
-            }
-            None => self.notices.push(RemoteNotice::Told(
-                "This firmware flies home by a switch alone, and GPS RESCUE has none: give it one with the CLI command aux."
-                    .to_owned(),
-            )),
         }
     }
 
@@ -394,77 +400,25 @@ impl RemoteLink {
                 Some(question) => Some((Purpose::Identity(question), question.ask())),
                 None => self.ask_to_provision().map(|ask| (Purpose::Provision, ask)),
             },
-            RemoteState::Ready => {
-                let next = self.schedule.next(self.observer.is_armed(), since);
-                next.map(|subject| (Purpose::Polled(subject), subject.ask()))
-            }
+            RemoteState::Ready => match self.next_to_refresh(now) {
+                Some(question) => Some((Purpose::Refreshed(question), question.ask())),
+                None => {
+                    let next = self.schedule.next(self.observer.is_armed(), since);
+                    next.map(|subject| (Purpose::Polled(subject), subject.ask()))
+                }
+            },
             // A board that still starts, or a plug that is put into another one, answers later.
             RemoteState::Unusable(_) if !self.is_fed() => self
                 .identification
                 .next()
                 .filter(|question| *question == Question::ApiVersion)
                 .map(|question| (Purpose::Identity(question), question.ask())),
-            RemoteState::Connecting | RemoteState::Lost | RemoteState::Unusable(_) => None,
+            // The connection is there, and nobody answers.
+            RemoteState::Lost => Some((Purpose::Nothing, Question::ApiVersion.ask())),
+            RemoteState::Connecting | RemoteState::Unusable(_) => None,
         };
         if let Some((purpose, ask)) = next {
             self.ask(purpose, ask);
-        }
-    }
-
-    fn take_answers(&mut self, vehicle: &mut Vehicle) {
-        while let Some((id, answer)) = self.client.next_answer() {
-            let Some(purpose) = self.waiting.remove(&id) else { continue };
-            self.answers += u64::from(!matches!(answer, Answer::NotAnswered(_)));
-            if matches!(purpose, Purpose::Line(_) | Purpose::Identity(Question::Settings(_) | Question::Plan))
-            {
-                self.permission.line_answered(&answer);
-                self.tell_client();
-            }
-            let Some(mailbox) = vehicle.controller_mut().remote_mut() else { return };
-            match purpose {
-                Purpose::Line(ticket) => mailbox.deliver_answer(ticket, LateAnswer::Cli(cli_reply(answer))),
-                Purpose::Plan(ticket) => {
-                    // An upload ends with it: the plan is another one than it was.
-                    self.observer.learn(Question::Plan, &answer);
-                    mailbox.deliver_answer(ticket, LateAnswer::Cli(cli_reply(answer)));
-                }
-                Purpose::Message(ticket) => {
-                    let payload = if let Answer::Msp(payload) = answer { payload } else { None };
-                    mailbox.deliver_answer(ticket, LateAnswer::Msp(payload));
-                }
-                Purpose::Identity(question) => self.identify(question, &answer),
-                Purpose::Provision => self.take_provision_answer(&answer),
-                Purpose::Polled(subject) => {
-                    self.schedule.answered(subject, &answer);
-                    match (subject, &answer) {
-                        (Subject::Message(code), Answer::Msp(Some(payload))) => {
-                            self.observer.take_message(code, payload);
-                        }
-                        (Subject::Mission, Answer::Line { text, failed: false, .. }) => {
-                            self.notices.extend(self.observer.take_mission(text).map(RemoteNotice::Lost));
-                        }
-                        _ => {}
-                    }
-                }
-                Purpose::Nothing => {}
-            }
-        }
-    }
-
-    fn identify(&mut self, question: Question, answer: &Answer) {
-        // A simulated one that stands at a breakpoint is asked again: how long it may stand is looked at elsewhere.
-        if self.is_fed() && matches!((question, answer), (Question::ApiVersion, Answer::NotAnswered(_))) {
-            return;
-        }
-        match self.identification.take(question, answer, &mut self.observer) {
-            Ok(false) => {
-                if matches!((&self.state, answer), (RemoteState::Unusable(_), Answer::Msp(Some(_)))) {
-                    self.state = RemoteState::Identifying;
-                }
-            }
-            Ok(true) if self.provision.is_some() => self.go_on_with_provision(),
-            Ok(true) => self.become_ready(),
-            Err(why) => self.give_up(format!("{}: {why}", self.ends.name)),
         }
     }
 
@@ -475,46 +429,22 @@ impl RemoteLink {
         if let Some(finding) = self.check_at_rest(vehicle, now) {
             self.notices.push(RemoteNotice::Lost(finding));
         }
-        if vehicle.local_frame().is_none()
-            && let Some(frame) = self.observer.first_fix()
+        if let Some(seen) = self.observer.first_fix()
+            && !vehicle.local_frame().is_some_and(|frame| self.is_fed() || is_near(frame, &seen))
         {
-            vehicle.set_origin(frame);
+            vehicle.set_origin(seen);
         }
         let frame = vehicle.local_frame().copied();
+        let simulated = self.is_fed().then(|| Simulated {
+            home_m: frame.map(|frame| frame.alt_amsl_m),
+            commanded: self.rescue_switch(vehicle),
+        });
         let Some(mailbox) = vehicle.controller_mut().remote_mut() else { return };
-        self.observer.deliver(mailbox, frame.as_ref());
+        self.observer.deliver(mailbox, frame.as_ref(), simulated);
     }
+}
 
-    /// Gives up a program that has never answered, and tells of one that does not answer any more.
-    fn tell_silence(&mut self, now: Instant) {
-        let is_over = |since: Instant| now.saturating_duration_since(since) >= FIRST_ANSWER;
-        let started = self.ends.child.is_some().then_some(self.started);
-        if !self.is_fed() || matches!(self.state, RemoteState::Unusable(_)) {
-            return;
-        }
-        // One that somebody else started and another program is connected to has been told so.
-        let is_taken = self.told_loss.is_some() && self.ends.child.is_none();
-        if self.answers == 0 && !is_taken && self.first_connected.or(started).is_some_and(is_over) {
-            let RemoteEnds { name, stream, .. } = &self.ends;
-            let seconds = FIRST_ANSWER.as_secs();
-            self.give_up(match &self.told_loss {
-                Some(reason) => format!("{name} has not answered for {seconds} s: {reason}."),
-                None if self.first_connected.is_none() && self.motors != FeedState::Waiting => format!(
-                    "{name} sends motors, but nothing has answered at {} for {seconds} s: name the port of its command line \
-                     and MSP with --tcp-port.",
-                    stream.place
-                ),
-                None => format!(
-                    "{name} has not answered for {seconds} s: is it a SITL executable of Betaflight, and are its ports free?"
-                ),
-            });
-        } else if !self.heard && self.connected.is_some_and(is_over) {
-            self.connected = None;
-            self.notices.push(RemoteNotice::Lost(format!(
-                "{} takes the connection and has said nothing for {} s: it is asked until it does.",
-                self.ends.name,
-                FIRST_ANSWER.as_secs()
-            )));
-        }
-    }
+/// Whether a drawing around one place shows the other as it is.
+fn is_near(frame: &LocalFrame, other: &LocalFrame) -> bool {
+    frame.to_enu(other.lat_deg, other.lon_deg, other.alt_amsl_m).xy().norm() < SAME_FIELD_M
 }

@@ -46,6 +46,11 @@ const QUESTIONS: [Question; 13] = [
     Question::Plan,
 ];
 
+/// What is asked again once it may have changed.
+pub(super) fn how_it_is_set() -> impl Iterator<Item = Question> {
+    QUESTIONS.into_iter().filter(|question| matches!(question, Question::Settings(_) | Question::Plan))
+}
+
 /// The only firmware that is spoken with.
 const BETAFLIGHT: &[u8] = b"BTFL";
 
@@ -112,11 +117,18 @@ impl Identification {
                         .to_owned(),
                 );
             }
-            (Question::Variant, Answer::Msp(Some(variant))) if variant != BETAFLIGHT => {
+            (Question::Variant, Answer::Msp(Some(variant))) if variant == BETAFLIGHT => {}
+            (Question::Variant, Answer::Msp(Some(variant))) => {
                 let variant = String::from_utf8_lossy(variant).escape_debug().to_string();
                 return Err(format!(
                     "the flight controller there says {variant}, not BTFL: only Betaflight is spoken with"
                 ));
+            }
+            (Question::Variant, _) => {
+                return Err(
+                    "the flight controller there does not say what it is: only Betaflight is spoken with"
+                        .to_owned(),
+                );
             }
             _ => observer.learn(question, answer),
         }

@@ -14,9 +14,13 @@ use crate::link::proto::fc_client::telemetry::{
 use crate::plan::{AltitudeReference, FlightPlan};
 use crate::session::upload::plan_of_list;
 use crate::telemetry::Mode;
+use crate::telemetry::snapshot::{CraftView, ModeRange};
 use crate::vehicle::{RemoteController, RemoteTelemetry};
 use events::EventObserver;
 use settings::Settings;
+
+/// How far the altitude of a GPS at rest wanders, m: it is the same place.
+const SAME_ALT_M: f64 = 3.0;
 
 /// What is known of a flight controller.
 #[derive(Debug, Default)]
@@ -27,8 +31,12 @@ pub struct Observer {
     /// As it holds it.
     stored_plan: Option<FlightPlan>,
     mission: Option<Mission>,
-    /// Where the craft was first seen, when no world says where it stood.
+    /// Where the craft was first seen: a drawing of it begins there when no world says where it stood.
     first_fix: Option<Origin>,
+    /// Where a craft stands that is known to be disarmed, m above mean sea level: arming makes that home's altitude.
+    standing_alt_m: Option<f64>,
+    /// It disarmed, and where its switches stand was not asked since.
+    awaits_switches: bool,
     events: EventObserver,
     /// Something new is known.
     changed: bool,
@@ -43,17 +51,33 @@ struct Identity {
     build: Option<BuildInfo>,
 }
 
+/// What is known of a craft because it is simulated here.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Simulated {
+    /// Altitude of its home above mean sea level, m.
+    pub(super) home_m: Option<f64>,
+    /// The switch that has it fly home is on; `None` without one.
+    pub(super) commanded: Option<bool>,
+}
+
 impl Observer {
     /// The connection is gone: what was told is old. What it was set to and where it was seen first may still hold.
     pub(super) fn forget(&mut self) {
         self.observation = Observation::default();
         self.mission = None;
+        self.standing_alt_m = None;
+        self.awaits_switches = false;
         self.changed = true;
     }
 
-    /// It started anew, so that nothing of before counts.
+    /// It started anew, or another one may be there: nothing of before counts.
     pub(super) fn restarted(&mut self) {
         *self = Self { changed: true, ..Self::default() };
+    }
+
+    /// Something that is delivered with the rest is different now.
+    pub(super) fn deliver_again(&mut self) {
+        self.changed = true;
     }
 
     /// Takes in the answer to a question.
@@ -82,12 +106,23 @@ impl Observer {
 
     /// Takes in the reply to a message that was polled.
     pub(super) fn take_message(&mut self, code: u16, payload: &[u8]) {
+        let was_armed = self.is_armed();
         self.changed |= self.observation.take(code, payload);
-        if self.first_fix.is_none()
-            && let Some(gps) = self.observation.gps().filter(|gps| gps.fix)
-        {
+        let is_disarmed = self.armed() == Some(false);
+        self.awaits_switches |= was_armed && is_disarmed && self.observation.has_channels();
+        let Some(gps) = self.observation.gps().filter(|gps| gps.fix) else { return };
+        if self.first_fix.is_none() {
             self.first_fix = Some(Origin { position: gps.position, alt_amsl_m: gps.alt_amsl_m });
         }
+        let stands_at = |alt_m: f64| (alt_m - gps.alt_amsl_m).abs() <= SAME_ALT_M;
+        if is_disarmed && !self.standing_alt_m.is_some_and(stands_at) {
+            self.standing_alt_m = Some(gps.alt_amsl_m);
+        }
+    }
+
+    /// Where its switches stand was asked, whether it answered or not.
+    pub(super) fn asked_for_switches(&mut self) {
+        self.awaits_switches = false;
     }
 
     /// Takes in the output of `waypoint status`; gives a sentence when the mission was given up since the last.
@@ -113,17 +148,24 @@ impl Observer {
         })
     }
 
-    /// Delivers what is new: telemetry, and the events that it shows. `frame` is that of the boot place, when there is a
-    /// world.
-    pub(super) fn deliver(&mut self, mailbox: &mut RemoteController, frame: Option<&LocalFrame>) {
-        if !std::mem::take(&mut self.changed) {
+    /// Delivers what is new: telemetry, and the events that it shows. Positions count from the origin of `frame`. Of a
+    /// disarming is told once it is known whether a switch did it.
+    pub(super) fn deliver(
+        &mut self,
+        mailbox: &mut RemoteController,
+        frame: Option<&LocalFrame>,
+        simulated: Option<Simulated>,
+    ) {
+        if self.awaits_switches || !std::mem::take(&mut self.changed) {
             return;
         }
         let origin = frame.map(origin_of).or(self.first_fix);
-        let altitude_reference = self.altitude_reference(origin);
+        let altitude_reference =
+            self.altitude_reference(simulated.map_or(self.standing_alt_m, |simulated| simulated.home_m));
         let stored_plan =
             self.stored_plan.as_ref().and_then(|plan| altitude_reference.plan_of_craft(plan).ok());
-        let craft = self.observation.craft_view();
+        let commanded = simulated.and_then(|simulated| simulated.commanded);
+        let craft = CraftView { commanded, ..self.observation.craft_view() };
         let engaged = self.observation.is_active(Mode::Autopilot);
         let told = self.mission.as_ref().map(|told| mission::nav(told, engaged, stored_plan.as_ref()));
         for event in self.events.follow(&craft, told.as_ref(), stored_plan.as_ref()) {
@@ -141,14 +183,29 @@ impl Observer {
     }
 
     /// From where it counts the altitudes of waypoints.
-    fn altitude_reference(&self, origin: Option<Origin>) -> AltitudeReference {
+    fn altitude_reference(&self, home_m: Option<f64>) -> AltitudeReference {
         if !self.settings.tell_altitude_reference() {
             AltitudeReference::Untold
         } else if self.counts_from_home() {
             AltitudeReference::Home
         } else {
-            AltitudeReference::SeaLevel { home_m: origin.map(|origin| origin.alt_amsl_m) }
+            AltitudeReference::SeaLevel { home_m }
         }
+    }
+
+    /// Whether its settings are known, as far as they say from where it counts the altitudes of waypoints.
+    pub(super) fn knows_settings(&self) -> bool {
+        self.settings.tell_altitude_reference()
+    }
+
+    /// Whether it has just disarmed, and where its switches stand is to be asked.
+    pub(super) fn awaits_switches(&self) -> bool {
+        self.awaits_switches
+    }
+
+    /// The conditions of its modes, as far as they were told.
+    pub(super) fn mode_ranges(&self) -> Vec<ModeRange> {
+        self.observation.mode_ranges().unwrap_or_default()
     }
 
     /// Whether its waypoints' altitudes count from home; else from sea level.
@@ -193,12 +250,17 @@ impl Observer {
             .as_ref()
             .map_or("an unknown board", |board| board.target.as_deref().unwrap_or(&board.identifier));
         let api = api.map_or_else(String::new, |api| format!(", MSP {}.{}", api.major, api.minor));
-        let plans = match (self.has_plans(), self.counts_from_home()) {
-            (false, _) => "it has no waypoints",
+        let plans = if self.has_plans() { self.about_altitudes() } else { "it has no waypoints" };
+        format!("{name} answers: Betaflight {version} on {board}{api}; {plans}.")
+    }
+
+    /// From where the altitudes of its waypoints count, as a part of a sentence.
+    pub(super) fn about_altitudes(&self) -> &'static str {
+        match (self.knows_settings(), self.counts_from_home()) {
+            (false, _) => "from where its waypoints' altitudes count is not known yet",
             (true, true) => "its waypoints' altitudes count from home",
             (true, false) => "its waypoints' altitudes count from sea level and are converted",
-        };
-        format!("{name} answers: Betaflight {version} on {board}{api}; {plans}.")
+        }
     }
 }
 

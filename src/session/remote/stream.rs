@@ -3,7 +3,8 @@
 use std::task::{Context, Poll};
 use std::time::Instant;
 
-use super::{Identification, RemoteLink, RemoteNotice, RemoteState};
+use super::silence::Silence;
+use super::{RemoteLink, RemoteNotice, RemoteState};
 use crate::link::StreamEvent;
 use crate::vehicle::Vehicle;
 
@@ -45,16 +46,9 @@ impl RemoteLink {
                     self.first_connected.get_or_insert(now);
                     self.connected = Some(now);
                     self.heard = false;
-                    self.client.connected();
-                    self.permission.connected();
-                    self.tell_client();
+                    self.meet();
                     if let Some(peer) = &mut self.ends.peer {
                         peer.came_up();
-                    }
-                    // Another one may be connected where the one before was of no use.
-                    if !self.is_fed() || !matches!(self.state, RemoteState::Unusable(_)) {
-                        self.state = RemoteState::Identifying;
-                        self.identification = Identification::default();
                     }
                 }
                 Some(StreamEvent::Lost(reason)) => self.lose(&reason, vehicle),
@@ -70,6 +64,7 @@ impl RemoteLink {
         self.client.disconnected();
         self.connected = None;
         self.permission.lost();
+        self.silence = Silence::default();
         self.observer.forget();
         match self.state {
             RemoteState::Unusable(_) => {}

@@ -80,22 +80,27 @@ impl EventObserver {
     }
 
     fn disarm(&mut self, craft: &CraftView, plan: Option<&FlightPlan>, events: &mut Vec<FirmwareEvent>) {
-        let reason = match self.state {
+        let in_failsafe = craft.is_active(Mode::Failsafe) || self.modes.has(Mode::Failsafe);
+        let tells_switch = craft.channels.is_some() && craft.mode_ranges.is_some();
+        let by_other = if in_failsafe {
+            Some(DisarmReason::Failsafe)
+        } else if tells_switch && !craft.is_switched_on(Mode::Arm) {
+            Some(DisarmReason::Switch)
+        } else {
+            None
+        };
+        let reason = match (self.state, by_other) {
             // Its own touchdown disarms it; that is the end of the mission.
-            NavState::Landing => {
+            (NavState::Landing, None) => {
                 self.enter(NavState::Complete, self.wp, TransitionReason::Touchdown, plan, events);
                 DisarmReason::Landing
             }
-            NavState::Complete if self.landed => DisarmReason::Landing,
-            state => {
+            (NavState::Complete, _) if self.landed => DisarmReason::Landing,
+            (state, by_other) => {
                 if !matches!(state, NavState::Idle | NavState::Complete) {
                     self.enter(NavState::Idle, self.wp, TransitionReason::Disarm, plan, events);
                 }
-                match craft.channels {
-                    _ if craft.is_active(Mode::Failsafe) => DisarmReason::Failsafe,
-                    Some(_) if !craft.is_switched_on(Mode::Arm) => DisarmReason::Switch,
-                    _ => DisarmReason::Unknown,
-                }
+                by_other.unwrap_or(DisarmReason::Unknown)
             }
         };
         self.last_disarm = Some(reason);
@@ -167,6 +172,8 @@ impl EventObserver {
 mod tests {
     use super::*;
     use crate::plan::builtin::BuiltinPlan;
+    use crate::signals::RC_CHANNELS;
+    use crate::telemetry::snapshot::ModeRange;
 
     /// A flight as its telemetry shows it: armed, state, waypoint; what happened, in words.
     fn told(steps: &[(bool, NavState, u8)]) -> (Vec<String>, EventObserver) {
@@ -240,6 +247,42 @@ mod tests {
         let nav = observer.completed(NavTelemetry::default());
         assert_eq!((nav.state, nav.wp), (Complete, 3));
         assert_eq!(observer.last_disarm(), Some(DisarmReason::Landing));
+    }
+
+    #[test]
+    fn a_landing_that_the_pilot_or_the_failsafe_cuts_short_is_no_touchdown() {
+        use NavState::Landing;
+        let arm = ModeRange { mode_box: Mode::Arm.into(), channel: 4, start_us: 1700, end_us: 2100 };
+        let craft = |armed: bool, arm_us: u16, failsafe: bool| {
+            let mut modes = ModeFlags::default();
+            modes.set(Mode::Autopilot, armed);
+            modes.set(Mode::Failsafe, failsafe);
+            let mut channels = [1500; RC_CHANNELS];
+            channels[4] = arm_us;
+            CraftView {
+                armed: Some(armed),
+                modes: Some(modes),
+                channels: Some(channels),
+                mode_ranges: Some(vec![arm]),
+                ..CraftView::default()
+            }
+        };
+        for (before, at_the_end, reason, to) in [
+            (craft(true, 1900, false), craft(false, 1900, false), DisarmReason::Landing, NavState::Complete),
+            (craft(true, 1900, false), craft(false, 1000, false), DisarmReason::Switch, NavState::Idle),
+            (craft(true, 1900, true), craft(false, 1900, false), DisarmReason::Failsafe, NavState::Idle),
+            (craft(true, 1900, true), craft(false, 1000, true), DisarmReason::Failsafe, NavState::Idle),
+        ] {
+            let mut observer = EventObserver::default();
+            let nav = NavTelemetry { state: Landing, wp: 3, ..NavTelemetry::default() };
+            observer.follow(&before, Some(&nav), None);
+            let events = observer.follow(&at_the_end, Some(&nav), None);
+            let entered = events.iter().find_map(|event| match event {
+                FirmwareEvent::Nav(NavEvent::State { to, .. }) => Some(*to),
+                _ => None,
+            });
+            assert_eq!((observer.last_disarm(), entered), (Some(reason), Some(to)));
+        }
     }
 
     #[test]

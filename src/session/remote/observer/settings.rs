@@ -14,7 +14,7 @@ const AUTOPILOT: &str = "ap_";
 /// The setting that has it believe its magnetometer.
 const TRUSTS_MAG: &str = "trust_mag";
 
-/// The settings that were read. A firmware of this program that is set like it says what follows from them.
+/// The settings that one flight controller has told. A firmware of this program that is set like it says what follows from them.
 #[derive(Debug, Default)]
 pub(super) struct Settings {
     twin: Option<Box<Firmware>>,

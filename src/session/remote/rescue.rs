@@ -1,0 +1,30 @@
+//! The way home of a firmware outside, which has no command for it, but a mode.
+
+use super::{RemoteLink, RemoteNotice};
+use crate::telemetry::Mode;
+use crate::telemetry::switch::{self, Switch};
+use crate::vehicle::Vehicle;
+
+impl RemoteLink {
+    /// Moves the switch of that mode.
+    pub(super) fn switch_rescue(&mut self, vehicle: &mut Vehicle, on: bool) {
+        match Switch::of(Mode::GpsRescue, &vehicle.controller().mode_ranges()) {
+            Some(Switch { channel, on_us, off_us }) => {
+                vehicle.transmitter_mut().sticks_mut().channels[channel] = if on { on_us } else { off_us };
+                self.observer.deliver_again();
+            }
+            None => self.notices.push(RemoteNotice::Told(
+                "This firmware flies home by a switch alone, and GPS RESCUE has none: give it one with the CLI command aux."
+                    .to_owned(),
+            )),
+        }
+    }
+
+    /// Whether the switch that has it fly home is on; `None` without one.
+    pub(super) fn rescue_switch(&self, vehicle: &Vehicle) -> Option<bool> {
+        let mut ranges = self.observer.mode_ranges();
+        let Switch { channel, .. } = Switch::of(Mode::GpsRescue, &ranges)?;
+        ranges.retain(|range| usize::from(range.channel) == channel);
+        Some(switch::is_on(Mode::GpsRescue, &ranges, &vehicle.transmitter().sticks().channels))
+    }
+}

@@ -1,0 +1,102 @@
+//! A flight controller that does not answer over a connection that stays open: an adapter that is plugged in while the
+//! board behind it has no power.
+
+use std::time::Instant;
+
+use super::{FIRST_ANSWER, FeedState, RemoteEnds, RemoteLink, RemoteNotice, RemoteState};
+use crate::link::proto::fc_client::{Answer, Unanswered};
+
+/// So many requests in a row, each of which is awaited for two seconds at least.
+const MOST_SILENT: u32 = 2;
+
+/// How many requests were not answered since one was.
+#[derive(Debug, Default)]
+pub(super) struct Silence {
+    requests: u32,
+    /// The flight controller counts as gone.
+    told: bool,
+}
+
+impl Silence {
+    pub(super) fn note(&mut self, answer: &Answer) {
+        match answer {
+            Answer::NotAnswered(Unanswered::Silent) => self.requests += 1,
+            Answer::NotAnswered(_) => {}
+            Answer::Msp(_) | Answer::Line { .. } => self.requests = 0,
+        }
+    }
+}
+
+impl RemoteLink {
+    /// What a real craft told is old once it has been silent for some seconds; when it answers again it may be another one.
+    pub(super) fn follow_silence(&mut self) {
+        let is_silent = self.silence.requests >= MOST_SILENT;
+        match self.state {
+            RemoteState::Ready | RemoteState::Identifying if is_silent && !self.is_fed() => {
+                self.silence.told = true;
+                self.state = RemoteState::Lost;
+                self.permission.lost();
+                self.tell_client();
+                self.observer.forget();
+                self.notices.push(RemoteNotice::Lost(format!(
+                    "{} does not answer any more, though the connection stands: is it without power? It is asked until it \
+                     answers.",
+                    self.ends.name
+                )));
+            }
+            RemoteState::Lost if self.silence.told && self.silence.requests == 0 => self.meet(),
+            _ => {}
+        }
+    }
+
+    /// Gives up a program that has never answered, and tells of one that does not answer any more.
+    pub(super) fn tell_silence(&mut self, now: Instant) {
+        let is_over = |since: Instant| now.saturating_duration_since(since) >= FIRST_ANSWER;
+        let started = self.ends.child.is_some().then_some(self.started);
+        if !self.is_fed() || matches!(self.state, RemoteState::Unusable(_)) {
+            return;
+        }
+        // One that somebody else started and another program is connected to has been told so.
+        let is_taken = self.told_loss.is_some() && self.ends.child.is_none();
+        if self.answers == 0 && !is_taken && self.first_connected.or(started).is_some_and(is_over) {
+            let RemoteEnds { name, stream, .. } = &self.ends;
+            let seconds = FIRST_ANSWER.as_secs();
+            self.give_up(match &self.told_loss {
+                Some(reason) => format!("{name} has not answered for {seconds} s: {reason}."),
+                None if self.first_connected.is_none() && self.motors != FeedState::Waiting => format!(
+                    "{name} sends motors, but nothing has answered at {} for {seconds} s: name the port of its command line \
+                     and MSP with --tcp-port.",
+                    stream.place
+                ),
+                None => format!(
+                    "{name} has not answered for {seconds} s: is it a SITL executable of Betaflight, and are its ports free?"
+                ),
+            });
+        } else if !self.heard && self.connected.is_some_and(is_over) {
+            self.connected = None;
+            self.notices.push(RemoteNotice::Lost(format!(
+                "{} takes the connection and has said nothing for {} s: it is asked until it does.",
+                self.ends.name,
+                FIRST_ANSWER.as_secs()
+            )));
+        }
+    }
+
+    /// There is a connection to a flight controller, over which nothing was said yet. Whose craft is real may be another one
+    /// than before; a SITL that is fed from here is the same until it ends.
+    pub(super) fn meet(&mut self) {
+        self.silence = Silence::default();
+        self.refresh = super::Refresh::default();
+        self.client.connected();
+        self.permission.connected();
+        self.tell_client();
+        if !self.is_fed() {
+            self.observer.restarted();
+        }
+        // Another one may be connected where the one before was of no use.
+        if !self.is_fed() || !matches!(self.state, RemoteState::Unusable(_)) {
+            self.state = RemoteState::Identifying;
+            self.identification = super::Identification::default();
+        }
+    }
+}

@@ -1,0 +1,238 @@
+//! A link to boards that say what a test has them say.
+#![allow(clippy::disallowed_methods, reason = "the clock of a test begins somewhere")]
+
+mod board;
+
+use std::time::{Duration, Instant};
+
+use tokio::sync::mpsc;
+
+use super::*;
+use crate::firmware::cli::Interpreter;
+use crate::link::StreamEvent;
+use crate::plan::AltitudeReference;
+use crate::telemetry::DisarmReason;
+use board::{Board, Place};
+
+const TICK: Duration = Duration::from_millis(10);
+const FIELD: Place = Place { lat: 470_000_000, lon: 80_000_000, alt_m: 400 };
+const COAST: Place = Place { lat: 540_000_000, lon: 100_000_000, alt_m: 5 };
+
+/// The link, the board at its other end, and what was told.
+struct Bench {
+    vehicle: Vehicle,
+    link: RemoteLink,
+    board: Board,
+    now: Instant,
+    to_link: mpsc::Sender<StreamEvent>,
+    from_link: mpsc::Receiver<Vec<u8>>,
+    told: Vec<String>,
+}
+
+impl Bench {
+    fn new(board: Board) -> Self {
+        let (to, from_link) = mpsc::channel(64);
+        let (to_link, from) = mpsc::channel(64);
+        let stream = FcStream { to, from, place: "serial:test".to_owned(), bytes_per_s: None };
+        let ends = RemoteEnds { name: "serial:test".to_owned(), stream, peer: None, child: None };
+        let now = Instant::now();
+        let (vehicle, told) = (Vehicle::elsewhere().unwrap(), Vec::new());
+        let mut bench =
+            Self { vehicle, link: RemoteLink::new(ends, now), board, now, to_link, from_link, told };
+        bench.plug_in();
+        bench
+    }
+
+    fn plug_in(&mut self) {
+        self.to_link.try_send(StreamEvent::Connected).unwrap();
+    }
+
+    /// The cable goes from this board to another one.
+    fn plug_into(&mut self, board: Board) {
+        self.to_link.try_send(StreamEvent::Lost("it was pulled".to_owned())).unwrap();
+        self.run(0.1);
+        self.board = board;
+        self.plug_in();
+    }
+
+    fn run(&mut self, seconds: f64) {
+        let end = self.now + Duration::from_secs_f64(seconds);
+        while self.now < end {
+            self.now += TICK;
+            let notices = self.link.exchange(&mut self.vehicle, None, self.now);
+            self.told.extend(notices.iter().map(ToString::to_string));
+            while let Ok(bytes) = self.from_link.try_recv() {
+                let answer = self.board.answer(&bytes);
+                if !answer.is_empty() {
+                    self.to_link.try_send(StreamEvent::Bytes(answer)).unwrap();
+                }
+            }
+        }
+    }
+
+    fn reference(&self) -> AltitudeReference {
+        self.vehicle.controller().altitude_reference()
+    }
+
+    fn was_told(&self, part: &str) -> bool {
+        self.told.iter().any(|sentence| sentence.contains(part))
+    }
+}
+
+#[test]
+fn another_board_at_the_same_port_inherits_nothing_of_the_one_before() {
+    let mut bench = Bench::new(Board { from_home: true, ..Board::at(FIELD) });
+    bench.run(5.0);
+    assert_eq!(bench.reference(), AltitudeReference::Home);
+    bench.plug_into(Board::at(COAST));
+    bench.run(5.0);
+    assert_eq!(bench.reference(), AltitudeReference::SeaLevel { home_m: Some(5.0) });
+    let origin = bench.vehicle.snapshot().origin.unwrap();
+    assert!((origin.lat_deg() - 54.0).abs() < 1e-6, "drawn where it is: {origin:?}");
+    assert!(bench.was_told("count from home") && bench.was_told("count from sea level"), "{:?}", bench.told);
+
+    bench.plug_into(Board { settings: "", ..Board::at(COAST) });
+    bench.run(5.0);
+    assert_eq!(bench.reference(), AltitudeReference::Untold);
+}
+
+#[test]
+fn home_is_where_a_real_craft_stands_disarmed_not_where_it_was_seen_first() {
+    let reference = |home_m| AltitudeReference::SeaLevel { home_m };
+    let mut bench = Bench::new(Board { armed: true, answers_in_flight: true, ..Board::at(FIELD) });
+    bench.board.place.alt_m = 520;
+    bench.run(5.0);
+    assert_eq!(bench.reference(), reference(None), "seen in flight only");
+    bench.board.place.alt_m = 400;
+    bench.board.armed = false;
+    bench.run(5.0);
+    assert_eq!(bench.reference(), reference(Some(400.0)));
+
+    let mut bench = Bench::new(Board::at(Place { alt_m: 0, ..FIELD }));
+    bench.run(5.0);
+    bench.board.place.alt_m = 398;
+    bench.run(1.0);
+    assert_eq!(bench.reference(), reference(Some(398.0)), "its receiver has found the altitude");
+    bench.board.place.alt_m = 400;
+    bench.run(1.0);
+    assert_eq!(bench.reference(), reference(Some(398.0)), "it wanders");
+    bench.board.armed = true;
+    bench.run(1.0);
+    bench.board.place.alt_m = 500;
+    bench.run(1.0);
+    assert_eq!(bench.reference(), reference(Some(398.0)), "it flies");
+}
+
+#[test]
+fn a_board_that_says_nothing_any_more_is_lost_and_another_one_when_it_speaks_again() {
+    let mut bench = Bench::new(Board::at(FIELD));
+    bench.run(5.0);
+    assert_eq!(*bench.link.state(), RemoteState::Ready);
+    bench.link.permit_changes(1);
+    bench.board.silent = true;
+    bench.run(6.0);
+    assert_eq!(*bench.link.state(), RemoteState::Lost);
+    assert!(bench.was_told("serial:test does not answer any more"), "{:?}", bench.told);
+    assert_eq!(bench.vehicle.snapshot().craft.armed, None, "what was told is old");
+    assert_eq!(bench.link.access(), Access::Reading);
+    bench.run(20.0);
+    assert_eq!(bench.told.iter().filter(|told| told.contains("does not answer")).count(), 1);
+
+    bench.board = Board { from_home: true, ..Board::at(COAST) };
+    bench.run(8.0);
+    assert_eq!((bench.link.state(), bench.link.connection()), (&RemoteState::Ready, 2));
+    assert_eq!(bench.reference(), AltitudeReference::Home);
+    assert_eq!(bench.vehicle.snapshot().craft.armed, Some(false));
+    assert_eq!(bench.link.access(), Access::Reading, "it was permitted for the one before");
+}
+
+#[test]
+fn what_could_not_be_told_in_flight_is_asked_after_it() {
+    let mut bench = Bench::new(Board { armed: true, ..Board::at(FIELD) });
+    bench.run(10.0);
+    assert_eq!((bench.link.state(), bench.reference()), (&RemoteState::Ready, AltitudeReference::Untold));
+    assert!(bench.was_told("from where its waypoints' altitudes count is not known yet"), "{:?}", bench.told);
+    bench.board.armed = false;
+    bench.run(5.0);
+    assert_eq!(bench.reference(), AltitudeReference::SeaLevel { home_m: Some(400.0) });
+    assert!(!bench.link.opens_cli());
+    assert!(
+        bench.told.last().unwrap().contains("its waypoints' altitudes count from sea level"),
+        "{:?}",
+        bench.told
+    );
+}
+
+#[test]
+fn what_a_line_sets_is_known_soon_after() {
+    let mut bench = Bench::new(Board::at(FIELD));
+    bench.run(5.0);
+    let radius_m = |bench: &Bench| bench.vehicle.controller().settings_view().unwrap().arrival_radius_m;
+    assert!((radius_m(&bench) - 5.0).abs() < 1e-9);
+    bench.board.settings = "ap_waypoint_arrival_radius = 700\r\n";
+    bench.run(3.0);
+    assert!((radius_m(&bench) - 5.0).abs() < 1e-9, "nothing says that it changed");
+    let line = "set ap_waypoint_arrival_radius = 700";
+    bench.vehicle.controller_mut().run_cli(&mut Interpreter::default(), line);
+    bench.run(3.0);
+    assert!((radius_m(&bench) - 7.0).abs() < 1e-9);
+    assert_eq!(*bench.link.state(), RemoteState::Ready);
+    let asked = bench.board.lines.iter().filter(|line| *line == "get ap_").count();
+    bench.run(5.0);
+    assert_eq!(bench.board.lines.iter().filter(|line| *line == "get ap_").count(), asked, "once");
+}
+
+#[test]
+fn a_craft_that_its_pilot_disarms_is_disarmed_by_the_switch() {
+    for (switch_is_on, reason) in [(false, DisarmReason::Switch), (true, DisarmReason::Unknown)] {
+        let mut bench = Bench::new(Board::at(FIELD));
+        bench.run(5.0);
+        (bench.board.armed, bench.board.arm_us) = (true, 1900);
+        bench.run(2.0);
+        // Whatever was asked last: the switch is told after the disarming.
+        bench.board.armed = false;
+        bench.board.arm_us = if switch_is_on { 1900 } else { 1000 };
+        bench.run(1.0);
+        assert_eq!(bench.vehicle.controller().last_disarm(), Some(reason));
+    }
+}
+
+#[test]
+fn every_question_is_asked_once_and_answered_before_it_counts_as_ready() {
+    let mut bench = Bench::new(Board::at(FIELD));
+    while *bench.link.state() != RemoteState::Ready {
+        bench.run(0.01);
+    }
+    assert_eq!(
+        bench.board.lines,
+        ["get ap_", "get trust_mag", "get alt_hold_", "get min_check", "waypoint list"]
+    );
+}
+
+#[test]
+fn the_motors_of_a_real_craft_are_those_that_it_tells() {
+    let mut bench = Bench::new(Board::at(FIELD));
+    assert_eq!(bench.vehicle.snapshot().craft.motors, None);
+    bench.run(5.0);
+    assert_eq!(bench.vehicle.snapshot().craft.motors, Some([0.5; 4]));
+}
+
+#[test]
+fn what_does_not_say_that_it_is_betaflight_is_of_no_use() {
+    let mut bench = Bench::new(Board { variant: None, ..Board::at(FIELD) });
+    bench.run(5.0);
+    assert!(matches!(bench.link.state(), RemoteState::Unusable(_)), "{:?}", bench.link.state());
+    assert!(bench.was_told("does not say what it is"), "{:?}", bench.told);
+}
+
+#[test]
+fn a_return_home_can_be_taken_back_as_long_as_its_switch_is_on() {
+    let mut bench = Bench::new(Board::at(FIELD));
+    assert_eq!(bench.link.rescue_switch(&bench.vehicle), None, "nobody has told of a switch");
+    bench.run(5.0);
+    assert_eq!(bench.link.rescue_switch(&bench.vehicle), Some(false));
+    bench.link.switch_rescue(&mut bench.vehicle, true);
+    assert_eq!(bench.link.rescue_switch(&bench.vehicle), Some(true));
+    bench.link.switch_rescue(&mut bench.vehicle, false);
+    assert_eq!(bench.link.rescue_switch(&bench.vehicle), Some(false));
+}
