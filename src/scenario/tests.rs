@@ -430,6 +430,21 @@ fn what_a_flight_controller_does_not_tell_is_skipped_and_the_rest_judged() {
 }
 
 #[test]
+fn a_flight_whose_input_waited_for_what_nobody_told_is_not_judged() {
+    use Insight::{Mission, Telemetry};
+    let text = "[[input]]\nat = 'engaged'\ndo = 'wind 5@270'\n\
+                [[expect]]\nalways = 'altitude < 1 m'\nfrom = 'boot'\n";
+    let [untold, told] = judged_by([Telemetry, Mission], text);
+    assert_eq!(untold.last(), Some(&Outcome::Skipped(Mission)));
+    // Where it was told it did not come, which is a judgement of the input behind those of what is expected.
+    assert_eq!(told.len(), untold.len() + 1);
+    assert!(
+        told[told.len() - 2].is_met() && matches!(told[told.len() - 1], Outcome::NeverJudged(_)),
+        "{told:?}"
+    );
+}
+
+#[test]
 fn a_measure_of_what_is_not_told_is_left_out_and_what_builds_on_it_skipped() {
     let text = "[[measure]]\nname = 'high'\nmax = 'throttle'\nfrom = 'boot'\n[[measure]]\nname = 'double'\n\
                 value = 'high * 2'\n[[measure]]\nname = 'wide'\nmax = 'speed'\nfrom = 'boot'\n\

@@ -67,6 +67,7 @@ mod tests {
     use super::*;
 
     #[test]
+    #[allow(clippy::disallowed_methods, reason = "the clock of a test begins somewhere")]
     fn several_changes_have_it_asked_once() {
         let begin = Instant::now();
         let at = |ms| begin + Duration::from_millis(ms);
