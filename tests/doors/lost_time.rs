@@ -29,6 +29,8 @@ fn status(serve: &Serve) -> String {
 #[test]
 fn a_stopped_program_tells_the_time_that_it_lost() {
     let mut serve = Serve::start("1");
+    // Its clock runs: time before it began would not be lost.
+    serve.wait("fix", |event| event["event"] == "gps_fix");
     signal("-STOP", serve.id());
     std::thread::sleep(Duration::from_secs(2));
     signal("-CONT", serve.id());
