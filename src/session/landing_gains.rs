@@ -26,12 +26,24 @@ pub(super) fn landing_gain(setting: &str) -> Option<String> {
     Some(format!("{} = {}", gain.name, gain.for_landing))
 }
 
+/// Replaces such settings; gives those that stand there now.
+pub(super) fn replace_falling_gains(settings: &mut [String]) -> Vec<String> {
+    let mut replaced = Vec::new();
+    for setting in settings {
+        if let Some(instead) = landing_gain(setting) {
+            setting.clone_from(&instead);
+            replaced.push(instead);
+        }
+    }
+    replaced
+}
+
 /// Tells the user that these settings were given instead of the guide's; `None` when there are none.
 pub(super) fn landing_gains_told(settings: &[String]) -> Option<String> {
     (!settings.is_empty()).then(|| {
         format!(
-            "This firmware falls in LAND with the guide's altitude gains, so it gets {} instead; --set and --settings have \
-             the last word.",
+            "This firmware falls in LAND with the guide's altitude gains, so it gets {} instead; gains of your own choice are \
+             left alone.",
             settings.join(" and ")
         )
     })
@@ -48,5 +60,8 @@ mod tests {
         for stays in ["ap_altitude_p = 30", "ap_altitude_i = 30", "ap_altitude_p", "ap_altitude_p = 500"] {
             assert_eq!(landing_gain(stays), None, "{stays}");
         }
+        let mut settings = ["ap_altitude_p = 50", "ap_altitude_d = 60"].map(str::to_owned);
+        assert_eq!(replace_falling_gains(&mut settings), ["ap_altitude_p = 2"]);
+        assert_eq!(settings, ["ap_altitude_p = 2", "ap_altitude_d = 60"]);
     }
 }

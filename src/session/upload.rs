@@ -1,7 +1,7 @@
 //! Uploads a plan as a ground station does, through the command line, and reads it back; downloads one the same way.
 
 use super::command::UploadView;
-use super::landing_gains::{landing_gain, landing_gains_told};
+use super::landing_gains::landing_gains_told;
 use crate::firmware::cli::{CliReply, Interpreter};
 use crate::plan::format::{self, Format};
 use crate::plan::{AltitudeError, AltitudeReference, FlightPlan, upload_lines};
@@ -132,25 +132,20 @@ impl Upload {
         reference: AltitudeReference,
     ) -> Result<Self, AltitudeError> {
         let plan = reference.plan_for_craft(plan)?;
-        let mut settings = settings.to_vec();
-        let mut landing_gains = Vec::new();
-        if matches!(reference, AltitudeReference::SeaLevel { .. }) {
-            for setting in &mut settings {
-                if let Some(instead) = landing_gain(setting) {
-                    setting.clone_from(&instead);
-                    landing_gains.push(instead);
-                }
-            }
-        }
-        let lines: Vec<String> = upload_lines(&plan, &settings).chain([LIST.to_owned()]).collect();
+        let lines: Vec<String> = upload_lines(&plan, settings).chain([LIST.to_owned()]).collect();
         Ok(Self {
             plan,
-            report: UploadReport { added_m: reference.added_m()?, landing_gains, refused: Vec::new() },
+            report: UploadReport { added_m: reference.added_m()?, ..UploadReport::default() },
             total: lines.len(),
             lines: lines.into_iter(),
             sent: String::new(),
             interpreter: Interpreter::default(),
         })
+    }
+
+    /// Has these settings, which stand in place of the guide's, told in the report.
+    pub(super) fn tell_landing_gains(&mut self, settings: Vec<String>) {
+        self.report.landing_gains = settings;
     }
 
     /// How many lines were sent, the reading back among them, and of how many.

@@ -10,9 +10,11 @@ use super::Session;
 use super::late::WaitingInterface;
 use crate::firmware::cli::Interpreter;
 use crate::flight::forecast;
+use crate::plan::AltitudeReference;
 use crate::session::command::{
     Command, PLACE_IS_EXTERNAL, Seek, TIME_IS_EXTERNAL, TIME_IS_THE_FIRMWARES, UPLOADING, VehicleCopy,
 };
+use crate::session::landing_gains::replace_falling_gains;
 use crate::session::upload::{LIST, Upload, plan_above_home};
 use crate::sim::WorldCommand;
 use crate::telemetry::LinkState;
@@ -99,10 +101,19 @@ impl Session {
             Command::Upload { reply, .. } if self.upload_under_way().is_some() => {
                 drop(reply.send(Err(UPLOADING.to_owned())));
             }
-            Command::Upload { plan, settings, reply } => {
+            Command::Upload { plan, mut settings, reply } => {
                 let reference = self.vehicle.controller().altitude_reference();
+                // They were found for the simulated craft: a real one is never given gains that nobody asked for.
+                let is_simulated = !self.access().is_limited();
+                let landing_gains = match reference {
+                    AltitudeReference::SeaLevel { .. } if is_simulated => {
+                        replace_falling_gains(&mut settings)
+                    }
+                    _ => Vec::new(),
+                };
                 match Upload::new(&plan, &settings, reference) {
                     Ok(mut upload) => {
+                        upload.tell_landing_gains(landing_gains);
                         let progress = upload.send_lines(self.vehicle.controller_mut());
                         self.report_upload(Box::new(upload), progress, reply, Instant::now());
                     }
