@@ -3,9 +3,10 @@ use tokio::sync::oneshot;
 use super::*;
 use crate::firmware::config::Configuration;
 use crate::firmware::{Firmware, FirmwareOptions};
+use crate::link::FcStream;
 use crate::plan::{AltitudeReference, FlightPlan, Waypoint};
-use crate::session::UploadReport;
 use crate::session::command::{Seek, UPLOADING, UploadView};
+use crate::session::{RemoteEnds, UploadReport};
 use crate::signals::SimTime;
 use crate::sim::WorldConfig;
 use crate::vehicle::{LateAnswer, RemoteRequest, RemoteTelemetry, VehicleConfig};
@@ -46,10 +47,19 @@ impl Rig {
 
     /// Asks for the upload of these waypoints; gets the result.
     fn upload(&mut self, waypoints: usize) -> oneshot::Receiver<Result<UploadReport, String>> {
+        self.upload_with(waypoints, "ap_max_angle = 33")
+    }
+
+    /// The same with this setting.
+    fn upload_with(
+        &mut self,
+        waypoints: usize,
+        setting: &str,
+    ) -> oneshot::Receiver<Result<UploadReport, String>> {
         let mut plan = Box::new(FlightPlan::default());
         plan.waypoints.extend((0..waypoints).map(|_| Waypoint { alt_cm: 2000, ..Waypoint::default() }));
         let (reply, result) = oneshot::channel();
-        let settings = vec!["ap_max_angle = 33".to_owned()];
+        let settings = vec![setting.to_owned()];
         self.commands.try_send(Command::Upload { plan, settings, reply }).unwrap();
         self.take_commands();
         result
@@ -115,6 +125,30 @@ fn an_upload_waits_for_a_slow_line_and_fails_in_a_sentence_where_nobody_answers(
     let mut result = rig.upload(2);
     rig.session.take_late_answers(Instant::now() + Duration::from_secs(3600));
     assert_eq!(result.try_recv().unwrap(), Err("the flight controller does not answer".to_owned()));
+}
+
+#[test]
+fn a_simulated_craft_that_falls_in_land_gets_gains_to_land_with_and_a_real_one_those_of_its_plan() {
+    for (is_real, altitude_p) in [(false, 2), (true, 50)] {
+        let mut rig = Rig::new();
+        if is_real {
+            let ((to, _), (_, from)) = (mpsc::channel(1), mpsc::channel(1));
+            let stream = FcStream { to, from, place: "tcp:here:1".to_owned(), bytes_per_s: None };
+            let ends = RemoteEnds { name: "the board".to_owned(), stream, peer: None, child: None };
+            let mut link = RemoteLink::new(ends, Instant::now());
+            link.permit_changes(link.connection());
+            rig.session.remote = Some(link);
+        }
+        let altitude_reference = AltitudeReference::SeaLevel { home_m: Some(300.0) };
+        rig.mailbox().deliver_telemetry(RemoteTelemetry { altitude_reference, ..RemoteTelemetry::default() });
+        let mut result = rig.upload_with(1, "ap_altitude_p = 50");
+        while rig.answer(|_, _| {}) > 0 {}
+        let report = result.try_recv().unwrap().unwrap();
+        assert_eq!(
+            (report.landing_gains.is_empty(), i64::from(rig.firmware.parameters().nav.altitude_p)),
+            (is_real, altitude_p)
+        );
+    }
 }
 
 #[test]
