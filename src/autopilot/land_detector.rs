@@ -47,8 +47,8 @@ pub struct GroundMeasurement {
     pub altitude_m: Option<f64>,
     /// Climb rate, m/s.
     pub climb_mps: f64,
-    /// Ground speed, m/s; 0 while it is not known.
-    pub ground_speed_mps: f64,
+    /// Ground speed, m/s; `None` while it is not known.
+    pub ground_speed_mps: Option<f64>,
 }
 
 impl GroundMeasurement {
@@ -61,13 +61,14 @@ impl GroundMeasurement {
             motor_square: motors.iter().map(|motor| motor * motor).sum::<f64>() / 4.0,
             altitude_m: now.altitude_valid.then_some(now.alt_m),
             climb_mps: now.climb_mps,
-            ground_speed_mps: if now.fix { now.vel_ne.norm() } else { 0.0 },
+            ground_speed_mps: now.fix.then(|| now.vel_ne.norm()),
         }
     }
 
     fn is_finite(&self) -> bool {
-        let scalars = self.rate_rps + self.motor_square + self.climb_mps + self.ground_speed_mps;
-        (self.force_flu.sum() + scalars + self.altitude_m.unwrap_or(0.0)).is_finite()
+        let scalars = self.rate_rps + self.motor_square + self.climb_mps;
+        let known = self.ground_speed_mps.unwrap_or(0.0) + self.altitude_m.unwrap_or(0.0);
+        (self.force_flu.sum() + scalars + known).is_finite()
     }
 }
 
@@ -166,10 +167,11 @@ impl LandDetector {
         self.highest_m.map_or(0.0, |highest| highest - altitude_m)
     }
 
-    /// Runs the timer on the conditions of this cycle while a descent is under way; returns the time they have held, µs.
-    pub fn time_touchdown(&mut self, guards: &TouchdownGuards, time: SimTime) -> Option<u64> {
+    /// Runs the timer while a descent is under way, by whether all conditions hold in this cycle; returns the time they have
+    /// held, µs.
+    pub fn time_touchdown(&mut self, all_hold: bool, time: SimTime) -> Option<u64> {
         if self.highest_m.is_some() {
-            self.held_us = self.timer.update(time, guards.all_hold());
+            self.held_us = self.timer.update(time, all_hold);
         }
         self.held_us
     }

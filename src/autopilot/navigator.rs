@@ -141,7 +141,7 @@ impl Navigator {
             self.end_old_descent(controllers);
             controllers.land.follow_altitude(now.alt_m);
             let mut facts = self.facts(&now, params, &seen, controllers);
-            facts.touchdown_held_us = controllers.land.time_touchdown(&facts.touchdown, now.time);
+            facts.touchdown_held_us = controllers.land.time_touchdown(facts.touchdown.all_hold(), now.time);
             (!self.step(&facts, &now, params)).then_some((facts, seen))
         } else {
             self.check_fence_after_abort(&now, params, &seen);

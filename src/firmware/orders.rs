@@ -111,6 +111,12 @@ impl Orders {
         self.order.is_some() && !self.by_rescue_switch
     }
 
+    /// Whether the rescue switch has the craft fly home.
+    #[must_use]
+    pub fn is_rescue_by_switch(&self) -> bool {
+        self.by_rescue_switch
+    }
+
     /// Takes a command back: the switch decides again, and starts its mission again if it is on.
     pub fn take_back(&mut self, navigator: &mut Navigator) {
         if self.is_commanded() {

@@ -81,7 +81,7 @@ impl Air {
         };
         // The first tick fills `to`, the second one moves it to `from`.
         air.to = air.wind_at(SimTime::ZERO, height_m, &config.switches);
-        air.tick(SimTime::ZERO, height_m, Vector3::zeros(), &config.switches);
+        air.tick(SimTime::ZERO, height_m, 0.0, Vector3::zeros(), &config.switches);
         air
     }
 
@@ -91,8 +91,17 @@ impl Air {
         AirSample { wind_enu: self.from + (self.to - self.from) * part, density_ratio: self.density_ratio }
     }
 
-    /// Advances to the air tick at `now`, for a craft at a height above ground (m) with a velocity (ENU, m/s).
-    pub(super) fn tick(&mut self, now: SimTime, height_m: f64, vel_enu: Vector3<f64>, switches: &Switches) {
+    /// Advances to the air tick at `now`, for a craft at an altitude above home (m) with a velocity (ENU, m/s) over ground
+    /// of this elevation above home, m.
+    pub(super) fn tick(
+        &mut self,
+        now: SimTime,
+        altitude_m: f64,
+        ground_m: f64,
+        vel_enu: Vector3<f64>,
+        switches: &Switches,
+    ) {
+        let height_m = altitude_m - ground_m;
         // Through the mean air: turbulence does not carry itself along.
         let mean = self.ramp.at(now) * profile(switches.wind_profile, height_m);
         let airspeed = (vel_enu - mean).norm();
@@ -102,7 +111,7 @@ impl Air {
         let next = SimTime(now.0 + AIR_TICK_US);
         self.to = self.wind_at(next, height_m, switches);
         self.density_ratio = match switches.air_density {
-            AirDensity::Isa => atmosphere::density_ratio(self.ground_amsl_m + height_m),
+            AirDensity::Isa => atmosphere::density_ratio(self.ground_amsl_m + altitude_m),
             AirDensity::Reference => 1.0,
         };
     }
@@ -180,7 +189,7 @@ mod tests {
         let mut seen = Vec::new();
         for tick in 1..=300 {
             let now = SimTime(tick * AIR_TICK_US);
-            air.tick(now, 20.0, Vector3::zeros(), &config.switches);
+            air.tick(now, 20.0, 0.0, Vector3::zeros(), &config.switches);
             seen.push(air.sample(now).wind_enu.x);
         }
         assert!((seen[98] - 5.98).abs() < 0.05, "half way after a second: {}", seen[98]);
@@ -195,7 +204,7 @@ mod tests {
             let config = WorldConfig { turbulence: Turbulence::Severe, switches, ..WorldConfig::default() };
             let mut air = Air::new(&config, 20.0);
             for tick in 1..=2000 {
-                air.tick(SimTime(tick * AIR_TICK_US), 20.0, Vector3::zeros(), &config.switches);
+                air.tick(SimTime(tick * AIR_TICK_US), 20.0, 0.0, Vector3::zeros(), &config.switches);
             }
             air.sample(SimTime(2000 * AIR_TICK_US)).wind_enu
         };

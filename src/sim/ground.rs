@@ -1,6 +1,7 @@
-//! The ground: a plane at z = 0, legs as springs and dampers, friction that holds.
+//! The ground: the plane that touches its surface below the craft, legs as springs and dampers, friction that holds.
 //!
-//! A point below the plane is pushed up by `max(0, −k·z − c·vz)`. Along the plane it slides with Coulomb friction,
+//! A point at a distance d below the plane is pushed along its normal by `max(0, k·d − c·v)`, v its speed out of the
+//! ground. Along the plane it slides with Coulomb friction,
 //! regularised below a small speed; a point that has become slow is latched where it stands and held there by the same
 //! spring and damper until the pull exceeds the friction, so that a craft at rest does not creep in the wind.
 //!
@@ -11,6 +12,7 @@ use nalgebra::{Matrix3, Vector2, Vector3};
 
 use super::airframe::{Airframe, MAX_LEGS, ROTORS};
 use super::body::{BodyState, Loads};
+use super::surface::{Surface, TangentPlane};
 
 /// Most points that can touch the ground: legs first, then the hull.
 const MAX_POINTS: usize = MAX_LEGS + ROTORS;
@@ -33,6 +35,7 @@ pub struct Ground {
     friction: f64,
     full_friction_mps: f64,
     reach: f64,
+    surface: Surface,
 }
 
 /// Which points are on the ground.
@@ -44,14 +47,17 @@ pub struct GroundContact {
     pub all_legs: bool,
     /// The hull touches.
     pub hull: bool,
-    /// Height of the lowest point above the ground, m; high up, a lower bound of it.
+    /// Distance of the lowest point from the ground, m; high up, a lower bound of it.
     pub clearance_m: f64,
+    /// The ground below the craft.
+    pub plane: TangentPlane,
 }
 
-/// Place and velocity of one contact point, ENU.
+/// Place and velocity of one contact point, ENU, and its distance from the ground.
 struct Point {
     place: Vector3<f64>,
     vel: Vector3<f64>,
+    distance_m: f64,
 }
 
 impl Ground {
@@ -69,10 +75,22 @@ impl Ground {
             friction: airframe.friction,
             full_friction_mps: airframe.friction_full_mps,
             reach,
+            surface: Surface::Flat,
         }
     }
 
-    /// Height of the centre of mass above which nothing can contact, m.
+    /// Gives the ground this shape.
+    pub(super) fn set_surface(&mut self, surface: Surface) {
+        self.surface = surface;
+    }
+
+    /// The shape of the ground.
+    #[must_use]
+    pub fn surface(&self) -> &Surface {
+        &self.surface
+    }
+
+    /// Distance of the centre of mass from the ground above which nothing can contact, m.
     #[must_use]
     pub fn reach_m(&self) -> f64 {
         self.reach
@@ -88,17 +106,20 @@ impl Ground {
         anchors: &ContactAnchors,
     ) -> Loads {
         let rate_enu = r * rate;
+        let plane = self.surface.tangent_at(pos);
         let mut force = Vector3::zeros();
         let mut torque = Vector3::zeros();
         for (arm, anchor) in self.points.iter().zip(anchors) {
             let arm = r * arm;
-            if pos.z + arm.z >= 0.0 {
+            let place = pos + arm;
+            let distance_m = plane.distance_m(&place);
+            if distance_m >= 0.0 {
                 continue;
             }
-            let point = Point { place: pos + arm, vel: vel + rate_enu.cross(&arm) };
-            let normal = self.normal_force(&point);
-            let along = self.friction_force(&point, normal, anchor.as_ref());
-            let push = Vector3::new(along.x, along.y, normal);
+            let point = Point { place, vel: vel + rate_enu.cross(&arm), distance_m };
+            let normal = self.normal_force(&plane, &point);
+            let along = self.friction_force(&plane, &point, normal, anchor.as_ref());
+            let push = plane.normal() * normal + along;
             force += push;
             torque += arm.cross(&push);
         }
@@ -107,19 +128,22 @@ impl Ground {
 
     /// Latches points that have come to rest and frees those that are pulled too hard or have left the ground.
     pub(super) fn update_anchors(&self, state: &BodyState, anchors: &mut ContactAnchors) {
-        if state.pos_enu.z >= self.reach {
+        let plane = self.surface.tangent_at(&state.pos_enu);
+        if plane.distance_m(&state.pos_enu) >= self.reach {
             return;
         }
         let r = state.attitude.to_rotation_matrix();
         let rate_enu = r * state.rate_flu;
         for (arm, anchor) in self.points.iter().zip(anchors) {
             let arm = r * arm;
-            let point = Point { place: state.pos_enu + arm, vel: state.vel_enu + rate_enu.cross(&arm) };
-            let limit = self.friction * self.normal_force(&point);
+            let place = state.pos_enu + arm;
+            let distance_m = plane.distance_m(&place);
+            let point = Point { place, vel: state.vel_enu + rate_enu.cross(&arm), distance_m };
+            let limit = self.friction * self.normal_force(&plane, &point);
             *anchor = match *anchor {
                 _ if limit <= 0.0 => None,
-                Some(anchor) if self.holding_force(&point, &anchor).norm() <= limit => Some(anchor),
-                None if point.vel.xy().norm() < self.full_friction_mps => Some(point.place.xy()),
+                Some(anchor) if self.holding_force(&plane, &point, &anchor).norm() <= limit => Some(anchor),
+                None if plane.along(&point.vel).norm() < self.full_friction_mps => Some(point.place.xy()),
                 Some(_) | None => None,
             };
         }
@@ -128,16 +152,19 @@ impl Ground {
     /// What touches the ground in a state.
     #[must_use]
     pub fn contact(&self, state: &BodyState) -> GroundContact {
-        if state.pos_enu.z >= 2.0 * self.reach {
+        let plane = self.surface.tangent_at(&state.pos_enu);
+        let centre_m = plane.distance_m(&state.pos_enu);
+        if centre_m >= 2.0 * self.reach {
             return GroundContact {
                 any_leg: false,
                 all_legs: false,
                 hull: false,
-                clearance_m: state.pos_enu.z - self.reach,
+                clearance_m: centre_m - self.reach,
+                plane,
             };
         }
-        let up = state.attitude.inverse_transform_vector(&Vector3::z());
-        let height = |arm: &Vector3<f64>| state.pos_enu.z + up.dot(arm);
+        let up = state.attitude.inverse_transform_vector(plane.normal());
+        let height = |arm: &Vector3<f64>| centre_m + up.dot(arm);
         let (legs, hull) = self.points.split_at(self.legs);
         let lowest_hull = hull.iter().map(height).fold(f64::INFINITY, f64::min);
         let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
@@ -145,33 +172,42 @@ impl Ground {
             lowest = height.min(lowest);
             highest = height.max(highest);
         }
-        let inverted = up.z < 0.0 && state.pos_enu.z <= INVERTED_HULL_M;
+        let inverted = up.z < 0.0 && centre_m <= INVERTED_HULL_M;
         GroundContact {
             any_leg: lowest < 0.0,
             all_legs: highest < 0.0,
             hull: inverted || lowest_hull < 0.0,
             clearance_m: lowest.min(lowest_hull),
+            plane,
         }
     }
 
-    fn normal_force(&self, point: &Point) -> f64 {
-        if point.place.z >= 0.0 {
+    fn normal_force(&self, plane: &TangentPlane, point: &Point) -> f64 {
+        if point.distance_m >= 0.0 {
             return 0.0;
         }
-        (-self.stiffness * point.place.z - self.damping * point.vel.z).max(0.0)
+        let speed = point.vel.dot(plane.normal());
+        (-self.stiffness * point.distance_m - self.damping * speed).max(0.0)
     }
 
-    fn friction_force(&self, point: &Point, normal: f64, anchor: Option<&Vector2<f64>>) -> Vector2<f64> {
+    fn friction_force(
+        &self,
+        plane: &TangentPlane,
+        point: &Point,
+        normal: f64,
+        anchor: Option<&Vector2<f64>>,
+    ) -> Vector3<f64> {
         let limit = self.friction * normal;
         if let Some(anchor) = anchor {
-            return self.holding_force(point, anchor).cap_magnitude(limit);
+            return self.holding_force(plane, point, anchor).cap_magnitude(limit);
         }
-        let vel = point.vel.xy();
+        let vel = plane.along(&point.vel);
         // min(1, v/v_full) / v, without dividing by zero.
         vel * (-limit / vel.norm().max(self.full_friction_mps))
     }
 
-    fn holding_force(&self, point: &Point, anchor: &Vector2<f64>) -> Vector2<f64> {
-        (anchor - point.place.xy()) * self.stiffness - point.vel.xy() * self.damping
+    fn holding_force(&self, plane: &TangentPlane, point: &Point, anchor: &Vector2<f64>) -> Vector3<f64> {
+        let pull = plane.along(&(plane.point_at(anchor) - point.place));
+        pull * self.stiffness - plane.along(&point.vel) * self.damping
     }
 }

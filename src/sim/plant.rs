@@ -20,6 +20,7 @@ use super::airframe::{Airframe, ROTORS};
 use super::body::{AirSample, BodyState, Loads, Slope, Stage, rotation};
 use super::ground::{ContactAnchors, Ground};
 use super::motors::{Motors, RotorSweep};
+use super::surface::Surface;
 
 /// The constants of the equations of motion, prepared for one step size.
 #[derive(Debug, Clone)]
@@ -88,6 +89,11 @@ impl Plant {
     /// Switches the thrust gain near the ground on (for rotors of the given radius, m) or off.
     pub fn set_ground_effect(&mut self, rotor_radius_m: Option<f64>) {
         self.ground_effect_radius = rotor_radius_m;
+    }
+
+    /// Gives the ground this shape.
+    pub(super) fn set_surface(&mut self, surface: Surface) {
+        self.ground.set_surface(surface);
     }
 
     /// Hangs a point mass (kg) `depth_m` below the centre of mass, in place of any earlier one. The centre of mass is
@@ -204,7 +210,9 @@ impl Plant {
     ) -> Loads {
         let va = r.tr_mul(&(stage.vel - air.wind_enu));
         let rho = air.density_ratio;
-        let boost = self.ground_effect(stage, r);
+        let plane = self.ground.surface().tangent_at(&stage.pos);
+        let height_m = plane.distance_m(&stage.pos);
+        let boost = self.ground_effect(height_m, &r.tr_mul(plane.normal()));
         // Sums over the rotors of thrust, speed and their moments.
         let (mut thrust, mut thrust_x, mut thrust_y, mut drag_torque) = (0.0, 0.0, 0.0, 0.0);
         let (mut speed, mut speed_x, mut speed_y, mut speed_z) = (0.0, 0.0, 0.0, 0.0);
@@ -231,7 +239,7 @@ impl Plant {
         torque.x += thrust_y - in_plane * va.y * speed_z;
         torque.y += in_plane * va.x * speed_z - thrust_x;
         torque.z += in_plane * (va.y * speed_x - va.x * speed_y) - self.torque_per_thrust * drag_torque;
-        if stage.pos.z < self.ground.reach_m() {
+        if height_m < self.ground.reach_m() {
             let contact = self.ground.loads(&stage.pos, &stage.vel, r, &stage.rate, anchors);
             force += contact.force_flu;
             torque += contact.torque_flu;
@@ -239,12 +247,13 @@ impl Plant {
         Loads { force_flu: force, torque_flu: torque }
     }
 
-    /// Thrust gain of each rotor from the ground below it.
-    fn ground_effect(&self, stage: &Stage, r: &Matrix3<f64>) -> [f64; ROTORS] {
+    /// Thrust gain of each rotor from the ground below it: the centre of mass is `height_m` above the ground, whose normal
+    /// in body axes is `up`.
+    fn ground_effect(&self, height_m: f64, up: &Vector3<f64>) -> [f64; ROTORS] {
         let Some(radius) = self.ground_effect_radius else { return [1.0; ROTORS] };
         std::array::from_fn(|i| {
             let hub = Vector3::new(self.rotor_x[i], self.rotor_y[i], self.rotor_z[i]);
-            ground_effect_factor(radius, stage.pos.z + r.row(2).transpose().dot(&hub))
+            ground_effect_factor(radius, height_m + up.dot(&hub))
         })
     }
 }

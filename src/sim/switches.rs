@@ -3,6 +3,7 @@
 use super::command::in_range;
 use super::config::WorldError;
 use super::sensors::GpsGrade;
+use super::surface::{MAX_RISE_M, Surface};
 use crate::did_you_mean;
 use crate::sim::value_text::{ParseError, number, on_off};
 
@@ -39,6 +40,8 @@ pub struct Switches {
     pub battery_capacity_ah: Option<f64>,
     /// Whether rotors gain thrust near the ground.
     pub ground_effect: bool,
+    /// The shape of the ground.
+    pub ground: Surface,
     /// Multiplies the turbulence velocities.
     pub turbulence_scale: f64,
     /// Rise and fall time of a gust, s.
@@ -62,6 +65,7 @@ impl Default for Switches {
             battery_sag: false,
             battery_capacity_ah: None,
             ground_effect: false,
+            ground: Surface::Flat,
             turbulence_scale: 1.0,
             gust_rise_s: 1.0,
             air_density: AirDensity::Isa,
@@ -85,7 +89,7 @@ pub struct SwitchInfo {
 }
 
 /// All switches, for help and completion.
-pub const SWITCHES: [SwitchInfo; 11] = [
+pub const SWITCHES: [SwitchInfo; 12] = [
     SwitchInfo {
         name: "wind_profile",
         values: "log, flat",
@@ -98,6 +102,11 @@ pub const SWITCHES: [SwitchInfo; 11] = [
         help: "capacity in A·h instead of the airframe's",
     },
     SwitchInfo { name: "ground_effect", values: "on, off", help: "rotors gain thrust near the ground" },
+    SwitchInfo {
+        name: "ground",
+        values: "flat, slope,RISE,BEARING (RISE 0 to 40, BEARING 0 to 360)",
+        help: "level ground, or a plane through home that rises by RISE m in 100 m towards BEARING degrees",
+    },
     SwitchInfo { name: "turbulence_scale", values: "0 to 10", help: "multiplies the turbulence" },
     SwitchInfo { name: "gust_rise", values: "0.05 to 30", help: "rise and fall time of a gust, s" },
     SwitchInfo {
@@ -171,6 +180,7 @@ impl Switches {
                 self.ground_effect != usual.ground_effect,
                 format!("ground_effect={}", on_off(self.ground_effect)),
             ),
+            (self.ground != usual.ground, format!("ground={}", self.ground)),
             (
                 self.turbulence_scale != usual.turbulence_scale,
                 format!("turbulence_scale={}", self.turbulence_scale),
@@ -187,6 +197,9 @@ impl Switches {
 
     /// Whether all numbers are in the ranges of [`SWITCHES`].
     pub(super) fn check(&self) -> Result<(), WorldError> {
+        let (rise_m, bearing_deg) = self.ground.numbers();
+        in_range("rise of the ground", rise_m, 0.0, MAX_RISE_M)?;
+        in_range("bearing of the ground's rise", bearing_deg, 0.0, 360.0)?;
         in_range("turbulence_scale", self.turbulence_scale, 0.0, 10.0)?;
         in_range("gust_rise", self.gust_rise_s, 0.05, 30.0)?;
         in_range("vibration", self.vibration_mps2, 0.0, 50.0)?;
@@ -212,6 +225,7 @@ impl Switches {
             "battery_sag" => self.battery_sag = on_off(value)?,
             "battery_capacity" => self.battery_capacity_ah = Some(range(0.01, 100.0)?),
             "ground_effect" => self.ground_effect = on_off(value)?,
+            "ground" => self.ground = Surface::parse(value)?,
             "turbulence_scale" => self.turbulence_scale = range(0.0, 10.0)?,
             "gust_rise" => self.gust_rise_s = range(0.05, 30.0)?,
             "air_density" => {
@@ -234,6 +248,7 @@ impl Switches {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::sim::surface::Slope;
 
     #[test]
     fn switches_are_set_by_name() {
@@ -243,6 +258,7 @@ mod tests {
             "battery_sag=on",
             "battery_capacity=0.5",
             "ground_effect=on",
+            "ground=slope,8,90",
             "turbulence_scale=0.5",
             "gust_rise=2",
             "air_density=reference",
@@ -258,6 +274,7 @@ mod tests {
             battery_sag: true,
             battery_capacity_ah: Some(0.5),
             ground_effect: true,
+            ground: Surface::Slope(Slope::new(8.0, 90.0)),
             turbulence_scale: 0.5,
             gust_rise_s: 2.0,
             air_density: AirDensity::Reference,
@@ -289,5 +306,10 @@ mod tests {
         assert!(error("wind_profil=flat").contains("did you mean wind_profile?"));
         assert!(error("wind_profile").contains("NAME=VALUE"));
         assert!(error("turbulence_scale=11").contains("allowed are 0 to 10"));
+        assert_eq!(
+            error("ground=slope,41,90"),
+            "world switch \"ground=slope,41,90\": the rise 41 is out of range; allowed are flat, \
+             slope,RISE,BEARING (RISE 0 to 40, BEARING 0 to 360)"
+        );
     }
 }

@@ -13,7 +13,7 @@ const FLIGHT_CLEARANCE_M: f64 = 0.05;
 /// Load on all legs for this long at less than this speed is a touchdown.
 const SETTLED_S: f64 = 0.2;
 const SETTLED_MPS: f64 = 0.2;
-/// A contact faster than this, down or sideways, is a crash, m/s.
+/// A contact faster than this, into the ground or along it, is a crash, m/s.
 const CRASH_MPS: f64 = 3.0;
 
 /// What the detector has seen so far.
@@ -66,7 +66,7 @@ impl TouchdownDetector {
                 None
             }
             Phase::Airborne { .. } => {
-                let impact_mps = (-before.vel_enu.z).max(0.0);
+                let impact_mps = (-before.vel_enu.dot(contact.plane.normal())).max(0.0);
                 self.phase = Phase::Settling { impact_mps, peak_mps2: force_mps2, loaded: None };
                 Some(WorldEventKind::Contact { impact_mps })
             }
@@ -100,10 +100,11 @@ pub(super) fn crash_cause(
     new_contact: bool,
     before: &BodyState,
 ) -> Option<CrashCause> {
-    if new_contact && before.vel_enu.z < -CRASH_MPS {
-        return Some(CrashCause::HardLanding(-before.vel_enu.z));
+    let down = -before.vel_enu.dot(contact.plane.normal());
+    if new_contact && down > CRASH_MPS {
+        return Some(CrashCause::HardLanding(down));
     }
-    let sideways = before.vel_enu.xy().norm();
+    let sideways = contact.plane.along(&before.vel_enu).norm();
     if new_contact && sideways > CRASH_MPS {
         return Some(CrashCause::SidewaysLanding(sideways));
     }

@@ -29,6 +29,8 @@ pub struct Truth {
     pub wind_enu: Vector3<f64>,
     /// Battery.
     pub battery: BatteryTruth,
+    /// Height of the ground below the craft above that at home, m.
+    pub ground_m: f64,
     /// At least one leg carries load.
     pub on_ground: bool,
     /// The craft has crashed: its rotors have stopped for good, until a reset.
@@ -108,6 +110,7 @@ mod tests {
             specific_force_flu: Vector3::zeros(),
             wind_enu: Vector3::zeros(),
             battery: BatteryTruth::default(),
+            ground_m: 0.0,
             on_ground: false,
             crashed: false,
             diverged: false,

@@ -38,6 +38,7 @@ pub use status::WorldStatus;
 pub struct World {
     airframe: Airframe,
     start: BodyState,
+    heading_deg: f64,
     link: FaultLink,
     seed: u64,
     switches: Switches,
@@ -135,7 +136,8 @@ impl World {
 
     /// What happens each 10 ms: air and battery.
     fn slow_tick(&mut self) {
-        self.air.tick(self.time, self.body.pos_enu.z, self.body.vel_enu, &self.switches);
+        let ground_m = self.switches.ground.elevation_m(&self.body.pos_enu.xy());
+        self.air.tick(self.time, self.body.pos_enu.z, ground_m, self.body.vel_enu, &self.switches);
         let load = self.plant.efficiency().map(|efficiency| efficiency * self.air_now.density_ratio);
         let power = motor_power_w(&self.airframe, &self.rotors, &load);
         let was_charged = self.battery.charge_left() > 0.0;
@@ -178,6 +180,7 @@ impl World {
             drawn_wh: self.battery.drawn_wh,
             capacity_mah: self.battery.capacity_mah(),
         };
+        truth.ground_m = self.switches.ground.elevation_m(&self.body.pos_enu.xy());
         truth.on_ground = self.contact.any_leg;
         truth.crashed = self.crashed;
         truth.diverged = self.diverged;

@@ -5,6 +5,7 @@ mod docs;
 mod faults;
 mod gps_grades;
 mod sensors;
+mod slope;
 
 use betadeck::signals::MotorCommand;
 use betadeck::sim::{Fault, Noise, World, WorldCommand, WorldConfig, WorldEventKind};

@@ -84,8 +84,10 @@ impl GroundContact {
         }
         let on_legs = 1.0 - *thrust * self.square / GRAVITY;
         let is_steady = (self.force / GRAVITY - 1.0).abs() < STEADY_SHARE;
-        let speed = now.climb_mps.hypot(now.ground_speed_mps);
-        let is_pressed = on_legs > LOADED_SHARE && is_steady && speed < STILL_MPS;
+        // A speed that is not known does not show that the craft stands.
+        let speed = now.climb_mps.hypot(now.ground_speed_mps.unwrap_or(0.0));
+        let is_still = now.ground_speed_mps.is_some() && speed < STILL_MPS;
+        let is_pressed = on_legs > LOADED_SHARE && is_steady && is_still;
         self.loaded_s = if is_pressed { self.loaded_s + dt } else { 0.0 };
         self.is_loaded = if self.is_loaded {
             on_legs > FREE_SHARE && speed < MOVING_MPS
@@ -107,7 +109,7 @@ mod tests {
             motor_square: motor * motor,
             altitude_m: Some(altitude_m),
             climb_mps: 0.0,
-            ground_speed_mps: 0.0,
+            ground_speed_mps: Some(0.0),
         }
     }
 
@@ -130,6 +132,21 @@ mod tests {
             contact.update(&at(0.0, GRAVITY, 0.52), 0.01);
         }
         assert!(!contact.on_ground());
+    }
+
+    #[test]
+    fn a_ground_speed_that_is_not_known_is_no_sign_of_the_ground() {
+        for (speed, stands) in [(Some(0.0), true), (Some(2.0), false), (None, false)] {
+            let mut contact = GroundContact::default();
+            for _ in 0..1000 {
+                contact.update(&GroundMeasurement { ground_speed_mps: speed, ..at(10.0, GRAVITY, 0.5) }, 0.01);
+            }
+            // A craft that the air slows down sinks steadily at less thrust than its weight.
+            for _ in 0..50 {
+                contact.update(&GroundMeasurement { ground_speed_mps: speed, ..at(9.0, GRAVITY, 0.4) }, 0.01);
+            }
+            assert_eq!(contact.on_ground(), stands, "{speed:?}");
+        }
     }
 
     #[test]

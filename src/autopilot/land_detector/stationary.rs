@@ -36,7 +36,8 @@ impl StationaryTimer {
         average(&mut self.force_mps2, now.force_flu.norm());
         average(&mut self.rate_rps, now.rate_rps);
         average(&mut self.climb_mps, now.climb_mps);
-        average(&mut self.speed_mps, now.ground_speed_mps);
+        // Where it is not known it is left out: nothing else moves a craft that stays in the air at less and less throttle.
+        average(&mut self.speed_mps, now.ground_speed_mps.unwrap_or(0.0));
     }
 
     /// Runs while the throttle is lowered for a descent and no sensor shows motion; ground speed counts from
@@ -75,7 +76,7 @@ mod tests {
         motor_square: 0.01,
         altitude_m: Some(10.0),
         climb_mps: 0.0,
-        ground_speed_mps: 0.0,
+        ground_speed_mps: Some(0.0),
     };
 
     /// Time without motion after `seconds` of it, s.
@@ -98,7 +99,7 @@ mod tests {
     fn any_motion_is_flight() {
         let moving = [
             GroundMeasurement { climb_mps: -0.11, ..STANDING },
-            GroundMeasurement { ground_speed_mps: 0.51, ..STANDING },
+            GroundMeasurement { ground_speed_mps: Some(0.51), ..STANDING },
             GroundMeasurement { rate_rps: 0.1, ..STANDING },
             GroundMeasurement { force_flu: Vector3::new(0.0, 0.0, 0.94 * GRAVITY), ..STANDING },
         ];

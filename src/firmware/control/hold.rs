@@ -19,7 +19,7 @@ use position::PositionHold;
 pub use altitude::DescentRate;
 
 /// Which holds are on.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct HoldModes {
     /// Hold the altitude; the throttle stick climbs and sinks.
     pub altitude: bool,

@@ -299,7 +299,11 @@ impl Navigation {
             let descend = if self.failsafe.auto_landing() {
                 Some(DescentRate::Failsafe)
             } else {
-                (after_abort == AfterAbort::Descent && stick_us.is_none()).then_some(DescentRate::Landing)
+                let rate = match self.orders.is_rescue_by_switch() {
+                    true => DescentRate::Rescue(parameters.rescue.descend_mps),
+                    false => DescentRate::Landing,
+                };
+                (after_abort == AfterAbort::Descent && stick_us.is_none()).then_some(rate)
             };
             let hold = HoldModes {
                 altitude: armed && modes.has(Mode::AltHold),

@@ -1,7 +1,7 @@
 //! A world at boot: the checked configuration, a craft on its legs, a full battery.
 
 use arrayvec::ArrayVec;
-use nalgebra::Vector3;
+use nalgebra::{UnitQuaternion, Vector2, Vector3};
 
 use crate::signals::{SensorFrame, SimTime};
 use crate::sim::air::Air;
@@ -14,6 +14,7 @@ use crate::sim::fault::{Effects, FaultSchedule, MAX_FAULTS};
 use crate::sim::ground::NO_ANCHORS;
 use crate::sim::plant::Plant;
 use crate::sim::sensors::Sensors;
+use crate::sim::surface::Surface;
 use crate::sim::switches::Switches;
 use crate::sim::touchdown::TouchdownDetector;
 use crate::sim::truth::{BatteryTruth, Truth, level_attitude};
@@ -29,8 +30,10 @@ impl World {
         let step_us = step_us(config.rate_hz)?;
         check(&config)?;
         let step_s = step_us as f64 * 1e-6;
-        let start = standing_at_home(&config);
-        let plant = Plant::new(&config.airframe, step_s);
+        let (heading_deg, surface) = (config.home.heading_deg, config.switches.ground);
+        let start = standing(&config.airframe, &surface, &Vector2::zeros(), heading_deg);
+        let mut plant = Plant::new(&config.airframe, step_s);
+        plant.set_surface(surface);
         let air = Air::new(&config, start.pos_enu.z);
         let air_now = air.sample(SimTime::ZERO);
         let mut anchors = NO_ANCHORS;
@@ -45,6 +48,7 @@ impl World {
         let mut world = Self {
             airframe,
             start,
+            heading_deg,
             link,
             seed,
             switches,
@@ -98,11 +102,27 @@ fn check(config: &WorldConfig) -> Result<(), WorldError> {
     Ok(())
 }
 
-fn standing_at_home(config: &WorldConfig) -> BodyState {
+/// A craft that stands on its legs at a place east and north of home, m.
+pub(super) fn standing(
+    airframe: &Airframe,
+    surface: &Surface,
+    place: &Vector2<f64>,
+    heading_deg: f64,
+) -> BodyState {
+    let plane = surface.tangent_at(&Vector3::new(place.x, place.y, surface.elevation_m(place)));
+    let up_m = airframe.standing_height_m() / plane.normal().z;
+    let level = level_attitude(heading_deg);
+    let attitude = match surface {
+        Surface::Flat => level,
+        Surface::Slope(_) => {
+            // There is a shortest rotation between two vectors that point up.
+            UnitQuaternion::rotation_between(&Vector3::z(), plane.normal()).unwrap_or_default() * level
+        }
+    };
     BodyState {
-        pos_enu: Vector3::new(0.0, 0.0, config.airframe.standing_height_m()),
+        pos_enu: plane.point_at(place) + Vector3::new(0.0, 0.0, up_m),
         vel_enu: Vector3::zeros(),
-        attitude: level_attitude(config.home.heading_deg),
+        attitude,
         rate_flu: Vector3::zeros(),
     }
 }
@@ -127,6 +147,7 @@ fn truth_at_boot(state: &BodyState) -> Truth {
         specific_force_flu: Vector3::zeros(),
         wind_enu: Vector3::zeros(),
         battery: BatteryTruth::default(),
+        ground_m: 0.0,
         on_ground: true,
         crashed: false,
         diverged: false,

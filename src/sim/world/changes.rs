@@ -1,6 +1,6 @@
 //! Changes of a running world: commands, faults, displacement, reset.
 
-use nalgebra::Vector3;
+use nalgebra::{Vector2, Vector3};
 
 use crate::signals::SimTime;
 use crate::sim::air::usual_length_s;
@@ -12,6 +12,7 @@ use crate::sim::fault::{ActiveFault, Fault, FaultChange, FaultLink, MAX_FAULTS};
 use crate::sim::ground::NO_ANCHORS;
 use crate::sim::touchdown::TouchdownDetector;
 
+use super::boot::standing;
 use super::{World, full_battery};
 
 /// The payload hangs this share of the standing height below the centre of mass.
@@ -39,6 +40,7 @@ impl World {
             WorldCommand::SetSwitch(switch) => {
                 self.switches.set(&switch)?;
                 self.set_ground_effect();
+                self.set_ground();
                 self.sensors.gps.set_grade(self.switches.gps);
             }
             WorldCommand::SetGpsRate(rate) => self.sensors.gps.set_rate(rate),
@@ -129,13 +131,36 @@ impl World {
         self.plant.set_ground_effect(self.switches.ground_effect.then_some(self.airframe.rotor_radius_m));
     }
 
+    /// Brings the plant in line with the shape of the ground. A craft that stands stands on the new ground.
+    fn set_ground(&mut self) {
+        let surface = self.switches.ground;
+        if *self.plant.ground().surface() == surface {
+            return;
+        }
+        self.plant.set_surface(surface);
+        self.start = standing(&self.airframe, &surface, &Vector2::zeros(), self.heading_deg);
+        if self.contact.all_legs && !self.crashed {
+            let place = self.body.pos_enu.xy();
+            self.body = standing(&self.airframe, &surface, &place, self.truth.heading_deg());
+            self.anchors = NO_ANCHORS;
+            self.plant.ground().update_anchors(&self.body, &mut self.anchors);
+        } else {
+            self.lift_out_of_the_ground();
+        }
+    }
+
+    /// Moves a craft that is below the ground up to it; returns its clearance before, m.
+    fn lift_out_of_the_ground(&mut self) -> f64 {
+        let contact = self.plant.ground().contact(&self.body);
+        self.body.pos_enu.z -= contact.clearance_m.min(0.0) / contact.plane.normal().z;
+        self.anchors = NO_ANCHORS;
+        contact.clearance_m
+    }
+
     /// Moves the craft, never into the ground.
     fn teleport(&mut self, by_enu: Vector3<f64>) {
         self.body.pos_enu += by_enu;
-        let clearance = self.plant.ground().contact(&self.body).clearance_m;
-        self.body.pos_enu.z -= clearance.min(0.0);
-        self.anchors = NO_ANCHORS;
-        if clearance > 0.0 {
+        if self.lift_out_of_the_ground() > 0.0 {
             self.touchdown.set_airborne(self.time);
         }
     }

@@ -29,9 +29,16 @@ const DESCENT_GROWTH_PER_M: f64 = 0.05;
 const LAST_METRES_M: f64 = 1.5;
 /// The setpoint of a descent runs at most this far below the craft, m.
 const DESCENT_LEASH_M: f64 = 5.0;
-/// A craft on the ground moves vertically slower than this share of the landing rate, and drifts slower than this, m/s.
+/// A craft on the ground moves vertically slower than this share of the sink rate and slower than this, m/s, and drifts
+/// slower than this, m/s.
 const GROUNDED_SHARE: f64 = 0.25;
+const GROUNDED_MPS: f64 = 0.125;
 const GROUNDED_DRIFT_MPS: f64 = 0.5;
+/// How long the signs of the ground must last at least, 0.1 s: a sluggish craft needs time to begin to sink.
+const GROUNDED_DS: u8 = 10;
+/// Below this altitude a rescue sinks no faster than a landing, m, and slows down to that by so much, m/s².
+const RESCUE_LAST_METRES_M: f64 = 4.0;
+const RESCUE_BRAKE_MPS2: f64 = 0.5;
 
 /// Who moves the altitude.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -196,19 +203,22 @@ impl AltitudeHold {
         self.phase = Phase::Descending(setpoint);
         land.follow_altitude(now.alt_m);
         let demand = (controller.setpoint_m(), controller.throttle_us());
-        land.descend(&DescentFacts::new(now, params, demand, rate), now.time, now.dt);
-        // It may begin on the ground, with nothing to come down from.
-        let ground =
-            GroundFacts { descent_m: f64::INFINITY, ..GroundFacts::new(now, params, controller, land) };
+        let descent = DescentFacts::new(now, params, demand, rate);
+        land.descend(&descent, now.time, now.dt);
+        let ground = GroundFacts::new(now, params, controller, land);
+        // A craft that has not left the ground has nothing to come down from.
+        let descent_m = if land.awaits_lift_off() { f64::INFINITY } else { ground.descent_m };
+        let ground = GroundFacts { descent_m, ..ground };
         // By the hover throttle in use: the configured one may be far off, and waiting for it would tip the craft over.
-        // A descent without a plan has no altitude of its own below which the ground is expected.
         let facts = TouchdownFacts {
+            // The ground may be higher or lower than home: no altitude speaks for it or against it.
             landing_altitude_m: f64::INFINITY,
-            max_speed_mps: GROUNDED_DRIFT_MPS,
+            // Without a fix the speed is unknown and left out.
+            max_speed_mps: if now.fix { GROUNDED_DRIFT_MPS } else { f64::INFINITY },
             ground_speed_mps: if now.fix { now.vel_ne.norm() } else { 0.0 },
             // Neither sinks nor climbs: one that is stopped in a climb has little throttle, too, and has not landed.
             climb_mps: -now.climb_mps.abs(),
-            min_climb_mps: -GROUNDED_SHARE * rate.min(params.descent_rate_mps()),
+            min_climb_mps: -(GROUNDED_SHARE * rate.min(params.descent_rate_mps())).min(GROUNDED_MPS),
             ..TouchdownFacts::new(
                 params,
                 controller.hover_us(),
@@ -218,8 +228,11 @@ impl AltitudeHold {
                 now.climb_mps,
             )
         };
-        land.time_touchdown(&TouchdownGuards::new(&facts, &ground), now.time);
-        self.has_touched_down = land.has_landed(params.landing_detection_time);
+        // The proof: at the least throttle every craft sinks, unless something carries it. Less throttle than the hover
+        // throttle is none, for that may have been learned in a climb.
+        let is_down = descent.throttle_at_min && TouchdownGuards::new(&facts, &ground).all_hold();
+        land.time_touchdown(is_down, now.time);
+        self.has_touched_down = land.has_landed(params.landing_detection_time.max(GROUNDED_DS));
         AltitudeTarget::Landing { setpoint_m: setpoint, rate_mps: -rate }
     }
 }
@@ -235,12 +248,14 @@ fn has_stopped(setpoint: f64, rate: f64, now: &NavInputs) -> bool {
 }
 
 /// How fast a descent to the ground sinks.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum DescentRate {
     /// The failsafe's: a fifth of the climb rate near the ground, faster from high up; the last metres as a landing.
     Failsafe,
     /// `ap_landing_descent_rate`, as the landing whose fix was lost.
     Landing,
+    /// `gps_rescue_descend_rate` (m/s), as the rescue whose fix was lost; the last metres no faster than a landing.
+    Rescue(f64),
 }
 
 impl DescentRate {
@@ -254,6 +269,11 @@ impl DescentRate {
                 factor * params.climb_rate_mps() * DESCENT_SHARE
             }
             Self::Landing => params.descent_rate_mps(),
+            Self::Rescue(rate) => {
+                let slow = params.descent_rate_mps();
+                let above_m = (altitude_m - RESCUE_LAST_METRES_M).max(0.0);
+                rate.min((slow * slow + 2.0 * RESCUE_BRAKE_MPS2 * above_m).sqrt())
+            }
         }
     }
 }
@@ -357,6 +377,17 @@ mod tests {
         }
         // Without a fix the drift is not known.
         assert!(seconds_to_touchdown(2.0, false) < 5.0);
+    }
+
+    #[test]
+    fn a_rescue_sinks_at_its_own_rate_and_lands_at_that_of_a_landing() {
+        let params = Params::default();
+        for (rescue, altitude, rate) in
+            [(0.8, 30.0, 0.8), (0.8, 4.0, 0.5), (0.8, 0.0, 0.5), (0.3, 30.0, 0.3), (0.3, 0.0, 0.3), (5.0, 40.0, 5.0)]
+        {
+            let got = DescentRate::Rescue(rescue).at(altitude, &params);
+            assert!((got - rate).abs() < 1e-9, "{rescue} m/s at {altitude} m: {got}");
+        }
     }
 
     #[test]

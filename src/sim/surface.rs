@@ -1,0 +1,174 @@
+//! The shape of the ground: how high it lies at a place, and the plane that touches it there.
+
+use nalgebra::{Vector2, Vector3};
+
+use super::value_text::number;
+
+/// Steepest ground, m in 100 m: a craft still stands on it and may arm.
+pub(super) const MAX_RISE_M: f64 = 40.0;
+
+/// The shape of the ground. Home lies on it, at height zero.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Surface {
+    /// Level everywhere.
+    #[default]
+    Flat,
+    /// An inclined plane.
+    Slope(Slope),
+}
+
+/// A plane through home that rises towards a bearing.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Slope {
+    rise_m: f64,
+    bearing_deg: f64,
+    /// Metres up in a metre east and north.
+    gradient: Vector2<f64>,
+    normal: Vector3<f64>,
+}
+
+/// The plane that touches the ground at a place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TangentPlane {
+    /// A point of the plane, ENU, m.
+    point: Vector3<f64>,
+    /// The unit vector that points up from it.
+    normal: Vector3<f64>,
+}
+
+impl Slope {
+    /// A plane that rises by `rise_m` in 100 m towards `bearing_deg`, degrees from north.
+    #[must_use]
+    pub fn new(rise_m: f64, bearing_deg: f64) -> Self {
+        let (sin, cos) = bearing_deg.to_radians().sin_cos();
+        let gradient = Vector2::new(sin, cos) * (rise_m / 100.0);
+        let normal = Vector3::new(-gradient.x, -gradient.y, 1.0).normalize();
+        Self { rise_m, bearing_deg, gradient, normal }
+    }
+}
+
+impl Surface {
+    /// Reads `flat` or `slope,RISE,BEARING`.
+    pub(super) fn parse(text: &str) -> Result<Self, String> {
+        let parts: Vec<&str> = text.split(',').map(str::trim).collect();
+        match parts[..] {
+            ["flat"] => Ok(Self::Flat),
+            ["slope", rise, bearing] => {
+                let (rise_m, bearing_deg) = (number("rise", rise)?, number("bearing", bearing)?);
+                if !(0.0..=MAX_RISE_M).contains(&rise_m) {
+                    return Err(format!("the rise {rise} is out of range"));
+                }
+                if !(0.0..=360.0).contains(&bearing_deg) {
+                    return Err(format!("the bearing {bearing} is out of range"));
+                }
+                Ok(Self::Slope(Slope::new(rise_m, bearing_deg)))
+            }
+            ["slope", ..] => Err("a slope has a rise and a bearing, such as slope,8,90".to_owned()),
+            _ => Err(format!("{text} is no shape of the ground")),
+        }
+    }
+
+    /// Height of the ground at a place east and north of home, m.
+    #[must_use]
+    pub fn elevation_m(&self, place: &Vector2<f64>) -> f64 {
+        match self {
+            Self::Flat => 0.0,
+            Self::Slope(slope) => slope.gradient.dot(place),
+        }
+    }
+
+    /// The plane that touches the ground below or above a point. Exact for every point where the ground is a plane.
+    #[must_use]
+    pub fn tangent_at(&self, _point: &Vector3<f64>) -> TangentPlane {
+        let normal = match self {
+            Self::Flat => Vector3::z(),
+            Self::Slope(slope) => slope.normal,
+        };
+        TangentPlane { point: Vector3::zeros(), normal }
+    }
+
+    /// Whether every number is one that [`Self::parse`] takes.
+    pub(super) fn numbers(&self) -> (f64, f64) {
+        match self {
+            Self::Flat => (0.0, 0.0),
+            Self::Slope(slope) => (slope.rise_m, slope.bearing_deg),
+        }
+    }
+}
+
+impl std::fmt::Display for Surface {
+    /// As [`Surface::parse`] reads it.
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Flat => f.write_str("flat"),
+            Self::Slope(slope) => write!(f, "slope,{},{}", slope.rise_m, slope.bearing_deg),
+        }
+    }
+}
+
+impl TangentPlane {
+    /// Level ground at height zero.
+    pub const LEVEL: Self = Self { point: Vector3::new(0.0, 0.0, 0.0), normal: Vector3::new(0.0, 0.0, 1.0) };
+
+    /// Unit vector that points up from the plane.
+    #[must_use]
+    pub fn normal(&self) -> &Vector3<f64> {
+        &self.normal
+    }
+
+    /// Distance of a point from the plane, negative below it, m.
+    #[must_use]
+    pub fn distance_m(&self, point: &Vector3<f64>) -> f64 {
+        (point - self.point).dot(&self.normal)
+    }
+
+    /// The part of a vector that lies in the plane.
+    #[must_use]
+    pub fn along(&self, vector: &Vector3<f64>) -> Vector3<f64> {
+        vector - self.normal * vector.dot(&self.normal)
+    }
+
+    /// The point of the plane at a place east and north of home.
+    #[must_use]
+    pub fn point_at(&self, place: &Vector2<f64>) -> Vector3<f64> {
+        let from = place - self.point.xy();
+        let up = self.point.z - self.normal.xy().dot(&from) / self.normal.z;
+        Vector3::new(place.x, place.y, up)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_slope_rises_towards_its_bearing_and_falls_the_other_way() {
+        let ground = Surface::parse("slope, 8, 90").unwrap();
+        assert_eq!(ground.to_string(), "slope,8,90");
+        for (east, north, up) in [(100.0, 0.0, 8.0), (-50.0, 0.0, -4.0), (0.0, 100.0, 0.0)] {
+            let place = Vector2::new(east, north);
+            assert!((ground.elevation_m(&place) - up).abs() < 1e-9);
+            let plane = ground.tangent_at(&Vector3::new(east, north, 0.0));
+            assert!((plane.point_at(&place).z - up).abs() < 1e-9);
+            assert!(plane.distance_m(&plane.point_at(&place)).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn what_is_no_ground_is_refused_in_words() {
+        for (text, words) in [
+            ("hill", "no shape"),
+            ("slope", "slope,8,90"),
+            ("slope,8", "slope,8,90"),
+            ("slope,8,90,1", "slope,8,90"),
+            ("slope,41,90", "the rise 41 is out of range"),
+            ("slope,-1,90", "the rise -1 is out of range"),
+            ("slope,8,361", "the bearing 361 is out of range"),
+            ("slope,x,90", "not a number"),
+            ("slope,nan,90", ""),
+        ] {
+            let error = Surface::parse(text).unwrap_err();
+            assert!(error.contains(words), "{text}: {error}");
+        }
+    }
+}
