@@ -282,6 +282,7 @@ impl Flight {
             wp: nav.wp,
             source: nav.source,
             refusal: nav.refusal,
+            failsafe: controller.modes().has(Mode::Failsafe),
             ends_in_land: self.ends_in_land,
             lift_share: waiting::lift_share(&self.vehicle),
             touched_down: self.touched_down,

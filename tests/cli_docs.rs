@@ -11,10 +11,12 @@ Every setting of the vehicle, in the order of `dump`. `get NAME` shows one with 
 `save` keeps it.
 
 *Live* settings change how the vehicle behaves or what it tells. *Carried* ones are checked, stored and printed, so that
-the configuration of a real craft stays complete, and have no effect here. A change works from the next control step on;
+the configuration of a real craft stays complete, and have no effect here; `get` ends with `No effect here`. A change works from the next control step on;
 settings marked ↻ need `save`, which restarts the firmware. Until then arming is blocked (REBOOT_REQD).
 
 Names of other builds and releases are accepted too: such a line is kept as it is and printed again by `dump` and `diff`.
+A value that current Betaflight refuses (`ap_position_cutoff` beyond 10…50, `ap_velocity_drag_coeff` beyond 0…100) is taken, and a
+notice says so.
 ";
 
 fn values(setting: &Setting) -> String {

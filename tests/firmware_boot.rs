@@ -259,3 +259,38 @@ fn losing_the_gps_to_a_real_quads_receiver_is_told() {
     bench.run(0.5);
     assert_eq!(told(&bench), 2);
 }
+
+#[test]
+fn a_value_that_current_firmware_refuses_is_taken_with_a_notice() {
+    let told = |bench: &Bench| -> Vec<String> {
+        let notices = bench.events.iter().filter_map(|event| match event {
+            FirmwareEvent::Notice(notice @ FirmwareNotice::BeyondCurrentFirmware { .. }) => {
+                Some(notice.to_string())
+            }
+            _ => None,
+        });
+        notices.collect()
+    };
+    let mut bench = Bench::new();
+    bench.run(0.1);
+    assert_eq!(bench.type_line("set ap_position_cutoff = 5"), "ap_position_cutoff set to 5");
+    bench.run(0.2);
+    let notice = "ap_position_cutoff = 5 is taken here, but current Betaflight refuses it: it allows 10 to 50.";
+    assert_eq!(told(&bench), [notice]);
+    bench.type_line("set ap_position_cutoff = 20");
+    bench.run(0.3);
+    assert_eq!(told(&bench).len(), 1, "a value that current firmware takes");
+    bench.type_line("set ap_velocity_drag_coeff = 101");
+    bench.run(0.4);
+    assert_eq!(told(&bench).len(), 2);
+}
+
+#[test]
+fn get_says_that_a_setting_has_no_effect_and_set_answers_as_before() {
+    let mut bench = Bench::new();
+    bench.run(0.1);
+    let block = "ap_nav_preturn_dist = 1500\r\nAllowed range: 500 - 5000\r\n";
+    assert_eq!(bench.type_line("get ap_nav_preturn_dist"), format!("{block}No effect here\r\n"));
+    assert_eq!(bench.type_line("set ap_nav_preturn_dist"), block);
+    assert!(!bench.type_line("get ap_max_velocity").contains("No effect"));
+}

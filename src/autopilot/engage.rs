@@ -24,6 +24,8 @@ pub struct EngageFacts {
     pub plan: Result<(), PlanFault>,
     /// Whether the fence allows the plan; only looked at when the plan can be flown.
     pub fence: Result<(), Refusal>,
+    /// Whether the craft can come down with its least throttle.
+    pub floor: Result<(), Refusal>,
     /// Whether stage 2 of the failsafe is active.
     pub failsafe: bool,
     /// Why the last mission was given up since the switch went on, if it was.
@@ -41,6 +43,21 @@ impl EngageFacts {
     }
 }
 
+/// Checks the least throttle against the hover throttle that the flight has shown, µs; before it has shown one there is
+/// nothing to compare.
+///
+/// # Errors
+/// When the craft would climb with the least throttle.
+pub fn check_floor(throttle_min_us: u16, hover_us: Option<f64>) -> Result<(), Refusal> {
+    match hover_us {
+        // Saturates; hover throttles lie below 2000 µs.
+        Some(hover_us) if f64::from(throttle_min_us) > hover_us => {
+            Err(Refusal::ThrottleMin { throttle_min_us, hover_us: hover_us.round() as u16 })
+        }
+        Some(_) | None => Ok(()),
+    }
+}
+
 /// The first precondition that fails.
 ///
 /// # Errors
@@ -53,6 +70,7 @@ pub fn check(facts: &EngageFacts) -> Result<(), Refusal> {
         PlanFault::BadWaypoint { index, .. } => Refusal::BadWaypoint(index),
     })?;
     facts.fence?;
+    facts.floor?;
     if facts.failsafe {
         return Err(Refusal::Failsafe);
     }

@@ -55,6 +55,8 @@ pub struct NavInputs {
     pub accel_ne: Vector2<f64>,
     /// Throttle that drove the mixer in the previous cycle, as RC µs (1000…2000).
     pub throttle_us: f64,
+    /// Hover throttle that this flight has shown, as RC µs, when it has.
+    pub hover_us: Option<f64>,
     /// Roll stick, RC command units ±500, right positive; 0 while the link is lost.
     pub stick_roll: f64,
     /// Pitch stick, RC command units ±500, forward positive; 0 while the link is lost.
@@ -90,6 +92,7 @@ impl NavInputs {
             cos_tilt: 1.0,
             accel_ne: Vector2::zeros(),
             throttle_us: 1000.0,
+            hover_us: None,
             stick_roll: 0.0,
             stick_pitch: 0.0,
             stick_yaw: 0.0,

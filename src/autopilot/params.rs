@@ -152,7 +152,7 @@ parameters! {
     "ap_velocity_drag_coeff" velocity_drag_coeff: u16 = 50, 0..=1000, Live,
         "Lean that makes up for air drag, 0.0001 deg per (m/s)2.";
     /// Default and greatest leg speed, cm/s.
-    "ap_max_velocity" max_velocity: u16 = 1000, 100..=5000, Live,
+    "ap_max_velocity" max_velocity: u16 = 500, 100..=5000, Live,
         "Greatest speed, and that of legs without their own, cm/s.";
     /// Arrival radius of FLYOVER and FLYBY, cm.
     "ap_waypoint_arrival_radius" waypoint_arrival_radius: u16 = 500, 100..=5000, Live,

@@ -41,6 +41,7 @@ pub use observation::{
 };
 
 use super::config::Configuration;
+use crate::telemetry::FirmwareNotice;
 
 /// The most characters of a line; the rest is dropped.
 pub const MAX_LINE: usize = 255;
@@ -63,6 +64,8 @@ pub struct CliReply {
     pub actions: Vec<CliAction>,
     /// Whether the line was refused.
     pub failed: bool,
+    /// What the pilot should read about it, beside the text.
+    pub notices: Vec<FirmwareNotice>,
 }
 
 impl CliReply {

@@ -40,6 +40,9 @@ impl Firmware {
                 CliAction::PlanChanged | CliAction::Restart { .. } => {}
             }
         }
+        for notice in &reply.notices {
+            self.outbox.push(FirmwareEvent::Notice(*notice));
+        }
         self.refresh();
         reply
     }

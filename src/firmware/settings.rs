@@ -8,12 +8,14 @@
 //! The control code never reads settings in a step: [`parameters`](super::parameters) makes typed coefficients of
 //! them, at boot and again after every command line and every message that may have changed them.
 
+mod current_firmware;
 mod foreign;
 mod judge;
 mod parse;
 mod store;
 mod table;
 
+pub use current_firmware::beyond_current_firmware;
 pub use foreign::foreign_name;
 pub use judge::judge;
 pub use parse::AssignError;

@@ -40,6 +40,8 @@ pub struct JudgeFacts {
     pub source: PlanSource,
     /// Why the switch has no effect.
     pub refusal: Option<Refusal>,
+    /// A failsafe procedure flies.
+    pub failsafe: bool,
     /// The mission's last positional waypoint is a LAND.
     pub ends_in_land: bool,
     /// Thrust over weight of a craft that stands on the ground although it is to climb and has all the throttle there is.
@@ -250,9 +252,14 @@ impl Judge {
             self.idle_since = Some((since, facts.alt_m));
         }
         (facts.time.seconds_since(since) >= IDLE_S).then(|| {
-            let why = facts
-                .refusal
-                .map_or_else(|| "no reason given".to_owned(), |refusal| refusal.sentence().into_owned());
+            let why = match facts.refusal {
+                Some(refusal) => refusal.sentence(),
+                None if facts.failsafe => "a failsafe procedure flies.".into(),
+                None if facts.entered_for == Some(TransitionReason::Disengage) => {
+                    "the AUTOPILOT switch was turned off; turned on again it resumes.".into()
+                }
+                None => "no reason given".into(),
+            };
             Verdict::new(FlightResult::Aborted, format!("mission given up: {why}"))
         })
     }
@@ -290,6 +297,7 @@ mod tests {
             wp: 1,
             source: PlanSource::Stored,
             refusal: None,
+            failsafe: false,
             ends_in_land: true,
             lift_share: None,
             touched_down: false,
@@ -374,6 +382,25 @@ mod tests {
             (verdict.result, verdict.reason.as_str()),
             (FlightResult::Landed, "landed without a GPS fix")
         );
+    }
+
+    #[test]
+    fn a_mission_that_the_switch_ended_says_so() {
+        let idle = |s, failsafe| JudgeFacts {
+            state: NavState::Idle,
+            engaged: false,
+            entered_for: Some(TransitionReason::Disengage),
+            failsafe,
+            ..facts(s)
+        };
+        for (failsafe, reason) in [
+            (false, "mission given up: the AUTOPILOT switch was turned off; turned on again it resumes."),
+            (true, "mission given up: a failsafe procedure flies."),
+        ] {
+            let mut judge = judge();
+            assert_eq!(judge.look(&idle(20.0, failsafe)), None);
+            assert_eq!(judge.look(&idle(50.0, failsafe)).unwrap().reason, reason);
+        }
     }
 
     #[test]

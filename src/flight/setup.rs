@@ -105,14 +105,22 @@ impl FlightSetup {
     /// # Errors
     /// All lines that the firmware refuses, of the first source that has any.
     pub fn configuration(&self) -> Result<(Configuration, bool), SetupError> {
+        let (configuration, notices) = self.configure()?;
+        Ok((configuration, notices.contains(&SetupNotice::StarterModes)))
+    }
+
+    /// The craft's configuration at boot, and what its user should know of it.
+    fn configure(&self) -> Result<(Configuration, Vec<SetupNotice>), SetupError> {
+        let mut notices = Vec::new();
         let mut configuration = self.stored.clone();
         let of_plan =
             BootLines::settings(format!("settings of plan {}", self.plan.name), &self.plan.settings);
         for lines in std::iter::once(&of_plan).chain(&self.boot_lines) {
-            lines.apply(&mut configuration).map_err(SetupError::BootLines)?;
+            let told = lines.apply(&mut configuration).map_err(SetupError::BootLines)?;
+            notices.extend(told.into_iter().map(SetupNotice::Firmware));
         }
-        let got_starter_modes = configuration.starter_modes();
-        Ok((configuration, got_starter_modes))
+        notices.extend(configuration.starter_modes().then_some(SetupNotice::StarterModes));
+        Ok((configuration, notices))
     }
 
     /// The vehicle at boot, and what its user should know.
@@ -123,13 +131,12 @@ impl FlightSetup {
         if self.remote_controller {
             return self.build_remote();
         }
-        let (configuration, got_starter_modes) = self.configuration()?;
+        let (configuration, notices) = self.configure()?;
         let firmware = self.firmware_options();
         let (home, home_notice) = match self.physics {
             PhysicsSource::Embedded => self.boot_home(),
             PhysicsSource::External => (self.world.home, None),
         };
-        let starter_notice = got_starter_modes.then_some(SetupNotice::StarterModes);
         let world = WorldConfig { home, ..self.world };
         let config = VehicleConfig { world, firmware, configuration, live: self.live };
         let mut vehicle = match self.physics {
@@ -138,7 +145,7 @@ impl FlightSetup {
         }?;
         vehicle.controller_mut().set_build(self.build);
         *vehicle.transmitter_mut().inputs_mut() = self.stick_inputs;
-        Ok((vehicle, home_notice.into_iter().chain(starter_notice).collect()))
+        Ok((vehicle, home_notice.into_iter().chain(notices).collect()))
     }
 
     /// The vehicle at boot whose flight controller runs outside.
@@ -189,6 +196,19 @@ mod tests {
         let starter = ["ARM", "AUTOPILOT", "ANGLE", "ALTHOLD", "POS HOLD"];
         assert_eq!(modes(FlightSetup::default()), (starter.to_vec(), true));
         assert_eq!(modes(with_lines("set ap_max_angle = 25")), (starter.to_vec(), true));
+    }
+
+    #[test]
+    fn a_given_value_that_current_firmware_refuses_is_told() {
+        let told = |lines: &str| -> Vec<String> {
+            let notices = with_lines(lines).build().unwrap().1;
+            let firmware = notices.iter().filter(|notice| matches!(notice, SetupNotice::Firmware(_)));
+            firmware.map(ToString::to_string).collect()
+        };
+        let notices = told("set ap_position_cutoff = 5\nset ap_max_angle = 25");
+        assert_eq!(notices.len(), 1, "{notices:?}");
+        assert!(notices[0].starts_with("ap_position_cutoff = 5 is taken here"), "{notices:?}");
+        assert_eq!(told("set ap_position_cutoff = 30"), [""; 0]);
     }
 
     #[test]

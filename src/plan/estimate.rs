@@ -59,7 +59,7 @@ impl Default for Assumptions {
     /// The firmware's defaults, after the scripted pilot's climb.
     fn default() -> Self {
         Self {
-            max_velocity_mps: 10.0,
+            max_velocity_mps: 5.0,
             climb_mps: 5.0,
             landing_mps: 0.5,
             fence_m: None,
@@ -255,11 +255,11 @@ mod tests {
             waypoint(WaypointType::Land, 0.0, 20, 0, 0),
             waypoint(WaypointType::Flyby, 500.0, 20, 0, 0),
         ]);
-        // 100 m at 5 m/s; 10 m climb at 5 m/s and 30 s; 100 m at 10 m/s and 20 m at 0.5 m/s.
+        // 100 m at 5 m/s; 10 m climb at 5 m/s and 30 s; 100 m at 5 m/s and 20 m at 0.5 m/s.
         let done: Vec<_> = estimate.legs.iter().map(|leg| leg.done_s.map(f64::round)).collect();
-        assert_eq!(done, [Some(20.0), Some(52.0), Some(102.0), None]);
+        assert_eq!(done, [Some(20.0), Some(52.0), Some(112.0), None]);
         assert!((estimate.distance_m - 200.0).abs() < 0.1);
-        assert!((estimate.time_s.unwrap() - 102.0).abs() < 0.1);
+        assert!((estimate.time_s.unwrap() - 112.0).abs() < 0.1);
         assert!(estimate.legs[2].bearing_deg.is_some_and(|bearing| (bearing - 180.0).abs() < 0.1));
         assert_eq!(estimate.legs[1].bearing_deg, None);
     }
@@ -307,25 +307,25 @@ mod tests {
             ]);
             estimate(&plan, HOME, &Assumptions::from_settings(&[setting.to_owned()])).time_s.unwrap()
         };
-        // 40 m up, 100 m on the level at 10 m/s, 20 m down over a leg that is flown in 1 s.
-        assert!((time_s("alt_hold_climb_rate = 50") - (8.0 + 10.0 + 4.0)).abs() < 0.01);
-        assert!((time_s("alt_hold_climb_rate = 20") - (20.0 + 10.0 + 10.0)).abs() < 0.01);
-        assert!((time_s("ALT_HOLD_CLIMB_RATE=1") - (400.0 + 10.0 + 200.0)).abs() < 0.01);
+        // 40 m up, 100 m on the level at 5 m/s, 20 m down over a leg that is flown in 2 s.
+        assert!((time_s("alt_hold_climb_rate = 50") - (8.0 + 20.0 + 4.0)).abs() < 0.01);
+        assert!((time_s("alt_hold_climb_rate = 20") - (20.0 + 20.0 + 10.0)).abs() < 0.01);
+        assert!((time_s("ALT_HOLD_CLIMB_RATE=1") - (400.0 + 20.0 + 200.0)).abs() < 0.01);
         // With 0 the rate stays as it is.
-        assert!((time_s("alt_hold_climb_rate = 0") - (8.0 + 10.0 + 4.0)).abs() < 0.01);
+        assert!((time_s("alt_hold_climb_rate = 0") - (8.0 + 20.0 + 4.0)).abs() < 0.01);
     }
 
     #[test]
     fn settings_change_the_assumptions() {
         let lines = [
-            "ap_max_velocity = 500",
+            "ap_max_velocity = 700",
             "AP_LANDING_DESCENT_RATE = 100",
             "ap_max_distance_from_home = 300",
             "x",
         ];
         let assumptions = Assumptions::from_settings(&lines.map(str::to_owned));
         assert!(
-            (assumptions.max_velocity_mps - 5.0).abs() < 1e-9 && (assumptions.landing_mps - 1.0).abs() < 1e-9
+            (assumptions.max_velocity_mps - 7.0).abs() < 1e-9 && (assumptions.landing_mps - 1.0).abs() < 1e-9
         );
         assert_eq!(assumptions.fence_m, Some(300.0));
         for name in Assumptions::SETTINGS {

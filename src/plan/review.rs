@@ -318,7 +318,7 @@ mod tests {
             all,
             [
                 "waypoint 0 holds forever (duration 0): the waypoints behind it are never flown",
-                "waypoint 0 asks for 50 m/s; ap_max_velocity limits it to 10 m/s",
+                "waypoint 0 asks for 50 m/s; ap_max_velocity limits it to 5 m/s",
                 "waypoint 3 (DELAY) has no effect: no place follows it",
                 "the plan does not end in LAND: the craft stays in the air at its end",
             ]

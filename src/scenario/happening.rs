@@ -144,7 +144,7 @@ pub const RESULTS: [&str; 10] = [
 ];
 
 /// The names of refusals (autopilot and abort).
-pub(super) const REFUSALS: [&str; 15] = [
+pub(super) const REFUSALS: [&str; 16] = [
     "NOT_ARMED",
     "THROTTLE",
     "NO_FIX",
@@ -155,6 +155,7 @@ pub(super) const REFUSALS: [&str; 15] = [
     "BAD_WAYPOINT",
     "NO_HOME",
     "GEOFENCE",
+    "THROTTLE_MIN",
     "FAILSAFE",
     "ABORTED",
     "STALLED",

@@ -1,7 +1,7 @@
 //! What the flight controller has to say to its pilot.
 
 /// Something the pilot should read; `Display` is the sentence.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::IntoStaticStr)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display)]
 pub enum FirmwareNotice {
     /// The airframe type of the configuration is not flown.
     #[strum(
@@ -44,6 +44,20 @@ pub enum FirmwareNotice {
     /// The inertial sensors hang.
     #[strum(to_string = "The inertial sensors repeat one sample: they hang.")]
     ImuFrozen,
+    /// A setting took a value that current firmware refuses.
+    #[strum(
+        to_string = "{name} = {value} is taken here, but current Betaflight refuses it: it allows {min} to {max}."
+    )]
+    BeyondCurrentFirmware {
+        /// Name of the setting.
+        name: &'static str,
+        /// The value that it took.
+        value: i64,
+        /// Least value of current firmware.
+        min: i64,
+        /// Greatest value of current firmware.
+        max: i64,
+    },
     /// A crash was detected.
     #[strum(to_string = "Crash detected: the craft is levelled, the sticks rest.")]
     CrashDetected,

@@ -34,6 +34,13 @@ pub enum Refusal {
         /// The fence, m.
         limit_m: u16,
     },
+    /// The least throttle lifts the craft.
+    ThrottleMin {
+        /// `ap_throttle_min`, µs.
+        throttle_min_us: u16,
+        /// Hover throttle that this flight has shown, µs.
+        hover_us: u16,
+    },
     /// The receiver failsafe is active.
     Failsafe,
     /// The mission was given up for this cause; cycle the switch.
@@ -77,6 +84,12 @@ impl Refusal {
                 f64::from(*distance_cm) / 100.0
             )
             .into(),
+            Self::ThrottleMin { throttle_min_us, hover_us } => format!(
+                "ap_throttle_min is {throttle_min_us} µs, but this craft hovers at {hover_us} µs and could not descend: set \
+                 ap_throttle_min = {} or less.",
+                highest_floor_us(*hover_us)
+            )
+            .into(),
             Self::Failsafe => "RX failsafe is active.".into(),
             Self::Aborted(why) => match why {
                 AbortReason::Stalled => {
@@ -90,5 +103,27 @@ impl Refusal {
                 AbortReason::NoPlan => "The plan was cleared in flight: upload a plan.".into(),
             },
         }
+    }
+}
+
+/// The highest `ap_throttle_min` that lets a craft with this hover throttle come down, in tens of µs.
+fn highest_floor_us(hover_us: u16) -> u16 {
+    (hover_us.saturating_sub(100) / 10 * 10).max(1050)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_throttle_floor_above_the_hover_is_refused_with_value_limit_and_edit() {
+        let refusal = Refusal::ThrottleMin { throttle_min_us: 1400, hover_us: 1347 };
+        assert_eq!(refusal.to_string(), "THROTTLE_MIN");
+        assert_eq!(
+            refusal.sentence(),
+            "ap_throttle_min is 1400 µs, but this craft hovers at 1347 µs and could not descend: set ap_throttle_min = \
+             1240 or less."
+        );
+        assert_eq!(highest_floor_us(1060), 1050, "the least that the setting takes");
     }
 }

@@ -292,6 +292,9 @@ fn action_after(state: &AppState, refusal: Refusal) -> String {
             let cli = key(Action::Show(Panel::Cli));
             format!("{cli} CLI: set ap_max_distance_from_home, or move the waypoint")
         }
+        Refusal::ThrottleMin { .. } => {
+            format!("{} CLI: set ap_throttle_min", key(Action::Show(Panel::Cli)))
+        }
         Refusal::Failsafe => format!("{} restores the link", key(Action::CutRc)),
         Refusal::Aborted(_) => format!("{} off and on again resumes", key(Action::Autopilot)),
     }

@@ -93,6 +93,7 @@ fn engagement() {
             heading_valid: case["heading_ok"].as_bool().unwrap_or(true),
             plan: check_records(num(&case, "count") as usize, records.take(40)),
             fence: pre_flight(limit_m, flag(&case, "home"), kinds),
+            floor: Ok(()),
             failsafe: flag(&case, "failsafe"),
             aborted,
         };

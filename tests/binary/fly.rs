@@ -101,13 +101,15 @@ fn legs_are_flown_at_their_speed() {
     let sandbox = Sandbox::new();
     let text = std::fs::read_to_string(plan("square.toml")).expect("the square");
     sandbox.write("slow.toml", &text.replace("alt_m = 50", "alt_m = 50\nspeed_mps = 5"));
-    // Ten seconds after the start of a leg, until the craft brakes for its end. At the default of 10 m/s only the leg
+    // Ten seconds after the start of a leg, until the craft brakes for its end. At 10 m/s only the leg
     // to the FLYBY, which is not braked for, is long enough.
     for (file, mps, legs, until_m) in
         [("slow.toml", 5.0, [1.0, 2.0, 3.0].as_slice(), 20.0), ("square", 10.0, &[1.0], 0.0)]
     {
         for (noise, extra_mps) in [("none", 0.0), ("real", GPS_MPS)] {
-            let flown = sandbox.fly(&[file, "--noise", noise, "--samples", "20"]).ends(0, "complete");
+            let flown = sandbox
+                .fly(&[file, "--noise", noise, "--samples", "20", "--set", "ap_max_velocity=1000"])
+                .ends(0, "complete");
             for leg in legs {
                 let start = flown
                     .all("state")

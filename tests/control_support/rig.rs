@@ -212,6 +212,7 @@ impl Rig {
             cos_tilt: estimate.cos_tilt,
             accel_ne: estimate.accel_ne,
             throttle_us: self.controller.state().throttle_us,
+            hover_us: None,
             stick_roll: self.received.stick_roll,
             stick_pitch: self.received.stick_pitch,
             stick_yaw: self.received.stick_yaw,

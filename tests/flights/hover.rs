@@ -2,7 +2,8 @@
 
 use crate::checks::{Checks, assert_met, greatest};
 use crate::rig::{Rig, Sample, world};
-use betadeck::telemetry::{DisarmReason, EventKind, NavState};
+use betadeck::sim::Airframe;
+use betadeck::telemetry::{DisarmReason, EventKind, FirmwareEvent, NavEvent, NavState, Refusal};
 
 /// The firmware's own altitude gains instead of the guide's.
 const DEFAULT_GAINS: &str = "
@@ -66,4 +67,63 @@ waypoint insert 1 40.4635901 -79.5182000 1200 300 LAND 0 NONE"
         checks.verdict(&format!("take-off, hover {hover}, seed {seed}"), &rig.story())
     };
     assert_met([1257, 1507, 1700].into_iter().flat_map(|hover| [0, 1].map(|seed| take_off(hover, seed))));
+}
+
+/// A craft that loses three times as much thrust to a climb, and has three times the drag in it.
+fn draggy(airframe: Airframe) -> Airframe {
+    let mut airframe = airframe;
+    airframe.inflow_coeff *= 3.0;
+    airframe.body_drag.z *= 3.0;
+    airframe
+}
+
+fn climb(airframe: Airframe, gains: &str, to_m: f64, takeoff_m: f64) -> Option<String> {
+    let (mut world, _) = world(0);
+    let flight = format!("{} from {takeoff_m} to {to_m} m, gains {gains:?}", airframe.name);
+    world.airframe = draggy(airframe);
+    let lines = format!("{gains}waypoint insert 0 40.4635000 -79.5182000 {:.0} 0 HOLD 0 NONE", 100.0 * to_m);
+    let mut rig = Rig::new(world, &lines, takeoff_m);
+    rig.engaged().fly(60.0);
+    let mut checks = Checks::default();
+    checks.at_most("above its altitude", greatest(rig.span(0.0, 60.0).map(|s| s.alt - to_m)), 1.5);
+    checks.at_most("off after 50 s", greatest(rig.span(50.0, 60.0).map(|s| (s.alt - to_m).abs())), 1.0);
+    checks.verdict(&flight, &rig.story())
+}
+
+#[test]
+fn a_climb_against_drag_is_not_taken_for_hover() {
+    let airframes = [Airframe::iris(), Airframe::five_inch()];
+    assert_met(airframes.iter().flat_map(|airframe| {
+        ["\n", DEFAULT_GAINS].into_iter().flat_map(|gains| {
+            [(20.0, 10.0), (40.0, 10.0), (10.0, 0.0)]
+                .map(|(to_m, takeoff_m)| climb(airframe.clone(), gains, to_m, takeoff_m))
+        })
+    }));
+}
+
+/// A floor of the throttle that lifts the craft: seen in the air it is refused with the numbers, engaged on the ground the
+/// craft still stays where it is sent.
+#[test]
+fn a_throttle_floor_above_the_hover_does_not_carry_the_craft_away() {
+    let (mut world, _) = world(0);
+    world.airframe = Airframe::five_inch();
+    let lines = "set ap_throttle_min = 1400\nwaypoint insert 0 40.4635901 -79.5182000 2000 500 HOLD 0 NONE";
+    let mut in_the_air = Rig::new(world.clone(), lines, 20.0);
+    in_the_air.until(90.0, "the refusal", |rig| {
+        rig.events.iter().any(|event| {
+            matches!(
+                event.kind,
+                EventKind::Firmware(FirmwareEvent::Nav(NavEvent::Refused(Refusal::ThrottleMin {
+                    throttle_min_us: 1400,
+                    hover_us: 1250..1400
+                })))
+            )
+        })
+    });
+    let highest = |rig: &Rig| greatest(rig.samples.iter().map(|s| s.alt));
+    in_the_air.fly(20.0);
+    assert!(highest(&in_the_air) < 30.0, "{} m", highest(&in_the_air));
+    let mut on_the_ground = Rig::new(world, lines, 0.0);
+    on_the_ground.engaged().fly(60.0);
+    assert!(highest(&on_the_ground) < 30.0, "{} m", highest(&on_the_ground));
 }

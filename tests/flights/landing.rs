@@ -89,3 +89,28 @@ fn rough_landing(seed: u64) -> Option<String> {
 fn landing_in_rough_air_stands_level() {
     assert_met((1..=20).map(rough_landing));
 }
+
+/// A landing whose fix jumps by `size_m` towards `bearing_deg` while the craft is lower than 2 m.
+fn jump_low(size_m: u32, bearing_deg: u32, wind: &str, seed: u64) -> Option<String> {
+    let (mut world, _) = world(seed);
+    world.wind = wind.parse().unwrap();
+    world.faults = vec![format!("gps-glitch@26,4,{size_m}@{bearing_deg}").parse().unwrap()];
+    let flight = format!("jump of {size_m} m towards {bearing_deg}, wind {wind}, seed {seed}");
+    let lines = "set ap_max_angle = 50\nwaypoint insert 0 40.4635000 -79.5182000 1500 0 LAND 0 NONE";
+    let mut rig = Rig::new(world, lines, 15.0);
+    rig.engaged().until(120.0, "the end", |rig| rig.disarmed().is_some() || rig.vehicle.crashed());
+    let mut checks = Checks::default();
+    checks.holds("does not tip over", !rig.vehicle.crashed());
+    checks.same("disarmed", rig.disarmed().map(|(_, reason)| reason), Some(DisarmReason::Landing));
+    checks.verdict(&flight, &rig.story())
+}
+
+#[test]
+fn a_fix_that_jumps_low_in_a_landing_does_not_tip_the_craft_over() {
+    let jumps = [5, 10, 15, 30].into_iter().flat_map(|size| [0, 90, 225].map(|bearing| (size, bearing)));
+    assert_met(jumps.flat_map(|(size, bearing)| {
+        ["0@0", "3@0", "5@200"]
+            .into_iter()
+            .flat_map(move |wind| [1, 2].map(|seed| jump_low(size, bearing, wind, seed)))
+    }));
+}

@@ -92,3 +92,38 @@ fn timed(seed: u64) -> Option<String> {
 fn orbit_ends_after_its_time() {
     assert_met([timed(0), timed(1)]);
 }
+
+/// An orbit whose rate is limited by the speed or by the lean: radius, m; rate, °/s; `ap_max_velocity`, cm/s.
+fn fast(radius_m: f64, rate_dps: u32, speed_cms: u32, holds: &str) -> Option<String> {
+    let (world, _) = world(0);
+    let lines = format!(
+        "set ap_hold_orbit_radius = {:.0}\nset ap_max_turn_rate = {rate_dps}\nset ap_max_velocity = {speed_cms}\n{holds}\n\
+         waypoint insert 0 40.4636400 -79.5182000 2000 0 HOLD 0 ORBIT",
+        100.0 * radius_m
+    );
+    let mut rig = Rig::new(world, &lines, 20.0);
+    rig.engaged().fly(180.0);
+    let mut checks = Checks::default();
+    let centre = rig.waypoint(0);
+    let radii: Vec<f64> = rig.span(90.0, 180.0).map(|s| s.from(centre)).collect();
+    checks.within("least radius", -greatest(radii.iter().map(|r| -r)), 0.95 * radius_m, 1.05 * radius_m);
+    checks.within("greatest radius", greatest(radii.iter().copied()), 0.95 * radius_m, 1.05 * radius_m);
+    let speed = greatest(rig.span(90.0, 180.0).map(Sample::speed));
+    checks.at_most("speed", speed, 1.15 * f64::from(speed_cms) / 100.0);
+    checks.verdict(&format!("{radius_m} m at {rate_dps} deg/s, {speed_cms} cm/s {holds}"), &rig.story())
+}
+
+#[test]
+fn a_fast_orbit_keeps_its_radius() {
+    assert_met([
+        fast(3.0, 30, 500, ""),
+        fast(3.0, 90, 500, ""),
+        fast(10.0, 20, 500, ""),
+        fast(10.0, 30, 500, ""),
+        fast(10.0, 60, 1000, ""),
+        fast(10.0, 60, 1000, "set ap_max_angle = 50"),
+        fast(20.0, 20, 500, ""),
+        fast(50.0, 10, 1000, ""),
+        fast(10.0, 30, 500, "set ap_velocity_control_enable = OFF"),
+    ]);
+}

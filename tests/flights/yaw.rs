@@ -1,7 +1,7 @@
 //! Where the nose points.
 
 use betadeck::pilot::StickInput;
-use betadeck::sim::Turbulence;
+use betadeck::sim::{Airframe, Turbulence};
 use betadeck::telemetry::NavState;
 
 use crate::checks::{Checks, assert_met, greatest};
@@ -73,4 +73,44 @@ fn the_yaw_stick_chooses_the_heading_that_is_kept() {
     rig.fly(60.0);
     let off = greatest(rig.span(released + 5.0, 1e9).map(|sample| turned(sample.heading, chosen).abs()));
     assert!(off < 10.0, "{off}");
+}
+
+/// The greatest true yaw rate over a round of the square may be the limit, and 1 °/s + 5 % more.
+fn yaw_rate(airframe: Airframe, mode: &str, limit_dps: u32, cap_dps: Option<u32>) -> Option<String> {
+    let (mut world, _) = world(0);
+    let flight = format!("{}, {mode}, {limit_dps} deg/s, cap {cap_dps:?}", airframe.name);
+    world.airframe = airframe;
+    let settings =
+        format!("set ap_yaw_mode = {mode}\nset ap_max_yaw_rate = {limit_dps}\nset ap_yaw_p = 200\n");
+    let square: Vec<String> = seven_squares(500).lines().take(5).map(str::to_owned).collect();
+    let cap = cap_dps.map(|cap| format!("waypoint insert 0 0 0 0 {cap} YAW_RATE 0 NONE\n"));
+    let mut rig = Rig::new(world, &(settings + &square.join("\n")), 20.0);
+    if let Some(line) = &cap {
+        rig.cli(line);
+    }
+    rig.engaged().until_state(200.0, NavState::Complete);
+    let most = f64::from(cap_dps.unwrap_or(limit_dps));
+    // The mean over a tenth of a second, so that the shaking of a corner is not taken for a turn.
+    let flown: Vec<f64> = rig.span(0.0, 1e9).map(|sample| sample.heading).collect();
+    let fastest = greatest(flown.windows(11).map(|span| turned(span[10], span[0]).abs() / 0.1));
+    let mut checks = Checks::default();
+    checks.within("true yaw rate", fastest, 0.9 * most, 1.0 + 1.05 * most);
+    checks.verdict(&flight, &rig.story())
+}
+
+#[test]
+fn the_craft_turns_no_faster_than_ap_max_yaw_rate() {
+    let airframes = [Airframe::iris(), Airframe::five_inch()];
+    assert_met(airframes.into_iter().flat_map(|airframe| {
+        [
+            ("VELOCITY", 10, None),
+            ("VELOCITY", 20, None),
+            ("VELOCITY", 30, None),
+            ("VELOCITY", 60, None),
+            ("BEARING", 20, None),
+            ("BEARING", 30, None),
+            ("VELOCITY", 90, Some(20)),
+        ]
+        .map(|(mode, limit, cap)| yaw_rate(airframe.clone(), mode, limit, cap))
+    }));
 }

@@ -19,6 +19,8 @@ const FLARE: f64 = 0.25;
 const SLOWEST_FLARE_MPS: f64 = 0.3;
 /// Limit of the integral, µs.
 const INTEGRAL_LIMIT_US: f64 = 200.0;
+/// Speed of the setpoint at which the integral works at half its gain, m/s.
+const HALF_INTEGRAL_MPS: f64 = 0.5;
 /// Fastest change of the throttle, µs/s.
 pub const THROTTLE_SLEW_US_PER_S: f64 = 5000.0;
 /// A target this far above a craft on the ground asks it to take off, m.
@@ -28,6 +30,9 @@ const BELOW_M: f64 = 0.2;
 const SINKING_MPS: f64 = 0.1;
 /// Throttle below its limit that is one to spare, µs.
 const SPARE_US: f64 = 20.0;
+/// Room below the hover throttle that a craft needs to come down, µs, and the least floor of the parameters, µs.
+const DESCENT_RESERVE_US: f64 = 100.0;
+const LEAST_FLOOR_US: f64 = 1050.0;
 /// Fastest change of the throttle limits in use, µs/s.
 const LIMIT_SLEW_US_PER_S: f64 = 500.0;
 
@@ -182,6 +187,12 @@ impl AltitudeController {
     #[must_use]
     pub fn hover_us(&self) -> f64 {
         self.hover.hover_us()
+    }
+
+    /// The hover throttle that this flight has shown, µs; `None` before.
+    #[must_use]
+    pub fn learned_hover_us(&self) -> Option<f64> {
+        self.hover.learned_us()
     }
 
     /// Where a throttle stick means no climb, µs: the hover throttle that this flight has shown, before that the parameter,
@@ -359,7 +370,13 @@ impl AltitudeController {
 
     fn integrate(&mut self, now: &AltitudeMeasurement, landing: bool, params: &Params, dt: f64) {
         let error_cm = (self.setpoint_m - now.altitude_m) * 100.0;
-        let share = if error_cm.abs() > 200.0 && !landing { 0.1 } else { 1.0 };
+        // The lag of a climb is not an error to remember: it would carry the craft past its altitude.
+        let steady = 1.0 / (1.0 + (self.setpoint_rate / HALF_INTEGRAL_MPS).powi(2));
+        let share = match (landing, error_cm.abs() > 200.0) {
+            (true, _) => 1.0,
+            (false, true) => 0.1 * steady,
+            (false, false) => steady,
+        };
         self.integral_us += 0.003 * f64::from(params.altitude_i) * error_cm * share * dt;
         // What holds a craft that stands is no throttle to hover with.
         let stands = self.relief_us > 0.0;
@@ -371,9 +388,19 @@ impl AltitudeController {
         self.integral_us = (self.integral_us - taken).clamp(-INTEGRAL_LIMIT_US, INTEGRAL_LIMIT_US);
     }
 
+    /// Least throttle, µs. A floor above the hover throttle that this flight has shown would carry the craft away; it is
+    /// refused at the engagement, but engaging on the ground comes before anything is known.
+    fn floor_us(&self, params: &Params) -> f64 {
+        let floor_us = f64::from(params.throttle_min);
+        match self.hover.learned_us() {
+            Some(hover_us) if hover_us < floor_us => (hover_us - DESCENT_RESERVE_US).max(LEAST_FLOOR_US),
+            Some(_) | None => floor_us,
+        }
+    }
+
     /// The throttle limits, led to the parameters' at a limited rate.
     fn slew_limits(&mut self, params: &Params, dt: f64) -> (f64, f64) {
-        let wanted = (f64::from(params.throttle_min), f64::from(params.throttle_max));
+        let wanted = (self.floor_us(params), f64::from(params.throttle_max));
         let step = LIMIT_SLEW_US_PER_S * dt;
         let slew = |old: f64, new: f64| old + (new - old).clamp(-step, step);
         let limits = match self.limits_us {

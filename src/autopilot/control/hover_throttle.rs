@@ -18,8 +18,14 @@ const SLOW_S: f64 = 10.0;
 const FAR_M: f64 = 2.0;
 /// Time constant, beside the fast one, with which it is followed there, s: something has changed.
 const FAR_S: f64 = 1.0;
-/// Wanted climb rate at which the estimate follows half as fast, m/s: climbing and sinking take another throttle than hovering.
+/// Wanted climb rate at which an unknown hover throttle is followed half as fast, m/s.
 const HALF_CLIMB_MPS: f64 = 1.0;
+/// Throttle is hover throttle while the craft is slower than this, m/s, accelerates less than this, m/s², and leans less
+/// than this, for so long, s. A steady climb has no acceleration either, but needs throttle against inflow and drag.
+const STILL_CLIMB_MPS: f64 = 0.3;
+const STILL_ACCEL_MPS2: f64 = 0.5;
+const STILL_LEAN_RAD: f64 = 15.0 * std::f64::consts::PI / 180.0;
+const STILL_S: f64 = 0.5;
 /// How long the craft must have been airborne before an estimate counts at engaging, s.
 const SETTLED_S: f64 = 2.0;
 /// Altitude above home from which the craft counts as airborne, m.
@@ -31,13 +37,17 @@ const AIRBORNE_M: f64 = 1.0;
 pub struct HoverThrottleEstimator {
     /// Hover throttle in use, µs.
     hover_us: f64,
-    /// Estimate from the balance, µs, when there is one.
+    /// Estimate from the balance while the craft hovers, µs, when there is one.
     estimate_us: Option<f64>,
+    /// Balance at any speed, µs: inexact in a climb, but better than a parameter that may be far off.
+    balance_us: Option<f64>,
     throttle_filter: f64,
     climb_filter: f64,
     airborne_s: f64,
-    /// The hover throttle in use was found at a lift-off.
-    is_found: bool,
+    /// How long the throttle has been hover throttle, s.
+    still_s: f64,
+    /// Hover throttle found at a lift-off, µs.
+    found_us: Option<f64>,
     /// Quiet time in the air since engaging, s.
     followed_s: f64,
 }
@@ -47,10 +57,12 @@ impl Default for HoverThrottleEstimator {
         Self {
             hover_us: 1500.0,
             estimate_us: None,
+            balance_us: None,
             throttle_filter: 0.0,
             climb_filter: 0.0,
             airborne_s: 0.0,
-            is_found: false,
+            still_s: 0.0,
+            found_us: None,
             followed_s: 0.0,
         }
     }
@@ -82,7 +94,7 @@ impl HoverThrottleEstimator {
     #[must_use]
     pub fn learned_us(&self) -> Option<f64> {
         let held = self.estimate_us.filter(|_| self.airborne_s >= SETTLED_S);
-        held.or(self.is_found.then_some(self.hover_us))
+        held.or(self.found_us)
     }
 
     /// Takes one cycle, flown by anyone; one that is not finite is left out.
@@ -90,8 +102,8 @@ impl HoverThrottleEstimator {
         if !(now.throttle_us + now.climb_mps + now.altitude_m + now.cos_tilt + dt).is_finite() {
             return;
         }
-        let Some(estimate) = self.estimate_us else {
-            self.estimate_us = Some(now.throttle_us);
+        let Some(balance_us) = self.balance_us else {
+            self.balance_us = Some(now.throttle_us);
             self.throttle_filter = now.throttle_us;
             self.climb_filter = now.climb_mps;
             return;
@@ -104,8 +116,22 @@ impl HoverThrottleEstimator {
         let load = (1.0 + accel / GRAVITY).clamp(0.3, 3.0);
         let balance = (now.cos_tilt.clamp(0.5, 1.0) / load).sqrt();
         let instant = now.zero_us + (self.throttle_filter - now.zero_us) * balance;
-        self.estimate_us = Some(estimate + (instant - estimate) * dt / (FAST_S + dt));
+        let step = dt / (FAST_S + dt);
+        self.balance_us = Some(balance_us + (instant - balance_us) * step);
         self.airborne_s = if now.altitude_m > AIRBORNE_M { self.airborne_s + dt } else { 0.0 };
+        let is_still = now.climb_mps.abs() < STILL_CLIMB_MPS
+            && accel.abs() < STILL_ACCEL_MPS2
+            && now.cos_tilt > STILL_LEAN_RAD.cos();
+        self.still_s = if is_still { self.still_s + dt } else { 0.0 };
+        if self.hovers() && self.airborne_s > 0.0 {
+            let estimate = self.estimate_us.unwrap_or(instant);
+            self.estimate_us = Some(estimate + (instant - estimate) * step);
+        }
+    }
+
+    /// Whether the throttle is hover throttle.
+    fn hovers(&self) -> bool {
+        self.still_s >= STILL_S
     }
 
     /// The craft has just been lifted off the ground by the throttle above `zero_us` (µs), feeling `load` times gravity.
@@ -114,15 +140,16 @@ impl HoverThrottleEstimator {
         let hover_us = zero_us + (self.throttle_filter - zero_us) / load.clamp(1.0, 4.0).sqrt();
         self.hover_us =
             if hover_us.is_finite() { hover_us.clamp(HOVER_MIN_US, HOVER_MAX_US) } else { self.hover_us };
-        self.estimate_us = Some(self.hover_us);
+        self.estimate_us = None;
         self.followed_s = 0.0;
-        self.is_found = true;
+        self.found_us = Some(self.hover_us);
     }
 
-    /// Chooses the hover throttle at engaging: what held the craft when it has been airborne for a while, else what was found
-    /// at the lift-off, else `configured_us`.
+    /// Chooses the hover throttle at engaging: what held the craft when it has been airborne for a while, else the balance of
+    /// one that has not hovered yet, else what was found at the lift-off, else `configured_us`.
     pub fn engage(&mut self, configured_us: f64) {
-        let known = self.learned_us();
+        let settled = |estimate: &f64| self.airborne_s >= SETTLED_S && estimate.is_finite();
+        let known = self.estimate_us.filter(settled).or(self.balance_us.filter(settled)).or(self.found_us);
         self.hover_us = known.unwrap_or(configured_us).clamp(HOVER_MIN_US, HOVER_MAX_US);
         // What held the craft needs no quick correction: a climb right after engaging would only mislead it.
         self.followed_s = if known.is_some() { FAST_FOR_S } else { 0.0 };
@@ -130,30 +157,43 @@ impl HoverThrottleEstimator {
 
     /// Follows the estimate in the first quiet seconds in the air, and whenever the altitude error is so large that the
     /// integral rests; otherwise takes over the altitude `integral_us` bit by bit. Returns what the integral has to give
-    /// up. Learns little while a climb is wanted.
+    /// up. Once a hover throttle is known it learns only while the craft hovers.
     pub fn learn(&mut self, integral_us: f64, error_m: f64, wanted_climb_mps: f64, dt: f64) -> f64 {
-        let before = self.hover_us;
-        let quiet = 1.0 / (1.0 + (wanted_climb_mps / HALF_CLIMB_MPS).powi(2));
         let is_new = self.followed_s < FAST_FOR_S;
-        if is_new || error_m.abs() > FAR_M {
-            // An average over the quiet time since engaging, never faster than the estimate itself; a climb tells
-            // nothing.
-            // But one that runs ahead of its setpoint has the wrong hover throttle.
-            let runs_ahead = error_m.abs() > FAR_M && error_m * wanted_climb_mps < 0.0;
-            let quiet = if runs_ahead { 1.0 } else { quiet * quiet };
-            let followed_s = if error_m.abs() > FAR_M { self.followed_s.min(FAR_S) } else { self.followed_s };
-            let step = quiet * dt / (FAST_S + followed_s);
-            let estimate = self.estimate_us.unwrap_or(before);
-            // A craft that stands on the ground needs at least the throttle that did not lift it.
-            let estimate = if self.airborne_s > 0.0 { estimate } else { estimate.max(before) };
-            self.hover_us += (estimate - before) * step;
-            self.hover_us = self.hover_us.clamp(HOVER_MIN_US, HOVER_MAX_US);
-            if is_new && self.airborne_s > 0.0 {
-                self.followed_s += quiet * dt;
+        if !self.hovers() {
+            if is_new && self.learned_us().is_none() {
+                self.follow_balance(wanted_climb_mps, dt);
             }
             return 0.0;
         }
-        self.hover_us = (before + integral_us * quiet * dt / SLOW_S).clamp(HOVER_MIN_US, HOVER_MAX_US);
+        let before = self.hover_us;
+        let is_far = error_m.abs() > FAR_M;
+        if is_new || is_far {
+            let followed_s = if is_far { self.followed_s.min(FAR_S) } else { self.followed_s };
+            self.follow(self.estimate_us, dt / (FAST_S + followed_s));
+            if is_new && self.airborne_s > 0.0 {
+                self.followed_s += dt;
+            }
+            return 0.0;
+        }
+        self.hover_us = (before + integral_us * dt / SLOW_S).clamp(HOVER_MIN_US, HOVER_MAX_US);
         self.hover_us - before
+    }
+
+    /// Nothing is known yet, and waiting for a hover could take the craft down: follows the balance, hardly in a climb.
+    fn follow_balance(&mut self, wanted_climb_mps: f64, dt: f64) {
+        let quiet = (1.0 + (wanted_climb_mps / HALF_CLIMB_MPS).powi(2)).powi(-2);
+        self.follow(self.balance_us, quiet * dt / (FAST_S + self.followed_s));
+        if self.airborne_s > 0.0 {
+            self.followed_s += quiet * dt;
+        }
+    }
+
+    fn follow(&mut self, estimate_us: Option<f64>, share: f64) {
+        let before = self.hover_us;
+        let estimate = estimate_us.unwrap_or(before);
+        // A craft that stands on the ground needs at least the throttle that did not lift it.
+        let estimate = if self.airborne_s > 0.0 { estimate } else { estimate.max(before) };
+        self.hover_us = (before + (estimate - before) * share).clamp(HOVER_MIN_US, HOVER_MAX_US);
     }
 }

@@ -23,6 +23,12 @@ const HALF_INTEGRAL_ACCEL: f64 = 0.3;
 /// Rate at which the velocity setpoint closes small differences, rad/s: without it a turn of the direction at walking
 /// pace would kick the lean.
 const SETPOINT_RPS: f64 = 5.0;
+/// How much faster than its target the craft may follow a pattern.
+const CHASE: f64 = 1.1;
+/// Distance from the target, in radii of the pattern, within which the trim is learned, and the most of it, in speeds of
+/// the target.
+const ON_PATTERN: f64 = 0.5;
+const MOST_TRIM: f64 = 0.5;
 /// How far the speed setpoint may lead the speed while the thrust limits the lean, m/s.
 const SPEED_LEAD_MPS: f64 = 1.0;
 /// Fastest change of the lean limit in use, rad/s.
@@ -86,9 +92,9 @@ pub struct PositionTarget {
     pub aim: Vector2<f64>,
     /// The point to reach, m.
     pub target: Vector2<f64>,
-    /// Velocity of the target, m/s (direct law).
+    /// Velocity of the target, m/s; zero unless it moves along a pattern.
     pub target_velocity: Vector2<f64>,
-    /// Acceleration of the target, m/s² (direct law).
+    /// Acceleration of the target, m/s².
     pub target_accel: Vector2<f64>,
     /// Fly on at full speed instead of stopping at the target.
     pub pass_through: bool,
@@ -122,6 +128,8 @@ pub struct PositionController {
     speed: f64,
     velocity_setpoint: Vector2<f64>,
     accel_setpoint: Vector2<f64>,
+    /// Speed added on a pattern, along it and towards its centre, m/s.
+    pattern_trim: Vector2<f64>,
     accel_filtered: Vector2<f64>,
     /// Integral of the speed law, rad.
     speed_integral: Vector2<f64>,
@@ -148,6 +156,7 @@ impl PositionController {
         self.speed_integral *= keep;
         self.direct_integral *= keep;
         self.accel_filtered = now.accel;
+        self.pattern_trim = Vector2::zeros();
         self.velocity_setpoint = now.velocity;
         self.speed = now.velocity.norm();
         self.saturated = false;
@@ -231,17 +240,51 @@ impl PositionController {
         } else {
             stop_speed_mps((target.target - now.position).norm(), target.speed_mps, params)
         };
+        let direction = (target.aim - now.position).try_normalize(1e-6).unwrap_or_default();
+        self.trim_pattern(now, target, params, dt);
+        let frame = pattern_frame(target);
+        let chase = match frame {
+            Some(frame) => {
+                let most = CHASE * target.speed_mps.max(target.target_velocity.norm());
+                let trim = frame[0] * self.pattern_trim.x + frame[1] * self.pattern_trim.y;
+                (target.target_velocity + direction * demand + trim).cap_magnitude(most)
+            }
+            None => direction * demand,
+        };
+        let demand = if frame.is_some() { chase.norm() } else { demand };
         let brake = params.max_accel_mps2();
         self.speed += (demand - self.speed).clamp(-brake * dt, params.build_up_accel_mps2() * dt);
         if self.max_lean_rad(params) < params.max_lean_rad() {
             // A speed that the lean cannot hold is not asked for.
             self.speed = self.speed.min(now.velocity.norm() + SPEED_LEAD_MPS);
         }
-        let direction = (target.aim - now.position).try_normalize(1e-6).unwrap_or_default();
+        let direction = chase.try_normalize(1e-6).unwrap_or(direction);
         let left = direction * self.speed - self.velocity_setpoint;
-        let step = (left * (SETPOINT_RPS * dt).min(1.0)).cap_magnitude(brake * dt);
+        let mut step = (left * (SETPOINT_RPS * dt).min(1.0)).cap_magnitude(brake * dt);
+        if frame.is_some() && demand > 0.0 {
+            // The turn of the pattern itself needs no error to be flown.
+            step += target.target_accel * (dt * (self.speed / demand).min(1.0));
+        }
         self.velocity_setpoint += step;
         self.accel_setpoint = if dt > 0.0 { step / dt } else { Vector2::zeros() };
+    }
+
+    /// Learns what the craft lacks on a pattern. Seen from a craft that circles, drag and lags stay where they are, so that
+    /// their sum can be found slowly, which the estimate of the wind cannot.
+    fn trim_pattern(&mut self, now: &PositionMeasurement, target: &PositionTarget, params: &Params, dt: f64) {
+        let Some([along, inward]) = pattern_frame(target) else {
+            self.pattern_trim = Vector2::zeros();
+            return;
+        };
+        let error = target.target - now.position;
+        let speed = target.target_velocity.norm();
+        let radius_m = speed * speed / target.target_accel.norm().max(1e-6);
+        if self.saturated || error.norm() > ON_PATTERN * radius_m {
+            return;
+        }
+        let gain = (0.025 * f64::from(params.position_p) / 2.0).powi(2);
+        let trim = self.pattern_trim + Vector2::new(along.dot(&error), inward.dot(&error)) * (gain * dt);
+        self.pattern_trim = trim.cap_magnitude(MOST_TRIM * speed);
     }
 
     fn filter_accel(&mut self, now: &PositionMeasurement, params: &Params, dt: f64) {
@@ -304,6 +347,7 @@ impl PositionController {
             + self.direct_integral * i
             + (target.target_velocity - now.velocity) * d
             + (target.target_accel - self.accel_filtered) * a
+            + target.target_accel.map(|axis| (axis / GRAVITY).atan())
     }
 
     fn start_transfer(&mut self, old: Vector2<f64>, new: Vector2<f64>) {
@@ -325,6 +369,11 @@ impl PositionController {
         self.limit_rad = Some(limit);
         limit
     }
+}
+
+/// The directions along a pattern and towards its centre; `None` while the target stands.
+fn pattern_frame(target: &PositionTarget) -> Option<[Vector2<f64>; 2]> {
+    Some([target.target_velocity.try_normalize(1e-3)?, target.target_accel.try_normalize(1e-6)?])
 }
 
 fn direct_error(now: &PositionMeasurement, target: &PositionTarget) -> Vector2<f64> {

@@ -10,6 +10,10 @@ const RAMP_S: f64 = 2.0;
 const HYBRID_M: f64 = 10.0;
 /// Fastest change of the demand, deg/s².
 pub const YAW_SLEW_DPS2: f64 = 180.0;
+/// Fastest growth of the demand: a share of the greatest rate a second, and this much more, deg/s². The rate loop overshoots
+/// a quicker change, and the greatest rate is a limit of the true one.
+const GROWTH_PER_S: f64 = 0.7;
+const GROWTH_DPS2: f64 = 6.0;
 /// Share of the minimum speed below which the course is given up.
 const RELEASE: f64 = 0.75;
 
@@ -105,11 +109,25 @@ impl YawController {
         }
         self.params = Some(*params);
         let faded = self.transfer.apply(rate, dt);
-        let wanted = if faded.is_finite() { faded } else { 0.0 };
-        let step = YAW_SLEW_DPS2 * dt;
-        self.last_dps += (wanted - self.last_dps).clamp(-step, step);
+        // A craft that turns too fast already is asked for less.
+        let excess_dps = (facts.yaw_rate_rps.to_degrees().abs() - max_dps).max(0.0);
+        let allowed_dps = if excess_dps > 0.0 { (max_dps - excess_dps).max(0.0) } else { f64::INFINITY };
+        let wanted = if faded.is_finite() { faded.clamp(-allowed_dps, allowed_dps) } else { 0.0 };
+        self.last_dps = slewed(self.last_dps, wanted, GROWTH_PER_S * max_dps + GROWTH_DPS2, dt);
         self.last_dps.to_radians()
     }
+}
+
+/// The demand after `dt` seconds on its way from `last` to `wanted`, deg/s: it falls quickly and grows at `growth_dps2` only.
+fn slewed(last: f64, wanted: f64, growth_dps2: f64, dt: f64) -> f64 {
+    let fall = YAW_SLEW_DPS2 * dt;
+    let grow = growth_dps2.min(YAW_SLEW_DPS2) * dt;
+    let (down, up) = match last {
+        x if x > 0.0 => (fall.min(x.max(grow)), grow),
+        x if x < 0.0 => (grow, fall.min((-x).max(grow))),
+        _ => (grow, grow),
+    };
+    last + (wanted - last).clamp(-down, up)
 }
 
 #[cfg(test)]

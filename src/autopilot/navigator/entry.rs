@@ -111,6 +111,7 @@ impl Navigator {
             heading_valid: inputs.heading_valid,
             plan,
             fence,
+            floor: engage::check_floor(params.throttle_min, inputs.hover_us),
             failsafe: inputs.failsafe,
             aborted: self.engagement.aborted(),
         }
@@ -291,6 +292,7 @@ impl Navigator {
             heading_valid: inputs.heading_valid,
             plan: Ok(()),
             fence: Ok(()),
+            floor: Ok(()),
             failsafe: false,
             aborted: None,
         };

@@ -64,6 +64,7 @@ impl Navigator {
                 heading_valid: true,
                 plan,
                 fence,
+                floor: Ok(()),
                 failsafe: false,
                 aborted: None,
             })

@@ -15,6 +15,11 @@ use crate::autopilot::params::Params;
 use crate::plan::WaypointType;
 use crate::telemetry::{L1Mode, NavState};
 
+/// Below this altitude a landing moves sideways no faster than this, m and m/s: a fix that jumps just above the ground would
+/// tip the craft over.
+const LOW_M: f64 = 2.0;
+const LOW_MPS: f64 = 0.5;
+
 /// How the aim of an update was chosen.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct PathView {
@@ -76,6 +81,11 @@ impl Navigator {
                 if let Some(spiral) = Spiral::from_params(params) {
                     target.target += spiral_offset(&spiral, elapsed_s, now.alt_m);
                     target.aim = target.target;
+                }
+                if now.alt_m < LOW_M {
+                    // The direct law has no limit of the speed.
+                    target.law = PositionLaw::Speed;
+                    target.speed_mps = target.speed_mps.min(LOW_MPS);
                 }
             }
         }

@@ -1,6 +1,8 @@
 //! `get` and `set`.
 
-use super::super::settings::{AssignError, Kind, SETTINGS, Scope, Setting, find, foreign_name};
+use super::super::settings::{
+    AssignError, Kind, Role, SETTINGS, Scope, Setting, beyond_current_firmware, find, foreign_name,
+};
 use super::foreign::keep_setting;
 use super::session::Session;
 
@@ -62,6 +64,10 @@ fn block(session: &mut Session<'_>, setting: &Setting) {
     if changed {
         session.line(format_args!("Default value: {}", setting.display(&setting.default_value())));
     }
+    // `set` without a value answers as the real firmware does.
+    if setting.role == Role::Carry && session.command == "get" {
+        session.line("No effect here");
+    }
 }
 
 fn current(session: &Session<'_>, setting: &Setting) -> String {
@@ -105,6 +111,7 @@ fn assign(session: &mut Session<'_>, name: &str, value: &str, typed: &str) {
         Ok(()) => {
             let value = current(session, setting);
             session.raw(format_args!("{} set to {value}", setting.name));
+            session.reply.notices.extend(beyond_current_firmware(setting, &value));
         }
         Err(error) => {
             if let AssignError::TextTooLong { max } = error {

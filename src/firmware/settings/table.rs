@@ -313,7 +313,7 @@ mod tests {
         assert_eq!(number("ap_altitude_p"), kind(0, 200, 15));
         assert_eq!(number("ap_altitude_i"), kind(0, 200, 20));
         assert_eq!(number("ap_velocity_drag_coeff"), kind(0, 1000, 50));
-        assert_eq!(number("ap_max_velocity"), kind(100, 5000, 1000));
+        assert_eq!(number("ap_max_velocity"), kind(100, 5000, 500));
         assert_eq!(number("ap_l1_turn_rate"), kind(0, 90, 0));
         assert_eq!(number("ap_velocity_p"), kind(0, 200, 50));
     }

@@ -121,6 +121,7 @@ impl Navigation {
             cos_tilt: estimate.cos_tilt,
             accel_ne: estimate.accel_ne,
             throttle_us: control.throttle_us,
+            hover_us: self.controllers.altitude.learned_hover_us(),
             stick_roll: stick(sticks.roll),
             stick_pitch: stick(sticks.pitch),
             stick_yaw: stick(sticks.yaw),

@@ -58,9 +58,9 @@ fn an_estimate_agrees_with_the_flight_of_the_same_plan() {
     assert!((forecast.battery_used_pct - used_pct).abs() < 0.1, "{} {used_pct}", forecast.battery_used_pct);
     assert_eq!(forecast.legs.iter().map(|leg| leg.wp).collect::<Vec<_>>(), [0, 1, 2, 3]);
     assert!((forecast.legs.iter().map(|leg| leg.time_s).sum::<f64>() - forecast.time_s).abs() < 2.0);
-    // At 10 m/s it flies straight over waypoint 0 and is carried past the corner.
+    // At 5 m/s it flies straight over waypoint 0 and is carried past the corner.
     let worst = forecast.worst_xte.unwrap();
-    assert!(worst.wp == 1 && (5.0..20.0).contains(&worst.xte_m), "{worst:?}");
+    assert!(worst.wp == 1 && (1.0..8.0).contains(&worst.xte_m), "{worst:?}");
     assert!(forecast.path.windows(2).all(|pair| pair[0].along_m <= pair[1].along_m));
     let highest = forecast.path.iter().map(|point| point.alt).fold(0.0, f64::max);
     assert!((highest - 50.0).abs() < 3.0, "{highest}");

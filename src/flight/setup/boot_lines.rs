@@ -4,6 +4,7 @@ use crate::firmware::cli::{CliContext, CliFacts, CliMode, CliReply, Interpreter,
 use crate::firmware::config::Configuration;
 use crate::firmware::settings;
 use crate::plan::format::{PlanError, Problems, SettingPart};
+use crate::telemetry::FirmwareNotice;
 
 /// Command lines and where they come from.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -21,13 +22,19 @@ impl BootLines {
         Self { source: source.into(), text }
     }
 
-    /// Carries out the lines; those that the firmware refuses are returned with their places.
-    pub(super) fn apply(&self, configuration: &mut Configuration) -> Result<(), Vec<PlanError>> {
+    /// Carries out the lines; returns what the pilot should read about them, or those that the firmware refuses with their
+    /// places.
+    pub(super) fn apply(
+        &self,
+        configuration: &mut Configuration,
+    ) -> Result<Vec<FirmwareNotice>, Vec<PlanError>> {
         let facts = CliFacts::default();
         let mut context = CliContext { configuration, facts: &facts };
         let mut interpreter = Interpreter::new(CliMode::File);
         let mut reasons = Vec::new();
+        let mut notices = Vec::new();
         let report = apply_lines(self.text.lines(), &mut interpreter, &mut context, |line, reply| {
+            notices.extend(&reply.notices);
             if reply.failed {
                 reasons.push(refusal(line, reply));
             }
@@ -36,7 +43,7 @@ impl BootLines {
         for (failed, (span, message, hint)) in std::iter::zip(&report.failed, reasons) {
             problems.add_line_part(failed.number, span, message, hint);
         }
-        if problems.is_empty() { Ok(()) } else { Err(problems.into_errors()) }
+        if problems.is_empty() { Ok(notices) } else { Err(problems.into_errors()) }
     }
 }
 

@@ -4,7 +4,7 @@ use std::fmt;
 
 use crate::firmware::config::Configuration;
 use crate::geo::LatLon;
-use crate::telemetry::FaultKind;
+use crate::telemetry::{FaultKind, FirmwareNotice};
 
 /// Something that was decided for the user, or that is probably a mistake; `Display` is the sentence.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,6 +29,8 @@ pub enum SetupNotice {
     },
     /// A fault that does nothing, as the flight controller runs outside.
     IdleFault(FaultKind),
+    /// What the firmware says of the settings that were given.
+    Firmware(FirmwareNotice),
 }
 
 impl fmt::Display for SetupNotice {
@@ -45,6 +47,7 @@ impl fmt::Display for SetupNotice {
                 let kilometres = distance_m / 1000.0;
                 write!(f, "The plan's first waypoint, {first}, is {kilometres:.0} km from home, {home}.")
             }
+            Self::Firmware(notice) => notice.fmt(f),
             Self::IdleFault(FaultKind::Battery) => f.write_str(
                 "The fault battery has no effect: a firmware outside is not told of the battery (with --world \
                  battery_sag=on a weak one slows the motors).",

@@ -164,12 +164,12 @@ mod tests {
 
         #  type             lat          lon      alt     speed     leg  bearing     stay   done
         0  YAW_RATE                                    20 deg/s
-        1  HOLD      40.4638593  -79.5182000  20.00 m  10.0 m/s  40.0 m       0°  endless  never
+        1  HOLD      40.4638593  -79.5182000  20.00 m  5.0 m/s  40.0 m       0°  endless  never
         2  TAKEOFF                             3.00 m             0.0 m                    never
 
         3 waypoints, 40 m, holding without end
         waypoint 1 holds forever (duration 0): the waypoints behind it are never flown
-        waypoint 1 asks for 30 m/s; ap_max_velocity limits it to 10 m/s
+        waypoint 1 asks for 30 m/s; ap_max_velocity limits it to 5 m/s
         the plan does not end in LAND: the craft stays in the air at its end
         ");
     }

@@ -146,7 +146,7 @@ impl<'a> Fields<'a> {
             }
             FirmwareEvent::Battery { state, cell_v } => Self::of_battery(*state, *cell_v),
             FirmwareEvent::Notice(notice) => {
-                ("notice", Self::Notice { text: <&'static str>::from(notice).into() })
+                ("notice", Self::Notice { text: notice.to_string().into() })
             }
         })
     }
@@ -214,6 +214,7 @@ impl<'a> Fields<'a> {
             | Refusal::NoPlan
             | Refusal::PlanCorrupt
             | Refusal::NoHome
+            | Refusal::ThrottleMin { .. }
             | Refusal::Failsafe => (None, None),
         };
         Self::Refused { reason: refusal.to_string(), wp, cause, text: refusal.sentence() }

@@ -9,7 +9,7 @@ pub(super) fn cli_reply(answer: Answer) -> CliReply {
         Answer::Line { text, failed, restarted } => {
             let actions =
                 if restarted { vec![CliAction::Restart { close_links: false }] } else { Vec::new() };
-            CliReply { text, actions, failed }
+            CliReply { text, actions, failed, ..CliReply::default() }
         }
         Answer::NotAnswered(why) => {
             CliReply { text: format!("###ERROR: {why}###\r\n"), failed: true, ..CliReply::default() }

@@ -1,0 +1,46 @@
+//! Settings that take more values here than in current Betaflight: a configuration with such a value works here and is
+//! refused there.
+
+use super::Setting;
+use crate::telemetry::FirmwareNotice;
+
+/// Name, least and greatest value of current firmware.
+const RANGES: [(&str, i64, i64); 2] = [("ap_position_cutoff", 10, 50), ("ap_velocity_drag_coeff", 0, 100)];
+
+/// The notice about a setting that took `value`, as it is displayed, when current firmware refuses that value.
+#[must_use]
+pub fn beyond_current_firmware(setting: &Setting, value: &str) -> Option<FirmwareNotice> {
+    let &(name, min, max) = RANGES.iter().find(|(name, ..)| *name == setting.name)?;
+    let value = value.parse().ok()?;
+    (!(min..=max).contains(&value)).then_some(FirmwareNotice::BeyondCurrentFirmware { name, value, min, max })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Kind, find};
+    use super::*;
+
+    #[test]
+    fn every_row_is_a_setting_that_takes_more_here() {
+        for (name, min, max) in RANGES {
+            let Some(Kind::Number { min: least, max: most, .. }) = find(name).map(|setting| setting.kind) else {
+                panic!("{name} is no number");
+            };
+            assert!(least <= min && max <= most && (least, most) != (min, max), "{name}");
+        }
+    }
+
+    #[test]
+    fn only_a_value_that_current_firmware_refuses_is_reported() {
+        let cutoff = find("ap_position_cutoff").expect("a setting");
+        let said = |value| beyond_current_firmware(cutoff, value).map(|notice| notice.to_string());
+        assert_eq!(
+            said("5").as_deref(),
+            Some("ap_position_cutoff = 5 is taken here, but current Betaflight refuses it: it allows 10 to 50.")
+        );
+        assert_eq!(said("51").is_some(), true);
+        assert_eq!((said("10"), said("50")), (None, None));
+        let angle = find("ap_max_angle").expect("a setting");
+        assert_eq!(beyond_current_firmware(angle, "70"), None);
+    }
+}
