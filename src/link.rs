@@ -23,6 +23,7 @@ mod notices;
 mod origin;
 pub mod proto;
 mod request;
+mod seats;
 mod sitl_child;
 mod sitl_peer;
 mod udp;

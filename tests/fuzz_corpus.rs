@@ -8,7 +8,9 @@ mod fuzz_bodies;
 
 use std::path::{Path, PathBuf};
 
-use fuzz_bodies::{airframe, cli, eeprom, fc_client, fdm, msp_stream, plan_file, rc, servo, settings_file};
+use fuzz_bodies::{
+    airframe, cli, door, eeprom, fc_client, fdm, msp_stream, plan_file, rc, servo, settings_file,
+};
 
 /// Bytes up to which every beginning of a stored case is a case too.
 const SHORT: usize = 64;
@@ -182,6 +184,11 @@ fn airframe_files() {
 #[test]
 fn command_lines() {
     check("cli", cli::run, 16);
+}
+
+#[test]
+fn connections_to_a_door() {
+    check("door", door::run, 100);
 }
 
 #[test]

@@ -210,7 +210,10 @@ fn stream(bytes: &[u8], reply: &LineReply) -> Taken {
                         session.complete(Completion { tail, words: found.candidates });
                     }
                     SerialRequest::Flush => drop(session.take_output()),
-                    SerialRequest::Restart | SerialRequest::LeftCli => {}
+                    SerialRequest::Restart
+                    | SerialRequest::LeftCli
+                    | SerialRequest::Ignored { .. }
+                    | SerialRequest::Foreign => {}
                 }
             }
             drop(session.take_output());

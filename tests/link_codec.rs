@@ -184,7 +184,10 @@ proptest! {
                         let _stays = session.answer(&LineReply::default());
                     }
                     SerialRequest::Complete { .. } => session.complete(Completion::default()),
-                    SerialRequest::Restart | SerialRequest::LeftCli => {}
+                    SerialRequest::Restart
+                    | SerialRequest::LeftCli
+                    | SerialRequest::Ignored { .. }
+                    | SerialRequest::Foreign => {}
                 }
             }
             // Echo and error frames of what has come, no more.
@@ -236,7 +239,11 @@ fn found_in(pieces: &[&[u8]]) -> (Vec<SerialRequest>, Vec<u8>) {
                     assert!(!session.answer(&reply));
                 }
                 SerialRequest::Complete { .. } => session.complete(Completion::default()),
-                SerialRequest::Flush | SerialRequest::Restart | SerialRequest::LeftCli => {}
+                SerialRequest::Flush
+                | SerialRequest::Restart
+                | SerialRequest::LeftCli
+                | SerialRequest::Ignored { .. }
+                | SerialRequest::Foreign => {}
             }
             all.push(ask);
         }

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use betadeck::firmware::FirmwareOptions;
 use betadeck::firmware::config::Configuration;
-use betadeck::link::proto::command_line::LineSource;
+use betadeck::link::proto::command_line::{LineReply, LineSource};
 use betadeck::link::{ClientId, ListenConfig, Listeners, Request};
 use betadeck::session::command::Seek;
 use betadeck::session::{
@@ -289,4 +289,60 @@ async fn what_a_script_flew_is_shown_again_as_it_was() {
         rig.picture("that instant", |view| view.is_rewound() && view.vehicle.time == picture.time).await;
         assert_eq!(rig.session.view.borrow().vehicle, *picture);
     }
+}
+
+/// The answer to a line that a client sends in a framed session.
+async fn framed_line(rig: &Rig, line: &str) -> LineReply {
+    let (reply, answer) = oneshot::channel();
+    let line = line.to_owned();
+    let request = Request::Cli { client: ClientId(1), line, source: LineSource::Framed, reply };
+    rig.requests.send(request).await.unwrap();
+    answer.await.unwrap()
+}
+
+/// The answer to a message that a client sends.
+async fn message(rig: &Rig, code: u16, payload: &[u8]) -> Option<Vec<u8>> {
+    let (reply, answer) = oneshot::channel();
+    let payload = payload.to_vec();
+    rig.requests.send(Request::Msp { client: ClientId(1), code, payload, reply }).await.unwrap();
+    answer.await.unwrap()
+}
+
+#[tokio::test]
+async fn clients_change_nothing_while_an_earlier_instant_is_shown_and_are_answered_why() {
+    const WAYPOINT: &str = "waypoint insert 0 40.4640000 -79.5175000 5000 0 FLYOVER 0 ORBIT";
+    const SET_NAME: u16 = 11;
+    let mut rig = rig().await;
+    rig.picture("a second of flight", |view| view.vehicle.time.as_secs_f64() > 1.0).await;
+    let list = framed_line(&rig, "waypoint list").await;
+    assert!(!framed_line(&rig, "status").await.text.contains("earlier instant"));
+    rig.session.commands.send(Command::Seek(Seek::Seconds(-1000.0))).await.unwrap();
+    rig.picture("the beginning", SessionView::is_rewound).await;
+
+    for line in [WAYPOINT, "set ap_max_angle = 21", "save", "defaults nosave", "motor 1 1100", "batch start"]
+    {
+        let said = framed_line(&rig, line).await;
+        assert!(said.refused, "{line}: {}", said.text);
+        assert_eq!(said.text.lines().count(), 1, "{line}: {}", said.text);
+        assert!(said.text.starts_with("###ERROR: An earlier instant is shown"), "{line}: {}", said.text);
+    }
+    for (code, payload) in [(SET_NAME, b"evil".as_slice()), (250, b""), (68, b""), (200, &[0xdc, 5, 0xdc, 5])]
+    {
+        assert_eq!(message(&rig, code, payload).await, None, "{code}");
+    }
+    rig.requests.send(Request::Restart { client: ClientId(1) }).await.unwrap();
+    assert_eq!(message(&rig, 2, &[]).await.as_deref(), Some(b"BTFL".as_slice()), "what reads is answered");
+    let status = framed_line(&rig, "status").await;
+    assert!(!status.refused && status.text.contains("earlier instant is shown"), "{}", status.text);
+    assert_eq!(framed_line(&rig, "waypoint list").await, list);
+
+    rig.session.commands.send(Command::Seek(Seek::Newest)).await.unwrap();
+    rig.picture("the newest instant", |view| !view.is_rewound()).await;
+    assert!(!framed_line(&rig, "status").await.text.contains("earlier instant"));
+    assert_eq!(framed_line(&rig, "waypoint list").await, list, "nothing was changed");
+    assert!(!framed_line(&rig, WAYPOINT).await.refused);
+    let told =
+        |event: &Event| matches!(&event.kind, SessionEvent::Notice(text) if text.contains("was refused"));
+    let events = std::iter::from_fn(|| rig.session.events.try_recv().ok());
+    assert_eq!(events.filter(told).count(), 1, "told once");
 }

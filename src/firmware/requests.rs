@@ -72,6 +72,11 @@ impl Firmware {
         self.setup.set_lost_time(lost_time);
     }
 
+    /// What the commands tell about whether an earlier instant is shown, during which clients change nothing.
+    pub fn set_rewound(&mut self, rewound: bool) {
+        self.setup.set_rewound(rewound);
+    }
+
     /// Version and build that the firmware announces.
     pub fn set_build(&mut self, build: BuildInfo) {
         self.setup.set_build(build);

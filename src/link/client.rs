@@ -12,11 +12,12 @@ use tokio_util::sync::CancellationToken;
 
 use super::client_stream::ClientStream;
 use super::endpoint_stats::EndpointStats;
-use super::notices::Notices;
+use super::notices::{Notices, Stranger};
 use super::proto::command_line::LineSource;
-use super::proto::first_line::{FirstLine, ForeignProtocol};
+use super::proto::first_line::FirstLine;
 use super::proto::serial_session::{SerialRequest, SerialSession};
 use super::request::{ClientId, Request};
+use super::seats::Seat;
 
 /// A client that neither sends nor gets anything for this long is closed.
 const IDLE_TIMEOUT: Duration = Duration::from_secs(120);
@@ -42,8 +43,10 @@ enum Stop {
     Failed,
     /// The client does not take its answers.
     Deaf,
-    /// The client is none of this door's.
-    Foreign(ForeignProtocol),
+    /// The client speaks neither MSP nor to the command line.
+    Foreign(Stranger),
+    /// The client said nothing, and another one has its place.
+    Evicted,
 }
 
 impl From<io::Error> for Stop {
@@ -55,6 +58,7 @@ impl From<io::Error> for Stop {
 /// One client being served.
 pub(super) struct Client {
     id: ClientId,
+    seat: Seat,
     stream: ClientStream,
     channels: SharedChannels,
     notices: Notices,
@@ -66,7 +70,7 @@ pub(super) struct Client {
 
 impl Client {
     pub(super) fn new(
-        id: ClientId,
+        seat: Seat,
         stream: ClientStream,
         mut channels: SharedChannels,
         notices: Notices,
@@ -75,7 +79,8 @@ impl Client {
         // A restart before the client came does not concern it.
         channels.restarts.mark_unchanged();
         Self {
-            id,
+            id: seat.client(),
+            seat,
             stream,
             channels,
             notices,
@@ -92,7 +97,7 @@ impl Client {
         let door = self.stream.door();
         match stop {
             Stop::Ended => {}
-            Stop::Failed => self.stats.error(),
+            Stop::Failed | Stop::Evicted => self.stats.error(),
             Stop::Deaf => {
                 self.stats.error();
                 self.notices.tell(format!(
@@ -100,12 +105,9 @@ impl Client {
                     WRITE_TIMEOUT.as_secs()
                 ));
             }
-            Stop::Foreign(protocol) => {
+            Stop::Foreign(stranger) => {
                 self.stats.error();
-                self.notices.tell(format!(
-                    "A web page or a program that speaks {protocol} came to the {door} door and was turned away: it is \
-                     for MSP and the command line."
-                ));
+                self.notices.count_stranger(door, stranger);
             }
         }
         if self.session.is_in_cli() {
@@ -128,6 +130,7 @@ impl Client {
             tokio::select! {
                 () = self.channels.shutdown.cancelled() => return Stop::Ended,
                 _ = self.channels.restarts.changed() => return Stop::Ended,
+                () = self.seat.evicted() => return Stop::Evicted,
                 () = tokio::time::sleep(wait) => {
                     if due.is_none() {
                         return Stop::Ended;
@@ -136,8 +139,9 @@ impl Client {
                 bytes = self.stream.read() => match bytes {
                     Ok(Some(bytes)) => {
                         self.stats.received(bytes.len());
-                        if let Err(protocol) = self.take(&bytes) {
-                            return Stop::Foreign(protocol);
+                        match self.first_line.take(&bytes) {
+                            Ok(bytes) => self.session.push(bytes),
+                            Err(protocol) => return Stop::Foreign(Stranger::Began(protocol)),
                         }
                     }
                     Ok(None) => return Stop::Ended,
@@ -147,19 +151,16 @@ impl Client {
         }
     }
 
-    /// Takes bytes from the client. Behind a websocket's handshake there is no browser that does not know whom it speaks to.
-    fn take(&mut self, bytes: &[u8]) -> Result<(), ForeignProtocol> {
-        match &self.stream {
-            ClientStream::Tcp(_) => self.session.push(&self.first_line.take(bytes)?),
-            ClientStream::WebSocket(_) => self.session.push(bytes),
-        }
-        Ok(())
-    }
-
     /// Answers everything that the bytes so far ask for.
     async fn answer_all(&mut self) -> Result<(), Stop> {
         let before = self.session.dropped();
         while let Some(request) = self.session.next(self.arrived.elapsed()) {
+            if matches!(
+                request,
+                SerialRequest::Msp(_) | SerialRequest::EnterCli { .. } | SerialRequest::Line { .. }
+            ) {
+                self.seat.keep();
+            }
             match request {
                 SerialRequest::Msp(frame) => {
                     self.stats.asked(frame.code);
@@ -184,6 +185,10 @@ impl Client {
                     return Err(Stop::Ended);
                 }
                 SerialRequest::LeftCli => self.send(Request::LeftCli { client: self.id }).await?,
+                SerialRequest::Ignored { word } => {
+                    self.send(Request::Ignored { client: self.id, word }).await?;
+                }
+                SerialRequest::Foreign => return Err(Stop::Foreign(Stranger::WentOn)),
             }
         }
         if self.session.dropped() != before {

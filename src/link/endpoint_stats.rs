@@ -47,9 +47,8 @@ impl EndpointStats {
         }
     }
 
-    /// Counts a client that came; how many there are now.
-    pub(super) fn client_connected(&self) -> u32 {
-        self.clients.fetch_add(1, Relaxed) + 1
+    pub(super) fn client_connected(&self) {
+        self.clients.fetch_add(1, Relaxed);
     }
 
     pub(super) fn client_disconnected(&self) {

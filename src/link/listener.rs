@@ -19,9 +19,8 @@ use super::endpoint_stats::EndpointStats;
 use super::notices::Notices;
 use super::origin::{self, Refusal};
 use super::request::ClientId;
+use super::seats::{CLIENTS_MAX, Seat, Seats};
 
-/// Most clients of one door.
-const CLIENTS_MAX: u32 = 32;
 /// How long a websocket handshake may take.
 const HANDSHAKE_TIMEOUT: Duration = Duration::from_secs(10);
 /// Pause after a client could not be accepted (too many open files).
@@ -61,6 +60,7 @@ pub(super) async fn listen(
     channels: SharedChannels,
     notices: Notices,
     stats: Arc<EndpointStats>,
+    seats: Seats,
     tasks: TaskTracker,
 ) {
     loop {
@@ -75,26 +75,28 @@ pub(super) async fn listen(
                 }
             },
         };
-        if stats.client_connected() > CLIENTS_MAX {
-            stats.client_disconnected();
+        let Some(seat) = seats.take(ClientId(NEXT_CLIENT.fetch_add(1, Relaxed))) else {
             stats.error();
             notices.tell(format!(
                 "The {} door serves {CLIENTS_MAX} clients at once: another one was turned away.",
                 kind.name()
             ));
             continue;
-        }
+        };
+        stats.client_connected();
         let (kind, channels, stats) = (kind.clone(), channels.clone(), Arc::clone(&stats));
         let notices = notices.clone();
         tasks.spawn(async move {
             // An interactive line is small packets both ways.
             let _only_slower = stream.set_nodelay(true);
-            match admit(stream, &kind, &channels, &notices).await {
+            match admit(stream, &kind, &channels, &notices, &seat).await {
                 Some(stream) => {
-                    let id = ClientId(NEXT_CLIENT.fetch_add(1, Relaxed));
-                    Client::new(id, stream, channels, notices, Arc::clone(&stats)).serve().await;
+                    Client::new(seat, stream, channels, notices, Arc::clone(&stats)).serve().await;
                 }
-                None => stats.error(),
+                None => {
+                    drop(seat);
+                    stats.error();
+                }
             }
             stats.client_disconnected();
         });
@@ -107,6 +109,7 @@ async fn admit(
     kind: &ListenerKind,
     channels: &SharedChannels,
     notices: &Notices,
+    seat: &Seat,
 ) -> Option<ClientStream> {
     let ListenerKind::WebSocket { allow_origin } = kind else {
         return Some(ClientStream::Tcp(stream));
@@ -130,6 +133,7 @@ async fn admit(
     let handshake = tokio_tungstenite::accept_hdr_async_with_config(stream, callback, Some(config));
     let accepted = tokio::select! {
         () = channels.shutdown.cancelled() => return None,
+        () = seat.evicted() => return None,
         accepted = tokio::time::timeout(HANDSHAKE_TIMEOUT, handshake) => accepted.ok()?,
     };
     if let Some(refusal) = refused {

@@ -17,6 +17,7 @@ use super::endpoint_stats::EndpointStats;
 use super::listener::{self, ListenerKind};
 use super::notices::Notices;
 use super::request::Request;
+use super::seats::Seats;
 use super::udp::{DatagramPort, Datagrams, StateQueue};
 use crate::telemetry::{EndpointKind, EndpointState, EndpointStatus};
 
@@ -149,16 +150,16 @@ impl Listeners {
         channels: &SharedChannels,
     ) {
         let stats = Arc::new(EndpointStats::new(Instant::now()));
-        let notices = Notices::new(channels.requests.clone());
+        let shared = (Notices::new(channels.requests.clone()), Seats::default(), Arc::clone(&stats));
         let address = SocketAddr::new(listen.unwrap_or(IpAddr::V4(Ipv4Addr::LOCALHOST)), port);
         let place = match bind_tcp(kind, address).await {
             Ok((listener, place)) => {
-                self.spawn_listener(listener, server, channels, &notices, &stats);
+                self.spawn_listener(listener, server, channels, &shared);
                 if listen.is_none() {
                     // A machine without IPv6 has no such address.
                     let six = SocketAddr::new(IpAddr::V6(Ipv6Addr::LOCALHOST), place.port());
                     if let Ok((listener, _)) = bind_tcp(kind, six).await {
-                        self.spawn_listener(listener, server, channels, &notices, &stats);
+                        self.spawn_listener(listener, server, channels, &shared);
                     }
                 }
                 Ok(place)
@@ -173,11 +174,11 @@ impl Listeners {
         listener: TcpListener,
         server: &ListenerKind,
         channels: &SharedChannels,
-        notices: &Notices,
-        stats: &Arc<EndpointStats>,
+        (notices, seats, stats): &(Notices, Seats, Arc<EndpointStats>),
     ) {
-        let (tasks, stats, notices) = (self.tasks.clone(), Arc::clone(stats), notices.clone());
-        self.tasks.spawn(listener::listen(listener, server.clone(), channels.clone(), notices, stats, tasks));
+        let (notices, seats, stats) = (notices.clone(), seats.clone(), Arc::clone(stats));
+        let (server, channels, tasks) = (server.clone(), channels.clone(), self.tasks.clone());
+        self.tasks.spawn(listener::listen(listener, server, channels, notices, stats, seats, tasks));
     }
 
     fn open_datagrams(

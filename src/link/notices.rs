@@ -1,25 +1,36 @@
-//! What a door tells the user: each thing once, however many clients cause it at however many addresses.
+//! What a door reports to the user: each thing once, however many clients cause it at however many addresses, and
+//! connections that speak something else by their number.
 
-use std::collections::BTreeSet;
+#![allow(clippy::disallowed_methods, reason = "the doors wait for people and programs")]
+
+mod flood;
+
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant};
 
 use tokio::sync::mpsc;
 
 use super::request::Request;
+pub(super) use flood::Stranger;
+use flood::{Flood, sentence};
 
 /// Most notices of one door.
 const NOTICES_MAX: usize = 64;
+/// How long connections of strangers are counted before the first notice of them.
+const COUNTED_FOR: Duration = Duration::from_secs(1);
 
 /// The notices of one door, shared by all its listeners and clients.
 #[derive(Debug, Clone)]
 pub(super) struct Notices {
     requests: mpsc::Sender<Request>,
     told: Arc<Mutex<BTreeSet<String>>>,
+    floods: Arc<Mutex<BTreeMap<Stranger, Flood>>>,
 }
 
 impl Notices {
     pub(super) fn new(requests: mpsc::Sender<Request>) -> Self {
-        Self { requests, told: Arc::default() }
+        Self { requests, told: Arc::default(), floods: Arc::default() }
     }
 
     /// Tells this unless it was told before. When nobody has time to listen it is told the next time; until then it is seen
@@ -32,6 +43,24 @@ impl Notices {
         {
             told.insert(notice);
         }
+    }
+
+    /// Counts a connection to a door that was closed for what it spoke. Reports a flood of them once, a moment after it began.
+    pub(super) fn count_stranger(&self, door: &'static str, stranger: Stranger) {
+        if !self.change(stranger, |flood| flood.count(Instant::now())) {
+            return;
+        }
+        let notices = self.clone();
+        tokio::spawn(async move {
+            tokio::time::sleep(COUNTED_FOR).await;
+            let number = notices.change(stranger, Flood::take_number);
+            let _gone = notices.requests.send(Request::Notice(sentence(door, stranger, number))).await;
+        });
+    }
+
+    fn change<T>(&self, stranger: Stranger, change: impl FnOnce(&mut Flood) -> T) -> T {
+        let mut floods = self.floods.lock().unwrap_or_else(PoisonError::into_inner);
+        change(floods.entry(stranger).or_default())
     }
 }
 

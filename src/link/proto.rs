@@ -1,6 +1,7 @@
 //! Protocols without sockets: bytes and times in, frames and bytes out. No I/O, no clock, bounded memory, no panic
 //! on any input.
 
+mod between_frames;
 pub mod command_line;
 mod command_message;
 pub mod fc_client;

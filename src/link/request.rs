@@ -60,6 +60,13 @@ pub enum Request {
         /// Who left.
         client: ClientId,
     },
+    /// A client sent lines of text while its command line was closed; they were ignored. Comes once for lines of one paste.
+    Ignored {
+        /// Who sent them.
+        client: ClientId,
+        /// The first word of the first line.
+        word: String,
+    },
     /// A client wants the firmware to start anew, losing what was not saved, and the links to close.
     Restart {
         /// Who asks.

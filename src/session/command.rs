@@ -33,6 +33,10 @@ pub const BEGINNING_LOST: &str =
 /// Why nothing is steered while an earlier instant is shown.
 pub const REWOUND: &str = "An earlier instant is shown: `b` flies on from here, `e` goes back to the end.";
 
+/// Why clients of the doors change nothing while an earlier instant is shown.
+pub const REWOUND_FOR_CLIENTS: &str =
+    "An earlier instant is shown on the screen: changes are refused until it is left there";
+
 /// Why a plan is not uploaded while another is.
 pub const UPLOADING: &str = "another upload is under way: wait for its end, then upload again";
 

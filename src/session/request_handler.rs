@@ -8,7 +8,7 @@ use tokio::sync::oneshot;
 
 use super::late_answers::{LateAnswers, no_answer_line};
 use super::persistence::Persistence;
-use crate::firmware::cli::{CliAction, CliMode, CliReply, Interpreter, complete};
+use crate::firmware::cli::{COMMANDS, CliAction, CliMode, CliReply, Interpreter, complete};
 use crate::firmware::msp::{MspAction, Outcome, UtcTime};
 use crate::link::proto::command_line::{AfterLine, Completion, LineReply, LineSource};
 use crate::link::{ClientId, Request, RestartSignal};
@@ -123,6 +123,7 @@ impl RequestHandler {
                     }
                 }
             }
+            Request::Ignored { word, .. } => handled.notices.extend(ignored_in_flight(&word, controller)),
             Request::Complete { line, reply } => answer(reply, completion(&line)),
             Request::LeftCli { client } => {
                 self.cli_sessions.remove(&client);
@@ -333,6 +334,19 @@ impl From<CliReply> for LineReply {
         };
         Self { text: reply.text, refused: reply.failed, then }
     }
+}
+
+/// Why a client got no answer to lines that begin with this word, when they are commands and the craft is armed.
+fn ignored_in_flight(word: &str, controller: &FlightController) -> Option<String> {
+    let command = COMMANDS.iter().find(|command| command.name.eq_ignore_ascii_case(word))?;
+    controller.is_armed().then(|| {
+        format!(
+            "A program at a door sent command lines (`{}` first) while the craft is armed: they were ignored, and it got no \
+             answer, since the command line does not open in flight. Send them again after the landing, or type them in \
+             the CLI panel of the screen.",
+            command.name
+        )
+    })
 }
 
 /// How a line being typed may go on.

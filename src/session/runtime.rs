@@ -160,6 +160,8 @@ struct Session {
     rc_received: bool,
     /// Why clients were refused something over the present connection: each is told once.
     refused_over: Vec<(Option<u32>, Denial)>,
+    /// A client was refused a change since an earlier instant is shown.
+    refused_while_rewound: bool,
     /// Something other than time changed what the view shows.
     changed: bool,
     /// Clients asked more than one round of the loop has time for.
@@ -214,6 +216,7 @@ impl Session {
             was_paused: false,
             rc_received: false,
             refused_over: Vec::new(),
+            refused_while_rewound: false,
             changed: true,
             more_waits: false,
             quit: false,

@@ -181,6 +181,13 @@ impl FlightController {
         }
     }
 
+    /// What the commands of an embedded one tell about whether an earlier instant is shown in place of the present one.
+    pub fn set_rewound(&mut self, rewound: bool) {
+        if let Self::Embedded(embedded) = self {
+            embedded.firmware.set_rewound(rewound);
+        }
+    }
+
     /// Version and build that an embedded one announces.
     pub fn set_build(&mut self, build: BuildInfo) {
         if let Self::Embedded(embedded) = self {

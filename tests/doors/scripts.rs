@@ -1,5 +1,6 @@
 //! Flights by scripts: RC over UDP as the usual Python script sends it, and over MSP.
 
+use std::io::Write;
 use std::net::{SocketAddr, TcpStream};
 use std::time::Duration;
 
@@ -151,4 +152,29 @@ fn a_craft_whose_script_ends_lands() {
     serve.wait("emergency landing", |event| event["event"] == "state" && event["to"] == "LANDING");
     serve.event("disarmed");
     assert!(!serve.has_seen("crash"));
+}
+
+/// What people paste: the `#` of the first line is not taken while the craft is armed.
+const PASTED: &str = "#
+waypoint reset
+waypoint insert 0 40.4637000 -79.5182000 2000 500 FLYOVER 0 ORBIT
+waypoint insert 1 40.4636000 -79.5182000 1500 500 LAND 0 ORBIT
+";
+
+#[test]
+fn waypoints_pasted_over_tcp_while_armed_get_no_answer_and_the_log_says_why() {
+    let mut serve = prepared("1", &[SWITCHES, PATIENT_FAILSAFE, FOR_EVER]);
+    let script = Script::udp(serve.rc);
+    serve.event("armed");
+    let mut client = TcpStream::connect(serve.tcp).unwrap();
+    client.set_read_timeout(Some(PATIENCE)).unwrap();
+    let ignored = |event: &serde_json::Value| {
+        event["text"].as_str().is_some_and(|text| text.contains("`waypoint`") && text.contains("armed"))
+    };
+    client.write_all(PASTED.as_bytes()).unwrap();
+    serve.wait("reason of the silence", ignored);
+    // Nothing came back before the answer to this.
+    assert_eq!(msp::ask(&mut client, 2, &[]).as_deref(), Some(b"BTFL".as_slice()));
+    assert_eq!(serve.notices("`waypoint`"), 1, "one notice for one paste");
+    script.end();
 }

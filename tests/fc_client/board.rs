@@ -94,7 +94,11 @@ impl Board {
                     }
                 }
                 SerialRequest::Restart => self.closed = true,
-                SerialRequest::Complete { .. } | SerialRequest::Flush | SerialRequest::LeftCli => {}
+                SerialRequest::Complete { .. }
+                | SerialRequest::Flush
+                | SerialRequest::LeftCli
+                | SerialRequest::Ignored { .. }
+                | SerialRequest::Foreign => {}
             }
         }
         self.session.take_output()

@@ -5,6 +5,7 @@
 pub mod airframe;
 pub mod cli;
 mod craft;
+pub mod door;
 pub mod eeprom;
 pub mod fc_client;
 pub mod fdm;

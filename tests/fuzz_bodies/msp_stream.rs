@@ -7,7 +7,6 @@ use betadeck::firmware::cli::{CliMode, Interpreter, complete};
 use betadeck::firmware::config::Configuration;
 use betadeck::firmware::{Firmware, FirmwareOptions};
 use betadeck::link::proto::command_line::{Completion, LineSource};
-use betadeck::link::proto::first_line::FirstLine;
 use betadeck::link::proto::msp::{Decoder, Dropped, Form, Frame, Kind, MAX_REPLY, MAX_REQUEST};
 use betadeck::link::proto::serial_session::{SerialRequest, SerialSession};
 
@@ -22,31 +21,12 @@ const LONGEST_REQUEST: usize = MAX_REQUEST + 16;
 
 /// Sends the bytes whole, byte by byte and in pieces: the answers are the same; then asks something sensible.
 pub fn run(data: &[u8]) {
-    first_line(data);
     decoders(data);
     let whole = talk(data, usize::MAX);
     assert_eq!(talk(data, 1), whole, "byte by byte");
     let piece = data.first().map_or(7, |byte| usize::from(*byte) % 61 + 2);
     assert_eq!(talk(data, piece), whole, "in pieces of {piece}");
     craft::Checked::default().assert_sound(whole.configuration);
-}
-
-/// As the first bytes of a TCP connection: what is passed on, and whether it is a browser, does not depend on the pieces.
-fn first_line(data: &[u8]) {
-    let whole = FirstLine::default().take(data);
-    for piece in [1, 2, 7] {
-        let mut line = FirstLine::default();
-        let passed: Result<Vec<_>, _> = data.chunks(piece).map(|bytes| line.take(bytes)).collect();
-        assert_eq!(passed.map(|passed| passed.concat()), whole, "in pieces of {piece}");
-    }
-    if let Ok(passed) = whole {
-        assert!(data.ends_with(&passed), "only the beginning is dropped");
-    }
-    // Whoever reads a request line sees one, whatever stands before it in the line.
-    let before: Vec<u8> =
-        data.iter().copied().take_while(|byte| !b"\r\n".contains(byte)).take(1000).collect();
-    let request = [&before[..], b" POST / HTTP/1.1\r\n", data].concat();
-    assert!(FirstLine::default().take(&request).is_err(), "a request is taken for a serial client");
 }
 
 /// Everything that was asked and answered.
@@ -162,7 +142,8 @@ impl Client {
                 self.closed = true;
             }
             SerialRequest::LeftCli => self.firmware.cli_closed(),
-            SerialRequest::Flush => {}
+            SerialRequest::Foreign => self.closed = true,
+            SerialRequest::Ignored { .. } | SerialRequest::Flush => {}
         }
     }
 
@@ -170,7 +151,11 @@ impl Client {
     fn assert_still_answers(&mut self) {
         self.now += Duration::from_secs(3);
         // Ends a frame that garbage began, a batch of framed lines, and an interactive session that it opened.
-        self.send(&[0; LONGEST_REQUEST]);
+        self.send(&[b' '; LONGEST_REQUEST]);
+        if self.closed {
+            // A character that is not complete is no text.
+            return;
+        }
         self.send(b"\x03");
         if self.session.is_in_cli() {
             self.send(b"\rexit noreboot\r");

@@ -99,13 +99,12 @@ async fn a_web_page_cannot_command_the_craft_over_tcp() {
     // Whoever speaks MSP or types is served as before.
     house.tcp().await.assert_speaks_msp().await;
     house.tcp().await.enter_cli().await;
-    assert_eq!(
-        notices(&mut house),
-        ["HTTP", "TLS"].map(|protocol| format!(
-            "A web page or a program that speaks {protocol} came to the TCP door and was turned away: it is for MSP and \
-             the command line."
-        ))
-    );
+    // One notice for each kind, in the order in which the kinds came.
+    for said in ["began like HTTP", "began with text", "began like TLS"] {
+        let Some(Request::Notice(notice)) = house.others.recv().await else { panic!("no notice") };
+        assert!(notice.contains("TCP door") && notice.contains(said), "{notice}");
+    }
+    assert_eq!(notices(&mut house), [] as [String; 0]);
 }
 
 #[tokio::test]

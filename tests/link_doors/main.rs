@@ -6,3 +6,4 @@ mod browsers;
 mod clients;
 mod harness;
 mod packets;
+mod strangers;

@@ -31,6 +31,8 @@ pub struct CliFacts {
     pub bad_packets: BadPackets,
     /// Real time that the flight could not keep up with.
     pub lost_time: LostTime,
+    /// An earlier instant is shown, during which clients change nothing.
+    pub rewound: bool,
     /// Loop rates.
     pub loops: LoopFacts,
     /// One row a task, in order of their numbers.
@@ -63,6 +65,7 @@ impl CliFacts {
             },
             bad_packets: firmware.setup.bad_packets(),
             lost_time: firmware.setup.lost_time(),
+            rewound: firmware.setup.rewound(),
             loops: LoopFacts {
                 cpu_load_percent: 0,
                 cycle_time_us: 1_000_000 / firmware.setup.options().rate_hz.max(1),

@@ -77,6 +77,9 @@ pub(super) fn status(session: &mut Session<'_>, _rest: &str) {
     if facts.lost_time.is_notable() {
         session.line(format_args!("Real time lost: {}", facts.lost_time));
     }
+    if facts.rewound {
+        session.line("Changes refused: an earlier instant is shown on the screen");
+    }
     if let Some(refusal) = facts.nav.refusal {
         session.line(format_args!("Autopilot: {}", refusal.sentence()));
     }

@@ -17,6 +17,7 @@ pub(in crate::firmware) struct Setup {
     storage: StorageFacts,
     bad_packets: BadPackets,
     lost_time: LostTime,
+    rewound: bool,
     configuration: Configuration,
     boot: BootChoices,
     parameters: Parameters,
@@ -38,7 +39,18 @@ impl Setup {
         }
         let (build, storage) = (BuildInfo::default(), StorageFacts::default());
         let (bad_packets, lost_time) = (BadPackets::default(), LostTime::default());
-        let setup = Self { options, build, storage, bad_packets, lost_time, configuration, boot, parameters };
+        let rewound = false;
+        let setup = Self {
+            options,
+            build,
+            storage,
+            bad_packets,
+            lost_time,
+            rewound,
+            configuration,
+            boot,
+            parameters,
+        };
         setup.report_lost_gps(had_gps, outbox);
         setup
     }
@@ -51,6 +63,7 @@ impl Setup {
             storage: self.storage.clone(),
             bad_packets: self.bad_packets,
             lost_time: self.lost_time,
+            rewound: self.rewound,
             ..fresh
         }
     }
@@ -98,6 +111,16 @@ impl Setup {
     /// Sets what [`Setup::lost_time`] tells.
     pub(in crate::firmware) fn set_lost_time(&mut self, lost_time: LostTime) {
         self.lost_time = lost_time;
+    }
+
+    /// Whether an earlier instant is shown, during which clients change nothing.
+    pub(in crate::firmware) fn rewound(&self) -> bool {
+        self.rewound
+    }
+
+    /// Sets [`Setup::rewound`].
+    pub(in crate::firmware) fn set_rewound(&mut self, rewound: bool) {
+        self.rewound = rewound;
     }
 
     /// The configuration in memory.

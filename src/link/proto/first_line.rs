@@ -1,18 +1,18 @@
-//! Tells browsers from serial clients by the first line of a connection.
+//! Tells serial clients from everything else by the first bytes of a connection.
 //!
-//! Any web page can make a browser send a request to a port of this machine, with bytes of its choice in the body. So the
-//! first line of a connection is looked at before any of it is interpreted: a request line of HTTP or a TLS hello ends the
-//! connection. A serial client begins with an MSP frame, `#` or STX, and is not held up; what comes before these means
-//! nothing to anybody and is dropped.
+//! Any web page can make a browser connect to a port of this machine: a request of HTTP carries bytes of the page's choice,
+//! and WebRTC sends STUN messages with random bytes in them. So the first byte that is no blank decides, before any byte is
+//! interpreted: a serial client begins with `$` of an MSP frame, `#` or STX. Anything else ends the connection, and so does a
+//! first line that turns out to be a request line of HTTP.
 
 /// Opens the command line for a person.
 const HASH: u8 = b'#';
 /// Opens the command line for one batch of lines.
 const STX: u8 = 0x02;
-/// How the requests of MSP begin.
-const MSP_STARTS: [&[u8]; 2] = [b"$M<", b"$X<"];
-/// How a TLS hello begins: a handshake record of version 3.
-const TLS_START: [u8; 2] = [0x16, 0x03];
+/// How a frame of MSP begins.
+const DOLLAR: u8 = b'$';
+/// How a TLS hello begins: the type of a handshake record.
+const TLS_HANDSHAKE: u8 = 0x16;
 /// What ends a request line, before the digits of the version.
 const HTTP_VERSION: &[u8] = b" HTTP/";
 /// As much of the line as is looked back at.
@@ -20,22 +20,36 @@ const TAIL: usize = HTTP_VERSION.len() + 1;
 /// A first line that is longer is no request line: browsers send less.
 const LINE_MAX: usize = 4 * 1024 * 1024;
 
-/// What speaks where only MSP and the command line are understood.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display)]
+/// What speaks where only MSP and the command line are understood, as far as the first byte says.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum ForeignProtocol {
-    /// A browser, or something that speaks like one.
-    #[strum(to_string = "HTTP")]
+    /// A request of HTTP, or a word in capitals, which cannot be told from one.
     Http,
-    /// The same, encrypted.
-    #[strum(to_string = "TLS")]
+    /// A TLS hello.
     Tls,
+    /// Binary data, such as the STUN messages of WebRTC.
+    Binary,
+    /// Text without the `#` that opens the command line.
+    Text,
+}
+
+impl ForeignProtocol {
+    /// The protocol of a connection that begins with this byte, which no serial client begins with.
+    fn of(first: u8) -> Self {
+        match first {
+            TLS_HANDSHAKE => Self::Tls,
+            b'A'..=b'Z' => Self::Http,
+            b'!'..=b'~' | b'\t' => Self::Text,
+            _ => Self::Binary,
+        }
+    }
 }
 
 /// What is known of a connection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Stage {
-    /// Nothing yet that a serial client would say.
-    Unknown,
+    /// Nothing has come but blanks.
+    Blank,
     /// A serial client, whose first line goes on.
     Serial,
     /// The first line is over.
@@ -52,85 +66,49 @@ pub struct FirstLine {
 
 impl Default for FirstLine {
     fn default() -> Self {
-        Self { stage: Stage::Unknown, tail: arrayvec::ArrayVec::new(), length: 0 }
+        Self { stage: Stage::Blank, tail: arrayvec::ArrayVec::new(), length: 0 }
     }
 }
 
 impl FirstLine {
-    /// Takes the next bytes of the connection; gives those that are for the serial session.
+    /// Takes the next bytes of the connection; returns those that are for the serial session, without the blanks before them.
     ///
     /// # Errors
     /// When the connection is to be closed, and nothing that came is to be interpreted.
-    pub fn take(&mut self, bytes: &[u8]) -> Result<Vec<u8>, ForeignProtocol> {
-        let mut passed = Vec::new();
-        let mut rest = bytes.iter();
-        while self.stage != Stage::Over
-            && let Some(&byte) = rest.next()
+    pub fn take<'a>(&mut self, bytes: &'a [u8]) -> Result<&'a [u8], ForeignProtocol> {
+        let mut rest = bytes;
+        while self.stage == Stage::Blank
+            && let Some((&first, after)) = rest.split_first()
         {
-            let was_serial = self.stage == Stage::Serial;
-            self.look_at(byte)?;
-            if was_serial {
-                passed.push(byte);
-            } else if self.stage == Stage::Serial {
-                // The beginning of a frame may have come before.
-                passed.extend_from_slice(self.start());
+            match first {
+                b'\r' | b'\n' | b' ' => rest = after,
+                DOLLAR | HASH | STX => self.stage = Stage::Serial,
+                _ => return Err(ForeignProtocol::of(first)),
             }
         }
-        passed.extend(rest);
-        Ok(passed)
+        for &byte in rest {
+            if self.stage != Stage::Serial {
+                break;
+            }
+            self.look_at(byte)?;
+        }
+        Ok(rest)
     }
 
     fn look_at(&mut self, byte: u8) -> Result<(), ForeignProtocol> {
-        if matches!(byte, b'\r' | b'\n') && self.length == 0 {
-            // A server skips empty lines before a request.
-            return Ok(());
-        }
         self.length += 1;
+        if byte.is_ascii_digit() && self.tail.ends_with(HTTP_VERSION) {
+            return Err(ForeignProtocol::Http);
+        }
         if self.tail.is_full() {
             self.tail.remove(0);
         }
         self.tail.push(byte);
-        if self.is_http() {
-            return Err(ForeignProtocol::Http);
-        }
-        if self.length == TLS_START.len() && self.tail[..] == TLS_START {
-            return Err(ForeignProtocol::Tls);
-        }
         if byte == b'\n' || self.length > LINE_MAX {
             self.stage = Stage::Over;
-        } else if self.stage == Stage::Unknown && !self.start().is_empty() {
-            self.stage = Stage::Serial;
         }
         Ok(())
     }
-
-    /// Whether the line is a request line, as far as it came. What is certain to come from a serial client may hold a
-    /// blank and a slash.
-    fn is_http(&self) -> bool {
-        let tail = &self.tail[..];
-        if let Some((digit, before)) = tail.split_last()
-            && digit.is_ascii_digit()
-            && before.ends_with(HTTP_VERSION)
-        {
-            return true;
-        }
-        self.stage == Stage::Unknown
-            && matches!(tail, [.., method, b' ', b'/' | b'*'] if is_in_method(*method))
-    }
-
-    /// What the line ends with, when that is how a serial client begins.
-    fn start(&self) -> &[u8] {
-        let tail = &self.tail[..];
-        match tail.last() {
-            Some(&HASH | &STX) => &tail[tail.len() - 1..],
-            _ => MSP_STARTS.into_iter().find(|start| tail.ends_with(start)).unwrap_or_default(),
-        }
-    }
-}
-
-/// A character that the name of a method may hold.
-fn is_in_method(byte: u8) -> bool {
-    byte.is_ascii_alphanumeric() || b"!#$%&'*+-.^_`|~".contains(&byte)
 }
 
 #[cfg(test)]
@@ -158,36 +136,48 @@ mod tests {
             "GET http://127.0.0.1:5761/ HTTP/1.1",
             "PRI * HTTP/2.0",
             "\r\n\r\nPOST / HTTP/1.0",
-            "rubbish and more GET / HTTP/1.1",
-            "\0\x01\x7f\tPOST / HTTP/1.1",
             "# GET / HTTP/1.1",
             "\x02POST craft HTTP/1.1",
+            " $GET / HTTP/1.1",
         ] {
             requests.push([line.as_bytes(), b"\r\nHost: x\r\n\r\n", FRAME].concat());
         }
-        requests.push([b"POST /".as_slice(), &[b'a'; 100_000], b" HTTP/1.1\r\n\r\n", FRAME].concat());
         for request in requests {
-            assert_eq!(
-                take(&request, request.len()),
-                Err(ForeignProtocol::Http),
-                "{}",
-                request.escape_ascii()
-            );
-            assert_eq!(take(&request, 1), Err(ForeignProtocol::Http), "{}", request.escape_ascii());
+            for size in [1, request.len()] {
+                let taken = take(&request, size);
+                assert_eq!(taken, Err(ForeignProtocol::Http), "{}", request.escape_ascii());
+            }
         }
-        // Without a blank line nothing of it was passed on before.
-        let mut line = FirstLine::default();
-        for piece in [b"PO".as_slice(), b"ST", b" "] {
-            assert_eq!(line.take(piece), Ok(Vec::new()));
-        }
-        assert_eq!(line.take(b"/"), Err(ForeignProtocol::Http));
+        assert_eq!(FirstLine::default().take(b"P"), Err(ForeignProtocol::Http), "the first byte decides");
     }
 
     #[test]
-    fn a_tls_hello_is_refused() {
-        let hello = b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03$M<\x00\x01\x01";
-        assert_eq!(take(hello, 100), Err(ForeignProtocol::Tls));
-        assert_eq!(take(hello, 1), Err(ForeignProtocol::Tls));
+    fn a_first_byte_that_no_serial_client_sends_is_refused() {
+        for byte in 0..=u8::MAX {
+            let taken = FirstLine::default().take(&[byte, b'#']).map(<[u8]>::len);
+            let expected = match byte {
+                b'$' | b'#' | 0x02 => Ok(2),
+                b'\r' | b'\n' | b' ' => Ok(1),
+                0x16 => Err(ForeignProtocol::Tls),
+                b'A'..=b'Z' => Err(ForeignProtocol::Http),
+                b'\t' | b'!'..=b'~' => Err(ForeignProtocol::Text),
+                _ => Err(ForeignProtocol::Binary),
+            };
+            assert_eq!(taken, expected, "{byte:#x}");
+        }
+    }
+
+    #[test]
+    fn blanks_before_a_stranger_do_not_let_it_in() {
+        for (bytes, protocol) in [
+            (b"\r\n \0\x64".as_slice(), ForeignProtocol::Binary),
+            (b"\n\x16\x03\x01", ForeignProtocol::Tls),
+            (b"  hello #", ForeignProtocol::Text),
+        ] {
+            for size in [1, 2, 100] {
+                assert_eq!(take(bytes, size), Err(protocol), "{}", bytes.escape_ascii());
+            }
+        }
     }
 
     #[test]
@@ -203,27 +193,9 @@ mod tests {
         ] {
             for size in [1, 2, 100] {
                 assert_eq!(take(bytes, size).as_deref(), Ok(bytes), "{}", bytes.escape_ascii());
+                let after_blanks = [b" \r\n\r\n", bytes].concat();
+                assert_eq!(take(&after_blanks, size).as_deref(), Ok(bytes), "{}", bytes.escape_ascii());
             }
         }
-    }
-
-    #[test]
-    fn what_means_nothing_is_dropped_until_a_serial_client_begins() {
-        for before in [b"\r\n".as_slice(), b"\r", b"xyz", b"\0\0\xff", b"$", b"$M", b"$$M$X"] {
-            let bytes = [before, FRAME].concat();
-            for size in [1, 2, 100] {
-                assert_eq!(take(&bytes, size).as_deref(), Ok(FRAME), "{}", bytes.escape_ascii());
-            }
-        }
-        assert_eq!(take(b"hello\n#", 100).as_deref(), Ok(b"#".as_slice()));
-    }
-
-    #[test]
-    fn megabytes_without_a_line_end_are_not_kept() {
-        let mut line = FirstLine::default();
-        for _ in 0..10 {
-            assert_eq!(line.take(&[b'x'; 1 << 16]), Ok(Vec::new()));
-        }
-        assert_eq!(line.take(FRAME).as_deref(), Ok(FRAME));
     }
 }

@@ -15,6 +15,7 @@
 
 use std::time::Duration;
 
+use super::between_frames::{BetweenFrames, NotText};
 use super::command_line::{AfterLine, Completion, LineReply, LineSource};
 use super::command_message::CommandMessage;
 use super::line_editor::{ENTRY_QUIET, LineEditor, LinkMode};
@@ -54,6 +55,13 @@ pub enum SerialRequest {
     Restart,
     /// The command line was left.
     LeftCli,
+    /// A line of text came while the command line was closed, and was ignored. Asked once for lines that come in one paste.
+    Ignored {
+        /// Its first word.
+        word: String,
+    },
+    /// What came is neither MSP nor text: the link is to be closed. Nothing that comes later is interpreted.
+    Foreign,
 }
 
 /// The protocol state of one client.
@@ -68,6 +76,8 @@ pub struct SerialSession {
     in_cli: bool,
     restart: bool,
     line: Option<String>,
+    between: BetweenFrames,
+    is_foreign: bool,
 }
 
 impl Default for SerialSession {
@@ -83,6 +93,8 @@ impl Default for SerialSession {
             in_cli: false,
             restart: false,
             line: None,
+            between: BetweenFrames::default(),
+            is_foreign: false,
         }
     }
 }
@@ -90,13 +102,15 @@ impl Default for SerialSession {
 impl SerialSession {
     /// Takes bytes from the client.
     pub fn push(&mut self, bytes: &[u8]) {
-        self.input.extend_from_slice(bytes);
+        if !self.is_foreign {
+            self.input.extend_from_slice(bytes);
+        }
     }
 
     /// What the client asks next; `None` when more bytes or more time are needed. `now` counts from the client's
     /// arrival.
     pub fn next(&mut self, now: Duration) -> Option<SerialRequest> {
-        loop {
+        while !self.is_foreign {
             if self.output.len() > OUTPUT_MAX {
                 return Some(SerialRequest::Flush);
             }
@@ -125,7 +139,8 @@ impl SerialSession {
                 self.taken = 0;
                 return None;
             };
-            if byte == STX && self.editor.mode() == LinkMode::Msp && self.decoder.is_between_frames() {
+            let opens_batch = byte == STX && self.is_outside() && self.between.is_at_line_start();
+            if opens_batch && self.editor.mode() == LinkMode::Msp {
                 return Some(SerialRequest::EnterCli { interactive: false });
             }
             self.taken += 1;
@@ -133,10 +148,35 @@ impl SerialSession {
                 return Some(request);
             }
         }
+        None
+    }
+
+    /// Whether the next byte is neither in a frame nor for the command line.
+    fn is_outside(&self) -> bool {
+        match self.editor.mode() {
+            LinkMode::Msp => self.decoder.is_between_frames(),
+            LinkMode::Entering { .. } => true,
+            LinkMode::Interactive | LinkMode::Framed { .. } => false,
+        }
     }
 
     fn take(&mut self, byte: u8, now: Duration) -> Option<SerialRequest> {
-        let for_msp = if self.editor.mode() == LinkMode::Msp && !self.decoder.is_between_frames() {
+        let in_frame = self.editor.mode() == LinkMode::Msp && !self.decoder.is_between_frames();
+        let is_outside = self.is_outside();
+        let mut ignored = None;
+        if is_outside && byte != b'$' {
+            let begins_line = self.between.is_at_line_start();
+            ignored = match self.between.take(byte, now) {
+                Ok(word) => word.map(|word| SerialRequest::Ignored { word }),
+                Err(NotText) => return Some(self.give_up()),
+            };
+            if self.editor.mode() == LinkMode::Msp && !(begins_line && byte == b'#') {
+                return ignored;
+            }
+        } else if !is_outside && !in_frame {
+            self.between.begin_line();
+        }
+        let for_msp = if in_frame {
             true
         } else {
             let output = self.editor.feed(byte, false, now);
@@ -149,9 +189,24 @@ impl SerialSession {
             output.for_msp
         };
         if !for_msp {
-            return None;
+            return ignored;
         }
-        let frame = self.decoder.push(byte)?;
+        let before = self.decoder.dropped();
+        let frame = self.decoder.push(byte);
+        if in_frame && self.decoder.is_between_frames() {
+            let dropped = self.decoder.dropped();
+            if dropped == before {
+                self.between.begin_line();
+            } else if dropped.oversized != before.oversized {
+                self.between.expect_frame_rest(self.decoder.oversized_rest());
+            } else {
+                self.between.begin_inside_line();
+                if dropped.malformed != before.malformed && self.between.take(byte, now).is_err() {
+                    return Some(self.give_up());
+                }
+            }
+        }
+        let frame = frame?;
         match self.message.take(&frame) {
             Some(Ok(line)) => Some(SerialRequest::Line { line, source: LineSource::Message }),
             Some(Err(payload)) => {
@@ -162,8 +217,17 @@ impl SerialSession {
         }
     }
 
+    /// Ends the session: the other side speaks something else.
+    fn give_up(&mut self) -> SerialRequest {
+        self.is_foreign = true;
+        self.input.clear();
+        self.taken = 0;
+        SerialRequest::Foreign
+    }
+
     /// Says whether the command line that was asked for opens.
     pub fn admit(&mut self, admitted: bool, now: Duration) {
+        self.between.begin_line();
         if let LinkMode::Entering { .. } = self.editor.mode() {
             let greeting = self.editor.poll(!admitted, now);
             self.output.extend(greeting.unwrap_or_default());
@@ -222,5 +286,78 @@ impl SerialSession {
     #[must_use]
     pub fn dropped(&self) -> Dropped {
         self.decoder.dropped()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::link::proto::msp::Form;
+
+    const FRAME: &[u8] = b"$M<\x00\x01\x01";
+    const QUIET: Duration = Duration::from_millis(150);
+
+    /// What is asked after each of these bursts, with a quiet moment behind it; the command line does not open.
+    fn asked(bursts: &[&[u8]]) -> Vec<SerialRequest> {
+        let (mut session, mut now, mut all) = (SerialSession::default(), Duration::ZERO, Vec::new());
+        for burst in bursts {
+            session.push(burst);
+            for _ in 0..2 {
+                while let Some(ask) = session.next(now) {
+                    match &ask {
+                        SerialRequest::Msp(frame) => session.reply(frame, None),
+                        SerialRequest::EnterCli { .. } => session.admit(false, now),
+                        _ => {}
+                    }
+                    all.push(ask);
+                }
+                now += QUIET;
+            }
+        }
+        all
+    }
+
+    fn is_entry(ask: &SerialRequest) -> bool {
+        matches!(ask, SerialRequest::EnterCli { .. })
+    }
+
+    #[test]
+    fn a_hash_inside_of_something_else_opens_nothing() {
+        for bytes in [b"x#".as_slice(), b"\x04#", b"a \x02", "ö#".as_bytes(), b"$x#", b"$M<\x00\x01\x02#"] {
+            let asks = asked(&[FRAME, bytes]);
+            assert!(!asks.iter().any(is_entry), "{}: {asks:?}", bytes.escape_ascii());
+        }
+        for bytes in [b"#".as_slice(), b" #", b"\r\n#", b"x\n#", b"x\r\n\x02", b"\x03#"] {
+            let asks = asked(&[FRAME, bytes]);
+            assert!(asks.iter().any(is_entry), "{}: {asks:?}", bytes.escape_ascii());
+        }
+    }
+
+    #[test]
+    fn nothing_is_asked_behind_bytes_that_are_no_text() {
+        for bytes in [b"\x00\x64\x00\x01#".as_slice(), b"#\x00", b"\n\xff\n#", b"$M\x00#"] {
+            let asks = asked(&[FRAME, bytes, FRAME, b"\n#"]);
+            assert!(
+                matches!(&asks[..], [SerialRequest::Msp(_), SerialRequest::Foreign]),
+                "{}: {asks:?}",
+                bytes.escape_ascii()
+            );
+        }
+    }
+
+    #[test]
+    fn a_message_that_is_too_long_ends_neither_the_session_nor_counts_as_text() {
+        let too_long = Frame::request(Form::V2, 1, &[b'#'; 300]);
+        let asks = asked(&[&too_long.to_bytes(), FRAME]);
+        assert!(matches!(&asks[..], [SerialRequest::Msp(_)]), "{asks:?}");
+    }
+
+    #[test]
+    fn lines_to_a_closed_command_line_are_reported_once_a_paste() {
+        let block = b"#\nwaypoint reset\nwaypoint insert 0 1 2 3 0 LAND 0 NONE\n";
+        let asks = asked(&[block, b"waypoint list\n"]);
+        let ignored =
+            |ask: &&SerialRequest| matches!(ask, SerialRequest::Ignored { word } if word == "waypoint");
+        assert_eq!(asks.iter().filter(ignored).count(), 1, "{asks:?}");
     }
 }

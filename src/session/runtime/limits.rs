@@ -60,7 +60,18 @@ fn impact_of(command: &Command) -> Impact {
 
 /// The request of a client, unless it may not be handled: then it is answered, and why comes back.
 pub(super) fn refuse_request(request: Request, access: Access) -> Result<Request, Denial> {
-    let impact = match &request {
+    match access.check(impact_of_request(&request)) {
+        Ok(()) => Ok(request),
+        Err(denial) => {
+            refuse(request, &denial.to_string());
+            Err(denial)
+        }
+    }
+}
+
+/// What a request of a client does to the craft.
+pub(super) fn impact_of_request(request: &Request) -> Impact {
+    match request {
         Request::Msp { code, payload, .. } => Impact::of_message(*code, payload),
         Request::Cli { line, .. } => Impact::of_line(line),
         Request::Restart { .. } => Impact::Changes,
@@ -69,18 +80,21 @@ pub(super) fn refuse_request(request: Request, access: Access) -> Result<Request
         Request::EnterCli { .. }
         | Request::Complete { .. }
         | Request::LeftCli { .. }
+        | Request::Ignored { .. }
         | Request::Notice(_) => Impact::Reads,
-    };
-    let Err(denial) = access.check(impact) else { return Ok(request) };
+    }
+}
+
+/// Answers a request that is not carried out with the reason, as far as it has an answer.
+pub(super) fn refuse(request: Request, reason: &str) {
     match request {
         Request::Msp { reply, .. } => answer(reply, None),
         Request::Cli { reply, .. } => {
-            let text = format!("###ERROR: {}###\r\n", denial.to_string().trim_end_matches('.'));
+            let text = format!("###ERROR: {}###\r\n", reason.trim_end_matches('.'));
             answer(reply, LineReply { text, refused: true, ..LineReply::default() });
         }
         _ => {}
     }
-    Err(denial)
 }
 
 /// A client that went away needs no answer.

@@ -5,17 +5,20 @@ use std::task::{Context, Poll};
 use std::time::{Duration, Instant};
 
 use super::limits::refuse_request;
+use super::rewind::refuse_changing_request;
 use super::{SLICE, Session};
 use crate::firmware::cli::Interpreter;
 use crate::link::Request;
 use crate::link::proto::fdm::Packet;
 use crate::session::SPEED_RANGE;
+use crate::session::command::REWOUND;
 use crate::session::event::{EventSender, SessionEvent};
 use crate::session::remote::RemoteLink;
 use crate::session::request_handler::Handled;
 use crate::session::simulator::{RC_REPEAT_US, Simulator};
 use crate::signals::RcSource;
 use crate::telemetry::LinkState;
+use crate::timeline::Timeline;
 use crate::vehicle::Vehicle;
 
 /// Most wall time that requests get in one round of the loop; what is left waits for the next.
@@ -26,6 +29,8 @@ impl Session {
     pub(super) fn handle_requests(&mut self, context: &mut Context<'_>) -> u64 {
         // Otherwise the next view is due soon.
         let access = self.access();
+        let rewound_to = self.timeline.as_ref().and_then(Timeline::shown).map(Vehicle::time);
+        self.vehicle.controller_mut().set_rewound(rewound_to.is_some());
         let time_stands_still = self.pacer.is_paused() || !self.follows_wall_clock();
         let Some(endpoints) = &mut self.endpoints else { return 0 };
         let mut flown = 0;
@@ -56,6 +61,19 @@ impl Session {
                     }
                     continue;
                 }
+            };
+            let request = match rewound_to {
+                None => request,
+                Some(shown) => match refuse_changing_request(request) {
+                    Some(request) => request,
+                    None => {
+                        if !std::mem::replace(&mut self.refused_while_rewound, true) {
+                            let notice = format!("A program at a door was refused a change: {REWOUND}");
+                            self.events.notice_at(shown, notice);
+                        }
+                        continue;
+                    }
+                },
             };
             report_first_packets(
                 &request,

@@ -2,11 +2,16 @@
 
 use std::time::Duration;
 
+use super::limits::{impact_of_request, refuse};
 use super::{SLICE, Session};
 use crate::firmware::cli::Interpreter;
+use crate::link::Request;
 use crate::session::arming::ArmingWatch;
-use crate::session::command::{BEGINNING_LOST, CliOutput, Command, NOT_RECORDED, REWOUND, Seek};
+use crate::session::command::{
+    BEGINNING_LOST, CliOutput, Command, NOT_RECORDED, REWOUND, REWOUND_FOR_CLIENTS, Seek,
+};
 use crate::session::pacer::SPEED_RANGE;
+use crate::session::remote::Impact;
 use crate::signals::SimTime;
 use crate::telemetry;
 use crate::timeline::{RecordedFlight, Shown, Timeline, TimelineView};
@@ -230,6 +235,7 @@ impl Session {
         let rewound = self.is_rewound();
         let Some(timeline) = &mut self.timeline else { return };
         if !rewound {
+            self.refused_while_rewound = false;
             self.was_paused = self.pacer.is_paused();
         }
         self.run_on = None;
@@ -274,4 +280,23 @@ impl Session {
         }
         self.pacer.set_paused(false, now);
     }
+}
+
+/// Returns the request of a client, unless it would change the vehicle that waits while an earlier instant is shown: then it
+/// is refused with the reason.
+pub(super) fn refuse_changing_request(request: Request) -> Option<Request> {
+    // Leaving the command line changes nothing.
+    let leaves = matches!(&request, Request::Cli { line, .. } if is_exit_without_reboot(line));
+    if leaves || impact_of_request(&request) == Impact::Reads {
+        return Some(request);
+    }
+    refuse(request, REWOUND_FOR_CLIENTS);
+    None
+}
+
+/// Whether a line leaves the command line and does nothing else.
+fn is_exit_without_reboot(line: &str) -> bool {
+    let mut words = line.split_ascii_whitespace();
+    let mut next_is = |word: &str| words.next().is_some_and(|next| next.eq_ignore_ascii_case(word));
+    next_is("exit") && next_is("noreboot") && words.next().is_none()
 }

@@ -46,6 +46,8 @@ pub struct Decoder {
     payload: Vec<u8>,
     xor: u8,
     dropped: Dropped,
+    /// Bytes that may still come of the frame that was dropped last for its size.
+    oversized_rest: usize,
 }
 
 impl Decoder {
@@ -77,6 +79,7 @@ impl Decoder {
             payload: Vec::new(),
             xor: 0,
             dropped: Dropped::default(),
+            oversized_rest: 0,
         }
     }
 
@@ -90,6 +93,12 @@ impl Decoder {
     #[must_use]
     pub fn dropped(&self) -> Dropped {
         self.dropped
+    }
+
+    /// Bytes that may still come of the frame that was dropped last for its size: payload and checksums.
+    #[must_use]
+    pub fn oversized_rest(&self) -> usize {
+        self.oversized_rest
     }
 
     /// Takes one byte; the frame that it completes, if it does.
@@ -151,6 +160,7 @@ impl Decoder {
 
     fn oversized(&mut self) {
         self.dropped.oversized += 1;
+        self.oversized_rest = self.size + 2;
         self.expect = Expect::Dollar;
     }
 
