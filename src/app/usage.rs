@@ -35,7 +35,8 @@ pub(super) fn print(error: &clap::Error, arguments: &[OsString], layers: &Layers
     }
 }
 
-fn printable_layers(layers: &Layers) -> Layers {
+/// The layers without what a terminal would obey.
+pub(super) fn printable_layers(layers: &Layers) -> Layers {
     let environment = layers.environment.iter().map(|(name, value)| (shown(name), shown(value)));
     let file = layers.file.iter().map(|(key, value)| (shown(key), printable_value(value)));
     Layers { environment: environment.collect(), file_name: shown(&layers.file_name), file: file.collect() }

@@ -181,20 +181,22 @@ fn with_temporary_files(sandbox: &Sandbox, arguments: &[&str]) -> std::process::
     command
 }
 
+/// Options with ports that the system has just chosen.
+fn free_ports() -> [String; 2] {
+    let tcp = std::net::TcpListener::bind("127.0.0.1:0").expect("a port");
+    let udp = [(); 4].map(|()| std::net::UdpSocket::bind("127.0.0.1:0").expect("a port"));
+    let tcp = tcp.local_addr().expect("an address").port();
+    let udp = udp.map(|socket| socket.local_addr().expect("an address").port().to_string());
+    [format!("--tcp-port={tcp}"), format!("--udp-ports={}", udp.join(","))]
+}
+
 #[test]
 fn the_folder_of_a_firmware_whose_program_was_killed_is_removed_at_the_next_start() {
     let sandbox = Sandbox::new();
     std::fs::create_dir(sandbox.path("tmp")).expect("a directory");
-    let line = [
-        "fly",
-        "land",
-        "--firmware",
-        "/bin/sleep",
-        "--firmware-arg",
-        "100",
-        "--tcp-port=0",
-        "--udp-ports=0,0,0,0",
-    ];
+    let ports = free_ports();
+    let line = ["fly", "land", "--firmware", "/bin/sleep", "--firmware-arg", "100"];
+    let line = [&line[..], &[ports[0].as_str(), ports[1].as_str()]].concat();
     let mut killed = with_temporary_files(&sandbox, &line).spawn().expect("it runs");
     until("the folder of the firmware", || !temporary(&sandbox).is_empty());
     killed.kill().expect("killed");

@@ -29,10 +29,9 @@ impl FirmwareFolder {
             let directory = TempDir::with_prefix(PREFIX)?;
             // Another program that starts now may take it for a folder that was left, until it is locked.
             let Ok(lock) = open(directory.path()) else { continue };
-            if is_locked_by_another(&lock) || !directory.path().exists() {
-                continue;
+            if is_locked_here(&lock) && directory.path().exists() {
+                return Ok(Self { directory, _lock: lock });
             }
-            return Ok(Self { directory, _lock: lock });
         }
         Err(io::Error::other("other programs remove it"))
     }
@@ -52,7 +51,7 @@ pub(in crate::app) fn sweep() {
             continue;
         }
         let Ok(folder) = open(&entry.path()) else { continue };
-        if folder.metadata().is_ok_and(|there| there.uid() == user) && !is_locked_by_another(&folder) {
+        if folder.metadata().is_ok_and(|there| there.uid() == user) && is_locked_here(&folder) {
             // Follows no link, neither in the place of the folder nor in it.
             std::fs::remove_dir_all(entry.path()).ok();
         }
@@ -65,7 +64,7 @@ fn open(path: &Path) -> io::Result<File> {
     Ok(File::from(rustix::fs::open(path, flags, Mode::empty())?))
 }
 
-/// Locks a folder unless another program has.
-fn is_locked_by_another(folder: &File) -> bool {
-    matches!(folder.try_lock(), Err(TryLockError::WouldBlock))
+/// Locks a folder; says whether no other program has. Some file systems know no locks.
+fn is_locked_here(folder: &File) -> bool {
+    !matches!(folder.try_lock(), Err(TryLockError::WouldBlock))
 }
