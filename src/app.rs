@@ -11,6 +11,7 @@ mod error;
 mod firmware;
 mod fly;
 mod input_file;
+mod input_lines;
 mod interrupt;
 mod keys;
 mod layers;
@@ -18,14 +19,17 @@ mod line_history;
 mod live;
 mod open;
 mod output_file;
+mod patient_output;
 mod plan;
 mod plan_files;
+mod runtime;
 mod scenario_file;
 mod serve;
 mod setup;
 mod sitl;
 mod stop_signal;
 mod tui;
+mod usage;
 
 use std::ffi::OsString;
 
@@ -47,11 +51,12 @@ fn outcome(arguments: Vec<OsString>) -> u8 {
     if let Some(code) = launch_firmware(&arguments) {
         return code;
     }
+    let arguments = usage::with_printable_name(arguments);
     let is_sitl = arguments.get(1).is_some_and(|command| command == "sitl");
     let outside = layers::read();
     // Help, completions and the doctor work with a broken configuration file, too.
     let known = outside.as_ref().cloned().unwrap_or_default();
-    let outcome = match args::parse(arguments, &known.layers) {
+    let outcome = match args::parse(arguments.clone(), &known.layers) {
         Ok(cli) if !reads_layers(cli.command.as_ref()) => dispatch(cli, Keymap::default()),
         Ok(cli) => outside
             .and_then(|outside| keys::keymap(&outside.layers.file_name, &outside.keys))
@@ -60,8 +65,10 @@ fn outcome(arguments: Vec<OsString>) -> u8 {
             Err(AppError { code: error::FAILED, message: usage_error })
         }
         Err(error) => {
-            // clap prints help on standard output and errors on standard error, coloured where that is wanted.
-            drop(error.print());
+            if error.use_stderr() {
+                output_file::remove_results_of(&arguments);
+            }
+            usage::print(&error, &arguments, &known.layers);
             Ok(u8::try_from(error.exit_code()).unwrap_or(error::USAGE))
         }
     };
@@ -91,7 +98,27 @@ fn reads_layers(command: Option<&Command>) -> bool {
     }
 }
 
+/// Whether a command may start a firmware in a folder of its own.
+fn may_start_firmware(command: Option<&Command>) -> bool {
+    match command {
+        None | Some(Command::Fly(_) | Command::Check(_) | Command::Compare(_) | Command::Serve(_)) => true,
+        Some(
+            Command::Sitl(_)
+            | Command::Open(_)
+            | Command::Plan(_)
+            | Command::Convert(_)
+            | Command::Config(_)
+            | Command::Doctor
+            | Command::Completions { .. }
+            | Command::Man,
+        ) => false,
+    }
+}
+
 fn dispatch(cli: Cli, keymap: Keymap) -> Result<u8, AppError> {
+    if may_start_firmware(cli.command.as_ref()) {
+        firmware::sweep();
+    }
     match cli.command {
         None => tui::run(&cli.tui, keymap),
         Some(Command::Fly(args)) => fly::run(&args),

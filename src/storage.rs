@@ -20,6 +20,7 @@ use crate::firmware::config::{Configuration, correct};
 use crate::firmware::storage::{ImageError, decode, encode};
 
 mod files;
+pub mod state_file;
 
 pub use files::link_target;
 use files::{Files, read_image};

@@ -33,6 +33,7 @@ pub(super) fn run(args: &CheckArgs) -> Result<u8, AppError> {
         let text = Draft::of_plan(&plan).finish().map_err(AppError::input)?;
         return error::print(&text);
     }
+    output::remove_earlier(args)?;
     let (flight, physics) = (FlightArgs::default(), PhysicsArgs::default());
     let beside = Beside { ports: (&args.firmware_ports).into(), flight: &flight, physics: &physics };
     let mut notices = Vec::new();

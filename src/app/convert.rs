@@ -30,6 +30,7 @@ pub(super) fn run(args: &ConvertArgs) -> Result<u8, AppError> {
             if let PlanArg::File(input, _) = &source {
                 kept.keep("the plan that was read", input);
             }
+            setup::keep_own_files(&mut kept);
             kept.claim("the output", path)?;
             write(path, &written.text, args.force)?;
         }

@@ -9,6 +9,7 @@ use std::path::Path;
 use super::error::{self, AppError};
 use super::keys;
 use super::layers::{self, Outside};
+use super::usage;
 use crate::args::{self, DoorArgs, Layers};
 use crate::ui::Theme;
 use crate::ui::layout::SMALLEST;
@@ -58,7 +59,7 @@ fn configuration(report: &mut Report) -> Layers {
             return Layers::default();
         }
     };
-    let mut problems = args::layer_problems(&layers);
+    let mut problems = args::layer_problems(&usage::printable_layers(&layers));
     if let Err(error) = keys::keymap(&layers.file_name, &keys) {
         problems.extend(error.message.lines().map(str::to_owned));
     }

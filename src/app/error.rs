@@ -2,6 +2,7 @@
 
 use std::io::Write as _;
 
+use super::patient_output::PatientOutput;
 use crate::printable;
 
 /// Exit code: an expectation was not met.
@@ -44,7 +45,9 @@ impl AppError {
 
 /// Prints lines on standard error. Nobody may be listening any more (`2>&1 | head`), which is no error.
 pub(super) fn tell(text: &str) {
-    writeln!(std::io::stderr(), "{}", printable::lines(text)).ok();
+    // In one piece: lines of several threads are not mixed.
+    let text = format!("{}\n", printable::lines(text));
+    PatientOutput(std::io::stderr()).write_all(text.as_bytes()).ok();
 }
 
 /// Prints text for people on standard output, of which nothing reaches the terminal raw.
@@ -54,7 +57,7 @@ pub(super) fn print(text: &str) -> Result<u8, AppError> {
 
 /// Writes a result as it is to standard output. A reader that went away (`| head`) is no error.
 pub(super) fn write_stdout(text: &[u8]) -> Result<u8, AppError> {
-    match std::io::stdout().write_all(text).and_then(|()| std::io::stdout().flush()) {
+    match PatientOutput(std::io::stdout()).write_all(text) {
         Ok(()) => Ok(0),
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(0),
         Err(error) => Err(AppError::environment(format!("cannot write to standard output: {error}"))),

@@ -2,12 +2,15 @@
 
 pub(super) mod configuration;
 mod executable;
+mod folder;
 pub(super) mod link;
 mod patience;
 pub(super) mod run;
 pub(super) mod told;
 
 use std::path::{Path, PathBuf};
+
+pub(super) use folder::{FirmwareFolder, sweep};
 
 use super::{AppError, input_file};
 use crate::args::{

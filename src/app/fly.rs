@@ -27,6 +27,7 @@ const SLICE: u64 = 4096;
 
 /// Flies and reports; the exit code says whether the mission completed.
 pub(super) fn run(args: &FlyArgs) -> Result<u8, AppError> {
+    output::claim(args)?;
     let plan = setup::read_plan(&args.plan)?;
     setup::refuse_unflyable(&plan)?;
     let mut notices: Vec<String> = plan.notes.iter().map(ToString::to_string).collect();

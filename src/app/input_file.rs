@@ -62,10 +62,38 @@ fn open(path: &Path, name: &str, most: u64) -> Result<File, AppError> {
             "{name} is {what}, not a file: name a file, or - for standard input"
         )));
     }
+    if is_of_system(&file) {
+        return Err(AppError::input(format!(
+            "{name} is a file of the system, which tells about this machine: name a file of your own, or - for standard input"
+        )));
+    }
     if metadata.len() > most {
         return Err(too_large(name, most));
     }
     Ok(file)
+}
+
+/// Whether the system makes up the contents of a file, such as the environment of a process.
+#[cfg(target_os = "linux")]
+fn is_of_system(file: &File) -> bool {
+    // proc, sysfs, debugfs, tracefs, securityfs, configfs, cgroup, cgroup2, efivarfs.
+    const KINDS: [u32; 9] = [
+        0x9fa0,
+        0x6265_6572,
+        0x6462_6720,
+        0x7472_6163,
+        0x7363_6673,
+        0x6265_6570,
+        0x0027_e0eb,
+        0x6367_7270,
+        0xde5e_81e4,
+    ];
+    rustix::fs::fstatfs(file).is_ok_and(|system| KINDS.contains(&(system.f_type as u32)))
+}
+
+#[cfg(not(target_os = "linux"))]
+fn is_of_system(_: &File) -> bool {
+    false
 }
 
 fn read_text(source: impl Read, name: &str, most: u64) -> Result<String, AppError> {

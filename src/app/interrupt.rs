@@ -3,15 +3,15 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use super::{AppError, error, stop_signal};
+use super::{AppError, error, patient_output, runtime, stop_signal};
 
-/// A flag that SIGINT, SIGTERM and SIGHUP set. A second signal ends the program at once: it may be waiting for a reader
-/// that does not read.
+/// A flag that SIGINT, SIGTERM and SIGHUP set. The output is not waited for much longer then. A second signal ends the
+/// program at once.
 pub(super) fn interrupt_flag() -> Result<Arc<AtomicBool>, AppError> {
     let deaf = |error| AppError::environment(format!("cannot listen for signals: {error}"));
     let flag = Arc::new(AtomicBool::new(false));
     let raised = Arc::clone(&flag);
-    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build().map_err(deaf)?;
+    let runtime = runtime::on_this_thread()?;
     let stop = {
         let _inside = runtime.enter();
         stop_signal::stop().map_err(deaf)?
@@ -21,6 +21,7 @@ pub(super) fn interrupt_flag() -> Result<Arc<AtomicBool>, AppError> {
         .spawn(move || {
             runtime.block_on(stop);
             raised.store(true, Ordering::Relaxed);
+            patient_output::lose_patience();
             runtime.block_on(async {
                 if let Ok(again) = stop_signal::stop() {
                     again.await;

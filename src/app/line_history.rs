@@ -2,14 +2,10 @@
 //! entered, so that programs that run at the same time lose none of each other's.
 #![allow(clippy::disallowed_methods, reason = "the shell of the user interface reads and writes files")]
 
-use std::fs::OpenOptions;
-use std::io::Write as _;
-use std::os::unix::fs::OpenOptionsExt as _;
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
-use rustix::fs::OFlags;
-
-use super::input_file;
+use crate::storage::state_file::{self, Access};
 use crate::ui::{EnteredLines, LineField};
 
 /// Lines of a field that are recalled.
@@ -18,6 +14,10 @@ const RECALLED: usize = 500;
 const MOST_LINES: usize = 2 * RECALLED;
 /// Longest line that is kept, bytes.
 const LONGEST: usize = 4096;
+/// Largest file that is read, bytes.
+const LARGEST: u64 = 512 << 10;
+/// The fields that have a history.
+const FIELDS: [LineField; 2] = [LineField::Command, LineField::Cli];
 
 /// The files of the lines.
 #[derive(Debug, Clone)]
@@ -43,18 +43,19 @@ impl LineHistory {
             return;
         }
         let Some(path) = self.path(field) else { return };
-        // Nobody waits for the reader of a FIFO; one write of a whole line is not mixed with another program's.
-        let opened = OpenOptions::new()
-            .append(true)
-            .create(true)
-            .mode(0o600)
-            .custom_flags(OFlags::NONBLOCK.bits() as i32)
-            .open(path);
+        let opened = state_file::open(&path, Access::AppendOrCreate);
         if let Ok(mut file) = opened
-            && file.metadata().is_ok_and(|metadata| metadata.is_file())
+            && !state_file::has_other_names(&file)
         {
+            // One write of a whole line is not mixed with another program's.
             file.write_all(format!("{line}\n").as_bytes()).ok();
         }
+    }
+
+    /// Why entered lines are not kept, a sentence for each file that is not one of this program.
+    pub(super) fn problems(&self) -> Vec<String> {
+        let paths = FIELDS.into_iter().filter_map(|field| self.path(field));
+        paths.filter_map(|path| problem(&path)).collect()
     }
 
     fn path(&self, field: LineField) -> Option<PathBuf> {
@@ -67,7 +68,8 @@ impl LineHistory {
 
     fn read_field(&self, field: LineField) -> Vec<String> {
         let Some(path) = self.path(field) else { return Vec::new() };
-        let Ok(Some(text)) = input_file::read_if_there(&path) else { return Vec::new() };
+        let Ok(Some(text)) = state_file::read(&path, LARGEST) else { return Vec::new() };
+        let Ok(text) = String::from_utf8(text) else { return Vec::new() };
         let is_line = |line: &&str| {
             !line.trim().is_empty() && line.len() <= LONGEST && !line.contains(char::is_control)
         };
@@ -82,11 +84,18 @@ impl LineHistory {
 
 /// Replaces a file that grew by its newest lines; it stays as it is when that does not work.
 fn shorten(path: &Path, lines: &[&str]) {
-    let temporary = path.with_extension(format!("{}.tmp", std::process::id()));
     let text: String = lines.iter().map(|line| format!("{line}\n")).collect();
-    if std::fs::write(&temporary, text).and_then(|()| std::fs::rename(&temporary, path)).is_err() {
-        std::fs::remove_file(&temporary).ok();
-    }
+    state_file::replace(path, text.as_bytes()).ok();
+}
+
+fn problem(path: &Path) -> Option<String> {
+    let why = match state_file::open(path, Access::Append) {
+        Ok(file) if state_file::has_other_names(&file) => "it has another name (a hard link)".to_owned(),
+        Ok(_) => return None,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => return None,
+        Err(error) => error.to_string(),
+    };
+    Some(format!("Entered lines are not kept in {}: {why}. Delete it to have them kept.", path.display()))
 }
 
 #[cfg(test)]

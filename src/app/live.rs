@@ -3,11 +3,9 @@
 use super::AppError;
 use super::connect;
 use super::doors::{self, OpenDoors};
-use super::firmware::RemoteFirmware;
 use super::firmware::link::{self, OpenLink};
+use super::firmware::{FirmwareFolder, RemoteFirmware};
 use super::setup;
-use tempfile::TempDir;
-
 use crate::args::{DoorArgs, FlightArgs, PhysicsArgs, Speed};
 use crate::link::FcPlace;
 use crate::session::{self, FlownBefore, Handle, SessionConfig, SessionEvent};
@@ -45,7 +43,7 @@ pub(super) async fn start(
     store: Store,
     mut notices: Vec<String>,
     flown: Option<FlownBefore>,
-) -> Result<(Handle, Option<OpenDoors>, Option<TempDir>), AppError> {
+) -> Result<(Handle, Option<OpenDoors>, Option<FirmwareFolder>), AppError> {
     let mut first_events = Vec::new();
     let (doors, endpoints) = match doors::open(args).await? {
         Some(opened) => {

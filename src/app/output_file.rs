@@ -1,5 +1,6 @@
 //! Creates the files that the options name for output, but never over what is read or stored.
 
+mod stale;
 mod whole;
 
 use std::ffi::OsString;
@@ -10,13 +11,22 @@ use std::path::{Path, PathBuf};
 
 use super::AppError;
 use crate::storage;
-pub(super) use whole::{FinalOutput, replace};
+pub(super) use stale::{remove_results, remove_results_of};
+pub(super) use whole::{FinalOutput, StreamedOutput, replace};
+
+/// Files of a state directory besides the stored configuration.
+const HISTORIES: [&str; 2] = ["commands.history", "cli.history"];
+/// Its folder with the journals of edits, and their ending.
+const JOURNALS: (&str, &str) = ("plans", "journal");
+/// Its folder in which a firmware outside keeps its configuration.
+const FIRMWARE: &str = "firmware";
 
 /// The files that no output may replace, under whatever name or link.
 #[derive(Debug, Default)]
 pub(super) struct KeptFiles {
     files: Vec<(&'static str, PathBuf)>,
     stores: Vec<PathBuf>,
+    states: Vec<PathBuf>,
 }
 
 impl KeptFiles {
@@ -30,6 +40,12 @@ impl KeptFiles {
         self.stores.push(directory.to_owned());
     }
 
+    /// Keeps everything that the program stores in a state directory.
+    pub(super) fn keep_state(&mut self, directory: &Path) {
+        self.keep_store(directory);
+        self.states.push(directory.to_owned());
+    }
+
     /// Whether the output of `option` may be written there; it is kept from the next one.
     ///
     /// # Errors
@@ -37,18 +53,52 @@ impl KeptFiles {
     pub(super) fn claim(&mut self, option: &'static str, path: &Path) -> Result<(), AppError> {
         let stored = self.stores.iter().flat_map(|directory| storage::files_in(directory));
         let stored = stored.map(|file| ("the stored configuration", file));
-        let clash = self.files.iter().cloned().chain(stored).find(|(_, kept)| is_same(path, kept));
-        match clash {
+        let states = self.states.iter().flat_map(|directory| state_files(directory));
+        let kept = self.files.iter().cloned().chain(stored).chain(states);
+        let clash = kept.filter(|(_, kept)| is_same(path, kept)).map(|(what, _)| what).next();
+        match clash.or_else(|| self.states.iter().find_map(|directory| state_folder(directory, path))) {
             None => {
                 self.keep(option, path);
                 Ok(())
             }
-            Some((kept, _)) => Err(AppError::input(format!(
+            Some(kept) => Err(AppError::input(format!(
                 "{option} {} would write over {kept}: name another file",
                 path.display()
             ))),
         }
     }
+}
+
+/// The files of a state directory besides the stored configuration, there or not.
+fn state_files(directory: &Path) -> Vec<(&'static str, PathBuf)> {
+    let mut files: Vec<_> =
+        HISTORIES.map(|name| ("the history of entered lines", directory.join(name))).into();
+    for (what, folder) in [("a journal of edits", JOURNALS.0), ("the configuration of a firmware", FIRMWARE)]
+    {
+        let entries = std::fs::read_dir(directory.join(folder)).into_iter().flatten().flatten();
+        let paths = entries.map(|entry| entry.path());
+        files.extend(paths.filter(|path| is_stored_in(folder, path)).map(|path| (what, path)));
+    }
+    files
+}
+
+/// What would be created by this path in a state directory's folder.
+fn state_folder(directory: &Path, path: &Path) -> Option<&'static str> {
+    let (place, name) = place(path)?;
+    let lies_in = |folder: &str| {
+        directory.join(folder).canonicalize().is_ok_and(|folder| folder == place)
+            && is_stored_in(folder, Path::new(&name))
+    };
+    match (lies_in(JOURNALS.0), lies_in(FIRMWARE)) {
+        (true, _) => Some("a journal of edits"),
+        (_, true) => Some("the configuration of a firmware"),
+        _ => None,
+    }
+}
+
+/// Whether a file of this name in this folder is one of the program. A folder of plans may be the user's own.
+fn is_stored_in(folder: &str, path: &Path) -> bool {
+    folder == FIRMWARE || path.extension().is_some_and(|ending| ending == JOURNALS.1 || ending == "bad")
 }
 
 /// Creates a file that was claimed.

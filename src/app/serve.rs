@@ -6,6 +6,7 @@ use super::error::{self, AppError};
 use super::firmware::{self, Beside};
 use super::live::{self, LiveArgs};
 use super::output_file;
+use super::runtime;
 use super::setup;
 use super::stop_signal;
 use crate::args::{OutputFile, ServeArgs};
@@ -31,11 +32,7 @@ pub(super) fn run(args: &ServeArgs) -> Result<u8, AppError> {
     // RC comes through the doors only; resting virtual sticks would hide the loss of a script.
     vehicle.transmitter_mut().set_cut(true);
     let mut output = open_output(args)?;
-    let runtime = tokio::runtime::Builder::new_multi_thread()
-        .worker_threads(1)
-        .enable_all()
-        .build()
-        .map_err(|error| AppError::environment(format!("cannot start: {error}")))?;
+    let runtime = runtime::with_threads(1)?;
     runtime.block_on(async {
         let stop = stop_signal::stop_in_time()
             .map_err(|error| AppError::environment(format!("cannot listen for signals: {error}")))?;

@@ -236,14 +236,19 @@ pub(super) fn kept_files(args: &FlightArgs, plan: Option<&PlanArg>) -> KeptFiles
     if let Some(name) = args.airframe.as_deref().map(Path::new).filter(|name| name.extension().is_some()) {
         kept.keep("--airframe", name);
     }
-    if let Ok(directories) = super::layers::directories() {
-        kept.keep("the configuration file", &directories.config_file());
-        kept.keep_store(&directories.state);
-    }
+    keep_own_files(&mut kept);
     if let Some(directory) = &args.state_dir {
-        kept.keep_store(directory);
+        kept.keep_state(directory);
     }
     kept
+}
+
+/// Keeps the configuration file and what the program stores in the user's state directory.
+pub(super) fn keep_own_files(kept: &mut KeptFiles) {
+    if let Ok(directories) = super::layers::directories() {
+        kept.keep("the configuration file", &directories.config_file());
+        kept.keep_state(&directories.state);
+    }
 }
 
 /// Why `save` cannot work, as a sentence: better known at the start than when it is typed.

@@ -13,6 +13,7 @@ use tokio::sync::Notify;
 use super::error::{self, AppError};
 use super::input_file;
 use super::output_file::KeptFiles;
+use super::runtime;
 use super::setup::attitude_source;
 use super::stop_signal;
 use crate::args::{OnOff, SitlArgs};
@@ -32,11 +33,7 @@ const TRACK: &str = "sitl_track.gpx";
 
 /// Runs until a signal, or through a configuration file; gives the exit code.
 pub(super) fn run(args: &SitlArgs) -> Result<u8, AppError> {
-    let runtime = tokio::runtime::Builder::new_multi_thread()
-        .worker_threads(2)
-        .enable_all()
-        .build()
-        .map_err(|error| AppError::environment(format!("cannot start: {error}")))?;
+    let runtime = runtime::with_threads(2)?;
     let config = config(args);
     match &args.config {
         Some(file) => {

@@ -7,9 +7,11 @@ use std::path::{Path, PathBuf};
 use super::connect;
 use super::error::{self, AppError};
 use super::firmware::{self, Beside};
+use super::input_lines;
 use super::line_history::LineHistory;
 use super::live::{self, LiveArgs};
 use super::plan_files::PlanFiles;
+use super::runtime;
 use super::scenario_file;
 use super::setup;
 use super::stop_signal;
@@ -118,6 +120,8 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
         notices.push("Edits of this plan that were never saved are back: `u` undoes them.".to_owned());
     }
     let recovered = files.recovered();
+    let history = LineHistory::new(screen.directory.as_deref());
+    notices.extend(history.problems());
     let config = UiConfig {
         theme: theme(screen.display),
         units: units(screen.display),
@@ -130,7 +134,7 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
         sentence: |event| sentence::text(&event.kind).unwrap_or_default(),
         plan: OpenPlan::new(opened.id, opened.file, opened.history),
         mouse: true,
-        entered: LineHistory::new(screen.directory.as_deref()).read(),
+        entered: history.read(),
     };
     let problem = |error| AppError::environment(format!("cannot use the terminal: {error}"));
     let (requests, asked) = std::sync::mpsc::channel();
@@ -144,11 +148,7 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
         .spawn(move || files.run(&asked, &answers, &done))
         .map_err(|error| AppError::environment(format!("cannot start a thread: {error}")))?;
     let files = FilesLink::new(requests, replies, kept);
-    let runtime = tokio::runtime::Builder::new_multi_thread()
-        .worker_threads(1)
-        .enable_all()
-        .build()
-        .map_err(problem)?;
+    let runtime = runtime::with_threads(1)?;
     let ending = runtime.block_on(async {
         let (flown, past) = screen.flown.unzip();
         let (session, doors, _directory) =
@@ -163,7 +163,7 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
         // Before the first frame: whoever sees it may already send one.
         let stop = stop_signal::stop_in_time().map_err(problem)?;
         let ending = if screen.plain {
-            let input = input_lines()?;
+            let input = input_lines::read()?;
             let cannot_write = |error| AppError::environment(format!("cannot write the output: {error}"));
             ui::run_plain(link, files, config, input, std::io::stdout(), stop).await.map_err(cannot_write)
         } else {
@@ -189,24 +189,6 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
         Ending::Signal | Ending::TerminalLost => Ok(error::INTERRUPTED),
         Ending::SessionEnded => Err(live::ended_by_itself()),
     }
-}
-
-/// The lines of standard input as they come, until it ends. The thread that waits for them ends with the program.
-fn input_lines() -> Result<tokio::sync::mpsc::UnboundedReceiver<String>, AppError> {
-    let (sender, lines) = tokio::sync::mpsc::unbounded_channel();
-    let read = move || {
-        for line in std::io::stdin().lines() {
-            let Ok(line) = line else { return };
-            if sender.send(line).is_err() {
-                return;
-            }
-        }
-    };
-    std::thread::Builder::new()
-        .name("input".to_owned())
-        .spawn(read)
-        .map_err(|error| AppError::environment(format!("cannot start a thread: {error}")))?;
-    Ok(lines)
 }
 
 /// What the environment says, but for what was asked for; `NO_COLOR` wins.

@@ -130,8 +130,10 @@ impl Files {
         if std::fs::hard_link(&self.image, &self.temporary_backup).is_ok() {
             return Ok(());
         }
-        std::fs::copy(&self.image, &self.temporary_backup)?;
-        File::open(&self.temporary_backup)?.sync_all()
+        // Created here: a link that appeared meanwhile is not followed.
+        let mut copy = File::create_new(&self.temporary_backup)?;
+        std::io::copy(&mut File::open(&self.image)?, &mut copy)?;
+        copy.sync_all()
     }
 
     /// Renames the image to the first free name for damaged files.

@@ -20,9 +20,10 @@ use crate::timeline::RecordedFlight;
 
 use super::app_state::{AppState, UiConfig};
 use super::editor::FileReply;
+use super::event_log::Severity;
 use super::files_link::FilesLink;
 use super::message::{Effect, Msg};
-use super::terminal::Tui;
+use super::terminal::{Tui, can_be_continued};
 use super::update::update;
 
 mod plain;
@@ -183,7 +184,12 @@ async fn run_loop(
                     link.commands.try_send(Command::Quit).ok();
                     return Ok(Ending::Quit);
                 }
-                if matches!(effect, Effect::Suspend) {
+                if matches!(effect, Effect::Suspend) && !can_be_continued() {
+                    state.notify(
+                        Severity::Warn,
+                        "Not stopped: there is no shell that could continue the program.",
+                    );
+                } else if matches!(effect, Effect::Suspend) {
                     tui.suspend()?;
                     let size = tui.terminal().size()?;
                     update(&mut state, Msg::Resize(size.width, size.height));

@@ -15,6 +15,7 @@ use crossterm::terminal::{
 use crossterm::{cursor, execute, style};
 use ratatui::Terminal;
 use ratatui::backend::CrosstermBackend;
+use rustix::process::{Pid, getpgid, getpgrp, getppid, getsid};
 
 use super::app_state::AppState;
 use super::draw::draw;
@@ -118,6 +119,33 @@ fn take_over(mouse: bool) -> io::Result<()> {
     TAKEN_OVER.store(true, Ordering::SeqCst);
     execute!(stdout(), EnterAlternateScreen, EnableBracketedPaste)?;
     if mouse { execute!(stdout(), EnableMouseCapture) } else { Ok(()) }
+}
+
+/// Whether a shell with jobs waits for this program: only such a one continues it after it was stopped. The process that leads
+/// a session, as under `xterm -e` or in a container, has none.
+pub(super) fn can_be_continued() -> bool {
+    /// Programs between this one and the shell, such as scripts and cargo.
+    const MOST: usize = 64;
+    let (Ok(session), group) = (getsid(None), getpgrp()) else { return false };
+    let mut ancestor = getppid();
+    for _ in 0..MOST {
+        let Some(parent) = ancestor.filter(|&parent| getsid(Some(parent)) == Ok(session)) else {
+            return false;
+        };
+        if getpgid(Some(parent)) != Ok(group) {
+            return true;
+        }
+        ancestor = parent_of(parent);
+    }
+    false
+}
+
+/// The parent of another process, where the system tells it.
+fn parent_of(process: Pid) -> Option<Pid> {
+    let stat = std::fs::read_to_string(format!("/proc/{}/stat", process.as_raw_nonzero())).ok()?;
+    // The name of the program stands in brackets, and may have brackets and blanks in it.
+    let parent = stat.rsplit_once(") ")?.1.split(' ').nth(1)?;
+    Pid::from_raw(parent.parse().ok()?)
 }
 
 /// Restores the line discipline without writing to the terminal, which nobody may be reading.

@@ -11,14 +11,22 @@ mod docs;
 #[cfg(unix)]
 mod editor;
 mod fly;
+#[cfg(unix)]
+mod hostile;
 mod inputs;
+#[cfg(unix)]
+mod limits;
 mod lines;
 mod plain;
 mod plans;
 #[cfg(unix)]
 mod pty;
 #[cfg(unix)]
+mod reports;
+#[cfg(unix)]
 mod signals;
+#[cfg(unix)]
+mod state_files;
 #[cfg(unix)]
 mod streams;
 mod support;

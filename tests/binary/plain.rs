@@ -39,6 +39,10 @@ impl Dialogue {
         writeln!(self.input, "{line}").expect("it listens");
     }
 
+    pub(crate) fn say_bytes(&mut self, bytes: &[u8]) {
+        self.input.write_all(bytes).expect("it listens");
+    }
+
     /// Waits for a line with this text; gives what was written up to it.
     #[track_caller]
     pub(crate) fn hear(&mut self, text: &str) -> Vec<String> {

@@ -22,7 +22,7 @@ pub(crate) struct Terminal {
     output: Receiver<Vec<u8>>,
     parser: Parser,
     raw: Vec<u8>,
-    _home: Sandbox,
+    home: Sandbox,
 }
 
 impl Terminal {
@@ -33,7 +33,17 @@ impl Terminal {
 
     /// Starts any program, with a home directory of its own.
     pub(crate) fn start(columns: u16, rows: u16, program: &str, arguments: &[&str]) -> Self {
-        let home = Sandbox::new();
+        Self::start_in(Sandbox::new(), columns, rows, program, arguments)
+    }
+
+    /// Starts any program in this home directory.
+    pub(crate) fn start_in(
+        home: Sandbox,
+        columns: u16,
+        rows: u16,
+        program: &str,
+        arguments: &[&str],
+    ) -> Self {
         let pty = native_pty_system().openpty(size(columns, rows)).expect("a pseudo-terminal");
         let command = command(&home, program, arguments);
         let child = pty.slave.spawn_command(command).expect("the program runs");
@@ -56,7 +66,7 @@ impl Terminal {
             output,
             parser: Parser::new(cells(rows), cells(columns), 0),
             raw: Vec::new(),
-            _home: home,
+            home,
         }
     }
 
@@ -78,6 +88,11 @@ impl Terminal {
         drop(reader);
         drop(pty.master);
         child.wait().expect("an exit status").exit_code()
+    }
+
+    /// The home directory of the program.
+    pub(crate) fn home(&self) -> &Sandbox {
+        &self.home
     }
 
     /// Lets the program write nothing more, as a terminal does after Ctrl-S.

@@ -23,25 +23,36 @@ impl Guard {
 
     /// Waits until the process handles SIGTERM itself.
     fn handles_signals(&mut self) {
-        const TERM: u32 = 15;
-        let path = format!("/proc/{}/status", self.0.id());
-        until("its signal handlers", || {
-            let status = std::fs::read_to_string(&path).expect("a process");
-            let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:")).expect("a mask");
-            u64::from_str_radix(caught.trim(), 16).expect("a mask") & (1 << (TERM - 1)) != 0
-        });
+        handles_signals(self.0.id());
     }
 
     /// Waits for the end; gives the exit code.
     fn end(&mut self) -> Option<i32> {
-        let mut code = None;
-        until("the end of the program", || {
-            let status = self.0.try_wait().expect("a child");
-            code = status.and_then(|status| status.code());
-            status.is_some()
-        });
-        code
+        end_of(&mut self.0)
     }
+}
+
+/// Waits until a process handles SIGINT, SIGTERM and SIGHUP itself.
+pub(crate) fn handles_signals(id: u32) {
+    const SIGNALS: [u32; 3] = [1, 2, 15];
+    let path = format!("/proc/{id}/status");
+    until("its signal handlers", || {
+        let status = std::fs::read_to_string(&path).expect("a process");
+        let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:")).expect("a mask");
+        let caught = u64::from_str_radix(caught.trim(), 16).expect("a mask");
+        SIGNALS.iter().all(|signal| caught & (1 << (signal - 1)) != 0)
+    });
+}
+
+/// Waits for the end of a process; returns its exit code.
+pub(crate) fn end_of(child: &mut Child) -> Option<i32> {
+    let mut code = None;
+    until("the end of the program", || {
+        let status = child.try_wait().expect("a child");
+        code = status.and_then(|status| status.code());
+        status.is_some()
+    });
+    code
 }
 
 impl Drop for Guard {
@@ -52,7 +63,7 @@ impl Drop for Guard {
 }
 
 #[track_caller]
-fn until(wanted: &str, mut done: impl FnMut() -> bool) {
+pub(crate) fn until(wanted: &str, mut done: impl FnMut() -> bool) {
     let deadline = Instant::now() + NEVER;
     while !done() {
         assert!(Instant::now() < deadline, "never came: {wanted}");
@@ -129,4 +140,36 @@ fn a_program_that_is_stopped_from_outside_gives_the_terminal_back_and_takes_it_a
     terminal.send("q");
     assert_eq!(terminal.end(), 0);
     terminal.assert_given_back();
+}
+
+#[test]
+fn ctrl_z_without_a_shell_says_why_the_program_does_not_stop() {
+    // The program leads its session, as under `xterm -e`; then a shell without jobs does, which nobody continues either.
+    let script = format!("{} --no-ports; exit 7", crate::support::PROGRAM);
+    let alone: (&str, &[&str]) = (crate::support::PROGRAM, &["--no-ports"]);
+    for (program, arguments) in [alone, ("/bin/sh", &["-c", script.as_str()])] {
+        let mut terminal = Terminal::start(100, 30, program, arguments);
+        terminal.until_shown("DISARMED");
+        terminal.send("\x1a");
+        terminal.until_shown("no shell that could continue");
+        assert!(!terminal.is_stopped() && terminal.is_alternate());
+        terminal.send("q");
+        assert_eq!(terminal.end(), if program == "/bin/sh" { 7 } else { 0 });
+        terminal.assert_given_back();
+    }
+}
+
+#[test]
+fn ctrl_z_under_a_shell_with_jobs_stops_the_program_until_it_is_continued() {
+    // With `set -m` a script has jobs as an interactive shell has.
+    let script =
+        format!("set -m; {} --no-ports; echo \"code $?\"; fg; echo \"end $?\"", crate::support::PROGRAM);
+    let mut terminal = Terminal::start(100, 30, "/bin/bash", &["-c", &script]);
+    terminal.until_shown("DISARMED");
+    terminal.send("\x1a");
+    terminal.until("the job is stopped", |terminal| terminal.raw().contains("code 147"));
+    terminal.until_shown("DISARMED");
+    terminal.send("q");
+    assert_eq!(terminal.end(), 0);
+    assert!(terminal.raw().contains("end 0"), "{:?}", terminal.raw());
 }

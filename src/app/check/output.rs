@@ -1,12 +1,14 @@
 //! Where the results go: sentences on standard output, and the files that were asked for.
 
-use std::io::{BufWriter, Write};
-use std::path::PathBuf;
+use std::io::Write as _;
+use std::path::{Path, PathBuf};
 
 use super::Loaded;
 use super::progress::Progress;
 use crate::app::error::{self, AppError};
-use crate::app::output_file::{self, KeptFiles};
+use crate::app::output_file::{self, FinalOutput, KeptFiles};
+use crate::app::patient_output::PatientOutput;
+use crate::app::setup;
 use crate::args::{CheckArgs, OutputFile};
 use crate::printable;
 use crate::record::check::{
@@ -19,40 +21,65 @@ pub(super) struct Output {
     sentences: bool,
     /// Somebody still reads standard output.
     is_read: bool,
-    json: Option<BufWriter<Box<dyn Write>>>,
-    junit: Option<PathBuf>,
-    markdown: Option<PathBuf>,
+    json: Option<Json>,
+    junit: Option<FinalOutput>,
+    markdown: Option<FinalOutput>,
     progress: Progress,
+}
+
+/// Where the JSON lines go.
+enum Json {
+    Stdout,
+    /// All of them at the end.
+    File(FinalOutput, String),
+}
+
+/// The files that the options name for output, with their options.
+fn files(args: &CheckArgs) -> impl Iterator<Item = (&'static str, &Path)> {
+    let json = match &args.json {
+        Some(OutputFile::File(path)) => Some(path),
+        Some(OutputFile::Stdout) | None => None,
+    };
+    [("--json", json), ("--junit", args.junit.as_ref()), ("--markdown", args.markdown.as_ref())]
+        .into_iter()
+        .filter_map(|(option, path)| Some((option, path?.as_path())))
+}
+
+/// Whether the outputs may be written where the options say.
+fn claim(args: &CheckArgs, inputs: &[PathBuf]) -> Result<(), AppError> {
+    let mut kept = KeptFiles::default();
+    for file in inputs {
+        kept.keep("a scenario's file", file);
+    }
+    setup::keep_own_files(&mut kept);
+    files(args).try_for_each(|(option, path)| kept.claim(option, path))
+}
+
+/// Removes the results of an earlier run: this one may not come to be flown.
+pub(super) fn remove_earlier(args: &CheckArgs) -> Result<(), AppError> {
+    let inputs: Vec<PathBuf> = args.what.iter().map(PathBuf::from).collect();
+    claim(args, &inputs)?;
+    files(args).for_each(|(_, path)| output_file::remove_results(path));
+    Ok(())
 }
 
 impl Output {
     /// Opens what the options name; no scenario may be among it.
     pub(super) fn open(args: &CheckArgs, loaded: &Loaded) -> Result<Self, AppError> {
-        let mut kept = KeptFiles::default();
-        for file in &loaded.files {
-            kept.keep("a scenario's file", file);
-        }
-        if let Some(OutputFile::File(path)) = &args.json {
-            kept.claim("--json", path)?;
-        }
-        for (option, path) in [("--junit", &args.junit), ("--markdown", &args.markdown)] {
-            if let Some(path) = path {
-                kept.claim(option, path)?;
-                // Known before the flights, not after.
-                output_file::create(path)?;
-            }
-        }
-        let json: Option<Box<dyn Write>> = match &args.json {
+        claim(args, &loaded.files)?;
+        // Known before the flights, not after.
+        let begin = |path: &Option<PathBuf>| path.as_deref().map(FinalOutput::begin).transpose();
+        let json = match &args.json {
             None => None,
-            Some(OutputFile::Stdout) => Some(Box::new(std::io::stdout())),
-            Some(OutputFile::File(path)) => Some(Box::new(output_file::create(path)?)),
+            Some(OutputFile::Stdout) => Some(Json::Stdout),
+            Some(OutputFile::File(path)) => Some(Json::File(FinalOutput::begin(path)?, String::new())),
         };
         Ok(Self {
             sentences: args.json != Some(OutputFile::Stdout),
             is_read: true,
-            json: json.map(BufWriter::new),
-            junit: args.junit.clone(),
-            markdown: args.markdown.clone(),
+            json,
+            junit: begin(&args.junit)?,
+            markdown: begin(&args.markdown)?,
             progress: Progress::new(),
         })
     }
@@ -77,39 +104,49 @@ impl Output {
         self.progress.clear();
         self.lines(&summary_lines(summary))?;
         self.json_lines(&summary_line(summary))?;
-        for (path, text) in [(&self.junit, junit(summary)), (&self.markdown, markdown(summary))] {
-            if let Some(path) = path {
-                output_file::create(path)?.write_all(text.as_bytes()).map_err(|error| {
-                    AppError::environment(format!("cannot write {}: {error}", path.display()))
-                })?;
-            }
-        }
-        Ok(())
+        let json = match self.json.take() {
+            Some(Json::File(file, lines)) => file.write(lines.as_bytes()),
+            Some(Json::Stdout) | None => Ok(()),
+        };
+        let to =
+            |file: Option<FinalOutput>, text: String| file.map_or(Ok(()), |file| file.write(text.as_bytes()));
+        // One that cannot be written keeps no other from being written.
+        let reports =
+            [json, to(self.junit.take(), junit(summary)), to(self.markdown.take(), markdown(summary))];
+        reports.into_iter().collect()
     }
 
     fn lines(&mut self, lines: &[String]) -> Result<(), AppError> {
         if !self.sentences || !self.is_read {
             return Ok(());
         }
-        let mut stdout = std::io::stdout().lock();
-        let written = lines.iter().try_for_each(|line| writeln!(stdout, "{}", printable::line(line)));
-        self.is_read = still_read(written.and_then(|()| stdout.flush()))?;
+        self.is_read = print(lines.iter().map(|line| printable::line(line)))?;
         Ok(())
     }
 
     fn json_lines(&mut self, lines: &[String]) -> Result<(), AppError> {
-        let Some(json) = &mut self.json else { return Ok(()) };
-        let written = lines.iter().try_for_each(|line| writeln!(json, "{}", printable::json(line)));
-        if !still_read(written.and_then(|()| json.flush()))? {
-            self.json = None;
+        let shown = lines.iter().map(|line| printable::json(line));
+        match &mut self.json {
+            None => {}
+            Some(Json::File(_, text)) => shown.for_each(|line| {
+                text.push_str(&line);
+                text.push('\n');
+            }),
+            Some(Json::Stdout) => {
+                if !print(shown)? {
+                    self.json = None;
+                }
+            }
         }
         Ok(())
     }
 }
 
-/// A reader that went away has seen enough; the run and its exit code go on.
-fn still_read(written: std::io::Result<()>) -> Result<bool, AppError> {
-    match written {
+/// Prints lines; says whether somebody still reads them. A reader that went away has seen enough; the run and its exit code
+/// go on.
+fn print<'a>(lines: impl Iterator<Item = std::borrow::Cow<'a, str>>) -> Result<bool, AppError> {
+    let text: String = lines.flat_map(|line| [line, "\n".into()]).collect();
+    match PatientOutput(std::io::stdout()).write_all(text.as_bytes()) {
         Ok(()) => Ok(true),
         Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(false),
         Err(error) => Err(AppError::environment(format!("cannot write the results: {error}"))),

@@ -2,6 +2,9 @@
 
 use std::io::{IsTerminal as _, Write as _};
 
+use crate::app::patient_output::PatientOutput;
+use crate::printable;
+
 /// Width of the bar, characters.
 const WIDTH: usize = 24;
 
@@ -19,7 +22,7 @@ impl Progress {
     /// Takes the bar away, so that lines can be printed.
     pub(super) fn clear(&mut self) {
         if self.is_shown {
-            write!(std::io::stderr(), "\r\x1b[K").ok();
+            PatientOutput(std::io::stderr()).write_all(b"\r\x1b[K").ok();
             self.is_shown = false;
         }
     }
@@ -31,9 +34,8 @@ impl Progress {
         }
         let filled = WIDTH * done / all.max(1);
         let bar = "█".repeat(filled) + &"░".repeat(WIDTH - filled);
-        let mut stderr = std::io::stderr();
-        write!(stderr, "\r\x1b[K{bar} {done} of {all} flights, {scenario}").ok();
-        stderr.flush().ok();
+        let text = format!("\r\x1b[K{bar} {done} of {all} flights, {}", printable::name(scenario));
+        PatientOutput(std::io::stderr()).write_all(text.as_bytes()).ok();
         self.is_shown = true;
     }
 }

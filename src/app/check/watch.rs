@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, SystemTime};
 
-use super::{fly, load};
+use super::{fly, load, output};
 use crate::app::error::{self, AppError};
 use crate::app::firmware::RemoteFirmware;
 use crate::args::CheckArgs;
@@ -27,6 +27,7 @@ pub(super) fn run(
     let mut files: Vec<PathBuf> = args.what.iter().map(PathBuf::from).collect();
     loop {
         let seen = stamps(&files);
+        output::remove_earlier(args)?;
         match load::load(args) {
             Ok(loaded) => {
                 for file in &loaded.files {

@@ -5,14 +5,14 @@ use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener, UdpSocket};
 use std::path::{Path, PathBuf};
 use std::time::{Instant, SystemTime};
 
-use tempfile::TempDir;
-
+use super::folder::FirmwareFolder;
 use super::{RemoteFirmware, configuration};
 use crate::app::AppError;
 use crate::args::UdpPorts;
 use crate::link::proto::sitl_feed::FeedConfig;
 use crate::link::{ChildConfig, FcPlace, FcStream, SitlChild, SitlPeer, SitlPorts};
 use crate::session::{Provision, RemoteEnds, RemoteLink};
+use crate::storage::state_file;
 use crate::vehicle::Vehicle;
 
 /// Where a firmware keeps its configuration below the state directory: not where ours is, which it would overwrite.
@@ -22,6 +22,8 @@ const STORED: &str = "eeprom.bin";
 /// The file beside it that says by which executable it was made when it was set from here. A firmware writes its configuration at
 /// its first start already, and one of another layout begins anew.
 const PROVISIONED: &str = "provisioned";
+/// Longest text of that file, bytes.
+const LONGEST_NOTE: u64 = 64 << 10;
 
 /// An open link.
 #[derive(Debug)]
@@ -33,7 +35,7 @@ pub(in crate::app) struct OpenLink {
     /// Where it keeps its configuration, when it was started here.
     pub(in crate::app) stored_in: Option<PathBuf>,
     /// Its directory, when it lasts as long as this program.
-    pub(in crate::app) directory: Option<TempDir>,
+    pub(in crate::app) directory: Option<FirmwareFolder>,
 }
 
 impl OpenLink {
@@ -79,7 +81,7 @@ pub(in crate::app) fn open(
         let place = match state {
             Some(state) => state.join(DIRECTORY),
             None => {
-                let temporary = TempDir::with_prefix("betadeck-firmware-").map_err(|error| {
+                let temporary = FirmwareFolder::make().map_err(|error| {
                     AppError::environment(format!("cannot make a directory for the firmware: {error}"))
                 })?;
                 directory.insert(temporary).path().to_owned()
@@ -98,8 +100,7 @@ pub(in crate::app) fn open(
     let ends = RemoteEnds { name, stream, peer: Some(peer), child };
     let mut link = RemoteLink::new(ends, now);
     let lines = configuration::lines(&firmware.lines, is_fresh)?;
-    let is_set =
-        |(file, words): &(PathBuf, String)| std::fs::read_to_string(file).is_ok_and(|noted| noted == *words);
+    let is_set = |(file, words): &(PathBuf, String)| matches!(state_file::read(file, LONGEST_NOTE), Ok(Some(noted)) if noted == words.as_bytes());
     match note {
         None if lines.is_empty() => {}
         None => link.provision(Provision::new(lines, firmware.may_write)),

@@ -9,13 +9,13 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use tempfile::TempDir;
 use tokio::runtime::Runtime;
 
 use super::RemoteFirmware;
+use super::folder::FirmwareFolder;
 use super::link::{self, OpenLink};
 use super::patience::{Patience, Unready};
-use crate::app::AppError;
+use crate::app::{AppError, runtime};
 use crate::firmware::cli::CliReply;
 use crate::flight::{Flight, FlightEnd, Report};
 use crate::plan::{AltitudeError, FlightPlan};
@@ -41,7 +41,7 @@ pub(in crate::app) struct RemoteRun {
     /// Somebody else started it.
     is_attached: bool,
     /// Behind the link, whose program runs in it.
-    _directory: Option<TempDir>,
+    _directory: Option<FirmwareFolder>,
     _runtime: Runtime,
 }
 
@@ -123,11 +123,7 @@ impl RemoteRun {
         interrupted: Arc<AtomicBool>,
         notices: &mut Vec<String>,
     ) -> Result<Self, AppError> {
-        let runtime = tokio::runtime::Builder::new_multi_thread()
-            .worker_threads(1)
-            .enable_all()
-            .build()
-            .map_err(|error| AppError::environment(format!("cannot start: {error}")))?;
+        let runtime = runtime::with_threads(1)?;
         let opened = {
             let _inside = runtime.enter();
             link::open(firmware, vehicle, state)?

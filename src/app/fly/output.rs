@@ -1,11 +1,13 @@
 //! Where the reports of a headless flight go: lines, a track, and the last words on standard error.
 
-use std::fs::File;
 use std::io::{BufWriter, Write};
+use std::path::Path;
 
 use crate::app::error::{self, AppError};
 use crate::app::firmware::told;
-use crate::app::{output_file, setup};
+use crate::app::output_file::{self, StreamedOutput};
+use crate::app::patient_output::PatientOutput;
+use crate::app::setup;
 use crate::args::{FlyArgs, OutputFile};
 use crate::flight::Report;
 use crate::plan::format::PlanFile;
@@ -15,8 +17,7 @@ use crate::session::Event;
 use crate::signals::SimTime;
 use crate::vehicle::Vehicle;
 
-/// What is told before a flight with a firmware outside. The files are created when it begins: one that is never flown leaves
-/// them as they are.
+/// What is told before a flight with a firmware outside. The files begin when it begins.
 #[derive(Debug)]
 pub(super) struct Prelude<'a> {
     args: &'a FlyArgs,
@@ -25,10 +26,9 @@ pub(super) struct Prelude<'a> {
 }
 
 impl<'a> Prelude<'a> {
-    /// Before the flight of these options; what is read must not be among the outputs.
-    pub(super) fn new(args: &'a FlyArgs) -> Result<Self, AppError> {
-        claim(args)?;
-        Ok(Self { args, held: Vec::new() })
+    /// Before the flight of these options.
+    pub(super) fn new(args: &'a FlyArgs) -> Self {
+        Self { args, held: Vec::new() }
     }
 
     /// Tells an event: as a sentence on standard output, or with JSON on standard error until the lines begin.
@@ -51,8 +51,9 @@ impl<'a> Prelude<'a> {
     }
 }
 
-/// Whether the outputs may be written where the options say; nothing is created when one of them is refused.
-fn claim(args: &FlyArgs) -> Result<(), AppError> {
+/// Whether the outputs may be written where the options say. The results of an earlier flight are removed when they all may:
+/// this one may not come to be flown.
+pub(super) fn claim(args: &FlyArgs) -> Result<(), AppError> {
     let mut kept = setup::kept_files(&args.flight, Some(&args.plan));
     if let Some(OutputFile::File(path)) = &args.json {
         kept.claim("--json", path)?;
@@ -60,27 +61,52 @@ fn claim(args: &FlyArgs) -> Result<(), AppError> {
     if let Some(path) = &args.gpx {
         kept.claim("--gpx", path)?;
     }
+    files(args).for_each(output_file::remove_results);
     Ok(())
+}
+
+/// The files that the options name for output.
+fn files(args: &FlyArgs) -> impl Iterator<Item = &Path> {
+    let json = match &args.json {
+        Some(OutputFile::File(path)) => Some(path.as_path()),
+        Some(OutputFile::Stdout) | None => None,
+    };
+    json.into_iter().chain(args.gpx.as_deref())
 }
 
 /// Where the reports go.
 pub(super) struct Output {
-    lines: Option<BufWriter<Box<dyn Write>>>,
+    lines: Option<Lines>,
     /// JSON lines, or sentences.
     json: bool,
-    gpx: Option<GpxWriter<BufWriter<File>>>,
+    gpx: Option<GpxWriter<StreamedOutput>>,
+}
+
+/// Where the lines go.
+enum Lines {
+    Stdout(BufWriter<PatientOutput<std::io::Stdout>>),
+    File(StreamedOutput),
+}
+
+impl Lines {
+    fn writer(&mut self) -> &mut dyn Write {
+        match self {
+            Self::Stdout(lines) => lines,
+            Self::File(lines) => lines,
+        }
+    }
 }
 
 impl Output {
-    /// Opens what the options name; what is read must not be among it.
+    /// Opens what the options name.
     pub(super) fn open(args: &FlyArgs, vehicle: &Vehicle, plan: &PlanFile) -> Result<Self, AppError> {
-        claim(args)?;
-        let stdout = || Box::new(std::io::stdout()) as Box<dyn Write>;
-        let (target, json): (Box<dyn Write>, bool) = match &args.json {
-            None => (stdout(), false),
-            Some(OutputFile::Stdout) => (stdout(), true),
-            Some(OutputFile::File(path)) => (Box::new(output_file::create(path)?), true),
+        let lines = match &args.json {
+            None | Some(OutputFile::Stdout) => {
+                Lines::Stdout(BufWriter::new(PatientOutput(std::io::stdout())))
+            }
+            Some(OutputFile::File(path)) => Lines::File(StreamedOutput::begin(path)?),
         };
+        let json = args.json.is_some();
         let gpx = match &args.gpx {
             None => None,
             Some(path) => {
@@ -91,11 +117,11 @@ impl Output {
                     home_amsl_m,
                     boot: UtcSeconds::SIMULATED_BOOT,
                 };
-                let file = BufWriter::new(output_file::create(path)?);
+                let file = StreamedOutput::begin(path)?;
                 Some(GpxWriter::new(file, header, &plan.plan).map_err(write_failed)?)
             }
         };
-        Ok(Self { lines: Some(BufWriter::new(target)), json, gpx })
+        Ok(Self { lines: Some(lines), json, gpx })
     }
 
     /// Writes an event or a sample.
@@ -115,14 +141,14 @@ impl Output {
     fn line(&mut self, line: &str) -> Result<(), AppError> {
         let Some(lines) = &mut self.lines else { return Ok(()) };
         let line = if self.json { printable::json(line) } else { printable::line(line) };
-        let written = writeln!(lines, "{line}");
+        let written = writeln!(lines.writer(), "{line}");
         self.after(written)
     }
 
     /// Lets a reader see what was written.
     pub(super) fn flush(&mut self) -> Result<(), AppError> {
         let Some(lines) = &mut self.lines else { return Ok(()) };
-        let written = lines.flush();
+        let written = lines.writer().flush();
         self.after(written)
     }
 
@@ -162,8 +188,11 @@ impl Output {
             }
         }
         self.flush()?;
+        if let Some(Lines::File(lines)) = self.lines.take() {
+            lines.finish()?;
+        }
         if let Some(gpx) = self.gpx.take() {
-            gpx.finish().map_err(write_failed)?.flush().map_err(write_failed)?;
+            gpx.finish().map_err(write_failed)?.finish()?;
         }
         error::tell(&end.result_line());
         error::tell(&end.flown_line());

@@ -15,7 +15,7 @@ use crate::session::{Event, hazards};
 pub(super) fn fly(start: Start<'_>, firmware: &RemoteFirmware) -> Result<Option<Flown>, AppError> {
     let options = start.options();
     let Start { args, plan, mut vehicle, notices, interrupted } = start;
-    let mut prelude = Prelude::new(args)?;
+    let mut prelude = Prelude::new(args);
     for event in super::first_events(&mut vehicle, notices) {
         prelude.event(&event)?;
     }

@@ -1,21 +1,27 @@
 //! Files that are written at the end, as a whole.
 
-use std::fs::{File, OpenOptions};
-use std::io::{self, ErrorKind, Write as _};
+use std::fs::{File, OpenOptions, Permissions};
+use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use rustix::fs::{Access, access};
+use tempfile::NamedTempFile;
 
 use super::{cannot_write, directory_of};
 use crate::app::AppError;
-use crate::storage;
+use crate::storage::{self, state_file};
 
 /// An output that is written as a whole at the end. Until then a file that is there stays as it is.
 #[derive(Debug)]
 pub(in crate::app) struct FinalOutput {
     path: PathBuf,
     place: Place,
+    /// Those of the file that was there.
+    permissions: Option<Permissions>,
 }
+
+/// Permissions of a new file, as far as the user's mask allows.
+const USUAL_MODE: u32 = 0o666;
 
 /// Where an output goes.
 #[derive(Debug)]
@@ -33,25 +39,131 @@ impl FinalOutput {
     /// Why it cannot be written.
     pub(in crate::app) fn prepare(path: &Path) -> Result<Self, AppError> {
         let place = Place::of(path).map_err(|error| cannot_write(path, &error))?;
-        Ok(Self { path: path.to_owned(), place })
+        Ok(Self { path: path.to_owned(), place, permissions: None })
+    }
+
+    /// The same, without the file that is there: it holds the results of an earlier run.
+    ///
+    /// # Errors
+    /// Why it cannot be written.
+    pub(in crate::app) fn begin(path: &Path) -> Result<Self, AppError> {
+        let mut output = Self::prepare(path)?;
+        if let Place::Regular(target) = &output.place {
+            output.permissions = clear(target).map_err(|error| cannot_write(path, &error))?;
+        }
+        Ok(output)
     }
 
     /// Writes it.
     pub(in crate::app) fn write(self, contents: &[u8]) -> Result<(), AppError> {
         let written = match self.place {
-            Place::Regular(target) => match replace(&target, contents) {
-                // The file may be written, but not its directory.
-                Err(error)
-                    if matches!(error.kind(), ErrorKind::PermissionDenied | ErrorKind::ResourceBusy) =>
-                {
-                    std::fs::write(&target, contents)
-                }
+            Place::Regular(target) => match replace_with(&target, contents, self.permissions) {
+                Err(error) if is_of_directory(&error) => std::fs::write(&target, contents),
                 written => written,
             },
             Place::Stream(mut file) => file.write_all(contents),
         };
         written.map_err(|error| cannot_write(&self.path, &error))
     }
+}
+
+/// An output that is written little by little under another name, and gets its own at the end.
+#[derive(Debug)]
+pub(in crate::app) struct StreamedOutput {
+    path: PathBuf,
+    writer: BufWriter<Stream>,
+    /// Where the temporary file goes, with the permissions of the file that was there.
+    target: Option<(PathBuf, Option<Permissions>)>,
+}
+
+#[derive(Debug)]
+enum Stream {
+    Temporary(NamedTempFile),
+    Direct(File),
+}
+
+impl StreamedOutput {
+    /// Begins the output to a path that was claimed. A file that is there is removed: it holds the results of an earlier run.
+    ///
+    /// # Errors
+    /// Why it cannot be written.
+    pub(in crate::app) fn begin(path: &Path) -> Result<Self, AppError> {
+        let begun = match Place::of(path) {
+            Ok(Place::Stream(file)) => Ok((Stream::Direct(file), None)),
+            Ok(Place::Regular(target)) => begin_at(target),
+            Err(error) => Err(error),
+        };
+        let (stream, target) = begun.map_err(|error| cannot_write(path, &error))?;
+        Ok(Self { path: path.to_owned(), writer: BufWriter::new(stream), target })
+    }
+
+    /// Gives the file its name. Until then nothing is there.
+    ///
+    /// # Errors
+    /// Why it cannot be written.
+    pub(in crate::app) fn finish(self) -> Result<(), AppError> {
+        let Self { path, writer, target } = self;
+        let stream = writer.into_inner().map_err(io::IntoInnerError::into_error);
+        let named = stream.and_then(|stream| match (stream, target) {
+            (Stream::Temporary(file), Some((target, permissions))) => name(file, &target, permissions),
+            _ => Ok(()),
+        });
+        named.map_err(|error| cannot_write(&path, &error))
+    }
+}
+
+impl Write for StreamedOutput {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.writer.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.writer.flush()
+    }
+}
+
+impl Write for Stream {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match self {
+            Self::Temporary(file) => file.write(bytes),
+            Self::Direct(file) => file.write(bytes),
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+fn begin_at(target: PathBuf) -> io::Result<(Stream, Option<(PathBuf, Option<Permissions>)>)> {
+    let directory = directory_of(&target);
+    state_file::sweep(directory);
+    match state_file::temporary_in(directory, USUAL_MODE) {
+        Ok(file) => {
+            let permissions = clear(&target)?;
+            Ok((Stream::Temporary(file), Some((target, permissions))))
+        }
+        Err(error) if is_of_directory(&error) => Ok((Stream::Direct(File::create(&target)?), None)),
+        Err(error) => Err(error),
+    }
+}
+
+/// Removes the file that is there, or empties it where that cannot be; returns its permissions.
+fn clear(target: &Path) -> io::Result<Option<Permissions>> {
+    let Ok(there) = target.metadata() else { return Ok(None) };
+    match std::fs::remove_file(target) {
+        Err(error) if is_of_directory(&error) => File::create(target).map(drop)?,
+        removed => removed?,
+    }
+    Ok(Some(there.permissions()))
+}
+
+/// Whether the file may be written, but not its directory.
+fn is_of_directory(error: &io::Error) -> bool {
+    matches!(
+        error.kind(),
+        ErrorKind::PermissionDenied | ErrorKind::ResourceBusy | ErrorKind::ReadOnlyFilesystem
+    )
 }
 
 impl Place {
@@ -78,23 +190,24 @@ impl Place {
 
 /// Replaces a file as a whole, or creates it: it is never there in part.
 pub(in crate::app) fn replace(path: &Path, contents: &[u8]) -> io::Result<()> {
-    let mut temporary = path.file_name().unwrap_or_default().to_owned();
-    temporary.push(format!(".{}.tmp", std::process::id()));
-    let temporary = path.with_file_name(temporary);
-    let write = || {
-        let mut file = OpenOptions::new().write(true).create_new(true).open(&temporary)?;
-        file.write_all(contents)?;
-        if let Ok(there) = path.metadata() {
-            file.set_permissions(there.permissions())?;
-        }
-        file.sync_all()?;
-        std::fs::rename(&temporary, path)
-    };
-    let written = write();
-    if written.is_err() {
-        std::fs::remove_file(&temporary).ok();
+    replace_with(path, contents, None)
+}
+
+/// The same; a new file gets these permissions.
+fn replace_with(path: &Path, contents: &[u8], permissions: Option<Permissions>) -> io::Result<()> {
+    let mut file = state_file::temporary_in(directory_of(path), USUAL_MODE)?;
+    file.write_all(contents)?;
+    name(file, path, permissions)
+}
+
+/// Gives a temporary file its name, with the permissions of the file that is there.
+fn name(file: NamedTempFile, path: &Path, permissions: Option<Permissions>) -> io::Result<()> {
+    let there = path.metadata().ok().map(|there| there.permissions());
+    if let Some(permissions) = there.or(permissions) {
+        file.as_file().set_permissions(permissions)?;
     }
-    written?;
+    file.as_file().sync_all()?;
+    file.persist(path).map_err(|error| error.error)?;
     File::open(directory_of(path))?.sync_all()
 }
 

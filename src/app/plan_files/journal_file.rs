@@ -5,6 +5,7 @@ use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
 use crate::plan::edit::{Journal, JournalLine};
+use crate::storage::state_file::{self, Access};
 
 /// Ending of journals.
 const ENDING: &str = "journal";
@@ -48,9 +49,9 @@ impl JournalFile {
 
     /// Opens a journal that nobody has locked.
     fn open(path: PathBuf) -> Option<(Self, Journal)> {
-        let file = OpenOptions::new().append(true).read(true).open(&path).ok()?;
+        let file = state_file::open(&path, Access::Append).ok()?;
         lock(&file).ok()?;
-        let text = std::fs::read(&path).ok()?;
+        let text = state_file::read(&path, LARGEST).ok()??;
         let journal = Journal::read(&String::from_utf8_lossy(&text))?;
         Some((Self { path, file }, journal))
     }
@@ -58,23 +59,14 @@ impl JournalFile {
     /// Writes the whole journal anew; what is there stays until the new one is complete.
     pub(super) fn rewrite(&mut self, journal: &Journal) -> io::Result<()> {
         let text: String = journal.lines().iter().map(JournalLine::to_text).collect();
-        if std::fs::read(&self.path).is_ok_and(|there| there == text.as_bytes()) {
+        let there = state_file::read(&self.path, LARGEST);
+        // A hard link would let later lines appear in another file.
+        if there.is_ok_and(|there| there.as_deref() == Some(text.as_bytes()))
+            && !state_file::has_other_names(&self.file)
+        {
             return Ok(());
         }
-        let temporary = self.path.with_extension("tmp");
-        let write = || -> io::Result<File> {
-            let mut file = OpenOptions::new().append(true).create(true).open(&temporary)?;
-            lock(&file)?;
-            file.set_len(0)?;
-            file.write_all(text.as_bytes())?;
-            std::fs::rename(&temporary, &self.path)?;
-            Ok(file)
-        };
-        let written = write();
-        if written.is_err() {
-            std::fs::remove_file(&temporary).ok();
-        }
-        self.file = written?;
+        self.file = state_file::replace(&self.path, text.as_bytes())?;
         Ok(())
     }
 
@@ -111,6 +103,7 @@ pub(super) fn find(directory: &Path, name: &str) -> Option<(JournalFile, Journal
 
 /// The journals with edits that were never saved, which nobody has locked.
 pub(super) fn left_behind(directory: &Path) -> Vec<(JournalFile, Journal)> {
+    state_file::sweep(directory);
     let left = paths(directory).into_iter().filter_map(JournalFile::open);
     left.filter(|(_, journal)| !journal.history.is_saved() && !journal.history.is_empty()).collect()
 }

@@ -1,10 +1,16 @@
 //! Command lines that are applied at boot as if typed.
 
-use crate::firmware::cli::{CliContext, CliFacts, CliMode, CliReply, Interpreter, advice, apply_lines};
+use crate::did_you_mean;
+use crate::firmware::cli::{
+    COMMANDS, CliContext, CliFacts, CliMode, CliReply, Interpreter, advice, apply_lines,
+};
 use crate::firmware::config::Configuration;
 use crate::firmware::settings;
 use crate::plan::format::{PlanError, Problems, SettingPart};
 use crate::telemetry::FirmwareNotice;
+
+/// What is shown of a line that is no command.
+const NOT_SHOWN: &str = "(not shown: this is no command)";
 
 /// Command lines and where they come from.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -39,12 +45,31 @@ impl BootLines {
                 reasons.push(refusal(line, reply));
             }
         });
-        let mut problems = Problems::new(&self.source, &self.text);
+        // The file may be one that holds secrets and no settings.
+        let mut lines: Vec<&str> = self.text.lines().collect();
+        for (failed, reason) in std::iter::zip(&report.failed, &mut reasons) {
+            if let Some(line) =
+                lines.get_mut(failed.number.saturating_sub(1)).filter(|line| !is_command(line))
+            {
+                *line = NOT_SHOWN;
+                NOT_SHOWN.clone_into(&mut reason.0);
+            }
+        }
+        let text = lines.join("\n");
+        let mut problems = Problems::new(&self.source, &text);
         for (failed, (span, message, hint)) in std::iter::zip(&report.failed, reasons) {
             problems.add_line_part(failed.number, span, message, hint);
         }
         if problems.is_empty() { Ok(notices) } else { Err(problems.into_errors()) }
     }
+}
+
+/// Whether a line begins with the name of a command, or with what is nearly one.
+fn is_command(line: &str) -> bool {
+    let word = line.split_whitespace().next().unwrap_or_default();
+    let mut names = COMMANDS.iter().map(|command| command.name);
+    names.clone().any(|name| name.eq_ignore_ascii_case(word))
+        || did_you_mean::closest(word, &mut names).is_some()
 }
 
 /// The part of a refused line that is wrong, what is wrong with it, and what is allowed.

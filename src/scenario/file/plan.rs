@@ -40,7 +40,10 @@ pub(super) fn read(layers: &Layers<'_, '_>, reader: &mut Reader<'_, '_>) -> Plan
                     Err(format!("there is no built-in plan {name}{guess}"))
                 }
                 ("builtin", Some(_)) => reader.plan_file(&name),
-                _ => reader.plan_from_file(&name),
+                _ => reader.plan_from_file(&name).and_then(|plan| match plan.plan.waypoints.is_empty() {
+                    true => Err(format!("{name} has no waypoints: name a plan, or write the waypoints here")),
+                    false => Ok(plan),
+                }),
             };
             found.unwrap_or_else(|problem| {
                 reader.problem(value.span(), problem, "");

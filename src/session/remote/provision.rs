@@ -321,7 +321,7 @@ impl RemoteLink {
             None => {}
         }
         if let (Some(Ok(_)), Some((file, words))) = (provision.result(), &provision.note)
-            && let Err(error) = std::fs::write(file, words)
+            && let Err(error) = crate::storage::state_file::replace(file, words.as_bytes())
         {
             let place = file.display();
             self.notices.push(RemoteNotice::Lost(format!("Cannot write {place}: {error}.")));

@@ -20,7 +20,7 @@ mod lines;
 const SIZE: (u16, u16) = (80, 24);
 
 /// Runs until a command or `stop` ends it; when the input ends the flight goes on, as in `serve`. A line of input waits
-/// for the answers to the one before.
+/// for the answers to the one before. An error in the place of a line is a sentence that is written.
 ///
 /// # Errors
 /// The output cannot be written; a reader that went away is an ordinary end.
@@ -28,7 +28,7 @@ pub async fn run_plain(
     link: SessionLink,
     files: FilesLink,
     config: UiConfig,
-    input: mpsc::UnboundedReceiver<String>,
+    input: mpsc::UnboundedReceiver<Result<String, String>>,
     output: impl Write,
     stop: impl Future<Output = ()>,
 ) -> io::Result<Ending> {
@@ -42,7 +42,7 @@ async fn run_loop(
     mut link: SessionLink,
     mut files: FilesLink,
     config: UiConfig,
-    mut input: mpsc::UnboundedReceiver<String>,
+    mut input: mpsc::UnboundedReceiver<Result<String, String>>,
     output: impl Write,
     stop: impl Future<Output = ()>,
 ) -> io::Result<Ending> {
@@ -90,7 +90,13 @@ async fn run_loop(
             },
             Some(line) = input.recv(), if awaited == 0 => {
                 update(&mut state, Msg::Clock(started.elapsed()));
-                lines.enter(&mut state, &line)?
+                match line {
+                    Ok(line) => lines.enter(&mut state, &line)?,
+                    Err(sentence) => {
+                        lines.write(&sentence)?;
+                        Vec::new()
+                    }
+                }
             }
         };
         lines.follow(&mut state)?;

@@ -1,0 +1,103 @@
+//! Results of an earlier run, which must not be taken for those of a run that cannot start.
+
+use std::ffi::OsString;
+use std::fs::File;
+use std::io::{BufRead as _, BufReader, Read as _};
+use std::path::{Path, PathBuf};
+
+use crate::storage;
+
+/// Most bytes of a file that are looked at.
+const LOOKED_AT: u64 = 1 << 20;
+/// The options that name files of results.
+const OPTIONS: [&str; 4] = ["--json", "--junit", "--markdown", "--gpx"];
+/// The commands whose results these are.
+const COMMANDS: [&str; 2] = ["fly", "check"];
+
+/// Removes a file when an earlier run of this program has written its results into it; any other stays.
+pub(in crate::app) fn remove_results(path: &Path) {
+    let target = storage::link_target(path);
+    if holds_results(&target) {
+        std::fs::remove_file(target).ok();
+    }
+}
+
+/// Does so with the files that a command line names which could not be understood.
+pub(in crate::app) fn remove_results_of(arguments: &[OsString]) {
+    let words: Vec<&str> = arguments.iter().map(|word| word.to_str().unwrap_or_default()).collect();
+    if !words.get(1).is_some_and(|command| COMMANDS.contains(command)) {
+        return;
+    }
+    for (at, word) in words.iter().enumerate() {
+        let value = match word.split_once('=') {
+            Some((option, value)) if OPTIONS.contains(&option) => Some(value),
+            _ if OPTIONS.contains(word) => words.get(at + 1).copied(),
+            _ => None,
+        };
+        if let Some(path) = value.map(PathBuf::from) {
+            remove_results(&path);
+        }
+    }
+}
+
+/// Whether a regular file begins as the results of this program do.
+fn holds_results(path: &Path) -> bool {
+    if !path.symlink_metadata().is_ok_and(|there| there.is_file()) {
+        return false;
+    }
+    let Ok(file) = File::open(path) else { return false };
+    let mut start = Vec::new();
+    let mut lines = BufReader::new(file.take(LOOKED_AT));
+    for _ in 0..2 {
+        if lines.read_until(b'\n', &mut start).is_err() {
+            return false;
+        }
+    }
+    let Ok(start) = std::str::from_utf8(&start) else { return false };
+    let (first, second) = start.split_once('\n').unwrap_or((start, ""));
+    let is_event = || {
+        let line: Result<serde_json::Value, _> = serde_json::from_str(first);
+        line.is_ok_and(|line| line.get("event").is_some_and(serde_json::Value::is_string))
+    };
+    let summaries = ["### – Nothing was judged", "### ✅ All flights passed", "### ❌ Some flights failed"];
+    second.starts_with("<testsuites name=\"betadeck\"")
+        || second.starts_with("<gpx version=\"1.1\" creator=\"betadeck")
+        || summaries.contains(&first)
+        || is_event()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_this_program_wrote_is_removed() {
+        let directory = tempfile::tempdir().expect("a directory");
+        let at = |name: &str| directory.path().join(name);
+        let files = [
+            ("flight.json", "{\"t\":0.0,\"event\":\"boot\"}\n{\"t\":1.0,\"event\":\"armed\"}\n", true),
+            ("run.xml", "<?xml version=\"1.0\"?>\n<testsuites name=\"betadeck\" tests=\"1\">\n", true),
+            (
+                "track.gpx",
+                "<?xml?>\n<gpx version=\"1.1\" creator=\"betadeck (simulated)\" xmlns=\"x\">\n",
+                true,
+            ),
+            ("run.md", "### ✅ All flights passed\n\n1 of 1\n", true),
+            ("other.xml", "<?xml version=\"1.0\"?>\n<testsuites name=\"cargo\">\n", false),
+            ("other.json", "{\"name\":\"plan\"}\n", false),
+            ("plan.txt", "waypoint insert 0 40 -79 2000 0 LAND 0 NONE\n", false),
+            ("empty", "", false),
+        ];
+        let mut line: Vec<OsString> = vec!["betadeck".into(), "fly".into()];
+        for (name, text, _) in files {
+            std::fs::write(at(name), text).expect("written");
+            line.push(format!("--json={}", at(name).display()).into());
+        }
+        remove_results_of(&[line[0].clone(), "serve".into(), line[2].clone()]);
+        assert!(at("flight.json").exists(), "a file that goes on is not the result of a run");
+        remove_results_of(&line);
+        for (name, _, is_removed) in files {
+            assert_eq!(at(name).exists(), !is_removed, "{name}");
+        }
+    }
+}

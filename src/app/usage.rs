@@ -1,0 +1,65 @@
+//! What is said about a command line: help, and what is wrong with it.
+
+use std::ffi::OsString;
+use std::path::Path;
+
+use super::error;
+use crate::args::{self, Layers};
+use crate::printable;
+
+/// The command line with a name of the program that a terminal may show: it stands in every usage line.
+pub(super) fn with_printable_name(mut arguments: Vec<OsString>) -> Vec<OsString> {
+    if let Some(name) = arguments.first_mut() {
+        let own = Path::new(&*name).file_name().unwrap_or_default().to_string_lossy().into_owned();
+        if !is_printable(&own) {
+            *name = printable::name(&own).into();
+        }
+    }
+    arguments
+}
+
+/// Prints help on standard output and errors on standard error, coloured where that is wanted. An error is that of the same
+/// command line without what a terminal would obey: the parser mixes its own colours with the texts.
+pub(super) fn print(error: &clap::Error, arguments: &[OsString], layers: &Layers) {
+    let shown: Vec<OsString> =
+        arguments.iter().map(|argument| shown(&argument.to_string_lossy()).into()).collect();
+    let shown_layers = printable_layers(layers);
+    if !error.use_stderr() || (arguments == shown && *layers == shown_layers) {
+        drop(error.print());
+        return;
+    }
+    match args::parse(shown, &shown_layers) {
+        Err(error) if error.use_stderr() => drop(error.print()),
+        // Without colours, and without the sequences that a terminal would obey.
+        Ok(_) | Err(_) => error::tell(error.render().to_string().trim_end()),
+    }
+}
+
+/// The layers without what a terminal would obey.
+pub(super) fn printable_layers(layers: &Layers) -> Layers {
+    let environment = layers.environment.iter().map(|(name, value)| (shown(name), shown(value)));
+    let file = layers.file.iter().map(|(key, value)| (shown(key), printable_value(value)));
+    Layers { environment: environment.collect(), file_name: shown(&layers.file_name), file: file.collect() }
+}
+
+fn printable_value(value: &toml::Value) -> toml::Value {
+    match value {
+        toml::Value::String(text) => shown(text).into(),
+        toml::Value::Array(values) => toml::Value::Array(values.iter().map(printable_value).collect()),
+        toml::Value::Table(table) => table
+            .iter()
+            .map(|(key, value)| (shown(key), printable_value(value)))
+            .collect::<toml::Table>()
+            .into(),
+        other => other.clone(),
+    }
+}
+
+fn is_printable(text: &str) -> bool {
+    text.chars().all(printable::is_printable)
+}
+
+/// The text without what a terminal would obey. A long one stays long: the parser may need all of it.
+fn shown(text: &str) -> String {
+    if is_printable(text) { text.to_owned() } else { printable::line(text).into_owned() }
+}
