@@ -14,6 +14,8 @@ const SLOWEST_DELAYED_MPS: f64 = 0.1;
 
 /// Least altitude error at which a HOLD begins, m.
 const HOLD_ALTITUDE_M: f64 = 2.0;
+/// How much nearer to it a craft may measure itself, m.
+const MEASURED_M: f64 = 1.0;
 /// How long a HOLD waits for an altitude that cannot be reached, s.
 const HELD_OFF_S: f64 = 10.0;
 /// A LAND reached this far above its altitude is approached vertically first, m; the approach ends this near to it, m.
@@ -184,7 +186,7 @@ impl Assumptions {
 
     /// Moves the setpoint until a HOLD at this altitude begins; returns how long that takes, s.
     pub(super) fn wait_for_hold(&self, setpoint: &mut AltitudeSetpoint, alt_m: f64) -> f64 {
-        let within_m = self.hold_radius_m.max(HOLD_ALTITUDE_M);
+        let within_m = self.hold_radius_m.max(HOLD_ALTITUDE_M) + MEASURED_M;
         let waited = setpoint.reach(alt_m, &self.setpoint_limits(), within_m);
         if waited.is_finite() { waited } else { HELD_OFF_S }
     }
@@ -437,11 +439,14 @@ mod tests {
 
     #[test]
     fn a_landing_after_a_steep_leg_begins_where_the_craft_is_then() {
-        let climb = plan(&[
+        let mut steep = FlightPlan::default();
+        steep.waypoints.extend([
             waypoint(WaypointType::Flyover, 55.7, 15, 1000, 0),
             waypoint(WaypointType::Flyover, 85.7, 80, 1000, 0),
             waypoint(WaypointType::Land, 0.0, 15, 0, 0),
         ]);
+        let settings = ["ap_max_velocity = 1000".to_owned()];
+        let climb = estimate(&steep, HOME, &Assumptions::from_settings(&settings));
         // It was flown in 58.9 s; the climb to 80 m was never finished.
         assert!(climb.time_s.is_some_and(|time_s| (45.0..58.9).contains(&time_s)), "{:?}", climb.time_s);
         let held = plan(&[

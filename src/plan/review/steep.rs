@@ -268,3 +268,54 @@ impl Walk<'_> {
         Vector2::new(north, east) * radius_m
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geo::offset_to_latlon;
+
+    const HOME: LatLon = LatLon::new(404_635_000, -795_182_000);
+
+    fn steep(legs: &[(WaypointType, f64, i32, u16)]) -> Vec<SteepLeg> {
+        let waypoints: Vec<Waypoint> = legs
+            .iter()
+            .map(|&(kind, north_m, alt_m, speed_cms)| Waypoint {
+                position: offset_to_latlon(HOME, Vector2::new(north_m, 0.0)),
+                alt_cm: alt_m * 100,
+                speed_cms,
+                kind,
+                duration_ds: 10,
+                ..Waypoint::default()
+            })
+            .collect();
+        let settings = ["ap_max_velocity = 1000".to_owned()];
+        steep_legs(&waypoints, HOME, &Assumptions::from_settings(&settings))
+    }
+
+    #[test]
+    fn a_steep_leg_is_told_with_its_miss_and_what_to_do() {
+        use WaypointType::{Flyover, Land};
+        let found = steep(&[(Flyover, 55.7, 15, 1000), (Flyover, 85.7, 80, 1000), (Land, 0.0, 15, 0)]);
+        let told: Vec<String> = found.iter().map(ToString::to_string).collect();
+        assert_eq!(
+            told,
+            [
+                "waypoint 1 is passed about 56 m too low: its leg takes 3 s, the climb to 80 m 15 s; fly the leg at 1.6 m/s or \
+              slower"
+            ]
+        );
+        let drop = steep(&[(Flyover, 100.0, 100, 200), (Flyover, 104.0, 20, 500), (Land, 0.0, 15, 0)]);
+        let told = drop.last().map(ToString::to_string).unwrap_or_default();
+        assert!(told.contains("too high") && told.contains("the descent to 20 m"), "{told}");
+        assert!(told.ends_with("put a HOLD at 20 m before it, which waits for the altitude"), "{told}");
+    }
+
+    #[test]
+    fn legs_that_wait_for_their_altitude_or_have_the_time_are_not_told() {
+        use WaypointType::{Flyover, Hold, Land, Takeoff};
+        assert!(steep(&[(Hold, 5.0, 90, 0), (Flyover, 50.0, 90, 0), (Land, 60.0, 20, 0)]).is_empty());
+        assert!(steep(&[(Takeoff, 0.0, 90, 0), (Flyover, 50.0, 90, 0), (Land, 60.0, 20, 0)]).is_empty());
+        assert!(steep(&[(Flyover, 200.0, 60, 500), (Flyover, 300.0, 90, 500)]).is_empty());
+        assert!(steep(&[(Flyover, 20.0, 12, 1000), (Land, 0.0, 12, 0), (Flyover, 1.0, 900, 0)]).is_empty());
+    }
+}
