@@ -9,7 +9,9 @@ pub mod edit;
 pub mod estimate;
 pub mod format;
 pub mod generate;
+mod leg_time;
 pub mod review;
+pub mod setpoint;
 pub mod validate;
 mod waypoint;
 

@@ -102,6 +102,21 @@ fn a_waypoint_outside_the_fence_says_why_and_one_key_takes_the_fix() {
 }
 
 #[test]
+fn a_leg_that_is_too_steep_says_by_how_much_and_one_key_slows_it() {
+    let mut state = state((120, 40));
+    keys(&mut state, "2 z ctrl-a d");
+    let lines = "waypoint insert 0 40.4642000 -79.5182000 1500 0 FLYOVER 0 NONE\n\
+                 waypoint insert 1 40.4645000 -79.5182000 9000 0 FLYOVER 0 NONE\n\
+                 waypoint insert 2 40.4642000 -79.5182000 2000 0 LAND 0 NONE";
+    update(&mut state, Msg::Paste(lines.to_owned()));
+    let seen = screen(&state);
+    assert!(seen.contains("waypoint 1 is passed about") && seen.contains("f: fly WP1 at"), "{seen}");
+    keys(&mut state, "f");
+    assert!(state.plan().waypoints[1].speed_cms > 0, "{:?}", state.plan());
+    assert!(!screen(&state).contains("waypoint 1 is passed about"));
+}
+
+#[test]
 fn waypoints_go_out_as_cli_lines_and_come_back_by_paste() {
     let mut state = state((80, 24));
     let effects = keys(&mut state, "2 down v down y");

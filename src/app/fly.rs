@@ -147,8 +147,8 @@ fn open_store(args: &FlyArgs) -> Result<Store, AppError> {
 fn embedded(mut start: Start<'_>) -> Result<Option<Flown>, AppError> {
     // A plan that the craft refuses is invalid input.
     upload(start.vehicle.controller_mut(), &start.plan.plan, &[]).map_err(AppError::input)?;
-    start.notices.extend(hazards(start.vehicle.controller()));
     let options = start.options();
+    start.notices.extend(hazards(&start.vehicle, options.takeoff_m));
     let Start { args, plan, vehicle, notices, interrupted } = start;
     let mut flight = setup::start_flight(vehicle, &options)?;
     let mut output = open_output(args, &plan, flight.vehicle_mut(), notices)?;

@@ -25,6 +25,12 @@ pub use table::transition_table;
 /// Time without progress after which a mission is given up, s.
 pub const STALL_S: f64 = 30.0;
 
+/// Time at the place of a HOLD without getting nearer to its altitude after which the hold begins all the same, s.
+pub const HELD_OFF_S: f64 = 10.0;
+
+/// Least altitude error at which a HOLD begins at once, m; the hold radius where that is greater.
+const HOLD_ALTITUDE_M: f64 = 2.0;
+
 /// The current waypoint and its place in the plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WaypointFacts {
@@ -57,6 +63,8 @@ pub struct ApproachFacts {
     pub arrival_radius_m: f64,
     /// `ap_waypoint_hold_radius`, m.
     pub hold_radius_m: f64,
+    /// Time within the hold radius of a HOLD without getting nearer to its altitude, s.
+    pub held_off_s: f64,
 }
 
 /// What the progress monitors know; `None` in [`Facts`] while they are paused.
@@ -129,6 +137,7 @@ impl Default for Facts {
                 turn_radius_m: 0.0,
                 arrival_radius_m: 5.0,
                 hold_radius_m: 2.0,
+                held_off_s: 0.0,
             },
             climb: None,
             progress: None,

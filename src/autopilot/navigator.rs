@@ -4,6 +4,7 @@
 //! transition → target and aim of the state → position, altitude and yaw control → demands. The altitude and position
 //! controllers are lent to it: it engages them when it takes over, and does not touch them while it flies nothing.
 
+mod altitude_wait;
 mod climb;
 mod cursor;
 mod descent;
@@ -30,6 +31,7 @@ use super::io::NavInputs;
 use super::params::Params;
 use crate::plan::FlightPlan;
 use crate::telemetry::{NavEvent, NavOutput, NavState, NavTelemetry, PlanSource, TransitionReason};
+use altitude_wait::AltitudeWait;
 use climb::Climb;
 use cursor::PlanCursor;
 use descent::Descent;
@@ -57,6 +59,7 @@ pub struct Navigator {
     leg: Leg,
     climb: Climb,
     progress: ProgressMonitor,
+    altitude_wait: AltitudeWait,
     hold: Hold,
     station: StationMonitor,
     descent: Descent,

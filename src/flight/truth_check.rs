@@ -69,7 +69,8 @@ impl TruthCheck {
             NavEvent::Plan { source, plan } => self.begin_plan(*source, plan),
             NavEvent::State { to, wp, kind, reason, guard, target, target_alt_m, .. } => {
                 let kind = kind.unwrap_or_default();
-                let ne = if kind.uses_position() { place(frame, *target) } else { craft.ne };
+                let position = self.planned_place(*wp).unwrap_or(*target);
+                let ne = if kind.uses_position() { place(frame, position) } else { craft.ne };
                 let target = Target {
                     source: self.source,
                     wp: *wp,
@@ -182,6 +183,13 @@ impl TruthCheck {
 
     fn forget(&mut self, source: PlanSource, wp: u8) {
         self.ended.retain(|ended| (ended.source, ended.wp) != (source, wp));
+    }
+
+    /// The place of a waypoint in the stored plan, while that is flown. The navigator's own target differs from it after an
+    /// outage of the fix in a landing.
+    fn planned_place(&self, wp: u8) -> Option<LatLon> {
+        let waypoint = self.active.waypoints.get(usize::from(wp))?;
+        (self.source == PlanSource::Stored).then_some(waypoint.position)
     }
 
     fn leg_speed_mps(&self, wp: u8, settings: &SettingsView) -> f64 {

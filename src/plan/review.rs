@@ -1,5 +1,7 @@
 //! What is worth knowing about a plan before it flies: why the craft would refuse it, and what it may not do as expected.
 
+mod steep;
+
 use std::fmt;
 
 use crate::geo::{LatLon, distance_bearing};
@@ -7,6 +9,7 @@ use crate::geo::{LatLon, distance_bearing};
 use super::estimate::{Assumptions, TouchdownThrottle, estimate};
 use super::validate::{PlanFault, check_plan};
 use super::{FlightPlan, Waypoint, WaypointType};
+pub use steep::{Remedy, SteepLeg};
 
 /// Something found in a plan.
 #[derive(Debug, Clone, PartialEq)]
@@ -61,6 +64,8 @@ pub enum Finding {
         /// Altitude of its leg above home, m.
         alt_m: f64,
     },
+    /// The leg is too steep for its speed: the craft passes the waypoint beside its altitude.
+    SteepLeg(SteepLeg),
     /// The throttle condition of a touchdown can never be met.
     NoTouchdownThrottle(TouchdownThrottle),
 }
@@ -72,10 +77,10 @@ impl Finding {
         matches!(self, Self::Fault(_) | Self::OutsideFence { .. })
     }
 
-    /// Whether flying the plan may hurt the craft: its pilot should hear of it before it flies.
+    /// Whether the craft may be hurt or fly elsewhere than planned: its pilot is warned before it flies.
     #[must_use]
     pub fn is_hazard(&self) -> bool {
-        matches!(self, Self::BelowGround { .. } | Self::NoTouchdownThrottle(_))
+        matches!(self, Self::BelowGround { .. } | Self::SteepLeg(_) | Self::NoTouchdownThrottle(_))
     }
 }
 
@@ -118,6 +123,7 @@ impl fmt::Display for Finding {
                 "waypoint {index} is {:.1} m below home: where the ground is level, the craft hits it",
                 -alt_m
             ),
+            Self::SteepLeg(leg) => leg.fmt(f),
             Self::NoTouchdownThrottle(TouchdownThrottle { hover_us, threshold_us, min_us }) => write!(
                 f,
                 "ap_landing_throttle_threshold = {threshold_us} can never be met, for ap_hover_throttle ({hover_us}) less \
@@ -171,6 +177,7 @@ pub fn review(plan: &FlightPlan, home: LatLon, assumptions: &Assumptions) -> Vec
         findings.push(Finding::OutlastsBattery { time_s, endurance_s });
     }
     findings.extend(below_ground(waypoints));
+    findings.extend(steep::steep_legs(waypoints, home, assumptions).into_iter().map(Finding::SteepLeg));
     if assumptions.touchdown_throttle.is_never_met() {
         findings.push(Finding::NoTouchdownThrottle(assumptions.touchdown_throttle));
     }

@@ -152,6 +152,7 @@ fn cause(reason: TransitionReason, to: NavState) -> &'static str {
         TransitionReason::SetCurrent => "sent there",
         TransitionReason::HoldHere => "told to hold here",
         TransitionReason::Arrival => "reached",
+        TransitionReason::HeldOffAltitude => "reached, but the craft gets no nearer to its altitude",
         TransitionReason::Plane => "passed",
         TransitionReason::TurnRadius => "the turn begins",
         TransitionReason::Advance if to == NavState::Complete => "the mission is done",

@@ -1,29 +1,58 @@
 //! What may hurt a craft when it flies the plan it has with the settings it has.
 
-use crate::geo::LatLon;
+use crate::firmware::Firmware;
+use crate::geo::{LatLon, LocalFrame};
 use crate::plan::estimate::Assumptions;
 use crate::plan::review::{Finding, review};
-use crate::vehicle::FlightController;
+use crate::vehicle::{FlightController, Vehicle};
 
-/// A sentence for each hazard of the stored plan; none from a flight controller that does not tell its settings.
+/// Returns a sentence for each hazard of the stored plan, for a mission that begins `start_alt_m` above home; none for a
+/// flight controller whose settings are not known.
 #[must_use]
-pub fn hazards(controller: &FlightController) -> Vec<String> {
+pub fn hazards(vehicle: &Vehicle, start_alt_m: f64) -> Vec<String> {
+    let place = |frame: &LocalFrame| LatLon::from_degrees(frame.lat_deg, frame.lon_deg);
+    let armed_at = vehicle.controller().embedded().and_then(Firmware::home);
+    hazards_from(vehicle.controller(), armed_at.or_else(|| vehicle.local_frame().map(place)), start_alt_m)
+}
+
+/// The hazards of a mission that begins above `home`.
+fn hazards_from(controller: &FlightController, home: Option<LatLon>, start_alt_m: f64) -> Vec<String> {
     let Some(firmware) = controller.embedded() else { return Vec::new() };
     let stored = &firmware.configuration().settings;
     let settings = Assumptions::SETTINGS.map(|name| format!("{name} = {}", stored.number(name)));
-    // No hazard depends on where home is.
-    let found = review(firmware.stored_plan(), LatLon::default(), &Assumptions::from_settings(&settings));
+    let assumptions = Assumptions { start_alt_m, ..Assumptions::from_settings(&settings) };
+    let found = review(firmware.stored_plan(), home.unwrap_or_default(), &assumptions);
     let hazards = found.iter().filter(|finding| Finding::is_hazard(finding));
-    hazards.map(|finding| format!("Beware: {finding}.")).collect()
+    // How steep a leg is depends on where home is.
+    let known = hazards.filter(|finding| home.is_some() || !matches!(finding, Finding::SteepLeg(_)));
+    known.map(|finding| format!("Beware: {finding}.")).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::firmware::FirmwareOptions;
     use crate::firmware::config::Configuration;
-    use crate::firmware::{Firmware, FirmwareOptions};
     use crate::plan::{FlightPlan, Waypoint, WaypointType};
     use crate::session::upload;
+
+    #[test]
+    fn an_upload_with_a_leg_that_is_too_steep_is_warned_of() {
+        let firmware = Firmware::new(Configuration::default(), FirmwareOptions::default());
+        let mut controller = FlightController::from(firmware);
+        let home = LatLon::new(404_635_000, -795_182_000);
+        let mut plan = FlightPlan::default();
+        for alt_cm in [8000, 2000] {
+            let kind = if alt_cm == 8000 { WaypointType::Flyover } else { WaypointType::Land };
+            let position = LatLon::new(home.lat_e7 + 3000, home.lon_e7);
+            plan.waypoints.push(Waypoint { position, alt_cm, kind, ..Waypoint::default() });
+        }
+        upload(&mut controller, &plan, &[]).unwrap();
+        let told = hazards_from(&controller, Some(home), 10.0);
+        assert!(told.len() == 1 && told[0].starts_with("Beware: waypoint 0 is passed about"), "{told:?}");
+        assert!(hazards_from(&controller, Some(home), 75.0).is_empty(), "it is level there");
+        assert!(hazards_from(&controller, None, 10.0).is_empty(), "without a home no leg is known");
+    }
 
     #[test]
     fn an_upload_with_a_hazard_is_warned_of() {
@@ -38,7 +67,7 @@ mod tests {
             ..Waypoint::default()
         });
         upload(&mut controller, &plan, &["ap_landing_throttle_threshold = 300".to_owned()]).unwrap();
-        let told = hazards(&controller);
+        let told = hazards_from(&controller, Some(home), 10.0);
         assert!(told[0].starts_with("Beware: waypoint 0 is 3.0 m below home"), "{told:?}");
         assert!(
             told[1].starts_with("Beware: ap_landing_throttle_threshold = 300 can never be met"),

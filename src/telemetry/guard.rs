@@ -41,9 +41,12 @@ pub enum GuardName {
     /// Distance to the waypoint.
     #[strum(to_string = "arrival")]
     Arrival,
-    /// Altitude error of a TAKEOFF.
+    /// Altitude error of a TAKEOFF or a HOLD.
     #[strum(to_string = "altitude")]
     Altitude,
+    /// Time within the hold radius of a HOLD without getting nearer to its altitude.
+    #[strum(to_string = "held off altitude")]
+    HeldOffAltitude,
     /// Distance to a FLYBY.
     #[strum(to_string = "turn radius")]
     TurnRadius,
@@ -103,7 +106,11 @@ impl GuardName {
             | Self::Beside
             | Self::TouchdownAltitude
             | Self::Descent => GuardUnit::Metres,
-            Self::NoProgress | Self::HoldTime | Self::TouchdownTime | Self::Stationary => GuardUnit::Seconds,
+            Self::NoProgress
+            | Self::HeldOffAltitude
+            | Self::HoldTime
+            | Self::TouchdownTime
+            | Self::Stationary => GuardUnit::Seconds,
             Self::TouchdownSpeed | Self::TouchdownSink => GuardUnit::MetresPerSecond,
             Self::TouchdownThrottle | Self::BelowHover => GuardUnit::Microseconds,
         }

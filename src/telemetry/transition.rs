@@ -33,6 +33,8 @@ pub enum TransitionReason {
     Climb,
     /// Within the radius of the waypoint.
     Arrival,
+    /// At the place of a HOLD, but no longer getting nearer to its altitude.
+    HeldOffAltitude,
     /// Passed the plane through the waypoint.
     Plane,
     /// Within the turn radius of a FLYBY.
@@ -57,7 +59,7 @@ pub enum TransitionReason {
 
 impl TransitionReason {
     /// The words of all causes but refusals and aborts, which have their own.
-    pub const WORDS: [&'static str; 21] = [
+    pub const WORDS: [&'static str; 22] = [
         "reset",
         "resume",
         "set_current",
@@ -69,6 +71,7 @@ impl TransitionReason {
         "fence",
         "climb",
         "arrival",
+        "held_off_altitude",
         "plane",
         "turn radius",
         "missed",
@@ -98,6 +101,7 @@ impl TransitionReason {
             Self::Fence => "fence",
             Self::Climb => "climb",
             Self::Arrival => "arrival",
+            Self::HeldOffAltitude => "held_off_altitude",
             Self::Plane => "plane",
             Self::TurnRadius => "turn radius",
             Self::Missed => "missed",

@@ -7,7 +7,11 @@
     reason = "helpers of tests fail and show as tests do"
 )]
 
+mod dice;
 mod mission;
+mod oracle;
+mod outages;
 mod random;
+mod steep;
 mod takeoff;
 mod thrust;

@@ -3,12 +3,13 @@
 use betadeck::firmware::config::Configuration;
 use betadeck::flight::setup::BootLines;
 use betadeck::flight::{Flight, FlightEnd, FlightOptions, FlightResult, FlightSetup, Report};
-use betadeck::geo::LatLon;
+use betadeck::geo::{LatLon, LocalFrame};
 use betadeck::plan::FlightPlan;
 use betadeck::plan::format::{Format, HomePosition, parse};
 use betadeck::signals::SimTime;
 use betadeck::sim::WorldConfig;
-use betadeck::telemetry::{DisarmReason, EventKind, FirmwareEvent, NavEvent};
+use betadeck::telemetry::{DisarmReason, EventKind, FirmwareEvent, NavEvent, NavState};
+use nalgebra::Vector2;
 
 /// What is flown.
 #[derive(Debug, Clone)]
@@ -32,7 +33,25 @@ pub(crate) struct Outcome {
     /// Reasons of the disarms, with the true altitude, m.
     pub(crate) disarms: Vec<(DisarmReason, f64)>,
     pub(crate) is_finite: bool,
+    /// Where the craft truly was, every 20 ms from the engagement on.
+    pub(crate) path: Vec<Instant>,
+    /// The states that were entered, with the time since the engagement, s.
+    pub(crate) states: Vec<(f64, NavState)>,
+    /// The frame of the path.
+    pub(crate) frame: LocalFrame,
 }
+
+/// A true place of the craft.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Instant {
+    /// North and east of the boot place, m.
+    pub(crate) ne: Vector2<f64>,
+    /// Above the boot place, m.
+    pub(crate) alt_m: f64,
+}
+
+/// Ticks between two instants of the path.
+const PATH_TICKS: u64 = 20;
 
 impl Outcome {
     pub(crate) fn result(&self) -> FlightResult {
@@ -73,13 +92,16 @@ impl Mission {
         };
         let mut flight = Flight::new(vehicle, &options).unwrap();
         let (mut climbed_m, mut limited, mut is_finite) = (0.0_f64, false, true);
-        let mut disarms = Vec::new();
+        let (mut disarms, mut path, mut states) = (Vec::new(), Vec::new(), Vec::new());
+        let frame = *flight.vehicle().local_frame().unwrap();
+        let mut tick = 0_u64;
         loop {
-            let mut disarmed = None;
+            let (mut disarmed, mut entered) = (None, None);
             let end = flight.tick(|report| match report {
                 Report::Event(event) => match event.kind {
                     EventKind::Firmware(FirmwareEvent::Disarmed(reason)) => disarmed = Some(reason),
                     EventKind::Firmware(FirmwareEvent::Nav(NavEvent::Limited { .. })) => limited = true,
+                    EventKind::Firmware(FirmwareEvent::Nav(NavEvent::State { to, .. })) => entered = Some(to),
                     _ => {}
                 },
                 Report::Sample(_) => {}
@@ -87,12 +109,23 @@ impl Mission {
             let truth = flight.vehicle().world().unwrap().truth();
             let altitude_m = truth.pos_enu.z - standing_m;
             is_finite &= truth.pos_enu.iter().chain(truth.vel_enu.iter()).all(|value| value.is_finite());
-            if flight.engaged_at().is_none() {
-                climbed_m = climbed_m.max(altitude_m);
+            tick += 1;
+            match flight.engaged_at() {
+                None => climbed_m = climbed_m.max(altitude_m),
+                Some(engaged_at) => {
+                    if tick.is_multiple_of(PATH_TICKS) {
+                        path.push(Instant {
+                            ne: Vector2::new(truth.pos_enu.y, truth.pos_enu.x),
+                            alt_m: altitude_m,
+                        });
+                    }
+                    let since_s = flight.vehicle().time().seconds_since(engaged_at);
+                    states.extend(entered.map(|state| (since_s, state)));
+                }
             }
             disarms.extend(disarmed.map(|reason| (reason, altitude_m)));
             if let Some(end) = end {
-                return Outcome { end, climbed_m, limited, disarms, is_finite };
+                return Outcome { end, climbed_m, limited, disarms, is_finite, path, states, frame };
             }
         }
     }

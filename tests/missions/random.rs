@@ -2,7 +2,9 @@
 //!
 //! `cargo test --release --test missions -- --ignored --nocapture ten_thousand` flies the whole search.
 
+use crate::dice::{Dice, in_parallel};
 use crate::mission::{Mission, assert_none};
+use crate::oracle;
 use betadeck::flight::FlightResult;
 use betadeck::geo::{LatLon, offset_to_latlon};
 use betadeck::plan::{FlightPlan, HoldPattern, Waypoint, WaypointType, plan_lines};
@@ -18,47 +20,20 @@ const AIRBORNE_M: f64 = 0.3;
 const DRIFT_MPS: f64 = 3.0;
 const HOME: LatLon = LatLon::new(404_635_000, -795_182_000);
 
-/// Numbers from a seed (SplitMix64).
-struct Dice(u64);
-
-impl Dice {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    fn below(&mut self, limit: u64) -> u64 {
-        self.next() % limit
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.next() >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn one_in(&mut self, count: u64) -> bool {
-        self.below(count) == 0
-    }
-
-    fn pick<T: Clone>(&mut self, list: &[T]) -> T {
-        list[self.below(list.len() as u64) as usize].clone()
-    }
-}
-
 fn random_plan(dice: &mut Dice) -> FlightPlan {
     let count = 1 + dice.below(5);
     let ends_in_land = !dice.one_in(3);
+    // Short legs between great heights are steep.
+    let (reach_m, top_m) = if dice.one_in(4) { (30.0, 12_000.0) } else { (120.0, 5000.0) };
     let waypoints = (0..count).map(|index| {
         let kinds = [WaypointType::Flyover, WaypointType::Flyby, WaypointType::Hold, WaypointType::Flyover];
         let is_land = ends_in_land && index + 1 == count;
         let kind = if is_land { WaypointType::Land } else { dice.pick(&kinds) };
-        let place = Vector2::new(dice.between(-120.0, 120.0), dice.between(-120.0, 120.0));
+        let place = Vector2::new(dice.between(-reach_m, reach_m), dice.between(-reach_m, reach_m));
         let patterns = [HoldPattern::None, HoldPattern::Orbit, HoldPattern::Figure8];
         Waypoint {
             position: offset_to_latlon(HOME, place),
-            alt_cm: dice.between(300.0, 5000.0) as i32,
+            alt_cm: dice.between(300.0, top_m) as i32,
             speed_cms: if dice.one_in(3) { 0 } else { dice.between(150.0, 1200.0) as u16 },
             duration_ds: if kind == WaypointType::Hold { 50 + dice.below(250) as u16 } else { 0 },
             kind,
@@ -126,6 +101,18 @@ fn random_fault(dice: &mut Dice) -> (String, bool) {
     dice.pick(&faults)
 }
 
+/// An outage or a jump of the GPS, and whether it may bring the craft down.
+fn random_gps_fault(dice: &mut Dice) -> (String, bool) {
+    let at = dice.between(0.0, 90.0).round();
+    let for_s = dice.between(1.0, 25.0).round();
+    if dice.one_in(2) {
+        (format!("gps-loss@{at},{for_s}"), false)
+    } else {
+        let (jump_m, from_deg) = (dice.between(5.0, 30.0).round(), dice.below(360));
+        (format!("gps-glitch@{at},{for_s},{jump_m}@{from_deg}"), false)
+    }
+}
+
 /// Flies the mission of a seed; what is wrong with it, if anything is.
 fn complaint(seed: u64) -> Option<String> {
     let dice = &mut Dice(seed);
@@ -139,32 +126,43 @@ fn complaint(seed: u64) -> Option<String> {
     if dice.one_in(2) {
         mission.world.turbulence = Turbulence::Light;
     }
-    let fault = dice.one_in(2).then(|| random_fault(dice));
-    if let Some((text, _)) = &fault {
-        mission.world.faults.push(text.parse::<ScheduledFault>().unwrap());
+    let mut faults = Vec::new();
+    if dice.one_in(2) {
+        faults.push(random_fault(dice));
     }
+    if dice.one_in(3) {
+        faults.push(random_gps_fault(dice));
+    }
+    let parsed = faults.iter().map(|(text, _)| text.parse::<ScheduledFault>().unwrap());
+    mission.world.faults.extend(parsed);
     // With the failsafe's default procedure a lost link stops the motors in the air.
     mission.settings.push("failsafe_procedure = AUTO-LAND".to_owned());
     let lines: Vec<String> = plan_lines(&mission.plan).collect();
     let Mission { takeoff_m, settings, world, .. } = &mission;
     let told = format!(
-        "seed {seed}: {}, takeoff {takeoff_m} m, wind {}, {:?}, {fault:?}, {settings:?}\n{}",
+        "seed {seed}: {}, takeoff {takeoff_m} m, wind {}, {:?}, {faults:?}, {settings:?}\n{}",
         world.airframe.name,
         world.wind,
         world.turbulence,
         lines.join("\n")
     );
+    let (plan, settings) = (mission.plan.clone(), mission.settings.clone());
     let outcome = mission.fly();
     // Without a fix the craft comes down as fast over ground as the wind.
     let drifts = |fault: &str| fault.starts_with("gps-loss") && wind_mps > DRIFT_MPS;
     // A jump of the position or of the wind in the last metre moves it over the ground while it touches down.
     let jumps = |fault: &str| fault.starts_with("gps-glitch") || fault.starts_with("gust");
-    let is_fatal = fault.as_ref().is_some_and(|(_, fatal)| *fatal) || wind_mps > 10.0;
-    let may_crash = is_fatal || fault.is_some_and(|(text, _)| drifts(&text) || jumps(&text));
+    let is_fatal = faults.iter().any(|(_, fatal)| *fatal) || wind_mps > 10.0;
+    let may_crash = is_fatal || faults.iter().any(|(text, _)| drifts(text) || jumps(text));
     let problem = if !outcome.is_finite || outcome.result() == FlightResult::Diverged {
         Some("not a number".to_owned())
     } else if outcome.result() == FlightResult::Crashed && !may_crash {
         Some(outcome.end.verdict.reason.clone())
+    } else if let Some(denied) = (outcome.result() == FlightResult::Complete)
+        .then(|| oracle::denies(&plan, &settings, &outcome))
+        .flatten()
+    {
+        Some(format!("complete, but {denied}"))
     } else {
         outcome
             .disarms
@@ -177,16 +175,7 @@ fn complaint(seed: u64) -> Option<String> {
 
 /// What is wrong with the missions of these seeds.
 fn complaints(seeds: std::ops::Range<u64>) -> Vec<Option<String>> {
-    let threads = std::thread::available_parallelism().map_or(1, usize::from) as u64;
-    std::thread::scope(|scope| {
-        let runs: Vec<_> = (0..threads)
-            .map(|thread| {
-                let seeds = (seeds.start + thread..seeds.end).step_by(threads as usize);
-                scope.spawn(move || seeds.map(complaint).collect::<Vec<_>>())
-            })
-            .collect();
-        runs.into_iter().flat_map(|run| run.join().unwrap()).collect()
-    })
+    in_parallel(seeds, complaint)
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use arrayvec::ArrayVec;
 
-use super::{Facts, Outcome, Rule, Rules, STALL_S};
+use super::{Facts, HELD_OFF_S, HOLD_ALTITUDE_M, Outcome, Rule, Rules, STALL_S};
 use crate::autopilot::fence;
 use crate::autopilot::guidance::PlaneCrossing;
 use crate::autopilot::land_detector::STATIONARY_S;
@@ -66,19 +66,18 @@ fn approaching(facts: &Facts, list: &mut Rules) {
     match facts.waypoint.kind {
         WaypointType::Flyover => pass(facts, false, list),
         WaypointType::Flyby => pass(facts, true, list),
-        WaypointType::Hold | WaypointType::Land => list.push(arrival(facts, facts.approach.hold_radius_m)),
-        WaypointType::Takeoff => {
-            let radius = facts.approach.hold_radius_m;
-            let level = Guard::new(
-                GuardName::Altitude,
-                facts.approach.altitude_error_m.abs(),
-                GuardOp::AtMost,
-                radius,
+        WaypointType::Land => list.push(arrival(facts, facts.approach.hold_radius_m)),
+        WaypointType::Hold => {
+            list.push(level_arrival(facts, facts.approach.hold_radius_m.max(HOLD_ALTITUDE_M)));
+            let held_off = Guard::new(
+                GuardName::HeldOffAltitude,
+                facts.approach.held_off_s,
+                GuardOp::AtLeast,
+                HELD_OFF_S,
             );
-            let mut reached = arrival(facts, radius);
-            reached.guards.push(level);
-            list.push(reached);
+            list.push(rule([held_off], Outcome::Arrive, TransitionReason::HeldOffAltitude));
         }
+        WaypointType::Takeoff => list.push(level_arrival(facts, facts.approach.hold_radius_m)),
         // Never current: the plan moves on to positional waypoints only.
         WaypointType::AltChange | WaypointType::Delay | WaypointType::YawRate => {
             list.push(rule([], Outcome::Next, TransitionReason::Advance));
@@ -111,6 +110,15 @@ pub(super) fn monitors(facts: &Facts, list: &mut Rules) {
 fn arrival(facts: &Facts, radius: f64) -> Rule {
     let near = Guard::new(GuardName::Arrival, facts.approach.distance_m, GuardOp::AtMost, radius);
     rule([near], Outcome::Arrive, TransitionReason::Arrival)
+}
+
+/// Within the hold radius, and the altitude error at most `altitude_m`.
+fn level_arrival(facts: &Facts, altitude_m: f64) -> Rule {
+    let error_m = facts.approach.altitude_error_m.abs();
+    let level = Guard::new(GuardName::Altitude, error_m, GuardOp::AtMost, altitude_m);
+    let mut reached = arrival(facts, facts.approach.hold_radius_m);
+    reached.guards.push(level);
+    reached
 }
 
 /// FLYOVER and FLYBY: by radius when last, co-located or missed, else by the plane, FLYBY also by the turn radius.

@@ -92,7 +92,8 @@ fn on_the_way() -> Vec<Situation> {
     let mut behind = facts(WaypointType::Flyover, false);
     behind.approach.plane = PlaneCrossing::Behind;
     list.push(approaching("FLYOVER, FLYBY, not last, behind the plane", &behind));
-    list.push(approaching("HOLD, LAND", &facts(WaypointType::Hold, true)));
+    list.push(approaching("HOLD", &facts(WaypointType::Hold, true)));
+    list.push(approaching("LAND", &facts(WaypointType::Land, true)));
     list.push(approaching("TAKEOFF", &facts(WaypointType::Takeoff, true)));
     list
 }

@@ -25,6 +25,7 @@ impl Navigator {
         self.move_pattern(now, params);
         self.begin_climb(now, params, seen);
         self.watch_progress(now, params, seen, speed_setpoint_mps);
+        self.wait_for_altitude(now, params, seen);
     }
 
     pub(super) fn facts(
@@ -57,6 +58,7 @@ impl Navigator {
                 turn_radius_m: turn_radius_m(seen.ground_speed_mps, params.max_lean_rad()),
                 arrival_radius_m: params.arrival_radius_m(),
                 hold_radius_m: params.hold_radius_m(),
+                held_off_s: self.altitude_wait.held_off_s(now.time),
             },
             climb: self.climb.is_on().then(|| (now.alt_m, self.climb_goal_m(params))),
             progress: self.progress.facts(self.progress_distance_m(now, seen), now.time),
@@ -118,6 +120,17 @@ impl Navigator {
             (self.leg.altitude_m - now.alt_m).abs()
         } else {
             seen.distance_m
+        }
+    }
+
+    /// Watches a HOLD wait for its altitude. A climb or descent on the spot is progress, too.
+    fn wait_for_altitude(&mut self, now: &NavInputs, params: &Params, seen: &Observed) {
+        let approaches = self.state == NavState::Approaching && self.cursor.kind() == WaypointType::Hold;
+        let is_free = !seen.stick_override && !self.climb.is_on();
+        let is_at_place = approaches && is_free && seen.distance_m <= params.hold_radius_m();
+        let error_m = (self.leg.altitude_m - now.alt_m).abs();
+        if self.altitude_wait.update(error_m, is_at_place, now.time) {
+            self.progress.credit(now.time);
         }
     }
 

@@ -3,6 +3,7 @@
 use nalgebra::Vector2;
 
 use super::Navigator;
+use super::altitude_wait::AltitudeWait;
 use super::descent::Descent;
 use super::entry::here;
 use super::hold::Hold;
@@ -106,11 +107,12 @@ impl Navigator {
         self.enter(NavState::Approaching, reason, guard);
     }
 
-    /// Forgets the hold, the landing and the progress of what was flown.
+    /// Forgets the hold, the landing, the progress and the wait of what was flown.
     pub(super) fn clear_clocks(&mut self) {
         self.hold = Hold::default();
         self.descent = Descent::default();
         self.progress.pause();
+        self.altitude_wait = AltitudeWait::default();
     }
 
     fn apply_modifiers(&mut self, from: u8, to: u8, inputs: &NavInputs) {

@@ -114,6 +114,13 @@ impl ProgressMonitor {
         self.0.get_or_insert_with(|| Progress::begin(distance_m, turn, time)).update(distance_m, turn, time);
     }
 
+    /// The craft made progress of another kind than towards the waypoint.
+    pub(super) fn credit(&mut self, time: SimTime) {
+        if let Some(progress) = &mut self.0 {
+            progress.marked_at = time;
+        }
+    }
+
     /// What the machine decides on; `None` while paused.
     pub(super) fn facts(&self, distance_m: f64, time: SimTime) -> Option<ProgressFacts> {
         self.0.map(|progress| {

@@ -43,7 +43,8 @@ impl Bench {
 
     fn plan(&mut self, source: PlanSource) {
         let mut plan = Box::<FlightPlan>::default();
-        plan.waypoints.push(Waypoint { kind: self.kind, alt_cm: 2000, ..Waypoint::default() });
+        let position = LatLon::from_degrees(40.0, -79.0);
+        plan.waypoints.push(Waypoint { position, kind: self.kind, alt_cm: 2000, ..Waypoint::default() });
         self.follow(&NavEvent::Plan { source, plan });
     }
 
@@ -52,6 +53,10 @@ impl Bench {
     }
 
     fn enter(&mut self, to: NavState, reason: TransitionReason, guard: Option<Guard>) {
+        self.enter_at(to, reason, guard, LatLon::from_degrees(40.0, -79.0));
+    }
+
+    fn enter_at(&mut self, to: NavState, reason: TransitionReason, guard: Option<Guard>, target: LatLon) {
         self.follow(&NavEvent::State {
             from: NavState::Idle,
             to,
@@ -59,7 +64,7 @@ impl Bench {
             kind: Some(self.kind),
             reason,
             guard,
-            target: LatLon::from_degrees(40.0, -79.0),
+            target,
             target_alt_m: 20.0,
         });
     }
@@ -176,6 +181,21 @@ fn a_landing_after_a_wait_tells_both() {
     let truth = bench.waypoints()[0];
     assert!((truth.miss_m - 1.0).abs() < 1e-9 && truth.alt_error_m.is_none(), "{truth:?}");
     assert!(truth.hold_max_m.is_some_and(|waited| (waited - 4.0).abs() < 1e-9), "{truth:?}");
+}
+
+#[test]
+fn a_landing_that_starts_again_elsewhere_after_an_outage_is_measured_from_the_place_in_the_plan() {
+    let mut bench = Bench::new(WaypointType::Land);
+    bench.enter(NavState::Approaching, TransitionReason::Reset, None);
+    bench.enter(NavState::Landing, TransitionReason::Land, None);
+    bench.enter(NavState::Idle, TransitionReason::GivenUp(crate::telemetry::AbortReason::GpsLost), None);
+    bench.fly_to(74.0);
+    let blown_to = LatLon::from_degrees(40.0 + 74.0 / 111_319.5, -79.0);
+    bench.enter_at(NavState::Landing, TransitionReason::Resume, None, blown_to);
+    bench.enter_at(NavState::Complete, TransitionReason::Touchdown, None, blown_to);
+    let truth = bench.check.truth(&bench.craft, None);
+    assert!((truth.waypoints[0].miss_m - 74.0).abs() < 0.5, "{truth:?}");
+    assert!(bench.check.worst_miss(&truth).is_some_and(|told| told.contains("the craft touched down 7")));
 }
 
 #[test]

@@ -4,14 +4,17 @@ use nalgebra::Vector2;
 
 use super::PlanDocument;
 use crate::geo::{GroundPlane, LatLon, distance_bearing};
-use crate::plan::review::Finding;
+use crate::plan::review::{Finding, Remedy, SteepLeg};
 use crate::plan::validate::{PlanFault, WaypointFault};
-use crate::plan::{Waypoint, WaypointType};
+use crate::plan::{HoldPattern, Waypoint, WaypointType};
 
 /// How far inside the fence a waypoint is moved, as a share of the fence: room for the turn.
 const INSIDE_FENCE: f64 = 0.95;
 /// Altitude to which a waypoint below the ground is raised, cm.
 const RAISED_CM: i32 = 1000;
+
+/// Time of a HOLD that only waits for its altitude, ds; 0 would hold forever.
+const SHORTEST_HOLD_DS: u16 = 1;
 
 /// An edit that is offered.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,6 +34,7 @@ pub fn waypoint_of(finding: &Finding) -> Option<usize> {
         | Finding::NeverFlown { index, .. }
         | Finding::NothingToModify { index, .. }
         | Finding::SpeedLimited { index, .. }
+        | Finding::SteepLeg(SteepLeg { index, .. })
         | Finding::BelowGround { index, .. } => Some(*index),
         Finding::Fault(PlanFault::Empty | PlanFault::Corrupt(_))
         | Finding::StaysInTheAir
@@ -68,6 +72,27 @@ pub fn fix(document: &PlanDocument, finding: &Finding, home: LatLon) -> Option<F
         Finding::BelowGround { index, .. } => {
             waypoints.get_mut(index)?.alt_cm = RAISED_CM;
             format!("raise WP{index} to {} m", RAISED_CM / 100)
+        }
+        Finding::SteepLeg(SteepLeg { index, remedy: Remedy::Slow { speed_cms }, .. }) => {
+            waypoints.get_mut(index)?.speed_cms = speed_cms;
+            format!("fly WP{index} at {:.1} m/s", f64::from(speed_cms) / 100.0)
+        }
+        Finding::SteepLeg(SteepLeg { index, alt_m, remedy: Remedy::HoldFirst, .. }) => {
+            let before = waypoints.get(..index)?.iter().rposition(|wp| wp.kind.is_positional());
+            let place = before.and_then(|before| {
+                waypoints[..=before].iter().rev().find(|wp| wp.kind.uses_position()).map(|wp| wp.position)
+            });
+            let hold = Waypoint {
+                kind: WaypointType::Hold,
+                position: place.unwrap_or(home),
+                // Saturates; a leg has the altitude of a waypoint.
+                alt_cm: (alt_m * 100.0).round() as i32,
+                duration_ds: SHORTEST_HOLD_DS,
+                pattern: HoldPattern::None,
+                ..Waypoint::default()
+            };
+            waypoints.try_insert(before.map_or(0, |before| before + 1), hold).ok()?;
+            format!("reach {alt_m:.0} m in a HOLD before WP{index}")
         }
         Finding::StaysInTheAir => {
             let last = *waypoints.iter().rev().find(|wp| wp.kind.uses_position())?;
@@ -129,7 +154,10 @@ mod tests {
         let fast = Waypoint { speed_cms: 2000, ..wp(Flyover, 10.0, 2000) };
         let lost = Waypoint { position: LatLon::new(950_000_000, 0), ..wp(Flyover, 0.0, 2000) };
         let turned = Waypoint { position: LatLon::new(0, 1_900_000_000), ..wp(Flyover, 0.0, 2000) };
-        let plans: [&[Waypoint]; 8] = [
+        let steep = Waypoint { speed_cms: 1000, ..wp(Flyover, 85.7, 8000) };
+        let plans: [&[Waypoint]; 10] = [
+            &[wp(Flyover, 55.7, 1500), steep, wp(Land, 0.0, 1500)],
+            &[wp(Flyover, 12.0, 9000), wp(Delay, 0.0, 10), wp(Flyover, 15.0, 2000), wp(Land, 0.0, 2000)],
             &[wp(Flyover, 700.0, 2000), wp(Land, 0.0, 2000)],
             &[wp(Land, 0.0, 2000), wp(Flyover, 50.0, 2000)],
             &[wp(Land, 0.0, 2000), wp(Delay, 0.0, 0)],

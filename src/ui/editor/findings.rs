@@ -24,6 +24,10 @@ pub(crate) fn assumptions(state: &AppState, document: &PlanDocument) -> Assumpti
     let mut lines = Vec::new();
     if let Some(settings) = &state.view.vehicle.settings {
         lines.push(format!("ap_max_velocity = {:.0}", settings.max_velocity_mps * 100.0));
+        lines.push(format!("ap_max_angle = {:.0}", settings.max_angle_deg));
+        lines.push(format!("ap_waypoint_arrival_radius = {:.0}", settings.arrival_radius_m * 100.0));
+        lines.push(format!("ap_waypoint_hold_radius = {:.0}", settings.hold_radius_m * 100.0));
+        lines.push(format!("ap_hold_orbit_radius = {:.0}", settings.orbit_radius_m * 100.0));
         lines.push(format!("alt_hold_climb_rate = {:.0}", settings.climb_mps * 10.0));
         lines.push(format!("ap_max_distance_from_home = {:.0}", settings.fence_m.unwrap_or(0.0)));
     }

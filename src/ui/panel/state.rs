@@ -157,6 +157,7 @@ fn short_name(guard: &Guard) -> &'static str {
         GuardName::TouchdownThrottle => "throttle",
         GuardName::TouchdownSink => "sink",
         GuardName::TouchdownTime => "time",
+        GuardName::HeldOffAltitude => "held off",
         other => other.into(),
     }
 }

@@ -1,0 +1,321 @@
+//! Legs that are too steep for their speed: the altitude setpoint is flown ahead over the time of each leg.
+
+use std::fmt;
+
+use nalgebra::Vector2;
+
+use super::ends_the_mission;
+use crate::geo::{GRAVITY, LatLon, local_offset};
+use crate::plan::estimate::Assumptions;
+use crate::plan::leg_time::{LegShape, Motion};
+use crate::plan::setpoint::AltitudeSetpoint;
+use crate::plan::{HoldPattern, Waypoint, WaypointType};
+
+/// Error of the altitude at a waypoint from which on a leg is too steep, m.
+const STEEP_M: f64 = 7.0;
+/// Error that a slower leg may leave, m.
+const LEVEL_M: f64 = 1.0;
+/// Distance below which two waypoints count as one, m.
+const CO_LOCATED_M: f64 = 0.1;
+/// Slowest speed that a waypoint can ask for, 0.1 m/s.
+const SLOWEST_DMPS: u16 = 10;
+
+/// What makes the craft reach the altitude.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Remedy {
+    /// Fly the leg no faster than this.
+    Slow {
+        /// Speed of the waypoint, cm/s.
+        speed_cms: u16,
+    },
+    /// Wait for the altitude in a HOLD at the place before.
+    HoldFirst,
+}
+
+/// A leg at whose end the craft is not at the altitude of the waypoint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SteepLeg {
+    /// The waypoint.
+    pub index: usize,
+    /// Altitude of its leg above home, m.
+    pub alt_m: f64,
+    /// Altitude at which the craft passes it, above that, m; negative = too low.
+    pub error_m: f64,
+    /// How long the leg takes, s.
+    pub leg_s: f64,
+    /// How long the climb or descent takes, s.
+    pub needed_s: f64,
+    /// What makes the craft reach the altitude.
+    pub remedy: Remedy,
+}
+
+impl fmt::Display for SteepLeg {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { index, alt_m, error_m, leg_s, needed_s, remedy } = self;
+        let (side, way) = if *error_m < 0.0 { ("low", "climb") } else { ("high", "descent") };
+        write!(
+            f,
+            "waypoint {index} is passed about {:.0} m too {side}: its leg takes {leg_s:.0} s, the {way} to {alt_m:.0} m \
+             {needed_s:.0} s; ",
+            error_m.abs()
+        )?;
+        match remedy {
+            Remedy::Slow { speed_cms } => {
+                write!(f, "fly the leg at {:.1} m/s or slower", f64::from(*speed_cms) / 100.0)
+            }
+            Remedy::HoldFirst => {
+                write!(f, "put a HOLD at {alt_m:.0} m before it, which waits for the altitude")
+            }
+        }
+    }
+}
+
+/// The legs of a flight from above `home` that are too steep.
+pub(super) fn steep_legs(waypoints: &[Waypoint], home: LatLon, assumptions: &Assumptions) -> Vec<SteepLeg> {
+    let mut walk = Walk {
+        assumptions,
+        place: home,
+        beside: Vector2::zeros(),
+        motion: Motion::REST,
+        setpoint: AltitudeSetpoint::at(assumptions.start_alt_m),
+        climbs_first: assumptions.start_alt_m < assumptions.min_nav_alt_m,
+        alt_change_m: None,
+        delay_s: None,
+    };
+    let end = waypoints.iter().position(ends_the_mission).map_or(waypoints.len(), |end| end + 1);
+    let waypoints = &waypoints[..end];
+    (0..end).filter_map(|index| walk.take(index, waypoints)).collect()
+}
+
+/// Where the craft is after some waypoints, and how it moves.
+struct Walk<'a> {
+    assumptions: &'a Assumptions,
+    /// The place of the waypoint before.
+    place: LatLon,
+    /// The craft's offset from it, north and east, m.
+    beside: Vector2<f64>,
+    motion: Motion,
+    setpoint: AltitudeSetpoint,
+    /// It climbs on the spot before the first leg.
+    climbs_first: bool,
+    alt_change_m: Option<f64>,
+    delay_s: Option<f64>,
+}
+
+/// A leg from the craft to a waypoint.
+#[derive(Clone, Copy)]
+struct Leg {
+    distance_m: f64,
+    along: Vector2<f64>,
+    alt_m: f64,
+    kind: WaypointType,
+    stops: bool,
+    /// Most speed because of a DELAY, m/s.
+    cap_mps: f64,
+}
+
+impl Walk<'_> {
+    /// Flies to a waypoint; gives it when its height is missed.
+    fn take(&mut self, index: usize, waypoints: &[Waypoint]) -> Option<SteepLeg> {
+        let waypoint = &waypoints[index];
+        let own_alt_m = f64::from(waypoint.alt_cm) / 100.0;
+        match waypoint.kind {
+            WaypointType::AltChange => self.alt_change_m = Some(own_alt_m),
+            WaypointType::Delay => self.delay_s = Some(f64::from(waypoint.duration_ds) / 10.0),
+            WaypointType::YawRate => {}
+            WaypointType::Takeoff => self.climb_on_the_spot(waypoint, own_alt_m),
+            WaypointType::Hold | WaypointType::Land => {
+                let leg = self.leg(index, waypoints, own_alt_m);
+                self.fly(waypoint, &leg);
+                self.stay(waypoint, leg.alt_m);
+            }
+            WaypointType::Flyover | WaypointType::Flyby => {
+                let leg = self.leg(index, waypoints, own_alt_m);
+                return self.pass(index, waypoint, &leg);
+            }
+        }
+        None
+    }
+
+    fn climb_on_the_spot(&mut self, waypoint: &Waypoint, own_alt_m: f64) {
+        let alt_m = self.alt_change_m.take().unwrap_or(own_alt_m);
+        self.delay_s = None;
+        self.climbs_first = false;
+        let limits = self.assumptions.setpoint_limits();
+        self.setpoint.reach(alt_m, &limits, self.assumptions.hold_radius_m);
+        self.setpoint.run(alt_m, &limits, f64::from(waypoint.duration_ds) / 10.0);
+        self.motion = Motion::REST;
+    }
+
+    fn leg(&mut self, index: usize, waypoints: &[Waypoint], own_alt_m: f64) -> Leg {
+        let waypoint = &waypoints[index];
+        let following = waypoints[index + 1..].iter().find(|next| next.kind.is_positional());
+        let goes_on = following.is_some_and(|next| {
+            next.kind.uses_position() && local_offset(waypoint.position, next.position).norm() >= CO_LOCATED_M
+        });
+        let passes = matches!(waypoint.kind, WaypointType::Flyover | WaypointType::Flyby);
+        let way = local_offset(self.place, waypoint.position) - self.beside;
+        let distance_m = way.norm();
+        let alt_m = self.alt_change_m.take().unwrap_or(own_alt_m);
+        if std::mem::take(&mut self.climbs_first) && (passes || distance_m > self.assumptions.hold_radius_m) {
+            let enough_m = self.assumptions.min_nav_alt_m;
+            let target_m = alt_m.max(enough_m + 1.0);
+            self.setpoint.reach(target_m, &self.assumptions.setpoint_limits(), target_m - enough_m);
+        }
+        let cap_mps = self.delay_s.take().filter(|&delay_s| delay_s > 0.0).map_or(f64::INFINITY, |delay_s| {
+            self.assumptions.delayed_mps(distance_m.hypot(alt_m - self.setpoint.altitude_m), delay_s)
+        });
+        Leg {
+            distance_m,
+            along: way.try_normalize(1e-9).unwrap_or_else(Vector2::x),
+            alt_m,
+            kind: waypoint.kind,
+            stops: !passes || !goes_on,
+            cap_mps,
+        }
+    }
+
+    /// Distance from the waypoint at which it counts as reached by a craft of this speed, m.
+    fn reach_m(&self, leg: &Leg, speed_mps: f64) -> f64 {
+        match leg.kind {
+            WaypointType::Flyover | WaypointType::Flyby if leg.stops => self.assumptions.arrival_radius_m,
+            WaypointType::Flyby => {
+                let lean = self.assumptions.max_angle_deg.clamp(5.0, 80.0).to_radians();
+                speed_mps.powi(2) / (GRAVITY * lean.tan())
+            }
+            WaypointType::Flyover => 0.0,
+            _ => self.assumptions.hold_radius_m,
+        }
+    }
+
+    /// The motion and the altitude at the end of a leg that is flown at this speed, and how long it takes, s.
+    fn flown(&self, leg: &Leg, speed_mps: f64) -> (Motion, AltitudeSetpoint, f64) {
+        let speed_mps = speed_mps.min(leg.cap_mps);
+        let (mut motion, mut setpoint) = (self.motion, self.setpoint);
+        let reach_m = self.reach_m(leg, speed_mps);
+        let shape = LegShape { distance_m: leg.distance_m, reach_m, speed_mps, stops: leg.stops };
+        let leg_s = motion.fly(&shape, leg.along, self.assumptions);
+        setpoint.run(leg.alt_m, &self.assumptions.setpoint_limits(), leg_s);
+        (motion, setpoint, leg_s)
+    }
+
+    fn fly(&mut self, waypoint: &Waypoint, leg: &Leg) -> f64 {
+        let speed_mps = self.assumptions.leg_speed_mps(waypoint);
+        let reach_m = self.reach_m(leg, speed_mps.min(leg.cap_mps)).min(leg.distance_m);
+        let (motion, setpoint, leg_s) = self.flown(leg, speed_mps);
+        (self.motion, self.setpoint) = (motion, setpoint);
+        self.place = waypoint.position;
+        self.beside = -leg.along * reach_m;
+        leg_s
+    }
+
+    fn pass(&mut self, index: usize, waypoint: &Waypoint, leg: &Leg) -> Option<SteepLeg> {
+        let error_of = |setpoint: &AltitudeSetpoint| setpoint.altitude_m - leg.alt_m;
+        let (_, setpoint, _) = self.flown(leg, self.assumptions.leg_speed_mps(waypoint));
+        let error_m = error_of(&setpoint);
+        let steep = (error_m.abs() > STEEP_M).then(|| {
+            let limits = self.assumptions.setpoint_limits();
+            let mut alone = self.setpoint;
+            (alone.reach(leg.alt_m, &limits, LEVEL_M), self.remedy(waypoint, leg))
+        });
+        let leg_s = self.fly(waypoint, leg);
+        // A target in the ground is never reached, however long the leg is.
+        let (needed_s, remedy) = steep.filter(|(needed_s, _)| needed_s.is_finite())?;
+        Some(SteepLeg { index, alt_m: leg.alt_m, error_m, leg_s, needed_s, remedy })
+    }
+
+    fn remedy(&self, waypoint: &Waypoint, leg: &Leg) -> Remedy {
+        let is_level = |dmps: u16| {
+            let (_, setpoint, _) = self.flown(leg, f64::from(dmps) / 10.0);
+            (setpoint.altitude_m - leg.alt_m).abs() <= LEVEL_M
+        };
+        if !is_level(SLOWEST_DMPS) {
+            return Remedy::HoldFirst;
+        }
+        // Saturates at the range of the field.
+        let most = (self.assumptions.leg_speed_mps(waypoint) * 10.0) as u16;
+        let (mut slow, mut fast) = (SLOWEST_DMPS, most.clamp(SLOWEST_DMPS + 1, 6000));
+        while fast - slow > 1 {
+            let middle = slow.midpoint(fast);
+            if is_level(middle) { slow = middle } else { fast = middle }
+        }
+        Remedy::Slow { speed_cms: slow * 10 }
+    }
+
+    /// The stay of a HOLD at its end; a LAND ends the mission.
+    fn stay(&mut self, waypoint: &Waypoint, alt_m: f64) {
+        let duration_s = f64::from(waypoint.duration_ds) / 10.0;
+        if waypoint.kind == WaypointType::Hold {
+            self.assumptions.wait_for_hold(&mut self.setpoint, alt_m);
+            self.setpoint.run(alt_m, &self.assumptions.setpoint_limits(), duration_s);
+        }
+        self.beside = match waypoint.pattern {
+            HoldPattern::Orbit => self.on_the_orbit(waypoint, duration_s),
+            HoldPattern::None | HoldPattern::Figure8 => Vector2::zeros(),
+        };
+    }
+
+    /// The place on the circle, from its middle, after so many seconds, m.
+    fn on_the_orbit(&self, waypoint: &Waypoint, seconds: f64) -> Vector2<f64> {
+        let Assumptions { orbit_radius_m, turn_rate_dps, max_angle_deg, .. } = *self.assumptions;
+        let lean = max_angle_deg.clamp(5.0, 80.0).to_radians();
+        let radius_m = orbit_radius_m.max(0.1);
+        let rate = turn_rate_dps
+            .to_radians()
+            .min(self.assumptions.leg_speed_mps(waypoint) / radius_m)
+            .min((0.5 * GRAVITY * lean.tan() / radius_m).sqrt());
+        let (east, north) = (rate * seconds).sin_cos();
+        Vector2::new(north, east) * radius_m
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geo::offset_to_latlon;
+
+    const HOME: LatLon = LatLon::new(404_635_000, -795_182_000);
+
+    fn steep(legs: &[(WaypointType, f64, i32, u16)]) -> Vec<SteepLeg> {
+        let waypoints: Vec<Waypoint> = legs
+            .iter()
+            .map(|&(kind, north_m, alt_m, speed_cms)| Waypoint {
+                position: offset_to_latlon(HOME, Vector2::new(north_m, 0.0)),
+                alt_cm: alt_m * 100,
+                speed_cms,
+                kind,
+                duration_ds: 10,
+                ..Waypoint::default()
+            })
+            .collect();
+        let settings = ["ap_max_velocity = 1000".to_owned()];
+        steep_legs(&waypoints, HOME, &Assumptions::from_settings(&settings))
+    }
+
+    #[test]
+    fn a_steep_leg_is_told_with_its_miss_and_what_to_do() {
+        use WaypointType::{Flyover, Land};
+        let found = steep(&[(Flyover, 55.7, 15, 1000), (Flyover, 85.7, 80, 1000), (Land, 0.0, 15, 0)]);
+        let told: Vec<String> = found.iter().map(ToString::to_string).collect();
+        assert_eq!(
+            told,
+            [
+                "waypoint 1 is passed about 56 m too low: its leg takes 3 s, the climb to 80 m 15 s; fly the leg at 1.6 m/s or \
+              slower"
+            ]
+        );
+        let drop = steep(&[(Flyover, 100.0, 100, 200), (Flyover, 104.0, 20, 500), (Land, 0.0, 15, 0)]);
+        let told = drop.last().map(ToString::to_string).unwrap_or_default();
+        assert!(told.contains("too high") && told.contains("the descent to 20 m"), "{told}");
+        assert!(told.ends_with("put a HOLD at 20 m before it, which waits for the altitude"), "{told}");
+    }
+
+    #[test]
+    fn legs_that_wait_for_their_altitude_or_have_the_time_are_not_told() {
+        use WaypointType::{Flyover, Hold, Land, Takeoff};
+        assert!(steep(&[(Hold, 5.0, 90, 0), (Flyover, 50.0, 90, 0), (Land, 60.0, 20, 0)]).is_empty());
+        assert!(steep(&[(Takeoff, 0.0, 90, 0), (Flyover, 50.0, 90, 0), (Land, 60.0, 20, 0)]).is_empty());
+        assert!(steep(&[(Flyover, 200.0, 60, 500), (Flyover, 300.0, 90, 500)]).is_empty());
+        assert!(steep(&[(Flyover, 20.0, 12, 1000), (Land, 0.0, 12, 0), (Flyover, 1.0, 900, 0)]).is_empty());
+    }
+}
