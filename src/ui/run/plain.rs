@@ -142,7 +142,13 @@ fn is_answer(msg: &Msg) -> bool {
         | Msg::Busy => true,
         Msg::Forecast(reply) => reply.kind != ForecastKind::PlanEstimate,
         Msg::Files(reply) => {
-            !matches!(reply, FileReply::Changed(_) | FileReply::NotKept(_) | FileReply::KeptAgain)
+            !matches!(
+                reply,
+                FileReply::Changed(_)
+                    | FileReply::NotKept(_)
+                    | FileReply::KeptAgain
+                    | FileReply::EditsLost(_)
+            )
         }
         Msg::Clock(_)
         | Msg::Key(_)
