@@ -102,6 +102,38 @@ fn the_timeline_after_a_rewind() {
     insta::assert_snapshot!("timeline_after_a_rewind", seen);
 }
 
+#[test]
+fn lost_edits_are_named_until_esc_takes_the_notice_away() {
+    for size in SIZES {
+        let mut state = approaching(size);
+        for number in [3, 4] {
+            let text = format!(
+                "{number} edits of /home/pilot/plans/survey.toml could not be read: line 4 of the journal is damaged, or \
+                 written by a later version. It is kept as /home/pilot/.local/state/betadeck/plans/survey-0.bad."
+            );
+            update(&mut state, Msg::Files(FileReply::EditsLost(text)));
+        }
+        update(&mut state, Msg::Files(FileReply::KeptAgain));
+        assert!(screen(&state).contains("Edits are kept again."));
+        let later = state.now + std::time::Duration::from_secs(3600);
+        update(&mut state, Msg::Clock(later));
+        keys(&mut state, "1 2 + ctrl-p");
+        let seen = screen(&state);
+        assert!(seen.contains("✗ 3 edits of") && seen.contains("Esc closes this."), "{seen}");
+        keys(&mut state, "esc");
+        assert!(
+            state.popups.is_empty() && screen(&state).contains("✗ 3 edits of"),
+            "what is open is left first"
+        );
+        keys(&mut state, "esc");
+        assert!(screen(&state).contains("✗ 4 edits of"), "the next one");
+        keys(&mut state, "esc");
+        assert!(!screen(&state).contains("Esc closes this."));
+        keys(&mut state, "8 z");
+        assert_eq!(screen(&state).matches("edits of /home/pilot").count(), 2, "both are in the log");
+    }
+}
+
 /// A state with something open, and what is open.
 type Open = (String, AppState);
 
@@ -122,14 +154,39 @@ fn flying(opened: &str) -> Open {
 /// Every popup, prompt and text field, open.
 fn everything_open() -> Vec<Open> {
     let mut open: Vec<Open> = [
-        "ctrl-p", "ctrl-p 'wi", "ctrl-p 'zzzz", ":", ": 'w", ": 'set", "?", "6 enter", "2 o", "2 s 'name",
-        "2 P", "2 P down down 'x", "2 m", "2 m 'x", "2 E", "2 E down '47", "2 right right right enter",
-        "2 right right right enter 'x", "2 i q", "5", "5 'set", "5 'ap_ tab", "8 /", "8 / 'wind", "7 enter",
-        "7 enter '12", "q",
+        "ctrl-p",
+        "ctrl-p 'wi",
+        "ctrl-p 'zzzz",
+        ":",
+        ": 'w",
+        ": 'set",
+        "?",
+        "6 enter",
+        "2 o",
+        "2 s 'name",
+        "2 P",
+        "2 P down down 'x",
+        "2 m",
+        "2 m 'x",
+        "2 E",
+        "2 E down '47",
+        "2 right right right enter",
+        "2 right right right enter 'x",
+        "2 i q",
+        "5",
+        "5 'set",
+        "5 'ap_ tab",
+        "8 /",
+        "8 / 'wind",
+        "7 enter",
+        "7 enter '12",
+        "q",
     ]
     .map(waiting)
     .into();
-    open.extend(["G", "w", "q", "2 i q", "5 'get", "G enter", "ctrl-p 'go", ": 'go", "6 enter", "m"].map(flying));
+    open.extend(
+        ["G", "w", "q", "2 i q", "5 'get", "G enter", "ctrl-p 'go", ": 'go", "6 enter", "m"].map(flying),
+    );
     let listing = Listing {
         directory: "/home/pilot/plans".into(),
         entries: (0..30)
@@ -153,7 +210,11 @@ fn everything_open() -> Vec<Open> {
     asked.popups.push(Popup::Permission);
     open.push(("permission".to_owned(), asked));
     let (_, mut state) = flying("");
-    hands::mouse_button(&mut state, crossterm::event::MouseEventKind::Down(crossterm::event::MouseButton::Right), (20, 10));
+    hands::mouse_button(
+        &mut state,
+        crossterm::event::MouseEventKind::Down(crossterm::event::MouseButton::Right),
+        (20, 10),
+    );
     open.push(("map menu".to_owned(), state));
     let mut rewound = fixture::state((120, 40), fixture::colour());
     fixture::rewind(&mut rewound);

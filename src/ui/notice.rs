@@ -27,7 +27,8 @@ pub(super) fn draw(state: &AppState, hints: Rect, buffer: &mut Buffer) {
     let width = usize::from(hints.width.saturating_sub(6));
     let newest = state.notice.as_ref().filter(|notice| within(state.now, notice.at, NOTICE_FOR));
     let newest = newest.map(|notice| (notice.severity, notice.text.clone(), NOTICE_ROWS));
-    let pinned = state.pinned.first().map(|text| (Severity::Fault, format!("{text} {CLOSED_BY}"), PINNED_ROWS));
+    let pinned =
+        state.pinned.first().map(|text| (Severity::Fault, format!("{text} {CLOSED_BY}"), PINNED_ROWS));
     let mut above = 1;
     for (severity, text, rows) in newest.into_iter().chain(pinned) {
         let style = state.theme.style(severity.role());

@@ -110,7 +110,8 @@ impl JournalFile {
     /// Writes the whole journal anew, its older edits as one when it is too long; what is there stays until the new one
     /// is complete.
     pub(super) fn rewrite(&mut self, journal: &Journal) -> io::Result<()> {
-        let text_of = |journal: &Journal| journal.lines().iter().map(JournalLine::to_text).collect::<String>();
+        let text_of =
+            |journal: &Journal| journal.lines().iter().map(JournalLine::to_text).collect::<String>();
         let mut text = text_of(journal);
         let mut numbers = None;
         if text.len() > self.longest {

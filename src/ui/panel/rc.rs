@@ -5,9 +5,9 @@ use ratatui::layout::Rect;
 
 use crate::signals::{RC_CHANNELS, RcSource};
 use crate::telemetry::snapshot::{CraftView, ModeRange};
-use crate::ui::drawing;
 use crate::ui::action::Action;
 use crate::ui::app_state::AppState;
+use crate::ui::drawing;
 use crate::ui::formatting::cut;
 use crate::ui::panel::Panel;
 use crate::ui::theme::Role;

@@ -27,7 +27,8 @@ fn edited_five_times(directory: &Path) -> PathBuf {
 fn damage(directory: &Path, line: &str) -> Vec<u8> {
     let [journal] = kept(directory, "journal").try_into().unwrap();
     let text = std::fs::read_to_string(&journal).unwrap();
-    let lines = text.lines().map(|there| if there.contains("5300") && there.contains("5200") { line } else { there });
+    let lines =
+        text.lines().map(|there| if there.contains("5300") && there.contains("5200") { line } else { there });
     let damaged: String = lines.map(|line| format!("{line}\n")).collect();
     assert_ne!(damaged, text);
     std::fs::write(&journal, &damaged).unwrap();

@@ -4,8 +4,8 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
 use crate::plan::estimate::estimate;
-use crate::ui::drawing;
 use crate::ui::app_state::AppState;
+use crate::ui::drawing;
 use crate::ui::editor::findings;
 use crate::ui::theme::Role;
 
