@@ -308,3 +308,33 @@ impl Directory {
         Ok(())
     }
 }
+
+impl Drop for Directory {
+    /// Frees the directory at once. Closing it is not enough: a child that is being started has its descriptor, too, and
+    /// would keep the lock until it runs.
+    fn drop(&mut self) {
+        if let Some(lock) = &self.lock {
+            lock.unlock().ok();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_directory_is_free_when_its_store_ends_though_a_child_still_has_its_descriptor() {
+        let directory = tempfile::tempdir().unwrap();
+        let lock_of = |store: &Store| match &store.place {
+            Place::Directory(place) => place.lock.as_ref().map(|lock| lock.try_clone().unwrap()),
+            Place::Memory(_) => None,
+        };
+        let store = Store::open(directory.path(), false).unwrap();
+        let inherited = lock_of(&store).expect("the lock");
+        assert!(lock_of(&Store::open(directory.path(), false).unwrap()).is_none(), "it is locked");
+        drop(store);
+        assert!(lock_of(&Store::open(directory.path(), false).unwrap()).is_some());
+        drop(inherited);
+    }
+}

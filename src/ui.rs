@@ -31,6 +31,7 @@ pub mod command;
 mod completion;
 mod console;
 mod draw;
+mod drawing;
 pub mod editor;
 mod event_log;
 mod files_link;

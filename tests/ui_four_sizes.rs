@@ -1,9 +1,12 @@
-//! Every panel and every popup at the four sizes that the screen is designed for.
+//! Every panel and every popup at the four sizes that the screen is designed for, and at any other size without a panic.
 
 use betadeck::telemetry::NavState;
 use betadeck::ui::editor::{Entry, FileReply, Listing};
-use betadeck::ui::{AppState, Msg, update};
+use betadeck::ui::{AppState, Msg, Panel, Popup, draw, update};
 use crossterm::event::{KeyCode, KeyModifiers};
+use ratatui::Terminal;
+use ratatui::backend::TestBackend;
+use ratatui::layout::Position;
 
 #[path = "ui/fixture.rs"]
 mod fixture;
@@ -97,4 +100,170 @@ fn the_timeline_after_a_rewind() {
     });
     assert_eq!(seen.matches("REWOUND").count(), SIZES.len(), "{seen}");
     insta::assert_snapshot!("timeline_after_a_rewind", seen);
+}
+
+#[test]
+fn lost_edits_are_named_until_esc_takes_the_notice_away() {
+    for size in SIZES {
+        let mut state = approaching(size);
+        for number in [3, 4] {
+            let text = format!(
+                "{number} edits of /home/pilot/plans/survey.toml could not be read: line 4 of the journal is damaged, or \
+                 written by a later version. It is kept as /home/pilot/.local/state/betadeck/plans/survey-0.bad."
+            );
+            update(&mut state, Msg::Files(FileReply::EditsLost(text)));
+        }
+        update(&mut state, Msg::Files(FileReply::KeptAgain));
+        assert!(screen(&state).contains("Edits are kept again."));
+        let later = state.now + std::time::Duration::from_secs(3600);
+        update(&mut state, Msg::Clock(later));
+        keys(&mut state, "1 2 + ctrl-p");
+        let seen = screen(&state);
+        assert!(seen.contains("✗ 3 edits of") && seen.contains("Esc closes this."), "{seen}");
+        keys(&mut state, "esc");
+        assert!(
+            state.popups.is_empty() && screen(&state).contains("✗ 3 edits of"),
+            "what is open is left first"
+        );
+        keys(&mut state, "esc");
+        assert!(screen(&state).contains("✗ 4 edits of"), "the next one");
+        keys(&mut state, "esc");
+        assert!(!screen(&state).contains("Esc closes this."));
+        keys(&mut state, "8 z");
+        assert_eq!(screen(&state).matches("edits of /home/pilot").count(), 2, "both are in the log");
+    }
+}
+
+/// A state with something open, and what is open.
+type Open = (String, AppState);
+
+/// Opens something with keys in a craft that waits at home.
+fn waiting(opened: &str) -> Open {
+    let mut state = state_with_fix((120, 40));
+    keys(&mut state, opened);
+    (format!("waiting, {opened}"), state)
+}
+
+/// Opens something with keys in a craft that flies.
+fn flying(opened: &str) -> Open {
+    let mut state = approaching((120, 40));
+    keys(&mut state, opened);
+    (format!("flying, {opened}"), state)
+}
+
+/// Every popup, prompt and text field, open.
+fn everything_open() -> Vec<Open> {
+    let mut open: Vec<Open> = [
+        "ctrl-p",
+        "ctrl-p 'wi",
+        "ctrl-p 'zzzz",
+        ":",
+        ": 'w",
+        ": 'set",
+        "?",
+        "6 enter",
+        "2 o",
+        "2 s 'name",
+        "2 P",
+        "2 P down down 'x",
+        "2 m",
+        "2 m 'x",
+        "2 E",
+        "2 E down '47",
+        "2 right right right enter",
+        "2 right right right enter 'x",
+        "2 i q",
+        "5",
+        "5 'set",
+        "5 'ap_ tab",
+        "8 /",
+        "8 / 'wind",
+        "7 enter",
+        "7 enter '12",
+        "q",
+    ]
+    .map(waiting)
+    .into();
+    open.extend(
+        ["G", "w", "q", "2 i q", "5 'get", "G enter", "ctrl-p 'go", ": 'go", "6 enter", "m"].map(flying),
+    );
+    let listing = Listing {
+        directory: "/home/pilot/plans".into(),
+        entries: (0..30)
+            .map(|number| Entry { name: format!("survey-{number:02}.toml"), is_directory: number < 3 })
+            .collect(),
+    };
+    for purpose in ["2 o", "2 s"] {
+        let (name, mut state) = waiting(purpose);
+        update(&mut state, Msg::Files(FileReply::Listed(listing.clone())));
+        press(&mut state, KeyCode::Down, KeyModifiers::NONE);
+        open.push((format!("{name}, listed"), state));
+    }
+    for changed in [true, false] {
+        let (name, mut state) = waiting("2 i");
+        let id = state.editor.plan().id();
+        let path = "/home/pilot/plans/survey.toml".into();
+        update(&mut state, Msg::Files(FileReply::Occupied { id, path, changed }));
+        open.push((format!("{name}, replace"), state));
+    }
+    let (_, mut asked) = flying("");
+    asked.popups.push(Popup::Permission);
+    open.push(("permission".to_owned(), asked));
+    let (_, mut state) = flying("");
+    hands::mouse_button(
+        &mut state,
+        crossterm::event::MouseEventKind::Down(crossterm::event::MouseButton::Right),
+        (20, 10),
+    );
+    open.push(("map menu".to_owned(), state));
+    let mut rewound = fixture::state((120, 40), fixture::colour());
+    fixture::rewind(&mut rewound);
+    open.push(("rewound".to_owned(), rewound));
+    let (_, mut noticed) = flying("");
+    update(&mut noticed, Msg::Files(FileReply::Failed("A sentence that is longer than a line. ".repeat(9))));
+    open.push(("notice".to_owned(), noticed));
+    open
+}
+
+/// Draws in a window of this size, whatever size the state knows of; the place of the cursor is in the window.
+fn drawn_in(state: &AppState, size: (u16, u16), what: &str) {
+    let mut terminal = Terminal::new(TestBackend::new(size.0, size.1)).unwrap();
+    let drawn = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
+        terminal.draw(|frame| draw(state, frame)).unwrap();
+    }));
+    assert!(drawn.is_ok(), "{what} in {}x{}, drawn for {:?}", size.0, size.1, state.size);
+    let Position { x, y } = terminal.get_cursor_position().unwrap();
+    assert!(x < size.0 && y < size.1, "{what} in {}x{}: the cursor is at {x}, {y}", size.0, size.1);
+}
+
+#[test]
+fn every_popup_prompt_and_editor_is_drawn_in_every_window_down_to_one_cell() {
+    let mut sizes: Vec<(u16, u16)> = Vec::new();
+    for width in [1, 2, 3, 4, 5, 6, 7, 9, 12, 16, 20, 31, 45, 59, 60, 61, 80, 120, 200] {
+        sizes.extend([1, 2, 3, 4, 5, 6, 7, 8, 11, 15, 19, 20, 21, 24, 34, 60].map(|height| (width, height)));
+    }
+    for (what, mut state) in everything_open() {
+        for (at, &size) in sizes.iter().enumerate() {
+            update(&mut state, Msg::Resize(size.0, size.1));
+            drawn_in(&state, size, &what);
+            // A window that changes its size again before the program hears of it.
+            drawn_in(&state, sizes[(at * 7 + 3) % sizes.len()], &what);
+        }
+    }
+}
+
+#[test]
+fn every_panel_is_drawn_in_every_window_with_a_field_open_in_another() {
+    for (what, mut state) in everything_open().into_iter().step_by(3) {
+        for panel in Panel::ALL {
+            state.focus = panel;
+            for size in [(1, 1), (2, 1), (80, 1), (1, 80), (80, 2), (60, 19), (60, 20), (79, 23), (120, 34)] {
+                for zoomed in [true, false] {
+                    state.zoomed = zoomed;
+                    update(&mut state, Msg::Resize(size.0, size.1));
+                    drawn_in(&state, size, &what);
+                }
+            }
+        }
+    }
 }

@@ -6,6 +6,7 @@
 
 mod journal_file;
 mod on_disk;
+mod set_aside;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -18,11 +19,14 @@ use tokio::sync::watch;
 use super::line_history::LineHistory;
 use crate::plan::edit::{History, Journal, JournalLine, PlanDocument};
 use crate::ui::editor::{FileReply, FileRequest, Opened, PlanId};
-use journal_file::JournalFile;
-use on_disk::Stamp;
+use journal_file::{Found, JournalFile};
+use on_disk::Content;
 
 /// How often files are looked at, whether somebody else changed them.
 const WATCH: Duration = Duration::from_millis(500);
+
+/// The edit from the whole part of a damaged journal to what was saved behind the damage.
+const SAVED_LATER: &str = "saved later";
 
 /// The plan files of a running editor.
 #[derive(Debug)]
@@ -35,6 +39,8 @@ pub(super) struct PlanFiles {
     directory: PathBuf,
     /// A journal could not be written, and that was told.
     told: bool,
+    /// What was lost of journals, as sentences that nobody has heard yet.
+    lost: Vec<String>,
     lines: LineHistory,
 }
 
@@ -42,7 +48,7 @@ pub(super) struct PlanFiles {
 struct OpenFile {
     path: Option<PathBuf>,
     /// What was on disk when it was read or written last.
-    stamp: Option<Stamp>,
+    seen: Content,
     /// The change was told.
     told: bool,
     /// The document with its history: what the journal's file holds, or is to hold as soon as there is something to keep.
@@ -63,6 +69,7 @@ impl PlanFiles {
             next: 1,
             directory,
             told: false,
+            lost: Vec::new(),
             lines: LineHistory::new(state),
         }
     }
@@ -73,27 +80,69 @@ impl PlanFiles {
         if let Some(parent) = path.as_deref().and_then(Path::parent) {
             self.directory = parent.to_owned();
         }
-        let stamp = path.as_deref().and_then(Stamp::of);
-        self.take_in(path, stamp, document, Vec::new())
+        let mut seen = path.as_deref().map_or(Content::Missing, Content::of);
+        let is_other = path.as_deref().is_some_and(|path| !seen.is_document(path, &document));
+        if is_other && matches!(seen, Content::Text(_)) {
+            // Another program wrote it since the document was read.
+            seen = Content::Missing;
+        }
+        self.take_in(path, seen, document, Vec::new())
+    }
+
+    /// What was lost of journals since this was asked last, one sentence each.
+    pub(super) fn take_losses(&mut self) -> Vec<String> {
+        std::mem::take(&mut self.lost)
     }
 
     /// The plans with edits that were never saved, whose program is gone.
     pub(super) fn recovered(&mut self) -> Vec<Opened> {
         let Some(directory) = &self.journals else { return Vec::new() };
         let left = journal_file::left_behind(directory);
-        left.into_iter()
-            .map(|(file, journal)| {
-                let path = journal.file.as_ref().map(PathBuf::from);
-                let history = journal.history;
-                let saved = history.saved_document();
-                let is_known = path.as_deref().zip(saved).is_some_and(|(path, saved)| {
-                    on_disk::holds(path, &saved) || on_disk::read(path).is_ok_and(|(there, _)| there == saved)
-                });
-                let stamp = path.as_deref().filter(|_| is_known).and_then(Stamp::of);
-                let opened = self.keep(path, stamp, history, Some(file), Vec::new());
-                Opened { recovered: true, ..opened }
-            })
-            .collect()
+        self.lost.extend(left.set_aside.iter().map(set_aside::SetAside::sentence));
+        left.found.into_iter().map(|found| self.recover(found)).collect()
+    }
+
+    fn recover(&mut self, found: Found) -> Opened {
+        let path = found.journal.file.as_ref().map(PathBuf::from);
+        let notes = notes_on(&found);
+        let has_saved = found.losses.has_saved;
+        let (journal, mut history) = self.whole_part(found);
+        let mut seen = path.as_deref().map_or(Content::Missing, Content::of);
+        let newer = path.as_deref().filter(|_| has_saved).and_then(|path| on_disk::read(path).ok());
+        if let Some((document, _, content)) = newer {
+            history.commit(SAVED_LATER, document);
+            history.mark_saved();
+            seen = content;
+        } else {
+            let saved = history.saved_document();
+            let is_known =
+                path.as_deref().zip(saved).is_some_and(|(path, saved)| seen.is_document(path, &saved));
+            if !is_known {
+                seen = Content::Missing;
+            }
+        }
+        let recovered = !history.is_saved();
+        let opened = self.keep(path, seen, history, journal, notes);
+        Opened { recovered, ..opened }
+    }
+
+    /// The part of a journal that could be read. A damaged file is set aside first; where that is not possible it stays,
+    /// and the journal goes on in another file.
+    fn whole_part(&mut self, found: Found) -> (Option<JournalFile>, History) {
+        let Found { file, journal, losses } = found;
+        let Some(line) = losses.line else { return (Some(file), journal.history) };
+        let name = journal.file.as_deref().unwrap_or("an unnamed plan");
+        let count = match losses.edits {
+            1 => "1 edit".to_owned(),
+            edits => format!("{edits} edits"),
+        };
+        let kept = file.set_copy_aside();
+        let now = set_aside::place(&kept, file.path());
+        self.lost.push(format!(
+            "{count} of {name} could not be read: line {line} of the journal is damaged, or written by a later version. \
+             {now}."
+        ));
+        (kept.is_ok().then_some(file), journal.history)
     }
 
     /// Carries requests out until nobody asks any more, and counts in `done` how many.
@@ -123,7 +172,11 @@ impl PlanFiles {
 
     fn carry_out(&mut self, request: FileRequest) -> Vec<FileReply> {
         match request {
-            FileRequest::Open(path) => vec![self.open(&path)],
+            FileRequest::Open(path) => {
+                let opened = self.open(&path);
+                let lost = self.take_losses().into_iter().map(FileReply::EditsLost);
+                std::iter::once(opened).chain(lost).collect()
+            }
             FileRequest::Save { id, path, document, revision, replace } => {
                 self.save(id, path, *document, revision, replace)
             }
@@ -135,8 +188,8 @@ impl PlanFiles {
             }
             FileRequest::Begin(id, document) => {
                 let kept = Journal { file: None, history: History::new(*document, false) };
-                let (path, stamp, journal) = (None, None, None);
-                let file = OpenFile { path, stamp, told: false, kept, journal, is_behind: false };
+                let (path, seen, journal) = (None, Content::Missing, None);
+                let file = OpenFile { path, seen, told: false, kept, journal, is_behind: false };
                 self.open.insert(id, file);
                 Vec::new()
             }
@@ -155,8 +208,7 @@ impl PlanFiles {
             Ok(path) => path,
             Err(error) => return FileReply::Failed(format!("Cannot open {}: {error}.", path.display())),
         };
-        let stamp = Stamp::of(&path);
-        let (document, notes) = match on_disk::read(&path) {
+        let (document, notes, seen) = match on_disk::read(&path) {
             Ok(read) => read,
             Err(sentence) => return FileReply::Failed(sentence),
         };
@@ -165,8 +217,8 @@ impl PlanFiles {
         }
         let known = self.open.iter().find(|(_, file)| file.path.as_deref() == Some(&path)).map(|(&id, _)| id);
         let opened = match known {
-            Some(id) => self.read_again(id, path, stamp, document, notes),
-            None => self.take_in(Some(path), stamp, document, notes),
+            Some(id) => self.read_again(id, path, seen, document, notes),
+            None => self.take_in(Some(path), seen, document, notes),
         };
         FileReply::Opened(Box::new(opened))
     }
@@ -176,16 +228,17 @@ impl PlanFiles {
         &mut self,
         id: PlanId,
         path: PathBuf,
-        stamp: Option<Stamp>,
+        content: Content,
         document: PlanDocument,
         mut notes: Vec<String>,
     ) -> Opened {
-        let open = self.open.get(&id).map(|file| (file.kept.history.clone(), file.stamp));
-        let (mut history, seen) = open.unwrap_or_else(|| (History::new(document.clone(), true), None));
-        if stamp == seen {
+        let open = self.open.get(&id).map(|file| (file.kept.history.clone(), file.seen.clone()));
+        let (mut history, seen) =
+            open.unwrap_or_else(|| (History::new(document.clone(), true), Content::Missing));
+        if content == seen {
             return Opened { id, file: Some(path), history, notes, recovered: false };
         }
-        let is_held = *history.document() == document || on_disk::holds(&path, history.document());
+        let is_held = *history.document() == document || content.is_written(&path, history.document());
         let label = "read again";
         let edited = if is_held { None } else { history.commit(label, document) };
         let edited = edited.map(|revision| Box::new(revision.change().clone()));
@@ -200,7 +253,7 @@ impl PlanFiles {
             }
         }
         if let Some(file) = self.open.get_mut(&id) {
-            file.stamp = stamp;
+            file.seen = content;
             file.told = false;
         }
         Opened { id, file: Some(path), history, notes, recovered: false }
@@ -210,27 +263,33 @@ impl PlanFiles {
     fn take_in(
         &mut self,
         path: Option<PathBuf>,
-        mut stamp: Option<Stamp>,
+        mut seen: Content,
         document: PlanDocument,
         mut notes: Vec<String>,
     ) -> Opened {
         let name = path.as_ref().map(|path| path.display().to_string());
-        let found = match (&self.journals, &name) {
+        let journals = match (&self.journals, &name) {
             (Some(directory), Some(name)) => journal_file::find(directory, name),
-            _ => None,
+            _ => journal_file::Journals::default(),
         };
-        let Some((file, journal)) = found else {
-            return self.keep(path, stamp, History::new(document, true), None, notes);
+        self.lost.extend(journals.set_aside.iter().map(set_aside::SetAside::sentence));
+        let Some(found) = journals.found.into_iter().next() else {
+            return self.keep(path, seen, History::new(document, true), None, notes);
         };
-        let mut history = journal.history;
+        notes.extend(notes_on(&found));
+        let has_saved = found.losses.has_saved;
+        let (file, mut history) = self.whole_part(found);
         let mut recovered = false;
         // A format that cannot carry everything reads as another document than was written.
         let is_held = |held: &PlanDocument| {
-            *held == document || path.as_deref().is_some_and(|path| on_disk::holds(path, held))
+            *held == document || path.as_deref().is_some_and(|path| seen.is_written(path, held))
         };
         let (holds_newest, saved) = (is_held(history.document()), history.saved_document());
         let is_unchanged = saved.as_ref().is_some_and(is_held);
         if holds_newest {
+            history.mark_saved();
+        } else if has_saved {
+            history.commit(SAVED_LATER, document);
             history.mark_saved();
         } else if history.is_saved() || saved.is_none() {
             history.commit("changed on disk", document);
@@ -240,18 +299,18 @@ impl PlanFiles {
             recovered = true;
             if !is_unchanged {
                 // So that saving asks first.
-                stamp = None;
+                seen = Content::Missing;
                 notes.push("Another program changed the file meanwhile, too.".to_owned());
             }
         }
-        let opened = self.keep(path, stamp, history, Some(file), notes);
+        let opened = self.keep(path, seen, history, file, notes);
         Opened { recovered, ..opened }
     }
 
     fn keep(
         &mut self,
         path: Option<PathBuf>,
-        stamp: Option<Stamp>,
+        seen: Content,
         history: History,
         journal: Option<JournalFile>,
         notes: Vec<String>,
@@ -263,7 +322,7 @@ impl PlanFiles {
         // Written anew without what was cut short.
         let mut journal = journal;
         let is_behind = journal.as_mut().is_some_and(|journal| journal.rewrite(&kept).is_err());
-        let file = OpenFile { path: path.clone(), stamp, told: false, kept, journal, is_behind };
+        let file = OpenFile { path: path.clone(), seen, told: false, kept, journal, is_behind };
         self.open.insert(id, file);
         Opened { id, file: path, history, notes, recovered: false }
     }
@@ -280,16 +339,17 @@ impl PlanFiles {
             return vec![FileReply::Failed("This plan is not open any more.".to_owned())];
         };
         let is_own = file.path.as_deref() == Some(path.as_path());
-        let there = Stamp::of(&path);
-        let is_known = is_own && there == file.stamp;
-        if there.is_some() && !is_known && !replace {
+        // Read again just before it is replaced.
+        let there = Content::of(&path);
+        let is_known = is_own && there.is_known_as(&file.seen);
+        if there.is_there() && !is_known && !replace {
             return vec![FileReply::Occupied { id, path, changed: is_own }];
         }
-        let lost = match on_disk::write(&path, document) {
-            Ok(lost) => lost,
+        let (lost, seen) = match on_disk::write(&path, document) {
+            Ok(written) => written,
             Err(sentence) => return vec![FileReply::Failed(sentence)],
         };
-        file.stamp = Stamp::of(&path);
+        file.seen = seen;
         file.told = false;
         file.path = Some(path.clone());
         if let Some(parent) = path.parent() {
@@ -307,7 +367,7 @@ impl PlanFiles {
         let written = match &mut file.journal {
             None => JournalFile::create(directory, &file.kept).map(|journal| file.journal = Some(journal)),
             Some(journal) if file.is_behind => journal.rewrite(&file.kept),
-            Some(journal) => journal.append(line),
+            Some(journal) => journal.append(line, &file.kept),
         };
         file.is_behind = written.is_err();
         let Err(error) = written else {
@@ -334,7 +394,7 @@ impl PlanFiles {
         let mut changed = Vec::new();
         for (&id, file) in &mut self.open {
             let Some(path) = &file.path else { continue };
-            let is_other = Stamp::of(path) != file.stamp;
+            let is_other = Content::of(path) != file.seen;
             if is_other && !file.told {
                 changed.push(id);
             }
@@ -342,6 +402,13 @@ impl PlanFiles {
         }
         changed
     }
+}
+
+/// What is worth knowing about a journal of which nothing is lost but the last edit.
+fn notes_on(found: &Found) -> Vec<String> {
+    let is_cut_short = found.losses.is_cut_short && found.losses.line.is_none();
+    let note = "The newest edit was cut short when the program ended, and is lost.";
+    is_cut_short.then(|| note.to_owned()).into_iter().collect()
 }
 
 #[cfg(test)]

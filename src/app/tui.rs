@@ -140,6 +140,9 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
     let (requests, asked) = std::sync::mpsc::channel();
     let (done, kept) = tokio::sync::watch::channel(0);
     let (answers, replies) = tokio::sync::mpsc::unbounded_channel();
+    for lost in files.take_losses() {
+        answers.send(FileReply::EditsLost(lost)).ok();
+    }
     for opened in recovered {
         answers.send(FileReply::Opened(Box::new(opened))).ok();
     }

@@ -13,4 +13,4 @@ pub mod transform;
 pub use change::Change;
 pub use document::PlanDocument;
 pub use history::{History, Revision};
-pub use journal::{Journal, JournalLine};
+pub use journal::{Journal, JournalLine, Losses};

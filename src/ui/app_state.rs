@@ -153,6 +153,8 @@ pub struct AppState {
     pub timeline: TimelineState,
     /// The newest notice.
     pub notice: Option<Notice>,
+    /// Notices that stay until Esc takes them away, the oldest first.
+    pub pinned: Vec<String>,
     /// What is to be done once changes of the craft outside are permitted.
     pub held: Vec<Effect>,
     /// The connection over which the user has permitted changes.
@@ -228,6 +230,7 @@ impl AppState {
             track: Track::default(),
             timeline: TimelineState::default(),
             notice: None,
+            pinned: Vec::new(),
             held: Vec::new(),
             permitted: None,
             cancelled: None,
@@ -256,6 +259,12 @@ impl AppState {
         let text = text.into();
         self.log.push(self.view.vehicle.time, severity, text.clone());
         self.notice = Some(Notice { text, severity, at: self.now });
+    }
+
+    /// Reports a loss: in the log, and on the screen until Esc takes it away.
+    pub(super) fn pin(&mut self, text: String) {
+        self.log.push(self.view.vehicle.time, Severity::Fault, text.clone());
+        self.pinned.push(text);
     }
 
     /// Says something to the user for a moment that does not belong in the log.

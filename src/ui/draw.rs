@@ -86,7 +86,7 @@ pub fn draw(state: &AppState, frame: &mut Frame<'_>) {
     if state.theme.charset == Charset::Ascii {
         ascii::replace(buffer);
     }
-    if let Some(position) = cursor {
+    if let Some(position) = cursor.filter(|&position| area.contains(position)) {
         frame.set_cursor_position(position);
     }
 }

@@ -92,12 +92,12 @@ impl Screen {
     }
 }
 
-/// The inside of a panel.
+/// The inside of a panel; empty, but within the area, when the frame takes all of it.
 #[must_use]
 pub fn inner(area: Rect) -> Rect {
     Rect::new(
-        area.x.saturating_add(1),
-        area.y.saturating_add(1),
+        area.x.saturating_add(area.width.min(1)),
+        area.y.saturating_add(area.height.min(1)),
         area.width.saturating_sub(2),
         area.height.saturating_sub(2),
     )

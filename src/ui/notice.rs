@@ -1,4 +1,4 @@
-//! The newest notice, shown for a moment above the hint bar.
+//! The newest notice, shown for a moment above the hint bar, and those that stay.
 
 use std::time::Duration;
 
@@ -7,6 +7,8 @@ use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr as _;
 
 use super::app_state::AppState;
+use super::drawing;
+use super::event_log::Severity;
 use super::formatting::{cut, within};
 use super::text_wrap::wrapped;
 
@@ -14,24 +16,34 @@ use super::text_wrap::wrapped;
 const NOTICE_FOR: Duration = Duration::from_secs(8);
 /// Rows a notice takes at most.
 const NOTICE_ROWS: usize = 2;
+/// Rows that a notice that stays takes at most: it names files.
+const PINNED_ROWS: usize = 5;
+/// Ends a notice that stays.
+const CLOSED_BY: &str = "Esc closes this.";
 
-/// Draws the newest notice for a moment: in the frame of the lowest panels, and in the row above it when it is long.
+/// Draws the newest notice for a moment: in the frame of the lowest panels, and in the row above it when it is long. Above
+/// it stands the oldest of those that stay.
 pub(super) fn draw(state: &AppState, hints: Rect, buffer: &mut Buffer) {
-    let Some(notice) = state.notice.as_ref().filter(|notice| within(state.now, notice.at, NOTICE_FOR)) else {
-        return;
-    };
-    let style = state.theme.style(notice.severity.role());
     let width = usize::from(hints.width.saturating_sub(6));
-    let mut lines = wrapped(&format!("{} {}", notice.severity.glyph(), notice.text), width);
-    if lines.len() > NOTICE_ROWS {
-        let rest = lines.split_off(NOTICE_ROWS - 1).join(" ");
-        lines.push(cut(&rest, width));
-    }
-    let widest = lines.iter().map(|line| line.width()).max().unwrap_or(0);
-    for (above, line) in (1..).zip(lines.iter().rev()) {
-        let fill = " ".repeat(widest - line.width());
-        // Above the frame it stands on what a panel shows, of which no letter stays in front of it.
-        let (x, lead) = if above == 1 { (hints.x + 2, " ") } else { (hints.x + 1, "  ") };
-        buffer.set_string(x, hints.y.saturating_sub(above), format!("{lead}{line}{fill} "), style);
+    let newest = state.notice.as_ref().filter(|notice| within(state.now, notice.at, NOTICE_FOR));
+    let newest = newest.map(|notice| (notice.severity, notice.text.clone(), NOTICE_ROWS));
+    let pinned =
+        state.pinned.first().map(|text| (Severity::Fault, format!("{text} {CLOSED_BY}"), PINNED_ROWS));
+    let mut above = 1;
+    for (severity, text, rows) in newest.into_iter().chain(pinned) {
+        let style = state.theme.style(severity.role());
+        let mut lines = wrapped(&format!("{} {text}", severity.glyph()), width);
+        if lines.len() > rows {
+            let rest = lines.split_off(rows - 1).join(" ");
+            lines.push(cut(&rest, width));
+        }
+        let widest = lines.iter().map(|line| line.width()).max().unwrap_or(0);
+        for line in lines.iter().rev() {
+            let fill = " ".repeat(widest - line.width());
+            // Above the frame it stands on what a panel shows, of which no letter stays in front of it.
+            let (x, lead) = if above == 1 { (hints.x + 2, " ") } else { (hints.x + 1, "  ") };
+            drawing::text(buffer, x, hints.y.saturating_sub(above), format!("{lead}{line}{fill} "), style);
+            above += 1;
+        }
     }
 }

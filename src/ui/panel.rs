@@ -18,6 +18,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 
+use super::drawing;
 use super::formatting::cut;
 use super::theme::{Role, Theme};
 
@@ -79,13 +80,13 @@ pub(super) fn span(theme: &Theme, role: Role, text: impl Into<String>) -> Span<'
 pub(super) fn row(buffer: &mut Buffer, area: Rect, row: u16, theme: &Theme, role: Role, text: &str) {
     if row < area.height {
         let text = cut(text, usize::from(area.width));
-        buffer.set_string(area.x, area.y + row, text, theme.style(role));
+        drawing::text(buffer, area.x, area.y + row, text, theme.style(role));
     }
 }
 
 /// Writes a styled line at a row of the area.
 pub(super) fn line(buffer: &mut Buffer, area: Rect, row: u16, line: &Line<'_>) {
     if row < area.height {
-        buffer.set_line(area.x, area.y + row, line, area.width);
+        drawing::line(buffer, area.x, area.y + row, line, area.width);
     }
 }

@@ -9,6 +9,7 @@ use crate::signals::RcSource;
 use crate::telemetry::{LinkState, Mode, NavState, NavTelemetry};
 
 use super::app_state::AppState;
+use super::drawing;
 use super::formatting::{clock, clock_ms, compass, cut, factor, fixed, signed};
 use super::panel::span;
 use super::theme::Role;
@@ -39,8 +40,8 @@ pub(super) fn sides(buffer: &mut Buffer, area: Rect, left: &[Span<'static>], rig
         while left.width() + 2 > usize::from(room) && left.spans.pop().is_some() {}
         left.push_span("…");
     }
-    buffer.set_line(area.x, area.y, &left, room);
-    buffer.set_line(area.x + room, area.y, &right, width);
+    drawing::line(buffer, area.x, area.y, &left, room);
+    drawing::line(buffer, area.x + room, area.y, &right, width);
 }
 
 /// Armed and modes.

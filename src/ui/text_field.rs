@@ -6,6 +6,7 @@ use ratatui::layout::{Position, Rect};
 use tui_input::backend::crossterm::EventHandler as _;
 use tui_input::{Input, InputRequest};
 
+use super::drawing;
 use super::theme::{Role, Theme};
 use crate::printable;
 
@@ -58,14 +59,15 @@ impl TextField {
 
     /// Draws the text in the first row of the area, scrolled so that the cursor is visible; gives the cursor's place.
     pub fn draw(&self, theme: &Theme, area: Rect, buffer: &mut Buffer) -> Option<Position> {
-        // The last column is the cursor's behind a full row.
-        let room = usize::from(area.width.checked_sub(1)?);
-        if area.height == 0 {
+        let area = area.intersection(buffer.area);
+        if area.is_empty() {
             return None;
         }
+        // The last column is the cursor's behind a full row.
+        let room = usize::from(area.width - 1);
         let scroll = self.input.visual_scroll(room);
         let visible: String = self.value().chars().skip(scroll).take(room).collect();
-        buffer.set_stringn(area.x, area.y, visible, room, theme.style(Role::Text));
+        drawing::text_within(buffer, area.x, area.y, visible, room, theme.style(Role::Text));
         let column = self.input.visual_cursor().saturating_sub(scroll).min(room);
         Some(Position::new(area.x + column as u16, area.y))
     }
@@ -99,6 +101,15 @@ mod tests {
         assert!(!press(&mut field, KeyCode::Enter) && !press(&mut field, KeyCode::Tab));
         assert_eq!(field.take(), "acd");
         assert!(field.is_empty());
+    }
+
+    #[test]
+    fn a_row_outside_the_window_has_no_text_and_no_cursor() {
+        for area in [Rect::new(2, 1, 6, 1), Rect::new(8, 0, 3, 1), Rect::new(0, 0, 3, 0)] {
+            let mut buffer = Buffer::empty(Rect::new(0, 0, 8, 1));
+            assert_eq!(TextField::new("text").draw(&Theme::default(), area, &mut buffer), None);
+            assert_eq!(buffer, Buffer::empty(buffer.area));
+        }
     }
 
     #[test]

@@ -12,6 +12,7 @@ use ratatui::text::{Line, Span};
 use unicode_width::UnicodeWidthStr as _;
 
 use super::app_state::{AppState, Transition};
+use super::drawing;
 use super::formatting::clock;
 use super::graphs;
 use super::panel::span;
@@ -164,7 +165,7 @@ pub(super) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
         });
     }
     spans.push(span(theme, Role::Dim, format!(" {} ", clock(timeline.head))));
-    buffer.set_line(area.x, area.y, &Line::from(spans), area.width);
+    drawing::line(buffer, area.x, area.y, &Line::from(spans), area.width);
 }
 
 /// Which of two marks in one column is shown.

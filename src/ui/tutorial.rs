@@ -5,6 +5,7 @@ use ratatui::layout::Rect;
 
 use super::action::{Action, EditAction};
 use super::app_state::AppState;
+use super::drawing;
 use super::event_log::Severity;
 use super::formatting::cut;
 use super::panel::Panel;
@@ -103,5 +104,5 @@ pub(super) fn draw(state: &AppState, hints: Rect, buffer: &mut Buffer) {
     let Some(tutorial) = state.tutorial else { return };
     let text = format!(" ▸ {} ", text(state, tutorial));
     let text = cut(&text, usize::from(hints.width.saturating_sub(2)));
-    buffer.set_string(hints.x + 1, hints.y.saturating_sub(1), text, state.theme.style(Role::Active));
+    drawing::text(buffer, hints.x + 1, hints.y.saturating_sub(1), text, state.theme.style(Role::Active));
 }

@@ -181,6 +181,11 @@ fn key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
         state.notice = None;
     }
     let types = fields::open(state).is_some();
+    // Esc leaves what is open first.
+    let is_open = !state.popups.is_empty() || state.editor.takes_text() || types;
+    if event.code == KeyCode::Esc && !is_open && !state.pinned.is_empty() {
+        state.pinned.remove(0);
+    }
     match state.popups.last() {
         _ if found == Some(Action::Cancel) => cancel(state),
         Some(_) => popup::key(state, event, found),

@@ -211,12 +211,17 @@ fn a_storm_of_sizes_is_survived_in_flight_and_the_terminal_is_given_back_on_a_si
         at = at.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
         1 + (at >> 8) % most
     };
-    for round in 0..10 {
-        // Faster than frames are drawn, each storm over another panel or popup.
-        let keys = ["1", "2", "3", "6z", "7", "8", "?", "\x1b\x1b", "2z", "\x10"];
-        terminal.send(keys[round]);
-        for _ in 0..60 {
-            terminal.resize(next(250) as u16, next(80) as u16);
+    // Faster than frames are drawn, each storm over another panel, popup, prompt or text field.
+    let keys = [
+        "1", "2", "3", "6z", "7", "8", "?", "\x1b\x1b", "2z", "\x10", "\x10wi", ":w", "5set", "2S", "2Sname",
+        "2o", "2P", "2E", "8/wind", "G", "w", "q",
+    ];
+    for keys in keys {
+        terminal.send(keys);
+        for round in 0..60 {
+            // Every other window is smaller than anything in it.
+            let (columns, rows) = if round % 2 == 0 { (250, 80) } else { (90, 4) };
+            terminal.resize(next(columns) as u16, next(rows) as u16);
         }
         // What was drawn for other sizes than the emulator's goes by.
         terminal.resize(80, 24);

@@ -4,13 +4,16 @@ use std::fs::{File, OpenOptions};
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
-use crate::plan::edit::{Journal, JournalLine};
+use super::set_aside::{self, SetAside};
+use crate::plan::edit::{Journal, JournalLine, Losses};
 use crate::storage::state_file::{self, Access};
 
 /// Ending of journals.
 const ENDING: &str = "journal";
 /// Largest journal that is read, bytes: some hundred thousand edits.
 const LARGEST: u64 = 64 << 20;
+/// Length from which a journal is compacted, bytes: its older edits become one.
+const LONGEST: usize = 16 << 20;
 /// More journals of one plan than programs have it open.
 const MOST: u32 = 1000;
 
@@ -20,6 +23,27 @@ pub(super) struct JournalFile {
     path: PathBuf,
     /// Locked as long as it is open.
     file: File,
+    /// Length from which it is compacted, bytes.
+    longest: usize,
+    /// In a compacted file: the number there of every revision, and how many there are.
+    numbers: Option<(Vec<Option<usize>>, usize)>,
+}
+
+/// A journal that nobody has locked, as it was read.
+#[derive(Debug)]
+pub(super) struct Found {
+    pub(super) file: JournalFile,
+    pub(super) journal: Journal,
+    pub(super) losses: Losses,
+}
+
+/// What is in a directory of journals.
+#[derive(Debug, Default)]
+pub(super) struct Journals {
+    /// Those that could be read, at least their beginning.
+    pub(super) found: Vec<Found>,
+    /// Those of which nothing could be read.
+    pub(super) set_aside: Vec<SetAside>,
 }
 
 impl JournalFile {
@@ -31,7 +55,7 @@ impl JournalFile {
             let path = directory.join(format!("{stem}-{number}.{ENDING}"));
             match OpenOptions::new().append(true).create_new(true).open(&path) {
                 Ok(file) => {
-                    let mut created = Self { path, file };
+                    let mut created = Self::new(path, file);
                     return match lock(&created.file).and_then(|()| created.rewrite(journal)) {
                         Ok(()) => Ok(created),
                         Err(error) => {
@@ -47,18 +71,56 @@ impl JournalFile {
         Err(io::Error::other("too many journals of this plan"))
     }
 
-    /// Opens a journal that nobody has locked.
-    fn open(path: PathBuf) -> Option<(Self, Journal)> {
-        let file = state_file::open(&path, Access::Append).ok()?;
-        lock(&file).ok()?;
-        let text = state_file::read(&path, LARGEST).ok()??;
-        let journal = Journal::read(&String::from_utf8_lossy(&text))?;
-        Some((Self { path, file }, journal))
+    fn new(path: PathBuf, file: File) -> Self {
+        Self { path, file, longest: LONGEST, numbers: None }
     }
 
-    /// Writes the whole journal anew; what is there stays until the new one is complete.
+    /// Opens a journal; `None` when another program has locked it, or it cannot be read now.
+    fn open(path: PathBuf) -> Option<Result<Found, SetAside>> {
+        let file = state_file::open(&path, Access::Append).ok()?;
+        lock(&file).ok()?;
+        let file = Self::new(path, file);
+        let length = file.file.metadata().ok()?.len();
+        if length > LARGEST {
+            let why = format!("it is larger than {} MiB", LARGEST >> 20);
+            return Some(Err(set_aside::away(&file.path, why)));
+        }
+        let text = state_file::read(&file.path, LARGEST).ok()??;
+        Some(match Journal::read_whole_part(&String::from_utf8_lossy(&text)) {
+            Some((journal, losses)) => Ok(Found { file, journal, losses }),
+            None => {
+                let why = "its first line is damaged, or written by a later version";
+                Err(set_aside::away(&file.path, why.to_owned()))
+            }
+        })
+    }
+
+    /// Where it is.
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Keeps a copy of the file as it is under another name.
+    ///
+    /// # Errors
+    /// Why there is no copy: the file must stay as it is.
+    pub(super) fn set_copy_aside(&self) -> io::Result<PathBuf> {
+        set_aside::copy(&self.path)
+    }
+
+    /// Writes the whole journal anew, its older edits as one when it is too long; what is there stays until the new one
+    /// is complete.
     pub(super) fn rewrite(&mut self, journal: &Journal) -> io::Result<()> {
-        let text: String = journal.lines().iter().map(JournalLine::to_text).collect();
+        let text_of =
+            |journal: &Journal| journal.lines().iter().map(JournalLine::to_text).collect::<String>();
+        let mut text = text_of(journal);
+        let mut numbers = None;
+        if text.len() > self.longest {
+            let (newest, found) = journal.newest(self.longest / 2);
+            text = text_of(&newest);
+            numbers = Some((found, newest.history.len()));
+        }
+        self.numbers = numbers;
         let there = state_file::read(&self.path, LARGEST);
         // A hard link would let later lines appear in another file.
         if there.is_ok_and(|there| there.as_deref() == Some(text.as_bytes()))
@@ -70,17 +132,46 @@ impl JournalFile {
         Ok(())
     }
 
-    /// Appends a line; a part of one does not stay.
-    pub(super) fn append(&mut self, line: &JournalLine) -> io::Result<()> {
+    /// Appends a line that `journal` has taken; a part of one does not stay.
+    pub(super) fn append(&mut self, line: &JournalLine, journal: &Journal) -> io::Result<()> {
         let length = self.file.metadata()?.len();
-        self.file.write_all(line.to_text().as_bytes()).inspect_err(|_| {
+        let Some(text) = self.numbered(line, journal).map(|line| line.to_text()) else {
+            return self.rewrite(journal);
+        };
+        if length.saturating_add(text.len() as u64) > self.longest as u64 {
+            return self.rewrite(journal);
+        }
+        self.file.write_all(text.as_bytes()).inspect_err(|_| {
             self.file.set_len(length).ok();
         })
+    }
+
+    /// A line with the number that a revision has in the file; `None` when the file does not have it.
+    fn numbered(&mut self, line: &JournalLine, journal: &Journal) -> Option<JournalLine> {
+        let Some((numbers, count)) = &mut self.numbers else { return Some(line.clone()) };
+        match line {
+            JournalLine::Moved(revision) => numbers.get(*revision).copied()?.map(JournalLine::Moved),
+            JournalLine::Edited { .. } => {
+                *count += 1;
+                numbers.resize(journal.history.len(), None);
+                numbers.push(Some(*count));
+                Some(line.clone())
+            }
+            JournalLine::Opened { .. } | JournalLine::Saved(_) | JournalLine::Unsaved => Some(line.clone()),
+        }
     }
 
     /// Deletes it.
     pub(super) fn remove(self) {
         std::fs::remove_file(&self.path).ok();
+    }
+}
+
+impl Drop for JournalFile {
+    /// Frees the journal at once. Closing it is not enough: a child that is being started has its descriptor, too, and
+    /// would keep the lock until it runs.
+    fn drop(&mut self) {
+        self.file.unlock().ok();
     }
 }
 
@@ -93,26 +184,45 @@ fn lock(file: &File) -> io::Result<()> {
 }
 
 /// The journal of a plan that nobody has locked.
-pub(super) fn find(directory: &Path, name: &str) -> Option<(JournalFile, Journal)> {
+pub(super) fn find(directory: &Path, name: &str) -> Journals {
     // All of them are looked at: a plan that was saved under another name kept its journal.
-    paths(directory)
-        .into_iter()
-        .filter_map(JournalFile::open)
-        .find(|(_, journal)| journal.file.as_deref() == Some(name))
+    let mut journals = Journals::default();
+    for opened in paths(directory).into_iter().filter_map(JournalFile::open) {
+        match opened {
+            Ok(found) if found.journal.file.as_deref() == Some(name) => {
+                journals.found.push(found);
+                break;
+            }
+            Ok(_) => {}
+            Err(set_aside) => journals.set_aside.push(set_aside),
+        }
+    }
+    journals
 }
 
-/// The journals with edits that were never saved, which nobody has locked.
-pub(super) fn left_behind(directory: &Path) -> Vec<(JournalFile, Journal)> {
+/// The journals with edits that were never saved, or that are damaged, which nobody has locked.
+pub(super) fn left_behind(directory: &Path) -> Journals {
     state_file::sweep(directory);
-    let left = paths(directory).into_iter().filter_map(JournalFile::open);
-    left.filter(|(_, journal)| !journal.history.is_saved() && !journal.history.is_empty()).collect()
+    let mut journals = Journals::default();
+    for opened in paths(directory).into_iter().filter_map(JournalFile::open) {
+        match opened {
+            Ok(found) => {
+                let history = &found.journal.history;
+                if found.losses.line.is_some() || !history.is_saved() && !history.is_empty() {
+                    journals.found.push(found);
+                }
+            }
+            Err(set_aside) => journals.set_aside.push(set_aside),
+        }
+    }
+    journals
 }
 
 fn paths(directory: &Path) -> Vec<PathBuf> {
     let Ok(entries) = std::fs::read_dir(directory) else { return Vec::new() };
     let is_journal = |path: &PathBuf| {
-        // Only what this program wrote: a FIFO would make it wait, a huge file fill the memory.
-        let is_sound = path.symlink_metadata().is_ok_and(|there| there.is_file() && there.len() <= LARGEST);
+        // Only what this program wrote: a FIFO would make it wait.
+        let is_sound = path.symlink_metadata().is_ok_and(|there| there.is_file());
         is_sound && path.extension().is_some_and(|ending| ending == ENDING)
     };
     let mut paths: Vec<PathBuf> =
@@ -129,4 +239,66 @@ fn stem(name: &str) -> String {
     let own = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
     let own: String = own.chars().filter(char::is_ascii_alphanumeric).take(24).collect();
     format!("{own}-{sum:016x}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::plan::edit::{History, PlanDocument};
+
+    #[test]
+    fn a_journal_is_free_when_its_program_ends_though_a_child_still_has_its_descriptor() {
+        let directory = tempfile::tempdir().unwrap();
+        let journal =
+            Journal { file: Some("a.toml".to_owned()), history: History::new(PlanDocument::default(), true) };
+        let file = JournalFile::create(directory.path(), &journal).unwrap();
+        assert!(find(directory.path(), "a.toml").found.is_empty(), "it is locked");
+        // A child has the descriptors of the program until it becomes another program.
+        let inherited = file.file.try_clone().unwrap();
+        drop(file);
+        assert_eq!(find(directory.path(), "a.toml").found.len(), 1);
+        drop(inherited);
+    }
+
+    fn named(name: usize) -> PlanDocument {
+        PlanDocument { name: name.to_string(), ..PlanDocument::default() }
+    }
+
+    #[test]
+    fn a_journal_stays_short_however_long_a_plan_is_edited_and_undo_goes_on_from_its_file() {
+        let directory = tempfile::tempdir().unwrap();
+        let mut journal = Journal { file: Some("a.toml".to_owned()), history: History::new(named(0), true) };
+        let mut file = JournalFile::create(directory.path(), &journal).unwrap();
+        file.longest = 4096;
+        let path = file.path.clone();
+        let read = || Journal::read(&std::fs::read_to_string(&path).unwrap()).unwrap();
+        let mut take = |journal: &mut Journal, line: JournalLine| {
+            assert!(journal.take(line.clone()));
+            file.append(&line, journal).unwrap();
+            assert!(file.file.metadata().unwrap().len() <= 4096);
+            let kept = read();
+            assert_eq!(kept.history.document(), journal.history.document());
+            assert_eq!(kept.history.saved_document(), journal.history.saved_document());
+        };
+        for edit in 1..=300 {
+            let mut history = journal.history.clone();
+            let revision = history.commit("edit", named(edit)).unwrap();
+            let (label, change) = ("edit".to_owned(), Box::new(revision.change().clone()));
+            take(&mut journal, JournalLine::Edited { label, change });
+            if edit == 100 {
+                take(&mut journal, JournalLine::Saved("a.toml".to_owned()));
+            }
+            if edit % 7 == 0 {
+                take(&mut journal, JournalLine::Moved(edit - 3));
+                take(&mut journal, JournalLine::Moved(edit));
+            }
+        }
+        // Undo further back than the file goes, and edit from there.
+        take(&mut journal, JournalLine::Moved(40));
+        let mut history = journal.history.clone();
+        let revision = history.commit("edit", named(1000)).unwrap();
+        let (label, change) = ("edit".to_owned(), Box::new(revision.change().clone()));
+        take(&mut journal, JournalLine::Edited { label, change });
+        take(&mut journal, JournalLine::Moved(299));
+    }
 }

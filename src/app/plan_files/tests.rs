@@ -1,6 +1,8 @@
 use super::*;
 use crate::plan::Waypoint;
 
+mod damaged_journals;
+
 fn document(alt_cm: i32) -> PlanDocument {
     let mut document = PlanDocument { name: "test".to_owned(), ..PlanDocument::default() };
     document.plan.waypoints.push(Waypoint { alt_cm, ..Waypoint::default() });
@@ -266,4 +268,46 @@ fn a_write_protected_file_is_not_replaced() {
         assert!(sentence.contains("plan.toml is write-protected: save under another name"), "{sentence}");
     }
     assert_eq!(std::fs::read_to_string(&path).unwrap(), written);
+}
+
+/// Writes a plan over the bytes of the file, in a way that leaves its length, inode and time stamp.
+fn write_theirs_unseen(path: &Path, alt_cm: i32) {
+    let before = path.metadata().unwrap();
+    write_theirs(path, alt_cm);
+    let file = std::fs::OpenOptions::new().write(true).open(path).unwrap();
+    file.set_modified(before.modified().unwrap()).unwrap();
+    assert_eq!(path.metadata().unwrap().len(), before.len());
+}
+
+#[test]
+fn a_change_of_the_same_length_within_a_clock_tick_is_seen() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("plan.toml");
+    let mut files = PlanFiles::new(Some(directory.path()));
+    let mut opened = files.start_with(None, document(1));
+    save(&mut files, &mut opened, &path, false);
+    edit(&mut files, &mut opened, document(2));
+    write_theirs_unseen(&path, 9);
+    assert_eq!(files.changed(), [opened.id]);
+    let reply = save(&mut files, &mut opened, &path, false);
+    assert!(matches!(reply, FileReply::Occupied { changed: true, .. }), "{reply:?}");
+    assert_eq!(on_disk::read(&path).unwrap().0, document(9), "theirs is still there");
+    let mut again = open(&mut files, &path);
+    assert_eq!(again.history.document(), &document(9));
+    again.history.undo();
+    assert_eq!(again.history.document(), &document(2));
+}
+
+#[test]
+fn a_file_with_a_new_time_stamp_and_the_same_content_was_changed_by_nobody() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path().join("plan.toml");
+    let mut files = PlanFiles::new(Some(directory.path()));
+    let mut opened = files.start_with(None, document(1));
+    save(&mut files, &mut opened, &path, false);
+    let file = std::fs::OpenOptions::new().write(true).open(&path).unwrap();
+    file.set_modified(std::time::UNIX_EPOCH).unwrap();
+    assert!(files.changed().is_empty());
+    edit(&mut files, &mut opened, document(2));
+    assert!(matches!(save(&mut files, &mut opened, &path, false), FileReply::Saved { .. }));
 }

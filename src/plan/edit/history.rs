@@ -152,20 +152,75 @@ impl History {
         Some(&revision.label)
     }
 
+    /// The revisions from this one back to the document as it was opened.
+    fn path(&self, mut at: usize) -> Vec<usize> {
+        let mut path = vec![at];
+        while let Some(parent) = at.checked_sub(1).map(|index| self.revisions[index].parent) {
+            path.push(parent);
+            at = parent;
+        }
+        path
+    }
+
+    /// This history with the newest revisions alone, as many as have room, and for every revision its number there.
+    /// The edits before them become one, so that the document that the file holds stays known.
+    pub(super) fn newest(
+        &self,
+        room: usize,
+        size: impl Fn(&Revision) -> usize,
+    ) -> (Self, Vec<Option<usize>>) {
+        let sizes: Vec<usize> = self.revisions.iter().map(size).collect();
+        let mut behind: usize = sizes.iter().sum();
+        if behind <= room {
+            return (self.clone(), (0..=self.len()).map(Some).collect());
+        }
+        // The first revision on the way to the present one behind which all have room.
+        let way = self.path(self.at);
+        let mut counted = 0;
+        let first = way.iter().rev().copied().find(|&revision| {
+            behind -= sizes[counted..revision].iter().sum::<usize>();
+            counted = revision;
+            behind <= room
+        });
+        let first = first.unwrap_or(self.at);
+        let mut at_first = self.clone();
+        at_first.go_to(first);
+        let is_saved_behind =
+            first < self.at && self.saved.is_some_and(|saved| self.path(saved).contains(&first));
+        let base = if is_saved_behind { Some(at_first.document.clone()) } else { self.saved_document() };
+        let base = base.unwrap_or_else(|| self.base.clone());
+        let mut newest = Self::new(base, self.saved.is_some() && !is_saved_behind);
+        let mut numbers = vec![None; self.len() + 1];
+        if let Some(saved) = self.saved {
+            numbers[saved] = Some(0);
+        }
+        newest.commit("earlier edits", at_first.document);
+        numbers[first] = Some(newest.at);
+        let mut left = room;
+        for (number, revision) in (1..).zip(&self.revisions).skip(first) {
+            let Some(parent) = numbers[revision.parent] else { continue };
+            let Some(rest) = left.checked_sub(sizes[number - 1]) else { continue };
+            if newest.at != parent {
+                newest.go_to(parent);
+            }
+            if newest.commit_change(revision.label.clone(), &revision.change).is_some() {
+                left = rest;
+                numbers[number] = Some(newest.at);
+            }
+        }
+        if is_saved_behind {
+            newest.saved = self.saved.and_then(|saved| numbers[saved]);
+        }
+        newest.go_to(numbers[self.at].unwrap_or_default());
+        (newest, numbers)
+    }
+
     /// Goes to a revision, wherever in the tree it is; `false` when there is none of that number.
     pub fn go_to(&mut self, revision: usize) -> bool {
         if revision > self.revisions.len() {
             return false;
         }
-        let path = |mut at: usize| {
-            let mut path = vec![at];
-            while let Some(parent) = at.checked_sub(1).map(|index| self.revisions[index].parent) {
-                path.push(parent);
-                at = parent;
-            }
-            path
-        };
-        let (here, there) = (path(self.at), path(revision));
+        let (here, there) = (self.path(self.at), self.path(revision));
         let common = here.iter().rev().zip(there.iter().rev()).take_while(|(a, b)| a == b).count();
         for _ in 0..here.len() - common {
             self.undo();
@@ -212,6 +267,43 @@ mod tests {
     }
 
     proptest! {
+        #[test]
+        fn the_newest_edits_alone_lead_to_the_same_documents(
+            steps in prop::collection::vec((0_u8..5, 0_i32..50), 1..40),
+            room in 0_usize..40,
+        ) {
+            let mut history = History::new(named("base"), true);
+            for (kind, number) in steps {
+                match kind {
+                    0 => history.mark_saved(),
+                    1 => {
+                        history.go_to(number as usize % (history.len() + 1));
+                    }
+                    _ => {
+                        history.commit("edit", named(&number.to_string()));
+                    }
+                }
+            }
+            let document_at = |history: &History, revision| {
+                let mut history = history.clone();
+                history.go_to(revision).then_some(history.document)
+            };
+            let (newest, numbers) = history.newest(room, |_| 1);
+            prop_assert_eq!(newest.document(), history.document());
+            prop_assert_eq!(newest.saved_document(), history.saved_document());
+            prop_assert!(newest.len() <= room + 1);
+            prop_assert_eq!(numbers.len(), history.len() + 1);
+            prop_assert_eq!(numbers[history.at()].map(|at| document_at(&newest, at)), Some(Some(history.document.clone())));
+            for (revision, number) in numbers.iter().enumerate() {
+                if let Some(number) = *number {
+                    prop_assert_eq!(document_at(&newest, number), document_at(&history, revision));
+                }
+            }
+            if history.len() <= room {
+                prop_assert_eq!(newest, history);
+            }
+        }
+
         #[test]
         fn undo_and_redo_walk_through_the_same_documents(
             lists in prop::collection::vec(prop::collection::vec(0_i32..4, 0..8), 1..12),

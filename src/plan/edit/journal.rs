@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::history::Revision;
 use super::{Change, History, PlanDocument};
 use crate::plan::format::{self, Format, PlanFile};
 
@@ -49,6 +50,19 @@ impl JournalLine {
     }
 }
 
+/// What could not be read of a journal.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Losses {
+    /// The first line that makes no sense, or does not fit the lines before it, counted from 1.
+    pub line: Option<usize>,
+    /// The edits from there on; a line that makes no sense counts as one.
+    pub edits: usize,
+    /// The plan was saved behind that line: its file is newer than the part that was read.
+    pub has_saved: bool,
+    /// The last line was cut short, as by a kill while it was written.
+    pub is_cut_short: bool,
+}
+
 /// What a journal holds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Journal {
@@ -89,13 +103,52 @@ impl Journal {
     /// line makes sense.
     #[must_use]
     pub fn read(text: &str) -> Option<Self> {
-        let mut lines = text.lines().map_while(|line| serde_json::from_str(line).ok());
-        let JournalLine::Opened { file, text, saved } = lines.next()? else { return None };
+        Self::read_whole_part(text).map(|(journal, _)| journal)
+    }
+
+    /// Reads a journal up to the first line that does not make sense, and says what is lost with that line and those
+    /// behind it; `None` when not even the first line makes sense.
+    #[must_use]
+    pub fn read_whole_part(text: &str) -> Option<(Self, Losses)> {
+        let parse = |line: &str| serde_json::from_str::<JournalLine>(line).ok();
+        let mut lines = (1..).zip(text.split_inclusive('\n'));
+        let (_, first) = lines.next()?;
+        let JournalLine::Opened { file, text, saved } = parse(first)? else { return None };
         let document = format::parse("", &text, Format::Toml).ok()?.into();
         let mut journal = Self { file, history: History::new(document, saved) };
-        // The rest counts from a document that is not this one.
-        while lines.next().is_some_and(|line| journal.take(line)) {}
-        Some(journal)
+        let mut losses = Losses::default();
+        for (number, line) in lines {
+            let parsed = parse(line);
+            // The rest counts from a document that is not this one.
+            if losses.line.is_none() {
+                match parsed {
+                    Some(parsed) if journal.take(parsed.clone()) => continue,
+                    None if !line.ends_with('\n') => {
+                        losses.is_cut_short = true;
+                        continue;
+                    }
+                    _ => losses.line = Some(number),
+                }
+            }
+            match parsed {
+                Some(JournalLine::Saved(_)) => losses.has_saved = true,
+                Some(JournalLine::Edited { .. }) | None => losses.edits += 1,
+                Some(_) => {}
+            }
+        }
+        Some((journal, losses))
+    }
+
+    /// This journal with the newest edits alone, whose lines take at most `room` bytes, and for every revision of this
+    /// one its number there. The edits before them become one.
+    #[must_use]
+    pub fn newest(&self, room: usize) -> (Self, Vec<Option<usize>>) {
+        let size = |revision: &Revision| {
+            let (label, change) = (revision.label().to_owned(), Box::new(revision.change().clone()));
+            JournalLine::Edited { label, change }.to_text().len()
+        };
+        let (history, numbers) = self.history.newest(room, size);
+        (Self { file: self.file.clone(), history }, numbers)
     }
 
     /// Takes a line in; whether it fits.
@@ -180,6 +233,35 @@ mod tests {
             assert_eq!(read.lines(), journal.lines());
             assert_eq!(read.history.document(), journal.history.document());
         }
+    }
+
+    #[test]
+    fn a_line_that_makes_no_sense_is_reported_with_the_edits_behind_it() {
+        let mut history = History::new(document(&[1]), true);
+        let mut lines = vec![JournalLine::opened(history.document(), None, true).to_text()];
+        for alt_cm in 2..=5 {
+            let revision = history.commit("edit", document(&[alt_cm])).unwrap();
+            let (label, change) = ("edit".to_owned(), Box::new(revision.change().clone()));
+            lines.push(JournalLine::Edited { label, change }.to_text());
+        }
+        lines.push(JournalLine::Saved("a.toml".to_owned()).to_text());
+        let read = |lines: &[String]| Journal::read_whole_part(&lines.concat()).unwrap();
+        assert_eq!(read(&lines).1, Losses::default());
+        for noise in ["noise\n", "\n", "{\"later\":1}\n", "{\"moved\":77}\n"] {
+            let mut damaged = lines.clone();
+            damaged[3] = noise.to_owned();
+            let (journal, losses) = read(&damaged);
+            assert_eq!(journal.history.document(), &document(&[3]));
+            // What was read as a jump is no edit.
+            let edits = if noise.contains("moved") { 1 } else { 2 };
+            assert_eq!(losses, Losses { line: Some(4), edits, has_saved: true, is_cut_short: false });
+        }
+        // An edit is missing: the next one does not fit.
+        lines.remove(2);
+        assert_eq!(read(&lines).1, Losses { line: Some(3), edits: 2, has_saved: true, is_cut_short: false });
+        lines.truncate(2);
+        lines[1].truncate(10);
+        assert_eq!(read(&lines).1, Losses { is_cut_short: true, ..Losses::default() });
     }
 
     #[test]

@@ -76,6 +76,8 @@ pub enum FileReply {
     NotKept(String),
     /// All edits are kept again.
     KeptAgain,
+    /// Edits of an earlier start could not be read: which, and where they are kept, in a sentence or two.
+    EditsLost(String),
 }
 
 /// A plan that was read.

@@ -71,7 +71,7 @@ pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<
     row(buffer, area, prompt_row, theme, Role::Key, PROMPT);
     let prompt = PROMPT.len() as u16;
     let place = Rect::new(area.x + prompt, area.y + prompt_row, area.width - prompt, 1);
-    cli.input.draw(theme, place, buffer)
+    cli.input.draw(theme, place.intersection(area), buffer)
 }
 
 /// The furthest that the panel scrolls up: then its oldest line is the first on the screen.

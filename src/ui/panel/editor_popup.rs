@@ -56,7 +56,7 @@ fn form(state: &AppState, form: &Form, area: Rect, buffer: &mut Buffer) -> Optio
         let place =
             Rect { x: inside.x + LABEL, y: inside.y + y, width: value_width(field, inside.width), height: 1 };
         if field.choices.is_empty() {
-            let position = field.text.draw(theme, place, buffer);
+            let position = field.text.draw(theme, place.intersection(inside), buffer);
             cursor = if here { position } else { cursor };
         } else {
             let text = format!("◂ {} ▸", field.text.value());
@@ -94,7 +94,7 @@ fn browser(state: &AppState, browser: &Browser, area: Rect, buffer: &mut Buffer)
     row(buffer, inside, 0, theme, Role::Dim, &format!(" {directory}/"));
     row(buffer, inside, 1, theme, Role::Title, " name ");
     let name = Rect { x: inside.x + 6, y: inside.y + 1, width: inside.width.saturating_sub(6), height: 1 };
-    let cursor = browser.text.draw(theme, name, buffer);
+    let cursor = browser.text.draw(theme, name.intersection(inside), buffer);
     let rows = usize::from(inside.height.saturating_sub(4));
     let visible = browser.visible();
     let first = browser.at.unwrap_or(0).saturating_sub(rows.saturating_sub(1));

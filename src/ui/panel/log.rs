@@ -68,7 +68,7 @@ pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<
     }
     row(buffer, area, list.height, theme, Role::Key, "/");
     let field = Rect { x: area.x + 1, y: area.y + list.height, width: area.width.checked_sub(1)?, height: 1 };
-    state.log_view.search.draw(theme, field, buffer)
+    state.log_view.search.draw(theme, field.intersection(area), buffer)
 }
 
 fn draw_lines(state: &AppState, area: Rect, buffer: &mut Buffer) {

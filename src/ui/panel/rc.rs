@@ -7,6 +7,7 @@ use crate::signals::{RC_CHANNELS, RcSource};
 use crate::telemetry::snapshot::{CraftView, ModeRange};
 use crate::ui::action::Action;
 use crate::ui::app_state::AppState;
+use crate::ui::drawing;
 use crate::ui::formatting::cut;
 use crate::ui::panel::Panel;
 use crate::ui::theme::Role;
@@ -174,7 +175,7 @@ pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
             }
             let name: &'static str = range.mode_box.into();
             if several && usize::from(to - from) > name.len() {
-                buffer.set_string(from + 1, bar.y, name, theme.style(role));
+                drawing::text(buffer, from + 1, bar.y, name, theme.style(role));
             }
         }
         if known {

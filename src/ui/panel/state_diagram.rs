@@ -5,6 +5,7 @@ use ratatui::layout::Rect;
 use ratatui::style::Style;
 
 use crate::telemetry::NavState;
+use crate::ui::drawing;
 use crate::ui::theme::{Role, Theme};
 
 mod drawings;
@@ -44,7 +45,7 @@ impl Diagram {
         let mut put = |column: u16, row: u16, text: &str, style: Style| {
             if row < area.height && column < area.width {
                 let room = usize::from(area.width - column);
-                buffer.set_stringn(area.x + column, area.y + row, text, room, style);
+                drawing::text_within(buffer, area.x + column, area.y + row, text, room, style);
             }
         };
         let lit =

@@ -69,7 +69,7 @@ pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<
                 row(buffer, area, line, theme, role, &name);
                 let width = area.width.saturating_sub(NAME as u16);
                 let place = Rect::new(area.x + NAME as u16, area.y + line, width, 1);
-                cursor = field.draw(theme, place, buffer);
+                cursor = field.draw(theme, place.intersection(area), buffer);
             }
             None => row(buffer, area, line, theme, role, &format!("{name}{}", knob.value(state))),
         }

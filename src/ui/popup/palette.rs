@@ -173,7 +173,8 @@ pub(in crate::ui) fn draw(
     };
     row(buffer, inside, inside.height.saturating_sub(1), theme, role, &text);
     row(buffer, inside, 0, theme, Role::Key, "> ");
-    let field = Rect { x: inside.x + 2, width: inside.width.checked_sub(2)?, height: 1, ..inside };
+    let field =
+        Rect { x: inside.x + 2, width: inside.width.checked_sub(2)?, height: inside.height.min(1), ..inside };
     palette.query.draw(theme, field, buffer)
 }
 

@@ -147,9 +147,10 @@ fn is_answer(msg: &Msg) -> bool {
         | Msg::ScenarioReply(_)
         | Msg::Busy => true,
         Msg::Forecast(reply) => reply.kind != ForecastKind::PlanEstimate,
-        Msg::Files(reply) => {
-            !matches!(reply, FileReply::Changed(_) | FileReply::NotKept(_) | FileReply::KeptAgain)
-        }
+        Msg::Files(reply) => !matches!(
+            reply,
+            FileReply::Changed(_) | FileReply::NotKept(_) | FileReply::KeptAgain | FileReply::EditsLost(_)
+        ),
         Msg::Clock(_)
         | Msg::Key(_)
         | Msg::Mouse(_)

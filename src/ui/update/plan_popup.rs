@@ -170,6 +170,7 @@ pub(super) fn answered(state: &mut AppState, reply: FileReply) -> Vec<Effect> {
             state.editor.loses_edits = false;
             state.notify(Severity::Good, "Edits are kept again.");
         }
+        FileReply::EditsLost(text) => state.pin(text),
         FileReply::Failed(sentence) => {
             state.editor.quitting = false;
             state.notify(Severity::Fault, sentence);

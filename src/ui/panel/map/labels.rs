@@ -3,6 +3,7 @@
 use ratatui::buffer::Buffer;
 use unicode_width::UnicodeWidthStr as _;
 
+use crate::ui::drawing;
 use crate::ui::map_point::MapPoint;
 use crate::ui::text_wrap::wrapped;
 use crate::ui::theme::{Role, Theme};
@@ -44,7 +45,7 @@ impl<'a> Labels<'a> {
     }
 
     fn put(&mut self, column: u16, row: u16, text: &str, role: Role) {
-        self.buffer.set_string(column, row, text, self.theme.style(role));
+        drawing::text(self.buffer, column, row, text, self.theme.style(role));
         for column in column..column.saturating_add(text.width() as u16).min(self.view.area.right()) {
             let index = self.index(column, row);
             if let Some(taken) = self.taken.get_mut(index) {

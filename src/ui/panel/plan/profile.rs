@@ -5,6 +5,7 @@ use ratatui::layout::Rect;
 
 use crate::plan::estimate::estimate;
 use crate::ui::app_state::AppState;
+use crate::ui::drawing;
 use crate::ui::editor::findings;
 use crate::ui::theme::Role;
 
@@ -107,7 +108,7 @@ pub(super) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     let Some(axes) = Axes::of(&points, &flown, area) else { return };
     for (alt_m, mark) in [(axes.high_m, '┤'), (axes.low_m, '┼')] {
         let text = format!("{:>4.0} {mark}", state.units.length(alt_m));
-        buffer.set_string(area.x, axes.row(alt_m), text, theme.style(Role::Dim));
+        drawing::text(buffer, area.x, axes.row(alt_m), text, theme.style(Role::Dim));
     }
     let mut put = |column: u16, alt_m: f64, (symbol, role): (&str, Role)| {
         if let Some(cell) = buffer.cell_mut((column, axes.row(alt_m))) {
@@ -137,7 +138,7 @@ pub(super) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     for point in &points {
         let role = if point.index == state.editor.row() { Role::Focus } else { Role::Title };
         let (x, y) = (axes.column(point.along_m), axes.row(point.alt_m));
-        buffer.set_string(x, y, point.index.to_string(), theme.style(role));
+        drawing::text(buffer, x, y, point.index.to_string(), theme.style(role));
     }
 }
 
@@ -145,11 +146,11 @@ pub(super) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
 fn legend(state: &AppState, has_flown: bool, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     let rule = "─".repeat(usize::from(area.width));
-    buffer.set_string(area.x, area.y, rule, theme.style(Role::Dim));
+    drawing::text(buffer, area.x, area.y, rule, theme.style(Role::Dim));
     let mut x = area.x + 1;
     let mut write = |text: &str, role| {
         let room = usize::from(area.right().saturating_sub(x));
-        x = buffer.set_stringn(x, area.y, text, room, theme.style(role)).0;
+        x = drawing::text_within(buffer, x, area.y, text, room, theme.style(role));
     };
     write(&format!("altitude {}", state.units.length_unit()), Role::Dim);
     let lines = [

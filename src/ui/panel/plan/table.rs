@@ -9,6 +9,7 @@ use crate::plan::edit::fix::waypoint_of;
 use crate::plan::review::Finding;
 use crate::plan::{FlightPlan, Waypoint, WaypointType};
 use crate::ui::app_state::AppState;
+use crate::ui::drawing;
 use crate::ui::editor::Column;
 use crate::ui::formatting::{compass, cut};
 use crate::ui::panel::{Panel, row};
@@ -125,7 +126,8 @@ pub(super) fn draw(
     for (_, head, x, width) in &columns {
         let (x, width) = (*x, *width);
         let text = aligned(head, width, head == "type" || head == " pattern");
-        buffer.set_string(
+        drawing::text(
+            buffer,
             area.x + x,
             area.y,
             cut(&text, usize::from(area.width.saturating_sub(x))),
@@ -151,7 +153,7 @@ pub(super) fn draw(
                 let bad = field.problem.is_some();
                 buffer.set_style(cell, theme.style(if bad { Role::Fault } else { Role::Focus }));
                 let inside = Rect { x: cell.x + 1, width: cell.width.saturating_sub(1), ..cell };
-                cursor = field.text.draw(theme, inside, buffer);
+                cursor = field.text.draw(theme, inside.intersection(area), buffer);
                 continue;
             }
             let mut text = aligned(&value(column, wp, state.units), width, left);
@@ -159,7 +161,7 @@ pub(super) fn draw(
                 text = in_brackets(&text, left);
             }
             let role = if here { Role::Focus } else { role };
-            buffer.set_string(cell.x, y, cut(&text, usize::from(cell.width)), theme.style(role));
+            drawing::text(buffer, cell.x, y, cut(&text, usize::from(cell.width)), theme.style(role));
         }
     }
     cursor

@@ -1,0 +1,71 @@
+//! Journals that cannot be read, or not as a whole, kept under another name that nothing replaces.
+
+use std::fs::{File, OpenOptions};
+use std::io::{self, ErrorKind};
+use std::path::{Path, PathBuf};
+
+/// Ending of what is set aside.
+const ENDING: &str = "bad";
+/// Most files of one name.
+const MOST: u32 = 1000;
+
+/// A journal of which nothing could be read.
+#[derive(Debug)]
+pub(super) struct SetAside {
+    /// Where it was.
+    journal: PathBuf,
+    /// Where it is now.
+    kept: io::Result<PathBuf>,
+    why: String,
+}
+
+impl SetAside {
+    /// What happened, as a sentence.
+    pub(super) fn sentence(&self) -> String {
+        let Self { journal, kept, why } = self;
+        let now = place(kept, journal);
+        format!("Edits are lost: the journal {} was not read, {why}. {now}.", journal.display())
+    }
+}
+
+/// Where a journal is kept now, as the second half of a message.
+pub(super) fn place(kept: &io::Result<PathBuf>, journal: &Path) -> String {
+    match kept {
+        Ok(kept) => format!("It is kept as {}", kept.display()),
+        Err(error) => format!("It stays as {}, for it cannot be copied: {error}", journal.display()),
+    }
+}
+
+/// Gives a journal of which nothing can be read another name.
+pub(super) fn away(journal: &Path, why: String) -> SetAside {
+    let kept = copy(journal).and_then(|kept| std::fs::remove_file(journal).map(|()| kept));
+    SetAside { journal: journal.to_owned(), kept, why }
+}
+
+/// Keeps what a journal holds now under a name that is free; gives the name.
+pub(super) fn copy(journal: &Path) -> io::Result<PathBuf> {
+    for number in 1..=MOST {
+        let ending = if number == 1 { ENDING.to_owned() } else { format!("{number}.{ENDING}") };
+        let kept = journal.with_extension(ending);
+        // A second name takes no room on a full disk. Some file systems have only one name for a file.
+        let copied = match std::fs::hard_link(journal, &kept) {
+            Err(error) if error.kind() != ErrorKind::AlreadyExists => copy_bytes(journal, &kept),
+            linked => linked,
+        };
+        match copied {
+            Ok(()) => return Ok(kept),
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+            Err(error) => return Err(error),
+        }
+    }
+    Err(io::Error::other("too many files are set aside already"))
+}
+
+fn copy_bytes(journal: &Path, kept: &Path) -> io::Result<()> {
+    let mut to = OpenOptions::new().write(true).create_new(true).open(kept)?;
+    let copied = File::open(journal).and_then(|mut from| io::copy(&mut from, &mut to));
+    if copied.is_err() {
+        std::fs::remove_file(kept).ok();
+    }
+    copied.map(drop)
+}
