@@ -9,15 +9,12 @@ use std::path::{Path, PathBuf};
 
 use rustix::fs::OFlags;
 
+use super::entered_lines::{RECALLED, is_kept, recalled};
 use super::input_file;
 use crate::ui::{EnteredLines, LineField};
 
-/// Lines of a field that are recalled.
-const RECALLED: usize = 500;
 /// Lines of a file from which the older ones are dropped at the next start.
 const MOST_LINES: usize = 2 * RECALLED;
-/// Longest line that is kept, bytes.
-const LONGEST: usize = 4096;
 
 /// The files of the lines.
 #[derive(Debug, Clone)]
@@ -39,7 +36,7 @@ impl LineHistory {
 
     /// Keeps a line. One that cannot be kept is forgotten with the program, as in a shell.
     pub(super) fn append(&self, field: LineField, line: &str) {
-        if line.len() > LONGEST || line.contains(char::is_control) {
+        if !is_kept(line) {
             return;
         }
         let Some(path) = self.path(field) else { return };
@@ -68,15 +65,11 @@ impl LineHistory {
     fn read_field(&self, field: LineField) -> Vec<String> {
         let Some(path) = self.path(field) else { return Vec::new() };
         let Ok(Some(text)) = input_file::read_if_there(&path) else { return Vec::new() };
-        let is_line = |line: &&str| {
-            !line.trim().is_empty() && line.len() <= LONGEST && !line.contains(char::is_control)
-        };
-        let lines: Vec<&str> = text.lines().filter(is_line).collect();
-        let recalled = &lines[lines.len().saturating_sub(RECALLED)..];
+        let recalled = recalled(&text);
         if text.lines().count() > MOST_LINES {
-            shorten(&path, recalled);
+            shorten(&path, &recalled);
         }
-        recalled.iter().map(|&line| line.to_owned()).collect()
+        recalled.into_iter().map(str::to_owned).collect()
     }
 }
 
@@ -92,6 +85,7 @@ fn shorten(path: &Path, lines: &[&str]) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::entered_lines::LONGEST;
 
     fn directory(name: &str) -> PathBuf {
         let path = std::env::temp_dir().join(format!("betadeck-history-{name}-{}", std::process::id()));
