@@ -9,8 +9,8 @@ mod fuzz_bodies;
 use std::path::{Path, PathBuf};
 
 use fuzz_bodies::{
-    airframe, betaloop, cli, configuration, eeprom, fc_client, fdm, history, journal, msp_stream, plan_file, rc,
-    scenario, servo, settings_file,
+    airframe, betaloop, cli, configuration, eeprom, fc_client, fdm, history, journal, msp_stream, plan_file,
+    rc, scenario, servo, settings_file,
 };
 
 /// Bytes up to which every beginning of a stored case is a case too.

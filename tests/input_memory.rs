@@ -370,10 +370,12 @@ fn lines_of_other_builds_find_an_end() {
 #[test]
 fn scenarios_that_unfold_to_more_than_is_allowed() {
     let head = "format = 1\nseeds = '1..10000'\n[plan]\nbuiltin = 'square'\n[air]\nnoise = 'real'\n";
-    let cases = |count: usize| (0..count).map(|number| format!("[[case]]\nname = 'c{number}'\n")).collect::<String>();
+    let cases =
+        |count: usize| (0..count).map(|number| format!("[[case]]\nname = 'c{number}'\n")).collect::<String>();
     let expectations: String =
         (0..600).map(|number| format!("[[expect]]\nmax = 'altitude <= {number} m'\n")).collect();
-    let seeds = format!("seeds = [{}]\n{}", vec!["1"; 150_000].join(","), head.replace("seeds = '1..10000'\n", ""));
+    let seeds =
+        format!("seeds = [{}]\n{}", vec!["1"; 150_000].join(","), head.replace("seeds = '1..10000'\n", ""));
     let sum = format!("[[expect]]\nmax = '{} <= 9 m'\n", vec!["east"; 12_000].join(" + "));
     for (what, text, most) in [
         ("600 cases with 600 expectations", format!("{head}{expectations}{}", cases(600)), 8 * MIB),

@@ -103,12 +103,7 @@ pub fn read_at_most(
     }
 }
 
-fn read_text(
-    file: &str,
-    text: &str,
-    seeds: Option<&[u64]>,
-    reader: &mut Reader<'_, '_>,
-) -> Option<Scenario> {
+fn read_text(file: &str, text: &str, seeds: Option<&[u64]>, reader: &mut Reader<'_, '_>) -> Option<Scenario> {
     let (document, syntax) = toml::de::DeTable::parse_recoverable(text);
     for error in &syntax {
         let message = error.message().replace('\n', ", ");
@@ -281,9 +276,7 @@ fn read_parameters(
     let mut known: BTreeMap<String, usize> = BTreeMap::new();
     for table in layers.tables("parameters", reader) {
         for (name, span, value) in table.keys() {
-            let Some((number, dimension)) = reader.expression(value, |cursor| {
-                read_quantity(cursor)
-            }) else {
+            let Some((number, dimension)) = reader.expression(value, |cursor| read_quantity(cursor)) else {
                 continue;
             };
             if let Some(problem) = measure::taken(name) {

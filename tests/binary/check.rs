@@ -220,10 +220,15 @@ fn repetitions_are_the_same_to_the_last_bit() {
 fn more_than_ten_thousand_flights_are_flown_only_when_they_were_asked_for() {
     let sandbox = Sandbox::new();
     let noisy = STANDING.replace("noise = \"none\"", "noise = \"real\"");
-    sandbox.write("many.toml", &format!("seeds = \"1..6000\"\n{noisy}[[case]]\nname = \"a\"\n[[case]]\nname = \"b\"\n"));
+    sandbox.write(
+        "many.toml",
+        &format!("seeds = \"1..6000\"\n{noisy}[[case]]\nname = \"a\"\n[[case]]\nname = \"b\"\n"),
+    );
     sandbox.write("six-thousand.toml", &format!("seeds = \"1..6000\"\n{noisy}"));
     let outcome = sandbox.run(&["check", "many.toml"]).exits(2);
-    for part in ["many.toml:1:9: the scenario has 12000 flights", "^^^^^^^^^ allowed: 10000", "--max-flights 12000"] {
+    for part in
+        ["many.toml:1:9: the scenario has 12000 flights", "^^^^^^^^^ allowed: 10000", "--max-flights 12000"]
+    {
         assert!(outcome.err.contains(part), "{part}\n{}", outcome.err);
     }
     // Each alone is small enough.

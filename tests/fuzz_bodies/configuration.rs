@@ -8,7 +8,7 @@ use betadeck::args::{self, Layers};
 use betadeck::ui::keymap::Keymap;
 
 /// Command lines that the file is read for.
-const COMMANDS: [&[&str]; 4] = [&[], &["fly"], &["serve"], &["check"]];
+const COMMANDS: [&[&str]; 4] = [&[], &["fly", "square"], &["serve"], &["check"]];
 
 /// Reads the text, its keys, and its options for every kind of command.
 pub fn run(data: &[u8]) {

@@ -37,8 +37,7 @@ pub(super) fn read(layers: &Layers<'_, '_>, reader: &mut Reader<'_, '_>) -> Vec<
     // Without anything random one flight is as good as many.
     let has_template =
         get("wind").and_then(|value| value.get_ref().as_str()).is_some_and(|text| text.contains('{'));
-    let is_random =
-        noise != Noise::None || gust_mps > 0.0 || turbulence != Turbulence::None || has_template;
+    let is_random = noise != Noise::None || gust_mps > 0.0 || turbulence != Turbulence::None || has_template;
     let wanted = if is_random { seeds.count() } else { 1 };
     let place = seeds_value.map(toml::Spanned::span).or(layers.case.map(TomlTable::span)).unwrap_or(0..0);
     // What is too much is reported once all cases are counted, and not made.
@@ -91,7 +90,10 @@ fn fill(text: &str, seed: u64) -> Result<String, String> {
     let mut rest = text;
     while let Some((before, behind)) = rest.split_once('{') {
         let (inside, after) = behind.split_once('}').ok_or("the } is missing")?;
-        let scope = Scope { names: BTreeMap::from([("seed".to_owned(), Dimension::NONE)]).into(), ..Scope::default() };
+        let scope = Scope {
+            names: BTreeMap::from([("seed".to_owned(), Dimension::NONE)]).into(),
+            ..Scope::default()
+        };
         let mut cursor = Cursor::new(inside);
         let (number, _) = read_number(&mut cursor, &scope).map_err(|error| error.message)?;
         cursor.finish().map_err(|error| error.message)?;

@@ -31,12 +31,8 @@ pub(in crate::scenario) const BOUNDS: [(&str, usize); 5] = [
 ];
 
 /// Lists of which every case has its own entries and those of the file, with the word for messages.
-const LISTS: [(&str, &str); 4] = [
-    ("parameters", "parameters"),
-    ("input", "inputs"),
-    ("measure", "measures"),
-    ("expect", "expectations"),
-];
+const LISTS: [(&str, &str); 4] =
+    [("parameters", "parameters"), ("input", "inputs"), ("measure", "measures"), ("expect", "expectations")];
 
 /// What the cases that were read have taken.
 #[derive(Debug, Default)]
@@ -99,7 +95,10 @@ fn entries(
     let shared: usize = match top.get(key).map(toml::Spanned::get_ref) {
         Some(DeValue::Array(_)) => {
             let tables = reader.tables(top, key, key);
-            tables.iter().map(|table| reader.cases_of(table).map_or(cases.len().max(1), |names| names.len())).sum()
+            tables
+                .iter()
+                .map(|table| reader.cases_of(table).map_or(cases.len().max(1), |names| names.len()))
+                .sum()
         }
         Some(DeValue::Table(table)) => table.len().saturating_mul(cases.len().max(1)),
         _ => 0,
@@ -183,7 +182,10 @@ impl Reader<'_, '_> {
         if !has_room {
             self.problem(
                 place,
-                format!("the settings and lines of all cases together have more than {} MiB", MAX_LINES >> 20),
+                format!(
+                    "the settings and lines of all cases together have more than {} MiB",
+                    MAX_LINES >> 20
+                ),
                 "shorten them, or make several scenarios of it",
             );
         }

@@ -38,7 +38,10 @@ pub(super) fn read(
             continue;
         }
         let problem = taken(&name).or_else(|| {
-            scope.names.contains_key(&name).then(|| format!("there is a measure or a parameter {name} already"))
+            scope
+                .names
+                .contains_key(&name)
+                .then(|| format!("there is a measure or a parameter {name} already"))
         });
         if let Some(problem) = problem {
             reader.problem(value.span(), problem, "choose another name");
