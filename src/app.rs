@@ -3,10 +3,12 @@
 mod check;
 mod compare;
 mod config;
+pub mod configuration_file;
 mod connect;
 mod convert;
 mod doctor;
 mod doors;
+pub mod entered_lines;
 mod error;
 mod firmware;
 mod fly;

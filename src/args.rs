@@ -31,7 +31,7 @@ use clap::{CommandFactory as _, FromArgMatches as _, Parser, Subcommand};
 use crate::did_you_mean;
 
 pub use betaloop::{Betaloop, BetaloopError};
-pub use check::CheckArgs;
+pub use check::{CheckArgs, MOST_FLIGHTS};
 pub use compare::CompareArgs;
 pub use config_file::{ConfigCommand, KeyHelp, Origin, origins, template};
 pub use connect::ConnectArgs;

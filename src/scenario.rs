@@ -30,7 +30,7 @@ pub use case::{
     Window,
 };
 pub use draft::Draft;
-pub use file::{FORMAT, Files, TABLES, read, seed_range};
+pub use file::{FORMAT, Files, MAX_FLIGHTS, TABLES, read, read_at_most, seed_range};
 pub use input::{Action, FORMS, TimedInput};
 pub use insight::Insight;
 pub use judge::{Judgement, Margin, Outcome, compare, judge, skip};

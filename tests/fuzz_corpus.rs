@@ -9,7 +9,8 @@ mod fuzz_bodies;
 use std::path::{Path, PathBuf};
 
 use fuzz_bodies::{
-    airframe, cli, door, eeprom, fc_client, fdm, msp_stream, plan_file, rc, servo, settings_file,
+    airframe, betaloop, cli, configuration, door, eeprom, fc_client, fdm, history, journal, msp_stream,
+    plan_file, rc, scenario, servo, settings_file,
 };
 
 /// Bytes up to which every beginning of a stored case is a case too.
@@ -148,9 +149,16 @@ fn corpus(folder: &str) -> Vec<(PathBuf, Vec<u8>)> {
     files
 }
 
+/// What fuzzing found for a target; it may have found nothing yet.
+fn found(target: &str) -> Vec<(PathBuf, Vec<u8>)> {
+    let folder = format!("found/{target}");
+    let is_there = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/corpus").join(&folder).is_dir();
+    if is_there { corpus(&folder) } else { Vec::new() }
+}
+
 /// Runs a target on what fuzzing found for it and on its stored cases.
 fn check(target: &str, run: fn(&[u8]), mutants: usize) {
-    for (path, found) in corpus(&format!("found/{target}")) {
+    for (path, found) in found(target) {
         let _kept_if_it_fails = Case { of: &path, bytes: &found };
         run(&found);
     }
@@ -179,6 +187,31 @@ fn check_stored(folder: &str, run: fn(&[u8]), mutants: usize) {
 #[test]
 fn airframe_files() {
     check("airframe", airframe::run, 400);
+}
+
+#[test]
+fn launcher_files() {
+    check("betaloop", betaloop::run, 400);
+}
+
+#[test]
+fn configuration_files() {
+    check("configuration", configuration::run, 40);
+}
+
+#[test]
+fn history_files() {
+    check("history", history::run, 400);
+}
+
+#[test]
+fn journals_of_plans() {
+    check("journal", journal::run, 400);
+}
+
+#[test]
+fn scenario_files() {
+    check("scenario", scenario::run, 60);
 }
 
 #[test]

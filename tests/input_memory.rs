@@ -20,6 +20,7 @@ use betadeck::link::proto::msp::{Decoder, MAX_REPLY, MAX_REQUEST};
 use betadeck::link::proto::serial_session::{OUTPUT_MAX, SerialRequest, SerialSession};
 use betadeck::plan::MAX_WAYPOINTS;
 use betadeck::plan::format::{Format, parse, report};
+use betadeck::scenario::{BuiltinFiles, read};
 use betadeck::sim::Airframe;
 use meter::{Taken, measured};
 
@@ -367,4 +368,28 @@ fn lines_of_other_builds_find_an_end() {
     });
     assert!((1000..5000).contains(&kept), "{kept}");
     assert!(taken.peak <= 2 * MIB, "{taken:?}");
+}
+
+#[test]
+fn scenarios_that_unfold_to_more_than_is_allowed() {
+    let head = "format = 1\nseeds = '1..10000'\n[plan]\nbuiltin = 'square'\n[air]\nnoise = 'real'\n";
+    let cases =
+        |count: usize| (0..count).map(|number| format!("[[case]]\nname = 'c{number}'\n")).collect::<String>();
+    let expectations: String =
+        (0..600).map(|number| format!("[[expect]]\nmax = 'altitude <= {number} m'\n")).collect();
+    let seeds =
+        format!("seeds = [{}]\n{}", vec!["1"; 150_000].join(","), head.replace("seeds = '1..10000'\n", ""));
+    let sum = format!("[[expect]]\nmax = '{} <= 9 m'\n", vec!["east"; 12_000].join(" + "));
+    for (what, text, most) in [
+        ("600 cases with 600 expectations", format!("{head}{expectations}{}", cases(600)), 8 * MIB),
+        ("150 000 seeds", seeds, 64 * MIB),
+        ("100 cases with 10 000 seeds", format!("{head}{}", cases(100)), 8 * MIB),
+        ("12 000 terms", format!("{head}{sum}"), 8 * MIB),
+    ] {
+        let (problems, taken) = measured(|| read("s.toml", &text, None, &mut BuiltinFiles).err());
+        assert!(problems.is_some(), "{what} is read");
+        assert!(taken.peak <= most, "{what}: {taken:?}");
+        // Work: what is refused is not made and dropped again and again.
+        assert!(taken.total <= 32 * most, "{what}: {taken:?}");
+    }
 }

@@ -58,6 +58,7 @@ fn fly(
     firmware: Option<&RemoteFirmware>,
     interrupted: &Arc<AtomicBool>,
 ) -> Result<u8, AppError> {
+    run::refuse_too_many(loaded, args)?;
     let jobs = run::jobs(loaded, args);
     if jobs.is_empty() {
         return Err(AppError::input(match &args.filter {

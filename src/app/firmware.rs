@@ -218,7 +218,7 @@ fn of_launcher_here(notices: &mut Vec<String>) -> Result<FirmwareChoice, AppErro
     match Betaloop::read(&text) {
         Ok(betaloop) => Ok(named(file, &betaloop, notices)),
         Err(BetaloopError::NoSection | BetaloopError::Form(_)) => Ok(FirmwareChoice::Embedded),
-        Err(error @ BetaloopError::NoExecutable) => {
+        Err(error @ (BetaloopError::NoExecutable | BetaloopError::TwoExecutables { .. })) => {
             Err(AppError::input(format!("{LAUNCHER_FILE}: {error}, or fly with --firmware embedded")))
         }
     }

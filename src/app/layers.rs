@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 use etcetera::BaseStrategy as _;
 
 use super::AppError;
+use super::configuration_file::ConfigurationFile;
 use super::input_file;
-use super::keys;
 use crate::args::{ENVIRONMENT_PREFIX, Layers};
 use crate::ui::keymap::KeyLine;
 
@@ -62,10 +62,6 @@ pub(super) fn read() -> Result<Outside, AppError> {
     let path = directories.config_file();
     let file_name = path.display().to_string();
     let text = input_file::read_if_there(&path)?.unwrap_or_default();
-    let mut file: toml::Table = text.parse().map_err(|error: toml::de::Error| {
-        AppError::input(format!("{file_name}: {error}").trim_end().to_owned())
-    })?;
-    let keys = keys::read(&file_name, &text)?;
-    file.remove("keys");
-    Ok(Outside { layers: Layers { environment, file_name, file }, keys })
+    let ConfigurationFile { options, keys } = ConfigurationFile::read(&file_name, &text)?;
+    Ok(Outside { layers: Layers { environment, file_name, file: options }, keys })
 }

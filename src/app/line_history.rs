@@ -5,17 +5,14 @@
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 
+use super::entered_lines::{RECALLED, is_kept, recalled};
 use crate::storage::state_file::{self, Access};
 use crate::ui::{EnteredLines, LineField};
 
-/// Lines of a field that are recalled.
-const RECALLED: usize = 500;
 /// Lines of a file from which the older ones are dropped at the next start.
 const MOST_LINES: usize = 2 * RECALLED;
-/// Longest line that is kept, bytes.
-const LONGEST: usize = 4096;
-/// Largest file that is read, bytes.
-const LARGEST: u64 = 512 << 10;
+/// Largest file that is read, bytes: twice the most lines of the greatest length.
+const LARGEST: u64 = 8 << 20;
 /// The fields that have a history.
 const FIELDS: [LineField; 2] = [LineField::Command, LineField::Cli];
 
@@ -39,7 +36,7 @@ impl LineHistory {
 
     /// Keeps a line. One that cannot be kept is forgotten with the program, as in a shell.
     pub(super) fn append(&self, field: LineField, line: &str) {
-        if line.len() > LONGEST || line.contains(char::is_control) {
+        if !is_kept(line) {
             return;
         }
         let Some(path) = self.path(field) else { return };
@@ -70,15 +67,11 @@ impl LineHistory {
         let Some(path) = self.path(field) else { return Vec::new() };
         let Ok(Some(text)) = state_file::read(&path, LARGEST) else { return Vec::new() };
         let Ok(text) = String::from_utf8(text) else { return Vec::new() };
-        let is_line = |line: &&str| {
-            !line.trim().is_empty() && line.len() <= LONGEST && !line.contains(char::is_control)
-        };
-        let lines: Vec<&str> = text.lines().filter(is_line).collect();
-        let recalled = &lines[lines.len().saturating_sub(RECALLED)..];
+        let recalled = recalled(&text);
         if text.lines().count() > MOST_LINES {
-            shorten(&path, recalled);
+            shorten(&path, &recalled);
         }
-        recalled.iter().map(|&line| line.to_owned()).collect()
+        recalled.into_iter().map(str::to_owned).collect()
     }
 }
 
@@ -101,6 +94,7 @@ fn problem(path: &Path) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::app::entered_lines::LONGEST;
 
     fn directory(name: &str) -> PathBuf {
         let path = std::env::temp_dir().join(format!("betadeck-history-{name}-{}", std::process::id()));

@@ -28,6 +28,14 @@ pub enum BetaloopError {
     /// It names no executable.
     #[error("[{SECTION}] has no BetaflightElf: add BetaflightElf=/path/to/betaflight_SITL.elf")]
     NoExecutable,
+    /// It names two executables, by keys that differ in case only.
+    #[error("[{SECTION}] has two lines {first} and {second}: keep the one that is meant")]
+    TwoExecutables {
+        /// One of the keys.
+        first: String,
+        /// The other.
+        second: String,
+    },
 }
 
 impl Betaloop {
@@ -44,6 +52,13 @@ impl Betaloop {
         let section = sections.get(SECTION).ok_or(BetaloopError::NoSection)?;
         let mut executable = None;
         let mut unused = Vec::new();
+        let mut named: Vec<&String> =
+            section.keys().filter(|key| key.eq_ignore_ascii_case(EXECUTABLE)).collect();
+        named.sort_unstable();
+        if let [first, second, ..] = named.as_slice() {
+            let (first, second) = ((*first).clone(), (*second).clone());
+            return Err(BetaloopError::TwoExecutables { first, second });
+        }
         for (key, value) in section {
             let value = value.as_deref().map(str::trim).filter(|value| !value.is_empty());
             if key.eq_ignore_ascii_case(EXECUTABLE) {
@@ -84,6 +99,15 @@ mod tests {
         assert_eq!(Betaloop::read("[Betaloop]\nWorld=x"), Err(BetaloopError::NoExecutable));
         assert_eq!(Betaloop::read("[Betaloop]\nBetaflightElf="), Err(BetaloopError::NoExecutable));
         assert!(matches!(Betaloop::read("[Betaloop\nBetaflightElf=x"), Err(BetaloopError::Form(_))));
+    }
+
+    #[test]
+    fn a_file_that_names_two_executables_starts_neither() {
+        // The order in which the keys are found differs from run to run.
+        let text = "[Betaloop]\nBetaflightElf=/a\nBETAFLIGHTELF=/b\n";
+        let refusal = Betaloop::read(text).map_err(|error| error.to_string());
+        let wanted = "[Betaloop] has two lines BETAFLIGHTELF and BetaflightElf: keep the one that is meant";
+        assert_eq!(refusal, Err(wanted.to_owned()));
     }
 
     proptest::proptest! {

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use super::value::{self, OutputFile};
 use super::{FirmwareArgs, FirmwarePortArgs, PlanArg, help};
+use crate::scenario::MAX_FLIGHTS;
 
 /// What has a firmware outside flown: nothing where the embedded one flies, or none.
 const FIRMWARE_OPTIONS: [&str; 9] = [
@@ -17,6 +18,9 @@ const FIRMWARE_OPTIONS: [&str; 9] = [
     "fdm_dialect",
     "motor_order",
 ];
+
+/// Most flights that `--max-flights` allows.
+pub const MOST_FLIGHTS: i64 = 1_000_000;
 
 /// The options of `check`.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
@@ -45,6 +49,10 @@ pub struct CheckArgs {
     /// Flies each flight this often and compares the outcomes to the last bit [default: 1]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1000), help_heading = "How")]
     pub repeat: Option<u32>,
+
+    /// Most flights of the run; more are refused before the first [default: 10000]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=MOST_FLIGHTS), help_heading = "How")]
+    pub max_flights: Option<u32>,
 
     /// Flights at the same time [default: one a processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=256), help_heading = "How")]
@@ -81,4 +89,12 @@ pub struct CheckArgs {
     /// How it is reached.
     #[command(flatten)]
     pub firmware_ports: FirmwarePortArgs,
+}
+
+impl CheckArgs {
+    /// Most flights of the run.
+    #[must_use]
+    pub fn most_flights(&self) -> usize {
+        self.max_flights.map_or(MAX_FLIGHTS, |flights| flights as usize)
+    }
 }

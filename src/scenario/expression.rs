@@ -11,23 +11,26 @@ mod instant;
 mod number;
 mod place;
 
+use std::collections::BTreeMap;
+use std::rc::Rc;
+
 use super::happening::{Field, Pattern};
 use super::quantity::{Dimension, Unit};
 use super::signal::{Flag, Signal};
 use crate::telemetry::{Mode, NavState, PlanSource};
 
 pub use condition::read_condition;
-pub use cursor::{Cursor, SyntaxError};
+pub use cursor::{Cursor, MAX_TERMS, SyntaxError};
 pub use evaluate::{Evaluator, Verdict};
 pub(super) use instant::mode_of as read_mode;
 pub use instant::{Search, read_instant, read_pattern, read_span_from};
-pub use number::{read_number, read_quantity};
+pub use number::{MAX_NAME, read_number, read_quantity};
 
 /// What names may mean while an expression is read.
 #[derive(Debug, Clone, Default)]
 pub struct Scope {
-    /// Parameters and measures with their dimension.
-    pub names: Vec<(String, Dimension)>,
+    /// Parameters and measures with their dimension; many expressions share them.
+    pub names: Rc<BTreeMap<String, Dimension>>,
     /// Names of inputs.
     pub inputs: Vec<String>,
     /// Waypoints of the plan.

@@ -1,6 +1,7 @@
 //! Reads a scenario's file: TOML, strict, all problems with their places.
 
 mod air;
+mod bounds;
 mod craft;
 mod expect;
 mod keys;
@@ -8,6 +9,9 @@ mod measure;
 mod plan;
 mod reader;
 mod vary;
+
+use std::collections::BTreeMap;
+use std::rc::Rc;
 
 use super::case::{Air, Allowance, Case, Compare, Scenario};
 use super::expression::{Instant, Scope, read_condition, read_instant, read_quantity};
@@ -20,6 +24,8 @@ use reader::{Layers, Reader};
 use vary::Variant;
 
 pub use air::seed_range;
+#[cfg(test)]
+pub(super) use bounds::BOUNDS;
 pub use keys::TABLES;
 
 /// The version of the file format.
@@ -27,8 +33,8 @@ pub const FORMAT: i64 = 1;
 
 /// Longest scenario file, bytes.
 const MAX_BYTES: usize = 512 << 10;
-/// Most flights of a scenario: cases times seeds.
-const MAX_FLIGHTS: usize = 10_000;
+/// Most flights of a scenario, cases times seeds, unless its user allows more.
+pub const MAX_FLIGHTS: usize = 10_000;
 /// How long a scenario flies at most unless it says otherwise, s after the engagement.
 const TIME_LIMIT_S: f64 = 600.0;
 /// How long the record goes on behind the end unless the scenario says otherwise, s: what the end brings with it, such as the
@@ -36,6 +42,8 @@ const TIME_LIMIT_S: f64 = 600.0;
 const WATCH_S: f64 = 0.5;
 /// Most samples of a flight: some 400 MB.
 const MAX_SAMPLES: f64 = 2e6;
+/// Most names of cases that a message shows.
+const SHOWN_CASES: usize = 20;
 /// Samples a second unless the scenario says otherwise.
 const SAMPLE_HZ: f64 = 100.0;
 
@@ -64,6 +72,20 @@ pub fn read(
     seeds: Option<&[u64]>,
     files: &mut dyn Files,
 ) -> Result<Scenario, Vec<PlanError>> {
+    read_at_most(MAX_FLIGHTS, file, text, seeds, files)
+}
+
+/// Reads a scenario that may have up to `max_flights` flights.
+///
+/// # Errors
+/// All problems, in the order of their places.
+pub fn read_at_most(
+    max_flights: usize,
+    file: &str,
+    text: &str,
+    seeds: Option<&[u64]>,
+    files: &mut dyn Files,
+) -> Result<Scenario, Vec<PlanError>> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut problems = Problems::new(file, text);
     let scenario = if text.len() > MAX_BYTES {
@@ -72,7 +94,8 @@ pub fn read(
         problems.add(0..0, message, "is this another file?");
         None
     } else {
-        read_text(file, text, seeds, files, &mut problems)
+        let mut reader = Reader::new(max_flights, text, files, &mut problems);
+        read_text(file, text, seeds, &mut reader)
     };
     match scenario {
         Some(scenario) if problems.is_empty() => Ok(scenario),
@@ -80,29 +103,25 @@ pub fn read(
     }
 }
 
-fn read_text(
-    file: &str,
-    text: &str,
-    seeds: Option<&[u64]>,
-    files: &mut dyn Files,
-    problems: &mut Problems<'_>,
-) -> Option<Scenario> {
+fn read_text(file: &str, text: &str, seeds: Option<&[u64]>, reader: &mut Reader<'_, '_>) -> Option<Scenario> {
     let (document, syntax) = toml::de::DeTable::parse_recoverable(text);
     for error in &syntax {
         let message = error.message().replace('\n', ", ");
-        problems.add(error.span().unwrap_or(0..0), message, "this is not valid TOML");
+        reader.problem(error.span().unwrap_or(0..0), message, "this is not valid TOML");
     }
     if !syntax.is_empty() {
         return None;
     }
     let span = document.span();
     let top = TomlTable::of_document("the scenario", document.get_ref(), span);
-    let mut reader = Reader::new(text, files, problems);
     reader.refuse_unknown(&top, FILE_KEYS);
-    check_format(&top, &mut reader);
+    check_format(&top, reader);
     let case_tables = reader.tables(&top, "case", "case");
-    let case_names = case_names(&case_tables, &mut reader);
-    let variants = vary::read(&top, &mut reader);
+    let variants = vary::read(&top, reader);
+    if !bounds::check(&top, &case_tables, variants.len(), reader) {
+        return None;
+    }
+    let case_names = case_names(&case_tables, reader);
     let mut cases = Vec::new();
     let undivided = [None];
     let tables: Vec<Option<&TomlTable<'_, '_>>> =
@@ -114,18 +133,13 @@ fn read_text(
         for variant in &variants {
             let base = case_names.get(index).cloned().unwrap_or_default();
             let layers = Layers { top: &top, case: table, variant, seeds };
-            cases.push(read_case(&base, &case_names, &layers, &mut reader));
+            if reader.can_go_on() {
+                cases.push(read_case(&base, &case_names, &layers, reader));
+            }
         }
     }
-    let flights: usize = cases.iter().map(|case| case.airs.len()).sum();
-    if flights > MAX_FLIGHTS {
-        reader.problem(
-            0..0,
-            format!("the scenario has {flights} flights"),
-            format!("allowed: {MAX_FLIGHTS}"),
-        );
-    }
-    let compares = read_compares(&top, &cases, &mut reader);
+    reader.check_flights();
+    let compares = read_compares(&top, &cases, reader);
     let name = reader.string(&top, "name").unwrap_or_else(|| stem(file).to_owned());
     Some(Scenario {
         file: file.to_owned(),
@@ -160,7 +174,7 @@ fn check_format(top: &TomlTable<'_, '_>, reader: &mut Reader<'_, '_>) {
 fn case_names(tables: &[TomlTable<'_, '_>], reader: &mut Reader<'_, '_>) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for table in tables {
-        let name = reader.required(table, "name").and_then(|value| reader.text(value)).unwrap_or_default();
+        let name = reader.required(table, "name").and_then(|value| reader.name(value)).unwrap_or_default();
         if names.contains(&name) {
             reader.problem(table.span(), format!("there are two cases {name}"), "each case has its own name");
         }
@@ -177,7 +191,7 @@ fn read_case(base: &str, all: &[String], layers: &Layers<'_, '_>, reader: &mut R
     let real = airs.first().is_some_and(|air| air.noise == Noise::Real);
     let allowance = if real { read_allowance(layers, reader) } else { Allowance::default() };
     let mut scope = Scope {
-        names: parameters.iter().map(|(name, _, dimension)| (name.clone(), *dimension)).collect(),
+        names: Rc::new(parameters.iter().map(|(name, _, dimension)| (name.clone(), *dimension)).collect()),
         inputs: Vec::new(),
         waypoints: craft.setup.plan.plan.waypoints.len(),
         fields: &[],
@@ -230,7 +244,15 @@ struct Belongs<'a> {
 impl Belongs<'_> {
     /// Whether a table is for this case: without `cases` it is for all.
     fn includes(&self, table: &TomlTable<'_, '_>, reader: &mut Reader<'_, '_>) -> bool {
-        let Some(names) = reader.texts(table, "cases") else { return true };
+        // The names are the same for all cases: one of them checks them.
+        if self.all.first().is_none_or(|first| first == self.base) {
+            self.check_names(table, reader);
+        }
+        reader.is_for(self.base, table)
+    }
+
+    fn check_names(&self, table: &TomlTable<'_, '_>, reader: &mut Reader<'_, '_>) {
+        let Some(names) = reader.texts(table, "cases") else { return };
         if names.is_empty() {
             reader.problem(table.span(), "this is for no case", "leave cases out, or name one");
         }
@@ -238,10 +260,11 @@ impl Belongs<'_> {
             if !self.all.contains(name) {
                 let guess = crate::did_you_mean::suffix(name, self.all.iter().map(String::as_str));
                 let message = format!("there is no case {name}{guess}");
-                reader.problem(span.clone(), message, format!("allowed: {}", self.all.join(", ")));
+                let allowed: Vec<&str> = self.all.iter().take(SHOWN_CASES).map(String::as_str).collect();
+                let more = if self.all.len() > SHOWN_CASES { " …" } else { "" };
+                reader.problem(span.clone(), message, format!("allowed: {}{more}", allowed.join(", ")));
             }
         }
-        names.iter().any(|(name, _)| name == self.base)
     }
 }
 
@@ -250,20 +273,17 @@ fn read_parameters(
     reader: &mut Reader<'_, '_>,
 ) -> Vec<(String, f64, super::quantity::Dimension)> {
     let mut parameters: Vec<(String, f64, super::quantity::Dimension)> = Vec::new();
+    let mut known: BTreeMap<String, usize> = BTreeMap::new();
     for table in layers.tables("parameters", reader) {
         for (name, span, value) in table.keys() {
-            let Some((number, dimension)) = reader.expression(value, |cursor| {
-                let (number, dimension) = read_quantity(cursor.rest())?;
-                cursor.take_all();
-                Ok((number, dimension))
-            }) else {
+            let Some((number, dimension)) = reader.expression(value, |cursor| read_quantity(cursor)) else {
                 continue;
             };
             if let Some(problem) = measure::taken(name) {
                 reader.problem(span, problem, "choose another name");
                 continue;
             }
-            if let Some(known) = parameters.iter_mut().find(|(known, ..)| known == name) {
+            if let Some(known) = known.get(name).and_then(|&index| parameters.get_mut(index)) {
                 if known.2 != dimension {
                     reader.problem(
                         span,
@@ -273,6 +293,7 @@ fn read_parameters(
                 }
                 *known = (name.to_owned(), number, dimension);
             } else {
+                known.insert(name.to_owned(), parameters.len());
                 parameters.push((name.to_owned(), number, dimension));
             }
         }
@@ -303,7 +324,8 @@ fn input_names(layers: &Layers<'_, '_>, belongs: &Belongs<'_>, reader: &mut Read
     for table in layers.lists("input", reader) {
         if belongs.includes(&table, reader) {
             let usual = format!("input{}", names.len() + 1);
-            names.push(reader.string(&table, "name").unwrap_or(usual));
+            let name = table.get("name").and_then(|value| reader.name(value));
+            names.push(name.unwrap_or(usual));
         }
     }
     names
@@ -372,16 +394,13 @@ fn read_inputs(
 }
 
 fn read_compares(top: &TomlTable<'_, '_>, cases: &[Case], reader: &mut Reader<'_, '_>) -> Vec<Compare> {
-    let mut names = Vec::new();
+    let mut names = BTreeMap::new();
     for case in cases {
         for measure in &case.measures {
-            let name = format!("{}.{}", case.base, measure.name);
-            if !names.iter().any(|(known, _)| *known == name) {
-                names.push((name, measure.dimension));
-            }
+            names.entry(format!("{}.{}", case.base, measure.name)).or_insert(measure.dimension);
         }
     }
-    let scope = Scope { names, ..Scope::default() };
+    let scope = Scope { names: Rc::new(names), ..Scope::default() };
     let mut compares = Vec::new();
     for table in reader.tables(top, "compare", "compare") {
         reader.refuse_unknown(&table, COMPARE_KEYS);

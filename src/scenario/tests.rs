@@ -1,5 +1,7 @@
 //! Whole scenarios: text in, judgements out.
 
+mod bounds;
+
 use super::*;
 use crate::plan::format::{PlanError, PlanFile, report};
 

@@ -217,6 +217,45 @@ fn repetitions_are_the_same_to_the_last_bit() {
 }
 
 #[test]
+fn more_than_ten_thousand_flights_are_flown_only_when_they_were_asked_for() {
+    let sandbox = Sandbox::new();
+    let noisy = STANDING.replace("noise = \"none\"", "noise = \"real\"");
+    sandbox.write(
+        "many.toml",
+        &format!("seeds = \"1..6000\"\n{noisy}[[case]]\nname = \"a\"\n[[case]]\nname = \"b\"\n"),
+    );
+    sandbox.write("six-thousand.toml", &format!("seeds = \"1..6000\"\n{noisy}"));
+    let outcome = sandbox.run(&["check", "many.toml"]).exits(2);
+    for part in
+        ["many.toml:1:9: the scenario has 12000 flights", "^^^^^^^^^ allowed: 10000", "--max-flights 12000"]
+    {
+        assert!(outcome.err.contains(part), "{part}\n{}", outcome.err);
+    }
+    // Each alone is small enough.
+    let outcome = sandbox.run(&["check", "six-thousand.toml", "--repeat", "2"]).exits(2);
+    let sentence = "the run has 12000 flights, and 10000 are allowed: choose fewer with --filter TEXT, --seeds A..B or a \
+                    smaller --repeat, or add --max-flights 12000";
+    assert!(outcome.err.contains(sentence), "{}", outcome.err);
+    let outcome = sandbox.run(&["check", "many.toml", "--max-flights", "12000", "--filter", "nothing of it"]);
+    assert!(outcome.err.contains("no flight has nothing of it in its name"), "{}", outcome.err);
+    let outcome = sandbox.run(&["check", "six-thousand.toml", "--max-flights", "3", "--seeds", "1..4"]);
+    assert!(outcome.err.contains("the scenario has 4 flights"), "{}", outcome.err);
+    sandbox.run(&["check", "six-thousand.toml", "--max-flights", "4", "--seeds", "1..4"]).exits(0);
+}
+
+#[test]
+fn an_expression_of_twelve_thousand_terms_is_refused_with_its_place() {
+    let sandbox = Sandbox::new();
+    let sum = vec!["altitude"; 12_000].join(" + ");
+    sandbox.write("long.toml", &format!("{STANDING}[[expect]]\nmax = \"{sum} <= 9 m\"\n"));
+    let outcome = sandbox.run(&["check", "long.toml"]).exits(2);
+    let place = format!("long.toml:14:{}: this expression has too many terms", 8 + 11 * 1000);
+    for part in [place.as_str(), "^^^^^^^^ allowed: 1000 terms; use measures for parts of it"] {
+        assert!(outcome.err.contains(part), "{part}\n{}", outcome.err);
+    }
+}
+
+#[test]
 fn fail_fast_ends_at_the_first_failure() {
     let sandbox = Sandbox::new();
     sandbox.write("a.toml", &standing("2..3 m"));

@@ -3,11 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use crate::app::{AppError, input_file};
-use crate::args::CheckArgs;
+use crate::args::{CheckArgs, MOST_FLIGHTS};
 use crate::flight::setup::check_setting;
 use crate::plan::format::{self, Format, PlanFile};
 use crate::record::check::STANDARD_INPUT;
-use crate::scenario::{self, BuiltinFiles, BuiltinScenario, Files, SCENARIOS, Scenario};
+use crate::scenario::{self, BuiltinFiles, BuiltinScenario, Files, SCENARIOS, Scenario, read_at_most};
 
 /// What was read.
 #[derive(Debug)]
@@ -40,7 +40,7 @@ pub(super) fn load(args: &CheckArgs) -> Result<Loaded, AppError> {
     let mut problems = Vec::new();
     let seeds = args.seeds.as_ref().map(|seeds| seeds.0.as_slice());
     for (source, is_named) in sources(args)? {
-        match read(&source, seeds, &mut loaded.files) {
+        match read(&source, seeds, args.most_flights(), &mut loaded.files) {
             Ok(scenario) if scenario.slow && !args.slow && !is_named => loaded.left_out += 1,
             Ok(scenario) => loaded.scenarios.push(scenario),
             Err(error) if error.code == crate::app::error::USAGE => problems.push(error.message),
@@ -53,7 +53,8 @@ pub(super) fn load(args: &CheckArgs) -> Result<Loaded, AppError> {
 /// Reads the scenario of a name, as `open` takes it; a seed takes the place of those of the file.
 pub(in crate::app) fn load_one(name: &str, seed: Option<u64>) -> Result<Scenario, AppError> {
     let (source, _) = source(name)?;
-    read(&source, seed.as_ref().map(std::slice::from_ref), &mut Vec::new())
+    // Only one of them is opened.
+    read(&source, seed.as_ref().map(std::slice::from_ref), MOST_FLIGHTS as usize, &mut Vec::new())
 }
 
 /// What the arguments name, and whether a scenario itself was named.
@@ -125,18 +126,27 @@ fn is_scenario(text: &str) -> bool {
     )
 }
 
-fn read(source: &Source, seeds: Option<&[u64]>, read: &mut Vec<PathBuf>) -> Result<Scenario, AppError> {
+fn read(
+    source: &Source,
+    seeds: Option<&[u64]>,
+    max_flights: usize,
+    read: &mut Vec<PathBuf>,
+) -> Result<Scenario, AppError> {
     let scenario = match source {
-        Source::Builtin(builtin) => scenario::read(builtin.name, builtin.text, seeds, &mut BuiltinFiles),
+        Source::Builtin(builtin) => {
+            read_at_most(max_flights, builtin.name, builtin.text, seeds, &mut BuiltinFiles)
+        }
         Source::Stdin => {
             let text = input_file::read_stdin()?;
-            scenario::read(STANDARD_INPUT, &text, seeds, &mut Beside { place: PathBuf::new(), read })
+            let mut beside = Beside { place: PathBuf::new(), read };
+            read_at_most(max_flights, STANDARD_INPUT, &text, seeds, &mut beside)
         }
         Source::File(path) => {
             let text = input_file::read_small(path)?;
             read.push(path.clone());
             let place = path.parent().map(Path::to_owned).unwrap_or_default();
-            scenario::read(&path.display().to_string(), &text, seeds, &mut Beside { place, read })
+            let name = path.display().to_string();
+            read_at_most(max_flights, &name, &text, seeds, &mut Beside { place, read })
         }
     };
     scenario.map_err(|errors| AppError::input(format::report(&errors).trim_end().to_owned()))

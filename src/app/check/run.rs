@@ -9,7 +9,7 @@ use std::time::Instant;
 
 use super::{Comparisons, Loaded};
 use crate::app::AppError;
-use crate::args::CheckArgs;
+use crate::args::{CheckArgs, MOST_FLIGHTS};
 use crate::record::check::{CheckedFlight, Compared};
 use crate::scenario::{self, Air, Case, CaseFlight, Flown, Scenario};
 
@@ -35,6 +35,41 @@ impl Stopwatch {
     pub(super) fn seconds(&self) -> f64 {
         self.0.elapsed().as_secs_f64()
     }
+}
+
+/// Most expectations that are judged for each flight that is allowed: what became of them is kept to the end of the run.
+const JUDGED_PER_FLIGHT: usize = 100;
+
+/// Refuses a run with more flights than its user allows, or with more results than memory should hold.
+///
+/// # Errors
+/// How many there are, and what to do.
+pub(super) fn refuse_too_many(loaded: &Loaded, args: &CheckArgs) -> Result<(), AppError> {
+    let most = args.most_flights();
+    let repetitions = args.repeat.unwrap_or(1) as usize;
+    let (mut flights, mut judged) = (0_usize, 0_usize);
+    for scenario in &loaded.scenarios {
+        for case in scenario.cases.iter().filter(|case| is_wanted(scenario, case, args)) {
+            let of_case = case.airs.len().saturating_mul(repetitions);
+            flights = flights.saturating_add(of_case);
+            judged = judged.saturating_add(of_case.saturating_mul(case.expectations.len()));
+        }
+    }
+    let most_judged = most.saturating_mul(JUDGED_PER_FLIGHT);
+    let (problem, needed) = if flights > most {
+        (format!("the run has {flights} flights, and {most} are allowed"), flights)
+    } else if judged > most_judged {
+        let needed = judged.div_ceil(JUDGED_PER_FLIGHT);
+        (format!("the run judges {judged} expectations, and {most_judged} are allowed"), needed)
+    } else {
+        return Ok(());
+    };
+    let fewer = "choose fewer with --filter TEXT, --seeds A..B or a smaller --repeat";
+    Err(AppError::input(if i64::try_from(needed).is_ok_and(|needed| needed <= MOST_FLIGHTS) {
+        format!("{problem}: {fewer}, or add --max-flights {needed}")
+    } else {
+        format!("{problem}: {fewer}; --max-flights allows up to {MOST_FLIGHTS}")
+    }))
 }
 
 /// All flights that the arguments ask for, in the order in which they are told.

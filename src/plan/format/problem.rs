@@ -140,6 +140,12 @@ impl<'a> Problems<'a> {
         self.errors.len() + self.unlisted
     }
 
+    /// Whether further problems are only counted.
+    #[must_use]
+    pub fn is_full(&self) -> bool {
+        self.errors.len() == MOST_LISTED
+    }
+
     /// Whether no problem was found so far.
     #[must_use]
     pub fn is_empty(&self) -> bool {

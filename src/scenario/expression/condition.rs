@@ -50,6 +50,7 @@ fn read_one(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<Condition, SyntaxE
             *cursor = inner;
             return Ok(condition);
         }
+        cursor.note_attempt(&inner);
     }
     read_comparison(cursor, scope).map(Condition::Compare)
 }
@@ -58,20 +59,24 @@ fn read_one(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<Condition, SyntaxE
 fn read_word(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<Option<Condition>, SyntaxError> {
     let Some(word) = cursor.peek_word() else { return Ok(None) };
     if let Ok(flag) = Flag::from_str(word) {
+        cursor.term()?;
         cursor.take_word(word);
         return Ok(Some(Condition::Flag(flag)));
     }
     match word {
         "state" => {
+            cursor.term()?;
             cursor.take_word(word);
             let state = read_state_word(cursor)?;
             Ok(Some(Condition::State(state, read_waypoint(cursor, scope, None)?)))
         }
         "mode" => {
+            cursor.term()?;
             cursor.take_word(word);
             Ok(Some(Condition::Mode(mode_of(cursor)?)))
         }
         "flying" => {
+            cursor.term()?;
             cursor.take_word(word);
             let found = cursor.peek_word().and_then(|word| SOURCES.iter().find(|(name, _)| *name == word));
             let Some(&(name, source)) = found else {

@@ -21,16 +21,28 @@ pub struct Cursor<'a> {
     text: &'a str,
     at: usize,
     depth: usize,
+    /// Terms so far.
+    terms: usize,
+    /// Terms that were read so far, those of attempts that failed included.
+    reads: usize,
 }
 
 /// Deepest nesting of an expression.
 const MAX_DEPTH: usize = 40;
+/// Most terms of an expression: numbers, flags, states, modes, events with their words, and places. Each sample of a flight
+/// costs that many steps, and evaluation goes as deep.
+pub const MAX_TERMS: usize = 1000;
+/// Most terms that are read for an expression. A parenthesis that turns out to hold a number is read again.
+const MAX_READS: usize = MAX_DEPTH * MAX_TERMS;
+
+const TOO_DEEP: &str = "this is nested too deeply";
+const TOO_DEEP_HINT: &str = "use a measure for a part of it";
 
 impl<'a> Cursor<'a> {
     /// At the beginning of a text.
     #[must_use]
     pub fn new(text: &'a str) -> Self {
-        let mut cursor = Self { text, at: 0, depth: 0 };
+        let mut cursor = Self { text, at: 0, depth: 0, terms: 0, reads: 0 };
         cursor.skip_space();
         cursor
     }
@@ -151,11 +163,6 @@ impl<'a> Cursor<'a> {
         Ok(Some(&rest[1..=length]))
     }
 
-    /// Takes everything that is left.
-    pub fn take_all(&mut self) {
-        self.at = self.text.len();
-    }
-
     /// Takes a comma if one stands here.
     pub fn comma(&mut self) -> bool {
         self.take(",")
@@ -217,13 +224,55 @@ impl<'a> Cursor<'a> {
         }
     }
 
+    /// Counts a term that begins here.
+    ///
+    /// # Errors
+    /// When the expression has too many.
+    pub fn term(&mut self) -> Result<(), SyntaxError> {
+        self.count(1)
+    }
+
+    /// Terms so far.
+    pub(super) fn terms(&self) -> usize {
+        self.terms
+    }
+
+    /// Terms that were read so far.
+    #[must_use]
+    pub fn reads(&self) -> usize {
+        self.reads
+    }
+
+    /// Counts the terms since `before` a second time: their values are worked out twice.
+    pub(super) fn count_twice(&mut self, before: usize) -> Result<(), SyntaxError> {
+        self.count(self.terms - before)
+    }
+
+    /// Goes on from here after an attempt to read in another way.
+    pub(super) fn note_attempt(&mut self, attempt: &Self) {
+        self.reads = attempt.reads;
+    }
+
+    fn count(&mut self, terms: usize) -> Result<(), SyntaxError> {
+        self.terms += terms;
+        self.reads += terms;
+        if self.terms > MAX_TERMS {
+            let hint = format!("allowed: {MAX_TERMS} terms; use measures for parts of it");
+            Err(self.error("this expression has too many terms", hint))
+        } else if self.reads > MAX_READS {
+            Err(self.error(TOO_DEEP, TOO_DEEP_HINT))
+        } else {
+            Ok(())
+        }
+    }
+
     /// Reads something nested.
     pub(super) fn nested<T>(
         &mut self,
         read: impl FnOnce(&mut Self) -> Result<T, SyntaxError>,
     ) -> Result<T, SyntaxError> {
         if self.depth >= MAX_DEPTH {
-            return Err(self.error("this is nested too deeply", "use a measure for a part of it"));
+            return Err(self.error(TOO_DEEP, TOO_DEEP_HINT));
         }
         self.depth += 1;
         let result = read(self);

@@ -1,6 +1,7 @@
 //! Values of numbers, conditions and instants in a recorded flight.
 
 use std::cell::RefCell;
+use std::collections::BTreeMap;
 
 use super::instant::Search;
 use super::{Bound, Comparison, Condition, Function, Instant, Number, Place};
@@ -65,7 +66,7 @@ pub struct Evaluator<'a> {
     /// Parameters and measures.
     names: &'a [(String, f64)],
     /// Instants that were looked up.
-    found: RefCell<Vec<(*const Instant, Option<i64>)>>,
+    found: RefCell<BTreeMap<*const Instant, Option<i64>>>,
 }
 
 impl<'a> Evaluator<'a> {
@@ -85,11 +86,11 @@ impl<'a> Evaluator<'a> {
     #[must_use]
     pub fn instant(&self, instant: &Instant) -> Option<i64> {
         let key = std::ptr::from_ref(instant);
-        if let Some(&(_, found)) = self.found.borrow().iter().find(|(known, _)| *known == key) {
+        if let Some(&found) = self.found.borrow().get(&key) {
             return found;
         }
         let found = Search::new(instant).finish(self);
-        self.found.borrow_mut().push((key, found));
+        self.found.borrow_mut().insert(key, found);
         found
     }
 

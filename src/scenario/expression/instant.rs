@@ -138,6 +138,7 @@ pub fn read_pattern(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<Pattern, S
     let Some(word) = cursor.peek_word() else {
         return Err(cursor.unknown("an event or a state", event_words()));
     };
+    cursor.term()?;
     if NavState::iter().any(|state| word == <&str>::from(state)) {
         let state = read_state_word(cursor)?;
         let start = cursor.at();
@@ -162,6 +163,7 @@ pub fn read_pattern(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<Pattern, S
             let what = format!("a word for {}", info.name);
             return Err(cursor.unknown(&what, allowed.iter().map(String::as_str)));
         };
+        cursor.term()?;
         cursor.take_word(word);
         words.push(known.clone());
     }

@@ -14,6 +14,8 @@ use crate::scenario::signal::{SIGNALS, Signal};
 /// A number and what it measures.
 pub(super) type Typed = (Number, Dimension);
 
+/// Longest name of a case, a measure or an input, characters.
+pub const MAX_NAME: usize = 100;
 /// Functions whose arguments are places or instants.
 const OTHER_FUNCTIONS: [&str; 9] =
     ["distance", "bearing", "apart", "along", "across", "past", "since", "at", "rate"];
@@ -128,6 +130,7 @@ fn read_factor(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<Typed, SyntaxEr
         cursor.expect(")")?;
         return Ok(inner);
     }
+    cursor.term()?;
     if let Some(value) = cursor.take_decimal() {
         let Some(unit) = take_unit(cursor) else {
             return Ok((Number::Literal(value, None), Dimension::NONE));
@@ -167,27 +170,10 @@ fn named(cursor: &mut Cursor<'_>, scope: &Scope, word: &str) -> Result<Typed, Sy
     } else if let Some(signal) = Signal::find(word) {
         (Number::Signal(signal), signal.info().dimension)
     } else {
-        // A measure of a case is written with a dot; in the name of the case anything may stand.
-        let is_end = |c: char| !(c.is_alphanumeric() || c == '_' || c == '.');
-        let of_case = scope
-            .names
-            .iter()
-            .filter(|(name, _)| name.contains('.'))
-            .filter(|(name, _)| {
-                let behind = cursor.rest().strip_prefix(name.as_str());
-                behind.is_some_and(|behind| behind.chars().next().is_none_or(is_end))
-            })
-            .max_by_key(|(name, _)| name.len());
-        if let Some((name, dimension)) = of_case {
-            cursor.take_word(name);
-            return Ok((Number::Name(name.clone()), *dimension));
-        }
-        let dotted = cursor.rest().find(|c: char| !(c.is_alphanumeric() || c == '_' || c == '.'));
-        let whole = &cursor.rest()[..dotted.unwrap_or(cursor.rest().len())];
-        let Some((name, dimension)) = scope.names.iter().find(|(name, _)| name == whole || name == word)
-        else {
+        let known = of_case(cursor.rest(), scope).or_else(|| scope.names.get_key_value(word));
+        let Some((name, dimension)) = known else {
             let fields = scope.fields.iter().map(|field| field.info().0);
-            let names = scope.names.iter().map(|(name, _)| name.as_str());
+            let names = scope.names.keys().map(String::as_str);
             let known = names.chain(fields).chain(SIGNALS.iter().map(|info| info.name));
             return Err(cursor.unknown("a signal or a measure", known));
         };
@@ -196,6 +182,16 @@ fn named(cursor: &mut Cursor<'_>, scope: &Scope, word: &str) -> Result<Typed, Sy
     };
     cursor.take_word(word);
     Ok(number)
+}
+
+/// The longest name with a dot that stands at the beginning: a measure of a case, in whose name anything may stand.
+fn of_case<'s>(rest: &str, scope: &'s Scope) -> Option<(&'s String, &'s Dimension)> {
+    let is_part = |c: char| c.is_alphanumeric() || c == '_' || c == '.';
+    let ends = rest.char_indices().map(|(at, _)| at).chain([rest.len()]).take(2 * MAX_NAME + 2);
+    let ends = ends.filter(|&end| !rest[end..].starts_with(is_part));
+    ends.filter_map(|end| scope.names.get_key_value(&rest[..end]))
+        .filter(|(name, _)| name.contains('.'))
+        .max_by_key(|(name, _)| name.len())
 }
 
 fn read_call(cursor: &mut Cursor<'_>, scope: &Scope, word: &str) -> Result<Typed, SyntaxError> {
@@ -264,7 +260,9 @@ fn read_other(cursor: &mut Cursor<'_>, scope: &Scope, word: &str) -> Result<Type
             (Number::At(Box::new(number), Box::new(read_instant(cursor, scope)?)), dimension)
         }
         _ => {
+            let before = cursor.terms();
             let (number, dimension) = read_number(cursor, scope)?;
+            cursor.count_twice(before)?;
             (Number::Rate(Box::new(number)), dimension.combine(Dimension::TIME, -1))
         }
     })
@@ -274,9 +272,8 @@ fn read_other(cursor: &mut Cursor<'_>, scope: &Scope, word: &str) -> Result<Type
 ///
 /// # Errors
 /// What is wrong with it.
-pub fn read_quantity(text: &str) -> Result<(f64, Dimension), SyntaxError> {
-    let mut cursor = Cursor::new(text);
-    let (number, dimension) = read_number(&mut cursor, &Scope::default())?;
+pub fn read_quantity(cursor: &mut Cursor<'_>) -> Result<(f64, Dimension), SyntaxError> {
+    let (number, dimension) = read_number(cursor, &Scope::default())?;
     cursor.finish()?;
     let value = number.constant(&|_| None).filter(|value| value.is_finite()).ok_or_else(|| {
         cursor.error_since(0, "this is not known before the flight", "write a number with its unit")

@@ -39,7 +39,7 @@ fn climb_to_the_north() -> Trace {
 
 fn scope() -> Scope {
     Scope {
-        names: vec![("bound".to_owned(), Dimension::LENGTH)],
+        names: BTreeMap::from([("bound".to_owned(), Dimension::LENGTH)]).into(),
         inputs: vec!["cut".to_owned()],
         waypoints: 3,
         fields: &[],

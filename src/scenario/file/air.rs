@@ -1,16 +1,21 @@
 //! `[air]` and `seeds`: the air of each flight of a case.
 
+use std::collections::{BTreeMap, BTreeSet};
+use std::ops::RangeInclusive;
+
 use super::Air;
 use super::keys::AIR_KEYS;
 use super::reader::{Layers, Reader};
-use crate::plan::format::Value;
+use crate::plan::format::{TomlTable, Value};
 use crate::scenario::expression::{Cursor, Number, Scope, read_number};
 use crate::scenario::quantity::Dimension;
 use crate::sim::{Noise, Turbulence, Wind, WorldConfig};
 use toml::de::DeValue;
 
-/// Most seeds of a case.
-const MAX_SEEDS: u64 = 10_000;
+/// Most seeds that can be asked for.
+const MAX_SEEDS: u64 = 1_000_000;
+/// Longest wind with its `{…}`, characters: it is read once a seed.
+const MAX_WIND: usize = 200;
 
 /// The air of each seed.
 pub(super) fn read(layers: &Layers<'_, '_>, reader: &mut Reader<'_, '_>) -> Vec<Air> {
@@ -26,16 +31,20 @@ pub(super) fn read(layers: &Layers<'_, '_>, reader: &mut Reader<'_, '_>) -> Vec<
     let noise = word(get("noise"), reader, |text| Noise::parse(text).map_err(|e| e.problem().to_owned()));
     let noise = noise.unwrap_or(usual.noise);
     let turbulence = turbulence.unwrap_or_default();
-    let of_file = layers.value("seeds").map_or_else(|| vec![usual.seed], |value| read_seeds(value, reader));
-    let mut seeds = layers.seeds.map_or(of_file, <[u64]>::to_vec);
+    let seeds_value = layers.value("seeds");
+    let of_file = seeds_value.map_or_else(|| Seeds::One(usual.seed), |value| read_seeds(value, reader));
+    let seeds = layers.seeds.map_or(of_file, Seeds::Given);
     // Without anything random one flight is as good as many.
     let has_template =
         get("wind").and_then(|value| value.get_ref().as_str()).is_some_and(|text| text.contains('{'));
-    if noise == Noise::None && gust_mps <= 0.0 && turbulence == Turbulence::None && !has_template {
-        seeds.truncate(1);
-    }
+    let is_random = noise != Noise::None || gust_mps > 0.0 || turbulence != Turbulence::None || has_template;
+    let wanted = if is_random { seeds.count() } else { 1 };
+    let place = seeds_value.map(toml::Spanned::span).or(layers.case.map(TomlTable::span)).unwrap_or(0..0);
+    // What is too much is reported once all cases are counted, and not made.
+    let made = if reader.take_flights(wanted, place) { wanted } else { 1 };
     seeds
-        .into_iter()
+        .iter()
+        .take(made)
         .map(|seed| {
             let wind = get("wind").and_then(|value| read_wind(value, seed, reader)).unwrap_or(usual.wind);
             Air { seed, wind, gust_mps, turbulence, noise }
@@ -56,6 +65,12 @@ fn word<T>(
 /// A wind, with the seed put in for `{…}`.
 fn read_wind(value: &Value<'_>, seed: u64, reader: &mut Reader<'_, '_>) -> Option<Wind> {
     let text = reader.text(value)?;
+    let length = text.chars().count();
+    if length > MAX_WIND {
+        let message = format!("this wind has {length} characters");
+        reader.problem(value.span(), message, format!("allowed: {MAX_WIND}"));
+        return None;
+    }
     let filled = match fill(&text, seed) {
         Ok(filled) => filled,
         Err(problem) => {
@@ -75,7 +90,10 @@ fn fill(text: &str, seed: u64) -> Result<String, String> {
     let mut rest = text;
     while let Some((before, behind)) = rest.split_once('{') {
         let (inside, after) = behind.split_once('}').ok_or("the } is missing")?;
-        let scope = Scope { names: vec![("seed".to_owned(), Dimension::NONE)], ..Scope::default() };
+        let scope = Scope {
+            names: BTreeMap::from([("seed".to_owned(), Dimension::NONE)]).into(),
+            ..Scope::default()
+        };
         let mut cursor = Cursor::new(inside);
         let (number, _) = read_number(&mut cursor, &scope).map_err(|error| error.message)?;
         cursor.finish().map_err(|error| error.message)?;
@@ -92,38 +110,72 @@ fn number_of_seed(number: &Number, seed: f64) -> Option<f64> {
 }
 
 /// `seeds = 3`, `[1, 2]` or `"1..5"`.
-fn read_seeds(value: &Value<'_>, reader: &mut Reader<'_, '_>) -> Vec<u64> {
+fn read_seeds<'s>(value: &Value<'_>, reader: &mut Reader<'_, '_>) -> Seeds<'s> {
     let hint = "write seeds = 3, [1, 2, 3] or \"1..5\"";
-    let seeds: Vec<u64> = match value.get_ref() {
+    match value.get_ref() {
+        DeValue::Array(values) if values.is_empty() => {
+            reader.problem(value.span(), "there is no seed", hint);
+        }
+        DeValue::Array(values) if !is_few(values.len(), value, reader) => {}
         DeValue::Array(values) => {
-            let mut seeds = Vec::new();
+            let (mut seeds, mut seen) = (Vec::new(), BTreeSet::new());
             for value in values {
                 let Some(seed) = read_seed(value, reader) else { continue };
-                if seeds.contains(&seed) {
+                if !seen.insert(seed) {
                     reader.problem(value.span(), format!("seed {seed} is there twice"), "leave one out");
                 }
                 seeds.push(seed);
             }
-            if seeds.is_empty() && !values.is_empty() {
-                return vec![1];
+            if !seeds.is_empty() {
+                return Seeds::List(seeds);
             }
-            seeds
         }
-        DeValue::Integer(_) => return vec![read_seed(value, reader).unwrap_or(1)],
+        DeValue::Integer(_) => return Seeds::One(read_seed(value, reader).unwrap_or(1)),
         _ => match reader.text(value).as_deref().map(seed_range) {
-            Some(Ok(seeds)) => seeds.collect(),
-            Some(Err(problem)) => {
-                reader.problem(value.span(), problem, hint);
-                return vec![1];
+            Some(Ok(seeds)) => {
+                let count = seeds.end() - seeds.start() + 1;
+                if is_few(usize::try_from(count).unwrap_or(usize::MAX), value, reader) {
+                    return Seeds::Range(seeds);
+                }
             }
-            None => return vec![1],
+            Some(Err(problem)) => reader.problem(value.span(), problem, hint),
+            None => {}
         },
-    };
-    if seeds.is_empty() {
-        reader.problem(value.span(), "there is no seed", hint);
-        return vec![1];
     }
-    seeds
+    Seeds::One(1)
+}
+
+/// Whether one case can have so many seeds.
+fn is_few(count: usize, value: &Value<'_>, reader: &mut Reader<'_, '_>) -> bool {
+    let max = reader.max_flights;
+    if count > max {
+        let hint = format!("allowed: {max}; take fewer, or add --max-flights {count}");
+        reader.problem(value.span(), format!("there are {count} seeds"), hint);
+    }
+    count <= max
+}
+
+/// The seeds of a case, not yet unfolded.
+enum Seeds<'s> {
+    One(u64),
+    Range(RangeInclusive<u64>),
+    List(Vec<u64>),
+    Given(&'s [u64]),
+}
+
+impl Seeds<'_> {
+    fn count(&self) -> usize {
+        self.iter().size_hint().0
+    }
+
+    fn iter(&self) -> Box<dyn Iterator<Item = u64> + '_> {
+        match self {
+            Self::One(seed) => Box::new(std::iter::once(*seed)),
+            Self::Range(seeds) => Box::new(seeds.clone()),
+            Self::List(seeds) => Box::new(seeds.iter().copied()),
+            Self::Given(seeds) => Box::new(seeds.iter().copied()),
+        }
+    }
 }
 
 fn read_seed(value: &Value<'_>, reader: &mut Reader<'_, '_>) -> Option<u64> {
@@ -139,7 +191,7 @@ fn read_seed(value: &Value<'_>, reader: &mut Reader<'_, '_>) -> Option<u64> {
 ///
 /// # Errors
 /// What is wrong with it.
-pub fn seed_range(text: &str) -> Result<std::ops::RangeInclusive<u64>, String> {
+pub fn seed_range(text: &str) -> Result<RangeInclusive<u64>, String> {
     let (from, to) = text.split_once("..").unwrap_or((text, text));
     let number = |text: &str| text.trim().parse::<u64>().map_err(|_| format!("{text} is not a seed"));
     let (from, to) = (number(from)?, number(to)?);

@@ -72,7 +72,7 @@ fn airframe(layers: &Layers<'_, '_>, section: &[TomlTable<'_, '_>], reader: &mut
     let found = if name.ends_with(".toml") {
         reader
             .file(&name)
-            .and_then(|text| Airframe::from_toml(&text).map_err(|error| error.in_file(&name).to_string()))
+            .and_then(|text| Airframe::from_toml(text).map_err(|error| error.in_file(&name).to_string()))
     } else {
         name.parse::<Airframe>().map_err(|error| error.to_string())
     };
@@ -118,8 +118,12 @@ fn boot_lines(
         if let Some(value) = table.get("settings_file")
             && let Some(name) = reader.text(value)
         {
-            match reader.file(&name) {
-                Ok(text) => all.push(BootLines { source: name, text }),
+            match reader.file(&name).map(str::len) {
+                Ok(bytes) if reader.take_lines(bytes, value.span()) => {
+                    let text = reader.file(&name).unwrap_or_default().to_owned();
+                    all.push(BootLines { source: name, text });
+                }
+                Ok(_) => {}
                 Err(problem) => reader.problem(value.span(), problem, ""),
             }
         }
@@ -127,6 +131,9 @@ fn boot_lines(
     let [of_settings, of_lines] = OWN_LINES;
     let mut settings = Vec::new();
     for (text, span) in layers.lines(section, of_settings, reader) {
+        if !reader.take_lines(text.len(), span.clone()) {
+            break;
+        }
         let Some(setting) = setting_line(&text) else {
             reader.problem(span, "this is not a setting", "write \"ap_max_angle = 25\"");
             continue;
@@ -140,8 +147,12 @@ fn boot_lines(
         settings.push(setting);
     }
     all.push(BootLines::settings(of_settings, &settings));
-    let lines: Vec<String> =
-        layers.lines(section, of_lines, reader).into_iter().map(|(line, _)| line).collect();
+    let mut lines = Vec::new();
+    for (line, span) in layers.lines(section, of_lines, reader) {
+        if reader.take_lines(line.len(), span) {
+            lines.push(line);
+        }
+    }
     if !lines.is_empty() {
         all.push(BootLines { source: of_lines.to_owned(), text: lines.join("\n") });
     }

@@ -227,6 +227,7 @@ fn read_states(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<Vec<StateStep>,
     let mut steps = Vec::new();
     loop {
         if cursor.ellipsis() {
+            cursor.term()?;
             steps.push(StateStep::Any);
         } else {
             let start = cursor.at();

@@ -1,5 +1,7 @@
 //! `[[measure]]`: numbers taken from the flight, to be compared with each other.
 
+use std::rc::Rc;
+
 use strum::IntoEnumIterator as _;
 
 use super::Belongs;
@@ -28,7 +30,7 @@ pub(super) fn read(
             continue;
         }
         let Some(value) = reader.required(&table, "name") else { continue };
-        let Some(name) = reader.text(value) else { continue };
+        let Some(name) = reader.name(value) else { continue };
         let is_name = name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_')
             && name.starts_with(|c: char| c.is_ascii_alphabetic());
         if !is_name {
@@ -36,15 +38,17 @@ pub(super) fn read(
             continue;
         }
         let problem = taken(&name).or_else(|| {
-            let known = scope.names.iter().any(|(known, _)| *known == name);
-            known.then(|| format!("there is a measure or a parameter {name} already"))
+            scope
+                .names
+                .contains_key(&name)
+                .then(|| format!("there is a measure or a parameter {name} already"))
         });
         if let Some(problem) = problem {
             reader.problem(value.span(), problem, "choose another name");
             continue;
         }
         if let Some((measured, dimension)) = read_measured(&table, scope, reader) {
-            scope.names.push((name.clone(), dimension));
+            Rc::make_mut(&mut scope.names).insert(name.clone(), dimension);
             measures.push(Measure { name, dimension, measured });
         }
     }

@@ -82,6 +82,7 @@ fn read_lines(lines: &[(String, std::ops::Range<usize>)], reader: &mut Reader<'_
                         format!("waypoint {index} does not fit"),
                         "a plan holds at most 30",
                     );
+                    break;
                 }
             }
             Err(errors) => {

@@ -1,9 +1,12 @@
 //! Values of a scenario's tables with their places, and what is wrong with them.
 
+use std::collections::btree_map::Entry;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use toml::de::DeValue;
 
+use super::bounds::Spent;
 use super::{Files, Variant};
 use crate::plan::FlightPlan;
 use crate::plan::builtin::BuiltinPlan;
@@ -13,9 +16,19 @@ use crate::scenario::expression::{Cursor, SyntaxError};
 /// Reads values; what is wrong is noted once, however many cases read it.
 pub(super) struct Reader<'r, 'p> {
     text: &'r str,
+    /// Where each line begins.
+    lines: Vec<usize>,
     files: &'r mut dyn Files,
+    /// Plans and texts of files that were read: many cases name the same.
+    plans: BTreeMap<String, Result<PlanFile, String>>,
+    texts: BTreeMap<String, Result<String, String>>,
     problems: &'r mut Problems<'p>,
-    noted: Vec<(Range<usize>, String)>,
+    noted: BTreeSet<(usize, usize, String)>,
+    /// The cases that tables are for, by where the tables begin; `None` = all.
+    chosen: BTreeMap<usize, Option<BTreeSet<String>>>,
+    /// Most flights of all cases together.
+    pub(super) max_flights: usize,
+    pub(super) spent: Spent,
 }
 
 /// Where the values of a case come from: what is varied, the case, the file.
@@ -74,8 +87,45 @@ impl<'l, 't> Layers<'l, 't> {
 }
 
 impl<'r, 'p> Reader<'r, 'p> {
-    pub(super) fn new(text: &'r str, files: &'r mut dyn Files, problems: &'r mut Problems<'p>) -> Self {
-        Self { text, files, problems, noted: Vec::new() }
+    pub(super) fn new(
+        max_flights: usize,
+        text: &'r str,
+        files: &'r mut dyn Files,
+        problems: &'r mut Problems<'p>,
+    ) -> Self {
+        Self {
+            text,
+            lines: text.match_indices('\n').map(|(at, _)| at + 1).collect(),
+            files,
+            plans: BTreeMap::new(),
+            texts: BTreeMap::new(),
+            problems,
+            noted: BTreeSet::new(),
+            chosen: BTreeMap::new(),
+            max_flights,
+            spent: Spent::default(),
+        }
+    }
+
+    /// Whether more problems would only be counted.
+    pub(super) fn is_full(&self) -> bool {
+        self.problems.is_full()
+    }
+
+    /// Whether a table is for a case: without `cases` it is for all.
+    pub(super) fn is_for(&mut self, case: &str, table: &TomlTable<'_, '_>) -> bool {
+        self.cases_of(table).is_none_or(|names| names.contains(case))
+    }
+
+    /// The cases that a table names in `cases`; `None` without it.
+    pub(super) fn cases_of(&mut self, table: &TomlTable<'_, '_>) -> Option<&BTreeSet<String>> {
+        let key = table.span().start;
+        if !self.chosen.contains_key(&key) {
+            let names = self.texts(table, "cases");
+            let names = names.map(|names| names.into_iter().map(|(name, _)| name).collect());
+            self.chosen.insert(key, names);
+        }
+        self.chosen.get(&key).and_then(Option::as_ref)
     }
 
     /// Notes a problem at a place.
@@ -85,10 +135,9 @@ impl<'r, 'p> Reader<'r, 'p> {
         message: impl Into<String>,
         hint: impl Into<String>,
     ) {
-        let noted = (span, message.into());
-        if !self.noted.contains(&noted) {
-            self.problems.add(noted.0.clone(), noted.1.clone(), hint);
-            self.noted.push(noted);
+        let message = message.into();
+        if self.noted.insert((span.start, span.end, message.clone())) {
+            self.problems.add(span, message, hint);
         }
     }
 
@@ -244,9 +293,13 @@ impl<'r, 'p> Reader<'r, 'p> {
         value: &Value<'_>,
         read: impl FnOnce(&mut Cursor<'_>) -> Result<T, SyntaxError>,
     ) -> Option<T> {
+        if !self.has_terms() {
+            return None;
+        }
         let text = self.text(value)?;
         let mut cursor = Cursor::new(&text);
         let result = read(&mut cursor).and_then(|read| cursor.finish().map(|()| read));
+        self.take_terms(cursor.reads(), value.span());
         match result {
             Ok(read) => Some(read),
             Err(error) => {
@@ -264,22 +317,31 @@ impl<'r, 'p> Reader<'r, 'p> {
     pub(super) fn plan_file(&mut self, name: &str) -> Result<PlanFile, String> {
         match BuiltinPlan::find(name) {
             Some(plan) => plan.read().map_err(|errors| crate::plan::format::report(&errors)),
-            None => self.files.plan(name),
+            None => self.plan_from_file(name),
         }
     }
 
     /// The plan in a file.
     pub(super) fn plan_from_file(&mut self, name: &str) -> Result<PlanFile, String> {
-        self.files.plan(name)
+        if let Some(known) = self.plans.get(name) {
+            return known.clone();
+        }
+        let plan = self.files.plan(name);
+        self.plans.insert(name.to_owned(), plan.clone());
+        plan
     }
 
     /// The text of a file.
-    pub(super) fn file(&mut self, name: &str) -> Result<String, String> {
-        self.files.text(name)
+    pub(super) fn file(&mut self, name: &str) -> Result<&str, String> {
+        let known = match self.texts.entry(name.to_owned()) {
+            Entry::Occupied(known) => known.into_mut(),
+            Entry::Vacant(unknown) => unknown.insert(self.files.text(name)),
+        };
+        known.as_deref().map_err(Clone::clone)
     }
 
     /// Line of a place, from 1.
     pub(super) fn line(&self, span: Range<usize>) -> usize {
-        self.text.get(..span.start).map_or(1, |before| before.matches('\n').count() + 1)
+        self.lines.partition_point(|&begin| begin <= span.start) + 1
     }
 }

@@ -1,0 +1,214 @@
+//! How much a scenario may unfold to. A short file can name many cases, each with all expectations and seeds, so products
+//! are bounded before anything is made of them.
+
+use std::ops::Range;
+
+use toml::de::DeValue;
+
+use super::reader::Reader;
+use crate::plan::format::TomlTable;
+use crate::scenario::expression::MAX_NAME;
+
+/// Most cases, with all combinations of what is varied.
+pub(super) const MAX_CASES: usize = 1000;
+/// Most entries of one list of tables, such as the `[[expect]]` of the file or of a case.
+const MAX_LIST: usize = 1000;
+/// Most inputs, measures, expectations or parameters of all cases together.
+const MAX_ENTRIES: usize = 50_000;
+/// Most terms of the expressions of all cases together: some 100 MB.
+const MAX_TERMS: usize = 1_000_000;
+/// Most bytes of settings and lines of all cases together, those of settings files included.
+const MAX_LINES: usize = 64 << 20;
+
+/// Bounds as the reference names them.
+#[cfg(test)]
+pub(in crate::scenario) const BOUNDS: [(&str, usize); 5] = [
+    ("cases, with every combination", MAX_CASES),
+    ("one list of inputs", MAX_LIST),
+    ("the inputs, measures, expectations or parameters of all cases", MAX_ENTRIES),
+    ("the expressions of all cases", MAX_TERMS),
+    ("the settings and lines of all cases", MAX_LINES >> 20),
+];
+
+/// Lists of which every case has its own entries and those of the file, with the word for messages.
+const LISTS: [(&str, &str); 4] =
+    [("parameters", "parameters"), ("input", "inputs"), ("measure", "measures"), ("expect", "expectations")];
+
+/// What the cases that were read have taken.
+#[derive(Debug, Default)]
+pub(super) struct Spent {
+    flights: usize,
+    /// Where the flights became too many.
+    too_many_at: Option<Range<usize>>,
+    terms: usize,
+    line_bytes: usize,
+}
+
+/// Whether the cases can be read: reports lists that are too long, too many cases, and too many entries of all cases.
+pub(super) fn check(
+    top: &TomlTable<'_, '_>,
+    cases: &[TomlTable<'_, '_>],
+    variants: usize,
+    reader: &mut Reader<'_, '_>,
+) -> bool {
+    let mut is_small = is_short(top, "compare", "comparisons", reader);
+    let count = cases.len().max(1).saturating_mul(variants);
+    if count > MAX_CASES {
+        let place = first_place(top, "case").or_else(|| first_place(top, "vary")).unwrap_or(0..0);
+        reader.problem(
+            place,
+            format!("the scenario has {count} cases"),
+            format!("allowed: {MAX_CASES}; leave some out, or make several scenarios of it"),
+        );
+        return false;
+    }
+    for (key, word) in LISTS {
+        let is_each_short = std::iter::once(top).chain(cases).fold(true, |all, table| {
+            // All of them are checked, so that all are reported.
+            is_short(table, key, word, reader) && all
+        });
+        is_small &= is_each_short;
+        let entries = entries(top, cases, key, reader).saturating_mul(variants);
+        if is_each_short && entries > MAX_ENTRIES {
+            let owner = std::iter::once(top).chain(cases).find_map(|table| first_place(table, key));
+            reader.problem(
+                owner.unwrap_or(0..0),
+                format!("the {count} cases have {entries} {word} together"),
+                format!(
+                    "allowed: {MAX_ENTRIES}; say with cases = [\"NAME\"] which case each is for, or make several \
+                     scenarios of it"
+                ),
+            );
+            is_small = false;
+        }
+    }
+    is_small
+}
+
+/// Entries of all cases of one variant.
+fn entries(
+    top: &TomlTable<'_, '_>,
+    cases: &[TomlTable<'_, '_>],
+    key: &str,
+    reader: &mut Reader<'_, '_>,
+) -> usize {
+    let shared: usize = match top.get(key).map(toml::Spanned::get_ref) {
+        Some(DeValue::Array(_)) => {
+            let tables = reader.tables(top, key, key);
+            tables
+                .iter()
+                .map(|table| reader.cases_of(table).map_or(cases.len().max(1), |names| names.len()))
+                .sum()
+        }
+        Some(DeValue::Table(table)) => table.len().saturating_mul(cases.len().max(1)),
+        _ => 0,
+    };
+    cases.iter().map(|case| length(case, key)).fold(shared, usize::saturating_add)
+}
+
+fn length(table: &TomlTable<'_, '_>, key: &str) -> usize {
+    match table.get(key).map(toml::Spanned::get_ref) {
+        Some(DeValue::Array(values)) => values.len(),
+        Some(DeValue::Table(table)) => table.len(),
+        _ => 0,
+    }
+}
+
+fn is_short(table: &TomlTable<'_, '_>, key: &str, word: &str, reader: &mut Reader<'_, '_>) -> bool {
+    let length = length(table, key);
+    if length > MAX_LIST {
+        reader.problem(
+            first_place(table, key).unwrap_or(0..0),
+            format!("there are {length} {word} in one list"),
+            format!("allowed: {MAX_LIST}; make several scenarios of it"),
+        );
+    }
+    length <= MAX_LIST
+}
+
+/// Where a table or the first table of a list is.
+fn first_place(table: &TomlTable<'_, '_>, key: &str) -> Option<Range<usize>> {
+    let value = table.get(key)?;
+    match value.get_ref() {
+        DeValue::Array(values) => values.iter().next().map(toml::Spanned::span),
+        _ => Some(value.span()),
+    }
+}
+
+impl Reader<'_, '_> {
+    /// Counts the flights of a case, which `place` asks for. Returns whether there is room for them.
+    pub(super) fn take_flights(&mut self, flights: usize, place: Range<usize>) -> bool {
+        self.spent.flights = self.spent.flights.saturating_add(flights);
+        let has_room = self.spent.flights <= self.max_flights;
+        if !has_room {
+            self.spent.too_many_at.get_or_insert(place);
+        }
+        has_room
+    }
+
+    /// Reports flights for which there was no room.
+    pub(super) fn check_flights(&mut self) {
+        if let Some(place) = self.spent.too_many_at.take() {
+            let (flights, max) = (self.spent.flights, self.max_flights);
+            self.problem(
+                place,
+                format!("the scenario has {flights} flights"),
+                format!("allowed: {max}; take fewer seeds or cases, or add --max-flights {flights}"),
+            );
+        }
+    }
+
+    /// Whether expressions can still be read.
+    pub(super) fn has_terms(&self) -> bool {
+        self.spent.terms <= MAX_TERMS
+    }
+
+    /// Counts the terms of an expression.
+    pub(super) fn take_terms(&mut self, terms: usize, place: Range<usize>) {
+        self.spent.terms += terms;
+        if !self.has_terms() {
+            self.problem(
+                place,
+                format!("the expressions of all cases together have more than {MAX_TERMS} terms"),
+                "shorten them, or make several scenarios of it",
+            );
+        }
+    }
+
+    /// Counts settings and lines that a case keeps. Returns whether there is room for them.
+    pub(super) fn take_lines(&mut self, bytes: usize, place: Range<usize>) -> bool {
+        self.spent.line_bytes = self.spent.line_bytes.saturating_add(bytes);
+        let has_room = self.spent.line_bytes <= MAX_LINES;
+        if !has_room {
+            self.problem(
+                place,
+                format!(
+                    "the settings and lines of all cases together have more than {} MiB",
+                    MAX_LINES >> 20
+                ),
+                "shorten them, or make several scenarios of it",
+            );
+        }
+        has_room
+    }
+
+    /// Whether another case is worth reading: nothing is used up and there is room for more problems.
+    pub(super) fn can_go_on(&self) -> bool {
+        self.has_terms() && self.spent.line_bytes <= MAX_LINES && !self.is_full()
+    }
+
+    /// The name of a case, an input or a measure.
+    pub(super) fn name(&mut self, value: &crate::plan::format::Value<'_>) -> Option<String> {
+        let name = self.text(value)?;
+        let length = name.chars().count();
+        if length > MAX_NAME {
+            self.problem(
+                value.span(),
+                format!("this name has {length} characters"),
+                format!("allowed: {MAX_NAME}"),
+            );
+            return None;
+        }
+        Some(name)
+    }
+}
