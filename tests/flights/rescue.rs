@@ -20,16 +20,15 @@ fn airframes() -> Vec<(&'static str, Airframe)> {
     vec![
         ("iris", iris.clone()),
         ("five-inch", Airframe::five_inch()),
-        ("iris with inflow loss and plate drag", Airframe {
-            inflow_coeff: 3.0 * iris.inflow_coeff,
-            body_drag: iris.body_drag.component_mul(&plate),
-            ..iris.clone()
-        }),
-        ("iris with slow motors", Airframe {
-            motor_tau_up_s: 0.06,
-            motor_tau_down_s: 0.06,
-            ..iris.clone()
-        }),
+        (
+            "iris with inflow loss and plate drag",
+            Airframe {
+                inflow_coeff: 3.0 * iris.inflow_coeff,
+                body_drag: iris.body_drag.component_mul(&plate),
+                ..iris.clone()
+            },
+        ),
+        ("iris with slow motors", Airframe { motor_tau_up_s: 0.06, motor_tau_down_s: 0.06, ..iris.clone() }),
         ("strong iris", Airframe { thrust_coeff: 1.6 * iris.thrust_coeff, ..iris.clone() }),
         ("heavy iris", Airframe { mass_kg: 1.3 * iris.mass_kg, ..iris }),
     ]

@@ -5,7 +5,7 @@ use betadeck::firmware::config::Configuration;
 use betadeck::firmware::{AttitudeSource, FirmwareOptions};
 use betadeck::signals::{MotorCommand, RcFrame, RcSource};
 use betadeck::sim::{Noise, WorldConfig};
-use betadeck::telemetry::{ArmingFlags, DisarmReason, EventKind, FirmwareEvent, Mode, NavState};
+use betadeck::telemetry::{ArmingFlags, DisarmReason, EventKind, FirmwareEvent, Mode};
 use betadeck::vehicle::{Vehicle, VehicleConfig};
 
 use crate::plant::{Kind, Plant};
@@ -149,10 +149,6 @@ impl Rig {
         self.vehicle.embedded().unwrap().craft_view().modes
     }
 
-    pub(crate) fn state(&self) -> NavState {
-        self.vehicle.embedded().unwrap().nav().state
-    }
-
     fn switch(&mut self, channel: usize, on: bool) {
         self.frame.channels[channel] = if on { 2000 } else { 1000 };
     }
@@ -213,12 +209,6 @@ impl Rig {
     pub(crate) fn lose_link(&mut self) -> &mut Self {
         self.link = false;
         self
-    }
-
-    /// Flies until the motors stop, and 2 s longer.
-    #[track_caller]
-    pub(crate) fn down(&mut self, limit_s: f64) -> &mut Self {
-        self.until(limit_s, "motors stop", |rig| rig.disarmed.is_some()).fly(2.0)
     }
 
     /// Median of the sink rates between two heights since this packet of the flight, m/s.

@@ -1,7 +1,8 @@
 //! Ground that slopes: standing, touching, sliding and flying above it.
 
 use betadeck::sim::{
-    Airframe, Fault, Surface, Switches, World, WorldCommand, WorldConfig, WorldEventKind, ground_effect_factor,
+    Airframe, Fault, Surface, Switches, World, WorldCommand, WorldConfig, WorldEventKind,
+    ground_effect_factor,
 };
 use nalgebra::Vector3;
 

@@ -139,7 +139,8 @@ mod tests {
         for (speed, stands) in [(Some(0.0), true), (Some(2.0), false), (None, false)] {
             let mut contact = GroundContact::default();
             for _ in 0..1000 {
-                contact.update(&GroundMeasurement { ground_speed_mps: speed, ..at(10.0, GRAVITY, 0.5) }, 0.01);
+                contact
+                    .update(&GroundMeasurement { ground_speed_mps: speed, ..at(10.0, GRAVITY, 0.5) }, 0.01);
             }
             // A craft that the air slows down sinks steadily at less thrust than its weight.
             for _ in 0..50 {

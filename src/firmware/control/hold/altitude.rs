@@ -382,9 +382,14 @@ mod tests {
     #[test]
     fn a_rescue_sinks_at_its_own_rate_and_lands_at_that_of_a_landing() {
         let params = Params::default();
-        for (rescue, altitude, rate) in
-            [(0.8, 30.0, 0.8), (0.8, 4.0, 0.5), (0.8, 0.0, 0.5), (0.3, 30.0, 0.3), (0.3, 0.0, 0.3), (5.0, 40.0, 5.0)]
-        {
+        for (rescue, altitude, rate) in [
+            (0.8, 30.0, 0.8),
+            (0.8, 4.0, 0.5),
+            (0.8, 0.0, 0.5),
+            (0.3, 30.0, 0.3),
+            (0.3, 0.0, 0.3),
+            (5.0, 40.0, 5.0),
+        ] {
             let got = DescentRate::Rescue(rescue).at(altitude, &params);
             assert!((got - rate).abs() < 1e-9, "{rescue} m/s at {altitude} m: {got}");
         }
