@@ -275,7 +275,8 @@ fn a_value_that_current_firmware_refuses_is_taken_with_a_notice() {
     bench.run(0.1);
     assert_eq!(bench.type_line("set ap_position_cutoff = 5"), "ap_position_cutoff set to 5");
     bench.run(0.2);
-    let notice = "ap_position_cutoff = 5 is taken here, but current Betaflight refuses it: it allows 10 to 50.";
+    let notice =
+        "ap_position_cutoff = 5 is taken here, but current Betaflight refuses it: it allows 10 to 50.";
     assert_eq!(told(&bench), [notice]);
     bench.type_line("set ap_position_cutoff = 20");
     bench.run(0.3);

@@ -19,7 +19,7 @@ const FLARE: f64 = 0.25;
 const SLOWEST_FLARE_MPS: f64 = 0.3;
 /// Limit of the integral, µs.
 const INTEGRAL_LIMIT_US: f64 = 200.0;
-/// Speed of the setpoint at which the integral works at half its gain, m/s.
+/// Vertical speed, of the setpoint or the craft, at which the integral works at half its gain, m/s.
 const HALF_INTEGRAL_MPS: f64 = 0.5;
 /// Fastest change of the throttle, µs/s.
 pub const THROTTLE_SLEW_US_PER_S: f64 = 5000.0;
@@ -30,6 +30,11 @@ const BELOW_M: f64 = 0.2;
 const SINKING_MPS: f64 = 0.1;
 /// Throttle below its limit that is one to spare, µs.
 const SPARE_US: f64 = 20.0;
+/// A craft is carried by its least throttle when it climbs this much faster than asked, m/s, and slows down no more than
+/// this, m/s², for so long, s.
+const CARRIED_MPS: f64 = 0.5;
+const CARRIED_MPS2: f64 = 1.0;
+const CARRIED_S: f64 = 1.0;
 /// Room below the hover throttle that a craft needs to come down, µs, and the least floor of the parameters, µs.
 const DESCENT_RESERVE_US: f64 = 100.0;
 const LEAST_FLOOR_US: f64 = 1050.0;
@@ -135,6 +140,9 @@ pub struct AltitudeController {
     on_ground: bool,
     load: f64,
     spool_up: SpoolUp,
+    /// How long the least throttle has carried the craft up, s, and the least throttle that did, µs.
+    carried_s: f64,
+    lifting_floor_us: Option<u16>,
 }
 
 impl AltitudeTarget {
@@ -271,6 +279,7 @@ impl AltitudeController {
             self.setpoint_rate = now.climb_mps;
             self.transfer = BumplessTransfer::default();
         }
+        self.watch_floor(now, params, dt);
         let rate_before = self.setpoint_rate;
         let landing = self.move_setpoint(now, target, params, dt);
         let change = self.setpoint_rate - rate_before;
@@ -371,7 +380,8 @@ impl AltitudeController {
     fn integrate(&mut self, now: &AltitudeMeasurement, landing: bool, params: &Params, dt: f64) {
         let error_cm = (self.setpoint_m - now.altitude_m) * 100.0;
         // The lag of a climb is not an error to remember: it would carry the craft past its altitude.
-        let steady = 1.0 / (1.0 + (self.setpoint_rate / HALF_INTEGRAL_MPS).powi(2));
+        let speed = self.setpoint_rate.abs().max(now.climb_mps.abs());
+        let steady = 1.0 / (1.0 + (speed / HALF_INTEGRAL_MPS).powi(2));
         let share = match (landing, error_cm.abs() > 200.0) {
             (true, _) => 1.0,
             (false, true) => 0.1 * steady,
@@ -394,7 +404,21 @@ impl AltitudeController {
         let floor_us = f64::from(params.throttle_min);
         match self.hover.learned_us() {
             Some(hover_us) if hover_us < floor_us => (hover_us - DESCENT_RESERVE_US).max(LEAST_FLOOR_US),
+            None if self.lifting_floor_us.is_some_and(|lifts| params.throttle_min >= lifts) => LEAST_FLOOR_US,
             Some(_) | None => floor_us,
+        }
+    }
+
+    /// Notices a craft that goes on climbing, faster than it is asked to, with the least throttle: it never comes to the
+    /// hover in which its hover throttle would be learned.
+    fn watch_floor(&mut self, now: &AltitudeMeasurement, params: &Params, dt: f64) {
+        let is_least = now.throttle_us <= f64::from(params.throttle_min) + 1.0;
+        let is_carried = now.climb_mps > self.setpoint_rate + CARRIED_MPS && now.climb_mps > CARRIED_MPS;
+        // One that was thrown up slows down.
+        let goes_on = self.hover.accel_mps2() > -CARRIED_MPS2;
+        self.carried_s = if is_least && is_carried && goes_on { self.carried_s + dt } else { 0.0 };
+        if self.carried_s >= CARRIED_S {
+            self.lifting_floor_us = Some(params.throttle_min);
         }
     }
 

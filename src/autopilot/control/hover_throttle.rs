@@ -43,6 +43,8 @@ pub struct HoverThrottleEstimator {
     balance_us: Option<f64>,
     throttle_filter: f64,
     climb_filter: f64,
+    /// Vertical acceleration, m/s².
+    accel: f64,
     airborne_s: f64,
     /// How long the throttle has been hover throttle, s.
     still_s: f64,
@@ -60,6 +62,7 @@ impl Default for HoverThrottleEstimator {
             balance_us: None,
             throttle_filter: 0.0,
             climb_filter: 0.0,
+            accel: 0.0,
             airborne_s: 0.0,
             still_s: 0.0,
             found_us: None,
@@ -90,6 +93,12 @@ impl HoverThrottleEstimator {
         self.hover_us
     }
 
+    /// Vertical acceleration of the last cycle, m/s².
+    #[must_use]
+    pub fn accel_mps2(&self) -> f64 {
+        self.accel
+    }
+
     /// The hover throttle that this flight has shown, µs; `None` before.
     #[must_use]
     pub fn learned_us(&self) -> Option<f64> {
@@ -113,6 +122,7 @@ impl HoverThrottleEstimator {
         let climb_before = self.climb_filter;
         self.climb_filter += (now.climb_mps - self.climb_filter) * k;
         let accel = if dt > 0.0 { (self.climb_filter - climb_before) / dt } else { 0.0 };
+        self.accel = accel;
         let load = (1.0 + accel / GRAVITY).clamp(0.3, 3.0);
         let balance = (now.cos_tilt.clamp(0.5, 1.0) / load).sqrt();
         let instant = now.zero_us + (self.throttle_filter - now.zero_us) * balance;

@@ -23,7 +23,8 @@ mod tests {
     #[test]
     fn every_row_is_a_setting_that_takes_more_here() {
         for (name, min, max) in RANGES {
-            let Some(Kind::Number { min: least, max: most, .. }) = find(name).map(|setting| setting.kind) else {
+            let Some(Kind::Number { min: least, max: most, .. }) = find(name).map(|setting| setting.kind)
+            else {
                 panic!("{name} is no number");
             };
             assert!(least <= min && max <= most && (least, most) != (min, max), "{name}");
@@ -36,9 +37,11 @@ mod tests {
         let said = |value| beyond_current_firmware(cutoff, value).map(|notice| notice.to_string());
         assert_eq!(
             said("5").as_deref(),
-            Some("ap_position_cutoff = 5 is taken here, but current Betaflight refuses it: it allows 10 to 50.")
+            Some(
+                "ap_position_cutoff = 5 is taken here, but current Betaflight refuses it: it allows 10 to 50."
+            )
         );
-        assert_eq!(said("51").is_some(), true);
+        assert!(said("51").is_some());
         assert_eq!((said("10"), said("50")), (None, None));
         let angle = find("ap_max_angle").expect("a setting");
         assert_eq!(beyond_current_firmware(angle, "70"), None);

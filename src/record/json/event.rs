@@ -145,9 +145,7 @@ impl<'a> Fields<'a> {
                 ("heading_doubt", Self::HeadingDoubt { on: *on, error_deg: Decimals(*error_deg) })
             }
             FirmwareEvent::Battery { state, cell_v } => Self::of_battery(*state, *cell_v),
-            FirmwareEvent::Notice(notice) => {
-                ("notice", Self::Notice { text: notice.to_string().into() })
-            }
+            FirmwareEvent::Notice(notice) => ("notice", Self::Notice { text: notice.to_string().into() }),
         })
     }
 
