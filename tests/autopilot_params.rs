@@ -152,8 +152,8 @@ fn effects() -> Vec<Effect> {
             flight.plant.alt
         }),
         ("ap_position_p", [15, 30, 60], true, |name, value| {
-            // Lag on the ring.
-            let flight = fly(with(name, value), &[pattern(HoldPattern::Orbit)], 60.0);
+            // What is left of the way to a hold.
+            let flight = fly(with(name, value), &[hold(8.0, 20.0)], 6.0);
             -(flight.log.last().unwrap().target - flight.plant.pos).norm()
         }),
         ("ap_position_i", [0, 40, 120], false, |name, value| {

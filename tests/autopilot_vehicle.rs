@@ -148,6 +148,7 @@ fn fly(case: Case, points: &[Point], takeoff_m: f64, limit_s: f64, done: fn(&Sam
         assert!(!reply.failed, "{line}: {}", reply.text);
     };
     COMMON.lines().chain(case.settings.lines()).for_each(&mut cli);
+    cli("set ap_max_velocity = 1000");
     cli(&format!("set ap_hover_throttle = {}", case.hover));
     for (index, point) in points.iter().enumerate() {
         let (lat, lon, _) = frame.to_geodetic(Vector3::new(point.east, point.north, 0.0));

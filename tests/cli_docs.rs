@@ -11,7 +11,7 @@ Every setting of the vehicle, in the order of `dump`. `get NAME` shows one with 
 `save` keeps it.
 
 *Live* settings change how the vehicle behaves or what it tells. *Carried* ones are checked, stored and printed, so that
-the configuration of a real craft stays complete, and have no effect here; `get` ends with `No effect here`. A change works from the next control step on;
+the configuration of a real craft stays complete, and have no effect here; of those of the autopilot `get` says so. A change works from the next control step on;
 settings marked ↻ need `save`, which restarts the firmware. Until then arming is blocked (REBOOT_REQD).
 
 Names of other builds and releases are accepted too: such a line is kept as it is and printed again by `dump` and `diff`.

@@ -20,7 +20,7 @@ const SLOWEST_FLARE_MPS: f64 = 0.3;
 /// Limit of the integral, µs.
 const INTEGRAL_LIMIT_US: f64 = 200.0;
 /// Vertical speed, of the setpoint or the craft, at which the integral works at half its gain, m/s.
-const HALF_INTEGRAL_MPS: f64 = 0.5;
+const HALF_INTEGRAL_MPS: f64 = 0.8;
 /// Fastest change of the throttle, µs/s.
 pub const THROTTLE_SLEW_US_PER_S: f64 = 5000.0;
 /// A target this far above a craft on the ground asks it to take off, m.
@@ -35,6 +35,10 @@ const SPARE_US: f64 = 20.0;
 const CARRIED_MPS: f64 = 0.5;
 const CARRIED_MPS2: f64 = 1.0;
 const CARRIED_S: f64 = 1.0;
+/// A craft higher than this, m, slower than this, m/s, and with a greater cosine of its tilt is held by its throttle.
+const HELD_M: f64 = 1.0;
+const HELD_MPS: f64 = 0.3;
+const HELD_COS_TILT: f64 = 0.966;
 /// Room below the hover throttle that a craft needs to come down, µs, and the least floor of the parameters, µs.
 const DESCENT_RESERVE_US: f64 = 100.0;
 const LEAST_FLOOR_US: f64 = 1050.0;
@@ -164,8 +168,12 @@ impl AltitudeController {
 
     /// Takes over: the setpoint starts at the craft, the throttle where it was.
     pub fn engage(&mut self, now: &AltitudeMeasurement, params: &Params) {
+        let is_held =
+            now.altitude_m > HELD_M && now.climb_mps.abs() < HELD_MPS && now.cos_tilt > HELD_COS_TILT;
         let configured = match params.hover_throttle {
             0 => now.throttle_us.clamp(1100.0, 1700.0),
+            // A craft that is held in the air, level and steady, shows its hover throttle at once.
+            _ if is_held => now.throttle_us,
             us => f64::from(us),
         };
         self.hover.engage(configured);

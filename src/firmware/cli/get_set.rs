@@ -1,5 +1,7 @@
 //! `get` and `set`.
 
+use crate::autopilot::Params;
+
 use super::super::settings::{
     AssignError, Kind, Role, SETTINGS, Scope, Setting, beyond_current_firmware, find, foreign_name,
 };
@@ -64,8 +66,8 @@ fn block(session: &mut Session<'_>, setting: &Setting) {
     if changed {
         session.line(format_args!("Default value: {}", setting.display(&setting.default_value())));
     }
-    // `set` without a value answers as the real firmware does.
-    if setting.role == Role::Carry && session.command == "get" {
+    // Other groups, and `set` without a value, answer as the real firmware does.
+    if setting.role == Role::Carry && Params::field(setting.name).is_some() && session.command == "get" {
         session.line("No effect here");
     }
 }
