@@ -107,10 +107,10 @@ fn a_check_that_cannot_start_removes_nothing_but_reports() {
 fn reports_of_a_check_are_whole_or_not_there() {
     for name in ["INT", "KILL"] {
         let sandbox = after_a_run();
-        let mut child = start(
-            &sandbox,
-            &[&["check", "stand.toml", "--repeat=100000", "--jobs=1"][..], &OPTIONS].concat(),
-        );
+        // Long enough to be ended by the signal.
+        sandbox.write("stand.toml", &STANDING.replace("2 s after", "60 s after"));
+        let mut child =
+            start(&sandbox, &[&["check", "stand.toml", "--repeat=1000", "--jobs=1"][..], &OPTIONS].concat());
         let mut reader = BufReader::new(child.0.stdout.take().expect("standard output"));
         reader.read_line(&mut String::new()).expect("the first flight");
         std::thread::spawn(move || std::io::copy(&mut reader, &mut std::io::sink()));
@@ -136,7 +136,8 @@ fn the_files_of_a_flight_are_there_when_it_is_over() {
     for name in ["INT", "KILL"] {
         let sandbox = Sandbox::new();
         let files = ["--json", "flight.json", "--gpx", "track.gpx"];
-        sandbox.run(&[&["fly", "land"][..], &files].concat()).exits(0);
+        // Two simulated seconds are enough to have files.
+        sandbox.run(&[&["fly", "land", "--timeout=2"][..], &files].concat()).exits(1);
         let mut child = start(&sandbox, &[&["fly", "land", "--speed=1"][..], &files].concat());
         handles_signals(child.0.id());
         until("the flight begins", || !sandbox.path("flight.json").exists() && sandbox.names().len() >= 2);
@@ -168,7 +169,8 @@ fn a_flight_that_cannot_start_leaves_no_files_of_an_earlier_one() {
         let sandbox = Sandbox::new();
         sandbox.write("empty.txt", "# nothing\n");
         let files = ["--json=flight.json", "--gpx=track.gpx"];
-        sandbox.run(&[&["fly", "land"][..], &files].concat()).exits(0);
+        // Two simulated seconds are enough to have files.
+        sandbox.run(&[&["fly", "land", "--timeout=2"][..], &files].concat()).exits(1);
         let ran = sandbox.run(&[line, &files].concat());
         assert!(matches!(ran.code, Some(2 | 3)), "{line:?}: {ran:?}");
         assert_eq!(sandbox.names(), ["empty.txt"], "{line:?}");

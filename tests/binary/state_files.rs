@@ -150,7 +150,7 @@ fn settings_that_are_a_file_of_the_system_or_no_settings_are_not_shown_in_the_er
 fn a_plan_file_without_a_waypoint_is_a_usage_error_of_a_scenario() {
     let sandbox = Sandbox::new();
     sandbox.write("notes.txt", "Buy propellers.\n");
-    sandbox.write("empty.toml", "format = 1\nname = \"nothing\"\n");
+    sandbox.write("empty.toml", "name = \"nothing\"\n");
     for name in ["notes.txt", "empty.toml"] {
         sandbox.write("test.toml", &scenario(&format!("file = \"{name}\""), ""));
         let ran = sandbox.run(&["check", "test.toml", "--junit", "report.xml"]).exits(2);
@@ -203,8 +203,8 @@ fn the_folder_of_a_firmware_whose_program_was_killed_is_removed_at_the_next_star
     killed.wait().expect("its end");
     let left = temporary(&sandbox);
     assert!(left.len() == 1 && left[0].starts_with("betadeck-firmware-"), "{left:?}");
-    let flown = with_temporary_files(&sandbox, &["fly", "land"]).status().expect("it runs");
-    assert_eq!(flown.code(), Some(0));
+    let flown = with_temporary_files(&sandbox, &["fly", "land", "--timeout=2"]).status().expect("it runs");
+    assert_eq!(flown.code(), Some(1));
     assert_eq!(temporary(&sandbox), Vec::<String>::new());
 }
 
@@ -221,11 +221,11 @@ fn only_folders_that_nobody_uses_are_removed_and_no_link_is_followed() {
     sandbox.write("tmp/betadeck-firmware-file", "text");
     let alive = std::fs::File::open(sandbox.path("tmp/betadeck-firmware-alive")).expect("a directory");
     alive.try_lock().expect("locked");
-    with_temporary_files(&sandbox, &["fly", "land"]).status().expect("it runs");
+    with_temporary_files(&sandbox, &["fly", "land", "--timeout=2"]).status().expect("it runs");
     let kept = ["betadeck-firmware-alive", "betadeck-firmware-file", "betadeck-firmware-link", "other"];
     assert_eq!(temporary(&sandbox), kept);
     assert_eq!(sandbox.read("precious/file"), "text");
     drop(alive);
-    with_temporary_files(&sandbox, &["fly", "land"]).status().expect("it runs");
+    with_temporary_files(&sandbox, &["fly", "land", "--timeout=2"]).status().expect("it runs");
     assert_eq!(temporary(&sandbox), kept[1..]);
 }
