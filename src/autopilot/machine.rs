@@ -234,6 +234,20 @@ pub struct Rule {
     pub reason: TransitionReason,
 }
 
+impl Rule {
+    /// The guard to report when the rule fires: of an arrival the one with the least room, which became true last; else
+    /// the last one.
+    fn fired(&self) -> Option<Guard> {
+        let room = |guard: &&Guard| guard.margin() / guard.limit.abs().max(f64::MIN_POSITIVE);
+        match self.reason {
+            TransitionReason::Arrival => {
+                self.guards.iter().min_by(|one, other| room(one).total_cmp(&room(other))).copied()
+            }
+            _ => self.guards.last().copied(),
+        }
+    }
+}
+
 /// The rules of a state for given facts, in the order they are tried.
 pub type Rules = ArrayVec<Rule, 8>;
 
@@ -253,7 +267,7 @@ pub struct Transition {
 pub fn transition(state: NavState, facts: &Facts) -> Option<Transition> {
     rules(state, facts).iter().find(|rule| rule.guards.iter().all(Guard::holds)).map(|rule| Transition {
         outcome: rule.outcome,
-        guard: rule.guards.last().copied(),
+        guard: rule.fired(),
         reason: rule.reason,
     })
 }

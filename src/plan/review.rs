@@ -284,6 +284,8 @@ mod tests {
             [
                 "waypoint 0 is 5.0 m below home: where the ground is level, the craft hits it",
                 "waypoint 2 is 0.0 m below home: where the ground is level, the craft hits it",
+                "waypoint 0 is passed about 15 m too high: its leg takes 0 s, the descent to -5 m 11 s; put a HOLD at -5 m \
+                 before it, which waits for the altitude",
             ]
         );
     }

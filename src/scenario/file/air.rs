@@ -32,7 +32,14 @@ pub(super) fn read(layers: &Layers<'_, '_>, reader: &mut Reader<'_, '_>) -> Vec<
     let noise = noise.unwrap_or(usual.noise);
     let turbulence = turbulence.unwrap_or_default();
     let seeds_value = layers.value("seeds");
-    let of_file = seeds_value.map_or_else(|| Seeds::One(usual.seed), |value| read_seeds(value, reader));
+    let of_file = seeds_value.map_or_else(
+        || Seeds::One(usual.seed),
+        |value| {
+            // Seeds that others replace are not flown, so any number of them is allowed.
+            let most = if layers.seeds.is_some() { usize::MAX } else { reader.max_flights };
+            read_seeds(value, most, reader)
+        },
+    );
     let seeds = layers.seeds.map_or(of_file, Seeds::Given);
     // Without anything random one flight is as good as many.
     let has_template =
@@ -110,13 +117,14 @@ fn number_of_seed(number: &Number, seed: f64) -> Option<f64> {
 }
 
 /// `seeds = 3`, `[1, 2]` or `"1..5"`.
-fn read_seeds<'s>(value: &Value<'_>, reader: &mut Reader<'_, '_>) -> Seeds<'s> {
+/// At most `most` of them.
+fn read_seeds<'s>(value: &Value<'_>, most: usize, reader: &mut Reader<'_, '_>) -> Seeds<'s> {
     let hint = "write seeds = 3, [1, 2, 3] or \"1..5\"";
     match value.get_ref() {
         DeValue::Array(values) if values.is_empty() => {
             reader.problem(value.span(), "there is no seed", hint);
         }
-        DeValue::Array(values) if !is_few(values.len(), value, reader) => {}
+        DeValue::Array(values) if !is_few(values.len(), most, value, reader) => {}
         DeValue::Array(values) => {
             let (mut seeds, mut seen) = (Vec::new(), BTreeSet::new());
             for value in values {
@@ -134,7 +142,7 @@ fn read_seeds<'s>(value: &Value<'_>, reader: &mut Reader<'_, '_>) -> Seeds<'s> {
         _ => match reader.text(value).as_deref().map(seed_range) {
             Some(Ok(seeds)) => {
                 let count = seeds.end() - seeds.start() + 1;
-                if is_few(usize::try_from(count).unwrap_or(usize::MAX), value, reader) {
+                if is_few(usize::try_from(count).unwrap_or(usize::MAX), most, value, reader) {
                     return Seeds::Range(seeds);
                 }
             }
@@ -146,8 +154,7 @@ fn read_seeds<'s>(value: &Value<'_>, reader: &mut Reader<'_, '_>) -> Seeds<'s> {
 }
 
 /// Whether one case can have so many seeds.
-fn is_few(count: usize, value: &Value<'_>, reader: &mut Reader<'_, '_>) -> bool {
-    let max = reader.max_flights;
+fn is_few(count: usize, max: usize, value: &Value<'_>, reader: &mut Reader<'_, '_>) -> bool {
     if count > max {
         let hint = format!("allowed: {max}; take fewer, or add --max-flights {count}");
         reader.problem(value.span(), format!("there are {count} seeds"), hint);
