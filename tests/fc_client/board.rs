@@ -97,8 +97,9 @@ impl Board {
                 SerialRequest::Complete { .. }
                 | SerialRequest::Flush
                 | SerialRequest::LeftCli
-                | SerialRequest::Ignored { .. }
-                | SerialRequest::Foreign => {}
+                | SerialRequest::Ignored { .. } => {}
+                // The door closes the connection, and the client opens it again.
+                SerialRequest::Foreign => self.session = SerialSession::default(),
             }
         }
         self.session.take_output()
