@@ -141,6 +141,7 @@ mod tests {
             Reason::Fence,
             Reason::Climb,
             Reason::Arrival,
+            Reason::HeldOffAltitude,
             Reason::Plane,
             Reason::TurnRadius,
             Reason::Missed,
