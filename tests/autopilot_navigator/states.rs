@@ -46,7 +46,7 @@ fn every_state_event_carries_the_guard_that_fired() {
         fired,
         [
             ("turn radius", NavState::Arrived),
-            ("altitude", NavState::Arrived),
+            ("arrival", NavState::Arrived),
             ("hold time", NavState::Approaching),
             ("arrival", NavState::Arrived),
             ("touchdown time", NavState::Complete),
