@@ -202,7 +202,9 @@ fn a_failsafe_in_low_fast_flight_does_not_fly_the_craft_into_the_ground() {
 waypoint insert 0 40.4653000 -79.5182000 400 1000 FLYOVER 0 NONE
 waypoint insert 1 40.4680000 -79.5182000 400 1000 LAND 0 NONE";
     assert_met([1, 2, 3].map(|seed| {
-        let lines = format!("set failsafe_procedure = AUTO-LAND\nset ap_max_distance_from_home = 0\n{plan}");
+        let lines = format!(
+            "set failsafe_procedure = AUTO-LAND\nset ap_max_distance_from_home = 0\nset ap_max_velocity = 1000\n{plan}"
+        );
         let mut rig = Rig::new(world(seed).0, &lines, 4.0);
         rig.engaged().fly(14.0);
         let lost = rig.t();
