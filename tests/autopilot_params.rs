@@ -122,10 +122,11 @@ fn effects() -> Vec<Effect> {
             flight.log.iter().find(|s| s.t > 5.0 && s.target.norm() < 1e-6).unwrap().alt
         }),
         ("ap_hover_throttle", [1300, 1500, 1700], true, |name, value| {
-            // A craft that nobody has seen hover.
+            // A craft that nobody has seen hover, and that does not hover now.
             let mut flight = Flight::new(with(name, value), &[hold(0.0, 20.0)], 20.0);
             flight.hover(5.0);
             flight.controllers = FlightControllers::default();
+            flight.plant.climb = 1.0;
             flight.engage();
             flight.run(1.5);
             flight.plant.alt

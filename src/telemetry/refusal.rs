@@ -85,7 +85,7 @@ impl Refusal {
             )
             .into(),
             Self::ThrottleMin { throttle_min_us, hover_us } => format!(
-                "ap_throttle_min is {throttle_min_us} µs, but this craft hovers at {hover_us} µs and could not descend: set \
+                "ap_throttle_min is {throttle_min_us} µs, but this craft hovers at about {hover_us} µs and could not descend: set \
                  ap_throttle_min = {} or less.",
                 highest_floor_us(*hover_us)
             )
@@ -121,8 +121,8 @@ mod tests {
         assert_eq!(refusal.to_string(), "THROTTLE_MIN");
         assert_eq!(
             refusal.sentence(),
-            "ap_throttle_min is 1400 µs, but this craft hovers at 1347 µs and could not descend: set ap_throttle_min = \
-             1240 or less."
+            "ap_throttle_min is 1400 µs, but this craft hovers at about 1347 µs and could not descend: set \
+             ap_throttle_min = 1240 or less."
         );
         assert_eq!(highest_floor_us(1060), 1050, "the least that the setting takes");
     }

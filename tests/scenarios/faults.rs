@@ -56,7 +56,7 @@ fn guide_3_sees_a_wrong_radius_and_a_wrong_rate() {
     assert_fails(&judged(&case), "a circle of 10 m around the waypoint", "15.0");
     let case = with_settings(case_of("guide-3", "calm, noise none"), &["ap_max_turn_rate = 4"]);
     let judgements = judged(&case);
-    assert_fails(&judgements, "a lap of 120 s, from east to east", "90.0");
+    assert_fails(&judgements, "a lap of 120 s, from east to east", "119.0 s to 121.0 s");
     let lag = "clockwise at 3 degrees a second, with a lag of at most 10 degrees";
     assert_fails(&judgements, lag, "at most 10.00 deg");
 }

@@ -205,10 +205,14 @@ impl AltitudeController {
         self.hover.hover_us()
     }
 
-    /// The hover throttle that this flight has shown, µs; `None` before.
+    /// The hover throttle that this flight has shown, µs; `None` before. Of a craft that its least throttle carried up it is
+    /// less than that, even before it hovered.
     #[must_use]
     pub fn learned_hover_us(&self) -> Option<f64> {
-        self.hover.learned_us()
+        self.hover.learned_us().or_else(|| {
+            let lifting_us = f64::from(self.lifting_floor_us?) - 1.0;
+            Some(self.hover.balance_us().map_or(lifting_us, |balance_us| balance_us.min(lifting_us)))
+        })
     }
 
     /// Where a throttle stick means no climb, µs: the hover throttle that this flight has shown, before that the parameter,

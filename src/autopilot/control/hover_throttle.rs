@@ -93,6 +93,12 @@ impl HoverThrottleEstimator {
         self.hover_us
     }
 
+    /// Throttle that balances the weight, at any speed, µs; in a climb it holds what inflow and drag take, too.
+    #[must_use]
+    pub fn balance_us(&self) -> Option<f64> {
+        self.balance_us
+    }
+
     /// Vertical acceleration of the last cycle, m/s².
     #[must_use]
     pub fn accel_mps2(&self) -> f64 {
