@@ -50,10 +50,9 @@ pub(super) fn sentence(door: &str, stranger: Stranger, number: u64) -> String {
         Stranger::Began(ForeignProtocol::Tls) => {
             ("began like TLS", "the door is for MSP and the command line")
         }
-        Stranger::Began(ForeignProtocol::Binary) => (
-            "began with binary data, as web pages with WebRTC do",
-            "the door is for MSP and the command line",
-        ),
+        Stranger::Began(ForeignProtocol::Binary) => {
+            ("began with binary data such as that of WebRTC", "the door is for MSP and the command line")
+        }
         Stranger::Began(ForeignProtocol::Text) => ("began with text", "`#` opens the command line"),
         Stranger::WentOn => {
             ("sent bytes that are neither MSP nor text", "a web page or a broken program sends such")
