@@ -117,7 +117,7 @@ fn lost_edits_are_named_until_esc_takes_the_notice_away() {
         assert!(screen(&state).contains("Edits are kept again."));
         let later = state.now + std::time::Duration::from_secs(3600);
         update(&mut state, Msg::Clock(later));
-        keys(&mut state, "1 2 + ctrl-p");
+        keys(&mut state, "1 2 q");
         let seen = screen(&state);
         assert!(seen.contains("✗ 3 edits of") && seen.contains("Esc closes this."), "{seen}");
         keys(&mut state, "esc");
