@@ -76,6 +76,11 @@ impl Plant {
         }
     }
 
+    /// Whether the accelerometer feels a bump at the touchdown.
+    pub(crate) fn bumps(&self) -> bool {
+        self.kind.bumps
+    }
+
     /// Height above the ground, m.
     pub(crate) fn height_m(&self) -> f64 {
         self.pos.z

@@ -37,7 +37,7 @@ pub struct DescentFacts {
     pub setpoint_m: f64,
     /// Sink rate that is wanted now, m/s.
     pub sink_mps: f64,
-    /// `ap_landing_descent_rate`, m/s.
+    /// `ap_landing_descent_rate`, or the wanted rate where that is slower, m/s.
     pub landing_rate_mps: f64,
     /// The altitude says that the ground is near.
     pub is_low: bool,
@@ -57,6 +57,7 @@ impl DescentFacts {
         (setpoint_m, throttle_us): (f64, f64),
         sink_mps: f64,
     ) -> Self {
+        let landing_mps = params.descent_rate_mps();
         let measured_mps =
             if now.fix { f64::from(params.landing_velocity_threshold) / 100.0 } else { f64::INFINITY };
         Self {
@@ -64,7 +65,7 @@ impl DescentFacts {
             climb_mps: now.climb_mps,
             setpoint_m,
             sink_mps,
-            landing_rate_mps: params.descent_rate_mps(),
+            landing_rate_mps: if sink_mps > 0.0 { landing_mps.min(sink_mps) } else { landing_mps },
             is_low: now.alt_m < f64::from(params.landing_altitude_m).max(LOWEST_LANDING_M),
             throttle_at_min: throttle_us <= f64::from(params.throttle_min),
             max_speed_mps: measured_mps,

@@ -137,9 +137,10 @@ impl World {
         if *self.plant.ground().surface() == surface {
             return;
         }
+        let stands = self.plant.ground().contact(&self.body).all_legs && !self.crashed;
         self.plant.set_surface(surface);
         self.start = standing(&self.airframe, &surface, &Vector2::zeros(), self.heading_deg);
-        if self.contact.all_legs && !self.crashed {
+        if stands {
             let place = self.body.pos_enu.xy();
             self.body = standing(&self.airframe, &surface, &place, self.truth.heading_deg());
             self.anchors = NO_ANCHORS;

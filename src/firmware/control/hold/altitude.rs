@@ -27,8 +27,12 @@ const DESCENT_SHARE: f64 = 0.2;
 const DESCENT_GROWTH_PER_M: f64 = 0.05;
 /// Below this altitude the failsafe's descent is as slow as a landing, m.
 const LAST_METRES_M: f64 = 1.5;
-/// The setpoint of a descent runs at most this far below the craft, m.
+/// The setpoint of a descent runs at most this far below the craft, m. Above a craft that sinks at this share of its rate or
+/// faster the rest of the lag is given up, down to so many metres, at this speed, m/s.
 const DESCENT_LEASH_M: f64 = 5.0;
+const SINKING_SHARE: f64 = 0.6;
+const SINKING_LEASH_M: f64 = 1.0;
+const GIVE_UP_MPS: f64 = 3.0;
 /// A craft on the ground moves vertically slower than this share of the sink rate and slower than this, m/s, and drifts
 /// slower than this, m/s.
 const GROUNDED_SHARE: f64 = 0.25;
@@ -199,7 +203,7 @@ impl AltitudeHold {
             }
         };
         let rate = if land.is_too_fast(now) { 0.0 } else { rate };
-        let setpoint = (before - rate * now.dt).max(now.alt_m - DESCENT_LEASH_M.max(rate));
+        let setpoint = descending_setpoint_m(before, rate, now);
         self.phase = Phase::Descending(setpoint);
         land.follow_altitude(now.alt_m);
         let demand = (controller.setpoint_m(), controller.throttle_us());
@@ -235,6 +239,15 @@ impl AltitudeHold {
         self.has_touched_down = land.has_landed(params.landing_detection_time.max(GROUNDED_DS));
         AltitudeTarget::Landing { setpoint_m: setpoint, rate_mps: -rate }
     }
+}
+
+/// The setpoint of a descent at `rate` (m/s) after this cycle, from the one before it.
+fn descending_setpoint_m(before_m: f64, rate: f64, now: &NavInputs) -> f64 {
+    let setpoint_m = (before_m - rate * now.dt).max(now.alt_m - DESCENT_LEASH_M.max(rate));
+    let sinks = rate > 0.0 && -now.climb_mps > SINKING_SHARE * rate;
+    // To make up for a lag the craft would have to sink faster than it should.
+    let lag_m = now.alt_m - SINKING_LEASH_M.max(rate) - setpoint_m;
+    if sinks { setpoint_m + lag_m.clamp(0.0, GIVE_UP_MPS * now.dt) } else { setpoint_m }
 }
 
 /// Begins to stop here.
