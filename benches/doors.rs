@@ -113,7 +113,7 @@ fn main() -> ExitCode {
         let clients: Vec<_> =
             (0..CLIENTS).map(|number| scope.spawn(move || client(door, number, requests))).collect();
         let sleeper = scope.spawn(|| sleep_lateness(done));
-        let answers = clients.into_iter().map(|client| client.join()).collect::<Vec<_>>();
+        let answers = clients.into_iter().map(thread::ScopedJoinHandle::join).collect::<Vec<_>>();
         done.store(true, Ordering::Relaxed);
         (answers.into_iter().flat_map(Result::unwrap).collect(), sleeper.join().unwrap())
     });
