@@ -133,9 +133,8 @@ impl Output {
                 text.push('\n');
             }),
             Some(Json::Stdout) => {
-                if !print(shown)? {
-                    self.json = None;
-                }
+                let is_read = print(shown)?;
+                self.json.take_if(|_| !is_read);
             }
         }
         Ok(())

@@ -72,9 +72,12 @@ impl FinalOutput {
 pub(in crate::app) struct StreamedOutput {
     path: PathBuf,
     writer: BufWriter<Stream>,
-    /// Where the temporary file goes, with the permissions of the file that was there.
-    target: Option<(PathBuf, Option<Permissions>)>,
+    /// Where the temporary file goes.
+    target: Option<Target>,
 }
+
+/// A file that will be there, with the permissions of the one that was.
+type Target = (PathBuf, Option<Permissions>);
 
 #[derive(Debug)]
 enum Stream {
@@ -135,7 +138,7 @@ impl Write for Stream {
     }
 }
 
-fn begin_at(target: PathBuf) -> io::Result<(Stream, Option<(PathBuf, Option<Permissions>)>)> {
+fn begin_at(target: PathBuf) -> io::Result<(Stream, Option<Target>)> {
     let directory = directory_of(&target);
     state_file::sweep(directory);
     match state_file::temporary_in(directory, USUAL_MODE) {
