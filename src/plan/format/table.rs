@@ -137,11 +137,11 @@ mod tests {
         set ap_hold_orbit_radius = 1000
         set ap_max_turn_rate = 12
 
-        #  type               lat          lon      alt     speed     leg  bearing    stay  done
-        0  HOLD ORBIT  40.4638593  -79.5182000  12.00 m   5.0 m/s  40.0 m       0°  45.0 s  0:53
-        1  LAND        40.4635000  -79.5182000  12.00 m  10.0 m/s  40.0 m     180°          1:21
+        #  type               lat          lon      alt    speed     leg  bearing    stay  done
+        0  HOLD ORBIT  40.4638593  -79.5182000  12.00 m  5.0 m/s  40.0 m       0°  45.0 s  0:53
+        1  LAND        40.4635000  -79.5182000  12.00 m  5.0 m/s  40.0 m     180°          1:25
 
-        2 waypoints, 80 m, at least 1:21 from engagement
+        2 waypoints, 80 m, at least 1:25 from engagement
         ");
     }
 
@@ -164,7 +164,7 @@ mod tests {
 
         #  type             lat          lon      alt     speed     leg  bearing     stay   done
         0  YAW_RATE                                    20 deg/s
-        1  HOLD      40.4638593  -79.5182000  20.00 m  5.0 m/s  40.0 m       0°  endless  never
+        1  HOLD      40.4638593  -79.5182000  20.00 m   5.0 m/s  40.0 m       0°  endless  never
         2  TAKEOFF                             3.00 m             0.0 m                    never
 
         3 waypoints, 40 m, holding without end
