@@ -154,7 +154,7 @@ fn effects() -> Vec<Effect> {
         }),
         ("ap_position_p", [15, 30, 60], true, |name, value| {
             // What is left of the way to a hold.
-            let flight = fly(with(name, value), &[hold(8.0, 20.0)], 6.0);
+            let flight = fly(with(name, value), &[hold(8.0, 20.0)], 4.0);
             -(flight.log.last().unwrap().target - flight.plant.pos).norm()
         }),
         ("ap_position_i", [0, 40, 120], false, |name, value| {

@@ -26,6 +26,8 @@ const LOADED_S: f64 = 0.3;
 const STEADY_SHARE: f64 = 0.2;
 const STILL_MPS: f64 = 0.5;
 const MOVING_MPS: f64 = 1.0;
+/// A craft reaches the ground from above: its legs take load only this far below its greatest height, m.
+const SUNK_M: f64 = 0.1;
 
 /// Watches for weight on the legs.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -38,6 +40,8 @@ pub(super) struct GroundContact {
     square: f64,
     loaded_s: f64,
     is_loaded: bool,
+    /// Greatest altitude since the legs last carried the craft, m.
+    peak_m: Option<f64>,
 }
 
 impl GroundContact {
@@ -60,6 +64,7 @@ impl GroundContact {
     pub(super) fn rest(&mut self) {
         self.has_lifted_off = false;
         (self.loaded_s, self.is_loaded) = (0.0, false);
+        self.peak_m = None;
     }
 
     /// One cycle of an armed craft, `dt` seconds after the last.
@@ -75,8 +80,16 @@ impl GroundContact {
             || self.load() > LIFTING_LOAD;
         if !self.has_lifted_off || self.square < 1e-4 {
             (self.loaded_s, self.is_loaded) = (0.0, false);
+            self.peak_m = now.altitude_m;
             return;
         }
+        if self.is_loaded {
+            self.peak_m = now.altitude_m;
+        }
+        let peak_m = self.peak_m.get_or_insert(altitude_m);
+        *peak_m = peak_m.max(altitude_m);
+        // After a climb against drag the thrust that hovers looks like too little.
+        let has_sunk = now.altitude_m.is_none() || altitude_m < *peak_m - SUNK_M;
         let felt = self.force / self.square;
         let thrust = self.thrust.get_or_insert(felt);
         if altitude_m > AIRBORNE_M && !self.is_loaded {
@@ -87,7 +100,7 @@ impl GroundContact {
         // A speed that is not known does not show that the craft stands.
         let speed = now.climb_mps.hypot(now.ground_speed_mps.unwrap_or(0.0));
         let is_still = now.ground_speed_mps.is_some() && speed < STILL_MPS;
-        let is_pressed = on_legs > LOADED_SHARE && is_steady && is_still;
+        let is_pressed = on_legs > LOADED_SHARE && is_steady && is_still && has_sunk;
         self.loaded_s = if is_pressed { self.loaded_s + dt } else { 0.0 };
         self.is_loaded = if self.is_loaded {
             on_legs > FREE_SHARE && speed < MOVING_MPS
@@ -148,6 +161,23 @@ mod tests {
             }
             assert_eq!(contact.on_ground(), stands, "{speed:?}");
         }
+    }
+
+    #[test]
+    fn a_climb_against_drag_that_ends_in_a_hover_does_not_end_on_the_legs() {
+        let mut contact = GroundContact::default();
+        let mut altitude_m = 0.0;
+        let mut fly = |seconds: f64, climb_mps: f64, motor: f64| {
+            for _ in 0..(seconds / 0.01) as u32 {
+                altitude_m += climb_mps * 0.01;
+                contact.update(&GroundMeasurement { climb_mps, ..at(altitude_m, GRAVITY, motor) }, 0.01);
+                assert!(altitude_m < 1.0 || !contact.on_ground(), "at {altitude_m:.1} m");
+            }
+        };
+        fly(6.0, 1.2, 0.9);
+        fly(3.0, 0.3, 0.62);
+        fly(10.0, 0.0, 0.6);
+        fly(20.0, -0.1, 0.58);
     }
 
     #[test]
