@@ -276,7 +276,7 @@ fn read_parameters(
     let mut known: BTreeMap<String, usize> = BTreeMap::new();
     for table in layers.tables("parameters", reader) {
         for (name, span, value) in table.keys() {
-            let Some((number, dimension)) = reader.expression(value, |cursor| read_quantity(cursor)) else {
+            let Some((number, dimension)) = reader.expression(value, read_quantity) else {
                 continue;
             };
             if let Some(problem) = measure::taken(name) {

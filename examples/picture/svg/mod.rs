@@ -197,6 +197,7 @@ mod tests {
     use ratatui::style::Style;
 
     #[test]
+    #[allow(clippy::disallowed_methods, reason = "the text fits the buffer of this test")]
     fn a_picture_keeps_text_columns_and_colours() {
         let mut buffer = Buffer::empty(Rect::new(0, 0, 12, 2));
         buffer.set_string(2, 0, "a<b", Style::new().fg(Color::Rgb(1, 2, 3)));

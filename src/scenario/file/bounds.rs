@@ -63,10 +63,11 @@ pub(super) fn check(
         return false;
     }
     for (key, word) in LISTS {
-        let is_each_short = std::iter::once(top).chain(cases).fold(true, |all, table| {
-            // All of them are checked, so that all are reported.
-            is_short(table, key, word, reader) && all
-        });
+        let mut is_each_short = true;
+        // All of them are checked, so that all are reported.
+        for table in std::iter::once(top).chain(cases) {
+            is_each_short &= is_short(table, key, word, reader);
+        }
         is_small &= is_each_short;
         let entries = entries(top, cases, key, reader).saturating_mul(variants);
         if is_each_short && entries > MAX_ENTRIES {
@@ -97,7 +98,9 @@ fn entries(
             let tables = reader.tables(top, key, key);
             tables
                 .iter()
-                .map(|table| reader.cases_of(table).map_or(cases.len().max(1), |names| names.len()))
+                .map(|table| {
+                    reader.cases_of(table).map_or(cases.len().max(1), std::collections::BTreeSet::len)
+                })
                 .sum()
         }
         Some(DeValue::Table(table)) => table.len().saturating_mul(cases.len().max(1)),
