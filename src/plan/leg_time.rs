@@ -8,7 +8,7 @@ use crate::geo::GRAVITY;
 /// A step, s.
 const STEP_S: f64 = 0.05;
 /// How fast the speed follows its setpoint, 1/s: 5° of lean per m/s.
-const FOLLOW: f64 = 0.86;
+const FOLLOW: f64 = 1.5;
 /// Speeds this near count as one, m/s.
 const SAME_MPS: f64 = 0.02;
 /// Share of the gravity along the greatest lean with which a stop is planned.

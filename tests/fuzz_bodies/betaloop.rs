@@ -8,7 +8,7 @@ pub fn run(data: &[u8]) {
     match Betaloop::read(&text) {
         Ok(file) => {
             assert!(!file.executable.is_empty() && file.executable.trim() == file.executable, "{file:?}");
-            assert!(file.unused.is_sorted() && !file.unused.iter().any(|key| key.is_empty()), "{file:?}");
+            assert!(file.unused.is_sorted() && !file.unused.iter().any(String::is_empty), "{file:?}");
             assert_eq!(Betaloop::read(&text), Ok(file.clone()), "reading is repeatable");
             let alone = format!("[Betaloop]\nBetaflightElf = {}\n", file.executable);
             let again = Betaloop::read(&alone).map(|file| file.executable);

@@ -178,8 +178,7 @@ fn a_steep_leg_is_said_before_the_flight_and_its_edit_makes_the_flight_complete(
         outcome.end.truth.waypoints.iter().find(|truth| truth.wp == 1).unwrap().alt_error_m.unwrap();
     assert_eq!(outcome.result(), FlightResult::Missed);
     assert!((found[0].error_m - flown_m).abs() < 3.0, "said {:.1} m, flown {flown_m:.1} m", found[0].error_m);
-    let mut document = PlanDocument::default();
-    document.plan = steep;
+    let mut document = PlanDocument { plan: steep, ..PlanDocument::default() };
     document = fix(&document, &Finding::SteepLeg(found[0]), HOME).unwrap().document;
     assert_eq!(document.plan.waypoints.len(), 3, "the leg is slowed");
     assert!(steep_legs(&document.plan, &settings, 10.0).is_empty());
@@ -195,8 +194,7 @@ fn a_leg_too_short_for_any_speed_gets_a_hold_before_it_that_reaches_the_height()
          waypoint insert 2 40.4642500 -79.5182000 8000 0 FLYOVER 0 NONE\n\
          waypoint insert 3 40.4635000 -79.5182000 2000 0 LAND 0 NONE",
     );
-    let mut document = PlanDocument::default();
-    document.plan = steep;
+    let mut document = PlanDocument { plan: steep, ..PlanDocument::default() };
     let mut edits = 0;
     while let Some(&leg) = steep_legs(&document.plan, &[], 10.0).first() {
         document = fix(&document, &Finding::SteepLeg(leg), HOME).unwrap().document;
