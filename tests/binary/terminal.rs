@@ -460,7 +460,10 @@ fn the_first_flight_of_a_session_becomes_a_scenario_that_passes() {
     for (columns, rows) in [(80, 24), (200, 60)] {
         // The screen, then the check of what `T` wrote, in one directory.
         let program = crate::support::PROGRAM;
-        let script = format!("{program} --fresh --no-ports && {program} check square-flight-1.toml");
+        let written = "square-flight-1.toml";
+        let script = format!(
+            "{program} --fresh --no-ports && {program} check {written} && grep 'ARRIVED 2 of stored' {written}"
+        );
         let mut terminal = Terminal::start(columns, rows, "/bin/sh", &["-c", &script]);
         terminal.until_shown("DISARMED");
         terminal.send("F]]]]]]");
@@ -475,11 +478,11 @@ fn the_first_flight_of_a_session_becomes_a_scenario_that_passes() {
         terminal.until("the scenario", |terminal| {
             let screen = terminal.screen();
             assert!(!screen.contains("No scenario was written"), "{screen}");
-            screen.contains("square-flight-1.toml")
+            screen.contains(written)
         });
         terminal.send("q");
         assert_eq!(terminal.end(), 0, "{}", terminal.screen());
-        assert!(terminal.screen().contains("wp 3"), "the numbers of the plan that was uploaded");
+        assert!(terminal.screen().contains("ARRIVED 2 of stored"), "{}", terminal.screen());
     }
 }
 

@@ -1,6 +1,7 @@
 //! Flies a recorded flight again to see which plan it began with and when it was over.
 
 use crate::plan::FlightPlan;
+use crate::plan::validate::check_plan;
 use crate::signals::SimTime;
 use crate::telemetry::{EventKind, FirmwareEvent};
 use crate::timeline::RecordedFlight;
@@ -56,10 +57,10 @@ impl Past {
         }
         let until = vehicle.time().min(flight.until);
         let (plan, inputs_before) = begun.unwrap_or_else(|| (stored_plan(&vehicle), next));
-        // A later `defaults` would empty a plan that is stored at boot.
-        let is_reset =
-            |(_, input): &(SimTime, Input)| matches!(input, Input::Line(line) if is_defaults(&line.1));
-        if flight.inputs.iter().take(inputs_before).any(is_reset) {
+        // A later `defaults` would empty a plan that is stored at boot, and a scenario cannot begin with a plan that is refused.
+        let is_reset = |(_, input): &(SimTime, Input)| matches!(input, Input::Line(line) if is_defaults(&line.1));
+        let is_refused = !plan.waypoints.is_empty() && check_plan(&plan).is_err();
+        if is_refused || flight.inputs.iter().take(inputs_before).any(is_reset) {
             return Self { plan: stored_plan(&flight.start), inputs_before: 0, until };
         }
         Self { plan, inputs_before, until }
