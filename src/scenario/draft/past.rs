@@ -58,7 +58,8 @@ impl Past {
         let until = vehicle.time().min(flight.until);
         let (plan, inputs_before) = begun.unwrap_or_else(|| (stored_plan(&vehicle), next));
         // A later `defaults` would empty a plan that is stored at boot, and a scenario cannot begin with a plan that is refused.
-        let is_reset = |(_, input): &(SimTime, Input)| matches!(input, Input::Line(line) if is_defaults(&line.1));
+        let is_reset =
+            |(_, input): &(SimTime, Input)| matches!(input, Input::Line(line) if is_defaults(&line.1));
         let is_refused = !plan.waypoints.is_empty() && check_plan(&plan).is_err();
         if is_refused || flight.inputs.iter().take(inputs_before).any(is_reset) {
             return Self { plan: stored_plan(&flight.start), inputs_before: 0, until };

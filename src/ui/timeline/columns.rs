@@ -184,7 +184,7 @@ mod tests {
 
     #[test]
     fn a_fold_is_one_column_however_long_it_is() {
-        let columns = columns(100, 100_000, &[(100, 99_999)]);
+        let columns = columns(100, 100_000, &[(100, 100_000)]);
         let fold = columns.column_of(at(5000));
         assert!(columns.is_fold(fold) && !columns.is_fold(fold - 1));
         assert_eq!(columns.start_of(fold), at(100));
