@@ -5,6 +5,7 @@
 //!
 //! Nothing here reads a clock: whoever owns the vehicle says when to record and what to show.
 
+mod idle;
 mod marks;
 mod recorded_flight;
 mod recording;
@@ -18,6 +19,7 @@ use crate::vehicle::Vehicle;
 use recording::{Bounds, Recording};
 use replay::Replay;
 
+pub use idle::IdleSpan;
 pub use marks::{Mark, MarkKind, Marks};
 pub use recorded_flight::RecordedFlight;
 pub use view::TimelineView;
@@ -68,6 +70,11 @@ impl Timeline {
     /// The earliest instant that can be shown.
     pub fn first(&self) -> Option<SimTime> {
         self.recording.first()
+    }
+
+    /// The parts in which nothing happens that a display folds beside a flight with these marks, the oldest first.
+    pub fn folds(&self, marks: &[Mark]) -> Vec<IdleSpan> {
+        self.first().map_or_else(Vec::new, |first| self.recording.idle().folds(marks, first))
     }
 
     /// How often the flight was flown on from an earlier instant.

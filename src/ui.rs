@@ -14,7 +14,7 @@
 //!   takes an argument is a [`command`].
 //! * `panel` has a file a panel, `popup` what lies over them, `keymap` the keys of the configuration file; `transmitter` is
 //!   the RC transmitter in the user's hand, `forecast` what is known of flights flown ahead of
-//!   time, `graphs` the history of its signals.
+//!   time, `graphs` the history of its signals, `timeline` the row of the recording.
 //! * [`run`] is the shell around it: it waits for the terminal, the session and the clock, and carries effects out.
 //!
 //! Inside: `action` is what keys can do, `keymap` which key means what, `command` what can be typed behind `:`; `editor` holds the open plans;

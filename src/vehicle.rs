@@ -39,6 +39,9 @@ use crate::sim::{
 use crate::telemetry::{Event, EventKind, FirmwareEvent, Mode, NavEvent, NavState, VehicleNotice};
 use physics::{ExternalPhysics, Physics};
 
+/// A craft that moves more slowly is at rest, m/s.
+const AT_REST_MPS: f64 = 0.2;
+
 /// What a vehicle is made of.
 #[derive(Debug, Clone)]
 pub struct VehicleConfig {
@@ -212,6 +215,13 @@ impl Vehicle {
     #[must_use]
     pub fn diverged(&self) -> bool {
         self.physics.diverged()
+    }
+
+    /// Whether the craft is disarmed and at rest, and no scripted pilot is about to fly it.
+    #[must_use]
+    pub fn is_idle(&self) -> bool {
+        let is_at_rest = self.world().is_none_or(|world| world.truth().vel_enu.norm() < AT_REST_MPS);
+        !self.controller.is_armed() && self.transmitter.pilot().is_none() && is_at_rest
     }
 
     /// When the autopilot engaged for the first time since boot or reset.

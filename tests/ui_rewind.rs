@@ -6,6 +6,7 @@ use betadeck::session::Command;
 use betadeck::session::command::Seek;
 use betadeck::signals::SimTime;
 use betadeck::telemetry::NavState;
+use betadeck::timeline::MarkKind;
 use betadeck::ui::{AppState, Msg, update};
 use crossterm::event::{KeyCode, KeyEvent, KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
 use tokio::sync::oneshot;
@@ -185,4 +186,37 @@ async fn a_click_on_the_timeline_shows_that_instant() {
     let effects = update(&mut rig.state, Msg::Mouse(click(110)));
     rig.carry_out(effects).await;
     rig.until("the end", |state| !rewound(state)).await;
+}
+
+#[tokio::test]
+async fn the_wait_after_the_landing_is_one_column_for_the_mouse_and_the_keys() {
+    let mut rig = Rig::new().await;
+    rig.keys("F").await;
+    rig.session.commands.send(Command::Step(330_000)).await.unwrap();
+    rig.until("two minutes after the landing", |state| state.view.vehicle.time.0 >= 330_000_000).await;
+    let place = |rig: &Rig, glyph: char| {
+        let screen = rig.screen();
+        let row = screen.lines().nth(38).unwrap().trim_matches('"');
+        row.chars().position(|shown| shown == glyph).unwrap_or_else(|| panic!("no {glyph} in {row}"))
+    };
+    let (landed, fold) = (place(&rig, 'C'), place(&rig, '≈'));
+    assert!((landed + 1..landed + 10).contains(&fold), "{}", rig.screen());
+    let marks = rig.state.view.timeline.as_ref().unwrap().marks.clone();
+    let disarmed = marks.iter().find(|mark| mark.kind == MarkKind::Disarmed).unwrap().time;
+
+    let (column, row, modifiers) = (fold as u16, 38, KeyModifiers::NONE);
+    let kind = MouseEventKind::Down(MouseButton::Left);
+    let effects = update(&mut rig.state, Msg::Mouse(MouseEvent { kind, column, row, modifiers }));
+    rig.carry_out(effects).await;
+    rig.until("the beginning of the wait", rewound).await;
+    let begins = rig.time();
+    let since_s = begins.seconds_since(disarmed);
+    assert!((9.0..12.0).contains(&since_s), "{since_s} s after the landing");
+    assert_eq!(place(&rig, '┃'), fold);
+    rig.keys(">").await;
+    rig.until("10 s later", |state| state.view.vehicle.time.0 == begins.0 + 10_000_000).await;
+    assert_eq!(place(&rig, '┃'), fold);
+    rig.keys("{").await;
+    rig.until("the landing", |state| state.view.vehicle.time < begins).await;
+    assert_eq!(place(&rig, '┃'), landed);
 }

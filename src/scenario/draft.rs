@@ -1,6 +1,7 @@
 //! A scenario made from a flight: what was flown, what was done, and what was seen as what is expected.
 
 mod observed;
+mod past;
 mod recorded;
 mod toml_text;
 
@@ -9,7 +10,7 @@ use super::file::{Files, read};
 use super::judge::judge;
 use super::run::{CaseFlight, Flown};
 use crate::plan::FlightPlan;
-use crate::plan::format::{HomePosition, PlanFile, report};
+use crate::plan::format::{HomePosition, PlanFile};
 use crate::signals::SimTime;
 
 /// A scenario that is being made.
@@ -103,18 +104,26 @@ impl Files for NoFiles {
     }
 }
 
+/// Reads a scenario that was written here. There is no file that a user could open, so a problem is reported without a place.
 fn parse(name: &str, text: &str) -> Result<Scenario, String> {
-    read(name, text, None, &mut NoFiles).map_err(|errors| report(&errors))
+    read(name, text, None, &mut NoFiles).map_err(|errors| {
+        let first = errors.first().map_or("", |problem| problem.message.as_str());
+        format!("a scenario cannot say what happened in this flight: {first}")
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::firmware::cli::Interpreter;
     use crate::flight::FlightSetup;
     use crate::plan::builtin::BuiltinPlan;
+    use crate::plan::upload_lines;
     use crate::signals::SimTime;
     use crate::sim::WorldCommand;
-    use crate::timeline::RecordedFlight;
+    use crate::telemetry::InFlightCommand;
+    use crate::timeline::{RecordedFlight, Timeline};
+    use crate::vehicle::{Vehicle, VehicleConfig};
 
     #[test]
     fn a_plan_becomes_a_scenario_that_passes() {
@@ -141,5 +150,112 @@ mod tests {
         for part in ["fault motor,,2:0.9", "fault gps-loss@boot+20,3"] {
             assert!(text.contains(part), "{part}\n{text}");
         }
+    }
+
+    /// The first flight of a session: the craft boots without a plan, gets one over the command line, and flies it.
+    fn first_flight(happen: impl Fn(u64, &mut Vehicle), seconds: u64) -> (RecordedFlight, Vehicle) {
+        let mut configuration = crate::firmware::config::Configuration::default();
+        configuration.starter_modes();
+        let config = VehicleConfig {
+            world: crate::sim::WorldConfig::default(),
+            firmware: crate::firmware::FirmwareOptions::default(),
+            configuration,
+            live: true,
+        };
+        let mut vehicle = Vehicle::new(config).unwrap();
+        let mut timeline = Timeline::new(&mut vehicle).unwrap();
+        for tick in 0..seconds * 1000 {
+            happen(tick, &mut vehicle);
+            timeline.record(&mut vehicle);
+            vehicle.tick();
+            vehicle.drain_events(drop);
+        }
+        timeline.record(&mut vehicle);
+        (timeline.recorded_flight(vehicle.time()).unwrap(), vehicle)
+    }
+
+    fn upload(plan: &PlanFile, vehicle: &mut Vehicle) {
+        let mut session = Interpreter::default();
+        for line in upload_lines(&plan.plan, &plan.settings) {
+            let _told = vehicle.controller_mut().run_cli(&mut session, &line);
+        }
+    }
+
+    /// Flies what was written, as `check` does.
+    fn checked(text: &str) -> (Flown, Vec<String>) {
+        let scenario = parse("flight", text).unwrap_or_else(|problem| panic!("{problem}\n{text}"));
+        let (case, air) = (&scenario.cases[0], scenario.cases[0].airs[0]);
+        let flown = CaseFlight::new(case, &air).unwrap().fly();
+        let unmet = judge(case, &flown).0.into_iter().filter(|judgement| !judgement.outcome.is_met());
+        let unmet = unmet.map(|judgement| judgement.label).collect();
+        (flown, unmet)
+    }
+
+    #[test]
+    fn the_first_flight_of_a_session_is_the_scenario_that_is_written_of_it() {
+        let plan = BuiltinPlan::find(crate::plan::builtin::DEMO).unwrap().read().unwrap();
+        let happen = |tick: u64, vehicle: &mut Vehicle| match tick {
+            2000 => upload(&plan, vehicle),
+            2001 => vehicle.start_pilot(10.0).unwrap(),
+            40_000 => vehicle.change_world(WorldCommand::parse("wind=3@270").unwrap()).unwrap(),
+            // What is stored now is not flown.
+            50_000 => upload(&BuiltinPlan::find("land").unwrap().read().unwrap(), vehicle),
+            _ => {}
+        };
+        let (flight, flown) = first_flight(happen, 100);
+        let truth = *flown.world().unwrap().truth();
+        let text = Draft::of_recorded("first", flight).unwrap().finish().unwrap();
+        assert!(text.contains("wind 3@270") && text.contains("ARRIVED 1 of stored"), "{text}");
+        // The plan as it was flown stands at the top, and is not typed in front of the flight again.
+        let (top, inputs) = text.split_once("[[input]]").unwrap();
+        assert!(top.contains("0 40.4640000 -79.5175000 5000"), "{text}");
+        assert_eq!(inputs.matches("cli waypoint insert").count(), 1, "{text}");
+        let (again, unmet) = checked(&text);
+        assert!(unmet.is_empty(), "{unmet:?}");
+        let end = again.trace.samples.iter().find(|sample| sample.time == flown.time()).unwrap();
+        let [north, east] = end.place();
+        let apart = (north - truth.pos_enu.y).hypot(east - truth.pos_enu.x);
+        assert!(apart < 1e-3, "{apart} m from where it was");
+    }
+
+    #[test]
+    fn a_longer_plan_that_is_flown_later_has_its_own_numbers() {
+        let plan = |name| BuiltinPlan::find(name).unwrap().read().unwrap();
+        let (short, long) = (plan("land"), plan(crate::plan::builtin::DEMO));
+        let happen = |tick: u64, vehicle: &mut Vehicle| match tick {
+            2000 => upload(&short, vehicle),
+            2001 => vehicle.start_pilot(5.0).unwrap(),
+            22_000 => upload(&long, vehicle),
+            23_000 => vehicle.controller_mut().command(InFlightCommand::GoTo(2)).unwrap(),
+            _ => {}
+        };
+        let (flight, _) = first_flight(happen, 80);
+        let text = Draft::of_recorded("two plans", flight).unwrap().finish().unwrap();
+        assert!(text.contains("APPROACHING 2"), "{text}");
+        assert_eq!(checked(&text).1, [""; 0]);
+    }
+
+    #[test]
+    fn waiting_after_the_landing_is_left_out() {
+        let plan = BuiltinPlan::find("land").unwrap().read().unwrap();
+        let happen = |tick: u64, vehicle: &mut Vehicle| match tick {
+            2000 => upload(&plan, vehicle),
+            2001 => vehicle.start_pilot(5.0).unwrap(),
+            _ => {}
+        };
+        let (flight, _) = first_flight(happen, 300);
+        let draft = Draft::of_recorded("landed", flight).unwrap();
+        assert!(draft.ends.is_some_and(|ends| ends.as_secs_f64() < 120.0), "{:?}", draft.ends);
+        let text = draft.finish().unwrap();
+        assert!(text.contains("disarmed LANDING"), "{text}");
+        assert_eq!(checked(&text).1, [""; 0]);
+    }
+
+    #[test]
+    fn a_problem_is_one_sentence_without_a_place_in_a_file_that_nobody_has() {
+        let text =
+            "format = 1\n[plan]\nwaypoints = []\n[[expect]]\nevent = \"ARRIVED 7\"\n[[expect]]\nno = 1\n";
+        let problem = parse("square", text).unwrap_err();
+        assert_eq!(problem, "a scenario cannot say what happened in this flight: the plan has no waypoint 7");
     }
 }

@@ -15,7 +15,7 @@ use std::rc::Rc;
 
 use super::case::{Air, Allowance, Case, Compare, Scenario};
 use super::expression::{Instant, Scope, read_condition, read_instant, read_quantity};
-use super::input::{TimedInput, read_action};
+use super::input::{TimedInput, read_action, waypoints_after};
 use crate::flight::FlightSetup;
 use crate::plan::format::{PlanError, PlanFile, Problems, TomlTable, Value};
 use crate::sim::Noise;
@@ -198,6 +198,7 @@ fn read_case(base: &str, all: &[String], layers: &Layers<'_, '_>, reader: &mut R
     };
     let belongs = Belongs { base, all };
     scope.inputs = input_names(layers, &belongs, reader);
+    scope.waypoints = scope.waypoints.max(uploaded_waypoints(layers, &belongs, reader));
     let inputs = read_inputs(layers, &belongs, &scope, reader);
     let ends = layers.value("ends").and_then(|value| read_awaited(value, &scope, reader));
     let measures = measure::read(layers, &belongs, &mut scope, reader);
@@ -329,6 +330,20 @@ fn input_names(layers: &Layers<'_, '_>, belongs: &Belongs<'_>, reader: &mut Read
         }
     }
     names
+}
+
+/// How many waypoints the longest plan has that an input uploads: expressions may name them, too.
+fn uploaded_waypoints(layers: &Layers<'_, '_>, belongs: &Belongs<'_>, reader: &mut Reader<'_, '_>) -> usize {
+    let mut most = 0;
+    for table in layers.lists("input", reader) {
+        if belongs.includes(&table, reader)
+            && let Some(text) = reader.string(&table, "do")
+        {
+            // What is wrong with it is found when the inputs are read.
+            most = most.max(waypoints_after(&text, &mut |plan| reader.plan(plan)).unwrap_or(0));
+        }
+    }
+    most
 }
 
 /// Reads an instant that is waited for during the flight.

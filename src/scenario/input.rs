@@ -2,7 +2,7 @@
 
 use super::expression::{Cursor, Instant, SyntaxError};
 use crate::pilot::{channel_index, pulse_us};
-use crate::plan::FlightPlan;
+use crate::plan::{FlightPlan, MAX_WAYPOINTS};
 use crate::signals::{RC_CHANNELS, RcFrame};
 use crate::sim::WorldCommand;
 use crate::telemetry::{InFlightCommand, Mode};
@@ -153,6 +153,22 @@ pub(super) fn read_action(text: &str, plans: PlanReader<'_>) -> Result<Action, S
                 .map_err(|problem| whole(problem, "docs/scenarios.md lists what can be done"));
         }
     })
+}
+
+/// How many waypoints the stored plan has at least after an input that uploads one or inserts a waypoint; `None` for other
+/// inputs.
+pub(super) fn waypoints_after(text: &str, plans: PlanReader<'_>) -> Option<usize> {
+    let words: Vec<&str> = text.split_whitespace().collect();
+    match words.as_slice() {
+        ["upload", ..] => match read_action(text, plans) {
+            Ok(Action::Upload(plan)) => Some(plan.waypoints.len()),
+            _ => None,
+        },
+        ["cli", "waypoint", "insert", index, ..] => {
+            index.parse::<usize>().ok().filter(|index| *index < MAX_WAYPOINTS).map(|index| index + 1)
+        }
+        _ => None,
+    }
 }
 
 /// A change of the world; where no word of the world stands, the guess is among all words.

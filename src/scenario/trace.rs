@@ -72,6 +72,17 @@ pub struct Stay {
     pub guards: Vec<NearestGuard>,
 }
 
+/// A plan of a flight.
+#[derive(Debug, Clone)]
+pub struct KnownPlan {
+    /// From when on it counts.
+    pub since: SimTime,
+    /// Where it comes from.
+    pub source: PlanSource,
+    /// The plan.
+    pub plan: FlightPlan,
+}
+
 /// The record of a flight.
 #[derive(Debug, Clone)]
 pub struct Trace {
@@ -82,7 +93,7 @@ pub struct Trace {
     /// Stays in states, oldest first.
     pub stays: Vec<Stay>,
     /// Plans: the scenario's own, then those that became active.
-    pub plans: Vec<(PlanSource, FlightPlan)>,
+    pub plans: Vec<KnownPlan>,
     /// Counts north and east from the boot place.
     pub frame: Option<LocalFrame>,
     /// The first engagement.
@@ -97,7 +108,7 @@ impl Trace {
             samples: Vec::new(),
             happenings: Vec::new(),
             stays: Vec::new(),
-            plans: vec![(PlanSource::Stored, plan)],
+            plans: vec![KnownPlan { since: SimTime::ZERO, source: PlanSource::Stored, plan }],
             frame,
             engaged_at: None,
         }
@@ -133,10 +144,18 @@ impl Trace {
         self.happenings.last().map_or(sampled, |happening| happening.time.max(sampled))
     }
 
-    /// Place of a waypoint of the first plan of an origin, m north and east of the boot place.
+    /// The plan of an origin that counts at an instant: the newest that was active until then, else the first.
     #[must_use]
-    pub fn waypoint(&self, index: u8, source: PlanSource) -> Option<[f64; 2]> {
-        let (_, plan) = self.plans.iter().find(|(known, _)| *known == source)?;
+    pub fn plan(&self, source: PlanSource, at: SimTime) -> Option<&FlightPlan> {
+        let of_source = || self.plans.iter().filter(|known| known.source == source);
+        let known = of_source().rfind(|known| known.since <= at).or_else(|| of_source().next());
+        known.map(|known| &known.plan)
+    }
+
+    /// Place of a waypoint of the plan of an origin at an instant, m north and east of the boot place.
+    #[must_use]
+    pub fn waypoint(&self, index: u8, source: PlanSource, at: SimTime) -> Option<[f64; 2]> {
+        let plan = self.plan(source, at)?;
         let position = plan.waypoints.get(usize::from(index))?.position;
         let frame = self.frame?;
         let enu = frame.to_enu(position.lat_deg(), position.lon_deg(), frame.alt_amsl_m);

@@ -7,7 +7,7 @@ use tokio::sync::mpsc;
 use super::remote::RemoteNotice;
 use super::simulator::SimulatorNotice;
 use crate::signals::{RcFrame, SimTime};
-use crate::telemetry::{self, EventKind};
+use crate::telemetry::{self, EventKind, FirmwareEvent};
 use crate::timeline::Marks;
 use crate::vehicle::Vehicle;
 
@@ -92,11 +92,13 @@ impl From<telemetry::Event> for Event {
 pub(super) struct EventSender {
     events: mpsc::UnboundedSender<Event>,
     marks: Marks,
+    /// The craft was disarmed since this was asked last.
+    disarmed: bool,
 }
 
 impl EventSender {
     pub(super) fn new(events: mpsc::UnboundedSender<Event>) -> Self {
-        Self { events, marks: Marks::default() }
+        Self { events, marks: Marks::default(), disarmed: false }
     }
 
     /// When something happened.
@@ -122,8 +124,14 @@ impl EventSender {
     pub(super) fn send_events_of(&mut self, vehicle: &mut Vehicle) {
         vehicle.drain_events(|event| {
             self.marks.note(&event);
+            self.disarmed |= matches!(event.kind, EventKind::Firmware(FirmwareEvent::Disarmed(_)));
             send(&self.events, event.into());
         });
+    }
+
+    /// Whether the craft was disarmed since this was asked last.
+    pub(super) fn take_disarmed(&mut self) -> bool {
+        std::mem::take(&mut self.disarmed)
     }
 
     /// Sends a notice, after what has happened to the vehicle before.

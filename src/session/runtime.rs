@@ -110,6 +110,11 @@ pub struct Handle {
     pub thread: std::thread::JoinHandle<Option<String>>,
 }
 
+/// A speed as a multiple of real time.
+fn factor(speed: f64) -> String {
+    if speed.is_infinite() { "full speed".to_owned() } else { format!("{speed}×") }
+}
+
 /// Starts the session's thread.
 ///
 /// # Errors
@@ -137,6 +142,8 @@ struct Session {
     vehicle: Vehicle,
     persistence: Persistence,
     pacer: Pacer,
+    /// Times real time at the start, to which the speed falls back after a flight.
+    usual_speed: f64,
     console: Interpreter,
     takeoff_m: f64,
     simulator: Option<Simulator>,
@@ -198,6 +205,7 @@ impl Session {
             Persistence::new(config.store, config.vehicle.controller_mut(), config.starter_modes);
         let mut session = Self {
             pacer: Pacer::new(config.vehicle.step_us(), config.speed),
+            usual_speed: config.speed,
             console: Interpreter::default(),
             vehicle: config.vehicle,
             persistence,
@@ -253,6 +261,7 @@ impl Session {
             if ticks > 0 || self.changed {
                 self.flush_events();
             }
+            self.slow_down_after_flight(after);
             moved |= ticks > 0;
             if self.changed || moved && after - published >= VIEW_INTERVAL {
                 published = after;
@@ -272,6 +281,27 @@ impl Session {
             }
         }
         self.failure.take()
+    }
+
+    /// Sets the speed back to that of the start when the craft was disarmed. A speed that is chosen later, while the craft is
+    /// disarmed, is kept.
+    fn slow_down_after_flight(&mut self, now: Duration) {
+        let (fast, usual) = (self.pacer.speed(), self.usual_speed);
+        if !self.events.take_disarmed() || !self.sets_time() || fast <= usual {
+            return;
+        }
+        self.pacer.set_speed(usual, now);
+        self.changed = true;
+        self.notice(format!(
+            "The craft is disarmed: time runs at {} again ({} before); `]` makes it faster.",
+            factor(usual),
+            factor(fast)
+        ));
+    }
+
+    /// Whether the session sets the time, and neither an external simulator nor a firmware outside.
+    fn sets_time(&self) -> bool {
+        self.simulator.is_none() && self.remote.is_none()
     }
 
     /// Most steps of one round.

@@ -7,6 +7,7 @@
 
 use std::collections::VecDeque;
 
+use super::idle::IdleTime;
 use super::replay::Replay;
 use crate::signals::SimTime;
 use crate::vehicle::{Input, Vehicle};
@@ -16,18 +17,23 @@ use crate::vehicle::{Input, Vehicle};
 pub(super) struct Bounds {
     /// Between two key frames, µs: what a replay flies at most.
     pub(super) interval_us: u64,
-    /// For how long every key frame is kept, µs.
+    /// For how long every key frame is kept, µs without idle time.
     pub(super) dense_us: u64,
     /// Between two key frames that are older, µs.
     pub(super) sparse_interval_us: u64,
-    /// How far the recording reaches back, µs.
+    /// How far the recording reaches back, µs without idle time: waiting on the ground takes no flight away.
     pub(super) reach_us: u64,
     /// What the inputs may take, bytes; an eighth more until the next key frame.
     pub(super) input_bytes: usize,
+    /// How many key frames there are at most.
+    pub(super) key_frames: usize,
 }
 
+/// In idle time a key frame that is so old may be this many times nearer to the one before it, or nearer still: it goes.
+const IDLE_SHARE: u64 = 16;
+
 impl Default for Bounds {
-    /// An hour, of which half an hour can be sought at once: some 14 MB of key frames. A script at 50 Hz takes three
+    /// An hour of flight, of which half an hour can be sought at once: some 14 MB of key frames. A script at 50 Hz takes three
     /// quarters of what inputs may take; at 100 Hz the recording still reaches back 40 minutes.
     fn default() -> Self {
         const MINUTE_US: u64 = 60_000_000;
@@ -37,6 +43,7 @@ impl Default for Bounds {
             sparse_interval_us: MINUTE_US,
             reach_us: 60 * MINUTE_US,
             input_bytes: 11 << 20,
+            key_frames: 1000,
         }
     }
 }
@@ -46,6 +53,8 @@ impl Default for Bounds {
 pub(super) struct KeyFrame {
     vehicle: Box<Vehicle>,
     next_input: u64,
+    /// The time up to it without idle time, µs.
+    active_us: u64,
 }
 
 impl KeyFrame {
@@ -86,6 +95,7 @@ pub(super) struct Recording {
     first_input: u64,
     input_bytes: usize,
     bytes_since_key_frame: usize,
+    idle: IdleTime,
 }
 
 impl Recording {
@@ -96,6 +106,8 @@ impl Recording {
     /// Records the inputs since the tick before, and freezes the vehicle when it is time.
     pub(super) fn record(&mut self, vehicle: &mut Vehicle) {
         let at = vehicle.time();
+        let is_idle = !vehicle.has_inputs() && vehicle.is_idle();
+        self.idle.note(at, is_idle, self.bounds.interval_us);
         if vehicle.has_inputs() {
             vehicle.take_inputs(|input| {
                 let input = TimedInput { at, input };
@@ -112,10 +124,16 @@ impl Recording {
             frozen.keep_inputs(false);
             frozen.drain_events(drop);
             let next_input = self.first_input + self.inputs.len() as u64;
-            self.key_frames.push_back(KeyFrame { vehicle: frozen, next_input });
+            let active_us = self.idle.active_us(at);
+            self.key_frames.push_back(KeyFrame { vehicle: frozen, next_input, active_us });
             self.bytes_since_key_frame = 0;
             self.stay_within_bounds(at);
         }
+    }
+
+    /// The time in which nothing happened.
+    pub(super) fn idle(&self) -> &IdleTime {
+        &self.idle
     }
 
     /// The earliest instant that can be flown to again.
@@ -157,30 +175,47 @@ impl Recording {
         {
             self.input_bytes -= input.bytes();
         }
+        self.idle.forget_after(replay.time());
     }
 
     /// Thins the older key frames out and drops the oldest.
     fn stay_within_bounds(&mut self, now: SimTime) {
-        let Bounds { dense_us, sparse_interval_us, .. } = self.bounds;
-        let dense_from = now.0.saturating_sub(dense_us);
-        let old = self.key_frames.partition_point(|frame| frame.time().0 < dense_from);
-        // The newest of the old ones has just become one; those before it are thinned out already.
-        if let Some(newest_old) = old.checked_sub(1)
-            && let Some(before) = newest_old.checked_sub(1)
-            && let (Some(frame), Some(older)) = (self.key_frames.get(newest_old), self.key_frames.get(before))
-            && frame.time().0 < older.time().0 + sparse_interval_us
-        {
-            self.key_frames.remove(newest_old);
-        }
+        self.thin_out(now);
         self.drop_oldest(now);
+        if let Some(first) = self.first() {
+            self.idle.forget_before(first);
+        }
     }
 
-    /// Drops the oldest key frames that are beyond the reach or whose inputs take too much.
+    /// Drops key frames that are too near to the one before them: old ones, and those in the middle of idle time, of which
+    /// there would be more and more.
+    fn thin_out(&mut self, now: SimTime) {
+        let Bounds { dense_us, sparse_interval_us, .. } = self.bounds;
+        let dense_from = self.idle.active_us(now).saturating_sub(dense_us);
+        let mut index = 1;
+        while let (Some(before), Some(frame), Some(after)) =
+            (self.key_frames.get(index - 1), self.key_frames.get(index), self.key_frames.get(index + 1))
+        {
+            let of_old = if frame.active_us < dense_from { sparse_interval_us } else { 0 };
+            let is_idle = before.active_us == after.active_us;
+            let of_idle = if is_idle { (now.0 - frame.time().0) / IDLE_SHARE } else { 0 };
+            if frame.time().0 < before.time().0 + of_old.max(of_idle) {
+                self.key_frames.remove(index);
+            } else {
+                index += 1;
+            }
+        }
+    }
+
+    /// Drops the oldest key frames that are beyond the reach or too many, or whose inputs take too much.
     fn drop_oldest(&mut self, now: SimTime) {
-        let Bounds { reach_us, input_bytes, .. } = self.bounds;
-        let too_old = |frame: &KeyFrame| frame.time().0 < now.0.saturating_sub(reach_us);
+        let Bounds { reach_us, input_bytes, key_frames, .. } = self.bounds;
+        let reached_from = self.idle.active_us(now).saturating_sub(reach_us);
+        let too_old = |frame: &KeyFrame| frame.active_us < reached_from;
         while self.key_frames.len() > 1
-            && (self.key_frames.front().is_some_and(too_old) || self.input_bytes > input_bytes)
+            && (self.key_frames.front().is_some_and(too_old)
+                || self.key_frames.len() > key_frames
+                || self.input_bytes > input_bytes)
         {
             self.key_frames.pop_front();
             self.drop_unreachable_inputs();
@@ -211,6 +246,7 @@ mod tests {
         sparse_interval_us: 40_000,
         reach_us: 300_000,
         input_bytes: 2000 * size_of::<TimedInput>(),
+        key_frames: usize::MAX,
     };
 
     fn config() -> VehicleConfig {
@@ -223,11 +259,15 @@ mod tests {
     }
 
     fn recorded(bounds: Bounds, ticks: u64, frames_a_tick: u16) -> Recording {
+        recorded_while(bounds, ticks, |_| frames_a_tick)
+    }
+
+    fn recorded_while(bounds: Bounds, ticks: u64, frames_at: impl Fn(u64) -> u16) -> Recording {
         let mut vehicle = Vehicle::new(config()).unwrap();
         assert!(vehicle.keep_inputs(true));
         let mut recording = Recording::new(bounds);
-        for _ in 0..ticks {
-            for us in 0..frames_a_tick {
+        for tick in 0..ticks {
+            for us in 0..frames_at(tick) {
                 let mut frame = RcFrame::SAFE;
                 frame.channels[0] += us;
                 vehicle.controller_mut().receive_rc(&frame, RcSource::Udp);
@@ -240,13 +280,45 @@ mod tests {
 
     #[test]
     fn old_key_frames_are_thinned_out_and_the_oldest_go() {
-        let recording = recorded(BOUNDS, 1000, 0);
+        let bounds = Bounds { input_bytes: usize::MAX, ..BOUNDS };
+        let recording = recorded(bounds, 1000, 1);
         let times: Vec<u64> = recording.key_frames.iter().map(|frame| frame.time().0 / 1000).collect();
         assert_eq!(times.last(), Some(&990));
         let (old, new) = times.split_at(times.partition_point(|&time| time < 890));
         assert!(new.windows(2).all(|pair| pair[1] - pair[0] == 10), "{times:?}");
         assert!(old.windows(2).all(|pair| pair[1] - pair[0] == 40), "{times:?}");
         assert!((690..=730).contains(&times[0]), "{times:?}");
+    }
+
+    #[test]
+    fn waiting_on_the_ground_takes_no_flight_away_and_little_memory() {
+        let bounds = Bounds { input_bytes: usize::MAX, ..BOUNDS };
+        // A flight of 0.2 s in the middle of much waiting; the recording reaches back 0.3 s.
+        let flies = 3000..3200;
+        let recording = recorded_while(bounds, 30_000, |tick| u16::from(flies.contains(&tick)));
+        let times: Vec<u64> = recording.key_frames.iter().map(|frame| frame.time().0 / 1000).collect();
+        assert_eq!(times.first(), Some(&0));
+        assert!(times.len() < 120, "{}", times.len());
+        // Each instant of the flight and of the newest waiting is near a key frame.
+        let is_near =
+            |time: &u64| times.iter().any(|frame| (time.saturating_sub(40)..=*time).contains(frame));
+        assert!((3000..3200).step_by(10).all(|time| is_near(&time)), "{times:?}");
+        assert!((29_900..30_000).step_by(10).all(|time| is_near(&time)), "{times:?}");
+        // The rest is as far from one as it is old.
+        let apart = times.windows(2).all(|pair| pair[1] - pair[0] <= 10 + (30_000 - pair[0]) / 4);
+        assert!(apart, "{times:?}");
+        // Another flight takes the place of the first.
+        let flies_on = 3000..3500;
+        let recording = recorded_while(bounds, 30_000, |tick| u16::from(flies_on.contains(&tick)));
+        assert!(recording.first() > Some(SimTime(3_000_000)), "{:?}", recording.first());
+    }
+
+    #[test]
+    fn there_are_never_more_key_frames_than_allowed() {
+        let recording = recorded(Bounds { key_frames: 7, ..BOUNDS }, 500, 1);
+        assert_eq!(recording.key_frames.len(), 7);
+        let first = recording.key_frames.front().map(KeyFrame::next_input);
+        assert_eq!(first, Some(recording.first_input));
     }
 
     #[test]

@@ -18,6 +18,7 @@ const BOUNDS: Bounds = Bounds {
     sparse_interval_us: 0,
     reach_us: u64::MAX,
     input_bytes: usize::MAX,
+    key_frames: usize::MAX,
 };
 
 /// The whole vehicle as text, to the last bit of every number that is printed.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::Mark;
+use super::{IdleSpan, Mark};
 use crate::signals::SimTime;
 
 /// How far the recording reaches, what happened in it, and where in it the shown instant is: the time of the vehicle.
@@ -20,4 +20,6 @@ pub struct TimelineView {
     pub branched_at: SimTime,
     /// What happened, the oldest first.
     pub marks: Arc<Vec<Mark>>,
+    /// Long parts in which nothing happens, the oldest first: they are drawn folded.
+    pub folds: Vec<IdleSpan>,
 }

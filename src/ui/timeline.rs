@@ -4,12 +4,14 @@
 //!  00:00.0 I────●─A━━━━━━━━━━━━H━━━━┃──────A─────────▲──L──── 03:12.4
 //! ```
 //!
-//! A letter stands where a state begins, thick up to the shown instant; marks tell alarms, arming and touchdown.
+//! A letter stands where a state begins, thick up to the shown instant; marks tell alarms, arming and touchdown. A long part in
+//! which nothing happens is folded into one column, `≈`.
+
+mod columns;
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
-use unicode_width::UnicodeWidthStr as _;
 
 use super::app_state::{AppState, Transition};
 use super::drawing;
@@ -21,6 +23,7 @@ use super::track::TrackPoint;
 use crate::signals::SimTime;
 use crate::telemetry::NavState;
 use crate::timeline::{Mark, MarkKind, TimelineView};
+use columns::Columns;
 
 /// Tracks of branches that were left, the newest last.
 const MAX_TRACKS: usize = 4;
@@ -98,50 +101,26 @@ impl AppState {
     }
 }
 
-/// The columns of the line between its labels.
-fn bar(timeline: &TimelineView, area: Rect) -> Rect {
-    let label = |time| clock(time).width() as u16 + 2;
-    let (left, right) = (label(timeline.first), label(timeline.head));
-    Rect { x: area.x + left, width: area.width.saturating_sub(left + right), ..area }
-}
-
 /// The instant at a column; `None` beside the line.
 pub(super) fn time_at(timeline: &TimelineView, area: Rect, column: u16) -> Option<SimTime> {
-    let bar = bar(timeline, area);
-    let at = column.checked_sub(bar.x).filter(|at| *at < bar.width)?;
-    Some(start_of(timeline, bar, at))
-}
-
-/// The instant at which a column begins; the last one is the newest instant.
-fn start_of(timeline: &TimelineView, bar: Rect, column: u16) -> SimTime {
-    let span = timeline.head.0.saturating_sub(timeline.first.0);
-    let last = u64::from(bar.width.saturating_sub(1)).max(1);
-    SimTime(timeline.first.0 + (span * u64::from(column)).div_ceil(last))
-}
-
-/// The column of an instant.
-fn column_of(timeline: &TimelineView, bar: Rect, time: SimTime) -> u16 {
-    let span = timeline.head.0.saturating_sub(timeline.first.0).max(1);
-    let last = u64::from(bar.width.saturating_sub(1));
-    let since = time.0.saturating_sub(timeline.first.0).min(span);
-    (since * last / span) as u16
+    Columns::new(timeline, area).time_at(column)
 }
 
 /// Draws the line.
 pub(super) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     let Some(timeline) = &state.view.timeline else { return };
     let theme = &state.theme;
-    let bar = bar(timeline, area);
-    let shown = column_of(timeline, bar, state.view.vehicle.time);
+    let columns = Columns::new(timeline, area);
+    let shown = columns.column_of(state.view.vehicle.time);
     // The cursor of the graphs, where the recording reaches.
     let pointed_at = graphs::pointed_at(state).filter(|time| *time >= timeline.first);
-    let pointed_at = pointed_at.map(|time| column_of(timeline, bar, time));
+    let pointed_at = pointed_at.map(|time| columns.column_of(time));
     let mut spans: Vec<Span<'_>> = vec![span(theme, Role::Dim, format!(" {} ", clock(timeline.first)))];
     let mut flying = NavState::Idle;
     let mut marks = timeline.marks.iter().peekable();
-    for column in 0..bar.width {
+    for column in 0..columns.width {
         let mut here: Option<Mark> = None;
-        while let Some(mark) = marks.next_if(|mark| column_of(timeline, bar, mark.time) <= column) {
+        while let Some(mark) = marks.next_if(|mark| columns.column_of(mark.time) <= column) {
             if let MarkKind::State(to) = mark.kind {
                 flying = to;
             }
@@ -158,6 +137,8 @@ pub(super) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
         } else if let Some(mark) = here {
             let (glyph, role) = appearance(mark.kind);
             span(theme, role, glyph)
+        } else if columns.is_fold(column) {
+            span(theme, Role::Dim, "≈")
         } else if column == 0 {
             span(theme, role_of(flying), letter(flying))
         } else {
@@ -219,6 +200,7 @@ mod tests {
     use super::*;
     use crate::session::SessionView;
     use crate::telemetry::Snapshot;
+    use crate::timeline::IdleSpan;
     use std::sync::Arc;
 
     fn at(seconds: u64) -> SimTime {
@@ -259,16 +241,30 @@ mod tests {
     }
 
     #[test]
+    fn waiting_after_the_flight_is_one_column() {
+        let mut state = state(100_000);
+        let timeline = state.view.timeline.as_mut().expect("a timeline");
+        timeline.folds = vec![IdleSpan { from: at(100), to: at(100_000) }];
+        timeline.head = at(100_000);
+        // `1666:40.0` is wider than `01:40.0`.
+        let area = Rect { width: AREA.width + 4, ..AREA };
+        let mut buffer = Buffer::empty(area);
+        draw(&state, area, &mut buffer);
+        let shown: String = buffer.content().iter().map(ratatui::buffer::Cell::symbol).collect();
+        assert_eq!(shown, " 00:10.0 A●━H━━▲━━━≈┃ 1666:40.0 ");
+    }
+
+    #[test]
     fn a_column_and_its_instant_belong_together() {
         let state = state(55);
         let timeline = state.view.timeline.as_ref().expect("a timeline");
-        let bar = bar(timeline, AREA);
-        for column in 0..bar.width {
-            let time = time_at(timeline, AREA, bar.x + column).expect("an instant");
-            assert_eq!(column_of(timeline, bar, time), column);
+        let columns = Columns::new(timeline, AREA);
+        for column in 0..columns.width {
+            let time = time_at(timeline, AREA, columns.x + column).expect("an instant");
+            assert_eq!(columns.column_of(time), column);
         }
-        assert_eq!(time_at(timeline, AREA, bar.x + bar.width - 1), Some(timeline.head));
-        assert_eq!(time_at(timeline, AREA, bar.x + bar.width), None);
+        assert_eq!(time_at(timeline, AREA, columns.x + columns.width - 1), Some(timeline.head));
+        assert_eq!(time_at(timeline, AREA, columns.x + columns.width), None);
         assert_eq!(time_at(timeline, AREA, 0), None);
     }
 }

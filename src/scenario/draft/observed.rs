@@ -125,7 +125,9 @@ fn landing(flown: &Flown) -> Vec<Block> {
         None => return blocks,
     };
     let target = match landed {
-        Some(entered) if entered.source != PlanSource::Rth => trace.waypoint(entered.wp, entered.source),
+        Some(entered) if entered.source != PlanSource::Rth => {
+            trace.waypoint(entered.wp, entered.source, contact.time)
+        }
         _ => Some([0.0, 0.0]),
     };
     if let (Some(target), Some(index)) = (target, trace.index_at(contact.time.0 as i64)) {
@@ -165,7 +167,13 @@ fn bounds(flown: &Flown) -> Vec<Block> {
 /// How far beside its legs the craft flew, where one straight leg follows another.
 fn legs(flown: &Flown) -> Vec<Block> {
     let trace = &flown.trace;
-    let Some((_, plan)) = trace.plans.first() else { return Vec::new() };
+    // Of several stored plans a number means another waypoint each time.
+    let mut stored =
+        trace.plans.iter().filter(|known| known.source == PlanSource::Stored).map(|known| &known.plan);
+    let Some(plan) = stored.next().filter(|first| stored.all(|other| other.waypoints == first.waypoints))
+    else {
+        return Vec::new();
+    };
     let is_straight = |kind: WaypointType| matches!(kind, WaypointType::Flyover | WaypointType::Flyby);
     let mut blocks = Vec::new();
     for (index, pair) in plan.waypoints.windows(2).enumerate() {
@@ -190,7 +198,7 @@ fn legs(flown: &Flown) -> Vec<Block> {
 /// The greatest size of a number between two instants; `None` when they did not come.
 fn greatest_between(number: &str, from: &str, until: &str, flown: &Flown) -> Option<f64> {
     use crate::scenario::expression::{Cursor, Scope, read_instant, read_number};
-    let waypoints = flown.trace.plans.first().map_or(0, |(_, plan)| plan.waypoints.len());
+    let waypoints = flown.trace.plans.first().map_or(0, |known| known.plan.waypoints.len());
     let scope = Scope { waypoints, ..Scope::default() };
     let (number, _) = read_number(&mut Cursor::new(&format!("abs({number})")), &scope).ok()?;
     let instant = |text: &str| read_instant(&mut Cursor::new(text), &scope).ok();

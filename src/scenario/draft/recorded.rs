@@ -1,6 +1,7 @@
 //! A recorded flight as a draft: what the craft had at the start, and the inputs since as sentences.
 
 use super::Draft;
+use super::past::Past;
 use super::toml_text::{after_boot, quoted};
 use crate::firmware::cli::Interpreter;
 use crate::geo::LatLon;
@@ -50,7 +51,8 @@ impl Draft {
     /// # Errors
     /// Why it cannot be flown again, as a sentence.
     pub fn of_recorded(name: &str, flight: RecordedFlight) -> Result<Self, String> {
-        let RecordedFlight { mut start, inputs, until } = flight;
+        let past = Past::of(&flight);
+        let RecordedFlight { mut start, inputs, .. } = flight;
         let start_at = start.time();
         let (settings, lines) = configuration(&mut start)?;
         let world =
@@ -76,7 +78,7 @@ impl Draft {
         let mut draft = Self {
             name: name.to_owned(),
             description: "Made from a flight on the screen".to_owned(),
-            plan: start.controller().stored_plan().cloned().unwrap_or_default(),
+            plan: past.plan.clone(),
             home: Some(HomePosition { position, amsl_m: Some(frame.alt_amsl_m) }),
             heading_deg: (truth.heading_deg() * 10.0).round() / 10.0,
             airframe: Some(airframe),
@@ -100,12 +102,15 @@ impl Draft {
             draft.pilot = true;
             draft.takeoff_m = pilot.takeoff_m();
         }
-        for (at, input) in &inputs {
+        for (number, (at, input)) in inputs.iter().enumerate() {
+            if past.is_in_plan(number, input) {
+                continue;
+            }
             let what = sentences(input, &mut transmitter)?;
             let at = after_boot(since(*at, start_at));
             draft.inputs.extend(what.into_iter().map(|what| (at.clone(), what)));
         }
-        draft.ends = Some(since(until, start_at));
+        draft.ends = Some(since(past.until, start_at));
         Ok(draft)
     }
 }

@@ -172,7 +172,7 @@ impl<'a> Evaluator<'a> {
         match place {
             Place::Home => Some([0.0, 0.0]),
             Place::Offset(north, east) => Some([*north, *east]),
-            Place::Waypoint(index, source) => self.trace.waypoint(*index, *source),
+            Place::Waypoint(index, source) => self.trace.waypoint(*index, *source, sample.time),
             Place::Target => {
                 let [north, east] = sample.target_ne.map(f64::from);
                 (north.is_finite() && east.is_finite()).then_some([north, east])

@@ -1,7 +1,7 @@
 //! Events of the vehicle in the words of expectations.
 
 use crate::scenario::happening::{Entered, EventName, Field, Happening, HappeningKind, mode_word};
-use crate::scenario::trace::Trace;
+use crate::scenario::trace::{KnownPlan, Trace};
 use crate::signals::SimTime;
 use crate::telemetry::{Event, EventKind, FirmwareEvent, ModeFlags, NavEvent, NavState, PlanSource, Refusal};
 
@@ -80,9 +80,7 @@ impl Log {
         let happening = match event {
             NavEvent::Plan { source, plan } => {
                 self.source = *source;
-                if *source != PlanSource::Stored {
-                    trace.plans.push((*source, (**plan).clone()));
-                }
+                trace.plans.push(KnownPlan { since: time, source: *source, plan: (**plan).clone() });
                 Happening::event(time, EventName::Plan, &[&source.to_string()])
                     .with(Field::Count, plan.waypoints.len() as f64)
                     .saying(types(plan))

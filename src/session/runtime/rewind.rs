@@ -73,13 +73,15 @@ impl Session {
     pub(super) fn timeline_view(&self) -> Option<TimelineView> {
         let timeline = self.timeline.as_ref()?;
         let head = self.vehicle.time();
+        let marks = self.events.marks().all();
         Some(TimelineView {
             first: timeline.first().unwrap_or(head),
             head,
             rewound: timeline.shown().is_some(),
             branch: timeline.branch(),
             branched_at: timeline.branched_at(),
-            marks: self.events.marks().all(),
+            folds: timeline.folds(&marks),
+            marks,
         })
     }
 

@@ -9,6 +9,7 @@ use crate::session::command::{Seek, UPLOADING, UploadView};
 use crate::session::{RemoteEnds, UploadReport};
 use crate::signals::SimTime;
 use crate::sim::WorldConfig;
+use crate::timeline::MarkKind;
 use crate::vehicle::{LateAnswer, RemoteRequest, RemoteTelemetry, VehicleConfig};
 
 /// A session whose flight controller runs elsewhere: `firmware`, which is asked by hand.
@@ -226,4 +227,67 @@ fn a_held_rewind_key_is_one_way_and_each_other_instant_is_shown_before_the_next(
     rig.take_commands();
     assert!(!rig.session.has_commands(), "whatever comes behind is not forgotten");
     drop(sent.1);
+}
+
+/// A session whose craft is embedded and flies on at `speed` times real time.
+fn rig_at(speed: f64) -> Rig {
+    let mut configuration = Configuration::default();
+    configuration.starter_modes();
+    let (world, firmware) = (WorldConfig::default(), FirmwareOptions::default());
+    let config = VehicleConfig { world, firmware, configuration, live: false };
+    let mut rig = Rig::with(Vehicle::new(config).unwrap());
+    rig.session.usual_speed = speed;
+    rig.session.pacer.set_speed(speed, Duration::ZERO);
+    rig
+}
+
+impl Rig {
+    /// Flies the built-in landing to its end; gives the speed there.
+    fn fly_and_land(&mut self) -> f64 {
+        let plan = crate::plan::builtin::BuiltinPlan::find("land").unwrap().read().unwrap().plan;
+        let (reply, _result) = oneshot::channel();
+        let upload = Command::Upload { plan: Box::new(plan), settings: Vec::new(), reply };
+        for command in [upload, Command::Pilot(true)] {
+            self.commands.try_send(command).unwrap();
+        }
+        self.take_commands();
+        for _ in 0..400_000 {
+            self.session.advance(1, Duration::ZERO);
+            self.session.flush_events();
+            let landed = self.session.events.marks().all().iter().any(|mark| mark.kind == MarkKind::Disarmed);
+            self.session.slow_down_after_flight(Duration::ZERO);
+            if landed {
+                return self.session.pacer.speed();
+            }
+        }
+        panic!("it never landed");
+    }
+
+    fn choose_speed(&mut self, speed: f64) {
+        self.commands.try_send(Command::Speed(speed)).unwrap();
+        self.take_commands();
+    }
+}
+
+#[test]
+fn after_the_landing_the_speed_falls_back_once_and_one_chosen_later_stays() {
+    let mut rig = rig_at(1.0);
+    rig.choose_speed(128.0);
+    rig.session.slow_down_after_flight(Duration::ZERO);
+    assert!((rig.session.pacer.speed() - 128.0).abs() < 1e-9, "it has not flown yet");
+    assert!((rig.fly_and_land() - 1.0).abs() < 1e-9);
+    rig.choose_speed(16.0);
+    rig.session.advance(1000, Duration::ZERO);
+    rig.session.flush_events();
+    rig.session.slow_down_after_flight(Duration::ZERO);
+    assert!((rig.session.pacer.speed() - 16.0).abs() < 1e-9, "chosen while disarmed");
+}
+
+#[test]
+fn a_speed_of_the_command_line_and_a_slow_one_outlast_the_landing() {
+    let mut rig = rig_at(8.0);
+    assert!((rig.fly_and_land() - 8.0).abs() < 1e-9);
+    let mut rig = rig_at(1.0);
+    rig.choose_speed(0.25);
+    assert!((rig.fly_and_land() - 0.25).abs() < 1e-9);
 }

@@ -1,0 +1,88 @@
+//! Flies a recorded flight again to see which plan it began with and when it was over.
+
+use crate::plan::FlightPlan;
+use crate::plan::validate::check_plan;
+use crate::signals::SimTime;
+use crate::telemetry::{EventKind, FirmwareEvent};
+use crate::timeline::RecordedFlight;
+use crate::vehicle::{Input, Vehicle};
+
+/// How long the craft is watched after the last thing that happened, µs.
+const WATCH_US: u64 = 10_000_000;
+
+/// What a draft has to know of a recorded flight.
+#[derive(Debug)]
+pub(super) struct Past {
+    /// The plan that was stored when the navigator first used one.
+    pub(super) plan: FlightPlan,
+    /// How many inputs came before that. Those that uploaded the plan are left out.
+    pub(super) inputs_before: usize,
+    /// When nothing happened any more.
+    pub(super) until: SimTime,
+}
+
+impl Past {
+    /// Flies the flight again.
+    pub(super) fn of(flight: &RecordedFlight) -> Self {
+        let mut vehicle = flight.start.clone();
+        vehicle.keep_inputs(false);
+        vehicle.drain_events(drop);
+        let mut begun = None;
+        let mut next = 0;
+        let mut active_at = vehicle.time();
+        while vehicle.time() < flight.until {
+            while let Some((_, input)) = flight.inputs.get(next).filter(|(at, _)| *at <= vehicle.time()) {
+                if needs_plan(input) {
+                    begun.get_or_insert_with(|| (stored_plan(&vehicle), next));
+                }
+                vehicle.apply(input);
+                next += 1;
+                active_at = vehicle.time();
+            }
+            vehicle.tick();
+            let mut navigates = false;
+            vehicle.drain_events(|event| {
+                navigates |= matches!(event.kind, EventKind::Firmware(FirmwareEvent::Nav(_)));
+            });
+            if navigates {
+                begun.get_or_insert_with(|| (stored_plan(&vehicle), next));
+            }
+            if !vehicle.is_idle() {
+                active_at = vehicle.time();
+            }
+            let is_over = next == flight.inputs.len() && vehicle.time().0 >= active_at.0 + WATCH_US;
+            if is_over {
+                break;
+            }
+        }
+        let until = vehicle.time().min(flight.until);
+        let (plan, inputs_before) = begun.unwrap_or_else(|| (stored_plan(&vehicle), next));
+        // A later `defaults` would empty a plan that is stored at boot, and a scenario cannot begin with a plan that is refused.
+        let is_reset =
+            |(_, input): &(SimTime, Input)| matches!(input, Input::Line(line) if is_defaults(&line.1));
+        let is_refused = !plan.waypoints.is_empty() && check_plan(&plan).is_err();
+        if is_refused || flight.inputs.iter().take(inputs_before).any(is_reset) {
+            return Self { plan: stored_plan(&flight.start), inputs_before: 0, until };
+        }
+        Self { plan, inputs_before, until }
+    }
+
+    /// Whether the input of this number is part of the plan already.
+    pub(super) fn is_in_plan(&self, number: usize, input: &Input) -> bool {
+        let makes_plan = |line: &str| line.split_whitespace().next() == Some("waypoint");
+        number < self.inputs_before && matches!(input, Input::Line(line) if makes_plan(&line.1))
+    }
+}
+
+fn stored_plan(vehicle: &Vehicle) -> FlightPlan {
+    vehicle.controller().stored_plan().cloned().unwrap_or_default()
+}
+
+/// Whether what an input does depends on the stored plan.
+fn needs_plan(input: &Input) -> bool {
+    matches!(input, Input::InFlight(_) | Input::ReturnHome)
+}
+
+fn is_defaults(line: &str) -> bool {
+    line.split_whitespace().next() == Some("defaults")
+}
