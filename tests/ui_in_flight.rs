@@ -41,10 +41,10 @@ async fn a_lost_gps_fix_shows_why_the_autopilot_idles_and_its_return_resumes_the
     let lost = rig.time();
     rig.keys(".").await;
     rig.until("a step", |state| state.view.vehicle.time > lost).await;
-    rig.assert_shown(&["⌖ no", "AUTOPILOT refused: The GPS fix was lost", "resumes 2 s after it is back"]);
+    rig.assert_shown(&["⊕ no", "AUTOPILOT refused: The GPS fix was lost", "resumes 2 s after it is back"]);
     rig.keys(":end gps-loss\n").await;
     rig.fly_to(NavState::Approaching).await;
-    rig.assert_shown(&["● ARMED AUTOPILOT", "⌖ 3D", "IDLE → APPROACHING"]);
+    rig.assert_shown(&["● ARMED AUTOPILOT", "⊕ 3D", "IDLE → APPROACHING"]);
 }
 
 #[tokio::test]

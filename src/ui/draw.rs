@@ -3,6 +3,7 @@
 use ratatui::Frame;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
+use ratatui::style::Color;
 use ratatui::text::Line;
 use ratatui::widgets::{Block, BorderType, Clear, Widget as _};
 
@@ -83,11 +84,26 @@ pub fn draw(state: &AppState, frame: &mut Frame<'_>) {
         };
     }
     clean(buffer);
+    paint_background(state, buffer);
     if state.theme.charset == Charset::Ascii {
         ascii::replace(buffer);
     }
     if let Some(position) = cursor.filter(|&position| area.contains(position)) {
         frame.set_cursor_position(position);
+    }
+}
+
+/// Gives cells without colours of their own those of a theme that does not rely on the terminal's.
+fn paint_background(state: &AppState, buffer: &mut Buffer) {
+    let Some(background) = state.theme.background() else { return };
+    let text = state.theme.colour(Role::Text);
+    for cell in &mut buffer.content {
+        if cell.bg == Color::Reset {
+            cell.bg = background;
+        }
+        if cell.fg == Color::Reset {
+            cell.fg = text;
+        }
     }
 }
 

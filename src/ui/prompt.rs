@@ -129,7 +129,7 @@ fn decision(state: &AppState, question: &Question) -> Vec<String> {
         }
     };
     let later = match question {
-        Question::Unsaved { quits: true, .. } => "; quit once more ends and keeps them for later",
+        Question::Unsaved { quits: true, .. } => "; quit once more ends, too",
         _ => "",
     };
     vec![format!("{text} Answer {}{later}.", choices(question))]

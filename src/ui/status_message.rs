@@ -2,7 +2,7 @@
 
 mod remote;
 
-use crate::telemetry::{ArmingFlag, ArmingFlags, CannotHold, HoldLimit, LinkState, Mode, NavState, Refusal};
+use crate::telemetry::{AbortReason, ArmingFlag, ArmingFlags, CannotHold, HoldLimit, LinkState, Mode, NavState, Refusal};
 
 use super::action::{Action, EditAction};
 use super::app_state::AppState;
@@ -296,7 +296,13 @@ fn action_after(state: &AppState, refusal: Refusal) -> String {
             format!("{} CLI: set ap_throttle_min", key(Action::Show(Panel::Cli)))
         }
         Refusal::Failsafe => format!("{} restores the link", key(Action::CutRc)),
-        Refusal::Aborted(_) => format!("{} off and on again resumes", key(Action::Autopilot)),
+        Refusal::Aborted(AbortReason::GpsLost) => {
+            format!("wait for satellites, or {} switches AUTOPILOT off: fly by hand", key(Action::Autopilot))
+        }
+        Refusal::Aborted(AbortReason::NoPlan) => {
+            format!("{} uploads the plan, {} off and on again flies it", key(Action::Upload), key(Action::Autopilot))
+        }
+        Refusal::Aborted(AbortReason::Stalled | AbortReason::Flyaway) => format!("{} off and on again resumes", key(Action::Autopilot)),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
+use unicode_width::UnicodeWidthStr as _;
 
 use super::action::{Action, EditAction};
 use super::app_state::AppState;
@@ -9,6 +10,7 @@ use super::drawing;
 use super::event_log::Severity;
 use super::formatting::cut;
 use super::panel::Panel;
+use super::text_wrap::wrapped;
 use super::theme::Role;
 
 /// A tutorial that is under way.
@@ -99,10 +101,36 @@ fn text(state: &AppState, tutorial: Tutorial) -> String {
     format!("{}/{} {text}", tutorial.step + 1, STEPS.len())
 }
 
-/// Draws the step in the frame above the hints, unless a notice stands there.
+/// Rows that the step takes at most.
+const ROWS: usize = 2;
+
+/// The step in rows.
+fn lines(state: &AppState, hints: Rect) -> Vec<String> {
+    let Some(tutorial) = state.tutorial else { return Vec::new() };
+    let width = usize::from(hints.width.saturating_sub(6));
+    let mut lines = wrapped(&text(state, tutorial), width);
+    if lines.len() > ROWS {
+        let rest = lines.split_off(ROWS - 1).join(" ");
+        lines.push(cut(&rest, width));
+    }
+    lines
+}
+
+/// The rows that the tutorial takes above the hints.
+pub(super) fn rows(state: &AppState, hints: Rect) -> u16 {
+    lines(state, hints).len() as u16
+}
+
+/// Draws the step in the frame above the hints, and in the row above it when it is long.
 pub(super) fn draw(state: &AppState, hints: Rect, buffer: &mut Buffer) {
-    let Some(tutorial) = state.tutorial else { return };
-    let text = format!(" ▸ {} ", text(state, tutorial));
-    let text = cut(&text, usize::from(hints.width.saturating_sub(2)));
-    drawing::text(buffer, hints.x + 1, hints.y.saturating_sub(1), text, state.theme.style(Role::Active));
+    let lines = lines(state, hints);
+    let widest = lines.iter().map(|line| line.width()).max().unwrap_or(0);
+    for (at, line) in lines.iter().enumerate() {
+        let above = (lines.len() - at) as u16;
+        let fill = " ".repeat(widest - line.width());
+        let mark = if at == 0 { "▸" } else { " " };
+        let text = format!(" {mark} {line}{fill} ");
+        let y = hints.y.saturating_sub(above);
+        drawing::text(buffer, hints.x + 1, y, text, state.theme.style(Role::Active));
+    }
 }

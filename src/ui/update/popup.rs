@@ -141,7 +141,7 @@ fn run(state: &mut AppState, line: &str) -> Vec<Effect> {
 
 fn quit_key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
     match event.code {
-        KeyCode::Char('y' | 'Y' | 'q') | KeyCode::Enter => {
+        KeyCode::Char('y' | 'Y') => {
             state.popups.pop();
             super::plan_popup::quit(state)
         }
