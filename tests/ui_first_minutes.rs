@@ -1,7 +1,7 @@
 //! The first half hour of a new user, by keys: what is shown is true, stays readable and says how to go on.
 
 use betadeck::plan::WaypointType;
-use betadeck::session::{Event, ForecastJob, ForecastReply, ForecastKind, SessionEvent};
+use betadeck::session::{Event, ForecastJob, ForecastKind, ForecastReply, SessionEvent};
 use betadeck::signals::SimTime;
 use betadeck::telemetry::{AbortReason, Guard, GuardName, GuardOp, NavState, Refusal};
 use betadeck::ui::editor::FileReply;
@@ -176,10 +176,7 @@ fn another_plan_does_not_show_the_result_of_the_one_before() {
     });
     let revision = revision.expect("an estimate is asked for");
     let forecast = Err("The craft refuses the plan.".to_owned());
-    update(
-        &mut state,
-        Msg::Forecast(ForecastReply { revision, kind: ForecastKind::PlanEstimate, forecast }),
-    );
+    update(&mut state, Msg::Forecast(ForecastReply { revision, kind: ForecastKind::PlanEstimate, forecast }));
     assert!(screen(&state).contains("No flown estimate: The craft refuses"), "{}", screen(&state));
     keys(&mut state, ")");
     let seen = screen(&state);

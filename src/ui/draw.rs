@@ -14,10 +14,10 @@ use super::formatting;
 use super::layout::{self, SMALLEST};
 use super::panel::Panel;
 use super::panel::{self, span};
-use super::popup::{Popup, command_line, go_to, map_menu, palette, what_if};
+use super::popup::{Popup, command_line, go_to, guards, map_menu, palette, what_if};
 use super::text_wrap::wrapped;
 use super::theme::{Charset, Role};
-use super::{hint_bar, notice, permission, status_bar, timeline, tutorial};
+use super::{hint_bar, notice, panel_bar, permission, status_bar, timeline, tutorial};
 use crate::printable;
 
 /// Draws the state. Reads only.
@@ -28,9 +28,10 @@ pub fn draw(state: &AppState, frame: &mut Frame<'_>) {
         Some(screen) => {
             status_bar::draw(state, screen.status, buffer);
             let mut cursor = None;
-            for (panel, area) in screen.panels {
+            for &(panel, area) in &screen.panels {
                 cursor = cursor.or(framed_panel(state, panel, area, buffer));
             }
+            panel_bar::draw(state, &screen, buffer);
             hint_bar::draw(state, screen.hints, buffer);
             if let Some(area) = screen.timeline {
                 timeline::draw(state, area, buffer);
@@ -65,6 +66,10 @@ pub fn draw(state: &AppState, frame: &mut Frame<'_>) {
             }
             Popup::WhatIf { selected } => {
                 what_if::draw(state, *selected, area, buffer);
+                None
+            }
+            Popup::Guards { selected } => {
+                guards::draw(state, *selected, area, buffer);
                 None
             }
             Popup::Quit => {

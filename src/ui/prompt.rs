@@ -52,6 +52,7 @@ pub(super) fn question(state: &AppState) -> Option<Vec<String>> {
         Popup::Quit => Some(vec!["The craft is armed and flying ends here. Quit? y yes, n no.".to_owned()]),
         Popup::Permission => Some(vec![format!("{} y yes, n no.", permission::question(state))]),
         Popup::Help { .. }
+        | Popup::Guards { .. }
         | Popup::Plots { .. }
         | Popup::CommandLine
         | Popup::Palette(_)

@@ -6,7 +6,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
-use crate::telemetry::{Guard, GuardName};
+use crate::telemetry::{Guard, GuardName, NavState};
 use crate::ui::app_state::{AppState, Transition};
 use crate::ui::formatting::{clock, cut, fixed, signed, within};
 use crate::ui::panel::Panel;
@@ -133,6 +133,9 @@ fn draw_guards(state: &AppState, area: Rect, buffer: &mut Buffer) -> u16 {
         let text = format!("  in{} s at {speed} {}", fixed(Some(seconds), 5, 0), units.speed_unit());
         lines.push(Line::from(span(theme, Role::Dim, text)));
     }
+    if let Some(laps) = laps(state) {
+        lines.push(Line::from(span(theme, Role::Dim, laps)));
+    }
     lines.extend(watched.iter().map(|guard| {
         if wide { watch(theme, units, guard) } else { narrow_watch(theme, units, guard, area.width) }
     }));
@@ -142,6 +145,16 @@ fn draw_guards(state: &AppState, area: Rect, buffer: &mut Buffer) -> u16 {
         used += 1;
     }
     used.min(area.height)
+}
+
+/// How much of its ring an orbit flies in its time.
+fn laps(state: &AppState) -> Option<String> {
+    let vehicle = &state.view.vehicle;
+    let nav = vehicle.nav.as_ref().filter(|nav| nav.state == NavState::Orbiting)?;
+    let wp = vehicle.active_plan.as_ref()?.waypoints.get(usize::from(nav.wp))?;
+    let laps = vehicle.settings.as_ref()?.orbit_laps(wp)?;
+    let unit = if laps < 0.995 { "of a lap" } else { "laps" };
+    Some(format!("  {laps:.2} {unit} in {} s", short(f64::from(wp.duration_ds) / 10.0)))
 }
 
 /// How long the rest of the leg takes at the speed of the leg, s, and that speed, m/s. The speed of the moment says little
