@@ -33,7 +33,7 @@ pub use endpoint::{
     Transport,
 };
 pub use event::{CrashCause, DivergeCause, Event, EventKind, VehicleNotice};
-pub use failsafe::{FailsafeProcedure, RxLossPolicy};
+pub use failsafe::{FailsafeAhead, FailsafeProcedure, RxLossPolicy};
 pub use fault::{FaultKind, FaultValue};
 pub use firmware_event::{DisarmReason, FirmwareEvent};
 pub use firmware_notice::FirmwareNotice;

@@ -50,6 +50,7 @@ mod map_point;
 mod message;
 mod notice;
 mod panel;
+mod panel_bar;
 mod permission;
 mod popup;
 mod prompt;

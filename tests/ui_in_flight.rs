@@ -30,6 +30,53 @@ async fn a_cut_rc_link_shows_failsafe_and_the_landing_that_was_chosen() {
     rig.assert_shown(&["DISARMED", "The RC link is cut.", "x restores it", "◆ COMPLETE"]);
 }
 
+/// Steps through the flight until the screen shows this.
+async fn step_until(rig: &mut Rig, wanted: impl Fn(&AppState) -> bool) {
+    for _ in 0..400 {
+        if wanted(&rig.state) {
+            return;
+        }
+        let before = rig.time();
+        rig.keys(".").await;
+        rig.until("a step", |state| state.view.vehicle.time > before).await;
+    }
+    panic!("never seen\n{}", rig.screen());
+}
+
+#[tokio::test]
+async fn a_cut_link_counts_down_to_the_drop_and_the_panel_says_how_to_take_it_back() {
+    let mut rig = Rig::new().await;
+    rig.keys("F").await;
+    rig.fly_to(NavState::Approaching).await;
+    rig.keys("x").await;
+    step_until(&mut rig, |state| state.view.vehicle.craft.failsafe_ahead.is_some()).await;
+    rig.assert_shown(&["Failsafe in ", " s: DROP, motors off.", "x restores the link"]);
+    let ahead = rig.picture().craft.failsafe_ahead.unwrap();
+    let lost = rig.time();
+    step_until(&mut rig, |state| state.view.vehicle.craft.armed == Some(false)).await;
+    let passed_s = rig.time().seconds_since(lost);
+    assert!((passed_s - ahead.in_s).abs() < 0.1, "{ahead:?}, {passed_s} s passed");
+    rig.assert_shown(&["Disarmed in the air.", "{, then b takes it back", "puts the craft back home"]);
+    rig.keys(" ").await;
+    rig.until("the crash", |state| state.view.vehicle.truth.as_ref().unwrap().crashed).await;
+    rig.assert_shown(&["The craft crashed.", "{, then b takes it back"]);
+    rig.keys("{").await;
+    rig.until("the state before", AppState::is_rewound).await;
+    rig.keys("b").await;
+    rig.until("the flight", |state| !state.is_rewound()).await;
+    assert_eq!(rig.picture().craft.armed, Some(true), "{}", rig.screen());
+}
+
+#[tokio::test]
+async fn disarming_in_flight_says_how_to_take_it_back() {
+    let mut rig = Rig::new().await;
+    rig.keys("F").await;
+    rig.fly_to(NavState::Approaching).await;
+    rig.keys("a").await;
+    step_until(&mut rig, |state| state.view.vehicle.craft.armed == Some(false)).await;
+    rig.assert_shown(&["Disarmed in the air.", "{, then b takes it back"]);
+}
+
 #[tokio::test]
 async fn a_lost_gps_fix_shows_why_the_autopilot_idles_and_its_return_resumes_the_mission() {
     let mut rig = Rig::new().await;
@@ -41,10 +88,10 @@ async fn a_lost_gps_fix_shows_why_the_autopilot_idles_and_its_return_resumes_the
     let lost = rig.time();
     rig.keys(".").await;
     rig.until("a step", |state| state.view.vehicle.time > lost).await;
-    rig.assert_shown(&["⌖ no", "AUTOPILOT refused: The GPS fix was lost", "resumes 2 s after it is back"]);
+    rig.assert_shown(&["⊕ no", "AUTOPILOT refused: The GPS fix was lost", "resumes 2 s after it is back"]);
     rig.keys(":end gps-loss\n").await;
     rig.fly_to(NavState::Approaching).await;
-    rig.assert_shown(&["● ARMED AUTOPILOT", "⌖ 3D", "IDLE → APPROACHING"]);
+    rig.assert_shown(&["● ARMED AUTOPILOT", "⊕ 3D", "IDLE → APPROACHING"]);
 }
 
 #[tokio::test]

@@ -166,7 +166,7 @@ fn what_does_not_fit_the_status_line_ends_in_an_ellipsis() {
     fixture::approach(&mut state);
     let screen = text(&state);
     let first = screen.lines().next().expect("a status line");
-    assert!(first.contains("● ARMED AUTOPILOT …  ⌖ 3D 12 sats"), "{first}");
+    assert!(first.contains("● ARMED AUTOPILOT …  ⊕ 3D 12 sats"), "{first}");
     let second = screen.lines().nth(1).expect("a status line");
     assert!(second.contains("62.3 m") && second.contains("50.2 m"), "distance and height first: {second}");
 }

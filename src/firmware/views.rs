@@ -4,7 +4,7 @@ use crate::geo::LatLon;
 use crate::plan::FlightPlan;
 use crate::signals::{RC_CHANNELS, RcSource, SimTime};
 use crate::telemetry::snapshot::{CraftView, EstimateView, GpsView, ModeRange, SettingsView};
-use crate::telemetry::{ArmingFlags, DisarmReason, FirmwareEvent, ModeFlags, NavTelemetry};
+use crate::telemetry::{ArmingFlags, DisarmReason, FailsafeAhead, FirmwareEvent, ModeFlags, NavTelemetry};
 
 use super::config::{Configuration, ModeCondition};
 use super::estimate::Estimate;
@@ -226,9 +226,22 @@ impl Firmware {
             rc_age_s: self.receiver().last_frame().map(|last| self.now.seconds_since(last)),
             rc_link: Some(self.receiver().signal()),
             failsafe_stage: Some(self.navigation.failsafe().stage()),
+            failsafe_ahead: self.failsafe_ahead(),
             commanded: Some(self.navigation.is_commanded()),
             mode_ranges: Some(self.mode_ranges()),
         }
+    }
+
+    /// The failsafe that starts when the lost link does not come back in time.
+    fn failsafe_ahead(&self) -> Option<FailsafeAhead> {
+        let receiver = self.receiver();
+        if !self.is_armed() || receiver.signal() || self.navigation.failsafe().active() {
+            return None;
+        }
+        let lost_for_s = self.now.seconds_since(receiver.last_frame()?);
+        let in_s = (self.parameters().link.delay_s - lost_for_s).max(0.0);
+        let procedure = self.navigation.failsafe_response(self.parameters()).procedure();
+        Some(FailsafeAhead { in_s, procedure })
     }
 
     /// What the estimator believes; `n` and `e` count from [`Firmware::origin`].
@@ -263,6 +276,7 @@ impl Firmware {
             fence_m: nav.fence_m(),
             max_angle_deg: f64::from(nav.max_angle),
             max_velocity_mps: nav.max_velocity_mps(),
+            max_turn_rate_dps: f64::from(nav.max_turn_rate),
             climb_mps: nav.climb_rate_mps(),
             hover_stick_us: self.hover_stick_us(),
             raised_stick_us: self.raised_stick_us(),

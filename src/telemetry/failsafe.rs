@@ -46,3 +46,12 @@ pub enum FailsafeProcedure {
     #[strum(to_string = "LAND")]
     Land,
 }
+
+/// The failsafe that comes while the receiver link is lost and its guard time runs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FailsafeAhead {
+    /// Time until the procedure starts, s.
+    pub in_s: f64,
+    /// What it would be now.
+    pub procedure: FailsafeProcedure,
+}

@@ -89,6 +89,53 @@ pub enum GuardName {
 }
 
 impl GuardName {
+    /// What is compared and what follows, in a sentence or two.
+    #[must_use]
+    pub fn explanation(self) -> &'static str {
+        match self {
+            Self::Fix => "A GPS fix with altitude is needed: 1 when there is one.",
+            Self::Plan => "Number of waypoints of the plan: there must be one to fly.",
+            Self::Fence => "Distance from home. Beyond the limit the mission ends.",
+            Self::Climb => {
+                "Altitude reached in the climb before the first leg. The leg begins when it is high enough."
+            }
+            Self::NoProgress => {
+                "Time since the craft last came nearer to the waypoint. The mission is given up at the limit."
+            }
+            Self::Flyaway => {
+                "Distance to the waypoint, against the least so far and a margin. The mission is given up beyond it."
+            }
+            Self::Arrival => "Distance to the waypoint. It is reached within the arrival or hold radius.",
+            Self::Altitude => "Altitude error. A TAKEOFF or a HOLD waits until it is small enough.",
+            Self::HeldOffAltitude => {
+                "Time within the hold radius without getting nearer to the altitude of the HOLD. At the limit it goes on."
+            }
+            Self::TurnRadius => "Distance to a FLYBY. The turn to the next leg begins at its turn radius.",
+            Self::Overrun => {
+                "Distance to a waypoint that was flown past. Beyond the limit the next leg begins."
+            }
+            Self::Plane => {
+                "Distance past the plane through the waypoint, square to the leg. 0 is the waypoint."
+            }
+            Self::Beside => {
+                "Distance from the waypoint where the craft crossed its plane. Nearer than the limit counts as reached."
+            }
+            Self::HoldTime => "Time in the hold. At the limit the mission goes on.",
+            Self::TouchdownAltitude => "Altitude: a landing ends only this low.",
+            Self::TouchdownSpeed => "Ground speed: a landing ends only this slow.",
+            Self::TouchdownThrottle => "Commanded throttle: a craft on the ground needs less than this.",
+            Self::TouchdownSink => "Climb rate: a craft on the ground sinks no more.",
+            Self::Descent => "Way down since the landing began: there must be some.",
+            Self::BelowHover => {
+                "How far the commanded throttle is below the hover throttle: the ground carries the rest."
+            }
+            Self::TouchdownTime => {
+                "Time for which all other guards of the touchdown have held. At the limit the craft disarms."
+            }
+            Self::Stationary => "Time for which the craft has not moved although it is commanded to descend.",
+        }
+    }
+
     /// Unit of the value and its limit.
     #[must_use]
     pub fn unit(self) -> GuardUnit {

@@ -5,10 +5,11 @@
 use nalgebra::Vector2;
 
 use crate::geo::{GRAVITY, LatLon};
-use crate::plan::FlightPlan;
+use crate::plan::{FlightPlan, Waypoint};
 use crate::signals::{RC_CHANNELS, RcSource, SimTime};
 use crate::telemetry::{
-    ArmingFlags, FaultKind, FaultValue, Mode, ModeBox, ModeFlags, NavTelemetry, Turbulence, switch,
+    ArmingFlags, FailsafeAhead, FaultKind, FaultValue, Mode, ModeBox, ModeFlags, NavTelemetry, Turbulence,
+    switch,
 };
 
 /// The whole picture.
@@ -147,6 +148,8 @@ pub struct CraftView {
     pub rc_link: Option<bool>,
     /// Failsafe stage: 0 none, 1 guard time, 2 procedure.
     pub failsafe_stage: Option<u8>,
+    /// The failsafe that is about to start; `None` while none is, or where it is not known.
+    pub failsafe_ahead: Option<FailsafeAhead>,
     /// A command, not a switch, has the craft fly home or land.
     pub commanded: Option<bool>,
     /// The mode conditions in force: what the RC panel draws on the AUX bars.
@@ -246,6 +249,8 @@ pub struct SettingsView {
     pub max_angle_deg: f64,
     /// `ap_max_velocity`, m/s.
     pub max_velocity_mps: f64,
+    /// `ap_max_turn_rate`, degrees per second.
+    pub max_turn_rate_dps: f64,
     /// `alt_hold_climb_rate`, m/s.
     pub climb_mps: f64,
     /// Where the throttle stick rests in ALTHOLD, µs.
@@ -261,6 +266,23 @@ impl SettingsView {
     #[must_use]
     pub fn turn_radius_m(&self, speed_mps: f64) -> f64 {
         speed_mps * speed_mps / (GRAVITY * self.max_angle_deg.to_radians().tan()).max(0.1)
+    }
+
+    /// How many laps of its ring an ORBIT of this waypoint flies in its time; `None` when it has no end.
+    #[must_use]
+    pub fn orbit_laps(&self, wp: &Waypoint) -> Option<f64> {
+        if wp.duration_ds == 0 {
+            return None;
+        }
+        let speed_mps = match wp.speed_cms {
+            0 => self.max_velocity_mps,
+            cms => f64::from(cms) / 100.0,
+        };
+        let radius_m = self.orbit_radius_m.max(0.1);
+        // As the autopilot limits it: by the setting, the speed of the leg and half of the greatest lean.
+        let by_lean = (0.5 * GRAVITY * self.max_angle_deg.to_radians().tan() / radius_m).sqrt();
+        let rate_rps = self.max_turn_rate_dps.to_radians().min(speed_mps / radius_m).min(by_lean);
+        Some(rate_rps * f64::from(wp.duration_ds) / 10.0 / std::f64::consts::TAU)
     }
 }
 

@@ -172,6 +172,8 @@ pub enum Action {
     KnobEdit,
     /// The selected knob to its default.
     KnobDefault,
+    /// What the guards and abbreviations mean.
+    ExplainGuards,
     /// Search in the log.
     Search,
     /// To the next older match.

@@ -278,6 +278,7 @@ impl AppState {
         let severity = Severity::of(&event.kind);
         if let SessionEvent::Branch { .. } = event.kind {
             self.leave_behind(event.time);
+            self.forecast.forget_what_if();
         }
         if !text.is_empty() {
             self.log.push(event.time, severity, text.clone());

@@ -4,12 +4,21 @@ use ratatui::buffer::Buffer;
 
 /// Replaces every character outside ASCII in `buffer`.
 pub(super) fn replace(buffer: &mut Buffer) {
-    for cell in &mut buffer.content {
-        if cell.symbol().is_ascii() {
+    let width = usize::from(buffer.area.width).max(1);
+    for at in 0..buffer.content.len() {
+        let symbol = buffer.content[at].symbol();
+        if symbol.is_ascii() {
             continue;
         }
-        let plain = cell.symbol().chars().next().map_or(' ', plain);
-        cell.set_char(plain);
+        let first = symbol.chars().next();
+        // `<=` takes the blank behind it.
+        if let Some('≤' | '≥') = first
+            && (at + 1) % width != 0
+            && let Some(next) = buffer.content.get_mut(at + 1).filter(|next| next.symbol() == " ")
+        {
+            next.set_char('=');
+        }
+        buffer.content[at].set_char(first.map_or(' ', plain));
     }
 }
 
@@ -26,7 +35,7 @@ fn plain(c: char) -> char {
         '▯' | '░' | '·' | '┈' => '.',
         '˙' => '\'',
         '◆' | '◇' | '×' | '✎' => '*',
-        '⌖' | '⊕' => '+',
+        '⊕' => '+',
         '⇄' => '=',
         '⌂' => 'H',
         '▲' | '↑' => '^',

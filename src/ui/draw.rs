@@ -3,6 +3,7 @@
 use ratatui::Frame;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
+use ratatui::style::Color;
 use ratatui::text::Line;
 use ratatui::widgets::{Block, BorderType, Clear, Widget as _};
 
@@ -13,10 +14,10 @@ use super::formatting;
 use super::layout::{self, SMALLEST};
 use super::panel::Panel;
 use super::panel::{self, span};
-use super::popup::{Popup, command_line, go_to, map_menu, palette, what_if};
+use super::popup::{Popup, command_line, go_to, guards, map_menu, palette, what_if};
 use super::text_wrap::wrapped;
 use super::theme::{Charset, Role};
-use super::{hint_bar, notice, permission, status_bar, timeline, tutorial};
+use super::{hint_bar, notice, panel_bar, permission, status_bar, timeline, tutorial};
 use crate::printable;
 
 /// Draws the state. Reads only.
@@ -27,9 +28,10 @@ pub fn draw(state: &AppState, frame: &mut Frame<'_>) {
         Some(screen) => {
             status_bar::draw(state, screen.status, buffer);
             let mut cursor = None;
-            for (panel, area) in screen.panels {
+            for &(panel, area) in &screen.panels {
                 cursor = cursor.or(framed_panel(state, panel, area, buffer));
             }
+            panel_bar::draw(state, &screen, buffer);
             hint_bar::draw(state, screen.hints, buffer);
             if let Some(area) = screen.timeline {
                 timeline::draw(state, area, buffer);
@@ -66,6 +68,10 @@ pub fn draw(state: &AppState, frame: &mut Frame<'_>) {
                 what_if::draw(state, *selected, area, buffer);
                 None
             }
+            Popup::Guards { selected } => {
+                guards::draw(state, *selected, area, buffer);
+                None
+            }
             Popup::Quit => {
                 quit_question(state, area, buffer);
                 None
@@ -83,11 +89,26 @@ pub fn draw(state: &AppState, frame: &mut Frame<'_>) {
         };
     }
     clean(buffer);
+    paint_background(state, buffer);
     if state.theme.charset == Charset::Ascii {
         ascii::replace(buffer);
     }
     if let Some(position) = cursor.filter(|&position| area.contains(position)) {
         frame.set_cursor_position(position);
+    }
+}
+
+/// Gives cells without colours of their own those of a theme that does not rely on the terminal's.
+fn paint_background(state: &AppState, buffer: &mut Buffer) {
+    let Some(background) = state.theme.background() else { return };
+    let text = state.theme.colour(Role::Text);
+    for cell in &mut buffer.content {
+        if cell.bg == Color::Reset {
+            cell.bg = background;
+        }
+        if cell.fg == Color::Reset {
+            cell.fg = text;
+        }
     }
 }
 

@@ -13,6 +13,7 @@ use crate::session::{Forecast, ForecastJob, ForecastKind, ForecastReply, Forecas
 use crate::signals::SimTime;
 
 use super::app_state::AppState;
+use super::editor::PlanId;
 use super::event_log::Severity;
 use super::formatting::within;
 use super::message::Effect;
@@ -83,6 +84,8 @@ pub struct ForecastState {
     /// What the newest estimate was asked for.
     basis: Option<EstimateBasis>,
     estimate: Asked,
+    /// The plan that the estimate is of.
+    estimated: Option<PlanId>,
     look_ahead: Option<LookAhead>,
     what_if: Option<ChosenWhatIf>,
 }
@@ -130,6 +133,11 @@ impl ForecastState {
         Effect::Forecast(ForecastJob { revision: self.revision, request })
     }
 
+    /// The flight goes on from another instant than the one a what-if was flown from.
+    pub(super) fn forget_what_if(&mut self) {
+        self.what_if = None;
+    }
+
     /// The ghost and its line are not wanted any more; says whether there were any.
     pub(super) fn dismiss(&mut self) -> bool {
         let what_if = self.what_if.take().is_some();
@@ -144,8 +152,13 @@ pub(super) fn follow_plan(state: &mut AppState) -> Option<Effect> {
         return None;
     }
     let basis = EstimateBasis::of(state);
-    let now = state.now;
+    let (now, id) = (state.now, state.editor.plan().id());
     let forecast = &mut state.forecast;
+    let is_other = forecast.estimated.replace(id).is_some_and(|estimated| estimated != id);
+    if is_other {
+        // A result of the plan before, as numbers or as a refusal, says nothing of this one.
+        forecast.estimate.answer = None;
+    }
     let effect = basis.has_waypoints().then(|| forecast.job(basis.request()));
     if effect.is_some() {
         forecast.estimate.ask(forecast.revision, now);

@@ -108,7 +108,8 @@ fn hint_actions(state: &AppState) -> Vec<(&'static [Action], &'static str)> {
             (&[Action::KnobEnter], "change"),
         ]),
         Panel::Log => hints.extend([(&[Action::Search] as &[_], "search"), (&[Action::Filter], "filter")]),
-        Panel::Map | Panel::State => {}
+        Panel::State => hints.push((&[Action::ExplainGuards], "explain")),
+        Panel::Map => {}
     }
     if permission::real_craft(state).is_some() {
         if state.focus != Panel::Plan {
@@ -123,6 +124,9 @@ fn hint_actions(state: &AppState) -> Vec<(&'static [Action], &'static str)> {
         return hints;
     }
     let wrecked = is_wrecked(state);
+    if state.view.timeline.is_some() && (wrecked || state.is_disarmed_in_the_air()) {
+        hints.push((&[Action::StateBack], "back in time"));
+    }
     if wrecked {
         hints.push((&[Action::ResetCraft], "reset"));
     }

@@ -11,6 +11,7 @@ use super::drawing;
 use super::event_log::Severity;
 use super::formatting::{cut, within};
 use super::text_wrap::wrapped;
+use super::tutorial;
 
 /// How long a notice stays.
 const NOTICE_FOR: Duration = Duration::from_secs(8);
@@ -21,15 +22,15 @@ const PINNED_ROWS: usize = 5;
 /// Ends a notice that stays.
 const CLOSED_BY: &str = "Esc closes this.";
 
-/// Draws the newest notice for a moment: in the frame of the lowest panels, and in the row above it when it is long. Above
-/// it stands the oldest of those that stay.
+/// Draws the newest notice for a moment: in the frame of the lowest panels, and in the row above it when it is long; all of
+/// it above the tutorial while that is shown. Above it stands the oldest of those that stay.
 pub(super) fn draw(state: &AppState, hints: Rect, buffer: &mut Buffer) {
     let width = usize::from(hints.width.saturating_sub(6));
     let newest = state.notice.as_ref().filter(|notice| within(state.now, notice.at, NOTICE_FOR));
     let newest = newest.map(|notice| (notice.severity, notice.text.clone(), NOTICE_ROWS));
     let pinned =
         state.pinned.first().map(|text| (Severity::Fault, format!("{text} {CLOSED_BY}"), PINNED_ROWS));
-    let mut above = 1;
+    let mut above = 1 + tutorial::rows(state, hints);
     for (severity, text, rows) in newest.into_iter().chain(pinned) {
         let style = state.theme.style(severity.role());
         let mut lines = wrapped(&format!("{} {text}", severity.glyph()), width);

@@ -2,6 +2,7 @@
 
 pub(super) mod command_line;
 pub(super) mod go_to;
+pub(super) mod guards;
 pub(super) mod map_menu;
 pub(super) mod palette;
 pub(super) mod what_if;
@@ -26,6 +27,11 @@ pub enum Popup {
     /// What may go wrong now, to fly ahead with it.
     WhatIf {
         /// The row that Enter takes.
+        selected: usize,
+    },
+    /// What the guards and abbreviations mean.
+    Guards {
+        /// The row that is explained.
         selected: usize,
     },
     /// "The craft is armed. Quit?"

@@ -52,6 +52,7 @@ pub(super) fn question(state: &AppState) -> Option<Vec<String>> {
         Popup::Quit => Some(vec!["The craft is armed and flying ends here. Quit? y yes, n no.".to_owned()]),
         Popup::Permission => Some(vec![format!("{} y yes, n no.", permission::question(state))]),
         Popup::Help { .. }
+        | Popup::Guards { .. }
         | Popup::Plots { .. }
         | Popup::CommandLine
         | Popup::Palette(_)
@@ -129,7 +130,7 @@ fn decision(state: &AppState, question: &Question) -> Vec<String> {
         }
     };
     let later = match question {
-        Question::Unsaved { quits: true, .. } => "; quit once more ends and keeps them for later",
+        Question::Unsaved { quits: true, .. } => "; quit once more ends, too",
         _ => "",
     };
     vec![format!("{text} Answer {}{later}.", choices(question))]

@@ -85,7 +85,7 @@ fn sensors(state: &AppState) -> Vec<Span<'static>> {
     };
     let sats = craft.sats.map_or_else(|| "—".to_owned(), |sats| sats.to_string());
     let mut spans =
-        vec![span(theme, role, format!("⌖ {fix:<2} {sats:>2} sats")), span(theme, Role::Text, "  ")];
+        vec![span(theme, role, format!("⊕ {fix:<2} {sats:>2} sats")), span(theme, Role::Text, "  ")];
     let (bar, role) = battery_bar(craft.battery_v, craft.battery_cells);
     spans.push(span(theme, role, format!("{bar} {} V", fixed(craft.battery_v, 4, 1))));
     spans.push(span(theme, Role::Text, "  "));

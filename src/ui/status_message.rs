@@ -2,7 +2,10 @@
 
 mod remote;
 
-use crate::telemetry::{ArmingFlag, ArmingFlags, CannotHold, HoldLimit, LinkState, Mode, NavState, Refusal};
+use crate::telemetry::{
+    AbortReason, ArmingFlag, ArmingFlags, CannotHold, FailsafeAhead, FailsafeProcedure, HoldLimit, LinkState,
+    Mode, NavState, Refusal,
+};
 
 use super::action::{Action, EditAction};
 use super::app_state::AppState;
@@ -95,7 +98,7 @@ pub fn current(state: &AppState) -> Option<StatusMessage> {
     }
     if let Some(truth) = &vehicle.truth {
         if truth.crashed {
-            let action = format!("{} puts it back home", key(Action::ResetCraft));
+            let action = format!("{}{} puts it back home", way_back(state), key(Action::ResetCraft));
             return message(Severity::Fault, "The craft crashed.", action);
         }
         if truth.diverged {
@@ -106,8 +109,14 @@ pub fn current(state: &AppState) -> Option<StatusMessage> {
             );
         }
     }
+    if let Some(ahead) = craft.failsafe_ahead {
+        return failsafe_ahead(state, ahead);
+    }
     if vehicle.is_engaged() {
         return in_flight(state);
+    }
+    if state.is_disarmed_in_the_air() {
+        return disarmed_in_the_air(state);
     }
     let switched_on = transmitter::switch_is_on(state, Mode::Autopilot);
     if state.view.rc_cut {
@@ -142,14 +151,6 @@ pub fn current(state: &AppState) -> Option<StatusMessage> {
         return by_hand(state);
     }
     let outside = state.view.simulator.is_some();
-    if state.is_disarmed_in_the_air() {
-        let action = if outside {
-            "reset the simulator's world".to_owned()
-        } else {
-            format!("{} puts the craft back home", key(Action::ResetCraft))
-        };
-        return message(Severity::Fault, "Disarmed in the air.", action);
-    }
     if vehicle.nav.as_ref().is_some_and(|nav| nav.state == NavState::Complete) {
         let again = format!("{} flies again", key(Action::Fly));
         let action = if outside {
@@ -201,6 +202,48 @@ pub fn current(state: &AppState) -> Option<StatusMessage> {
     }
     let by_hand = [Action::Arm, Action::Throttle, Action::Autopilot].map(key).join(", ");
     message(Severity::Good, "Ready.", format!("{} flies the plan; by hand: {by_hand}", key(Action::Fly)))
+}
+
+/// How long the lost link has to come back, and what happens if it does not.
+fn failsafe_ahead(state: &AppState, ahead: FailsafeAhead) -> Option<StatusMessage> {
+    let does = match ahead.procedure {
+        FailsafeProcedure::Drop => "motors off",
+        FailsafeProcedure::AutoLand => "it comes down here, level",
+        FailsafeProcedure::GpsRescue => "it flies home and lands",
+        FailsafeProcedure::Continue => "the mission goes on",
+        FailsafeProcedure::Land => "it lands here",
+    };
+    let severity = match ahead.procedure {
+        FailsafeProcedure::Continue => Severity::Warn,
+        _ => Severity::Fault,
+    };
+    let condition = format!("Failsafe in {:.1} s: {}, {does}.", ahead.in_s, ahead.procedure);
+    let action = if state.view.rc_cut {
+        format!("{} restores the link", state.key(Action::CutRc))
+    } else {
+        "send RC frames again".to_owned()
+    };
+    message(severity, condition, action)
+}
+
+/// A craft that falls without its motors.
+fn disarmed_in_the_air(state: &AppState) -> Option<StatusMessage> {
+    let action = if state.view.simulator.is_some() {
+        "reset the simulator's world".to_owned()
+    } else {
+        format!("{}{} puts the craft back home", way_back(state), state.key(Action::ResetCraft))
+    };
+    message(Severity::Fault, "Disarmed in the air.", action)
+}
+
+/// The keys that take a mishap back, where the flight is recorded.
+fn way_back(state: &AppState) -> String {
+    if state.view.timeline.is_none() {
+        return String::new();
+    }
+    // A flight by hand has no state to go back to.
+    let back = if state.transitions.is_empty() { Action::EventBack } else { Action::StateBack };
+    format!("{}, then {} takes it back; ", state.key(back), state.key(Action::FlyOn))
 }
 
 /// What to know of a mission that is flown.
@@ -296,7 +339,19 @@ fn action_after(state: &AppState, refusal: Refusal) -> String {
             format!("{} CLI: set ap_throttle_min", key(Action::Show(Panel::Cli)))
         }
         Refusal::Failsafe => format!("{} restores the link", key(Action::CutRc)),
-        Refusal::Aborted(_) => format!("{} off and on again resumes", key(Action::Autopilot)),
+        Refusal::Aborted(AbortReason::GpsLost) => {
+            format!("wait for satellites, or {} switches AUTOPILOT off: fly by hand", key(Action::Autopilot))
+        }
+        Refusal::Aborted(AbortReason::NoPlan) => {
+            format!(
+                "{} uploads the plan, {} off and on again flies it",
+                key(Action::Upload),
+                key(Action::Autopilot)
+            )
+        }
+        Refusal::Aborted(AbortReason::Stalled | AbortReason::Flyaway) => {
+            format!("{} off and on again resumes", key(Action::Autopilot))
+        }
     }
 }
 

@@ -3,6 +3,8 @@
 use ratatui::style::{Color, Modifier, Style};
 use ratatui::symbols::Marker;
 
+use crate::telemetry::GuardOp;
+
 /// The meaning of a piece of text or a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, strum::EnumIter)]
 pub enum Role {
@@ -120,6 +122,25 @@ impl Theme {
         }
     }
 
+    /// A comparison in the character set.
+    #[must_use]
+    pub(super) fn operator(&self, op: GuardOp) -> &'static str {
+        match (op, self.charset) {
+            (GuardOp::AtMost, Charset::Unicode) => "≤",
+            (GuardOp::AtMost, Charset::Ascii) => "<=",
+            (GuardOp::AtLeast, Charset::Unicode) => "≥",
+            (GuardOp::AtLeast, Charset::Ascii) => ">=",
+            (GuardOp::Below, _) => "<",
+            (GuardOp::Above, _) => ">",
+        }
+    }
+
+    /// The background colour that is painted, where the terminal's own cannot be relied on.
+    #[must_use]
+    pub fn background(&self) -> Option<Color> {
+        (self.palette == Palette::Light).then_some(Color::Rgb(250, 250, 247))
+    }
+
     /// The foreground colour of a role.
     #[must_use]
     pub fn colour(&self, role: Role) -> Color {
@@ -139,7 +160,7 @@ impl Theme {
                 Role::Predicted => Color::LightBlue,
             },
             Palette::Light => match role {
-                Role::Text | Role::Selected => Color::Reset,
+                Role::Text | Role::Selected => Color::Rgb(32, 35, 40),
                 Role::Dim => Color::Rgb(104, 108, 116),
                 Role::Title => Color::Rgb(62, 68, 78),
                 Role::Focus | Role::Key => Color::Rgb(0, 92, 160),

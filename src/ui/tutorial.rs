@@ -2,6 +2,7 @@
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
+use unicode_width::UnicodeWidthStr as _;
 
 use super::action::{Action, EditAction};
 use super::app_state::AppState;
@@ -9,6 +10,7 @@ use super::drawing;
 use super::event_log::Severity;
 use super::formatting::cut;
 use super::panel::Panel;
+use super::text_wrap::wrapped;
 use super::theme::Role;
 
 /// A tutorial that is under way.
@@ -21,42 +23,77 @@ pub struct Tutorial {
     rewound: bool,
 }
 
-/// A step: what to do, the keys of these actions in place of `{}`; and when it is done.
-struct Step {
+/// What to do, the keys of the actions in place of `{}`.
+struct Text {
     text: &'static str,
     actions: &'static [Action],
+}
+
+/// A step: what to do, what to do once its first key was pressed, and when it is done.
+struct Step {
+    first: Text,
+    is_begun: fn(&AppState) -> bool,
+    then: Text,
     is_done: fn(&AppState, &Tutorial) -> bool,
 }
 
 const STEPS: [Step; 5] = [
     Step {
-        text: "Press {}: a pilot arms the craft, climbs and engages the autopilot on the plan of the map.",
-        actions: &[Action::Fly],
+        first: Text {
+            text: "Press {}: a pilot arms the craft, climbs and engages the autopilot on the plan of the map.",
+            actions: &[Action::Fly],
+        },
+        is_begun: |state| state.view.pilot.is_some(),
+        then: Text {
+            text: "The pilot arms, climbs and engages the autopilot: wait and watch; {} would stop it.",
+            actions: &[Action::Fly],
+        },
         is_done: |state, _| state.view.vehicle.is_engaged(),
     },
     Step {
-        text: "The State panel says what ends the leg. Press {} some times: time goes faster; {} is real time.",
-        actions: &[Action::Faster, Action::RealTime],
+        first: Text {
+            text: "The State panel says what ends the leg. Press {} some times: time goes faster; {} is real time.",
+            actions: &[Action::Faster, Action::RealTime],
+        },
+        is_begun: |state| state.view.speed_wanted > 1.0,
+        then: Text { text: "That is 2×: press {} again, for 4×.", actions: &[Action::Faster] },
         is_done: |state, _| state.view.speed_wanted >= 4.0,
     },
     Step {
-        text: "Press {} for the plan and change a value: arrows choose it, {} and {} nudge it, {} types it.",
-        actions: &[
-            Action::Show(Panel::Plan),
-            Action::Edit(EditAction::Raise),
-            Action::Edit(EditAction::Lower),
-            Action::Edit(EditAction::Cell),
-        ],
+        first: Text {
+            text: "Press {} for the plan, to change a value.",
+            actions: &[Action::Show(Panel::Plan)],
+        },
+        is_begun: |state| state.focus == Panel::Plan,
+        then: Text {
+            text: "Arrows choose a value, {} and {} nudge it, {} types it.",
+            actions: &[
+                Action::Edit(EditAction::Raise),
+                Action::Edit(EditAction::Lower),
+                Action::Edit(EditAction::Cell),
+            ],
+        },
         is_done: |state, tutorial| state.editor.plan().history().at() != tutorial.revision,
     },
     Step {
-        text: "The craft has the old plan: {} uploads yours ({} would take the edit back).",
-        actions: &[Action::Upload, Action::Edit(EditAction::Undo)],
+        first: Text {
+            text: "The craft has the old plan: {} uploads yours ({} would take the edit back).",
+            actions: &[Action::Upload, Action::Edit(EditAction::Undo)],
+        },
+        is_begun: |state| state.view.upload.is_some(),
+        then: Text { text: "The upload is under way.", actions: &[] },
         is_done: |state, _| state.plan_is_on_craft(),
     },
     Step {
-        text: "Press {} to go back in time, event by event, and {} to come back to now.",
-        actions: &[Action::EventBack, Action::Newest],
+        first: Text {
+            text: "Press {} to go back in time, event by event, and {} to come back to now.",
+            actions: &[Action::EventBack, Action::Newest],
+        },
+        is_begun: AppState::is_rewound,
+        then: Text {
+            text: "Every panel shows that instant: {} goes further back, {} comes back to now.",
+            actions: &[Action::EventBack, Action::Newest],
+        },
         is_done: |state, tutorial| tutorial.rewound && !state.is_rewound(),
     },
 ];
@@ -94,15 +131,42 @@ pub(super) fn follow(state: &mut AppState) {
 /// What to do now, with the keys as they are.
 fn text(state: &AppState, tutorial: Tutorial) -> String {
     let Some(step) = STEPS.get(tutorial.step) else { return String::new() };
-    let keys = step.actions.iter().map(|&action| state.key(action));
-    let text = keys.fold(step.text.to_owned(), |text, key| text.replacen("{}", &key, 1));
+    let Text { text, actions } = if (step.is_begun)(state) { &step.then } else { &step.first };
+    let keys = actions.iter().map(|&action| state.key(action));
+    let text = keys.fold((*text).to_owned(), |text, key| text.replacen("{}", &key, 1));
     format!("{}/{} {text}", tutorial.step + 1, STEPS.len())
 }
 
-/// Draws the step in the frame above the hints, unless a notice stands there.
+/// Rows that the step takes at most.
+const ROWS: usize = 2;
+
+/// The step in rows.
+fn lines(state: &AppState, hints: Rect) -> Vec<String> {
+    let Some(tutorial) = state.tutorial else { return Vec::new() };
+    let width = usize::from(hints.width.saturating_sub(6));
+    let mut lines = wrapped(&text(state, tutorial), width);
+    if lines.len() > ROWS {
+        let rest = lines.split_off(ROWS - 1).join(" ");
+        lines.push(cut(&rest, width));
+    }
+    lines
+}
+
+/// The rows that the tutorial takes above the hints.
+pub(super) fn rows(state: &AppState, hints: Rect) -> u16 {
+    lines(state, hints).len() as u16
+}
+
+/// Draws the step in the frame above the hints, and in the row above it when it is long.
 pub(super) fn draw(state: &AppState, hints: Rect, buffer: &mut Buffer) {
-    let Some(tutorial) = state.tutorial else { return };
-    let text = format!(" ▸ {} ", text(state, tutorial));
-    let text = cut(&text, usize::from(hints.width.saturating_sub(2)));
-    drawing::text(buffer, hints.x + 1, hints.y.saturating_sub(1), text, state.theme.style(Role::Active));
+    let lines = lines(state, hints);
+    let widest = lines.iter().map(|line| line.width()).max().unwrap_or(0);
+    for (at, line) in lines.iter().enumerate() {
+        let above = (lines.len() - at) as u16;
+        let fill = " ".repeat(widest - line.width());
+        let mark = if at == 0 { "▸" } else { " " };
+        let text = format!(" {mark} {line}{fill} ");
+        let y = hints.y.saturating_sub(above);
+        drawing::text(buffer, hints.x + 1, y, text, state.theme.style(Role::Active));
+    }
 }

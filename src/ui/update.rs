@@ -306,6 +306,10 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
             state.popups.push(Popup::WhatIf { selected: 0 });
             Vec::new()
         }
+        Action::ExplainGuards => {
+            state.popups.push(Popup::Guards { selected: 0 });
+            Vec::new()
+        }
         Action::Pause => vec![Effect::Send(Command::Pause(!state.view.paused))],
         Action::Step => {
             let mut effects = Vec::new();

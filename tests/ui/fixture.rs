@@ -251,6 +251,7 @@ pub(crate) fn view(flight: &SimpleFlight) -> SessionView {
         fence_m: Some(500.0),
         max_angle_deg: 25.0,
         max_velocity_mps: 5.0,
+        max_turn_rate_dps: 3.0,
         climb_mps: 5.0,
         hover_stick_us: 1500,
         raised_stick_us: 1300,

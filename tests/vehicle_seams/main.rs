@@ -136,7 +136,7 @@ fn a_silent_flight_controller_is_shown_as_unknown_and_not_as_disarmed() {
     let vehicle = Vehicle::with_remote_controller(WorldConfig::default()).unwrap();
     let screen = screen(vehicle.snapshot());
     for unknown in
-        [" ○ — ", "⌖ —   — sats", " — V ", "The flight controller does not tell", "— on the craft?"]
+        [" ○ — ", "⊕ —   — sats", " — V ", "The flight controller does not tell", "— on the craft?"]
     {
         assert!(screen.contains(unknown), "{unknown}:\n{screen}");
     }

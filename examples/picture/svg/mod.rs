@@ -114,7 +114,7 @@ fn text(out: &mut String, run: &[&Cell], (x, top): (f64, f64), fill: &str, style
     );
     for cell in run {
         // Few fonts have the position mark.
-        escape(out, if cell.symbol() == "⌖" { "⊕" } else { cell.symbol() });
+        escape(out, cell.symbol());
     }
     out.push_str("</text>\n");
 }

@@ -146,7 +146,6 @@ impl Navigation {
         let inputs = &self.inputs;
         let held = [Mode::Autopilot, Mode::AltHold, Mode::PosHold].into_iter().any(|mode| modes.has(mode));
         let received = rc.receiver().received_sticks(&parameters.rx);
-        let procedure = parameters.failsafe.procedure;
         let facts = FailsafeFacts {
             now: uptime,
             armed: inputs.armed,
@@ -159,7 +158,7 @@ impl Navigation {
             fix: inputs.fix,
             home: inputs.home.is_some(),
             mission: self.orders.status(&self.navigator),
-            response: failsafe_response(&self.navigator, &parameters.nav, procedure, inputs.fix),
+            response: self.failsafe_response(parameters),
         };
         let policy = parameters.nav.rx_loss_policy;
         let mut report = |stage, response: Response| {
@@ -378,6 +377,11 @@ impl Navigation {
     /// Whether all the throttle there is does not lift the craft off the ground.
     pub(in crate::firmware) fn is_too_heavy(&self) -> bool {
         self.controllers.land.awaits_lift_off() && self.controllers.altitude.is_at_full_throttle()
+    }
+
+    /// What stage 2 of the failsafe would do now.
+    pub(in crate::firmware) fn failsafe_response(&self, parameters: &Parameters) -> Response {
+        failsafe_response(&self.navigator, &parameters.nav, parameters.failsafe.procedure, self.inputs.fix)
     }
 
     /// The failsafe.

@@ -11,6 +11,7 @@ const SETTINGS: SettingsView = SettingsView {
     fence_m: None,
     max_angle_deg: 25.0,
     max_velocity_mps: 10.0,
+    max_turn_rate_dps: 3.0,
     climb_mps: 5.0,
     hover_stick_us: 1500,
     raised_stick_us: 1300,

@@ -15,6 +15,8 @@ const RAISED_CM: i32 = 1000;
 
 /// Time of a HOLD that only waits for its altitude, ds; 0 would hold forever.
 const SHORTEST_HOLD_DS: u16 = 1;
+/// Time offered to a HOLD that lasts forever, ds.
+const OFFERED_HOLD_DS: u16 = 100;
 
 /// An edit that is offered.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,6 +57,10 @@ pub fn fix(document: &PlanDocument, finding: &Finding, home: LatLon) -> Option<F
             let inside = Vector2::new(bearing.cos(), bearing.sin()) * (INSIDE_FENCE * limit_m);
             wp.position = GroundPlane::new(home).to_position(inside);
             format!("move WP{index} inside the fence")
+        }
+        Finding::NeverFlown { index, kind: WaypointType::Hold } => {
+            waypoints.get_mut(index)?.duration_ds = OFFERED_HOLD_DS;
+            format!("hold WP{index} for {} s", OFFERED_HOLD_DS / 10)
         }
         Finding::NeverFlown { index, .. } => {
             let behind = waypoints.len().checked_sub(index + 1)?;

@@ -36,7 +36,10 @@ impl Question {
             Self::Replace { changed: false, .. } => {
                 &[('y', "replace it"), ('o', "other name"), ('n', "leave it")]
             }
-            Self::Unsaved { .. } => &[('s', "save"), ('d', "discard"), ('n', "stay")],
+            Self::Unsaved { quits: true, .. } => {
+                &[('s', "save"), ('d', "discard"), ('y', "quit, keep the edits for later"), ('n', "stay")]
+            }
+            Self::Unsaved { quits: false, .. } => &[('s', "save"), ('d', "discard"), ('n', "stay")],
         }
     }
 }

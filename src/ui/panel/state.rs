@@ -6,7 +6,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
-use crate::telemetry::{Guard, GuardName};
+use crate::telemetry::{Guard, GuardName, NavState};
 use crate::ui::app_state::{AppState, Transition};
 use crate::ui::formatting::{clock, cut, fixed, signed, within};
 use crate::ui::panel::Panel;
@@ -128,10 +128,13 @@ fn draw_guards(state: &AppState, area: Rect, buffer: &mut Buffer) -> u16 {
             if wide { wide_guard(theme, units, guard) } else { narrow_guard(theme, units, guard, area.width) }
         })
         .collect();
-    if let Some(eta) = nav.eta_s.filter(|eta| eta.is_finite()) {
-        let speed = fixed(state.view.vehicle.estimate.ground_speed_mps.map(|speed| units.speed(speed)), 4, 1);
-        let text = format!("  in{} s at {speed} {}", fixed(Some(eta), 5, 0), units.speed_unit());
+    if let Some((seconds, speed_mps)) = time_of_leg(state) {
+        let speed = short(units.speed(speed_mps));
+        let text = format!("  in{} s at {speed} {}", fixed(Some(seconds), 5, 0), units.speed_unit());
         lines.push(Line::from(span(theme, Role::Dim, text)));
+    }
+    if let Some(laps) = laps(state) {
+        lines.push(Line::from(span(theme, Role::Dim, laps)));
     }
     lines.extend(watched.iter().map(|guard| {
         if wide { watch(theme, units, guard) } else { narrow_watch(theme, units, guard, area.width) }
@@ -142,6 +145,31 @@ fn draw_guards(state: &AppState, area: Rect, buffer: &mut Buffer) -> u16 {
         used += 1;
     }
     used.min(area.height)
+}
+
+/// How much of its ring an orbit flies in its time.
+fn laps(state: &AppState) -> Option<String> {
+    let vehicle = &state.view.vehicle;
+    let nav = vehicle.nav.as_ref().filter(|nav| nav.state == NavState::Orbiting)?;
+    let wp = vehicle.active_plan.as_ref()?.waypoints.get(usize::from(nav.wp))?;
+    let laps = vehicle.settings.as_ref()?.orbit_laps(wp)?;
+    let unit = if laps < 0.995 { "of a lap" } else { "laps" };
+    Some(format!("  {laps:.2} {unit} in {} s", short(f64::from(wp.duration_ds) / 10.0)))
+}
+
+/// How long the rest of the leg takes at the speed of the leg, s, and that speed, m/s. The speed of the moment says little
+/// while the craft speeds up or turns.
+fn time_of_leg(state: &AppState) -> Option<(f64, f64)> {
+    let vehicle = &state.view.vehicle;
+    let nav = vehicle.nav.as_ref().filter(|nav| nav.eta_s.is_some())?;
+    let wp = vehicle.active_plan.as_ref()?.waypoints.get(usize::from(nav.wp))?;
+    let limit_mps = vehicle.settings.as_ref()?.max_velocity_mps;
+    let speed_mps = match wp.speed_cms {
+        0 => limit_mps,
+        cms => (f64::from(cms) / 100.0).min(limit_mps),
+    };
+    let seconds = nav.distance_m? / speed_mps;
+    seconds.is_finite().then_some((seconds, speed_mps))
 }
 
 /// Whether a guard ends the mission when it holds, so that it is good that it does not.
@@ -195,7 +223,7 @@ fn narrow_watch(theme: &Theme, units: Units, guard: &Guard, width: u16) -> Line<
 /// `✗ turn radius 62.4≤5.5 m`.
 fn narrow_guard(theme: &Theme, units: Units, guard: &Guard, width: u16) -> Line<'static> {
     let (mark, role) = verdict(guard);
-    Line::from(span(theme, role, narrow(units, guard, mark, &guard.op.to_string(), width)))
+    Line::from(span(theme, role, narrow(units, guard, mark, theme.operator(guard.op), width)))
 }
 
 /// A guard in one narrow line: name at the left, numbers at the right, as many blanks between as there is room for.

@@ -115,10 +115,13 @@ fn unsaved_plans_are_asked_for_and_quitting_twice_keeps_them() {
     let ask = |state: &mut AppState| {
         assert!(perform(state, Action::Quit).is_empty());
         let lines = asked(state);
-        assert!(lines[0].starts_with("mine has edits that no file holds. Answer s save, d discard, n stay;"));
+        assert!(lines[0].starts_with("mine has edits that no file holds. Answer s save, d discard, y quit, keep the edits for later, n stay;"));
     };
     ask(&mut state);
-    assert_eq!(answer(&mut state, "what").unwrap_err(), "Answer s save, d discard, n stay.");
+    assert_eq!(
+        answer(&mut state, "what").unwrap_err(),
+        "Answer s save, d discard, y quit, keep the edits for later, n stay."
+    );
     assert!(answer(&mut state, "stay").unwrap().effects.is_empty() && question(&state).is_none());
     ask(&mut state);
     assert!(matches!(answer(&mut state, "quit").unwrap().effects[..], [Effect::Quit]));

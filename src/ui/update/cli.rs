@@ -54,6 +54,7 @@ pub(super) fn paste(state: &mut AppState, text: &str) -> Vec<Effect> {
             | Popup::MapMenu(_)
             | Popup::Plots { .. }
             | Popup::WhatIf { .. }
+            | Popup::Guards { .. }
             | Popup::Permission
             | Popup::Quit,
         ) => None,

@@ -12,6 +12,7 @@ use crate::ui::message::Effect;
 use crate::ui::panel::Panel;
 use crate::ui::panel::plan::{self as plan_panel, PlanTarget};
 use crate::ui::panel::{rc, world};
+use crate::ui::panel_bar;
 use crate::ui::popup::Popup;
 use crate::ui::transmitter;
 use crate::ui::viewport::{MapMode, Viewport};
@@ -43,6 +44,11 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
         return effects;
     }
     let Some(screen) = layout::screen(state) else { return Vec::new() };
+    if event.kind == MouseEventKind::Down(MouseButton::Left)
+        && let Some(panel) = panel_bar::panel_at(state, &screen, (event.column, event.row))
+    {
+        return focus(state, panel);
+    }
     let at = match event.kind {
         // A drag belongs to the panel where it began, whatever it comes across.
         MouseEventKind::Drag(_) => state.pressed.and_then(|panel| Some((panel, screen.panel(panel)?))),

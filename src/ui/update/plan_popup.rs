@@ -89,7 +89,12 @@ fn question_key(state: &mut AppState, question: Question, event: KeyEvent) -> Ve
             }
             effects
         }
-        (question, _) => {
+        (Question::Unsaved { quits: true, .. }, 'y') if !state.editor.loses_edits => vec![Effect::Quit],
+        (question, answer) => {
+            if matches!((&question, answer), (Question::Unsaved { quits: true, .. }, 'y')) {
+                let text = "Edits are not kept: `s` saves this plan, `d` discards its edits.";
+                state.notify(Severity::Fault, text);
+            }
             state.editor.popup = Some(EditorPopup::Question(question));
             Vec::new()
         }

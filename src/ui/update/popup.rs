@@ -16,7 +16,7 @@ use crate::ui::history::LineField;
 use crate::ui::message::Effect;
 use crate::ui::permission;
 use crate::ui::popup::palette::Entry;
-use crate::ui::popup::{Popup, command_line, go_to, palette, what_if};
+use crate::ui::popup::{Popup, command_line, go_to, guards, palette, what_if};
 
 /// A key for the popup that was opened last; `found` is what it means without one.
 pub(super) fn key(state: &mut AppState, event: KeyEvent, found: Option<Action>) -> Vec<Effect> {
@@ -48,6 +48,18 @@ pub(super) fn key(state: &mut AppState, event: KeyEvent, found: Option<Action>) 
                 forecast::ask_what_if(state, what_if)
             }
         },
+        Some(Popup::Guards { selected }) => {
+            let mut chosen = *selected;
+            let stays = guards::key(&mut chosen, event);
+            let chosen = guards::limit(state, chosen);
+            match state.popups.last_mut() {
+                Some(Popup::Guards { selected }) if stays => *selected = chosen,
+                _ => {
+                    state.popups.pop();
+                }
+            }
+            Vec::new()
+        }
         Some(Popup::Quit) => quit_key(state, event),
         Some(Popup::Permission) => match event.code {
             KeyCode::Char('y' | 'Y') => permission::permit(state),
@@ -141,7 +153,7 @@ fn run(state: &mut AppState, line: &str) -> Vec<Effect> {
 
 fn quit_key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
     match event.code {
-        KeyCode::Char('y' | 'Y' | 'q') | KeyCode::Enter => {
+        KeyCode::Char('y' | 'Y') => {
             state.popups.pop();
             super::plan_popup::quit(state)
         }

@@ -3,6 +3,7 @@
 use crate::ui::app_state::AppState;
 use crate::ui::knobs;
 use crate::ui::layout;
+use crate::ui::map_point;
 use crate::ui::message::Effect;
 use crate::ui::panel;
 use crate::ui::panel::Panel;
@@ -48,11 +49,17 @@ pub(super) fn pan(state: &mut AppState, columns: f64, rows: f64) -> Vec<Effect> 
     Vec::new()
 }
 
+/// Zooms around the edit cursor, else around the craft where it is in the window, else around the middle.
 pub(super) fn zoom_map(state: &mut AppState, factor: f64) -> Vec<Effect> {
     if let Some(view) = viewport(state) {
         state.map.mode = match state.map.mode {
             MapMode::Follow(scale) => MapMode::Follow(scale * factor),
-            MapMode::Fit | MapMode::Free { .. } => view.zoomed(factor, view.centre),
+            MapMode::Fit | MapMode::Free { .. } => {
+                let cursor = state.map.edit.map(|cursor| cursor.place);
+                let place = cursor.or_else(|| map_point::craft(&state.view));
+                let place = place.filter(|&place| view.screen_cell(place).is_some());
+                view.zoomed(factor, place.unwrap_or(view.centre))
+            }
         };
     }
     Vec::new()

@@ -148,6 +148,14 @@ pub(super) const ROWS: &[Spec] = &[
         In(Panel::World),
     ),
     spec(
+        Action::ExplainGuards,
+        "state.explain",
+        "explain",
+        "Explain the guards and the abbreviations",
+        &["enter"],
+        In(Panel::State),
+    ),
+    spec(
         Action::Search,
         "log.search",
         "search",

@@ -20,6 +20,8 @@ use super::{PlacedWaypoint, Scene};
 const DASH_DOTS: f64 = 3.0;
 /// Dots from one dot of a predicted way to the next.
 const DOT_GAP: f64 = 4.0;
+/// Of the part of a ring that is not flown, one piece in this many is drawn.
+const RING_GAP: u32 = 6;
 /// A line of more dashes than this is drawn solid: the rest lies outside anyhow.
 const MAX_DASHES: f64 = 400.0;
 
@@ -76,6 +78,18 @@ impl LinePainter<'_, '_> {
 
     /// A circle; every second piece only if `broken`.
     fn circle(&mut self, centre: MapPoint, radius_m: f64, broken: bool) {
+        self.arcs(centre, radius_m, |piece, _| !broken || piece % 4 < 2);
+    }
+
+    /// The ring of an orbit, clockwise from north: of less than a lap, what is not flown in its time is faint.
+    fn ring(&mut self, centre: MapPoint, radius_m: f64, laps: f64) {
+        self.arcs(centre, radius_m, |piece, pieces| {
+            f64::from(piece) < laps * f64::from(pieces) || piece % RING_GAP == 0
+        });
+    }
+
+    /// The pieces of a circle that are wanted, by their number clockwise from north and the number of all.
+    fn arcs(&mut self, centre: MapPoint, radius_m: f64, is_wanted: impl Fn(u32, u32) -> bool) {
         if !(radius_m.is_finite() && radius_m > self.dot_m) {
             return;
         }
@@ -84,7 +98,7 @@ impl LinePainter<'_, '_> {
             let angle = f64::from(piece) / f64::from(pieces) * std::f64::consts::TAU;
             MapPoint::new(centre.n + radius_m * angle.cos(), centre.e + radius_m * angle.sin())
         };
-        for piece in (0..pieces).filter(|piece| !broken || piece % 4 < 2) {
+        for piece in (0..pieces).filter(|&piece| is_wanted(piece, pieces)) {
             self.line(at(piece), at(piece + 1));
         }
     }
@@ -168,7 +182,8 @@ fn figure(
     let Some(settings) = &state.view.vehicle.settings else { return };
     match (spot.wp.kind, spot.wp.pattern) {
         (WaypointType::Hold, HoldPattern::Orbit) => {
-            painter.circle(spot.place, settings.orbit_radius_m, false);
+            let laps = settings.orbit_laps(&spot.wp).unwrap_or(1.0);
+            painter.ring(spot.place, settings.orbit_radius_m, laps);
         }
         (WaypointType::Hold, HoldPattern::Figure8) => {
             let radius = settings.figure8_width_m / 2.0;

@@ -89,6 +89,13 @@ impl<W: Write> Lines<W> {
                 state.popups.clear();
                 self.list_commands()?;
             }
+            Some(Popup::Guards { .. }) => {
+                state.popups.clear();
+                let guards = state.view.vehicle.nav.iter().flat_map(|nav| &nav.guards);
+                for guard in guards.map(|guard| guard.name).collect::<Vec<_>>() {
+                    self.write(&format!("{guard}: {}", guard.explanation()))?;
+                }
+            }
             Some(Popup::Plots { .. }) => {
                 state.popups.clear();
                 self.write("Graphs are drawn on the screen: start without --plain.")?;

@@ -1,0 +1,74 @@
+//! Explanations of the guards that are shown, and of the abbreviations of the screen.
+
+use crossterm::event::{KeyCode, KeyEvent};
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+
+use crate::telemetry::Guard;
+use crate::ui::app_state::AppState;
+use crate::ui::draw::popup;
+use crate::ui::panel::row;
+use crate::ui::text_wrap::wrapped;
+use crate::ui::theme::Role;
+
+/// Columns of the inside.
+const WIDTH: u16 = 54;
+/// Rows of an explanation.
+const ROWS: u16 = 3;
+
+/// What the status lines and panels abbreviate.
+const ABBREVIATIONS: [(&str, &str); 6] = [
+    ("xte", "Cross-track error: how far the craft is beside its leg, positive to the right."),
+    ("fence", "Distance from home at which the mission ends: ap_max_distance_from_home."),
+    ("1×", "Speed of the simulated time: the one in force, and the one asked for where that is more."),
+    ("sats", "Satellites in view of the receiver; 3D is a fix with altitude."),
+    ("WP", "Waypoint, counted from 0."),
+    ("ws tcp rc", "Doors for other programs: ● somebody is connected, ○ nobody is, ✗ closed or busy."),
+];
+
+/// A name and its explanation.
+type Entry = (&'static str, &'static str);
+
+/// The guards of the active state, then the abbreviations.
+fn entries(state: &AppState) -> Vec<Entry> {
+    let nav = state.view.vehicle.nav.as_ref();
+    let explain = |guard: &Guard| -> Entry { (guard.name.into(), guard.name.explanation()) };
+    let guards = nav.into_iter().flat_map(|nav| nav.guards.iter().map(explain));
+    guards.chain(ABBREVIATIONS).collect()
+}
+
+/// A key for the list; `false` closes it.
+pub(crate) fn key(selected: &mut usize, event: KeyEvent) -> bool {
+    match event.code {
+        KeyCode::Up | KeyCode::Char('k') => *selected = selected.saturating_sub(1),
+        KeyCode::Down | KeyCode::Char('j') => *selected += 1,
+        KeyCode::Esc | KeyCode::Enter | KeyCode::Char('q') => return false,
+        _ => {}
+    }
+    true
+}
+
+/// Keeps the selection on an entry.
+pub(crate) fn limit(state: &AppState, selected: usize) -> usize {
+    selected.min(entries(state).len() - 1)
+}
+
+/// Draws the list, and the explanation of the selected entry under it.
+pub(crate) fn draw(state: &AppState, selected: usize, area: Rect, buffer: &mut Buffer) {
+    let theme = &state.theme;
+    let entries = entries(state);
+    let selected = limit(state, selected);
+    let height = entries.len() as u16 + ROWS + 1;
+    let title = "What it means — ↑ ↓ choose, Esc closes";
+    let inside = popup(state, area, (WIDTH, height.min(area.height.saturating_sub(4))), title, buffer);
+    let rows = usize::from(inside.height.saturating_sub(ROWS + 1));
+    let first = (selected + 1).saturating_sub(rows);
+    for (at, (name, _)) in entries.iter().enumerate().skip(first).take(rows) {
+        let (mark, role) = if at == selected { ("▸", Role::Selected) } else { (" ", Role::Text) };
+        row(buffer, inside, (at - first) as u16, theme, role, &format!("{mark} {name} "));
+    }
+    let text = wrapped(entries[selected].1, usize::from(inside.width.saturating_sub(2)));
+    for (at, text) in text.iter().enumerate() {
+        row(buffer, inside, rows as u16 + 1 + at as u16, theme, Role::Title, &format!(" {text}"));
+    }
+}
