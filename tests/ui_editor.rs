@@ -277,7 +277,7 @@ fn name_home_and_settings_are_edited_in_a_form() {
     let document = state.editor.document();
     assert_eq!(
         (document.name.as_str(), document.settings.as_slice()),
-        ("squarex", &["ap_max_angle = 20".to_owned()][..])
+        ("x", &["ap_max_angle = 20".to_owned()][..])
     );
     assert!(document.home.is_some());
     keys(&mut state, "u");
@@ -467,7 +467,7 @@ fn text_is_pasted_into_the_fields_of_forms_and_of_the_file_browser() {
     keys(&mut state, "E");
     update(&mut state, Msg::Paste(" of mine\nand more".to_owned()));
     keys(&mut state, "enter");
-    assert_eq!(state.editor.document().name, "square of mine");
+    assert_eq!(state.editor.document().name, "of mine");
 }
 
 #[test]

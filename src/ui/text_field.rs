@@ -1,6 +1,6 @@
 //! One line of text that is being typed: what editing keys do to it, and how it is drawn in a row.
 
-use crossterm::event::{Event as TerminalEvent, KeyEvent};
+use crossterm::event::{Event as TerminalEvent, KeyCode, KeyEvent, KeyModifiers};
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use tui_input::backend::crossterm::EventHandler as _;
@@ -13,17 +13,37 @@ use crate::printable;
 /// Most characters that are inserted at once: what is pasted by mistake must not hold the screen up.
 const LONGEST: usize = 2048;
 
-/// A line of text with a cursor.
+/// A line of text with a cursor. While its whole text is selected, what is typed replaces it.
 #[derive(Debug, Clone, Default)]
 pub struct TextField {
     input: Input,
+    selected: bool,
 }
 
 impl TextField {
     /// A field with this text, the cursor behind it.
     #[must_use]
     pub fn new(text: impl Into<String>) -> Self {
-        Self { input: Input::new(text.into()) }
+        Self { input: Input::new(text.into()), selected: false }
+    }
+
+    /// A field whose text is selected.
+    #[must_use]
+    pub fn selected(text: impl Into<String>) -> Self {
+        let mut field = Self::new(text);
+        field.select(true);
+        field
+    }
+
+    /// Selects the whole text or none of it.
+    pub fn select(&mut self, selected: bool) {
+        self.selected = selected && !self.is_empty();
+    }
+
+    /// Whether the whole text is selected.
+    #[must_use]
+    pub fn is_selected(&self) -> bool {
+        self.selected
     }
 
     /// The text.
@@ -40,11 +60,16 @@ impl TextField {
 
     /// Takes the text out, which leaves the field empty.
     pub fn take(&mut self) -> String {
+        self.selected = false;
         self.input.value_and_reset()
     }
 
-    /// Inserts text at the cursor, without what no terminal shows and what is longer than any line.
+    /// Inserts text at the cursor or in place of the selected text, without what no terminal shows and what is longer
+    /// than any line.
     pub fn insert(&mut self, text: &str) {
+        if std::mem::take(&mut self.selected) && text.chars().any(printable::is_printable) {
+            self.input.reset();
+        }
         let room = LONGEST.saturating_sub(self.value().chars().count());
         for c in text.chars().filter(|&c| printable::is_printable(c)).take(room) {
             self.input.handle(InputRequest::InsertChar(c));
@@ -52,8 +77,19 @@ impl TextField {
     }
 
     /// Does what an editing key says: characters, cursor keys, Home, End, Backspace, Delete, and the usual keys with
-    /// control. Whether it was one.
+    /// control. Returns whether it was one. A character replaces selected text, Backspace and Delete delete it, the other
+    /// keys keep it.
     pub fn key(&mut self, event: KeyEvent) -> bool {
+        let is_selected = std::mem::take(&mut self.selected);
+        let types = matches!(event.code, KeyCode::Char(_))
+            && !event.modifiers.intersects(KeyModifiers::CONTROL | KeyModifiers::ALT);
+        if is_selected && matches!(event.code, KeyCode::Backspace | KeyCode::Delete) {
+            self.input.reset();
+            return true;
+        }
+        if is_selected && types {
+            self.input.reset();
+        }
         self.input.handle_event(&TerminalEvent::Key(event)).is_some()
     }
 
@@ -67,7 +103,8 @@ impl TextField {
         let room = usize::from(area.width - 1);
         let scroll = self.input.visual_scroll(room);
         let visible: String = self.value().chars().skip(scroll).take(room).collect();
-        drawing::text_within(buffer, area.x, area.y, visible, room, theme.style(Role::Text));
+        let role = if self.selected { Role::Selected } else { Role::Text };
+        drawing::text_within(buffer, area.x, area.y, visible, room, theme.style(role));
         let column = self.input.visual_cursor().saturating_sub(scroll).min(room);
         Some(Position::new(area.x + column as u16, area.y))
     }
@@ -75,7 +112,8 @@ impl TextField {
 
 impl PartialEq for TextField {
     fn eq(&self, other: &Self) -> bool {
-        (self.value(), self.input.cursor()) == (other.value(), other.input.cursor())
+        (self.value(), self.input.cursor(), self.selected)
+            == (other.value(), other.input.cursor(), other.selected)
     }
 }
 
@@ -101,6 +139,39 @@ mod tests {
         assert!(!press(&mut field, KeyCode::Enter) && !press(&mut field, KeyCode::Tab));
         assert_eq!(field.take(), "acd");
         assert!(field.is_empty());
+    }
+
+    #[test]
+    fn selected_text_is_reversed_and_replaced_by_what_is_typed() {
+        let selected = || TextField::selected("20");
+        let reversed = |field: &TextField| {
+            let mut buffer = Buffer::empty(Rect::new(0, 0, 8, 1));
+            field.draw(&Theme::default(), buffer.area, &mut buffer);
+            buffer.cell((0, 0)).unwrap().modifier.contains(ratatui::style::Modifier::REVERSED)
+        };
+        for (code, value) in [
+            (KeyCode::Char('3'), "3"),
+            (KeyCode::Backspace, ""),
+            (KeyCode::Delete, ""),
+            (KeyCode::Left, "20"),
+            (KeyCode::Right, "20"),
+            (KeyCode::Home, "20"),
+            (KeyCode::End, "20"),
+        ] {
+            let mut field = selected();
+            assert!(reversed(&field), "before {code}");
+            press(&mut field, code);
+            assert_eq!((field.value(), reversed(&field)), (value, false), "after {code}");
+        }
+        let mut field = selected();
+        press(&mut field, KeyCode::Home);
+        press(&mut field, KeyCode::Char('1'));
+        assert_eq!(field.value(), "120");
+        let mut field = selected();
+        field.insert("35");
+        field.insert("6");
+        assert_eq!(field.value(), "356", "pasted text replaces once");
+        assert!(!TextField::selected("").is_selected());
     }
 
     #[test]

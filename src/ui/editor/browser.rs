@@ -45,7 +45,7 @@ pub(in crate::ui) enum BrowserKey {
 
 impl Browser {
     pub(in crate::ui) fn new(purpose: Purpose, name: &str) -> Self {
-        Self { purpose, text: TextField::new(name), listing: Listing::default(), at: None }
+        Self { purpose, text: TextField::selected(name), listing: Listing::default(), at: None }
     }
 
     /// The entries that the typed text leaves: all while saving.

@@ -80,7 +80,20 @@ pub(in crate::ui) enum FormKey {
 
 impl Form {
     pub(super) fn new(kind: FormKind, units: Units, fields: Vec<FormField>) -> Self {
-        Self { kind, units, fields, at: 0, problem: None }
+        let mut form = Self { kind, units, fields, at: 0, problem: None };
+        form.go_to(0);
+        form
+    }
+
+    /// Moves the cursor to the field at this place and selects its value.
+    fn go_to(&mut self, at: usize) {
+        if let Some(left) = self.fields.get_mut(self.at) {
+            left.text.select(false);
+        }
+        self.at = at;
+        if let Some(field) = self.fields.get_mut(at).filter(|field| field.choices.is_empty()) {
+            field.text.select(true);
+        }
     }
 
     /// The text of the field with this label.
@@ -155,8 +168,8 @@ impl Form {
         match event.code {
             KeyCode::Esc => return FormKey::Cancel,
             KeyCode::Enter => return FormKey::Accept,
-            KeyCode::Up | KeyCode::BackTab => self.at = self.at.checked_sub(1).unwrap_or(last),
-            KeyCode::Down | KeyCode::Tab => self.at = if self.at == last { 0 } else { self.at + 1 },
+            KeyCode::Up | KeyCode::BackTab => self.go_to(self.at.checked_sub(1).unwrap_or(last)),
+            KeyCode::Down | KeyCode::Tab => self.go_to(if self.at == last { 0 } else { self.at + 1 }),
             KeyCode::Left if is_choice => self.choose(-1),
             KeyCode::Right | KeyCode::Char(' ') if is_choice => self.choose(1),
             _ if is_choice => {}
