@@ -36,7 +36,10 @@ fn the_first_typed_character_replaces_each_value_of_a_form() {
     assert!(seen.contains("200") && !seen.contains("80200"), "{seen}");
     keys(&mut state, "down '30 up '40");
     let seen = screen(&state);
-    assert!(!seen.contains("20040") && !seen.contains("200 "), "a value that is reached again is selected: {seen}");
+    assert!(
+        !seen.contains("20040") && !seen.contains("200 "),
+        "a value that is reached again is selected: {seen}"
+    );
 }
 
 #[test]

@@ -332,7 +332,8 @@ impl Editor {
         if !self.column.is_used(wp.kind) {
             return Err(format!("A {} has no {}.", wp.kind, self.column.name()));
         }
-        self.field = Some(CellField { text: TextField::selected(self.column.text(wp, units)), problem: None });
+        self.field =
+            Some(CellField { text: TextField::selected(self.column.text(wp, units)), problem: None });
         Ok(())
     }
 
