@@ -56,12 +56,12 @@ async fn a_cut_link_counts_down_to_the_drop_and_the_panel_says_how_to_take_it_ba
     step_until(&mut rig, |state| state.view.vehicle.craft.armed == Some(false)).await;
     let passed_s = rig.time().seconds_since(lost);
     assert!((passed_s - ahead.in_s).abs() < 0.1, "{ahead:?}, {passed_s} s passed");
-    rig.assert_shown(&["Disarmed in the air.", "{, then b takes it back", "puts the craft back home"]);
+    rig.assert_shown(&["Disarmed in the air.", "<, then b takes it back", "R puts the craft"]);
     rig.keys(" ").await;
     rig.until("the crash", |state| state.view.vehicle.truth.as_ref().unwrap().crashed).await;
-    rig.assert_shown(&["The craft crashed.", "{, then b takes it back"]);
-    rig.keys("{").await;
-    rig.until("the state before", AppState::is_rewound).await;
+    rig.assert_shown(&["The craft crashed.", "<, then b takes it back"]);
+    rig.keys("<").await;
+    rig.until("ten seconds before", AppState::is_rewound).await;
     rig.keys("b").await;
     rig.until("the flight", |state| !state.is_rewound()).await;
     assert_eq!(rig.picture().craft.armed, Some(true), "{}", rig.screen());
@@ -74,7 +74,7 @@ async fn disarming_in_flight_says_how_to_take_it_back() {
     rig.fly_to(NavState::Approaching).await;
     rig.keys("a").await;
     step_until(&mut rig, |state| state.view.vehicle.craft.armed == Some(false)).await;
-    rig.assert_shown(&["Disarmed in the air.", "{, then b takes it back"]);
+    rig.assert_shown(&["Disarmed in the air.", "<, then b takes it back"]);
 }
 
 #[tokio::test]

@@ -241,9 +241,8 @@ fn way_back(state: &AppState) -> String {
     if state.view.timeline.is_none() {
         return String::new();
     }
-    // A flight by hand has no state to go back to.
-    let back = if state.transitions.is_empty() { Action::EventBack } else { Action::StateBack };
-    format!("{}, then {} takes it back; ", state.key(back), state.key(Action::FlyOn))
+    // The state before is that of the disarming itself, so a time before it is chosen.
+    format!("{}, then {} takes it back; ", state.key(Action::Earlier), state.key(Action::FlyOn))
 }
 
 /// What to know of a mission that is flown.

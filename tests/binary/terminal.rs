@@ -60,7 +60,7 @@ fn the_whole_flight_by_keys() {
     // The log, alone on the screen.
     terminal.send("8z");
     terminal.until("the zoomed log", |terminal| {
-        terminal.row(2).contains("Log") && !terminal.screen().contains("Map")
+        terminal.row(2).contains("Log") && !terminal.screen().contains("1 Map─")
     });
     terminal.send("F");
     terminal.until_shown("GPS fix");
@@ -516,6 +516,8 @@ fn the_speed_falls_back_after_the_landing_and_a_long_wait_leaves_the_flight_on_t
     terminal.send("{{");
     terminal.until_shown("REWOUND −");
     terminal.send("q");
+    terminal.until_shown("y quit");
+    terminal.send("y");
     assert_eq!(terminal.end(), 0);
     terminal.assert_given_back();
 }
