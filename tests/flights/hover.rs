@@ -123,6 +123,10 @@ fn a_throttle_floor_above_the_hover_does_not_carry_the_craft_away() {
             })
         });
         in_the_air.fly(20.0);
+        let refusals = in_the_air.events.iter().filter(|event| {
+            matches!(event.kind, EventKind::Firmware(FirmwareEvent::Nav(NavEvent::Refused(_))))
+        });
+        assert_eq!(refusals.count(), 1, "one report of one cause");
         assert!(highest(&in_the_air) < 40.0, "{} m", highest(&in_the_air));
     }
     let mut on_the_ground = Rig::new(world, lines, 0.0);

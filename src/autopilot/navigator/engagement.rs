@@ -92,8 +92,16 @@ impl Engagement {
         self.refused
     }
 
-    /// Remembers a refusal; returns whether it is a new one.
+    /// Remembers a refusal; returns whether it is a new one. The estimate of the hover throttle moves all the time: the
+    /// floor that is above it stays one refusal, with the figure of its first instant.
     pub(super) fn refuse(&mut self, refusal: Refusal) -> bool {
+        let floor_us = |refusal| match refusal {
+            Refusal::ThrottleMin { throttle_min_us, .. } => Some(throttle_min_us),
+            _ => None,
+        };
+        if floor_us(refusal).is_some() && self.refused.and_then(floor_us) == floor_us(refusal) {
+            return false;
+        }
         self.refused.replace(refusal) != Some(refusal)
     }
 
