@@ -13,9 +13,9 @@ use crossterm::terminal::{
     LeaveAlternateScreen, disable_raw_mode, enable_raw_mode,
 };
 use crossterm::{cursor, execute, style};
+use nix::unistd::{Pid, getpgid, getpgrp, getppid, getsid};
 use ratatui::Terminal;
 use ratatui::backend::CrosstermBackend;
-use rustix::process::{Pid, getpgid, getpgrp, getppid, getsid};
 
 use super::app_state::AppState;
 use super::draw::draw;
@@ -121,16 +121,18 @@ fn take_over(mouse: bool) -> io::Result<()> {
     if mouse { execute!(stdout(), EnableMouseCapture) } else { Ok(()) }
 }
 
-/// Whether a shell with jobs waits for this program: only such a one continues it after it was stopped. The process that leads
-/// a session, as under `xterm -e` or in a container, has none.
+/// Returns whether a shell with jobs waits for this program: only such a one continues it after it was stopped. The process
+/// that leads a session, as under `xterm -e` or in a container, has none.
 pub(super) fn can_be_continued() -> bool {
     /// Programs between this one and the shell, such as scripts and cargo.
     const MOST: usize = 64;
     let (Ok(session), group) = (getsid(None), getpgrp()) else { return false };
-    let mut ancestor = getppid();
+    let mut ancestor = Some(getppid());
     for _ in 0..MOST {
-        let Some(parent) = ancestor.filter(|&parent| getsid(Some(parent)) == Ok(session)) else {
-            return false;
+        // 0 is the parent in another PID namespace; asked for its session, the system answers for this program.
+        let parent = match ancestor {
+            Some(parent) if parent.as_raw() > 0 && getsid(Some(parent)) == Ok(session) => parent,
+            _ => return false,
         };
         if getpgid(Some(parent)) != Ok(group) {
             return true;
@@ -140,12 +142,12 @@ pub(super) fn can_be_continued() -> bool {
     false
 }
 
-/// The parent of another process, where the system tells it.
+/// Returns the parent of another process, where the system has `/proc`.
 fn parent_of(process: Pid) -> Option<Pid> {
-    let stat = std::fs::read_to_string(format!("/proc/{}/stat", process.as_raw_nonzero())).ok()?;
+    let stat = std::fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
     // The name of the program stands in brackets, and may have brackets and blanks in it.
     let parent = stat.rsplit_once(") ")?.1.split(' ').nth(1)?;
-    Pid::from_raw(parent.parse().ok()?)
+    Some(Pid::from_raw(parent.parse().ok()?))
 }
 
 /// Restores the line discipline without writing to the terminal, which nobody may be reading.

@@ -514,6 +514,7 @@ fn the_speed_falls_back_after_the_landing_and_a_long_wait_leaves_the_flight_on_t
     assert!(flight.is_some_and(|columns| columns > 70), "{timeline}");
     assert!(timeline.contains('≈'), "{timeline}");
     terminal.send("{{");
+    terminal.until("the landing again", |terminal| state(terminal) == "LANDING");
     terminal.until_shown("REWOUND −");
     terminal.send("q");
     terminal.until_shown("y quit");
