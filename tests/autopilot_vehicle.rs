@@ -283,10 +283,8 @@ fn hold() {
             let rms = (late().map(|s| s.pos.norm_squared()).sum::<f64>() / late().count() as f64).sqrt();
             let alt = worst(late().map(|s| (s.alt - 20.0).abs()));
             println!("{} {wind} ± {gust}: rms {rms:.2}, altitude ±{alt:.2}", case.name);
-            // The hover throttle is not learned while gusts move the craft, so that the integral alone answers them.
-            let altitude_bound = if gust > 1.0 { 0.35 } else { 0.3 };
             assert!(
-                rms <= bound + case.horizontal() && alt <= altitude_bound + case.vertical(),
+                rms <= bound + case.horizontal() && alt <= 0.3 + case.vertical(),
                 "{case:?}: {rms} {alt}"
             );
         }

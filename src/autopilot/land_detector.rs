@@ -26,7 +26,7 @@ use stationary::StationaryTimer;
 pub use impact::ImpactFacts;
 pub use relief::DescentFacts;
 pub use stationary::STATIONARY_S;
-pub use touchdown::{GroundFacts, TouchdownFacts, TouchdownGuards, TouchdownTimer};
+pub use touchdown::{AT_REST_MPS, GroundFacts, TouchdownFacts, TouchdownGuards, TouchdownTimer};
 
 /// Below this altitude a descent waits while the craft is faster over ground than the speed, m and m/s; not longer than
 /// the time, s.
@@ -221,10 +221,11 @@ impl LandDetector {
         self.on_ground() || self.relief.stands()
     }
 
-    /// Whether a bump above `threshold` (setting units, 0 = never) ended the flight.
+    /// Returns whether a bump above `threshold` (setting units, 0 = never) ended the flight. Only a push that the motors do not
+    /// make is one: a throttle that is stepped in the air jolts a light craft, too.
     #[must_use]
     pub fn is_impact(&self, threshold: f64, facts: &ImpactFacts) -> bool {
-        self.impact.is_touchdown(threshold, facts)
+        self.contact.is_pushed() && self.impact.is_touchdown(threshold, facts)
     }
 }
 

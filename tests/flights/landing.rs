@@ -61,8 +61,9 @@ fn landing_in_calm_and_in_wind() {
     assert_met(SEEDS.into_iter().flat_map(|seed| winds.map(|wind| landing(seed, wind))));
 }
 
-/// The first seconds on the ground are the ones in which wind tips a craft over that leans against it.
-fn rough_landing(seed: u64) -> Option<String> {
+/// The first seconds on the ground are the ones in which wind tips a craft over that leans against it. Returns the distance
+/// from its waypoint, m, and what is wrong.
+fn rough_landing(seed: u64) -> (f64, Option<String>) {
     let (mut world, _) = world(seed);
     world.wind = Wind { speed_mps: 5.0, from_deg: (37.0 * seed as f64) % 360.0 };
     world.turbulence = Turbulence::Moderate;
@@ -76,19 +77,23 @@ fn rough_landing(seed: u64) -> Option<String> {
     let contact = rig.span(5.0, disarm).find(|s| s.alt < 0.045).map_or(f64::INFINITY, |s| s.t);
     checks.within("disarm after contact", disarm - contact, 1.0, 9.0);
     let rest = rig.at(disarm);
-    // The motors may stop while a bounce ends; then the craft falls onto its legs.
-    checks.at_most("lean at the end", rest.lean(), 6.0);
-    checks.at_most("lean afterwards", greatest(rig.span(disarm + 0.5, 1e9).map(Sample::lean)), 3.0);
+    checks.at_most("lean at the end", rest.lean(), 3.0);
+    checks.at_most("lean afterwards", greatest(rig.span(disarm, 1e9).map(Sample::lean)), 3.0);
     checks.at_most("height at the disarm", rest.alt, 0.03);
-    checks.at_most("place", rest.from(rig.waypoint(0)), 2.5);
+    let place = rest.from(rig.waypoint(0));
+    // A gust that comes between the contact and the disarm takes the craft with it.
+    checks.at_most("place", place, 3.5);
     let moved = greatest(rig.span(disarm, 1e9).map(|s| (s.n - rest.n).hypot(s.e - rest.e)));
     checks.at_most("stays", moved, 0.1);
-    checks.verdict(&format!("landing in rough air, seed {seed}"), &rig.story())
+    (place, checks.verdict(&format!("landing in rough air, seed {seed}"), &rig.story()))
 }
 
 #[test]
 fn landing_in_rough_air_stands_level() {
-    assert_met((1..=20).map(rough_landing));
+    let (places, faults): (Vec<f64>, Vec<_>) = (1..=20).map(rough_landing).unzip();
+    assert_met(faults);
+    let mean = places.iter().sum::<f64>() / places.len() as f64;
+    assert!(mean < 1.0, "{mean} m from the waypoint in the mean");
 }
 
 /// A landing whose fix jumps by `size_m` towards `bearing_deg` while the craft is lower than 2 m.

@@ -66,7 +66,7 @@ fn a_descent_without_a_fix_ends_on_sloping_ground_too() {
         checks.same("reason", reason, DisarmReason::Landing);
         let (impact_mps, crashed) = impact(&rig);
         checks.holds("no crash", !crashed);
-        checks.at_most("touchdown", impact_mps, 1.2);
+        checks.at_most("touchdown", impact_mps, 1.0);
         checks.at_most("height at the disarm", (rig.at(disarm).alt - ground_m).abs(), 2.0);
         checks.holds("stands", rig.vehicle.world().unwrap().truth().on_ground);
         checks.verdict(ground, &rig.story())

@@ -21,6 +21,8 @@ const SLOWEST_FLARE_MPS: f64 = 0.3;
 const INTEGRAL_LIMIT_US: f64 = 200.0;
 /// Vertical speed, of the setpoint or the craft, at which the integral works at half its gain, m/s.
 const HALF_INTEGRAL_MPS: f64 = 0.8;
+/// Time constant with which the throttle for an acceleration of the setpoint comes and goes, s.
+const ACCEL_FILTER_S: f64 = 0.1;
 /// Fastest change of the throttle, µs/s.
 pub const THROTTLE_SLEW_US_PER_S: f64 = 5000.0;
 /// A target this far above a craft on the ground asks it to take off, m.
@@ -205,6 +207,12 @@ impl AltitudeController {
         self.hover.hover_us()
     }
 
+    /// Returns whether the craft has hovered in this flight, so that its hover throttle is known.
+    #[must_use]
+    pub fn has_hovered(&self) -> bool {
+        self.hover.held_us().is_some()
+    }
+
     /// The hover throttle that this flight has shown, µs; `None` before. Of a craft that its least throttle carried up it is
     /// less than that, even before it hovered.
     #[must_use]
@@ -295,7 +303,9 @@ impl AltitudeController {
         let rate_before = self.setpoint_rate;
         let landing = self.move_setpoint(now, target, params, dt);
         let change = self.setpoint_rate - rate_before;
-        self.setpoint_accel = if dt > 0.0 { change / dt } else { 0.0 };
+        // A step of the throttle would jolt a light craft.
+        let accel = if dt > 0.0 { change / dt } else { 0.0 };
+        self.setpoint_accel += (accel - self.setpoint_accel) * (dt / (ACCEL_FILTER_S + dt));
         self.integrate(now, landing, params, dt);
         if let Some(old) = self.params.filter(|old| old != params) {
             // A changed parameter must not step the throttle.
@@ -402,11 +412,7 @@ impl AltitudeController {
         self.integral_us += 0.003 * f64::from(params.altitude_i) * error_cm * share * dt;
         // What holds a craft that stands is no throttle to hover with.
         let stands = self.relief_us > 0.0;
-        let taken = if stands {
-            0.0
-        } else {
-            self.hover.learn(self.integral_us, error_cm / 100.0, self.setpoint_rate, dt)
-        };
+        let taken = if stands { 0.0 } else { self.hover.learn(self.integral_us, error_cm / 100.0, dt) };
         self.integral_us = (self.integral_us - taken).clamp(-INTEGRAL_LIMIT_US, INTEGRAL_LIMIT_US);
     }
 

@@ -18,14 +18,14 @@ const SLOW_S: f64 = 10.0;
 const FAR_M: f64 = 2.0;
 /// Time constant, beside the fast one, with which it is followed there, s: something has changed.
 const FAR_S: f64 = 1.0;
-/// Wanted climb rate at which an unknown hover throttle is followed half as fast, m/s.
-const HALF_CLIMB_MPS: f64 = 1.0;
 /// Throttle is hover throttle while the craft is slower than this, m/s, accelerates less than this, m/s², and leans less
 /// than this, for so long, s. A steady climb has no acceleration either, but needs throttle against inflow and drag.
 const STILL_CLIMB_MPS: f64 = 0.3;
 const STILL_ACCEL_MPS2: f64 = 0.5;
 const STILL_LEAN_RAD: f64 = 15.0 * std::f64::consts::PI / 180.0;
 const STILL_S: f64 = 0.5;
+/// Most throttle that a climb is assumed to take from drag and inflow, and that a descent gives back, µs per m/s.
+const CLIMB_LOSS_US: f64 = 300.0;
 /// How long the craft must have been airborne before an estimate counts at engaging, s.
 const SETTLED_S: f64 = 2.0;
 /// Altitude above home from which the craft counts as airborne, m.
@@ -39,7 +39,7 @@ pub struct HoverThrottleEstimator {
     hover_us: f64,
     /// Estimate from the balance while the craft hovers, µs, when there is one.
     estimate_us: Option<f64>,
-    /// Balance at any speed, µs: inexact in a climb, but better than a parameter that may be far off.
+    /// Balance at any speed, µs: more than the hover throttle in a climb, less in a descent.
     balance_us: Option<f64>,
     throttle_filter: f64,
     climb_filter: f64,
@@ -108,8 +108,13 @@ impl HoverThrottleEstimator {
     /// The hover throttle that this flight has shown, µs; `None` before.
     #[must_use]
     pub fn learned_us(&self) -> Option<f64> {
-        let held = self.estimate_us.filter(|_| self.airborne_s >= SETTLED_S);
-        held.or(self.found_us)
+        self.held_us().or(self.found_us)
+    }
+
+    /// The throttle that held the craft in a hover of this flight, µs; `None` before.
+    #[must_use]
+    pub fn held_us(&self) -> Option<f64> {
+        self.estimate_us.filter(|_| self.airborne_s >= SETTLED_S)
     }
 
     /// Takes one cycle, flown by anyone; one that is not finite is left out.
@@ -141,7 +146,7 @@ impl HoverThrottleEstimator {
         self.still_s = if is_still { self.still_s + dt } else { 0.0 };
         if self.hovers() && self.airborne_s > 0.0 {
             let estimate = self.estimate_us.unwrap_or(instant);
-            self.estimate_us = Some(estimate + (instant - estimate) * step);
+            self.estimate_us = Some(estimate + (self.bounded(estimate, instant) - estimate) * step);
         }
     }
 
@@ -161,28 +166,39 @@ impl HoverThrottleEstimator {
         self.found_us = Some(self.hover_us);
     }
 
-    /// Chooses the hover throttle at engaging: what held the craft when it has been airborne for a while, else the balance of
-    /// one that has not hovered yet, else what was found at the lift-off, else `configured_us`.
+    /// Chooses the hover throttle at engaging: what held the craft in a hover, else what was found at the lift-off or
+    /// `configured_us`, as far as the balance allows it.
     pub fn engage(&mut self, configured_us: f64) {
-        let settled = |estimate: &f64| self.airborne_s >= SETTLED_S && estimate.is_finite();
-        let known = self.estimate_us.filter(settled).or(self.balance_us.filter(settled)).or(self.found_us);
-        self.hover_us = known.unwrap_or(configured_us).clamp(HOVER_MIN_US, HOVER_MAX_US);
+        let hover_us = self.held_us().unwrap_or_else(|| {
+            // Near the ground a craft lifts off with less than it hovers with.
+            let guess_us = self.found_us.unwrap_or(configured_us);
+            let balance_us = self.balance_us.filter(|_| self.airborne_s >= SETTLED_S);
+            balance_us.map_or(guess_us, |balance_us| self.bounded(guess_us, balance_us))
+        });
+        self.hover_us = hover_us.clamp(HOVER_MIN_US, HOVER_MAX_US);
         // What held the craft needs no quick correction: a climb right after engaging would only mislead it.
-        self.followed_s = if known.is_some() { FAST_FOR_S } else { 0.0 };
+        self.followed_s = if self.learned_us().is_some() { FAST_FOR_S } else { 0.0 };
     }
 
     /// Follows the estimate in the first quiet seconds in the air, and whenever the altitude error is so large that the
     /// integral rests; otherwise takes over the altitude `integral_us` bit by bit. Returns what the integral has to give
-    /// up. Once a hover throttle is known it learns only while the craft hovers.
-    pub fn learn(&mut self, integral_us: f64, error_m: f64, wanted_climb_mps: f64, dt: f64) -> f64 {
+    /// up. Learns only while the craft hovers; before its first hover it keeps within the limit of the balance, since waiting
+    /// could take the craft down.
+    pub fn learn(&mut self, integral_us: f64, error_m: f64, dt: f64) -> f64 {
         let is_new = self.followed_s < FAST_FOR_S;
-        if !self.hovers() {
-            if is_new && self.learned_us().is_none() {
-                self.follow_balance(wanted_climb_mps, dt);
-            }
-            return 0.0;
-        }
         let before = self.hover_us;
+        if !self.hovers() {
+            if self.learned_us().is_some() {
+                return 0.0;
+            }
+            // The integral may hold a part of it already: the sum of both changes only as far as the limit asks.
+            let share = dt / (FAST_S + self.followed_s);
+            let bounded = |us: f64| self.balance_us.map_or(us, |balance_us| self.bounded(us, balance_us));
+            let sum_us = before + integral_us;
+            let sum_change_us = (bounded(sum_us) - sum_us) * share;
+            self.follow(Some(bounded(before)), share);
+            return self.hover_us - before - sum_change_us;
+        }
         let is_far = error_m.abs() > FAR_M;
         if is_new || is_far {
             let followed_s = if is_far { self.followed_s.min(FAR_S) } else { self.followed_s };
@@ -196,13 +212,12 @@ impl HoverThrottleEstimator {
         self.hover_us - before
     }
 
-    /// Nothing is known yet, and waiting for a hover could take the craft down: follows the balance, hardly in a climb.
-    fn follow_balance(&mut self, wanted_climb_mps: f64, dt: f64) {
-        let quiet = (1.0 + (wanted_climb_mps / HALF_CLIMB_MPS).powi(2)).powi(-2);
-        self.follow(self.balance_us, quiet * dt / (FAST_S + self.followed_s));
-        if self.airborne_s > 0.0 {
-            self.followed_s += quiet * dt;
-        }
+    /// Returns the hover throttle nearest to a guess that the balance allows, µs. Drag and inflow take throttle in a climb and
+    /// give some in a descent: a climbing craft hovers with at most its balance, a sinking one with at least that. What is
+    /// learned in a climb must not carry it on, so the guess is kept as far as the climb can explain it.
+    fn bounded(&self, guess_us: f64, balance_us: f64) -> f64 {
+        let loss_us = CLIMB_LOSS_US * self.climb_filter;
+        guess_us.max(balance_us - loss_us.max(0.0)).min(balance_us - loss_us.min(0.0))
     }
 
     fn follow(&mut self, estimate_us: Option<f64>, share: f64) {

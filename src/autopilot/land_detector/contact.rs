@@ -26,6 +26,8 @@ const LOADED_S: f64 = 0.3;
 const STEADY_SHARE: f64 = 0.2;
 const STILL_MPS: f64 = 0.5;
 const MOVING_MPS: f64 = 1.0;
+/// The ground pushes a craft by at least this much more than its motors do, m/s².
+const PUSH_MPS2: f64 = 0.5 * GRAVITY;
 /// A craft reaches the ground from above: its legs take load only this far below its greatest height, m.
 const SUNK_M: f64 = 0.1;
 
@@ -42,6 +44,8 @@ pub(super) struct GroundContact {
     is_loaded: bool,
     /// Greatest altitude since the legs last carried the craft, m.
     peak_m: Option<f64>,
+    /// Specific force of the last cycle beyond that of the motors, m/s².
+    push_mps2: f64,
 }
 
 impl GroundContact {
@@ -53,6 +57,11 @@ impl GroundContact {
     /// Whether the craft has left the ground since arming.
     pub(super) fn has_lifted_off(&self) -> bool {
         self.has_lifted_off
+    }
+
+    /// Whether something other than the motors pushes the craft up: the ground, before the lift-off and at a touchdown.
+    pub(super) fn is_pushed(&self) -> bool {
+        !self.has_lifted_off || self.push_mps2 > PUSH_MPS2
     }
 
     /// Specific force along the thrust in multiples of gravity.
@@ -95,6 +104,7 @@ impl GroundContact {
         if altitude_m > AIRBORNE_M && !self.is_loaded {
             *thrust += (dt / (LEARN_S + dt)) * (felt - *thrust);
         }
+        self.push_mps2 = now.force_flu.z - *thrust * self.square;
         let on_legs = 1.0 - *thrust * self.square / GRAVITY;
         let is_steady = (self.force / GRAVITY - 1.0).abs() < STEADY_SHARE;
         // A speed that is not known does not show that the craft stands.

@@ -14,6 +14,10 @@ const PRESSING_M: f64 = 1.5;
 /// Most that the throttle must be below the learned hover throttle for a touchdown, µs.
 const BELOW_HOVER_US: f64 = 50.0;
 
+/// A craft on the ground moves vertically slower than this, m/s. A fast landing alone would call a craft landed that cannot sink
+/// at a quarter of its rate.
+pub const AT_REST_MPS: f64 = 0.125;
+
 /// What decides a touchdown: four measured values and their limits, SI and µs.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct TouchdownFacts {

@@ -7,7 +7,7 @@ use crate::autopilot::control::{AltitudeController, FlightControllers};
 use crate::autopilot::fence::FenceFacts;
 use crate::autopilot::guidance::{CornerArc, PlaneCrossing, plane_crossing, turn_radius_m};
 use crate::autopilot::io::NavInputs;
-use crate::autopilot::land_detector::{GroundFacts, TouchdownFacts, TouchdownGuards};
+use crate::autopilot::land_detector::{AT_REST_MPS, GroundFacts, TouchdownFacts, TouchdownGuards};
 use crate::autopilot::machine::{ApproachFacts, Facts, WaypointFacts};
 use crate::autopilot::params::Params;
 use crate::plan::WaypointType;
@@ -158,12 +158,13 @@ fn touchdown_facts(
     seen: &Observed,
     altitude: &AltitudeController,
 ) -> TouchdownFacts {
-    TouchdownFacts::new(
+    let facts = TouchdownFacts::new(
         params,
         altitude.reference_hover_us(params),
         now.alt_m,
         seen.ground_speed_mps,
         altitude.throttle_us(),
         now.climb_mps,
-    )
+    );
+    TouchdownFacts { min_climb_mps: facts.min_climb_mps.max(-AT_REST_MPS), ..facts }
 }

@@ -6,7 +6,9 @@ use crate::autopilot::control::{
     AltitudeController, AltitudeMeasurement, AltitudeTarget, FlightControllers, throttle_share,
 };
 use crate::autopilot::io::NavInputs;
-use crate::autopilot::land_detector::{DescentFacts, GroundFacts, TouchdownFacts, TouchdownGuards};
+use crate::autopilot::land_detector::{
+    AT_REST_MPS, DescentFacts, GroundFacts, TouchdownFacts, TouchdownGuards,
+};
 
 /// A craft that climbs faster than this (m/s) when the hold begins is stopped first.
 const STEADY_MPS: f64 = 0.5;
@@ -33,10 +35,8 @@ const DESCENT_LEASH_M: f64 = 5.0;
 const SINKING_SHARE: f64 = 0.6;
 const SINKING_LEASH_M: f64 = 1.0;
 const GIVE_UP_MPS: f64 = 3.0;
-/// A craft on the ground moves vertically slower than this share of the sink rate and slower than this, m/s, and drifts
-/// slower than this, m/s.
+/// A craft on the ground moves vertically slower than this share of the sink rate, and drifts slower than this, m/s.
 const GROUNDED_SHARE: f64 = 0.25;
-const GROUNDED_MPS: f64 = 0.125;
 const GROUNDED_DRIFT_MPS: f64 = 0.5;
 /// How long the signs of the ground must last at least, 0.1 s: a sluggish craft needs time to begin to sink.
 const GROUNDED_DS: u8 = 10;
@@ -137,7 +137,7 @@ impl AltitudeHold {
         let Some(seconds) = self.lifting_s else { return };
         let seconds = if now.alt_m > AIRBORNE_M { seconds + now.dt } else { 0.0 };
         self.lifting_s = Some(seconds);
-        if seconds >= LIFTED_S && now.climb_mps.abs() < STEADY_MPS {
+        if seconds >= LIFTED_S && now.climb_mps.abs() < STEADY_MPS && controller.has_hovered() {
             self.lifting_s = None;
             controller.engage(measured, params);
         }
@@ -222,7 +222,7 @@ impl AltitudeHold {
             ground_speed_mps: if now.fix { now.vel_ne.norm() } else { 0.0 },
             // Neither sinks nor climbs: one that is stopped in a climb has little throttle, too, and has not landed.
             climb_mps: -now.climb_mps.abs(),
-            min_climb_mps: -(GROUNDED_SHARE * rate.min(params.descent_rate_mps())).min(GROUNDED_MPS),
+            min_climb_mps: -(GROUNDED_SHARE * rate.min(params.descent_rate_mps())).min(AT_REST_MPS),
             ..TouchdownFacts::new(
                 params,
                 controller.hover_us(),

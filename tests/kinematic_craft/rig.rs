@@ -169,12 +169,18 @@ impl Rig {
         self.fly(seconds)
     }
 
-    /// Flown out by the mission, then parked by the pilot.
-    pub(crate) fn parked(&mut self, us: u16, distance_m: f64) -> &mut Self {
+    /// Engaged in the climb after the take-off.
+    pub(crate) fn engaged(&mut self, us: u16) -> &mut Self {
         self.take_off(us, 3.0);
         self.switch(AUTOPILOT, true);
         self.until(20.0, "engagement", |rig| rig.has(Mode::Autopilot));
         self.throttle(1300);
+        self
+    }
+
+    /// Flown out by the mission, then parked by the pilot.
+    pub(crate) fn parked(&mut self, us: u16, distance_m: f64) -> &mut Self {
+        self.engaged(us);
         self.until(90.0, "way out", |rig| rig.plant.distance_m() > distance_m);
         self.hold();
         self.switch(AUTOPILOT, false);
