@@ -32,4 +32,6 @@ mod streams;
 mod support;
 #[cfg(unix)]
 mod terminal;
+#[cfg(unix)]
+mod timeline;
 mod verdict;
