@@ -81,7 +81,6 @@ fn rough_landing(seed: u64) -> (f64, Option<String>) {
     checks.at_most("lean afterwards", greatest(rig.span(disarm, 1e9).map(Sample::lean)), 3.0);
     checks.at_most("height at the disarm", rest.alt, 0.03);
     let place = rest.from(rig.waypoint(0));
-    // A gust that comes between the contact and the disarm takes the craft with it.
     checks.at_most("place", place, 3.5);
     let moved = greatest(rig.span(disarm, 1e9).map(|s| (s.n - rest.n).hypot(s.e - rest.e)));
     checks.at_most("stays", moved, 0.1);
@@ -94,6 +93,9 @@ fn landing_in_rough_air_stands_level() {
     assert_met(faults);
     let mean = places.iter().sum::<f64>() / places.len() as f64;
     assert!(mean < 1.0, "{mean} m from the waypoint in the mean");
+    // A gust between the contact and the disarm takes one craft in fifty farther, whatever the hover throttle (400 seeds).
+    let far = places.iter().filter(|&&place| place > 2.5).count();
+    assert!(far <= 1, "{far} landings farther than 2.5 m from the waypoint");
 }
 
 /// A landing whose fix jumps by `size_m` towards `bearing_deg` while the craft is lower than 2 m.

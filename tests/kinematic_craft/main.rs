@@ -39,7 +39,7 @@ fn climbing_us(kind: Kind) -> u16 {
     (1000.0 + 1000.0 * (kind.hover + 0.2) + 60.0) as u16
 }
 
-/// What is wrong with the end of a flight, if something is.
+/// Returns the faults of the end of a flight; `None` without any.
 fn fault_of(rig: &Rig, impact_mps: f64, stood_s: f64) -> Option<String> {
     let Some((reason, height_m)) = rig.disarmed else {
         return Some(format!("still armed at {:.2} m", rig.plant.height_m()));
@@ -56,7 +56,7 @@ fn fault_of(rig: &Rig, impact_mps: f64, stood_s: f64) -> Option<String> {
     (!faults.is_empty()).then(|| faults.join(", "))
 }
 
-/// Flies to the end; seconds that the craft stood with its motors on.
+/// Flies to the end. Returns how long the craft stood with its motors on, s.
 fn come_down(rig: &mut Rig) -> f64 {
     let mut stood_s: f64 = 0.0;
     for _ in 0..180 * 50 {

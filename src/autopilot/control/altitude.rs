@@ -183,6 +183,7 @@ impl AltitudeController {
         self.setpoint_m = now.altitude_m;
         let rate = params.climb_rate_mps();
         self.setpoint_rate = now.climb_mps.clamp(-rate, rate);
+        self.setpoint_accel = 0.0;
         self.integral_us = 0.0;
         self.relief_us = 0.0;
         self.limits_us = None;

@@ -150,7 +150,7 @@ impl HoverThrottleEstimator {
         }
     }
 
-    /// Whether the throttle is hover throttle.
+    /// Returns whether the throttle is hover throttle.
     fn hovers(&self) -> bool {
         self.still_s >= STILL_S
     }

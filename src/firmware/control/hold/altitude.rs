@@ -12,9 +12,8 @@ use crate::autopilot::land_detector::{
 
 /// A craft that climbs faster than this (m/s) when the hold begins is stopped first.
 const STEADY_MPS: f64 = 0.5;
-/// Altitude that counts as airborne, m, and seconds in the air that show the hover throttle.
+/// Altitude that counts as airborne, m.
 const AIRBORNE_M: f64 = 1.0;
-const LIFTED_S: f64 = 2.1;
 /// A stick that moves by less stands still, µs.
 const STILL_STICK_US: f64 = 10.0;
 /// A climb below this share of the demanded rate is none.
@@ -75,8 +74,8 @@ enum Phase {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct AltitudeHold {
     phase: Phase,
-    /// The hold began on the ground, where the hover throttle cannot be learned; seconds in the air since.
-    lifting_s: Option<f64>,
+    /// The hold began on the ground, where the hover throttle cannot be learned, and the craft has not hovered since.
+    began_low: bool,
     /// The stick, and the hover throttle it was judged by, µs.
     judged: Option<(f64, f64)>,
     has_touched_down: bool,
@@ -106,7 +105,7 @@ impl AltitudeHold {
         let measured = AltitudeMeasurement::from(now);
         if self.phase == Phase::Off {
             controller.engage(&measured, params);
-            self.lifting_s = (now.alt_m < AIRBORNE_M).then_some(0.0);
+            self.began_low = now.alt_m < AIRBORNE_M;
             let is_steady = now.climb_mps.abs() < STEADY_MPS;
             self.phase = if is_steady { Phase::Holding(now.alt_m) } else { stop(now) };
         }
@@ -126,7 +125,7 @@ impl AltitudeHold {
         throttle_share(throttle_us, params)
     }
 
-    /// Takes over once more when the craft has flown for a moment and climbs no more: now its hover throttle is known.
+    /// Takes over once more when the craft has hovered and climbs no more: now its hover throttle is known.
     fn learn_after_lift_off(
         &mut self,
         now: &NavInputs,
@@ -134,11 +133,8 @@ impl AltitudeHold {
         params: &Params,
         controller: &mut AltitudeController,
     ) {
-        let Some(seconds) = self.lifting_s else { return };
-        let seconds = if now.alt_m > AIRBORNE_M { seconds + now.dt } else { 0.0 };
-        self.lifting_s = Some(seconds);
-        if seconds >= LIFTED_S && now.climb_mps.abs() < STEADY_MPS && controller.has_hovered() {
-            self.lifting_s = None;
+        if self.began_low && now.climb_mps.abs() < STEADY_MPS && controller.has_hovered() {
+            self.began_low = false;
             controller.engage(measured, params);
         }
     }
