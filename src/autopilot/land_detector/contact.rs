@@ -26,7 +26,7 @@ const LOADED_S: f64 = 0.3;
 const STEADY_SHARE: f64 = 0.2;
 const STILL_MPS: f64 = 0.5;
 const MOVING_MPS: f64 = 1.0;
-/// The ground pushes a craft by at least this much more than its motors do, m/s².
+/// The ground pushes a craft by at least this much beyond what its motors do, m/s².
 const PUSH_MPS2: f64 = 0.5 * GRAVITY;
 /// A craft reaches the ground from above: its legs take load only this far below its greatest height, m.
 const SUNK_M: f64 = 0.1;
@@ -44,7 +44,7 @@ pub(super) struct GroundContact {
     is_loaded: bool,
     /// Greatest altitude since the legs last carried the craft, m.
     peak_m: Option<f64>,
-    /// Specific force of the last cycle beyond that of the motors, m/s².
+    /// Specific force of the last cycle that the motors cannot make, m/s².
     push_mps2: f64,
 }
 
@@ -59,7 +59,7 @@ impl GroundContact {
         self.has_lifted_off
     }
 
-    /// Whether something other than the motors pushes the craft up: the ground, before the lift-off and at a touchdown.
+    /// Returns whether something other than the motors pushes the craft: the ground, before the lift-off and at a bump.
     pub(super) fn is_pushed(&self) -> bool {
         !self.has_lifted_off || self.push_mps2 > PUSH_MPS2
     }
@@ -76,11 +76,20 @@ impl GroundContact {
         self.peak_m = None;
     }
 
+    /// Returns the part of the specific force that the motors cannot make, m/s². Between none and all of their thrust is what
+    /// they make while they are throttled.
+    fn push(&self, now: &GroundMeasurement) -> f64 {
+        let thrust = self.thrust.unwrap_or(0.0) * self.square;
+        let up = now.force_flu.z;
+        now.force_flu.xy().norm().hypot((up - thrust).max(0.0) + up.min(0.0))
+    }
+
     /// One cycle of an armed craft, `dt` seconds after the last.
     pub(super) fn update(&mut self, now: &GroundMeasurement, dt: f64) {
         let share = dt / (AVERAGE_S + dt);
         self.square += share * (now.motor_square - self.square);
         self.force += share * (now.force_flu.z - self.force);
+        self.push_mps2 = self.push(now);
         let altitude_m = now.altitude_m.unwrap_or(f64::NEG_INFINITY);
         // Without an altitude nothing shows the lift-off.
         self.has_lifted_off |= now.altitude_m.is_none()
@@ -104,7 +113,6 @@ impl GroundContact {
         if altitude_m > AIRBORNE_M && !self.is_loaded {
             *thrust += (dt / (LEARN_S + dt)) * (felt - *thrust);
         }
-        self.push_mps2 = now.force_flu.z - *thrust * self.square;
         let on_legs = 1.0 - *thrust * self.square / GRAVITY;
         let is_steady = (self.force / GRAVITY - 1.0).abs() < STEADY_SHARE;
         // A speed that is not known does not show that the craft stands.
@@ -155,6 +163,32 @@ mod tests {
             contact.update(&at(0.0, GRAVITY, 0.52), 0.01);
         }
         assert!(!contact.on_ground());
+    }
+
+    #[test]
+    fn a_bump_counts_from_every_side_and_with_stopped_motors_but_no_change_of_the_throttle_does() {
+        let mut flying = GroundContact::default();
+        for _ in 0..1000 {
+            flying.update(&at(10.0, GRAVITY, 0.5), 0.01);
+        }
+        let is_pushed = |motor: f64, x: f64, z: f64| {
+            let mut contact = flying.clone();
+            let mut now = at(5.0, 4.0 * GRAVITY * motor * motor, motor);
+            for _ in 0..100 {
+                contact.update(&now, 0.01);
+            }
+            now.force_flu += Vector3::new(x, 0.0, z);
+            contact.update(&now, 0.01);
+            contact.is_pushed()
+        };
+        for motor in [0.0, 0.3, 0.5] {
+            let thrust = 4.0 * GRAVITY * motor * motor;
+            assert!(!is_pushed(motor, 0.0, 0.0) && !is_pushed(motor, 0.0, -thrust), "{motor}");
+            assert!(!is_pushed(motor, 2.0, 2.0), "drag, {motor}");
+            for (x, z) in [(0.0, 10.0), (10.0, 0.0), (-10.0, 0.0), (0.0, -thrust - 10.0)] {
+                assert!(is_pushed(motor, x, z), "{motor}: {x}, {z}");
+            }
+        }
     }
 
     #[test]

@@ -34,7 +34,7 @@ pub(super) struct Impact {
 }
 
 impl Impact {
-    /// Takes the specific force (m/s², body FLU) of this update, `dt` seconds after the last.
+    /// Takes the specific force (m/s², any frame) of this update, `dt` seconds after the last.
     pub(super) fn observe(&mut self, specific_force: Vector3<f64>, dt: f64) {
         let previous = self.previous.replace(specific_force).unwrap_or(specific_force);
         if dt > 0.0 {
@@ -51,8 +51,7 @@ impl Impact {
             return false;
         }
         let factor = if facts.alt_hold && facts.near_ground { NEAR_GROUND_FACTOR } else { 1.0 };
-        // The ground pushes up; the force falls when the motors are throttled down.
-        self.jerk.z > 0.0 && self.jerk.norm() * factor > threshold * THRESHOLD_UNIT
+        self.jerk.norm() * factor > threshold * THRESHOLD_UNIT
     }
 }
 
