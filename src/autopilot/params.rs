@@ -247,7 +247,7 @@ parameters! {
     /// Greatest lookahead, cm; wins over the least.
     "ap_l1_max_lookahead" l1_max_lookahead: u16 = 10000, 1000..=50000, Live,
         "Greatest distance of the aim point on the path, cm.";
-    /// Cross-track error beyond which the leg starts anew at the craft, cm.
+    /// Cross-track error beyond which the leg starts again at the craft, cm.
     "ap_l1_max_cross_track_error" l1_max_cross_track_error: u16 = 10000, 1000..=50000, Live,
         "Farther from the path than this the craft flies straight back to it, cm.";
     /// Turn rate of arcs at the start of a leg, deg/s; 0 = no arcs.

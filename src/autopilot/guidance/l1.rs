@@ -22,7 +22,7 @@ pub struct L1Limits {
     pub min_lookahead_m: f64,
     /// Greatest lookahead, m; wins over the least.
     pub max_lookahead_m: f64,
-    /// Cross-track error beyond which the leg is given up and starts anew at the craft, m.
+    /// Cross-track error beyond which the leg is given up and starts again at the craft, m.
     pub max_cross_track_m: f64,
 }
 
