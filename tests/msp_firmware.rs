@@ -8,7 +8,7 @@ use betadeck::firmware::msp::{MspAction, UtcTime};
 use betadeck::firmware::{Firmware, FirmwareOptions};
 use betadeck::geo::LatLon;
 use betadeck::signals::{BatterySample, GpsSample, MotorCommand, SensorFrame, SimTime};
-use betadeck::telemetry::DisarmReason;
+use betadeck::telemetry::{DisarmReason, FirmwareEvent};
 use nalgebra::{UnitQuaternion, Vector3};
 
 /// A firmware on a bench under an open sky.
@@ -343,4 +343,29 @@ fn a_heading_by_message_is_turned_to_while_mag_is_on() {
         let yaw = bench.firmware.control().setpoint_dps[2];
         assert_eq!((yaw > 20.0, yaw < -20.0), (clockwise, !clockwise), "{yaw}");
     }
+}
+
+#[test]
+fn a_value_that_current_firmware_refuses_is_taken_from_a_message_with_a_notice() {
+    let mut bench = Bench::new();
+    let mut notices = |request: &str| {
+        let before = std::iter::from_fn(|| bench.firmware.take_event()).count();
+        assert!(before < 100);
+        let reply = bench.ask(0x3010, request.as_bytes()).unwrap();
+        let said: Vec<String> = std::iter::from_fn(|| bench.firmware.take_event())
+            .filter_map(|event| match event {
+                FirmwareEvent::Notice(notice) => Some(notice.to_string()),
+                _ => None,
+            })
+            .collect();
+        (String::from_utf8(reply).unwrap(), said)
+    };
+    let (reply, said) = notices("ap_position_cutoff = 5");
+    assert_eq!(reply, "ap_position_cutoff = 5");
+    assert_eq!(
+        said,
+        ["ap_position_cutoff = 5 is taken here, but current Betaflight refuses it: it allows 10 to 50."]
+    );
+    assert_eq!(notices("ap_position_cutoff"), ("ap_position_cutoff = 5".to_owned(), Vec::new()), "reading");
+    assert_eq!(notices("ap_position_cutoff = 30").1, Vec::<String>::new());
 }

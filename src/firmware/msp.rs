@@ -5,7 +5,7 @@
 //! replies are framed on a link is the link's business.
 //!
 //! ```text
-//! code ── TABLE ──▶ handler ──▶ Outcome { reply, action }
+//! code ── TABLE ──▶ handler ──▶ Outcome { reply, action, notice }
 //!                     │ one of: a layout of settings, read or written field by field; or a function
 //! ```
 //!
@@ -37,6 +37,7 @@ pub use table::{Access, MESSAGES, Message};
 use super::config::Configuration;
 use crate::geo::LatLon;
 use crate::signals::RcFrame;
+use crate::telemetry::FirmwareNotice;
 use wire::{Reader, Writer};
 
 /// The answer to a request.
@@ -46,6 +47,8 @@ pub struct Outcome {
     pub reply: Option<Vec<u8>>,
     /// What the owner of the firmware has to do, after the reply is out.
     pub action: Option<MspAction>,
+    /// Something the user should know about the value that was written.
+    pub notice: Option<FirmwareNotice>,
 }
 
 /// Something a message asks the owner of the firmware to do.
@@ -103,6 +106,7 @@ struct Call<'a> {
     request: Reader<'a>,
     reply: Writer,
     action: Option<MspAction>,
+    notice: Option<FirmwareNotice>,
 }
 
 impl Call<'_> {
@@ -120,12 +124,18 @@ impl Call<'_> {
 /// Answers one request.
 #[must_use]
 pub fn handle(code: u16, request: &[u8], configuration: &mut Configuration, facts: &MspFacts) -> Outcome {
-    let refused = Outcome { reply: None, action: None };
+    let refused = Outcome { reply: None, action: None, notice: None };
     let Some(message) = table::find(code) else { return refused };
-    let mut call =
-        Call { configuration, facts, request: Reader::new(request), reply: Writer::default(), action: None };
+    let mut call = Call {
+        configuration,
+        facts,
+        request: Reader::new(request),
+        reply: Writer::default(),
+        action: None,
+        notice: None,
+    };
     match message.handler.run(&mut call) {
-        Ok(()) => Outcome { reply: Some(call.reply.into_bytes()), action: call.action },
+        Ok(()) => Outcome { reply: Some(call.reply.into_bytes()), action: call.action, notice: call.notice },
         Err(Refused) => refused,
     }
 }

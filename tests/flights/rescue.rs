@@ -1,4 +1,4 @@
-//! A rescue by switch that loses its GPS, on the airframes of the simulator and on some of other drag, thrust and lag.
+//! A rescue by switch, with its GPS and without, on the airframes of the simulator and on some of other drag, thrust and lag.
 
 use crate::checks::{Checks, assert_met};
 use crate::rig::{Rig, world};
@@ -67,5 +67,24 @@ fn a_rescue_that_loses_its_gps_sinks_at_its_own_rate_to_the_ground_on_every_airf
             println!("{name}, {landing_rate} cm/s: sinks at {median:.2} m/s, touches at {impact:?}");
             checks.verdict(&format!("{name}, {landing_rate} cm/s"), &rig.story())
         })
+    }));
+}
+
+#[test]
+fn a_rescue_that_keeps_its_gps_sinks_at_its_own_rate_too() {
+    assert_met([50, 200].map(|landing_rate| {
+        let lines = format!("{PLAN}\nset ap_landing_descent_rate = {landing_rate}");
+        let mut rig = Rig::new(world(1).0, &lines, 10.0);
+        rig.engaged();
+        rig.vehicle.transmitter_mut().inputs_mut().push("aux5=2000@20".parse().unwrap());
+        rig.until(250.0, "disarm", |rig| rig.disarmed().is_some());
+        let mut checks = Checks::default();
+        let (disarm, reason) = rig.disarmed().unwrap();
+        checks.same("reason", reason, DisarmReason::Landing);
+        let mut sink: Vec<f64> =
+            rig.span(disarm - 40.0, disarm).filter(|s| (6.0..15.0).contains(&s.alt)).map(|s| -s.vu).collect();
+        sink.sort_by(f64::total_cmp);
+        checks.at_most("error of the sink rate", (sink[sink.len() / 2] - 0.8).abs(), 0.1);
+        checks.verdict(&format!("{landing_rate} cm/s"), &rig.story())
     }));
 }

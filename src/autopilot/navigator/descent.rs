@@ -63,7 +63,7 @@ impl Descent {
     }
 
     /// Moves the landing on; returns the time since its profile began, s. `waypoint_alt_m` is the altitude of the LAND. A
-    /// rescue sinks at its own rate down to the last metres.
+    /// rescue sinks at its own rate down to the last metres, and there no faster than a landing.
     pub(super) fn advance(
         &mut self,
         now: &NavInputs,
@@ -74,8 +74,9 @@ impl Descent {
     ) -> f64 {
         let slow = params.descent_rate_mps();
         let sinking = match rescue {
-            Some(rescue) if now.alt_m > SLOW_LANDING_M => rescue.descend_mps.max(slow),
-            Some(_) | None => slow,
+            Some(rescue) if now.alt_m > SLOW_LANDING_M => rescue.descend_mps,
+            Some(rescue) => rescue.descend_mps.min(slow),
+            None => slow,
         };
         if self.0 == Phase::Pending {
             let floor_m = waypoint_alt_m.max(f64::from(params.landing_altitude_m) + CLEARANCE_M);

@@ -23,6 +23,7 @@ pub(super) fn multiple(call: &mut Call<'_>) -> Result<(), Refused> {
             request: super::Reader::new(&[]),
             reply: super::Writer::default(),
             action: None,
+            notice: None,
         };
         message.handler.run(&mut question)?;
         let answer = question.reply.into_bytes();

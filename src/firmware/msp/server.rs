@@ -4,6 +4,7 @@ use super::{Access, MspAction, MspFacts, Outcome, UtcTime};
 use crate::firmware::Firmware;
 use crate::firmware::config::Feature;
 use crate::signals::RcSource;
+use crate::telemetry::FirmwareEvent;
 
 impl Firmware {
     /// Answers a message and carries out what it asks of the firmware itself. Storing, restarting and the time of day
@@ -16,6 +17,9 @@ impl Firmware {
         let writes = super::table::find(code).is_some_and(|message| message.access == Access::Write);
         if writes && outcome.reply.is_some() && changes_configuration(outcome.action) {
             self.refresh();
+        }
+        if let Some(notice) = outcome.notice {
+            self.outbox.push(FirmwareEvent::Notice(notice));
         }
         match outcome.action {
             Some(MspAction::Save) => self.setup.make_consistent(had_gps, &mut self.outbox),

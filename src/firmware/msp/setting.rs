@@ -1,7 +1,7 @@
 //! Settings by name, for clients that do not want a command line.
 
 use super::{Call, Refused};
-use crate::firmware::settings::{Kind, PORT_NAMES, Scope, Setting, find};
+use crate::firmware::settings::{Kind, PORT_NAMES, Scope, Setting, beyond_current_firmware, find};
 
 /// Sets with `name = value`, reads with `name`; answers `name = value`.
 pub(super) fn setting(call: &mut Call<'_>) -> Result<(), Refused> {
@@ -15,8 +15,12 @@ pub(super) fn setting(call: &mut Call<'_>) -> Result<(), Refused> {
     if let Some(value) = value {
         settings.assign(setting, value).map_err(|_| Refused)?;
     }
-    let value = settings.active_value(setting).ok_or(Refused)?;
-    call.reply.bytes(format!("{} = {}", setting.name, setting.display(value)).as_bytes());
+    let is_written = value.is_some();
+    let value = setting.display(settings.active_value(setting).ok_or(Refused)?).to_string();
+    if is_written {
+        call.notice = beyond_current_firmware(setting, &value);
+    }
+    call.reply.bytes(format!("{} = {value}", setting.name).as_bytes());
     Ok(())
 }
 
