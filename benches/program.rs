@@ -156,6 +156,7 @@ fn session() -> Handle {
         starter_modes: true,
         speed: 1.0,
         takeoff_m: 10.0,
+        is_recorded: true,
         endpoints: None,
         remote: None,
         first_events: Vec::new(),

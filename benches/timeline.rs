@@ -62,6 +62,7 @@ fn session() -> Handle {
         starter_modes: true,
         speed: f64::INFINITY,
         takeoff_m: 10.0,
+        is_recorded: true,
         endpoints: None,
         remote: None,
         first_events: Vec::new(),

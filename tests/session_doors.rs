@@ -54,6 +54,7 @@ async fn rig() -> Rig {
         starter_modes: true,
         speed: 1.0,
         takeoff_m: 10.0,
+        is_recorded: true,
         endpoints: Some(Endpoints { requests: inbox, handler, status: views, simulator: None }),
         remote: None,
         first_events: Vec::new(),

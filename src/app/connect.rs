@@ -41,6 +41,7 @@ pub(super) fn run(args: &TuiArgs, place: &FcPlace, keymap: Keymap) -> Result<u8,
             firmware: None,
             physics: &args.physics,
             flight: &args.flight,
+            has_screen: true,
         },
     };
     tui::show(screen, keymap)

@@ -44,7 +44,7 @@ pub(super) struct Opened {
 /// # Errors
 /// When there is no socket for the motors of an external simulator.
 pub(super) async fn open(
-    LiveArgs { doors: args, connect, firmware, physics, flight }: LiveArgs<'_>,
+    LiveArgs { doors: args, connect, firmware, physics, flight, .. }: LiveArgs<'_>,
 ) -> Result<Option<Opened>, AppError> {
     let wanted = |port: u16| (!args.no_ports).then_some(port);
     // Ports that a firmware outside has are not ours.
@@ -165,8 +165,14 @@ mod tests {
         let doors = DoorArgs { no_ports: true, udp_ports: Some(ports), ..DoorArgs::default() };
         let flight = FlightArgs::default();
         let embedded = PhysicsArgs::default();
-        let of =
-            |physics| LiveArgs { doors: &doors, connect: None, firmware: None, physics, flight: &flight };
+        let of = |physics| LiveArgs {
+            doors: &doors,
+            connect: None,
+            firmware: None,
+            physics,
+            flight: &flight,
+            has_screen: false,
+        };
         assert!(open(of(&embedded)).await.unwrap().is_none());
         let place = "tcp:localhost:1".parse().unwrap();
         let closed = LiveArgs { doors: &DoorArgs::default(), connect: Some(&place), ..of(&embedded) };

@@ -25,6 +25,8 @@ pub(super) struct LiveArgs<'a> {
     pub(super) firmware: Option<&'a RemoteFirmware>,
     pub(super) physics: &'a PhysicsArgs,
     pub(super) flight: &'a FlightArgs,
+    /// A screen shows the session, and earlier instants of it.
+    pub(super) has_screen: bool,
 }
 
 /// What is said of a session that ended although nobody asked it to.
@@ -65,6 +67,7 @@ pub(super) async fn start(
         starter_modes: true,
         speed: args.flight.speed.map_or(1.0, |Speed(speed)| speed),
         takeoff_m: TAKEOFF_M,
+        is_recorded: args.has_screen,
         endpoints,
         remote: remote.or_else(|| args.connect.map(connect::link)),
         first_events,

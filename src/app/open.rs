@@ -64,6 +64,7 @@ pub(super) fn run(args: &OpenArgs, keymap: Keymap) -> Result<u8, AppError> {
             firmware: None,
             physics: &physics,
             flight: &flight_args,
+            has_screen: true,
         },
     };
     tui::show(screen, keymap)

@@ -42,6 +42,7 @@ pub(super) fn run(args: &ServeArgs) -> Result<u8, AppError> {
             firmware: firmware.as_ref(),
             physics: &args.physics,
             flight: &args.flight,
+            has_screen: false,
         };
         let (session, doors, _directory) = live::start(options, vehicle, store, notices, None).await?;
         let outcome = report(session, &mut output, stop).await;

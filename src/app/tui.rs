@@ -94,6 +94,7 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
             firmware: firmware.as_ref(),
             physics: &args.physics,
             flight: &args.flight,
+            has_screen: true,
         },
     };
     show(screen, keymap)

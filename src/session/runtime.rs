@@ -77,6 +77,8 @@ pub struct SessionConfig {
     pub speed: f64,
     /// Altitude to which the scripted pilot climbs, m.
     pub takeoff_m: f64,
+    /// Keeps a recording, so that earlier instants can be shown. Without a screen nobody can ask for one.
+    pub is_recorded: bool,
     /// The endpoints, when any are open; they make the flight live.
     pub endpoints: Option<Endpoints>,
     /// The link to the vehicle's flight controller, when that is remote.
@@ -198,7 +200,7 @@ impl Session {
         let incoming = ImpairedLink::new(Stream::Link.rng(config.vehicle.seed()));
         let (timeline, flown) = match flown {
             Some(flown) => (Some(flown.timeline), Some((flown.events, flown.show))),
-            None if simulator.is_none() => (Timeline::new(&mut config.vehicle), None),
+            None if config.is_recorded && simulator.is_none() => (Timeline::new(&mut config.vehicle), None),
             None => (None, None),
         };
         let persistence =

@@ -93,6 +93,7 @@ pub(crate) async fn rig_with(faults: &[&str]) -> Rig {
         starter_modes: true,
         speed: 1.0,
         takeoff_m: 10.0,
+        is_recorded: true,
         endpoints,
         remote: None,
         first_events: Vec::new(),

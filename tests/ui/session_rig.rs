@@ -53,6 +53,7 @@ impl Rig {
             starter_modes: true,
             speed: 1.0,
             takeoff_m: 5.0,
+            is_recorded: true,
             endpoints: None,
             remote: None,
             first_events: Vec::new(),

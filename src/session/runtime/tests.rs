@@ -20,6 +20,21 @@ struct Rig {
     console: Interpreter,
 }
 
+/// A session without doors.
+fn config_of(vehicle: Vehicle, is_recorded: bool) -> SessionConfig {
+    SessionConfig {
+        vehicle,
+        store: Store::in_memory(),
+        starter_modes: true,
+        speed: 1.0,
+        takeoff_m: 10.0,
+        is_recorded,
+        endpoints: None,
+        remote: None,
+        first_events: Vec::new(),
+    }
+}
+
 impl Rig {
     fn new() -> Self {
         Self::with(Vehicle::with_remote_controller(WorldConfig::default()).unwrap())
@@ -27,16 +42,7 @@ impl Rig {
 
     fn with(vehicle: Vehicle) -> Self {
         let (commands, taken) = mpsc::channel(32);
-        let config = SessionConfig {
-            vehicle,
-            store: Store::in_memory(),
-            starter_modes: true,
-            speed: 1.0,
-            takeoff_m: 10.0,
-            endpoints: None,
-            remote: None,
-            first_events: Vec::new(),
-        };
+        let config = config_of(vehicle, true);
         let mut session = Session::new(config, None, taken, mpsc::unbounded_channel().0);
         if let Some(mailbox) = session.vehicle.controller_mut().remote_mut() {
             let altitude_reference = AltitudeReference::Home;
@@ -290,4 +296,19 @@ fn a_speed_of_the_command_line_and_a_slow_one_outlast_the_landing() {
     let mut rig = rig_at(1.0);
     rig.choose_speed(0.25);
     assert!((rig.fly_and_land() - 0.25).abs() < 1e-9);
+}
+
+#[test]
+fn a_session_without_a_screen_keeps_nothing_of_its_flight() {
+    let recorded = |is_recorded| {
+        let config = VehicleConfig {
+            world: WorldConfig::default(),
+            firmware: FirmwareOptions::default(),
+            configuration: Configuration::default(),
+            live: false,
+        };
+        let config = config_of(Vehicle::new(config).unwrap(), is_recorded);
+        Session::new(config, None, mpsc::channel(1).1, mpsc::unbounded_channel().0).timeline.is_some()
+    };
+    assert_eq!((recorded(true), recorded(false)), (true, false));
 }

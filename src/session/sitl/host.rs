@@ -126,6 +126,7 @@ impl Sitl {
             starter_modes: false,
             speed: 1.0,
             takeoff_m: 0.0,
+            is_recorded: false,
             endpoints: Some(endpoints),
             remote: None,
             first_events: Vec::new(),
