@@ -1,0 +1,107 @@
+//! The first half hour of a new user, by keys: the tutorial, a plan from nothing, its flight, back in time, a scenario of it.
+
+use crate::pty::Terminal;
+use crate::terminal::state;
+
+/// The speed of the flight: four times twice real time.
+const FASTER: &str = "]]]]";
+
+fn has_landed(terminal: &Terminal) -> bool {
+    state(terminal) == "COMPLETE" && terminal.row(0).contains("DISARMED")
+}
+
+/// Minutes of the clock in the second row.
+fn minutes(terminal: &Terminal) -> Option<u32> {
+    let row = terminal.row(1);
+    let clock = row.split_whitespace().rev().find_map(|word| word.split_once(':'))?;
+    clock.0.parse().ok()
+}
+
+fn tutorial(terminal: &mut Terminal) {
+    terminal.send(":tutorial\r");
+    terminal.until_shown("▸ 1/5");
+    terminal.until_shown("GPS fix");
+    terminal.send("F");
+    terminal.until_shown("▸ 2/5");
+    terminal.send("]");
+    terminal.until_shown("That is 2×");
+    terminal.send("]");
+    terminal.until_shown("▸ 3/5");
+    terminal.send("2");
+    terminal.until_shown("Arrows choose");
+    terminal.send("lll+");
+    terminal.until_shown("▸ 4/5");
+    terminal.send("U");
+    terminal.until_shown("▸ 5/5");
+    terminal.send(",");
+    terminal.until_shown("Every panel shows that instant");
+    terminal.send("e");
+    terminal.until_shown("That was the tutorial");
+    terminal.send(FASTER);
+    terminal.until("a landing", has_landed);
+}
+
+/// Two legs and a landing, one of its altitudes mistyped and mended.
+fn plan_from_nothing(terminal: &mut Terminal) {
+    terminal.send("2n");
+    terminal.until_shown("A new plan");
+    terminal.send("ii");
+    terminal.until_shown("[20.0]");
+    terminal.send("\r2035\r");
+    terminal.until_shown("2035");
+    terminal.send("\r35\r");
+    terminal.until_shown("[35.0]");
+    terminal.until("no finding", |terminal| !terminal.screen().contains("2035"));
+    terminal.send("i");
+    terminal.until_shown("● 2");
+    terminal.send("hhh+++");
+    terminal.until_shown("[LAND]");
+    terminal.send("U");
+    terminal.until_shown("✓ on the craft");
+}
+
+/// Presses a key that goes back in time until the screen is as wanted.
+fn back(terminal: &mut Terminal, key: &str, is_there: impl Fn(&Terminal) -> bool) {
+    while !is_there(terminal) {
+        let before = terminal.row(1);
+        terminal.send(key);
+        terminal.until("an earlier instant", |terminal| terminal.row(1) != before);
+    }
+}
+
+#[test]
+fn a_new_user_flies_a_plan_from_nothing_and_makes_a_scenario_of_it() {
+    for (columns, rows) in [(80, 24), (200, 60)] {
+        let program = crate::support::PROGRAM;
+        let written = "new-flight-1.toml";
+        let script = format!("{program} --fresh --no-ports && {program} check {written}");
+        let mut terminal = Terminal::start(columns, rows, "/bin/sh", &["-c", &script]);
+        terminal.until_shown("DISARMED");
+        tutorial(&mut terminal);
+        plan_from_nothing(&mut terminal);
+        terminal.send("F");
+        terminal.until("the mission", |terminal| state(terminal) == "APPROACHING");
+        terminal.send(FASTER);
+        terminal.until("a landing", has_landed);
+        terminal.until("real time again", |terminal| terminal.row(1).trim_end().ends_with(" 1×"));
+        let landed = minutes(&terminal).expect("a clock");
+        terminal.send(FASTER);
+        terminal
+            .until("two minutes of waiting", |terminal| minutes(terminal).is_some_and(|now| now > landed + 2));
+        terminal.send(" {");
+        terminal.until_shown("REWOUND −");
+        back(&mut terminal, "{", |terminal| terminal.row(1).contains("APPROACHING WP0"));
+        back(&mut terminal, ",", |terminal| {
+            terminal.row(0).contains("● ARMED") && !terminal.row(0).contains("AUTOPILOT")
+        });
+        terminal.send("T");
+        terminal.until_shown(written);
+        terminal.send("q");
+        for question in ["The craft is armed", "square has edits"] {
+            terminal.until_shown(question);
+            terminal.send("y");
+        }
+        assert_eq!(terminal.end(), 0, "{}", terminal.screen());
+        terminal.assert_given_back();
+    }
+}
