@@ -1,9 +1,10 @@
 //! The first half hour of a new user, by keys: what is shown is true, stays readable and says how to go on.
 
 use betadeck::plan::WaypointType;
-use betadeck::session::{Event, ForecastJob, ForecastKind, ForecastReply, SessionEvent};
+use betadeck::session::{Event, ForecastJob, ForecastKind, ForecastReply, SessionEvent, SessionView};
 use betadeck::signals::SimTime;
 use betadeck::telemetry::{AbortReason, Guard, GuardName, GuardOp, NavState, Refusal};
+use betadeck::timeline::TimelineView;
 use betadeck::ui::editor::FileReply;
 use betadeck::ui::theme::{Palette, Theme};
 use betadeck::ui::{AppState, Effect, Msg, draw, update};
@@ -140,6 +141,19 @@ fn every_question_before_the_end_takes_the_same_keys() {
     update(&mut unsaved, Msg::Files(FileReply::NotKept("No room for the journal.".to_owned())));
     keys(&mut unsaved, "q");
     assert!(!is_quit(&keys(&mut unsaved, "y")) && screen(&unsaved).contains(" d discard"));
+}
+
+#[test]
+fn quitting_while_an_earlier_instant_is_shown_asks_about_the_craft_of_now() {
+    for (head_is_armed, asks) in [(true, true), (false, false)] {
+        let mut state = state((80, 24));
+        let timeline = TimelineView { rewound: true, head_is_armed, ..TimelineView::default() };
+        let view = SessionView { timeline: Some(timeline), ..fixture::view(&flight()) };
+        update(&mut state, Msg::View(view));
+        let effects = keys(&mut state, "q");
+        assert_eq!(screen(&state).contains("The craft is armed"), asks);
+        assert_eq!(effects.iter().any(|effect| matches!(effect, Effect::Quit)), !asks);
+    }
 }
 
 #[test]

@@ -219,4 +219,13 @@ impl SessionView {
     pub fn is_rewound(&self) -> bool {
         self.timeline.as_ref().is_some_and(|timeline| timeline.rewound)
     }
+
+    /// Whether the craft is armed, at the newest instant while an earlier one is shown.
+    #[must_use]
+    pub fn is_armed_now(&self) -> bool {
+        match &self.timeline {
+            Some(timeline) if timeline.rewound => timeline.head_is_armed,
+            Some(_) | None => self.vehicle.craft.is_armed(),
+        }
+    }
 }

@@ -12,6 +12,8 @@ pub struct TimelineView {
     pub first: SimTime,
     /// The newest instant, from where the flight goes on.
     pub head: SimTime,
+    /// The craft is armed at the newest instant.
+    pub head_is_armed: bool,
     /// An earlier instant is shown, while the flight waits.
     pub rewound: bool,
     /// How often the flight was flown on from an earlier instant.

@@ -373,7 +373,7 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
             Vec::new()
         }
         // One that is real flies on without this program.
-        Action::Quit if state.view.vehicle.craft.is_armed() && permission::real_craft(state).is_none() => {
+        Action::Quit if state.view.is_armed_now() && permission::real_craft(state).is_none() => {
             state.popups.push(Popup::Quit);
             Vec::new()
         }

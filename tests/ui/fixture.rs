@@ -398,6 +398,7 @@ pub(crate) fn rewind(state: &mut AppState) {
     };
     let timeline = TimelineView {
         head: SimTime::from_secs_f64(101.6),
+        head_is_armed: true,
         rewound: true,
         marks: std::sync::Arc::new(marks),
         ..TimelineView::default()

@@ -77,6 +77,7 @@ impl Session {
         Some(TimelineView {
             first: timeline.first().unwrap_or(head),
             head,
+            head_is_armed: self.vehicle.controller().is_armed(),
             rewound: timeline.shown().is_some(),
             branch: timeline.branch(),
             branched_at: timeline.branched_at(),
