@@ -6,7 +6,7 @@ use std::fmt;
 
 use crate::geo::{LatLon, distance_bearing};
 
-use super::estimate::{Assumptions, TouchdownThrottle, estimate};
+use super::estimate::{Assumptions, SettingSource, TouchdownThrottle, estimate};
 use super::validate::{PlanFault, check_plan};
 use super::{FlightPlan, Waypoint, WaypointType};
 pub use steep::{Remedy, SteepLeg};
@@ -24,6 +24,13 @@ pub enum Finding {
         distance_m: f64,
         /// The fence, m.
         limit_m: f64,
+        /// Whose it is.
+        from: SettingSource,
+    },
+    /// The craft has the plan and another value of one of its settings.
+    CraftDiffers {
+        /// The plan's line.
+        setting: String,
     },
     /// Waypoints behind a LAND or an endless HOLD.
     NeverFlown {
@@ -88,10 +95,18 @@ impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Fault(fault) => write!(f, "refused: {fault}"),
-            Self::OutsideFence { index, distance_m, limit_m } => write!(
+            Self::OutsideFence { index, distance_m, limit_m, from } => write!(
                 f,
-                "refused: waypoint {index} is {distance_m:.0} m from home, the fence \
-                 (ap_max_distance_from_home) is {limit_m:.0} m"
+                "refused: waypoint {index} is {distance_m:.0} m from home, {} is {limit_m:.0} m",
+                match from {
+                    SettingSource::Unsaid => "the fence (ap_max_distance_from_home)",
+                    SettingSource::Craft => "the craft's ap_max_distance_from_home",
+                    SettingSource::Plan => "the plan's ap_max_distance_from_home, set at the upload,",
+                }
+            ),
+            Self::CraftDiffers { setting } => write!(
+                f,
+                "the craft has not the plan's {setting} any more: it flies with its own value until the next upload"
             ),
             Self::NeverFlown { index, kind: WaypointType::Land } => {
                 write!(f, "waypoint {index} lands: the waypoints behind it are never flown")
@@ -142,11 +157,17 @@ pub fn review(plan: &FlightPlan, home: LatLon, assumptions: &Assumptions) -> Vec
     }
     let mut findings: Vec<Finding> = Vec::new();
     if let Some(limit_m) = assumptions.fence_m {
+        let from = assumptions.fence_from;
         findings.extend(
             waypoints.iter().enumerate().filter(|(_, waypoint)| waypoint.kind.uses_position()).filter_map(
                 |(index, waypoint)| {
                     let (distance_m, _) = distance_bearing(home, waypoint.position);
-                    (distance_m > limit_m).then_some(Finding::OutsideFence { index, distance_m, limit_m })
+                    (distance_m > limit_m).then_some(Finding::OutsideFence {
+                        index,
+                        distance_m,
+                        limit_m,
+                        from,
+                    })
                 },
             ),
         );
@@ -244,7 +265,9 @@ mod tests {
             fence,
             ["refused: waypoint 0 is 150 m from home, the fence (ap_max_distance_from_home) is 100 m"]
         );
-        assert!(Finding::OutsideFence { index: 0, distance_m: 2.0, limit_m: 1.0 }.is_refusal());
+        let from = SettingSource::Craft;
+        let outside = Finding::OutsideFence { index: 0, distance_m: 2.0, limit_m: 1.0, from };
+        assert!(outside.is_refusal() && outside.to_string().contains("the craft's ap_max"), "{outside}");
     }
 
     #[test]

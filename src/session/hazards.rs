@@ -18,9 +18,7 @@ pub fn hazards(vehicle: &Vehicle, start_alt_m: f64) -> Vec<String> {
 /// The hazards of a mission that begins above `home`.
 fn hazards_from(controller: &FlightController, home: Option<LatLon>, start_alt_m: f64) -> Vec<String> {
     let Some(firmware) = controller.embedded() else { return Vec::new() };
-    let stored = &firmware.configuration().settings;
-    let settings = Assumptions::SETTINGS.map(|name| format!("{name} = {}", stored.number(name)));
-    let assumptions = Assumptions { start_alt_m, ..Assumptions::from_settings(&settings) };
+    let assumptions = Assumptions { start_alt_m, ..firmware.settings_view().assumptions() };
     let found = review(firmware.stored_plan(), home.unwrap_or_default(), &assumptions);
     let hazards = found.iter().filter(|finding| Finding::is_hazard(finding));
     // How steep a leg is depends on where home is.

@@ -41,6 +41,7 @@ pub fn waypoint_of(finding: &Finding) -> Option<usize> {
         Finding::Fault(PlanFault::Empty | PlanFault::Corrupt(_))
         | Finding::StaysInTheAir
         | Finding::OutlastsBattery { .. }
+        | Finding::CraftDiffers { .. }
         | Finding::NoTouchdownThrottle(_) => None,
     }
 }
@@ -125,9 +126,10 @@ pub fn fix(document: &PlanDocument, finding: &Finding, home: LatLon) -> Option<F
             fixed.settings.push("ap_landing_throttle_threshold = 100".to_owned());
             "set the threshold to 100".to_owned()
         }
-        Finding::Fault(PlanFault::Empty | PlanFault::Corrupt(_)) | Finding::OutlastsBattery { .. } => {
-            return None;
-        }
+        // An upload takes it away, no edit.
+        Finding::CraftDiffers { .. }
+        | Finding::Fault(PlanFault::Empty | PlanFault::Corrupt(_))
+        | Finding::OutlastsBattery { .. } => return None,
     };
     Some(Fix { title, document: fixed })
 }
