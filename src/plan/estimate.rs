@@ -7,7 +7,7 @@ use crate::geo::{LatLon, distance_bearing};
 
 use super::setpoint::AltitudeSetpoint;
 use super::{FlightPlan, Waypoint, WaypointType};
-pub use assumptions::{Assumptions, SettingSource, TouchdownThrottle};
+pub use assumptions::{Assumptions, MAX_ALTITUDE_M, SettingSource, TouchdownThrottle};
 
 /// A LAND reached this far above its altitude is approached vertically first, m; the approach ends this near to it, m.
 const FAR_ABOVE_M: f64 = 2.0;

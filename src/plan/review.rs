@@ -1,5 +1,6 @@
 //! What is worth knowing about a plan before it flies: why the craft would refuse it, and what it may not do as expected.
 
+mod altitude;
 mod steep;
 
 use std::fmt;
@@ -71,6 +72,24 @@ pub enum Finding {
         /// Altitude of its leg above home, m.
         alt_m: f64,
     },
+    /// The leg is flown above the limit that the user has set.
+    AboveLimit {
+        /// The waypoint that says the altitude.
+        index: usize,
+        /// Altitude of its leg above home, m.
+        alt_m: f64,
+        /// The limit, m.
+        limit_m: f64,
+    },
+    /// The leg is flown far above all others.
+    FarAboveOthers {
+        /// The waypoint that says the altitude.
+        index: usize,
+        /// Altitude of its leg above home, m.
+        alt_m: f64,
+        /// The median of the others, m.
+        usual_m: f64,
+    },
     /// The leg is too steep for its speed: the craft passes the waypoint beside its altitude.
     SteepLeg(SteepLeg),
     /// The throttle condition of a touchdown can never be met.
@@ -87,7 +106,14 @@ impl Finding {
     /// Whether the craft may be hurt or fly elsewhere than planned: its pilot is warned before it flies.
     #[must_use]
     pub fn is_hazard(&self) -> bool {
-        matches!(self, Self::BelowGround { .. } | Self::SteepLeg(_) | Self::NoTouchdownThrottle(_))
+        matches!(
+            self,
+            Self::BelowGround { .. }
+                | Self::AboveLimit { .. }
+                | Self::FarAboveOthers { .. }
+                | Self::SteepLeg(_)
+                | Self::NoTouchdownThrottle(_)
+        )
     }
 }
 
@@ -137,6 +163,14 @@ impl fmt::Display for Finding {
                 f,
                 "waypoint {index} is {:.1} m below home: where the ground is level, the craft hits it",
                 -alt_m
+            ),
+            Self::AboveLimit { index, alt_m, limit_m } => write!(
+                f,
+                "waypoint {index} is {alt_m:.0} m above home, the limit (max_altitude_m) is {limit_m:.0} m"
+            ),
+            Self::FarAboveOthers { index, alt_m, usual_m } => write!(
+                f,
+                "waypoint {index} is {alt_m:.0} m above home, far above the others ({usual_m:.0} m)"
             ),
             Self::SteepLeg(leg) => leg.fmt(f),
             Self::NoTouchdownThrottle(TouchdownThrottle { hover_us, threshold_us, min_us }) => write!(
@@ -198,6 +232,7 @@ pub fn review(plan: &FlightPlan, home: LatLon, assumptions: &Assumptions) -> Vec
         findings.push(Finding::OutlastsBattery { time_s, endurance_s });
     }
     findings.extend(below_ground(waypoints));
+    findings.extend(altitude::too_high(waypoints, assumptions.max_alt_m));
     findings.extend(steep::steep_legs(waypoints, home, assumptions).into_iter().map(Finding::SteepLeg));
     if assumptions.touchdown_throttle.is_never_met() {
         findings.push(Finding::NoTouchdownThrottle(assumptions.touchdown_throttle));

@@ -294,7 +294,7 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
         Action::HoldHere => vec![Effect::Send(Command::InFlight(InFlightCommand::HoldHere))],
         Action::Resume => vec![Effect::Send(Command::InFlight(InFlightCommand::Resume))],
         Action::CutRc => vec![Effect::Send(Command::CutRc(!state.view.rc_cut))],
-        Action::Upload => vec![upload(state)],
+        Action::Upload => upload(state),
         Action::Edit(action) => edit(state, action),
         Action::ResetCraft => {
             state.track.await_reset();

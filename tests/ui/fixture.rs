@@ -84,6 +84,7 @@ pub(crate) fn state_after(
     let config = UiConfig {
         theme,
         units: Units::default(),
+        max_altitude_m: betadeck::plan::estimate::MAX_ALTITUDE_M,
         keymap: Keymap::default(),
         cli: CliHelp {
             complete: |line| {

@@ -62,6 +62,7 @@ impl Rig {
         let config = UiConfig {
             theme: Theme::default(),
             units: Units::default(),
+            max_altitude_m: betadeck::plan::estimate::MAX_ALTITUDE_M,
             keymap: Keymap::default(),
             cli: CliHelp::default(),
             sentence: |event| sentence::text(&event.kind).unwrap_or_default(),

@@ -3,6 +3,8 @@
 use crate::plan::Waypoint;
 use crate::plan::setpoint::{AltitudeSetpoint, SetpointLimits};
 
+/// Altitude above home above which a waypoint is told unless the user says otherwise, m.
+pub const MAX_ALTITUDE_M: f64 = 120.0;
 /// Slowest leg speed that a waypoint can ask for, m/s.
 const SLOWEST_MPS: f64 = 1.0;
 /// Slowest leg speed that a DELAY can make, m/s.
@@ -27,6 +29,8 @@ pub struct Assumptions {
     pub fence_m: Option<f64>,
     /// Whose the fence is, where that is to be said.
     pub fence_from: SettingSource,
+    /// Altitude above home above which a waypoint is told, m; `None` = any is right.
+    pub max_alt_m: Option<f64>,
     /// Height above home at which the mission begins, m.
     pub start_alt_m: f64,
     /// How long a full battery keeps the craft hovering, s; `None` = unknown.
@@ -99,6 +103,7 @@ impl Default for Assumptions {
             landing_mps: 0.5,
             fence_m: None,
             fence_from: SettingSource::Unsaid,
+            max_alt_m: Some(MAX_ALTITUDE_M),
             start_alt_m: 10.0,
             endurance_s: None,
             touchdown_throttle: TouchdownThrottle::default(),

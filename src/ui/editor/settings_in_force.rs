@@ -15,10 +15,11 @@ pub(crate) fn to_upload<'a>(state: &AppState, document: &'a PlanDocument) -> Vec
 /// Returns the limits the plan is judged by, and whose the fence among them is.
 #[must_use]
 pub(crate) fn assumptions(state: &AppState, document: &PlanDocument) -> Assumptions {
+    let max_alt_m = Some(state.max_altitude_m);
     let Some(settings) = &state.view.vehicle.settings else {
-        return Assumptions::from_settings(&document.settings);
+        return Assumptions { max_alt_m, ..Assumptions::from_settings(&document.settings) };
     };
-    let craft = settings.assumptions();
+    let craft = Assumptions { max_alt_m, ..settings.assumptions() };
     let uploaded = craft.with_settings(&to_upload(state, document));
     let planned = craft.with_settings(&document.settings);
     let fence_from = if uploaded.fence_m != craft.fence_m {
