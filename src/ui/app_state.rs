@@ -165,6 +165,8 @@ pub struct AppState {
     pub permitted: Option<u32>,
     /// When Ctrl-C was pressed last.
     pub cancelled: Option<Duration>,
+    /// When the key that arms was pressed in the air, wall clock.
+    pub disarm_asked: Option<Duration>,
     /// Sticks sent that the session has not confirmed yet, and when.
     pub sticks_sent: Option<(RcFrame, Duration)>,
     /// The pilot starts when the upload of this plan, which is on its way, succeeds.
@@ -243,6 +245,7 @@ impl AppState {
             held: Vec::new(),
             permitted: None,
             cancelled: None,
+            disarm_asked: None,
             sticks_sent: None,
             fly_after_upload: None,
             step_ticks: 10,
