@@ -1,5 +1,7 @@
 //! Settings of the craft that are changed while a plan is open: estimates and findings follow what would be flown.
 
+#![allow(clippy::unwrap_used, reason = "tests may panic")]
+
 use std::sync::Arc;
 
 use betadeck::plan::edit::{History, PlanDocument};
