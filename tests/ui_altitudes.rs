@@ -17,15 +17,15 @@ use hands::{keys, screen, state_with_fix};
 fn set_altitude(state: &mut AppState, wp: usize, alt_m: i32) {
     let mut plan = state.plan().clone();
     plan.waypoints[wp].alt_cm = alt_m * 100;
-    open(state, plan);
+    open(state, &plan);
 }
 
 /// Replaces the waypoints by those of a paste.
-fn open(state: &mut AppState, plan: FlightPlan) {
+fn open(state: &mut AppState, plan: &FlightPlan) {
     keys(state, "2 ctrl-a d");
-    let lines: Vec<String> = betadeck::plan::plan_lines(&plan).skip(1).collect();
+    let lines: Vec<String> = betadeck::plan::plan_lines(plan).skip(1).collect();
     update(state, Msg::Paste(lines.join("\n")));
-    assert_eq!(*state.plan(), plan);
+    assert_eq!(state.plan(), plan);
     // The lines are selected, the last is under the cursor.
     keys(state, "esc");
 }
@@ -103,14 +103,14 @@ fn a_place_far_away_or_no_place_is_asked_about_in_flight_only() {
     let mut state = state_with_fix((120, 40));
     let mut plan = state.plan().clone();
     plan.waypoints[1].position.lat_e7 += 10_000;
-    open(&mut state, plan.clone());
+    open(&mut state, &plan);
     assert!(uploads(&keys(&mut state, "U")), "on the ground");
     fly(&mut state);
     assert!(!uploads(&keys(&mut state, "U")));
     assert!(screen(&state).contains("111 m to the"), "{}", screen(&state));
     keys(&mut state, "n");
     plan.waypoints.truncate(1);
-    open(&mut state, plan);
+    open(&mut state, &plan);
     assert!(!uploads(&keys(&mut state, "U")));
     assert!(screen(&state).contains("WP1, which this plan has not"), "{}", screen(&state));
     // Armed on the ground before an engagement there is no leg yet.
