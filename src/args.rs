@@ -21,6 +21,7 @@ mod mission;
 mod open;
 mod physics;
 mod plan_arg;
+mod review;
 mod value;
 
 use std::ffi::OsString;
@@ -47,6 +48,7 @@ pub use mission::MissionArgs;
 pub use open::OpenArgs;
 pub use physics::{FdmDialect, PhysicsArgs, PhysicsChoice, SimulatorArgs};
 pub use plan_arg::{PlanArg, PlanArgError, is_descriptor};
+pub use review::ReviewArgs;
 pub use value::{AttitudeChoice, Instant, OnOff, OutputFile, Seeds, Speed};
 
 /// Flies the Betaflight waypoint autopilot in a simulated quadcopter
@@ -111,6 +113,10 @@ pub struct TuiArgs {
     /// What flies, where and in which air.
     #[command(flatten)]
     pub flight: FlightArgs,
+
+    /// Which waypoints are warned of.
+    #[command(flatten)]
+    pub review: ReviewArgs,
 }
 
 /// The commands.
@@ -209,6 +215,10 @@ pub enum PlanCommand {
     Show {
         /// A built-in plan's name or a file (*.toml, *.txt, - for standard input)
         plan: PlanArg,
+
+        /// Which waypoints are warned of.
+        #[command(flatten)]
+        review: ReviewArgs,
     },
 }
 

@@ -106,6 +106,25 @@ async fn space_plays_the_recording_to_its_end_and_waits_there() {
 }
 
 #[tokio::test]
+async fn settings_of_an_earlier_instant_are_read() {
+    let mut rig = Rig::new().await;
+    rig.session.commands.send(Command::Step(1000)).await.unwrap();
+    rig.until("a second", |state| state.view.vehicle.time.0 >= 1_000_000).await;
+    let read = rig.cli("get ap_max_angle").await.text;
+    assert!(!rig.cli("set ap_max_angle = 33").await.text.contains("ERROR"));
+    rig.session.commands.send(Command::Step(3000)).await.unwrap();
+    rig.until("four seconds", |state| state.view.vehicle.time.0 >= 4_000_000).await;
+    assert!(rig.cli("get ap_max_angle").await.text.contains("= 33"));
+    rig.show(SimTime(500_000)).await;
+    let then = rig.cli("get ap_max_angle").await;
+    assert_eq!(then.text, read);
+    assert_eq!(then.advice.as_deref(), Some("As it was at the shown instant, 0.5 s."));
+    for line in ["set ap_max_angle = 44", "save", "waypoint clear", "defaults"] {
+        assert!(rig.cli(line).await.text.contains("REWOUND"), "{line}");
+    }
+}
+
+#[tokio::test]
 async fn nothing_steers_an_instant_that_is_past() {
     let mut rig = Rig::new().await;
     rig.session.commands.send(Command::Step(3000)).await.unwrap();

@@ -33,6 +33,7 @@ pub(super) fn run(args: &TuiArgs, place: &FcPlace, keymap: Keymap) -> Result<u8,
         directory: setup::store_directory(&args.flight)?,
         flown: None,
         notices,
+        review: args.review,
         plain: args.plain,
         display: &args.display,
         live: LiveArgs {

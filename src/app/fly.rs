@@ -148,7 +148,8 @@ fn embedded(mut start: Start<'_>) -> Result<Option<Flown>, AppError> {
     // A plan that the craft refuses is invalid input.
     upload(start.vehicle.controller_mut(), &start.plan.plan, &[]).map_err(AppError::input)?;
     let options = start.options();
-    start.notices.extend(hazards(&start.vehicle, options.takeoff_m));
+    let max_alt_m = Some(start.args.review.max_altitude_m());
+    start.notices.extend(hazards(&start.vehicle, options.takeoff_m, max_alt_m));
     let Start { args, plan, vehicle, notices, interrupted } = start;
     let mut flight = setup::start_flight(vehicle, &options)?;
     let mut output = open_output(args, &plan, flight.vehicle_mut(), notices)?;

@@ -4,7 +4,7 @@ use super::check;
 use super::error::AppError;
 use super::live::LiveArgs;
 use super::tui::{self, Screen};
-use crate::args::{DoorArgs, FlightArgs, Instant, OpenArgs, PhysicsArgs};
+use crate::args::{DoorArgs, FlightArgs, Instant, OpenArgs, PhysicsArgs, ReviewArgs};
 use crate::did_you_mean;
 use crate::scenario::{Air, Case, CaseFlight, Scenario};
 use crate::session::{FlownBefore, SessionView};
@@ -56,6 +56,7 @@ pub(super) fn run(args: &OpenArgs, keymap: Keymap) -> Result<u8, AppError> {
         directory: None,
         flown: Some((FlownBefore { timeline, events, show }, past)),
         notices,
+        review: ReviewArgs::default(),
         plain: false,
         display: &args.display,
         live: LiveArgs {

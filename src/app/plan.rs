@@ -2,7 +2,7 @@
 
 use super::error::{self, AppError};
 use super::setup;
-use crate::args::PlanArg;
+use crate::args::{PlanArg, ReviewArgs};
 use crate::flight::FlightSetup;
 use crate::geo::LatLon;
 use crate::plan::estimate::Assumptions;
@@ -11,12 +11,13 @@ use crate::plan::review::{Finding, review};
 use crate::sim::density_ratio;
 
 /// Prints the plan; a plan that the craft would refuse is invalid input.
-pub(super) fn show(plan: &PlanArg) -> Result<u8, AppError> {
+pub(super) fn show(plan: &PlanArg, limits: ReviewArgs) -> Result<u8, AppError> {
     let file = setup::read_plan(plan)?;
     let setup = FlightSetup { plan: file.clone(), ..FlightSetup::default() };
     let (home, notice) = setup.boot_home();
     let density = density_ratio(home.alt_amsl_m);
     let assumptions = Assumptions {
+        max_alt_m: Some(limits.max_altitude_m()),
         endurance_s: Some(setup.world.airframe.hover_endurance_s(density)),
         ..Assumptions::from_settings(&file.settings)
     };

@@ -15,7 +15,7 @@ use super::runtime;
 use super::scenario_file;
 use super::setup;
 use super::stop_signal;
-use crate::args::{CharsetChoice, DisplayArgs, PlanArg, ThemeChoice, TuiArgs, UnitsChoice};
+use crate::args::{CharsetChoice, DisplayArgs, PlanArg, ReviewArgs, ThemeChoice, TuiArgs, UnitsChoice};
 use crate::firmware::cli;
 use crate::flight::setup::check_setting;
 use crate::plan::builtin::{BuiltinPlan, DEMO};
@@ -45,6 +45,8 @@ pub(super) struct Screen<'a> {
     pub(super) flown: Option<(FlownBefore, Vec<SessionView>)>,
     /// What the user is told first.
     pub(super) notices: Vec<String>,
+    /// Which waypoints are warned of.
+    pub(super) review: ReviewArgs,
     /// Sentences instead of a screen.
     pub(super) plain: bool,
     /// The screen.
@@ -86,6 +88,7 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
         directory: setup::store_directory(&args.flight)?,
         flown: None,
         notices,
+        review: args.review,
         plain: args.plain,
         display: &args.display,
         live: LiveArgs {
@@ -126,6 +129,7 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
     let config = UiConfig {
         theme: theme(screen.display),
         units: units(screen.display),
+        max_altitude_m: screen.review.max_altitude_m(),
         keymap,
         cli: CliHelp {
             complete: |line| cli::complete(line).lines(line),

@@ -7,7 +7,7 @@ use crate::sim::ScheduledFault;
 
 use super::plan_arg::PlanArg;
 use super::value::{self, OutputFile};
-use super::{FirmwareArgs, FirmwarePortArgs, FlightArgs, MissionArgs, Speed, help};
+use super::{FirmwareArgs, FirmwarePortArgs, FlightArgs, MissionArgs, ReviewArgs, Speed, help};
 
 /// The options of `fly`.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
@@ -30,6 +30,10 @@ pub struct FlyArgs {
     /// How the plan is flown and judged.
     #[command(flatten)]
     pub mission: MissionArgs,
+
+    /// Which waypoints are warned of.
+    #[command(flatten)]
+    pub review: ReviewArgs,
 
     /// Moves a stick or switch: a channel (roll, pitch, throttle, yaw, aux1…aux12), µs, when, how long; repeatable
     #[arg(long, value_name = "CH=VALUE@T[,FOR]", help_heading = "Flight")]

@@ -1,7 +1,7 @@
 //! The layers under the command line: environment and configuration file.
 //!
 //! Every long option of a command that flies is a key in the file (`wind = "5@270"`) and a variable in the environment
-//! (`BETADECK_WIND`); of `check` those of the firmware are. What a layer gives for an option that no higher layer gave is
+//! (`BETADECK_WIND`); of `check` those of the firmware and of `plan show` all are. What a layer gives for an option that no higher layer gave is
 //! parsed by the option's own parser, as if it had been typed.
 
 use std::collections::BTreeMap;
@@ -35,6 +35,8 @@ type Found = (String, Vec<String>);
 pub(super) const FLYING: [&str; 5] = ["", "fly", "compare", "serve", "sitl"];
 /// The command of which only the firmware comes from all layers: the rest of a flight is its scenario's.
 const CHECK: &str = "check";
+/// The command and its part that judge a plan which they do not fly.
+const PLAN_SHOW: (&str, &str) = ("plan", "show");
 /// The heading of the options that say which firmware flies.
 const FIRMWARE: &str = "Firmware";
 
@@ -48,12 +50,17 @@ pub(super) fn apply(
     command.build();
     let (name, typed) = matches.subcommand().unwrap_or(("", matches));
     let mut sources = BTreeMap::new();
-    if FLYING.contains(&name) || name == CHECK {
+    let nested = typed.subcommand().filter(|(nested, _)| (name, *nested) == PLAN_SHOW);
+    if FLYING.contains(&name) || name == CHECK || nested.is_some() {
         let unknown = layers.unknown_keys(command);
         if !unknown.is_empty() {
             return Err(problem(&unknown.join("\n")));
         }
         let definition = command.find_subcommand(name).unwrap_or(command);
+        let (definition, typed) = match nested {
+            Some((nested, typed)) => (definition.find_subcommand(nested).unwrap_or(definition), typed),
+            None => (definition, typed),
+        };
         let added = layers.additions(definition, typed, &mut sources).map_err(|text| problem(&text))?;
         // Behind everything typed, but before a `--` that ends the options.
         let end = arguments.iter().position(|argument| argument == "--").unwrap_or(arguments.len());

@@ -320,3 +320,24 @@ fn help_and_version_are_no_errors() {
         assert_eq!(error.exit_code(), 0, "{line}");
     }
 }
+
+#[test]
+fn the_greatest_altitude_without_a_warning_comes_from_every_layer() {
+    let of = |line: &str, layers: &Layers| match parse_line(line, layers).unwrap().command {
+        Some(Command::Plan(PlanCommand::Show { review, .. })) => review.max_altitude_m(),
+        Some(Command::Fly(fly)) => fly.review.max_altitude_m(),
+        None => parse_line(line, layers).unwrap().tui.review.max_altitude_m(),
+        other => panic!("{other:?}"),
+    };
+    let file = layers(&[], "max_altitude_m = 60");
+    let both = layers(&[("BETADECK_MAX_ALTITUDE_M", "80")], "max_altitude_m = 60");
+    for command in ["betadeck", "betadeck fly square", "betadeck plan show square"] {
+        let typed = format!("{command} --max-altitude-m 90");
+        let values = [(command, &layers(&[], "")), (command, &file), (command, &both), (&typed, &both)]
+            .map(|(line, layers)| of(line, layers));
+        assert!(
+            values.iter().zip([120.0, 60.0, 80.0, 90.0]).all(|(a, b)| (a - b).abs() < 1e-9),
+            "{values:?}"
+        );
+    }
+}

@@ -93,6 +93,11 @@ pub(super) fn timeout(text: &str) -> Result<f64, String> {
     bounded(text, 1.0, 1e6, "s")
 }
 
+/// Metres above home above which a waypoint is warned of.
+pub(super) fn max_altitude(text: &str) -> Result<f64, String> {
+    bounded(text, 1.0, 10_000.0, "m")
+}
+
 /// Metres of the pilot's climb.
 pub(super) fn takeoff(text: &str) -> Result<f64, String> {
     bounded(text, 0.0, 500.0, "m")

@@ -2,6 +2,7 @@
 
 use crate::geo::LatLon;
 use crate::plan::FlightPlan;
+use crate::plan::estimate::TouchdownThrottle;
 use crate::signals::{RC_CHANNELS, RcSource, SimTime};
 use crate::telemetry::snapshot::{CraftView, EstimateView, GpsView, ModeRange, SettingsView};
 use crate::telemetry::{ArmingFlags, DisarmReason, FailsafeAhead, FirmwareEvent, ModeFlags, NavTelemetry};
@@ -278,6 +279,16 @@ impl Firmware {
             max_velocity_mps: nav.max_velocity_mps(),
             max_turn_rate_dps: f64::from(nav.max_turn_rate),
             climb_mps: nav.climb_rate_mps(),
+            landing_mps: nav.descent_rate_mps(),
+            landing_alt_m: f64::from(nav.landing_altitude_m),
+            min_nav_alt_m: f64::from(nav.min_nav_altitude_m),
+            buildup_deg: f64::from(nav.velocity_buildup_max_pitch),
+            position_p: f64::from(nav.position_p),
+            touchdown_throttle: TouchdownThrottle {
+                hover_us: f64::from(nav.hover_throttle),
+                threshold_us: f64::from(nav.landing_throttle_threshold),
+                min_us: f64::from(nav.throttle_min),
+            },
             hover_stick_us: self.hover_stick_us(),
             raised_stick_us: self.raised_stick_us(),
             sink_stick_us: self.sink_stick_us(),

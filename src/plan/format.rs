@@ -134,6 +134,15 @@ pub fn parse_checked(
 ) -> Result<PlanFile, Vec<PlanError>> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut problems = Problems::new(name, text);
+    if format == Format::CliText
+        && let Some(other) = foreign_format(text)
+    {
+        let message = format!("this is {other}, which is not a plan that can be read");
+        let hint =
+            format!("plans are {}; the waypoint lines of a CLI can be pasted into them", Format::endings());
+        problems.add(0..0, message, hint);
+        return Err(problems.into_errors());
+    }
     let mut file = match format {
         Format::Toml if text.len() > MAX_TOML => {
             let message =
@@ -152,6 +161,17 @@ pub fn parse_checked(
         file.name = stem(name);
     }
     Ok(file)
+}
+
+/// What a text is that begins as neither a plan nor a command line does.
+fn foreign_format(text: &str) -> Option<&'static str> {
+    let text = text.trim_start();
+    match text.chars().next()? {
+        '{' => Some("JSON, such as a QGroundControl plan"),
+        '<' => Some("XML, such as a GPX or KML file"),
+        _ if text.starts_with("QGC WPL") => Some("a waypoint file of QGroundControl or Mission Planner"),
+        _ => None,
+    }
 }
 
 /// Writes a plan file in its canonical form: reading it back gives the same plan, and writing that gives the same text.
@@ -192,6 +212,20 @@ mod tests {
         }
         for text in ["", "# dump\nbatch start", "waypoint insert 0 1 2", "set name = x", "=", "x = 1"] {
             assert_eq!(Format::of_text(text), Format::CliText, "{text}");
+        }
+    }
+
+    #[test]
+    fn a_plan_of_another_program_is_told_from_an_empty_one() {
+        for (text, is) in [
+            ("{\n \"fileType\": \"Plan\"\n}", "this is JSON"),
+            ("\u{feff}\n <?xml version=\"1.0\"?>", "this is XML"),
+            ("QGC WPL 110\n0 1 0 16", "this is a waypoint file"),
+        ] {
+            let format = Format::of_text(text);
+            let errors = parse("-", text, format).unwrap_err();
+            let told = report(&errors);
+            assert!(told.contains(is) && told.contains(".toml, .txt"), "{told}");
         }
     }
 

@@ -1,12 +1,13 @@
 //! What is worth knowing about a plan before it flies: why the craft would refuse it, and what it may not do as expected.
 
+mod altitude;
 mod steep;
 
 use std::fmt;
 
 use crate::geo::{LatLon, distance_bearing};
 
-use super::estimate::{Assumptions, TouchdownThrottle, estimate};
+use super::estimate::{Assumptions, SettingSource, TouchdownThrottle, estimate};
 use super::validate::{PlanFault, check_plan};
 use super::{FlightPlan, Waypoint, WaypointType};
 pub use steep::{Remedy, SteepLeg};
@@ -24,6 +25,13 @@ pub enum Finding {
         distance_m: f64,
         /// The fence, m.
         limit_m: f64,
+        /// Whose it is.
+        from: SettingSource,
+    },
+    /// The craft has the plan and another value of one of its settings.
+    CraftDiffers {
+        /// The plan's line.
+        setting: String,
     },
     /// Waypoints behind a LAND or an endless HOLD.
     NeverFlown {
@@ -64,6 +72,24 @@ pub enum Finding {
         /// Altitude of its leg above home, m.
         alt_m: f64,
     },
+    /// The leg is flown above the limit that the user has set.
+    AboveLimit {
+        /// The waypoint that says the altitude.
+        index: usize,
+        /// Altitude of its leg above home, m.
+        alt_m: f64,
+        /// The limit, m.
+        limit_m: f64,
+    },
+    /// The leg is flown far above all others.
+    FarAboveOthers {
+        /// The waypoint that says the altitude.
+        index: usize,
+        /// Altitude of its leg above home, m.
+        alt_m: f64,
+        /// The median of the others, m.
+        usual_m: f64,
+    },
     /// The leg is too steep for its speed: the craft passes the waypoint beside its altitude.
     SteepLeg(SteepLeg),
     /// The throttle condition of a touchdown can never be met.
@@ -80,7 +106,14 @@ impl Finding {
     /// Whether the craft may be hurt or fly elsewhere than planned: its pilot is warned before it flies.
     #[must_use]
     pub fn is_hazard(&self) -> bool {
-        matches!(self, Self::BelowGround { .. } | Self::SteepLeg(_) | Self::NoTouchdownThrottle(_))
+        matches!(
+            self,
+            Self::BelowGround { .. }
+                | Self::AboveLimit { .. }
+                | Self::FarAboveOthers { .. }
+                | Self::SteepLeg(_)
+                | Self::NoTouchdownThrottle(_)
+        )
     }
 }
 
@@ -88,10 +121,18 @@ impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Fault(fault) => write!(f, "refused: {fault}"),
-            Self::OutsideFence { index, distance_m, limit_m } => write!(
+            Self::OutsideFence { index, distance_m, limit_m, from } => write!(
                 f,
-                "refused: waypoint {index} is {distance_m:.0} m from home, the fence \
-                 (ap_max_distance_from_home) is {limit_m:.0} m"
+                "refused: waypoint {index} is {distance_m:.0} m from home, {} is {limit_m:.0} m",
+                match from {
+                    SettingSource::Unsaid => "the fence (ap_max_distance_from_home)",
+                    SettingSource::Craft => "the craft's ap_max_distance_from_home",
+                    SettingSource::Plan => "the plan's ap_max_distance_from_home, set at the upload,",
+                }
+            ),
+            Self::CraftDiffers { setting } => write!(
+                f,
+                "the craft has not the plan's {setting} any more: it flies with its own value until the next upload"
             ),
             Self::NeverFlown { index, kind: WaypointType::Land } => {
                 write!(f, "waypoint {index} lands: the waypoints behind it are never flown")
@@ -123,6 +164,14 @@ impl fmt::Display for Finding {
                 "waypoint {index} is {:.1} m below home: where the ground is level, the craft hits it",
                 -alt_m
             ),
+            Self::AboveLimit { index, alt_m, limit_m } => write!(
+                f,
+                "waypoint {index} is {alt_m:.0} m above home, the limit (max_altitude_m) is {limit_m:.0} m"
+            ),
+            Self::FarAboveOthers { index, alt_m, usual_m } => write!(
+                f,
+                "waypoint {index} is {alt_m:.0} m above home, far above the others ({usual_m:.0} m)"
+            ),
             Self::SteepLeg(leg) => leg.fmt(f),
             Self::NoTouchdownThrottle(TouchdownThrottle { hover_us, threshold_us, min_us }) => write!(
                 f,
@@ -142,11 +191,17 @@ pub fn review(plan: &FlightPlan, home: LatLon, assumptions: &Assumptions) -> Vec
     }
     let mut findings: Vec<Finding> = Vec::new();
     if let Some(limit_m) = assumptions.fence_m {
+        let from = assumptions.fence_from;
         findings.extend(
             waypoints.iter().enumerate().filter(|(_, waypoint)| waypoint.kind.uses_position()).filter_map(
                 |(index, waypoint)| {
                     let (distance_m, _) = distance_bearing(home, waypoint.position);
-                    (distance_m > limit_m).then_some(Finding::OutsideFence { index, distance_m, limit_m })
+                    (distance_m > limit_m).then_some(Finding::OutsideFence {
+                        index,
+                        distance_m,
+                        limit_m,
+                        from,
+                    })
                 },
             ),
         );
@@ -177,6 +232,7 @@ pub fn review(plan: &FlightPlan, home: LatLon, assumptions: &Assumptions) -> Vec
         findings.push(Finding::OutlastsBattery { time_s, endurance_s });
     }
     findings.extend(below_ground(waypoints));
+    findings.extend(altitude::too_high(waypoints, assumptions.max_alt_m));
     findings.extend(steep::steep_legs(waypoints, home, assumptions).into_iter().map(Finding::SteepLeg));
     if assumptions.touchdown_throttle.is_never_met() {
         findings.push(Finding::NoTouchdownThrottle(assumptions.touchdown_throttle));
@@ -244,7 +300,9 @@ mod tests {
             fence,
             ["refused: waypoint 0 is 150 m from home, the fence (ap_max_distance_from_home) is 100 m"]
         );
-        assert!(Finding::OutsideFence { index: 0, distance_m: 2.0, limit_m: 1.0 }.is_refusal());
+        let from = SettingSource::Craft;
+        let outside = Finding::OutsideFence { index: 0, distance_m: 2.0, limit_m: 1.0, from };
+        assert!(outside.is_refusal() && outside.to_string().contains("the craft's ap_max"), "{outside}");
     }
 
     #[test]

@@ -6,21 +6,25 @@ use crate::plan::estimate::Assumptions;
 use crate::plan::review::{Finding, review};
 use crate::vehicle::{FlightController, Vehicle};
 
-/// Returns a sentence for each hazard of the stored plan, for a mission that begins `start_alt_m` above home; none for a
-/// flight controller whose settings are not known.
+/// Returns a sentence for each hazard of the stored plan, for a mission that begins `start_alt_m` above home and is to stay
+/// below `max_alt_m`, where that is given; none for a flight controller whose settings are not known.
 #[must_use]
-pub fn hazards(vehicle: &Vehicle, start_alt_m: f64) -> Vec<String> {
+pub fn hazards(vehicle: &Vehicle, start_alt_m: f64, max_alt_m: Option<f64>) -> Vec<String> {
     let place = |frame: &LocalFrame| LatLon::from_degrees(frame.lat_deg, frame.lon_deg);
     let armed_at = vehicle.controller().embedded().and_then(Firmware::home);
-    hazards_from(vehicle.controller(), armed_at.or_else(|| vehicle.local_frame().map(place)), start_alt_m)
+    let home = armed_at.or_else(|| vehicle.local_frame().map(place));
+    hazards_from(vehicle.controller(), home, start_alt_m, max_alt_m)
 }
 
 /// The hazards of a mission that begins above `home`.
-fn hazards_from(controller: &FlightController, home: Option<LatLon>, start_alt_m: f64) -> Vec<String> {
+fn hazards_from(
+    controller: &FlightController,
+    home: Option<LatLon>,
+    start_alt_m: f64,
+    max_alt_m: Option<f64>,
+) -> Vec<String> {
     let Some(firmware) = controller.embedded() else { return Vec::new() };
-    let stored = &firmware.configuration().settings;
-    let settings = Assumptions::SETTINGS.map(|name| format!("{name} = {}", stored.number(name)));
-    let assumptions = Assumptions { start_alt_m, ..Assumptions::from_settings(&settings) };
+    let assumptions = Assumptions { start_alt_m, max_alt_m, ..firmware.settings_view().assumptions() };
     let found = review(firmware.stored_plan(), home.unwrap_or_default(), &assumptions);
     let hazards = found.iter().filter(|finding| Finding::is_hazard(finding));
     // How steep a leg is depends on where home is.
@@ -48,10 +52,10 @@ mod tests {
             plan.waypoints.push(Waypoint { position, alt_cm, kind, ..Waypoint::default() });
         }
         upload(&mut controller, &plan, &[]).unwrap();
-        let told = hazards_from(&controller, Some(home), 10.0);
+        let told = hazards_from(&controller, Some(home), 10.0, None);
         assert!(told.len() == 1 && told[0].starts_with("Beware: waypoint 0 is passed about"), "{told:?}");
-        assert!(hazards_from(&controller, Some(home), 75.0).is_empty(), "it is level there");
-        assert!(hazards_from(&controller, None, 10.0).is_empty(), "without a home no leg is known");
+        assert!(hazards_from(&controller, Some(home), 75.0, None).is_empty(), "it is level there");
+        assert!(hazards_from(&controller, None, 10.0, None).is_empty(), "without a home no leg is known");
     }
 
     #[test]
@@ -67,7 +71,7 @@ mod tests {
             ..Waypoint::default()
         });
         upload(&mut controller, &plan, &["ap_landing_throttle_threshold = 300".to_owned()]).unwrap();
-        let told = hazards_from(&controller, Some(home), 10.0);
+        let told = hazards_from(&controller, Some(home), 10.0, None);
         assert!(told[0].starts_with("Beware: waypoint 0 is 3.0 m below home"), "{told:?}");
         assert!(
             told[1].starts_with("Beware: ap_landing_throttle_threshold = 300 can never be met"),

@@ -5,6 +5,7 @@
 use nalgebra::Vector2;
 
 use crate::geo::{GRAVITY, LatLon};
+use crate::plan::estimate::{Assumptions, TouchdownThrottle};
 use crate::plan::{FlightPlan, Waypoint};
 use crate::signals::{RC_CHANNELS, RcSource, SimTime};
 use crate::telemetry::{
@@ -253,6 +254,18 @@ pub struct SettingsView {
     pub max_turn_rate_dps: f64,
     /// `alt_hold_climb_rate`, m/s.
     pub climb_mps: f64,
+    /// `ap_landing_descent_rate`, m/s.
+    pub landing_mps: f64,
+    /// `ap_landing_altitude_m`.
+    pub landing_alt_m: f64,
+    /// `ap_min_nav_altitude_m`.
+    pub min_nav_alt_m: f64,
+    /// `ap_velocity_buildup_max_pitch`, degrees.
+    pub buildup_deg: f64,
+    /// `ap_position_p`.
+    pub position_p: f64,
+    /// What a touchdown asks of the throttle.
+    pub touchdown_throttle: TouchdownThrottle,
     /// Where the throttle stick rests in ALTHOLD, µs.
     pub hover_stick_us: u16,
     /// The throttle stick from which the throttle counts as raised, µs.
@@ -262,6 +275,28 @@ pub struct SettingsView {
 }
 
 impl SettingsView {
+    /// Returns what estimates and reviews of plans are made with on this craft.
+    #[must_use]
+    pub fn assumptions(&self) -> Assumptions {
+        Assumptions {
+            max_velocity_mps: self.max_velocity_mps,
+            climb_mps: self.climb_mps,
+            landing_mps: self.landing_mps,
+            fence_m: self.fence_m,
+            touchdown_throttle: self.touchdown_throttle,
+            landing_alt_m: self.landing_alt_m,
+            min_nav_alt_m: self.min_nav_alt_m,
+            arrival_radius_m: self.arrival_radius_m,
+            hold_radius_m: self.hold_radius_m,
+            orbit_radius_m: self.orbit_radius_m,
+            turn_rate_dps: self.max_turn_rate_dps,
+            max_angle_deg: self.max_angle_deg,
+            buildup_deg: self.buildup_deg,
+            position_p: self.position_p,
+            ..Assumptions::default()
+        }
+    }
+
     /// Radius of a coordinated turn at this speed, m: R = V² / (g·tan θ) with the greatest lean.
     #[must_use]
     pub fn turn_radius_m(&self, speed_mps: f64) -> f64 {

@@ -43,6 +43,8 @@ pub struct UiConfig {
     pub theme: Theme,
     /// Units of what is shown.
     pub units: Units,
+    /// Altitude above home above which a waypoint is warned of, m.
+    pub max_altitude_m: f64,
     /// Keys.
     pub keymap: Keymap,
     /// Completion and help of the CLI panel.
@@ -103,6 +105,8 @@ pub struct AppState {
     pub theme: Theme,
     /// Units of what is shown.
     pub units: Units,
+    /// Altitude above home above which a waypoint is warned of, m.
+    pub max_altitude_m: f64,
     /// Completion and help of the CLI panel.
     pub cli_help: CliHelp,
     /// An event as a sentence.
@@ -161,6 +165,8 @@ pub struct AppState {
     pub permitted: Option<u32>,
     /// When Ctrl-C was pressed last.
     pub cancelled: Option<Duration>,
+    /// When the key that arms was pressed in the air, wall clock.
+    pub disarm_asked: Option<Duration>,
     /// Sticks sent that the session has not confirmed yet, and when.
     pub sticks_sent: Option<(RcFrame, Duration)>,
     /// The pilot starts when the upload of this plan, which is on its way, succeeds.
@@ -180,12 +186,16 @@ pub struct AppState {
 use crate::plan::edit::{History, PlanDocument};
 
 #[cfg(test)]
+use crate::plan::estimate::MAX_ALTITUDE_M;
+
+#[cfg(test)]
 impl AppState {
     /// A user interface with nothing but a picture.
     pub(super) fn bare(size: (u16, u16), view: SessionView) -> Self {
         let config = UiConfig {
             theme: Theme::default(),
             units: Units::default(),
+            max_altitude_m: MAX_ALTITUDE_M,
             keymap: Keymap::default(),
             cli: CliHelp::default(),
             sentence: |_| String::new(),
@@ -208,6 +218,7 @@ impl AppState {
             sentence: config.sentence,
             keymap: config.keymap,
             units: config.units,
+            max_altitude_m: config.max_altitude_m,
             editor: Editor::new(config.plan),
             size,
             focus: Panel::Map,
@@ -234,6 +245,7 @@ impl AppState {
             held: Vec::new(),
             permitted: None,
             cancelled: None,
+            disarm_asked: None,
             sticks_sent: None,
             fly_after_upload: None,
             step_ticks: 10,

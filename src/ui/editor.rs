@@ -15,6 +15,7 @@ mod open_plan;
 mod plans;
 mod popup;
 mod question;
+pub(super) mod settings_in_force;
 
 pub(super) use browser::BrowserKey;
 pub use browser::{Browser, Purpose};
@@ -47,7 +48,7 @@ pub struct Editor {
     field: Option<CellField>,
     register: Vec<Waypoint>,
     /// What was handed to the craft last.
-    uploaded: Option<(PlanId, FlightPlan)>,
+    uploaded: Option<Uploaded>,
     pub(super) popup: Option<EditorPopup>,
     /// A waypoint whose altitude is dragged in the profile, and the altitude now, cm.
     pub(super) dragged_altitude: Option<(usize, i32)>,
@@ -57,6 +58,14 @@ pub struct Editor {
     pub(super) loses_edits: bool,
     /// What the open generator's form would make.
     generator: Option<GeneratorFoot>,
+}
+
+/// A plan as it was handed to the craft.
+#[derive(Debug)]
+struct Uploaded {
+    id: PlanId,
+    plan: FlightPlan,
+    settings: Vec<String>,
 }
 
 /// A cell that is being typed.
@@ -103,17 +112,27 @@ impl Editor {
 
     /// The plan that is shown is about to be handed to the craft.
     pub(super) fn remember_upload(&mut self) {
-        self.uploaded = Some((self.plan().id(), self.document().plan.clone()));
+        let document = self.document();
+        let (plan, settings) = (document.plan.clone(), document.settings.clone());
+        self.uploaded = Some(Uploaded { id: self.plan().id(), plan, settings });
     }
 
     /// Whether a plan of the craft is there because this editor handed it over.
     pub(super) fn has_uploaded(&self, plan: &FlightPlan) -> bool {
-        self.uploaded.as_ref().is_some_and(|(_, uploaded)| uploaded == plan)
+        self.uploaded.as_ref().is_some_and(|uploaded| uploaded.plan == *plan)
+    }
+
+    /// The settings that this editor handed over with a plan; none when it handed over another one last.
+    pub(super) fn uploaded_settings(&self, plan: &FlightPlan) -> &[String] {
+        self.uploaded
+            .as_ref()
+            .filter(|uploaded| uploaded.plan == *plan)
+            .map_or(&[], |uploaded| &uploaded.settings)
     }
 
     /// The plan that was handed to the craft last.
     pub(super) fn uploaded_last(&self) -> Option<PlanId> {
-        self.uploaded.as_ref().map(|(id, _)| *id)
+        self.uploaded.as_ref().map(|uploaded| uploaded.id)
     }
 
     /// All open plans.

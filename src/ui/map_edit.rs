@@ -54,7 +54,7 @@ pub(super) fn home(state: &AppState) -> Option<MapPoint> {
 
 /// Radius of the fence that the plan or the craft asks for, m.
 pub(super) fn fence_m(state: &AppState) -> Option<f64> {
-    super::editor::findings::assumptions(state, state.editor.document()).fence_m
+    super::editor::settings_in_force::assumptions(state, state.editor.document()).fence_m
 }
 
 /// The place as latitude and longitude.

@@ -124,6 +124,7 @@ fn decision(state: &AppState, question: &Question) -> Vec<String> {
             format!("{} was changed by somebody else since it was read.", path.display())
         }
         Question::Replace { path, changed: false, .. } => format!("{} exists.", path.display()),
+        Question::MovesTarget { change, .. } => change.clone(),
         Question::Unsaved { id, .. } => {
             let title = state.editor.plan_of(*id).map_or_else(String::new, OpenPlan::title);
             format!("{title} has edits that no file holds.")

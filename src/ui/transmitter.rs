@@ -16,6 +16,7 @@ use super::formatting::within;
 use super::message::Effect;
 use super::panel::Panel;
 use super::status_message;
+use super::update::TWICE_WITHIN;
 
 /// Channel of the throttle.
 const THROTTLE: usize = 2;
@@ -193,6 +194,19 @@ pub(super) fn toggle_arm(state: &mut AppState) -> Vec<Effect> {
         set_hold_modes(state, &mut next, false);
     }
     send(state, next)
+}
+
+/// As [`toggle_arm`]; in the air the key disarms when it is pressed again within [`TWICE_WITHIN`].
+pub(super) fn arm_key(state: &mut AppState) -> Vec<Effect> {
+    let was_asked = state.disarm_asked.take().is_some_and(|at| within(state.now, at, TWICE_WITHIN));
+    if !is_airborne(state) || was_asked {
+        return toggle_arm(state);
+    }
+    state.disarm_asked = Some(state.now);
+    let key = state.key(Action::Arm);
+    let text = format!("The motors would stop, and the craft fall: `{key}` again within 2 s disarms.");
+    state.notify(Severity::Warn, text);
+    Vec::new()
 }
 
 /// Moves the AUTOPILOT switch; engaging also puts the hold modes on, which take over when it is switched off. Where a

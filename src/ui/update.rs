@@ -48,8 +48,8 @@ pub(super) use cli::run_cli;
 pub(super) use plan::{write_scenario, write_shown as write_plan};
 pub(super) use view::focus;
 
-/// Two Ctrl-C within this time quit.
-const TWICE_WITHIN: Duration = Duration::from_secs(2);
+/// A key that is pressed again within this time does what it asked about.
+pub(super) const TWICE_WITHIN: Duration = Duration::from_secs(2);
 
 /// Takes a message in and says what is to be done.
 pub fn update(state: &mut AppState, msg: Msg) -> Vec<Effect> {
@@ -286,7 +286,7 @@ fn act(state: &mut AppState, action: Action) -> Vec<Effect> {
 pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
     match action {
         Action::Fly => fly(state),
-        Action::Arm => transmitter::toggle_arm(state),
+        Action::Arm => transmitter::arm_key(state),
         Action::Throttle => transmitter::move_throttle(state),
         Action::Autopilot => transmitter::toggle_autopilot(state),
         Action::ReturnHome => transmitter::toggle_return(state),
@@ -294,7 +294,7 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
         Action::HoldHere => vec![Effect::Send(Command::InFlight(InFlightCommand::HoldHere))],
         Action::Resume => vec![Effect::Send(Command::InFlight(InFlightCommand::Resume))],
         Action::CutRc => vec![Effect::Send(Command::CutRc(!state.view.rc_cut))],
-        Action::Upload => vec![upload(state)],
+        Action::Upload => upload(state),
         Action::Edit(action) => edit(state, action),
         Action::ResetCraft => {
             state.track.await_reset();

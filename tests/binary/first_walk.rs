@@ -48,10 +48,10 @@ fn plan_from_nothing(terminal: &mut Terminal) {
     terminal.send("ii");
     terminal.until_shown("[20.0]");
     terminal.send("\r2035\r");
-    terminal.until_shown("2035");
+    terminal.until_shown("2035 m above home");
     terminal.send("\r35\r");
     terminal.until_shown("[35.0]");
-    terminal.until("no finding", |terminal| !terminal.screen().contains("2035"));
+    terminal.until("no finding", |terminal| !terminal.screen().contains("above home"));
     terminal.send("i");
     terminal.until_shown("● 2");
     terminal.send("hhh+++");

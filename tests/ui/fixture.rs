@@ -84,6 +84,7 @@ pub(crate) fn state_after(
     let config = UiConfig {
         theme,
         units: Units::default(),
+        max_altitude_m: betadeck::plan::estimate::MAX_ALTITUDE_M,
         keymap: Keymap::default(),
         cli: CliHelp {
             complete: |line| {
@@ -253,6 +254,12 @@ pub(crate) fn view(flight: &SimpleFlight) -> SessionView {
         max_velocity_mps: 5.0,
         max_turn_rate_dps: 3.0,
         climb_mps: 5.0,
+        landing_mps: 0.5,
+        landing_alt_m: 4.0,
+        min_nav_alt_m: 5.0,
+        buildup_deg: 8.0,
+        position_p: 30.0,
+        touchdown_throttle: betadeck::plan::estimate::TouchdownThrottle::default(),
         hover_stick_us: 1500,
         raised_stick_us: 1300,
         sink_stick_us: Some(1410),

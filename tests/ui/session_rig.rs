@@ -11,7 +11,7 @@ use betadeck::firmware::config::Configuration;
 use betadeck::plan::builtin::{BuiltinPlan, DEMO};
 use betadeck::plan::edit::History;
 use betadeck::record::sentence;
-use betadeck::session::command::Seek;
+use betadeck::session::command::{CliOutput, Seek};
 use betadeck::session::{Command, Handle, SessionConfig, start};
 use betadeck::signals::SimTime;
 use betadeck::sim::{Turbulence, WorldConfig};
@@ -63,6 +63,7 @@ impl Rig {
         let config = UiConfig {
             theme: Theme::default(),
             units: Units::default(),
+            max_altitude_m: betadeck::plan::estimate::MAX_ALTITUDE_M,
             keymap: Keymap::default(),
             cli: CliHelp::default(),
             sentence: |event| sentence::text(&event.kind).unwrap_or_default(),
@@ -85,6 +86,13 @@ impl Rig {
             let effects = update(&mut self.state, Msg::Key(event));
             self.carry_out(effects).await;
         }
+    }
+
+    /// The answer of the craft to a line.
+    pub(crate) async fn cli(&self, line: &str) -> CliOutput {
+        let (reply, answer) = oneshot::channel();
+        self.session.commands.send(Command::Cli { line: line.to_owned(), reply }).await.unwrap();
+        answer.await.unwrap()
     }
 
     pub(crate) async fn carry_out(&mut self, effects: Vec<Effect>) {

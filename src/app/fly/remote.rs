@@ -27,7 +27,7 @@ pub(super) fn fly(start: Start<'_>, firmware: &RemoteFirmware) -> Result<Option<
     let mut tell = |event: &Event| prelude.event(event);
     let prepared = RemoteRun::prepare(firmware, &mut vehicle, &plan.plan, run, &mut tell);
     let Some(mut run) = unless_interrupted(prepared)? else { return Ok(None) };
-    for hazard in hazards(&vehicle, options.takeoff_m) {
+    for hazard in hazards(&vehicle, options.takeoff_m, Some(args.review.max_altitude_m())) {
         tell(&Event::notice(vehicle.time(), hazard))?;
     }
     let mut flight = setup::start_flight(vehicle, &options)?;

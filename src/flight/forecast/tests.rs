@@ -97,6 +97,17 @@ fn the_settings_of_the_plan_count() {
 }
 
 #[test]
+fn the_settings_of_the_craft_count() {
+    let mut vehicle = vehicle("square", Noise::None);
+    let firmware = vehicle.embedded_mut().unwrap();
+    let reply = firmware.run_cli(&mut Interpreter::default(), "set ap_max_distance_from_home = 82");
+    assert!(!reply.failed, "{}", reply.text);
+    let forecast = end(ForecastRun::plan_estimate(vehicle, &plan("square"), &[], 10.0).unwrap());
+    assert!(!forecast.is_complete(), "{}", forecast.reason);
+    assert!(forecast.reason.contains("fence is 82 m"), "{}", forecast.reason);
+}
+
+#[test]
 fn what_the_craft_refuses_is_said() {
     let lines = ["ap_max_velocity = fast".to_owned()];
     let refused = ForecastRun::plan_estimate(vehicle("square", Noise::None), &plan("square"), &lines, 10.0)

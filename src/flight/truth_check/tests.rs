@@ -1,4 +1,5 @@
 use super::*;
+use crate::plan::estimate::TouchdownThrottle;
 use crate::plan::{Waypoint, WaypointType};
 use crate::signals::SimTime;
 use crate::telemetry::{GuardName, GuardOp};
@@ -13,6 +14,12 @@ const SETTINGS: SettingsView = SettingsView {
     max_velocity_mps: 10.0,
     max_turn_rate_dps: 3.0,
     climb_mps: 5.0,
+    landing_mps: 0.5,
+    landing_alt_m: 4.0,
+    min_nav_alt_m: 5.0,
+    buildup_deg: 8.0,
+    position_p: 30.0,
+    touchdown_throttle: TouchdownThrottle { hover_us: 1275.0, threshold_us: 100.0, min_us: 1100.0 },
     hover_stick_us: 1500,
     raised_stick_us: 1300,
     sink_stick_us: None,

@@ -37,10 +37,13 @@ pub fn waypoint_of(finding: &Finding) -> Option<usize> {
         | Finding::NothingToModify { index, .. }
         | Finding::SpeedLimited { index, .. }
         | Finding::SteepLeg(SteepLeg { index, .. })
+        | Finding::AboveLimit { index, .. }
+        | Finding::FarAboveOthers { index, .. }
         | Finding::BelowGround { index, .. } => Some(*index),
         Finding::Fault(PlanFault::Empty | PlanFault::Corrupt(_))
         | Finding::StaysInTheAir
         | Finding::OutlastsBattery { .. }
+        | Finding::CraftDiffers { .. }
         | Finding::NoTouchdownThrottle(_) => None,
     }
 }
@@ -78,6 +81,12 @@ pub fn fix(document: &PlanDocument, finding: &Finding, home: LatLon) -> Option<F
         Finding::BelowGround { index, .. } => {
             waypoints.get_mut(index)?.alt_cm = RAISED_CM;
             format!("raise WP{index} to {} m", RAISED_CM / 100)
+        }
+        Finding::AboveLimit { index, limit_m: lower_m, .. }
+        | Finding::FarAboveOthers { index, usual_m: lower_m, .. } => {
+            // Saturates; a limit is far inside the range.
+            waypoints.get_mut(index)?.alt_cm = (lower_m * 100.0).floor() as i32;
+            format!("lower WP{index} to {lower_m:.0} m")
         }
         Finding::SteepLeg(SteepLeg { index, remedy: Remedy::Slow { speed_cms }, .. }) => {
             waypoints.get_mut(index)?.speed_cms = speed_cms;
@@ -125,9 +134,10 @@ pub fn fix(document: &PlanDocument, finding: &Finding, home: LatLon) -> Option<F
             fixed.settings.push("ap_landing_throttle_threshold = 100".to_owned());
             "set the threshold to 100".to_owned()
         }
-        Finding::Fault(PlanFault::Empty | PlanFault::Corrupt(_)) | Finding::OutlastsBattery { .. } => {
-            return None;
-        }
+        // An upload takes it away, no edit.
+        Finding::CraftDiffers { .. }
+        | Finding::Fault(PlanFault::Empty | PlanFault::Corrupt(_))
+        | Finding::OutlastsBattery { .. } => return None,
     };
     Some(Fix { title, document: fixed })
 }
@@ -161,7 +171,9 @@ mod tests {
         let lost = Waypoint { position: LatLon::new(950_000_000, 0), ..wp(Flyover, 0.0, 2000) };
         let turned = Waypoint { position: LatLon::new(0, 1_900_000_000), ..wp(Flyover, 0.0, 2000) };
         let steep = Waypoint { speed_cms: 1000, ..wp(Flyover, 85.7, 8000) };
-        let plans: [&[Waypoint]; 10] = [
+        let plans: [&[Waypoint]; 12] = [
+            &[wp(Flyover, 300.0, 12_100), wp(Land, 0.0, 12_000)],
+            &[wp(Flyover, 100.0, 1100), wp(Flyover, 400.0, 11_000), wp(Land, 0.0, 1000)],
             &[wp(Flyover, 55.7, 1500), steep, wp(Land, 0.0, 1500)],
             &[wp(Flyover, 12.0, 9000), wp(Delay, 0.0, 10), wp(Flyover, 15.0, 2000), wp(Land, 0.0, 2000)],
             &[wp(Flyover, 700.0, 2000), wp(Land, 0.0, 2000)],

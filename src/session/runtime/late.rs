@@ -110,7 +110,7 @@ impl Session {
         match progress {
             UploadProgress::Done(result) => {
                 if result.is_ok() {
-                    for hazard in hazards(&self.vehicle, self.takeoff_m) {
+                    for hazard in hazards(&self.vehicle, self.takeoff_m, None) {
                         self.notice(hazard);
                     }
                 }

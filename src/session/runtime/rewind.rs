@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::limits::{impact_of_request, refuse};
-use super::{SLICE, Session};
+use super::{SLICE, Session, console};
 use crate::firmware::cli::Interpreter;
 use crate::link::Request;
 use crate::session::arming::ArmingWatch;
@@ -15,7 +15,7 @@ use crate::session::remote::Impact;
 use crate::signals::SimTime;
 use crate::telemetry;
 use crate::timeline::{RecordedFlight, Shown, Timeline, TimelineView};
-use crate::vehicle::Vehicle;
+use crate::vehicle::{Answer, Vehicle};
 
 /// How long the flight goes on at most until something happens, µs.
 const RUN_ON_US: u64 = 600_000_000;
@@ -106,6 +106,9 @@ impl Session {
             | Command::RecordedFlight(_)
             | Command::PermitChanges(_)
             | Command::Quit => return Some(command),
+            Command::Cli { line, reply } if Impact::of_line(&line) == Impact::Reads => {
+                drop(reply.send(self.read_shown(&line)));
+            }
             Command::Cli { reply, .. } => {
                 let (text, advice) = ("###ERROR: REWOUND###".to_owned(), Some(REWOUND.to_owned()));
                 drop(reply.send(CliOutput { text, advice, restarted: false }));
@@ -124,6 +127,27 @@ impl Session {
             | Command::ResetCraft => self.notice(REWOUND),
         }
         None
+    }
+
+    /// Runs a line that changes nothing on a copy of the vehicle that is shown.
+    fn read_shown(&self, line: &str) -> CliOutput {
+        let mut copy = self.copy_of_shown();
+        let time_s = copy.time().as_secs_f64();
+        match copy.controller_mut().run_cli(&mut Interpreter::default(), line) {
+            Answer::Now(answer) => {
+                let mut output = console::output(line, answer, false);
+                output
+                    .advice
+                    .get_or_insert_with(|| format!("As it was at the shown instant, {time_s:.1} s."));
+                output
+            }
+            // What runs elsewhere is not recorded, so that no earlier instant of it is shown.
+            Answer::Later(_) => CliOutput {
+                text: "###ERROR: REWOUND###".to_owned(),
+                advice: Some(REWOUND.to_owned()),
+                restarted: false,
+            },
+        }
     }
 
     /// Time goes on by what is due; gives the ticks.

@@ -1,11 +1,10 @@
 //! What is wrong with the open plan or worth knowing, with the craft's settings and the edit that takes it away.
 
 use crate::geo::LatLon;
-use crate::plan::edit::PlanDocument;
 use crate::plan::edit::fix::{Fix, fix, waypoint_of};
-use crate::plan::estimate::Assumptions;
 use crate::plan::review::{Finding, review};
 use crate::ui::app_state::AppState;
+use crate::ui::editor::settings_in_force;
 
 /// Home as far as it is known: of the craft, of the plan, of the map.
 #[must_use]
@@ -18,30 +17,18 @@ pub(crate) fn home(state: &AppState) -> Option<LatLon> {
     state.view.vehicle.craft.home.or(planned).or(map).or_else(first)
 }
 
-/// The limits the plan is judged by: its own settings, else those of the craft.
-#[must_use]
-pub(crate) fn assumptions(state: &AppState, document: &PlanDocument) -> Assumptions {
-    let mut lines = Vec::new();
-    if let Some(settings) = &state.view.vehicle.settings {
-        lines.push(format!("ap_max_velocity = {:.0}", settings.max_velocity_mps * 100.0));
-        lines.push(format!("ap_max_angle = {:.0}", settings.max_angle_deg));
-        lines.push(format!("ap_waypoint_arrival_radius = {:.0}", settings.arrival_radius_m * 100.0));
-        lines.push(format!("ap_waypoint_hold_radius = {:.0}", settings.hold_radius_m * 100.0));
-        lines.push(format!("ap_hold_orbit_radius = {:.0}", settings.orbit_radius_m * 100.0));
-        lines.push(format!("alt_hold_climb_rate = {:.0}", settings.climb_mps * 10.0));
-        lines.push(format!("ap_max_distance_from_home = {:.0}", settings.fence_m.unwrap_or(0.0)));
-    }
-    lines.extend(document.settings.iter().cloned());
-    Assumptions::from_settings(&lines)
-}
-
 /// All findings about the open plan, refusals first; none while it is empty.
 #[must_use]
 pub(crate) fn findings(state: &AppState) -> Vec<Finding> {
     let document = state.editor.document();
     match home(state) {
         Some(home) if !document.plan.waypoints.is_empty() => {
-            review(&document.plan, home, &assumptions(state, document))
+            let differs = settings_in_force::differing(state, document)
+                .map(|setting| Finding::CraftDiffers { setting });
+            let mut findings = review(&document.plan, home, &settings_in_force::assumptions(state, document));
+            let refusals = findings.iter().take_while(|finding| finding.is_refusal()).count();
+            findings.splice(refusals..refusals, differs);
+            findings
         }
         _ => Vec::new(),
     }

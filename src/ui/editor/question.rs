@@ -1,4 +1,4 @@
-//! What the editor asks before an edit or a file is lost.
+//! What the editor asks before an edit or a file is lost, or a flight is led elsewhere.
 
 use std::path::PathBuf;
 
@@ -15,6 +15,13 @@ pub enum Question {
         path: PathBuf,
         /// It was this plan's file, and somebody else changed it since.
         changed: bool,
+    },
+    /// The plan is to be uploaded in flight, and moves the waypoint that is flown to.
+    MovesTarget {
+        /// The plan.
+        id: PlanId,
+        /// What it does to the waypoint, a sentence.
+        change: String,
     },
     /// The plan is to be closed, and has edits that no file holds.
     Unsaved {
@@ -36,6 +43,7 @@ impl Question {
             Self::Replace { changed: false, .. } => {
                 &[('y', "replace it"), ('o', "other name"), ('n', "leave it")]
             }
+            Self::MovesTarget { .. } => &[('y', "upload it"), ('n', "leave it")],
             Self::Unsaved { quits: true, .. } => {
                 &[('s', "save"), ('d', "discard"), ('y', "quit, keep the edits for later"), ('n', "stay")]
             }

@@ -5,6 +5,7 @@ use crate::session::ForecastRequest;
 use crate::telemetry::Turbulence;
 use crate::telemetry::snapshot::{SettingsView, WindView};
 use crate::ui::app_state::AppState;
+use crate::ui::editor::settings_in_force;
 
 /// Changes of the mean wind below these are not worth another estimate.
 const WIND_MPS: f64 = 0.5;
@@ -35,7 +36,7 @@ impl EstimateBasis {
         let world = &state.view.vehicle.world;
         Self {
             plan: state.plan().clone(),
-            settings: state.editor.document().settings.clone(),
+            settings: to_upload(state),
             craft: state.view.vehicle.settings.map(chosen),
             air: Air {
                 airframe: world.airframe.clone(),
@@ -51,7 +52,7 @@ impl EstimateBasis {
     pub(super) fn still_holds(&self, state: &AppState) -> bool {
         let world = &state.view.vehicle.world;
         self.plan == *state.plan()
-            && self.settings == state.editor.document().settings
+            && self.settings == to_upload(state)
             && self.craft == state.view.vehicle.settings.map(chosen)
             && self.air.airframe == world.airframe
             && self.air.turbulence == world.turbulence
@@ -69,6 +70,12 @@ impl EstimateBasis {
     pub(super) fn request(&self) -> ForecastRequest {
         ForecastRequest::PlanEstimate { plan: Box::new(self.plan.clone()), settings: self.settings.clone() }
     }
+}
+
+/// The settings of the open plan that the craft, which the estimate flies with its own, gets before.
+fn to_upload(state: &AppState) -> Vec<String> {
+    let lines = settings_in_force::to_upload(state, state.editor.document());
+    lines.into_iter().map(str::to_owned).collect()
 }
 
 /// The settings without what the craft learns in flight.

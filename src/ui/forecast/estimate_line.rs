@@ -3,8 +3,10 @@
 use ratatui::text::Line;
 use unicode_width::UnicodeWidthStr as _;
 
+use crate::plan::estimate::SettingSource;
 use crate::session::{Forecast, ForecastEnd, ForecastResult};
 use crate::ui::app_state::AppState;
+use crate::ui::editor::settings_in_force;
 use crate::ui::formatting::cut;
 use crate::ui::panel::span;
 use crate::ui::theme::Role;
@@ -35,18 +37,27 @@ pub(in crate::ui) fn line(state: &AppState, width: u16) -> Line<'static> {
         let end = estimate.line(|metres| state.units.length_text(metres, 0));
         return Line::from(span(theme, role, cut(&format!("{mark}flown: {end}"), width)));
     }
-    let numbers = numbers(estimate, state.units, if forecast.is_estimating() { "…" } else { "" });
-    let long = numbers.each_ref().map(|(long, _)| long.as_str()).join("   ");
-    let text = if long.width() <= width {
-        long
-    } else {
-        numbers.each_ref().map(|(_, short)| short.as_str()).join("  ")
+    let document = state.editor.document();
+    // A fence that only the craft has is not confused with another.
+    let fence_from = match settings_in_force::assumptions(state, document).fence_from {
+        SettingSource::Craft if !settings_in_force::sets_a_fence(document) => SettingSource::Unsaid,
+        from => from,
     };
+    let waiting = if forecast.is_estimating() { "…" } else { "" };
+    let numbers = numbers(estimate, state.units, fence_from, waiting);
+    let long = numbers.each_ref().map(|(long, _)| long.as_str()).join("   ");
+    let short = numbers.each_ref().map(|(_, short)| short.as_str()).join("  ");
+    let text = if long.width() <= width { long } else { short };
     Line::from(span(theme, role, cut(&text, width)))
 }
 
 /// The numbers, each in a long and a short form, the most important ones first; `waiting` marks those of an older plan.
-fn numbers(estimate: &Forecast, units: Units, waiting: &str) -> [(String, String); 5] {
+fn numbers(
+    estimate: &Forecast,
+    units: Units,
+    fence_from: SettingSource,
+    waiting: &str,
+) -> [(String, String); 5] {
     let along_m = estimate.path.last().map_or(0.0, |end| end.along_m);
     let seconds = estimate.time_s.round() as u32;
     let time = format!("{:02}:{:02}{waiting}", seconds / 60, seconds % 60);
@@ -57,12 +68,23 @@ fn numbers(estimate: &Forecast, units: Units, waiting: &str) -> [(String, String
     };
     let xte = metres(estimate.worst_xte.map(|worst| worst.xte_m), 1);
     let fence = format!("fence {}", metres(estimate.fence_margin_m, 0));
+    let whose = |craft, plan| match fence_from {
+        _ if estimate.fence_margin_m.is_none() => "",
+        SettingSource::Unsaid => "",
+        SettingSource::Craft => craft,
+        SettingSource::Plan => plan,
+    };
+    let (long, short) = (whose(" (craft)", " (plan, set at the upload)"), whose(" (craft)", " (plan)"));
     let length = metres(Some(along_m), 0);
+    let fence = (format!("{fence}{long}"), format!("{fence}{short}"));
+    let xte = (format!("worst xte {xte}"), format!("xte {xte}"));
+    // What a narrow line cuts off is the last.
+    let [next, last] = if fence_from == SettingSource::Unsaid { [xte, fence] } else { [fence, xte] };
     [
         (length.clone(), length),
         (format!("flown estimate {time}"), format!("flown {time}")),
         (format!("battery {used_pct:.0} %"), format!("bat {used_pct:.0} %")),
-        (format!("worst xte {xte}"), format!("xte {xte}")),
-        (fence.clone(), fence),
+        next,
+        last,
     ]
 }

@@ -122,6 +122,7 @@ fn question(state: &AppState, question: &Question, area: Rect, buffer: &mut Buff
             ("Changed on disk", format!("{} was changed by somebody else since it was read.", path.display()))
         }
         Question::Replace { path, changed: false, .. } => ("Replace?", format!("{} exists.", path.display())),
+        Question::MovesTarget { change, .. } => ("Upload in flight?", change.clone()),
         Question::Unsaved { id, .. } => {
             ("Unsaved", format!("{} has edits that no file holds.", title_of(*id)))
         }

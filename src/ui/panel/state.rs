@@ -6,7 +6,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 
-use crate::telemetry::{Guard, GuardName, NavState};
+use crate::telemetry::{Guard, GuardName, NavState, TransitionReason};
 use crate::ui::app_state::{AppState, Transition};
 use crate::ui::formatting::{clock, cut, fixed, signed, within};
 use crate::ui::panel::Panel;
@@ -279,7 +279,7 @@ fn draw_transitions(state: &AppState, area: Rect, buffer: &mut Buffer) {
             vec![
                 span(theme, Role::Dim, format!("{} ", clock(step.time))),
                 span(theme, Role::Text, states),
-                span(theme, Role::Dim, cut(&format!("WP{} {}", step.wp, step.reason), room)),
+                span(theme, Role::Dim, cut(&why(step, room), room)),
             ]
         } else {
             vec![
@@ -288,6 +288,17 @@ fn draw_transitions(state: &AppState, area: Rect, buffer: &mut Buffer) {
             ]
         };
         line(buffer, area, at as u16 + 2, &Line::from(spans));
+    }
+}
+
+/// The waypoint and the cause of a transition; of a start in the words of the log, where there is no room without the waypoint.
+fn why(step: &Transition, room: usize) -> String {
+    match step.reason {
+        TransitionReason::Reset => {
+            let long = format!("mission starts, WP{}", step.wp);
+            if long.chars().count() > room { "mission starts".to_owned() } else { long }
+        }
+        reason => format!("WP{} {reason}", step.wp),
     }
 }
 

@@ -3,11 +3,13 @@
 use crate::session::{Command, UploadReport};
 use crate::ui::action::{Action, EditAction};
 use crate::ui::app_state::AppState;
-use crate::ui::editor::{OpenPlan, PlanId};
+use crate::ui::editor::{EditorPopup, OpenPlan, PlanId, Question};
 use crate::ui::event_log::Severity;
 use crate::ui::message::Effect;
 use crate::ui::panel::Panel;
 use crate::ui::popup::{GoTo, Popup};
+
+mod moved_target;
 
 /// The speeds `[` and `]` go through.
 const SPEEDS: [f64; 12] = [0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, f64::INFINITY];
@@ -43,10 +45,20 @@ pub(super) fn fly(state: &mut AppState) -> Vec<Effect> {
         return Vec::new();
     }
     state.fly_after_upload = Some(state.editor.plan().id());
-    vec![upload(state)]
+    vec![upload_now(state)]
 }
 
-pub(super) fn upload(state: &mut AppState) -> Effect {
+/// Uploads the open plan; in flight it asks before the waypoint that is flown to moves far.
+pub(super) fn upload(state: &mut AppState) -> Vec<Effect> {
+    if let Some(change) = moved_target::told(state) {
+        let id = state.editor.plan().id();
+        state.editor.popup = Some(EditorPopup::Question(Question::MovesTarget { id, change }));
+        return Vec::new();
+    }
+    vec![upload_now(state)]
+}
+
+pub(super) fn upload_now(state: &mut AppState) -> Effect {
     state.editor.remember_upload();
     Effect::Upload {
         id: state.editor.plan().id(),

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use crossterm::event::{KeyCode, KeyEvent};
 
+use super::flight::upload_now;
 use super::plan;
 use crate::ui::action::{Action, EditAction};
 use crate::ui::app_state::AppState;
@@ -78,6 +79,10 @@ fn question_key(state: &mut AppState, question: Question, event: KeyEvent) -> Ve
         (Question::Replace { id, path, .. }, 'y') => vec![plan::write(state, id, path, true)],
         (Question::Replace { path, changed: true, .. }, 'r') => vec![Effect::Files(FileRequest::Open(path))],
         (Question::Replace { .. }, 'o') => plan::save_as(state),
+        (Question::MovesTarget { id, .. }, 'y') => {
+            state.editor.show_plan(id);
+            vec![upload_now(state)]
+        }
         (Question::Unsaved { id, quits }, 's') => {
             state.editor.quitting = quits;
             save_plan(state, id)

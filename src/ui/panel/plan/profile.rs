@@ -6,7 +6,7 @@ use ratatui::layout::Rect;
 use crate::plan::estimate::estimate;
 use crate::ui::app_state::AppState;
 use crate::ui::drawing;
-use crate::ui::editor::findings;
+use crate::ui::editor::{findings, settings_in_force};
 use crate::ui::theme::Role;
 
 mod flown;
@@ -36,7 +36,7 @@ fn points(state: &AppState) -> Vec<Point> {
     {
         wp.alt_cm = alt_cm;
     }
-    let estimated = estimate(&plan, home, &findings::assumptions(state, document));
+    let estimated = estimate(&plan, home, &settings_in_force::assumptions(state, document));
     let mut along_m = 0.0;
     let legs = estimated
         .legs

@@ -1,0 +1,90 @@
+//! Altitudes that are probably not meant: above a limit of the user, or far above all others of the plan.
+
+use super::Finding;
+use crate::plan::{Waypoint, WaypointType};
+
+/// An altitude this many times the median of the others …
+const TIMES_THE_OTHERS: f64 = 5.0;
+/// … and this far above the highest of them is far above the others, m.
+const ABOVE_THE_OTHERS_M: f64 = 50.0;
+/// With fewer others there is nothing usual.
+const FEWEST_OTHERS: usize = 2;
+
+/// Returns the legs that are flown too high, those far above the others first.
+pub(super) fn too_high(waypoints: &[Waypoint], limit_m: Option<f64>) -> Vec<Finding> {
+    let altitudes = altitudes(waypoints);
+    let far_above = (0..altitudes.len()).filter_map(|at| far_above_the_others(&altitudes, at));
+    let above_the_limit = altitudes.iter().filter_map(|&(index, alt_m)| {
+        let limit_m = limit_m.filter(|&limit_m| alt_m > limit_m)?;
+        Some(Finding::AboveLimit { index, alt_m, limit_m })
+    });
+    far_above.chain(above_the_limit).collect()
+}
+
+/// The altitude of each leg above home, and the waypoint that says it.
+fn altitudes(waypoints: &[Waypoint]) -> Vec<(usize, f64)> {
+    let mut changed = None;
+    let mut altitudes = Vec::new();
+    for (index, waypoint) in waypoints.iter().enumerate() {
+        let own = (index, f64::from(waypoint.alt_cm) / 100.0);
+        if waypoint.kind == WaypointType::AltChange {
+            changed = Some(own);
+        } else if waypoint.kind.is_positional() {
+            altitudes.push(changed.take().unwrap_or(own));
+        }
+    }
+    altitudes
+}
+
+fn far_above_the_others(altitudes: &[(usize, f64)], at: usize) -> Option<Finding> {
+    let (index, alt_m) = altitudes[at];
+    let others = altitudes.iter().enumerate().filter(|(other, _)| *other != at);
+    let mut others: Vec<f64> = others.map(|(_, &(_, alt_m))| alt_m).collect();
+    others.sort_by(f64::total_cmp);
+    let highest_m = *others.last().filter(|_| others.len() >= FEWEST_OTHERS)?;
+    let usual_m = others[others.len() / 2];
+    let is_far = alt_m > TIMES_THE_OTHERS * usual_m && alt_m > highest_m + ABOVE_THE_OTHERS_M;
+    is_far.then_some(Finding::FarAboveOthers { index, alt_m, usual_m })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn found(altitudes_m: &[i32], limit_m: Option<f64>) -> Vec<String> {
+        let at = |&alt_m: &i32| Waypoint { alt_cm: alt_m * 100, ..Waypoint::default() };
+        let waypoints: Vec<Waypoint> = altitudes_m.iter().map(at).collect();
+        too_high(&waypoints, limit_m).iter().map(ToString::to_string).collect()
+    }
+
+    #[test]
+    fn a_digit_too_many_is_told() {
+        assert_eq!(
+            found(&[50, 500, 50, 20], None),
+            ["waypoint 1 is 500 m above home, far above the others (50 m)"]
+        );
+        assert!(found(&[10, 55, 10], None).is_empty(), "not 50 m above the highest of the others");
+        assert!(found(&[50, 200, 50], None).is_empty(), "not five times as high");
+        assert!(found(&[5, 500], None).is_empty(), "which of two is meant is not known");
+        assert!(found(&[50, 500, 400], None).is_empty(), "another is as high");
+    }
+
+    #[test]
+    fn every_waypoint_above_the_limit_is_told() {
+        assert_eq!(
+            found(&[120, 121, 150], Some(120.0)),
+            [
+                "waypoint 1 is 121 m above home, the limit (max_altitude_m) is 120 m",
+                "waypoint 2 is 150 m above home, the limit (max_altitude_m) is 120 m",
+            ]
+        );
+    }
+
+    #[test]
+    fn the_waypoint_that_says_the_altitude_is_told() {
+        let change = Waypoint { kind: WaypointType::AltChange, alt_cm: 20_000, ..Waypoint::default() };
+        let waypoints = [change, Waypoint { alt_cm: 5000, ..Waypoint::default() }];
+        let found = too_high(&waypoints, Some(120.0));
+        assert_eq!(found, [Finding::AboveLimit { index: 0, alt_m: 200.0, limit_m: 120.0 }]);
+    }
+}
