@@ -112,7 +112,7 @@ fn a_place_far_away_or_no_place_is_asked_about_in_flight_only() {
     plan.waypoints.truncate(1);
     open(&mut state, &plan);
     assert!(!uploads(&keys(&mut state, "U")));
-    assert!(screen(&state).contains("WP1, which this plan has not"), "{}", screen(&state));
+    assert!(screen(&state).contains("WP1, which this plan does not have"), "{}", screen(&state));
     // Armed on the ground before an engagement there is no leg yet.
     let mut view = state.view.clone();
     let vehicle = Arc::make_mut(&mut view.vehicle);

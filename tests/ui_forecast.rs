@@ -276,6 +276,9 @@ fn an_upload_in_flight_takes_effect_at_the_next_engagement_or_by_going_there() {
     press(&mut state, 'd');
     press(&mut state, '1');
     press(&mut state, 'U');
+    // The waypoint that is flown to is gone from its place.
+    press(&mut state, 'y');
+    assert!(state.popups.is_empty());
     let id = state.editor.plan().id();
     update(&mut state, Msg::UploadReply { id, count: 4, result: Ok(UploadReport::default()) });
     let told = state.notice.as_ref().map(|notice| notice.text.clone()).unwrap_or_default();

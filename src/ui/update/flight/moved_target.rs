@@ -18,7 +18,7 @@ pub(super) fn told(state: &AppState) -> Option<String> {
     let wp = usize::from(vehicle.nav.as_ref()?.wp);
     let old = flown.waypoints.get(wp)?;
     let Some(new) = state.plan().waypoints.get(wp) else {
-        return Some(format!("The craft flies to WP{wp}, which this plan has not."));
+        return Some(format!("The craft flies to WP{wp}, which this plan does not have."));
     };
     let placed = |wp: &Waypoint| wp.kind.uses_position();
     let beside_m =
