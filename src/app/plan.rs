@@ -21,7 +21,8 @@ pub(super) fn list() -> Result<u8, AppError> {
             AppError::internal(format!("the built-in plan {}: {}", builtin.name, errors.join("; ")))
         })?;
         let count = file.plan.waypoints.len();
-        text.push_str(&format!("{:longest$}  {count} waypoints  {}\n", builtin.name, file.description));
+        let noun = if count == 1 { "waypoint " } else { "waypoints" };
+        text.push_str(&format!("{:longest$}  {count} {noun}  {}\n", builtin.name, file.description));
     }
     error::print(&text)
 }

@@ -65,7 +65,8 @@ fn the_built_in_plans_are_listed_by_the_names_that_other_commands_take() {
     assert_eq!(names, built_in, "{}", ran.out);
     for (line, plan) in ran.out.lines().zip(PLANS) {
         let file = plan.read().expect("a built-in plan reads");
-        let count = format!(" {} waypoints ", file.plan.waypoints.len());
+        let noun = if file.plan.waypoints.len() == 1 { "waypoint" } else { "waypoints" };
+        let count = format!(" {} {noun} ", file.plan.waypoints.len());
         assert!(line.contains(&count) && line.ends_with(&file.description), "{line}");
         sandbox.run(&["plan", "show", plan.name]).exits(0);
     }
