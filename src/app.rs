@@ -129,6 +129,7 @@ fn dispatch(cli: Cli, keymap: Keymap) -> Result<u8, AppError> {
         Some(Command::Compare(args)) => compare::run(&args),
         Some(Command::Sitl(args)) => sitl::run(&args),
         Some(Command::Serve(args)) => serve::run(&args),
+        Some(Command::Plan(PlanCommand::List)) => plan::list(),
         Some(Command::Plan(PlanCommand::Show { plan, review })) => plan::show(&plan, review),
         Some(Command::Convert(args)) => convert::run(&args),
         Some(Command::Config(command)) => config::run(command),

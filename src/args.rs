@@ -207,6 +207,9 @@ pub enum Command {
 /// What to do with a plan.
 #[derive(Debug, Subcommand)]
 pub enum PlanCommand {
+    /// Prints the built-in plans: name, number of waypoints, and how each is flown
+    #[command(before_help = help::examples(&[("betadeck plan list", "all of them, the demo first")]))]
+    List,
     /// Prints a plan as a table with distances, times and what is wrong with it
     #[command(before_help = help::examples(&[
         ("betadeck plan show square", "a built-in plan"),

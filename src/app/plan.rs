@@ -1,14 +1,31 @@
-//! `betadeck plan show`: a plan as a table, with distances, times and what is wrong with it.
+//! `betadeck plan`: the built-in plans by name, and a plan as a table with distances, times and what is wrong with it.
 
 use super::error::{self, AppError};
 use super::setup;
 use crate::args::{PlanArg, ReviewArgs};
 use crate::flight::FlightSetup;
 use crate::geo::LatLon;
+use crate::plan::builtin::PLANS;
 use crate::plan::estimate::Assumptions;
 use crate::plan::format;
 use crate::plan::review::{Finding, review};
 use crate::sim::density_ratio;
+
+/// Prints the built-in plans, one a line.
+pub(super) fn list() -> Result<u8, AppError> {
+    let longest = PLANS.iter().map(|plan| plan.name.len()).max().unwrap_or_default();
+    let mut text = String::new();
+    for builtin in PLANS {
+        let file = builtin.read().map_err(|errors| {
+            let errors: Vec<String> = errors.iter().map(ToString::to_string).collect();
+            AppError::internal(format!("the built-in plan {}: {}", builtin.name, errors.join("; ")))
+        })?;
+        let count = file.plan.waypoints.len();
+        let noun = if count == 1 { "waypoint " } else { "waypoints" };
+        text.push_str(&format!("{:longest$}  {count} {noun}  {}\n", builtin.name, file.description));
+    }
+    error::print(&text)
+}
 
 /// Prints the plan; a plan that the craft would refuse is invalid input.
 pub(super) fn show(plan: &PlanArg, limits: ReviewArgs) -> Result<u8, AppError> {

@@ -1,5 +1,6 @@
 //! Every shipped plan is executed, and other ways to hand a plan over.
 
+use betadeck::plan::builtin::PLANS;
 use betadeck::plan::format::{Format, parse};
 
 use crate::support::{Flown, Sandbox, plan, plans};
@@ -53,6 +54,23 @@ fn built_in_plans_go_by_name() {
     let by_name = Sandbox::new().fly(&["hold-none"]).ends(0, "complete");
     let by_file = Sandbox::new().fly(&[&plan("hold-none.toml")]).ends(0, "complete");
     assert_eq!(by_name.lines[..by_name.lines.len() - 1], by_file.lines[..by_file.lines.len() - 1]);
+}
+
+#[test]
+fn the_built_in_plans_are_listed_by_the_names_that_other_commands_take() {
+    let sandbox = Sandbox::new();
+    let ran = sandbox.run(&["plan", "list"]).exits(0);
+    let names: Vec<&str> = ran.out.lines().filter_map(|line| line.split_whitespace().next()).collect();
+    let built_in: Vec<&str> = PLANS.iter().map(|plan| plan.name).collect();
+    assert_eq!(names, built_in, "{}", ran.out);
+    for (line, plan) in ran.out.lines().zip(PLANS) {
+        let file = plan.read().expect("a built-in plan reads");
+        let noun = if file.plan.waypoints.len() == 1 { "waypoint" } else { "waypoints" };
+        let count = format!(" {} {noun} ", file.plan.waypoints.len());
+        assert!(line.contains(&count) && line.ends_with(&file.description), "{line}");
+        sandbox.run(&["plan", "show", plan.name]).exits(0);
+    }
+    assert_eq!(ran.err, "");
 }
 
 #[test]
