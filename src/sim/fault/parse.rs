@@ -246,8 +246,8 @@ fn build(kind: FaultKind, text: &str) -> Result<Fault, String> {
         FaultKind::Teleport => {
             let parts: Vec<&str> = text.split(',').collect();
             let [north, east, up] = parts[..] else {
-                return Err("three numbers are needed; a teleport has no duration, so write \
-                            teleport@T,,NORTH,EAST,UP"
+                return Err("three numbers are needed; a teleport has no duration, so its place stays empty: \
+                            teleport,,NORTH,EAST,UP"
                     .to_owned());
             };
             let metres = |name, text| number_in(name, text, -10_000.0, 10_000.0);
@@ -336,7 +336,7 @@ mod tests {
             ("motor@1,,2:1.5", "efficiency 1.5 is out of range; allowed are 0 to 1"),
             ("push@1,,1,upp", "did you mean up?"),
             ("push@1,2,1,up", "acts at once and has no duration"),
-            ("teleport@20,0,20,0", "write teleport@T,,NORTH,EAST,UP"),
+            ("teleport@20,0,20,0", "stays empty: teleport,,NORTH,EAST,UP"),
             ("payload@1", "the value of payload is missing: kg"),
             ("rx-jitter@1,,2", "out of range; allowed are 0 to 1"),
         ] {
