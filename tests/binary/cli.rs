@@ -371,7 +371,7 @@ fn options_come_from_the_environment_and_the_configuration_file_too() {
     assert_eq!(boot(&[("BETADECK_SEED", "8")], &["--seed", "9"]), (9, 500));
     configured(&sandbox, "sede = 7\n");
     // What needs no option does not mind.
-    sandbox.run(&["plan", "show", "land"]).exits(0);
+    sandbox.run(&["plan", "list"]).exits(0);
     sandbox.run(&["completions", "bash"]).exits(0);
     let ran = sandbox.run(&["fly", "land"]).exits(2);
     assert!(ran.err.contains("config.toml") && ran.err.contains("seed"), "{}", ran.err);
