@@ -20,9 +20,9 @@ mod svg;
 /// Size of the terminal.
 const SIZE: (u16, u16) = (120, 40);
 /// Simulated seconds after boot: on the ring around the third waypoint.
-const MOMENT_S: f64 = 80.0;
+const MOMENT_S: f64 = 110.0;
 /// Where the rewound picture goes back to, simulated seconds: on the leg before.
-const REWOUND_TO_S: f64 = 41.0;
+const REWOUND_TO_S: f64 = 75.0;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let mut editing = DemoFlight::on_the_ground(SIZE)?;
