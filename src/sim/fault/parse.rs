@@ -246,9 +246,11 @@ fn build(kind: FaultKind, text: &str) -> Result<Fault, String> {
         FaultKind::Teleport => {
             let parts: Vec<&str> = text.split(',').collect();
             let [north, east, up] = parts[..] else {
-                return Err("three numbers are needed; a teleport has no duration, so its place stays empty: \
+                return Err(
+                    "three numbers are needed; a teleport has no duration, so its place stays empty: \
                             teleport,,NORTH,EAST,UP"
-                    .to_owned());
+                        .to_owned(),
+                );
             };
             let metres = |name, text| number_in(name, text, -10_000.0, 10_000.0);
             Fault::Teleport([metres("north", north)?, metres("east", east)?, metres("up", up)?])
