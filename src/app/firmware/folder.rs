@@ -4,20 +4,24 @@
 use std::fs::{File, TryLockError};
 use std::io;
 use std::os::unix::fs::MetadataExt as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use rustix::fs::{Mode, OFlags};
 use tempfile::TempDir;
 
 /// Start of the names of these folders.
 const PREFIX: &str = "betadeck-firmware-";
+/// The folder in it in which the firmware runs: a drop-in locks the one in which it runs itself.
+const WORK: &str = "work";
 /// Folders that are tried when another program removes them as fast as they are made.
 const ATTEMPTS: usize = 10;
 
 /// A folder that is removed when it is dropped.
 #[derive(Debug)]
 pub(in crate::app) struct FirmwareFolder {
-    directory: TempDir,
+    /// Removed when it is dropped.
+    _directory: TempDir,
+    work: PathBuf,
     /// Locked as long as it is open: the system unlocks it when the program ends in whatever way.
     _lock: File,
 }
@@ -29,16 +33,17 @@ impl FirmwareFolder {
             let directory = TempDir::with_prefix(PREFIX)?;
             // Another program that starts now may take it for a folder that was left, until it is locked.
             let Ok(lock) = open(directory.path()) else { continue };
-            if is_locked_here(&lock) && directory.path().exists() {
-                return Ok(Self { directory, _lock: lock });
+            let work = directory.path().join(WORK);
+            if is_locked_here(&lock) && std::fs::create_dir(&work).is_ok() {
+                return Ok(Self { _directory: directory, work, _lock: lock });
             }
         }
         Err(io::Error::other("other programs remove it"))
     }
 
-    /// The path of the folder.
+    /// The path of the folder in which the firmware runs.
     pub(super) fn path(&self) -> &Path {
-        self.directory.path()
+        &self.work
     }
 }
 
