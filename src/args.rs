@@ -260,7 +260,6 @@ pub fn parse(arguments: impl IntoIterator<Item = OsString>, layers: &Layers) -> 
 }
 
 /// What is wrong with the environment and the configuration file, a sentence for each problem.
-#[must_use]
 pub fn layer_problems(layers: &Layers) -> Vec<String> {
     let mut command = Cli::command();
     command.build();

@@ -2,7 +2,6 @@
 
 /// The word of `candidates` that `typed` most likely stands for, if one is close: at most one slip (a wrong, missing,
 /// extra or swapped character) for every three characters, ignoring case.
-#[must_use]
 pub fn closest<'a>(typed: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let typed: Vec<char> = typed.chars().take(64).flat_map(char::to_lowercase).collect();
     let allowed = (typed.len() / 3).max(1);
@@ -18,13 +17,11 @@ pub fn closest<'a>(typed: &str, candidates: impl IntoIterator<Item = &'a str>) -
 }
 
 /// `; did you mean WORD?` with the closest of `candidates`, or nothing when none is close.
-#[must_use]
 pub fn suffix<'a>(typed: &str, candidates: impl IntoIterator<Item = &'a str>) -> String {
     closest(typed, candidates).map_or_else(String::new, |word| format!("; did you mean {word}?"))
 }
 
 /// `did you mean FLYOVER? allowed: FLYOVER, FLYBY, …`: what may be written instead.
-#[must_use]
 pub fn hint<'a>(typed: &str, words: impl IntoIterator<Item = &'a str>) -> String {
     let words: Vec<&str> = words.into_iter().collect();
     let guess = closest(typed, words.iter().copied());

@@ -60,7 +60,6 @@ use stages::{
 /// How the firmware is built and helped; not part of its configuration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FirmwareOptions {
-    /// Steps a second.
     pub rate_hz: u32,
     /// Arming rules are softened for RC from UDP, so that a simple script can arm.
     pub arm_assist: bool,
@@ -102,7 +101,6 @@ pub struct Firmware {
 
 impl Firmware {
     /// Boots with this configuration, made consistent.
-    #[must_use]
     pub fn new(configuration: Configuration, options: FirmwareOptions) -> Self {
         let mut outbox = Outbox::default();
         let setup = Setup::new(configuration, options, &mut outbox);

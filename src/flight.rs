@@ -66,7 +66,6 @@ pub struct Flight {
 /// What a flight reports.
 #[derive(Debug)]
 pub enum Report<'a> {
-    /// Something happened.
     Event(Event),
     /// Time for a sample.
     Sample(&'a Vehicle),
@@ -77,11 +76,9 @@ pub enum Report<'a> {
 pub struct FlightEnd {
     /// What became of it.
     pub verdict: Verdict,
-    /// What really happened.
     pub truth: FlightTruth,
     /// Simulated seconds from the engagement (or boot, if there was none) to the end.
     pub flown_s: f64,
-    /// When it ended.
     pub time: SimTime,
 }
 
@@ -96,7 +93,6 @@ impl Flight {
     }
 
     /// The flight that `vehicle` is on, as things stand: whoever moves the sticks goes on.
-    #[must_use]
     pub fn go_on(vehicle: Vehicle, options: &FlightOptions) -> Self {
         let controller = vehicle.controller();
         let flown = vehicle.embedded().and_then(Firmware::active_plan).or(controller.stored_plan());
@@ -124,8 +120,6 @@ impl Flight {
         }
     }
 
-    /// The vehicle.
-    #[must_use]
     pub fn vehicle(&self) -> &Vehicle {
         &self.vehicle
     }
@@ -136,13 +130,11 @@ impl Flight {
     }
 
     /// The vehicle as the flight left it.
-    #[must_use]
     pub fn into_vehicle(self) -> Vehicle {
         self.vehicle
     }
 
     /// When the autopilot engaged for the first time.
-    #[must_use]
     pub fn engaged_at(&self) -> Option<SimTime> {
         self.judge.engaged_at()
     }
@@ -186,7 +178,6 @@ impl Flight {
     }
 
     /// Ends the flight here and now, as its user asks.
-    #[must_use]
     pub fn interrupt(&self, reason: &str) -> FlightEnd {
         self.end(Verdict::new(FlightResult::Interrupted, reason))
     }

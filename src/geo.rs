@@ -32,31 +32,24 @@ pub struct LatLon {
 
 impl LatLon {
     /// A position from degrees × 10⁷.
-    #[must_use]
     pub const fn new(lat_e7: i32, lon_e7: i32) -> Self {
         Self { lat_e7, lon_e7 }
     }
 
     /// A position from degrees, rounded to the nearest 1e-7; out-of-range values saturate.
-    #[must_use]
     pub fn from_degrees(lat_deg: f64, lon_deg: f64) -> Self {
         Self { lat_e7: (lat_deg * 1e7).round() as i32, lon_e7: (lon_deg * 1e7).round() as i32 }
     }
 
-    /// Latitude in degrees.
-    #[must_use]
     pub fn lat_deg(self) -> f64 {
         f64::from(self.lat_e7) * 1e-7
     }
 
-    /// Longitude in degrees.
-    #[must_use]
     pub fn lon_deg(self) -> f64 {
         f64::from(self.lon_e7) * 1e-7
     }
 
     /// Whether latitude and longitude are on the globe.
-    #[must_use]
     pub fn is_on_globe(self) -> bool {
         self.lat_e7.unsigned_abs() <= 900_000_000 && self.lon_e7.unsigned_abs() <= 1_800_000_000
     }
@@ -91,7 +84,6 @@ fn wrap_lon_e7(lon: i64) -> i32 {
 
 /// Horizontal distance (m) and bearing (rad, 0…2π clockwise from north) from `a` to `b`; the reference latitude is
 /// their mean, so the distance is symmetric. Coincident points give (0, 0).
-#[must_use]
 pub fn distance_bearing(a: LatLon, b: LatLon) -> (f64, f64) {
     let mean_lat = (f64::from(a.lat_e7) + f64::from(b.lat_e7)) * 0.5e-7;
     let ne = offset_with_reference(a, b, mean_lat);
@@ -102,7 +94,6 @@ pub fn distance_bearing(a: LatLon, b: LatLon) -> (f64, f64) {
 }
 
 /// Offset (north, east) in metres from `origin` to `point`; the reference latitude is the origin's.
-#[must_use]
 pub fn local_offset(origin: LatLon, point: LatLon) -> Vector2<f64> {
     offset_with_reference(origin, point, origin.lat_deg())
 }
@@ -118,7 +109,6 @@ fn offset_with_reference(from: LatLon, to: LatLon, reference_lat_deg: f64) -> Ve
 
 /// The position `offset` (north, east; metres) from `origin`, the inverse of [`local_offset`]. Latitude is clamped to
 /// ±90°, longitude wrapped; within 1e-6 of a pole (cosine) the longitude stays that of the origin.
-#[must_use]
 pub fn offset_to_latlon(origin: LatLon, offset_ne: Vector2<f64>) -> LatLon {
     let cos_lat = origin.lat_deg().to_radians().cos();
     let lat = f64::from(origin.lat_e7) + offset_ne.x / METRES_PER_E7;
@@ -131,7 +121,6 @@ pub fn offset_to_latlon(origin: LatLon, offset_ne: Vector2<f64>) -> LatLon {
 }
 
 /// As [`offset_to_latlon`], in degrees and without rounding to 1e-7, for displays that compare with the truth.
-#[must_use]
 pub fn offset_to_degrees(origin: LatLon, offset_ne: Vector2<f64>) -> (f64, f64) {
     let cos_lat = origin.lat_deg().to_radians().cos().max(1e-6);
     let per_degree = METRES_PER_E7 * 1e7;
@@ -139,7 +128,6 @@ pub fn offset_to_degrees(origin: LatLon, offset_ne: Vector2<f64>) -> (f64, f64) 
 }
 
 /// An angle folded into (−π, π].
-#[must_use]
 pub fn wrap_pi(angle_rad: f64) -> f64 {
     use std::f64::consts::{PI, TAU};
     let folded = angle_rad.rem_euclid(TAU);

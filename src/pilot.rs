@@ -54,15 +54,12 @@ const CLIMB_STICK_MAX_US: f64 = 2000.0;
 /// What the pilot sees.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PilotFacts {
-    /// Now.
     pub time: SimTime,
     /// A 3-D fix.
     pub fix: bool,
     /// Some arming-disable flag is set.
     pub arming_blocked: bool,
-    /// Armed.
     pub armed: bool,
-    /// The autopilot flies.
     pub engaged: bool,
     /// The heading is known.
     pub heading_known: bool,
@@ -107,7 +104,6 @@ struct ModeSwitches {
     autopilot: Switch,
 }
 
-/// The scripted pilot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pilot {
     phase: Phase,
@@ -133,13 +129,11 @@ impl Pilot {
     }
 
     /// Altitude to which the pilot climbs before engaging, m.
-    #[must_use]
     pub fn takeoff_m(&self) -> f64 {
         self.takeoff_m
     }
 
     /// What the pilot is doing, in a word or two.
-    #[must_use]
     pub fn doing(&self) -> &'static str {
         match self.phase {
             Phase::Waiting => "waiting to arm",
@@ -155,7 +149,6 @@ impl Pilot {
     }
 
     /// Whether the flight is over as far as the pilot is concerned.
-    #[must_use]
     pub fn is_done(&self) -> bool {
         self.phase == Phase::Done
     }

@@ -15,7 +15,6 @@ const LONGEST_LINE: usize = 400;
 const LONGEST_NAME: usize = 60;
 
 /// Whether a terminal shows this character as it is.
-#[must_use]
 pub fn is_printable(c: char) -> bool {
     !matches!(c,
         '\0'..='\u{1f}' | '\u{7f}'..='\u{9f}'
@@ -28,7 +27,6 @@ pub fn is_printable(c: char) -> bool {
 }
 
 /// A single line of text.
-#[must_use]
 pub fn line(text: &str) -> Cow<'_, str> {
     let is_short = text.len() <= LONGEST_LINE || text.chars().nth(LONGEST_LINE).is_none();
     if is_short && text.chars().all(is_printable) {
@@ -38,13 +36,11 @@ pub fn line(text: &str) -> Cow<'_, str> {
 }
 
 /// A name inside a line.
-#[must_use]
 pub fn name(text: &str) -> String {
     cut(text, LONGEST_NAME)
 }
 
 /// Text of several lines; tabs between words stay.
-#[must_use]
 pub fn lines(text: &str) -> Cow<'_, str> {
     let is_clean = |part: &str| matches!(line(part), Cow::Borrowed(_));
     if text.split('\n').all(|part| is_clean(part.strip_suffix('\r').unwrap_or(part))) {
@@ -63,7 +59,6 @@ pub fn lines(text: &str) -> Cow<'_, str> {
 }
 
 /// A line of JSON: what is not shown is escaped, which changes nothing for its readers.
-#[must_use]
 pub fn json(text: &str) -> Cow<'_, str> {
     if text.chars().all(is_printable) {
         return Cow::Borrowed(text);

@@ -16,19 +16,16 @@ impl SimTime {
     pub const ZERO: Self = Self(0);
 
     /// A time from seconds, rounded to the microsecond; negative or non-finite values give zero.
-    #[must_use]
     pub fn from_secs_f64(seconds: f64) -> Self {
         Self((seconds * 1e6).round() as u64)
     }
 
     /// Seconds since boot, the nearest to the exact quotient: 100 000 µs is the number that `0.1` is.
-    #[must_use]
     pub fn as_secs_f64(self) -> f64 {
         self.0 as f64 / 1e6
     }
 
     /// Seconds from `earlier` to this time; zero when `earlier` is later.
-    #[must_use]
     pub fn seconds_since(self, earlier: Self) -> f64 {
         self.0.saturating_sub(earlier.0) as f64 / 1e6
     }
@@ -93,7 +90,6 @@ pub struct Pose {
 pub struct GpsSample {
     /// Whether the solution is a 3-D fix; without one the position fields are meaningless.
     pub fix: bool,
-    /// Satellites used.
     pub sats: u8,
     /// Position, degrees × 10⁷.
     pub position: crate::geo::LatLon,
@@ -113,7 +109,6 @@ pub struct GpsSample {
     pub latency_s: f64,
 }
 
-/// One battery sample.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BatterySample {
     /// Voltage at the terminals, V.

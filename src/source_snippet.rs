@@ -17,7 +17,6 @@ pub struct SourceSnippet {
 }
 
 /// What is shown of a line to point at a column, in characters, from 1.
-#[must_use]
 pub fn source_snippet(line: &str, column: usize) -> SourceSnippet {
     let shown = |c: char| if c.is_control() { ' ' } else { c };
     let is_short = line.chars().nth(MOST).is_none();
@@ -32,7 +31,6 @@ pub fn source_snippet(line: &str, column: usize) -> SourceSnippet {
 }
 
 /// A sentence about a file without the middle of what makes it too long.
-#[must_use]
 pub fn shortened(sentence: String) -> String {
     let Some((start, _)) = sentence.char_indices().nth(SENTENCE / 2) else { return sentence };
     match sentence.char_indices().nth_back(SENTENCE / 2 - 1) {

@@ -26,7 +26,6 @@ pub use files::link_target;
 use files::{Files, read_image};
 
 /// The files that a store in this directory uses or leaves behind, there or not; a link leads to those beside its target.
-#[must_use]
 pub fn files_in(directory: &Path) -> Vec<PathBuf> {
     Files::new(directory).all()
 }
@@ -39,45 +38,25 @@ pub const FILE_NAME: &str = "eeprom.bin";
 pub enum StorageError {
     /// The directory cannot be used.
     #[error("cannot use the directory {}: {source}; choose another one", path.display())]
-    Directory {
-        /// The directory.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
+    Directory { path: PathBuf, source: std::io::Error },
     /// The file is that of another firmware.
     #[error(
         "{} is not overwritten because {reason}: move it away, or use another directory",
         path.display()
     )]
     Protected {
-        /// The file.
         path: PathBuf,
         /// What it is, or why it cannot be read.
         reason: String,
     },
     /// What is there cannot be read, or is no configuration.
     #[error("{} is left alone because {reason}: move it away, or use another directory", path.display())]
-    Unusable {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        reason: String,
-    },
+    Unusable { path: PathBuf, reason: String },
     /// Another process uses the directory.
     #[error("another betadeck uses {}: save there, or start this one with another directory", path.display())]
-    Locked {
-        /// The directory.
-        path: PathBuf,
-    },
-    /// Writing failed.
+    Locked { path: PathBuf },
     #[error("cannot write {}: {source}; the stored configuration is unchanged", path.display())]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// Why.
-        source: std::io::Error,
-    },
+    Write { path: PathBuf, source: std::io::Error },
 }
 
 /// A configuration as it was found.
@@ -91,7 +70,6 @@ pub struct Loaded {
     pub first_boot: bool,
 }
 
-/// Keeps configurations.
 #[derive(Debug)]
 pub struct Store {
     place: Place,
@@ -128,7 +106,6 @@ enum Protection {
 
 impl Store {
     /// A store that forgets with the process.
-    #[must_use]
     pub fn in_memory() -> Self {
         Self { place: Place::Memory(None), used_bytes: 0, note: None }
     }
@@ -145,7 +122,6 @@ impl Store {
     }
 
     /// The store in a directory that is there, only to be read: nothing is written, moved or locked.
-    #[must_use]
     pub fn read_only(directory: &Path) -> Self {
         let files = Files::new(directory);
         let place = Directory { files, lock: None, overwrite: false, current: None, protected: None };
@@ -199,7 +175,6 @@ impl Store {
     }
 
     /// Why [`Store::save`] cannot work, if that is known beforehand.
-    #[must_use]
     pub fn refusal(&self) -> Option<StorageError> {
         match &self.place {
             Place::Memory(_) => None,
@@ -208,7 +183,6 @@ impl Store {
     }
 
     /// What `status` and `save` tell about the store.
-    #[must_use]
     pub fn facts(&self) -> StorageFacts {
         let save_refusal = self.refusal().map(|error| error.to_string());
         let read_only = || save_refusal.as_ref().map(|why| format!("read-only: {why}"));

@@ -135,19 +135,15 @@ impl Vehicle {
     }
 
     /// Simulated time since boot.
-    #[must_use]
     pub fn time(&self) -> SimTime {
         self.physics.time()
     }
 
     /// Length of a tick, µs.
-    #[must_use]
     pub fn step_us(&self) -> u64 {
         self.physics.step_us()
     }
 
-    /// The flight controller.
-    #[must_use]
     pub fn controller(&self) -> &FlightController {
         &self.controller
     }
@@ -158,7 +154,6 @@ impl Vehicle {
     }
 
     /// The embedded firmware, if that is what flies.
-    #[must_use]
     pub fn embedded(&self) -> Option<&Firmware> {
         self.controller.embedded()
     }
@@ -168,8 +163,6 @@ impl Vehicle {
         self.controller.embedded_mut()
     }
 
-    /// The RC transmitter.
-    #[must_use]
     pub fn transmitter(&self) -> &RcTransmitter {
         &self.transmitter
     }
@@ -181,51 +174,43 @@ impl Vehicle {
     }
 
     /// The simulated world, if that is what moves the craft.
-    #[must_use]
     pub fn world(&self) -> Option<&World> {
         self.physics.world()
     }
 
     /// The seed of all randomness.
-    #[must_use]
     pub fn seed(&self) -> u64 {
         self.physics.seed()
     }
 
     /// The frame whose origin is the boot place; `None` before an external simulator has told where that is, or before
     /// [`Self::set_origin`].
-    #[must_use]
     pub fn local_frame(&self) -> Option<&LocalFrame> {
         self.physics.local_frame()
     }
 
     /// What active faults do to the packets of an external simulator.
-    #[must_use]
     pub fn link_faults(&self) -> LinkFaults {
         self.physics.link_faults()
     }
 
     /// Whether the craft is lost, as far as is known.
-    #[must_use]
     pub fn crashed(&self) -> bool {
         self.physics.crashed()
     }
 
     /// Whether the simulation left the range where its numbers mean something.
-    #[must_use]
     pub fn diverged(&self) -> bool {
         self.physics.diverged()
     }
 
     /// Whether the craft is disarmed and at rest, and no scripted pilot is about to fly it.
-    #[must_use]
     pub fn is_idle(&self) -> bool {
         let is_at_rest = self.world().is_none_or(|world| world.truth().vel_enu.norm() < AT_REST_MPS);
         !self.controller.is_armed() && self.transmitter.pilot().is_none() && is_at_rest
     }
 
     /// When the autopilot engaged for the first time since boot or reset.
-    #[must_use]
     pub fn engaged_at(&self) -> Option<SimTime> {
         self.engaged_at
     }

@@ -34,7 +34,6 @@ pub(super) fn run() -> Result<u8, AppError> {
     Ok(if report.is_bad { error::ENVIRONMENT } else { 0 })
 }
 
-/// What was found.
 #[derive(Debug, Default)]
 struct Report {
     text: String,

@@ -28,11 +28,9 @@ pub(super) struct OpenDoors {
 /// What opening the doors gave.
 #[derive(Debug)]
 pub(super) struct Opened {
-    /// To close them.
     pub doors: OpenDoors,
     /// The session's side.
     pub endpoints: Endpoints,
-    /// Where they are.
     pub addresses: EndpointAddresses,
     /// What is wrong with some of them, as sentences.
     pub notices: Vec<String>,

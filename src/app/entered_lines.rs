@@ -6,13 +6,11 @@ pub const RECALLED: usize = 500;
 pub const LONGEST: usize = 4096;
 
 /// Whether a line can be kept.
-#[must_use]
 pub fn is_kept(line: &str) -> bool {
     !line.trim().is_empty() && line.len() <= LONGEST && !line.contains(char::is_control)
 }
 
 /// The newest lines of a file, the oldest of them first. What no field can have entered is left out.
-#[must_use]
 pub fn recalled(text: &str) -> Vec<&str> {
     let mut lines: Vec<&str> = text.lines().rev().filter(|line| is_kept(line)).take(RECALLED).collect();
     lines.reverse();

@@ -20,14 +20,12 @@ pub(super) const INTERRUPTED: u8 = 130;
 #[derive(Debug, thiserror::Error)]
 #[error("{message}")]
 pub struct AppError {
-    /// Exit code.
     pub code: u8,
     /// What is wrong, where, and what to do.
     pub message: String,
 }
 
 impl AppError {
-    /// Invalid input.
     pub fn input(message: impl Into<String>) -> Self {
         Self { code: USAGE, message: message.into() }
     }

@@ -28,7 +28,6 @@ const LAUNCHER_FILE: &str = "config.txt";
 pub(super) struct RemoteFirmware {
     /// The executable's absolute path; `None` = it is running already.
     pub(super) executable: Option<PathBuf>,
-    /// Its arguments.
     pub(super) arguments: Vec<String>,
     /// How it is reached.
     pub(super) ports: FirmwarePorts,
@@ -134,7 +133,6 @@ pub(super) fn choose(
 /// A firmware that was chosen.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Chosen {
-    /// Which.
     pub(super) choice: FirmwareChoice,
     /// The launcher's file, if that names it.
     file: Option<PathBuf>,

@@ -75,7 +75,6 @@ struct Start<'a> {
     vehicle: Vehicle,
     /// What is told first.
     notices: Vec<String>,
-    /// Raised by signals.
     interrupted: Arc<AtomicBool>,
 }
 

@@ -41,7 +41,6 @@ pub(super) fn read_if_there(path: &Path) -> Result<Option<String>, AppError> {
     }
 }
 
-/// Reads standard input.
 pub(super) fn read_stdin() -> Result<String, AppError> {
     read_text(std::io::stdin().lock(), "standard input", MAX_FILE)
 }

@@ -24,7 +24,6 @@ pub(super) struct Directories {
 }
 
 impl Directories {
-    /// The configuration file.
     pub(super) fn config_file(&self) -> std::path::PathBuf {
         self.config.join("config.toml")
     }

@@ -94,7 +94,6 @@ fn open_store(args: &SitlArgs) -> Result<Store, AppError> {
         .map_err(|error| AppError::environment(error.to_string()))
 }
 
-/// Prints a line.
 fn print(said: &OutputLine) -> io::Result<()> {
     match said {
         OutputLine::Out(line) => {

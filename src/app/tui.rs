@@ -33,9 +33,7 @@ use crate::vehicle::Vehicle;
 pub(super) struct Screen<'a> {
     /// The plan that is open at first.
     pub(super) plan: PlanFile,
-    /// Its file.
     pub(super) path: Option<&'a Path>,
-    /// The vehicle.
     pub(super) vehicle: Vehicle,
     /// Where `save` goes.
     pub(super) store: Store,
@@ -49,7 +47,6 @@ pub(super) struct Screen<'a> {
     pub(super) review: ReviewArgs,
     /// Sentences instead of a screen.
     pub(super) plain: bool,
-    /// The screen.
     pub(super) display: &'a DisplayArgs,
     /// Doors, physics and flight.
     pub(super) live: LiveArgs<'a>,

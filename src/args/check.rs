@@ -93,7 +93,6 @@ pub struct CheckArgs {
 
 impl CheckArgs {
     /// Most flights of the run.
-    #[must_use]
     pub fn most_flights(&self) -> usize {
         self.max_flights.map_or(MAX_FLIGHTS, |flights| flights as usize)
     }

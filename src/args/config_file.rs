@@ -68,7 +68,6 @@ fn help_and_default(option: &Arg) -> (String, Option<String>) {
 }
 
 /// A configuration file in which every option and every key stands as a comment with its default.
-#[must_use]
 pub fn template(keys: &[KeyHelp]) -> String {
     let mut command = Cli::command();
     command.build();

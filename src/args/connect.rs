@@ -19,7 +19,6 @@ pub struct ConnectArgs {
 
 impl ConnectArgs {
     /// What was given but has no effect on a flight controller outside, as a sentence.
-    #[must_use]
     pub fn idle_options(
         doors: &DoorArgs,
         firmware: &FirmwareLinkArgs,

@@ -44,25 +44,21 @@ pub struct DoorArgs {
 
 impl DoorArgs {
     /// Address the doors listen on.
-    #[must_use]
     pub fn address(&self) -> IpAddr {
         self.listen.unwrap_or(IpAddr::V4(Ipv4Addr::LOCALHOST))
     }
 
     /// Port of the websocket.
-    #[must_use]
     pub fn ws_port(&self) -> u16 {
         self.ws_port.unwrap_or(6761)
     }
 
     /// Port of the first serial port.
-    #[must_use]
     pub fn tcp_port(&self) -> u16 {
         self.tcp_port.unwrap_or(5761)
     }
 
     /// The UDP ports.
-    #[must_use]
     pub fn udp_ports(&self) -> UdpPorts {
         self.udp_ports.unwrap_or_default()
     }
@@ -180,7 +176,6 @@ pub struct SitlArgs {
 
 /// What the reference firmware simulator prints for an argument it does not understand, or one without its value; it
 /// leaves with exit code 1 then. `None` for other errors, `--help` included.
-#[must_use]
 pub fn sitl_usage_error(error: &clap::Error) -> Option<String> {
     if !matches!(error.kind(), ErrorKind::UnknownArgument | ErrorKind::InvalidValue) {
         return None;

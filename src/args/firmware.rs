@@ -34,7 +34,6 @@ impl FromStr for FirmwareChoice {
 
 impl FirmwareChoice {
     /// Whether it runs outside this program.
-    #[must_use]
     pub fn is_remote(&self) -> bool {
         *self != Self::Embedded
     }
@@ -120,13 +119,11 @@ pub struct FirmwareLinkArgs {
 
 impl FirmwareLinkArgs {
     /// The stamps of the packets to the firmware.
-    #[must_use]
     pub fn stamps(&self) -> Stamps {
         self.fdm_stamps.unwrap_or_default()
     }
 
     /// What was given but has no effect with this firmware, as a sentence.
-    #[must_use]
     pub fn idle_options(&self, firmware: &FirmwareChoice) -> Option<String> {
         let arguments = ("--firmware-arg", !self.firmware_arg.is_empty());
         let (given, why) = match firmware {
@@ -163,7 +160,6 @@ pub struct FirmwarePortArgs {
 
 impl FirmwarePortArgs {
     /// What was given but has no effect with the embedded firmware, as a sentence.
-    #[must_use]
     pub fn idle_options(&self, firmware_outside: bool) -> Option<String> {
         let given = [
             ("--tcp-port", self.tcp_port.is_some()),

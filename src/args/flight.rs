@@ -97,7 +97,6 @@ impl FlightArgs {
     }
 
     /// Steps of control a second.
-    #[must_use]
     pub fn rate_hz(&self) -> u32 {
         self.rate.unwrap_or(1000)
     }

@@ -71,7 +71,6 @@ impl FlyArgs {
     }
 
     /// Times real time; infinite = as fast as the machine allows, the default.
-    #[must_use]
     pub fn speed(&self) -> f64 {
         self.flight.speed.map_or(f64::INFINITY, |Speed(speed)| speed)
     }

@@ -7,7 +7,6 @@ use clap::CommandFactory as _;
 use super::Cli;
 
 /// The completion script of a shell.
-#[must_use]
 pub fn completions(shell: clap_complete::Shell) -> Vec<u8> {
     let mut script = Vec::new();
     let mut command = Cli::command();

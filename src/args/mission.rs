@@ -28,19 +28,16 @@ pub struct MissionArgs {
 
 impl MissionArgs {
     /// Altitude of the pilot's climb, m.
-    #[must_use]
     pub fn takeoff_m(&self) -> f64 {
         self.takeoff.unwrap_or(10.0)
     }
 
     /// How far truth may be off beyond a waypoint's own radius, m.
-    #[must_use]
     pub fn tolerance_m(&self) -> f64 {
         self.tolerance.unwrap_or(10.0)
     }
 
     /// Simulated seconds after boot at which a flight is given up.
-    #[must_use]
     pub fn timeout_s(&self) -> f64 {
         self.timeout.unwrap_or(1800.0)
     }

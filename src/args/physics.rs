@@ -56,13 +56,11 @@ pub struct SimulatorArgs {
 
 impl PhysicsArgs {
     /// Whether a simulator outside moves the craft.
-    #[must_use]
     pub fn is_external(&self) -> bool {
         self.physics == Some(PhysicsChoice::External)
     }
 
     /// What was given but has no effect with this physics and firmware, as a sentence.
-    #[must_use]
     pub fn idle_options(&self, flight: &FlightArgs, firmware_outside: bool) -> Option<String> {
         let mirror = ("--fdm-mirror", self.simulator.fdm_mirror.is_some());
         let (names, why) = if self.is_external() {

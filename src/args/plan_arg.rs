@@ -18,7 +18,6 @@ pub enum PlanArg {
 }
 
 /// Whether a path names an open descriptor of this process, as shells write pipes.
-#[must_use]
 pub fn is_descriptor(path: &Path) -> bool {
     let Some(text) = path.to_str() else { return false };
     let number = text.strip_prefix("/dev/fd/").or_else(|| text.strip_prefix("/proc/self/fd/"));
@@ -60,7 +59,6 @@ impl FromStr for PlanArg {
 
 impl PlanArg {
     /// The format that `text`, read from there, is in.
-    #[must_use]
     pub fn format(&self, text: &str) -> Format {
         match self {
             Self::Builtin(_) => Format::Toml,
@@ -69,7 +67,6 @@ impl PlanArg {
     }
 
     /// Its file, when it comes from one.
-    #[must_use]
     pub fn path(&self) -> Option<&Path> {
         match self {
             Self::File(path, _) => Some(path),
@@ -78,7 +75,6 @@ impl PlanArg {
     }
 
     /// The name to show in messages: the file as given, `-`, or the built-in plan's name.
-    #[must_use]
     pub fn display_name(&self) -> String {
         match self {
             Self::Builtin(plan) => plan.name.to_owned(),

@@ -13,7 +13,6 @@ pub struct ReviewArgs {
 
 impl ReviewArgs {
     /// Altitude above home above which a waypoint is warned of, m.
-    #[must_use]
     pub fn max_altitude_m(self) -> f64 {
         self.max_altitude_m.unwrap_or(MAX_ALTITUDE_M)
     }

@@ -17,7 +17,6 @@ pub enum OnOff {
 
 impl OnOff {
     /// Whether it is on.
-    #[must_use]
     pub fn is_on(self) -> bool {
         self == Self::On
     }

@@ -20,7 +20,6 @@ pub struct FenceFacts {
 }
 
 /// The guard of the fence, where the fence counts in this state; it holds when the craft is outside.
-#[must_use]
 pub fn guard(facts: &FenceFacts) -> Option<Guard> {
     let live = match facts.state {
         NavState::Approaching

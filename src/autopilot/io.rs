@@ -67,7 +67,6 @@ pub struct NavInputs {
 
 impl NavInputs {
     /// A disarmed craft of which nothing is known yet.
-    #[must_use]
     pub fn unknown() -> Self {
         Self {
             time: SimTime::ZERO,

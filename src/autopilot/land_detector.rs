@@ -53,7 +53,6 @@ pub struct GroundMeasurement {
 
 impl GroundMeasurement {
     /// The measurement of a craft in the state `now`.
-    #[must_use]
     pub fn new(now: &NavInputs, force_flu: Vector3<f64>, rate_rps: f64, motors: &[f64; 4]) -> Self {
         Self {
             force_flu,
@@ -103,19 +102,16 @@ impl LandDetector {
     }
 
     /// Whether the legs carry weight: before the lift-off, and after a touchdown.
-    #[must_use]
     pub fn on_ground(&self) -> bool {
         self.contact.on_ground()
     }
 
     /// Whether the craft has not left the ground since arming.
-    #[must_use]
     pub fn awaits_lift_off(&self) -> bool {
         !self.contact.has_lifted_off()
     }
 
     /// Specific force along the thrust, averaged over 50 ms, in multiples of gravity.
-    #[must_use]
     pub fn load(&self) -> f64 {
         self.contact.load()
     }
@@ -162,7 +158,6 @@ impl LandDetector {
     }
 
     /// How far the craft has come down from the highest point of the descent, m.
-    #[must_use]
     pub fn descended_m(&self, altitude_m: f64) -> f64 {
         self.highest_m.map_or(0.0, |highest| highest - altitude_m)
     }
@@ -177,53 +172,45 @@ impl LandDetector {
     }
 
     /// Time the conditions of the touchdown have held, µs.
-    #[must_use]
     pub fn held_us(&self) -> Option<u64> {
         self.held_us
     }
 
     /// Whether a descent has ended on the ground: the conditions have held for `detection_time_ds` (0.1 s), or nothing has
     /// moved for [`STATIONARY_S`].
-    #[must_use]
     pub fn has_landed(&self, detection_time_ds: u8) -> bool {
         let needed_us = u64::from(detection_time_ds) * 100_000;
         self.held_us.is_some_and(|held| held >= needed_us) || self.stationary_s() >= STATIONARY_S
     }
 
     /// How long the craft has not moved although it is commanded to descend, s.
-    #[must_use]
     pub fn stationary_s(&self) -> f64 {
         self.stationary.held_s()
     }
 
     /// Climb rate in the descent without the jolts of the legs, m/s.
-    #[must_use]
     pub fn climb_mps(&self) -> f64 {
         self.relief.climb_mps()
     }
 
     /// Throttle to take off, µs.
-    #[must_use]
     pub fn relief_us(&self) -> f64 {
         self.relief.relief_us()
     }
 
     /// Share of the lean demand that is flown: a craft that stands is not tilted on its legs.
-    #[must_use]
     pub fn lean_share(&self) -> f64 {
         if self.on_ground() { 0.0 } else { self.relief.lean_share() }
     }
 
     /// Whether attitude integrals would gather what the ground does: the legs carry weight, or a descent has ended on
     /// them.
-    #[must_use]
     pub fn stands(&self) -> bool {
         self.on_ground() || self.relief.stands()
     }
 
     /// Returns whether a bump above `threshold` (setting units, 0 = never) ended the flight. Only a push that the motors do not
     /// make is one: a throttle that is stepped in the air jolts a light craft, too.
-    #[must_use]
     pub fn is_impact(&self, threshold: f64, facts: &ImpactFacts) -> bool {
         self.contact.is_pushed() && self.impact.is_touchdown(threshold, facts)
     }

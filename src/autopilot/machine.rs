@@ -34,9 +34,7 @@ const HOLD_ALTITUDE_M: f64 = 2.0;
 /// The current waypoint and its place in the plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WaypointFacts {
-    /// Type.
     pub kind: WaypointType,
-    /// Hold pattern.
     pub pattern: HoldPattern,
     /// Hold time, ds.
     pub duration_ds: u16,
@@ -85,9 +83,7 @@ pub struct Facts {
     pub fix: bool,
     /// Waypoints in the active plan.
     pub count: u8,
-    /// The current waypoint.
     pub waypoint: WaypointFacts,
-    /// The fence.
     pub fence: FenceFacts,
     /// The approach to the waypoint.
     pub approach: ApproachFacts,
@@ -168,11 +164,9 @@ pub enum Outcome {
     Arrive,
     /// Keep station; the clock of the hold starts.
     Hold,
-    /// Start the circle.
     Orbit,
     /// Start the figure of eight.
     Figure8,
-    /// Start the descent.
     Land,
     /// On to the next positional waypoint.
     Next,
@@ -184,7 +178,6 @@ pub enum Outcome {
 
 impl Outcome {
     /// The state it leads to.
-    #[must_use]
     pub fn state(self) -> NavState {
         match self {
             Self::Abort(_) => NavState::Idle,
@@ -201,7 +194,6 @@ impl Outcome {
     }
 
     /// What happens besides, in a few words; empty when nothing does.
-    #[must_use]
     pub fn effect(self) -> &'static str {
         match self {
             Self::Abort(AbortReason::GpsLost) => "mission off, reason GPS_LOST",
@@ -228,7 +220,6 @@ impl Outcome {
 pub struct Rule {
     /// The conditions, in the order they are shown.
     pub guards: ArrayVec<Guard, 7>,
-    /// What happens.
     pub outcome: Outcome,
     /// The cause, for events.
     pub reason: TransitionReason,
@@ -251,19 +242,15 @@ impl Rule {
 /// The rules of a state for given facts, in the order they are tried.
 pub type Rules = ArrayVec<Rule, 8>;
 
-/// One decision.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Transition {
-    /// What happens.
     pub outcome: Outcome,
     /// The guard that fired, if the rule had one.
     pub guard: Option<Guard>,
-    /// The cause.
     pub reason: TransitionReason,
 }
 
 /// Decides what an update in `state` leads to; `None` = nothing happens.
-#[must_use]
 pub fn transition(state: NavState, facts: &Facts) -> Option<Transition> {
     rules(state, facts).iter().find(|rule| rule.guards.iter().all(Guard::holds)).map(|rule| Transition {
         outcome: rule.outcome,
@@ -273,7 +260,6 @@ pub fn transition(state: NavState, facts: &Facts) -> Option<Transition> {
 }
 
 /// The guards to show for `state`: what it waits for, without those that only say that fix and plan are there.
-#[must_use]
 pub fn waiting_for(state: NavState, facts: &Facts) -> ArrayVec<Guard, 9> {
     rules(state, facts)
         .iter()

@@ -79,43 +79,36 @@ pub struct Navigator {
 
 impl Navigator {
     /// A navigator that flies nothing.
-    #[must_use]
     pub fn new() -> Self {
         Self { telemetry: NavTelemetry::idle(), ..Self::default() }
     }
 
     /// State of the machine.
-    #[must_use]
     pub fn state(&self) -> NavState {
         self.state
     }
 
     /// Whether a mission, a return home or a landing is being flown (COMPLETE in the air counts).
-    #[must_use]
     pub fn is_flying(&self) -> bool {
         self.state != NavState::Idle && !self.engagement.has_landed()
     }
 
     /// The plan being flown; empty while nothing is flown.
-    #[must_use]
     pub fn active_plan(&self) -> &FlightPlan {
         self.cursor.plan()
     }
 
     /// Where the active plan came from.
-    #[must_use]
     pub fn source(&self) -> PlanSource {
         self.cursor.source()
     }
 
     /// Index of the current waypoint in the active plan.
-    #[must_use]
     pub fn index(&self) -> u8 {
         self.cursor.index()
     }
 
     /// State of the last update for displays, logs and samples.
-    #[must_use]
     pub fn telemetry(&self) -> &NavTelemetry {
         &self.telemetry
     }

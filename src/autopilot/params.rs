@@ -15,9 +15,7 @@ pub use value::{RxLossPolicy, YawMode};
 pub struct Field {
     /// The name of the setting, such as `ap_max_angle`.
     pub name: &'static str,
-    /// Smallest value.
     pub min: i64,
-    /// Greatest value.
     pub max: i64,
     /// Reads the field as a number (enumerations and switches by their code).
     pub get: fn(&Params) -> i64,
@@ -275,25 +273,21 @@ parameters! {
 
 impl Params {
     /// The parameter called `name`.
-    #[must_use]
     pub fn field(name: &str) -> Option<&'static Field> {
         Self::FIELDS.iter().find(|field| field.name == name)
     }
 
     /// Greatest lean, rad.
-    #[must_use]
     pub fn max_lean_rad(&self) -> f64 {
         f64::from(self.max_angle).to_radians()
     }
 
     /// Acceleration the greatest lean allows for braking and turning, m/s²: g·sin of it.
-    #[must_use]
     pub fn max_accel_mps2(&self) -> f64 {
         GRAVITY * self.max_lean_rad().sin()
     }
 
     /// Acceleration when speed builds up, m/s².
-    #[must_use]
     pub fn build_up_accel_mps2(&self) -> f64 {
         match self.velocity_buildup_max_pitch {
             0 => 0.5 * self.max_accel_mps2(),
@@ -302,25 +296,21 @@ impl Params {
     }
 
     /// Default and greatest leg speed, m/s.
-    #[must_use]
     pub fn max_velocity_mps(&self) -> f64 {
         f64::from(self.max_velocity) / 100.0
     }
 
     /// Arrival radius of FLYOVER and FLYBY, m.
-    #[must_use]
     pub fn arrival_radius_m(&self) -> f64 {
         f64::from(self.waypoint_arrival_radius) / 100.0
     }
 
     /// Arrival radius of HOLD, LAND and TAKEOFF, m.
-    #[must_use]
     pub fn hold_radius_m(&self) -> f64 {
         f64::from(self.waypoint_hold_radius) / 100.0
     }
 
     /// Greatest climb and sink rate, m/s.
-    #[must_use]
     pub fn climb_rate_mps(&self) -> f64 {
         match self.alt_hold_climb_rate {
             0 => 5.0,
@@ -329,19 +319,16 @@ impl Params {
     }
 
     /// Sink rate of a landing, m/s.
-    #[must_use]
     pub fn descent_rate_mps(&self) -> f64 {
         f64::from(self.landing_descent_rate) / 100.0
     }
 
     /// The fence, m, when one is set.
-    #[must_use]
     pub fn fence_m(&self) -> Option<f64> {
         (self.max_distance_from_home > 0).then(|| f64::from(self.max_distance_from_home))
     }
 
     /// Throttle pulse that is zero for the mixer, µs.
-    #[must_use]
     pub fn throttle_zero_us(&self) -> f64 {
         f64::from(self.min_check.clamp(1000, 1900))
     }

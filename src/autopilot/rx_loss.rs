@@ -16,7 +16,6 @@ pub struct RxLossFacts {
     pub fix: bool,
 }
 
-/// What to do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, strum::Display)]
 #[strum(serialize_all = "SCREAMING_SNAKE_CASE")]
 pub enum RxLossAction {
@@ -28,17 +27,14 @@ pub enum RxLossAction {
     Procedure,
 }
 
-/// A decision.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RxLossDecision {
-    /// What to do.
     pub action: RxLossAction,
     /// Whether the AUTOPILOT mode flag stays on.
     pub autopilot_flag: bool,
 }
 
 /// Decides by policy and state.
-#[must_use]
 pub fn decide(facts: &RxLossFacts) -> RxLossDecision {
     let (action, autopilot_flag) = match facts.policy {
         RxLossPolicy::Disable => (RxLossAction::Procedure, false),

@@ -19,7 +19,6 @@ const STICK_COMMAND_S: f64 = 0.5;
 /// Throttle that counts as low with arm assist, µs.
 const ASSIST_LOW_THROTTLE_US: f64 = 1150.0;
 
-/// Settings of arming.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ArmingConfig {
     /// Throttle below this is low, µs.
@@ -85,11 +84,9 @@ impl Default for ArmingConfig {
 /// What arming looks at.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ArmingFacts {
-    /// Time.
     pub now: SimTime,
     /// Whether a new RC frame came with this update.
     pub new_frame: bool,
-    /// Boxes switched on.
     pub boxes: BoxSet,
     /// Stick positions in use.
     pub sticks: Sticks,
@@ -119,7 +116,6 @@ pub enum ArmingChange {
     },
     /// Everything is fine, but the gyro is to be calibrated before the first arming; it goes on when that is done.
     CalibrateGyro,
-    /// Disarmed.
     Disarmed(DisarmReason),
 }
 
@@ -151,25 +147,21 @@ pub struct Arming {
 
 impl Arming {
     /// Whether the craft is armed.
-    #[must_use]
     pub fn armed(&self) -> bool {
         self.armed
     }
 
     /// Whether the throttle has been raised since arming.
-    #[must_use]
     pub fn raised(&self) -> bool {
         self.raised
     }
 
     /// Whether the craft was armed since boot.
-    #[must_use]
     pub fn ever_armed(&self) -> bool {
         self.ever_armed
     }
 
     /// What blocks arming, as judged at the last update while disarmed.
-    #[must_use]
     pub fn flags(&self) -> ArmingFlags {
         self.flags
     }
@@ -216,7 +208,6 @@ impl Arming {
         self.flags.set(flag, true);
     }
 
-    /// One RC update.
     pub fn update(&mut self, config: &ArmingConfig, facts: &ArmingFacts) -> Option<ArmingChange> {
         if self.armed { self.update_armed(config, facts) } else { self.update_disarmed(config, facts) }
     }

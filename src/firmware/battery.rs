@@ -16,9 +16,7 @@ const SAMPLE_S: f64 = 0.02;
 pub struct BatteryConfig {
     /// Highest voltage of a full cell: decides the number of cells.
     pub max_cell_v: f64,
-    /// Below this: warning.
     pub warning_cell_v: f64,
-    /// Below this: critical.
     pub min_cell_v: f64,
     /// Number of cells; 0 = found out.
     pub cells: u8,
@@ -30,25 +28,18 @@ impl Default for BatteryConfig {
     }
 }
 
-/// Charge state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::IntoStaticStr)]
 #[strum(serialize_all = "SCREAMING_SNAKE_CASE")]
 pub enum BatteryState {
-    /// Nothing measured yet.
     #[default]
     Init,
-    /// No battery.
     #[strum(to_string = "NOT PRESENT")]
     NotPresent,
-    /// Fine.
     Ok,
-    /// Low.
     Warning,
-    /// Land now.
     Critical,
 }
 
-/// The battery.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Battery {
     sample: Option<BatterySample>,
@@ -91,32 +82,25 @@ impl Battery {
         }
     }
 
-    /// The newest sample.
-    #[must_use]
     pub fn sample(&self) -> Option<&BatterySample> {
         self.sample.as_ref()
     }
 
     /// Cells in series; 0 while unknown.
-    #[must_use]
     pub fn cells(&self) -> u8 {
         self.cells
     }
 
     /// Smoothed voltage a cell, V.
-    #[must_use]
     pub fn cell_v(&self) -> f64 {
         self.smooth_v / f64::from(self.cells.max(1))
     }
 
     /// Whether it is at its warning voltage or below.
-    #[must_use]
     pub fn is_low(&self) -> bool {
         matches!(self.state, BatteryState::Warning | BatteryState::Critical)
     }
 
-    /// Charge state.
-    #[must_use]
     pub fn state(&self) -> BatteryState {
         self.state
     }

@@ -81,7 +81,6 @@ impl CliReply {
 /// Something a command asks the owner of the firmware to do.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CliAction {
-    /// Store the configuration.
     Save,
     /// Restart from the stored configuration; what is not stored is lost.
     Restart {

@@ -25,9 +25,7 @@ pub use receiver::{ChannelMap, RxFail, RxFailMode, RxRange};
 pub use sanity::correct;
 pub use serial::{BAUD_RATES, SerialRow};
 
-/// Mode condition slots.
 pub const MODE_CONDITIONS: usize = 20;
-/// Adjustment range slots.
 pub const ADJUSTMENT_RANGES: usize = 30;
 /// Channels with a range: the four sticks.
 pub const RX_RANGES: usize = 4;

@@ -37,10 +37,8 @@ pub use tuning::{
 /// How the sticks are understood.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum StickMode {
-    /// Sticks demand rates.
     #[default]
     Acro,
-    /// Sticks demand angles.
     Angle,
     /// Angles about the centre, rates towards the ends.
     Horizon,
@@ -60,7 +58,6 @@ pub struct LeanDemand {
 pub struct ControlInput {
     /// Which slower loops are due, as the estimator said.
     pub due: DueTasks,
-    /// Motors may run.
     pub armed: bool,
     /// How the sticks are understood.
     pub mode: StickMode,
@@ -128,7 +125,6 @@ impl Default for ControlInput {
 /// What the controller did in the last step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ControlState {
-    /// Motor commands.
     pub motors: MotorCommand,
     /// The same as pulses, µs.
     pub motors_us: [f64; 4],

@@ -52,17 +52,13 @@ pub use vertical::AltitudeSource;
 /// Turn rates, rad/s.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Rates {
-    /// Rolling right.
     pub roll: f64,
-    /// Pitching nose down.
     pub pitch: f64,
-    /// Turning clockwise.
     pub yaw: f64,
 }
 
 impl Rates {
     /// From rates about the body axes forward, left, up.
-    #[must_use]
     pub fn from_flu(rate: &Vector3<f64>) -> Self {
         Self { roll: rate.x, pitch: rate.y, yaw: -rate.z }
     }
@@ -111,7 +107,6 @@ pub struct Estimate {
     pub shown_alt_m: f64,
     /// Climb rate for displays: low-passed by `altitude_d_lpf`, m/s.
     pub shown_climb_mps: f64,
-    /// The GPS receiver.
     pub gps: GpsStatus,
     /// A sensor calibration is running.
     pub calibrating: bool,
@@ -152,7 +147,6 @@ impl Default for Estimate {
 
 impl Estimate {
     /// The estimated place on earth; `None` before the first fix.
-    #[must_use]
     pub fn place(&self) -> Option<LatLon> {
         self.origin.map(|origin| offset_to_latlon(origin, self.pos_ne))
     }

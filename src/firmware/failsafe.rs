@@ -27,7 +27,6 @@ pub enum SwitchMode {
     /// Counts as signal loss.
     #[default]
     Stage1,
-    /// Disarms at once.
     Kill,
     /// Starts the procedure at once.
     Stage2,
@@ -36,7 +35,6 @@ pub enum SwitchMode {
 /// What stage 2 does unless the autopilot's policy says otherwise.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Procedure {
-    /// Disarm.
     #[default]
     Drop,
     /// Level, hold the place, descend.
@@ -48,7 +46,6 @@ pub enum Procedure {
 /// What stage 2 does in the present situation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Response {
-    /// The configured procedure.
     Procedure(Procedure),
     /// The mission goes on.
     Continue,
@@ -60,7 +57,6 @@ pub enum Response {
 
 impl Response {
     /// What logs and events tell of it.
-    #[must_use]
     pub fn procedure(self) -> FailsafeProcedure {
         match self {
             Self::Procedure(Procedure::Drop) => FailsafeProcedure::Drop,
@@ -85,7 +81,6 @@ pub struct FailsafeConfig {
     pub stick_threshold_percent: f64,
     /// What the FAILSAFE switch does.
     pub switch_mode: SwitchMode,
-    /// The configured procedure.
     pub procedure: Procedure,
 }
 
@@ -116,9 +111,7 @@ pub enum MissionStatus {
 /// What the machine looks at.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FailsafeFacts {
-    /// Time.
     pub now: SimTime,
-    /// Armed.
     pub armed: bool,
     /// The FAILSAFE switch is on.
     pub switch: bool,
@@ -132,9 +125,7 @@ pub struct FailsafeFacts {
     pub held: bool,
     /// Farthest stick deflection as received, % of full stick.
     pub stick_percent: f64,
-    /// A GPS fix.
     pub fix: bool,
-    /// Home is known.
     pub home: bool,
     /// How the mission stands.
     pub mission: MissionStatus,
@@ -151,7 +142,6 @@ pub enum FailsafeAction {
     Stage2(Response),
     /// The response in force is replaced by this one (its mission ended, or the fix went).
     Switch(Response),
-    /// Stop the motors.
     Disarm,
     /// The pilot has the craft back.
     Recovered,
@@ -172,7 +162,6 @@ enum Phase {
     Monitoring,
 }
 
-/// The machine.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Failsafe {
     phase: Phase,
@@ -184,19 +173,16 @@ pub struct Failsafe {
 
 impl Failsafe {
     /// Whether a procedure (stage 2) owns the sticks.
-    #[must_use]
     pub fn active(&self) -> bool {
         self.phase != Phase::Idle
     }
 
     /// Whether the FAILSAFE mode is to be shown.
-    #[must_use]
     pub fn shown(&self) -> bool {
         self.active() || self.shown
     }
 
     /// 0: all well, 1: guard time, 2: procedure.
-    #[must_use]
     pub fn stage(&self) -> u8 {
         match (self.active(), self.guard_time) {
             (true, _) => 2,
@@ -206,19 +192,16 @@ impl Failsafe {
     }
 
     /// Whether a failsafe ended the flight and the link is not good again.
-    #[must_use]
     pub fn landed(&self) -> bool {
         self.phase == Phase::Monitoring
     }
 
     /// Whether the craft descends by AUTO-LAND.
-    #[must_use]
     pub fn auto_landing(&self) -> bool {
         matches!(self.phase, Phase::Landing { .. })
     }
 
     /// What the navigator flies for the failsafe, if it does.
-    #[must_use]
     pub fn mission(&self) -> Option<Response> {
         match self.phase {
             Phase::Mission { response, .. } => Some(response),
@@ -227,12 +210,10 @@ impl Failsafe {
     }
 
     /// Whether the failsafe was made by the switch, so that the link counts as up the moment it goes off.
-    #[must_use]
     pub fn by_switch(&self) -> bool {
         self.by_switch
     }
 
-    /// One update.
     pub fn update(&mut self, config: &FailsafeConfig, facts: &FailsafeFacts) -> Option<FailsafeAction> {
         if facts.now.as_secs_f64() < config.start_s {
             return None;

@@ -7,21 +7,17 @@ const PT2_STAGE: f64 = 1.553_773_974;
 const PT3_STAGE: f64 = 1.961_459_177;
 
 /// Gain of a first-order low-pass: ω·dt/(ω·dt + 1); 1, no filtering, for a cutoff of zero.
-#[must_use]
 pub fn pt1_gain(cutoff_hz: f64, dt: f64) -> f64 {
     let turn = 2.0 * PI * cutoff_hz * dt;
     if turn > 0.0 { turn / (turn + 1.0) } else { 1.0 }
 }
 
-/// First-order low-pass.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Pt1 {
     state: f64,
 }
 
 impl Pt1 {
-    /// Output now.
-    #[must_use]
     pub fn state(&self) -> f64 {
         self.state
     }
@@ -46,13 +42,10 @@ pub struct Pt3 {
 
 impl Pt3 {
     /// Gain for a cutoff of the whole.
-    #[must_use]
     pub fn gain(cutoff_hz: f64, dt: f64) -> f64 {
         pt1_gain(cutoff_hz * PT3_STAGE, dt)
     }
 
-    /// Output now.
-    #[must_use]
     pub fn state(&self) -> f64 {
         self.stages[2]
     }
@@ -80,7 +73,6 @@ pub struct Pt2 {
 
 impl Pt2 {
     /// Gain for a cutoff of the whole.
-    #[must_use]
     pub fn gain(cutoff_hz: f64, dt: f64) -> f64 {
         pt1_gain(cutoff_hz * PT2_STAGE, dt)
     }
@@ -103,27 +95,21 @@ impl Pt2 {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::FromRepr)]
 #[repr(u8)]
 pub enum LowPassKind {
-    /// First order.
     #[default]
     Pt1 = 0,
     /// Second order, Butterworth.
     Biquad = 1,
-    /// Two first orders.
     Pt2 = 2,
-    /// Three first orders.
     Pt3 = 3,
 }
 
 /// Coefficients of a low-pass of any shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LowPass {
-    /// Lets everything through.
     Off,
     /// Equal first-order stages with this gain; 1…3 of them.
     Stages {
-        /// How many.
         count: u8,
-        /// Gain of each.
         gain: f64,
     },
     /// Second order: `b0`, `b1`, `b2`, `a1`, `a2`.
@@ -132,7 +118,6 @@ pub enum LowPass {
 
 impl LowPass {
     /// A low-pass of this shape; off for a cutoff of zero. A biquad's cutoff is kept below the Nyquist frequency.
-    #[must_use]
     pub fn new(kind: LowPassKind, cutoff_hz: f64, dt: f64) -> Self {
         if cutoff_hz <= 0.0 {
             return Self::Off;
@@ -162,7 +147,6 @@ pub struct LowPassState {
 }
 
 impl LowPassState {
-    /// One sample.
     pub fn apply(&mut self, input: f64, filter: &LowPass) -> f64 {
         match filter {
             LowPass::Off => input,

@@ -54,7 +54,6 @@ pub struct Outcome {
 /// Something a message asks the owner of the firmware to do.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum MspAction {
-    /// Store the configuration.
     Save,
     /// Restart from the stored configuration and close the links.
     Reboot,
@@ -66,9 +65,7 @@ pub enum MspAction {
     RawGps {
         /// Whether it is a fix.
         fix: bool,
-        /// Satellites.
         sats: u8,
-        /// Position.
         position: LatLon,
         /// Altitude above mean sea level, m.
         alt_amsl_m: u16,
@@ -77,9 +74,7 @@ pub enum MspAction {
     },
     /// Run the motors of the disarmed craft at these outputs, µs.
     MotorTest([u16; 4]),
-    /// Calibrate the accelerometer.
     CalibrateAcc,
-    /// Calibrate the magnetometer.
     CalibrateMag,
     /// Hold this heading, degrees.
     HoldHeading(i16),
@@ -121,8 +116,6 @@ impl Call<'_> {
     }
 }
 
-/// Answers one request.
-#[must_use]
 pub fn handle(code: u16, request: &[u8], configuration: &mut Configuration, facts: &MspFacts) -> Outcome {
     let refused = Outcome { reply: None, action: None, notice: None };
     let Some(message) = table::find(code) else { return refused };

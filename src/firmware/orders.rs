@@ -19,7 +19,6 @@ use crate::geo::local_offset;
 enum Order {
     /// Fly home and land, by command or (with its own altitude and speeds) by the rescue switch.
     ReturnHome(Option<Rescue>),
-    /// Land here.
     Land,
 }
 
@@ -53,7 +52,6 @@ pub struct Orders {
 
 impl Orders {
     /// What a given-up mission leaves behind while its order stays.
-    #[must_use]
     pub fn after_abort(&self, navigator: &Navigator) -> AfterAbort {
         match navigator.given_up() {
             None => AfterAbort::Nothing,
@@ -67,7 +65,6 @@ impl Orders {
     }
 
     /// How the navigator's mission stands, for the failsafe.
-    #[must_use]
     pub fn status(&self, navigator: &Navigator) -> MissionStatus {
         match (navigator.is_flying(), navigator.state()) {
             (true, NavState::Complete) => MissionStatus::Over,
@@ -106,13 +103,11 @@ impl Orders {
     }
 
     /// Whether a command, not a switch, has the craft fly home or land.
-    #[must_use]
     pub fn is_commanded(&self) -> bool {
         self.order.is_some() && !self.by_rescue_switch
     }
 
     /// Whether the rescue switch has the craft fly home.
-    #[must_use]
     pub fn is_rescue_by_switch(&self) -> bool {
         self.by_rescue_switch
     }
@@ -207,7 +202,6 @@ impl Orders {
     }
 
     /// How a rescue that starts now flies home. Next to home there is nothing to climb over on the way.
-    #[must_use]
     pub fn rescue_flight(&self, config: &RescueConfig, inputs: &NavInputs, cause: RescueCause) -> Rescue {
         let distance_m = inputs.home.map(|home| (local_offset(inputs.origin, home) - inputs.pos_ne).norm());
         let is_near = distance_m.is_some_and(|distance| distance < config.min_start_dist_m);
@@ -248,7 +242,6 @@ fn repeat(
 }
 
 /// What stage 2 of the failsafe does now.
-#[must_use]
 pub fn failsafe_response(
     navigator: &Navigator,
     params: &Params,

@@ -26,7 +26,6 @@ impl Outbox {
     }
 
     /// Whether nothing happened since the last drain.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.events.is_empty()
     }

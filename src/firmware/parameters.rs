@@ -28,13 +28,10 @@ const LEAST_FULL_YAW: f64 = 100.0;
 /// What changes only with a restart.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BootChoices {
-    /// Feature switches.
     pub features: Features,
-    /// AUX channels evaluated.
     pub max_aux: u8,
     /// A magnetometer is present.
     pub mag: bool,
-    /// The airframe type.
     pub mixer: MixerKind,
     /// Rows of the custom mix.
     pub custom_mix: [MixRow; MAX_MIX_ROWS],
@@ -52,7 +49,6 @@ pub struct BootChoices {
 
 impl BootChoices {
     /// The choices of a configuration.
-    #[must_use]
     pub fn new(configuration: &Configuration) -> Self {
         let settings = &configuration.settings;
         Self {
@@ -85,9 +81,7 @@ pub enum RescueAltitude {
 /// When a rescue that makes no progress is given up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum RescueSanity {
-    /// Never.
     Off,
-    /// Always.
     On,
     /// When the failsafe flies it, not when the pilot's switch does.
     #[default]
@@ -99,7 +93,6 @@ pub enum RescueSanity {
 pub enum RescueCause {
     /// The GPS RESCUE switch.
     Switch,
-    /// The failsafe.
     Failsafe,
 }
 
@@ -131,27 +124,18 @@ pub struct RescueConfig {
 /// Everything the firmware's own state machines need.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parameters {
-    /// Receiver.
     pub rx: RxConfig,
     /// Debouncing of the link.
     pub link: LinkConfig,
-    /// Failsafe machine.
     pub failsafe: FailsafeConfig,
-    /// Arming.
     pub arming: ArmingConfig,
-    /// Runaway take-off prevention.
     pub runaway: RunawayConfig,
-    /// Crash detection.
     pub crash: CrashConfig,
     /// Jerk that ends a landing, setting units; 0 = off.
     pub landing_disarm_threshold: f64,
-    /// Mode conditions.
     pub modes: [ModeCondition; MODE_CONDITIONS],
-    /// GPS rescue.
     pub rescue: RescueConfig,
-    /// Battery thresholds.
     pub battery: BatteryConfig,
-    /// Feature GPS.
     pub gps: bool,
     /// Airmode is always on.
     pub airmode: bool,
@@ -171,7 +155,6 @@ pub struct Parameters {
 
 impl Parameters {
     /// The parameters of a configuration and the choices made at boot.
-    #[must_use]
     pub fn new(configuration: &Configuration, boot: &BootChoices, options: &FirmwareOptions) -> Self {
         let settings = &configuration.settings;
         let number = |name| settings.number(name) as f64;

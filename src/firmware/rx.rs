@@ -22,7 +22,6 @@ const SIGNAL_LOSS_S: f64 = 0.15;
 /// Without frames the receiver looks this often, s.
 const LOOK_EVERY_S: f64 = 0.05;
 
-/// Receiver settings.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RxConfig {
     /// How pulses become channel values.
@@ -31,7 +30,6 @@ pub struct RxConfig {
     pub sticks: StickConfig,
 }
 
-/// The receiver.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Receiver {
     sources: Sources,
@@ -45,7 +43,6 @@ pub struct Receiver {
 
 impl Receiver {
     /// A receiver that has heard nothing yet.
-    #[must_use]
     pub fn new(config: &RxConfig) -> Self {
         let channels = Channels::new(&config.channels);
         Self {
@@ -59,7 +56,6 @@ impl Receiver {
         }
     }
 
-    /// Takes a frame.
     pub fn receive(&mut self, config: &RxConfig, frame: RcFrame, source: RcSource, now: SimTime) {
         if let Some(frame) = self.sources.receive(frame, source, now) {
             self.channels.receive(&config.channels, &frame, now);
@@ -69,7 +65,6 @@ impl Receiver {
     }
 
     /// Whether a pass is due: a new frame, or 50 ms without one.
-    #[must_use]
     pub fn is_due(&self, now: SimTime) -> bool {
         self.pending || now.seconds_since(self.last_pass) >= LOOK_EVERY_S
     }
@@ -87,49 +82,40 @@ impl Receiver {
     }
 
     /// Whether the signal is there: a frame within 150 ms with valid flight channels.
-    #[must_use]
     pub fn signal(&self) -> bool {
         self.signal
     }
 
     /// Whether any frame was ever used.
-    #[must_use]
     pub fn has_heard(&self) -> bool {
         self.last_frame.is_some()
     }
 
     /// When the newest frame that was used came.
-    #[must_use]
     pub fn last_frame(&self) -> Option<SimTime> {
         self.last_frame
     }
 
     /// The channel values in use, µs: roll, pitch, yaw, throttle, AUX1….
-    #[must_use]
     pub fn channels(&self) -> &[u16; RC_CHANNELS] {
         self.channels.values()
     }
 
     /// The live AUX channels in use, µs.
-    #[must_use]
     pub fn aux(&self, config: &RxConfig) -> &[u16] {
         self.channels.aux(&config.channels)
     }
 
     /// The stick positions in use.
-    #[must_use]
     pub fn sticks(&self) -> &Sticks {
         &self.sticks
     }
 
     /// The stick positions as received, whatever a failsafe substitutes.
-    #[must_use]
     pub fn received_sticks(&self, config: &RxConfig) -> Sticks {
         Sticks::from_channels(&config.sticks, self.channels.received())
     }
 
-    /// Who drives.
-    #[must_use]
     pub fn sources(&self) -> &Sources {
         &self.sources
     }

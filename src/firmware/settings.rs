@@ -37,7 +37,6 @@ pub enum Scope {
 
 impl Scope {
     /// How many instances of the scope exist.
-    #[must_use]
     pub const fn instances(self) -> u8 {
         match self {
             Self::Master => 1,
@@ -47,7 +46,6 @@ impl Scope {
     }
 
     /// The command that selects an instance, and the word that heads it in a dump.
-    #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
             Self::Master => "master",
@@ -81,7 +79,6 @@ pub enum Width {
 
 impl Width {
     /// Smallest and largest value the type carries.
-    #[must_use]
     pub const fn bounds(self) -> (i64, i64) {
         match self {
             Self::U8 => (0, 255),
@@ -98,9 +95,7 @@ impl Width {
 pub enum Kind {
     /// An integer in a range.
     Number {
-        /// Smallest value.
         min: i64,
-        /// Largest value.
         max: i64,
         /// Value of a fresh vehicle.
         default: i64,
@@ -118,10 +113,7 @@ pub enum Kind {
         default: &'static [i64],
     },
     /// A text, empty on a fresh vehicle.
-    Text {
-        /// Most characters.
-        max: usize,
-    },
+    Text { max: usize },
     /// A serial port: the value 0 is `NONE`, n is `UARTn`.
     Port {
         /// Port of a fresh vehicle.
@@ -145,7 +137,6 @@ pub enum Role {
 pub struct Setting {
     /// The name used by get, set, dump, diff and the settings file.
     pub name: &'static str,
-    /// Where it lives.
     pub scope: Scope,
     /// Type on the wire.
     pub width: Width,
@@ -163,7 +154,6 @@ pub struct Setting {
 
 impl Setting {
     /// The value of a fresh vehicle.
-    #[must_use]
     pub fn default_value(&self) -> Value {
         match self.kind {
             Kind::Number { default, .. } | Kind::Choice { default, .. } | Kind::Port { default } => {
@@ -175,7 +165,6 @@ impl Setting {
     }
 
     /// The line that tells the allowed values: `Allowed range: 10 - 70`; empty for ports, which have none.
-    #[must_use]
     pub fn range_line(&self) -> String {
         match self.kind {
             Kind::Number { min, max, .. } => format!("Allowed range: {min} - {max}"),
@@ -187,7 +176,6 @@ impl Setting {
     }
 
     /// A value in the spelling of the command line: `25`, `VELOCITY`, `0,0,0`, `-` for an empty text.
-    #[must_use]
     pub fn display(&self, value: &Value) -> String {
         match (value, self.kind) {
             (Value::Number(at), Kind::Choice { words, .. }) => word_at(words, *at).to_owned(),

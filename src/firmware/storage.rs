@@ -36,17 +36,13 @@ pub enum ImageError {
     Foreign,
     /// A later version of this program wrote it.
     #[error("a later version of betadeck wrote it (format {found}, this one reads {FORMAT})")]
-    LaterFormat {
-        /// Its format.
-        found: u16,
-    },
+    LaterFormat { found: u16 },
     /// It ends early, has bytes left over, or its checksum is wrong.
     #[error("it is damaged")]
     Damaged,
 }
 
 /// Writes the image of a configuration.
-#[must_use]
 pub fn encode(configuration: &Configuration) -> Vec<u8> {
     let payload = write::payload(configuration);
     let mut image = Vec::with_capacity(HEADER + payload.len() + TRAILER);

@@ -11,7 +11,6 @@ pub(super) enum ThrottleTakeover {
     Flown,
     /// Standing at this pulse since the mission was given up, µs.
     Standing(f64),
-    /// Moved since.
     Moved,
 }
 

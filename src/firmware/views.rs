@@ -34,110 +34,88 @@ impl Firmware {
     }
 
     /// Whether the craft is armed.
-    #[must_use]
     pub fn is_armed(&self) -> bool {
         self.safety.armed()
     }
 
     /// Why the craft was disarmed last.
-    #[must_use]
     pub fn last_disarm(&self) -> Option<DisarmReason> {
         self.safety.last_disarm()
     }
 
-    /// What blocks arming.
-    #[must_use]
     pub fn arming_flags(&self) -> ArmingFlags {
         self.safety.flags()
     }
 
     /// What blocks arming while disarmed; nothing while armed.
-    #[must_use]
     pub fn arming_blocks(&self) -> ArmingFlags {
         if self.is_armed() { ArmingFlags::NONE } else { self.arming_flags() }
     }
 
-    /// The active modes.
-    #[must_use]
     pub fn modes(&self) -> ModeFlags {
         self.modes
     }
 
     /// The boxes that are switched on.
-    #[must_use]
     pub fn boxes(&self) -> BoxSet {
         self.rc.boxes()
     }
 
-    /// The receiver.
-    #[must_use]
     pub fn receiver(&self) -> &Receiver {
         self.rc.receiver()
     }
 
     /// What the controller did in the last step.
-    #[must_use]
     pub fn control(&self) -> &super::control::ControlState {
         self.control.state()
     }
 
-    /// The battery.
-    #[must_use]
     pub fn battery(&self) -> &battery::Battery {
         self.sensing.battery()
     }
 
     /// What the estimator believes.
-    #[must_use]
     pub fn estimate(&self) -> &Estimate {
         self.sensing.estimate()
     }
 
     /// Altitude above home, m.
-    #[must_use]
     pub fn altitude_m(&self) -> f64 {
         self.estimate().alt_m
     }
 
     /// Climb rate, m/s.
-    #[must_use]
     pub fn climb_mps(&self) -> f64 {
         self.estimate().climb_mps
     }
 
     /// The navigator's telemetry; its points count from [`Firmware::origin`].
-    #[must_use]
     pub fn nav(&self) -> &NavTelemetry {
         self.navigation.telemetry()
     }
 
     /// Where the local frame of estimate and navigator has its zero; `None` before the first fix.
-    #[must_use]
     pub fn origin(&self) -> Option<LatLon> {
         self.estimate().origin
     }
 
     /// Where the throttle stick rests in ALTHOLD, µs: the hover throttle in use, or the middle when it is to be learned.
-    #[must_use]
     pub fn hover_stick_us(&self) -> u16 {
         self.navigation.hover_stick_us(self.parameters()).round().clamp(1100.0, 1900.0) as u16
     }
 
     /// The pitch stick that leans the craft forward by 15° in ANGLE, µs.
-    #[must_use]
     pub fn forward_stick_us(&self) -> u16 {
         let share = AHEAD_LEAN_DEG / self.parameters().control.level.limit_deg.max(AHEAD_LEAN_DEG);
         (1500.0 + 500.0 * share).round() as u16
     }
 
     /// The throttle stick from which the throttle counts as raised, with a margin for what the radio link rounds, µs.
-    #[must_use]
     pub fn raised_stick_us(&self) -> u16 {
         (self.parameters().arming.raised_throttle_us + RAISED_MARGIN_US).min(2000.0) as u16
     }
 
     /// The throttle stick that brings a craft down gently in ALTHOLD, µs; `None` when no stick does.
-    #[must_use]
     pub fn sink_stick_us(&self) -> Option<u16> {
         let parameters = self.parameters();
         let hover_us = self.navigation.hover_stick_us(parameters);
@@ -146,43 +124,36 @@ impl Firmware {
     }
 
     /// Home, when known.
-    #[must_use]
     pub fn home(&self) -> Option<LatLon> {
         self.safety.home()
     }
 
     /// Whether the craft is to climb and has not left the ground although it has all the throttle there is.
-    #[must_use]
     pub fn is_too_heavy(&self) -> bool {
         self.safety.armed() && self.navigation.is_too_heavy()
     }
 
     /// Whether there is a fix.
-    #[must_use]
     pub fn gps_fix(&self) -> bool {
         self.sensing.fix()
     }
 
     /// The configuration in memory.
-    #[must_use]
     pub fn configuration(&self) -> &Configuration {
         self.setup.configuration()
     }
 
     /// The typed parameters in force.
-    #[must_use]
     pub fn parameters(&self) -> &Parameters {
         self.setup.parameters()
     }
 
     /// The plan in the craft's memory.
-    #[must_use]
     pub fn stored_plan(&self) -> &FlightPlan {
         &self.setup.configuration().plan
     }
 
     /// The plan being flown, when one is.
-    #[must_use]
     pub fn active_plan(&self) -> Option<&FlightPlan> {
         self.navigation.active_plan()
     }
@@ -198,7 +169,6 @@ impl Firmware {
     }
 
     /// Modes, arming, receiver, battery.
-    #[must_use]
     pub fn craft_view(&self) -> CraftView {
         let gps = &self.estimate().gps;
         let battery = self.battery().sample();
@@ -246,7 +216,6 @@ impl Firmware {
     }
 
     /// What the estimator believes; `n` and `e` count from [`Firmware::origin`].
-    #[must_use]
     pub fn estimate_view(&self) -> EstimateView {
         let estimate = self.estimate();
         let known = estimate.origin.is_some();
@@ -266,7 +235,6 @@ impl Firmware {
     }
 
     /// The settings that shape what a map draws.
-    #[must_use]
     pub fn settings_view(&self) -> SettingsView {
         let nav = &self.parameters().nav;
         SettingsView {
@@ -296,13 +264,11 @@ impl Firmware {
     }
 
     /// Time of the newest step.
-    #[must_use]
     pub fn time(&self) -> SimTime {
         self.now
     }
 
     /// The mode conditions in force that look at a channel.
-    #[must_use]
     pub fn mode_ranges(&self) -> Vec<ModeRange> {
         let live = (channels::AUX1 + usize::from(self.parameters().rx.channels.max_aux)).min(RC_CHANNELS);
         let by_channel = |condition: &&ModeCondition| condition.linked == 0 && condition.is_usable();

@@ -20,11 +20,8 @@ const COMING_DOWN_M: f64 = 1.0;
 /// What the judge looks at, once a tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JudgeFacts {
-    /// Now.
     pub time: SimTime,
-    /// The autopilot flies.
     pub engaged: bool,
-    /// Armed.
     pub armed: bool,
     /// The last reason of a disarm since boot.
     pub last_disarm: Option<DisarmReason>,
@@ -34,7 +31,6 @@ pub struct JudgeFacts {
     pub entered_for: Option<TransitionReason>,
     /// True altitude above the boot place, m.
     pub alt_m: f64,
-    /// Current waypoint.
     pub wp: u8,
     /// Origin of the active plan.
     pub source: PlanSource,
@@ -48,13 +44,10 @@ pub struct JudgeFacts {
     pub lift_share: Option<f64>,
     /// At rest on the ground.
     pub touched_down: bool,
-    /// Crashed.
     pub crashed: bool,
-    /// Diverged.
     pub diverged: bool,
 }
 
-/// Watches a flight.
 #[derive(Debug, Clone)]
 pub struct Judge {
     timeout: SimTime,
@@ -77,7 +70,6 @@ pub struct Judge {
 
 impl Judge {
     /// A judge that gives up `timeout` after boot.
-    #[must_use]
     pub fn new(timeout: SimTime) -> Self {
         Self {
             timeout,
@@ -96,7 +88,6 @@ impl Judge {
     }
 
     /// When the autopilot engaged for the first time.
-    #[must_use]
     pub fn engaged_at(&self) -> Option<SimTime> {
         self.engaged_at
     }
@@ -150,7 +141,6 @@ impl Judge {
         }
     }
 
-    /// Disarmed or crashed.
     fn judge_ground(&mut self, facts: &JudgeFacts) -> Option<Verdict> {
         let over = facts.crashed || (self.was_armed && !facts.armed);
         if !over {

@@ -79,7 +79,6 @@ pub enum SetupError {
 
 impl FlightSetup {
     /// How the firmware is built.
-    #[must_use]
     pub fn firmware_options(&self) -> FirmwareOptions {
         let usual = FirmwareOptions {
             rate_hz: self.world.rate_hz,

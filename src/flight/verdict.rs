@@ -16,7 +16,6 @@ pub enum FlightResult {
     Aborted,
     /// Disarmed by something else.
     Disarmed,
-    /// Crashed.
     Crashed,
     /// Not over in time.
     Timeout,
@@ -26,7 +25,6 @@ pub enum FlightResult {
     Interrupted,
 }
 
-/// The verdict.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Verdict {
     /// How the flight ended.
@@ -37,7 +35,6 @@ pub struct Verdict {
 
 impl Verdict {
     /// A verdict with its reason.
-    #[must_use]
     pub fn new(result: FlightResult, reason: impl Into<String>) -> Self {
         Self { result, reason: reason.into() }
     }

@@ -19,7 +19,6 @@ pub struct GroundPlane {
 
 impl GroundPlane {
     /// The plane that touches the sphere at `origin`.
-    #[must_use]
     pub fn new(origin: LatLon) -> Self {
         let (lat, lon) = (origin.lat_deg().to_radians(), origin.lon_deg().to_radians());
         Self {
@@ -30,7 +29,6 @@ impl GroundPlane {
     }
 
     /// Metres north (x) and east (y) of the origin.
-    #[must_use]
     pub fn to_ne(&self, position: LatLon) -> Vector2<f64> {
         let point = direction(position);
         let across = Vector2::new(point.dot(&self.north), point.dot(&self.east));
@@ -40,7 +38,6 @@ impl GroundPlane {
     }
 
     /// The position that is `ne` metres north and east of the origin, rounded to 1e-7 degrees.
-    #[must_use]
     pub fn to_position(&self, ne: Vector2<f64>) -> LatLon {
         let distance = ne.norm();
         if !(distance.is_finite() && distance > 0.0) {

@@ -24,7 +24,6 @@ pub struct LocalFrame {
 
 impl LocalFrame {
     /// The frame with its origin at the given latitude and longitude (degrees) and altitude (m above sea level).
-    #[must_use]
     pub fn new(lat_deg: f64, lon_deg: f64, alt_amsl_m: f64) -> Self {
         let e2 = FLATTENING * (2.0 - FLATTENING);
         let (sin, cos) = lat_deg.to_radians().sin_cos();
@@ -42,7 +41,6 @@ impl LocalFrame {
     }
 
     /// Latitude (deg, ±90), longitude (deg, −180…180), altitude (m AMSL) of a point given in metres east, north, up.
-    #[must_use]
     pub fn to_geodetic(&self, enu: Vector3<f64>) -> (f64, f64, f64) {
         let lat = (self.lat_deg + enu.y / self.metres_per_deg_lat).clamp(-90.0, 90.0);
         let mut lon = self.lon_deg + enu.x / self.metres_per_deg_lon;
@@ -53,7 +51,6 @@ impl LocalFrame {
     }
 
     /// Metres east, north, up of a point given by latitude (deg), longitude (deg), altitude (m AMSL).
-    #[must_use]
     pub fn to_enu(&self, lat_deg: f64, lon_deg: f64, alt_amsl_m: f64) -> Vector3<f64> {
         let mut dlon = lon_deg - self.lon_deg;
         if dlon > 180.0 {

@@ -13,7 +13,6 @@ const CHUNK: usize = 4096;
 /// Largest websocket message, either way.
 pub(super) const MESSAGE_MAX: usize = 64 * 1024;
 
-/// A connected client.
 #[derive(Debug)]
 pub(super) enum ClientStream {
     Tcp(TcpStream),
@@ -65,7 +64,6 @@ impl ClientStream {
         }
     }
 
-    /// Closes the stream.
     pub(super) async fn close(&mut self) -> io::Result<()> {
         match self {
             Self::Tcp(stream) => stream.shutdown().await,

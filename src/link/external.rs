@@ -23,7 +23,6 @@ pub struct ExternalSimulator {
 
 impl ExternalSimulator {
     /// A link that starts now, with a first packet of motors at rest.
-    #[must_use]
     pub fn start(config: FdmLinkConfig, order: MotorOrder, port: MotorPort, now: Instant) -> Self {
         let mut simulator = Self {
             link: FdmLink::new(config, 0),
@@ -39,7 +38,6 @@ impl ExternalSimulator {
     }
 
     /// The simulator with the queue in which its packets wait.
-    #[must_use]
     pub fn with_states(self, states: Option<StateQueue>) -> Self {
         Self { states, ..self }
     }
@@ -83,25 +81,21 @@ impl ExternalSimulator {
     }
 
     /// When [`Self::poll`] has something to do.
-    #[must_use]
     pub fn due(&self) -> Instant {
         self.started + Duration::from_micros(self.link.due_us())
     }
 
     /// Whether the simulator is there.
-    #[must_use]
     pub fn state(&self, now: Instant) -> LinkState {
         self.link.state(self.micros(now))
     }
 
     /// How many datagrams there were.
-    #[must_use]
     pub fn counters(&self) -> Counters {
         self.link.counters()
     }
 
     /// Where motors are sent, and whether the simulator is there.
-    #[must_use]
     pub fn status(&self, now: Instant) -> EndpointStatus {
         let Counters { senseless, old, .. } = self.link.counters();
         EndpointStatus {

@@ -58,7 +58,6 @@ pub struct FcStream {
 
 impl FcStream {
     /// Opens the stream on the present tokio runtime; its first event says whether there is somebody.
-    #[must_use]
     pub fn open(place: FcPlace) -> Self {
         let (to, outgoing) = mpsc::channel(QUEUE);
         let (incoming, from) = mpsc::channel(QUEUE);
@@ -151,7 +150,6 @@ async fn connect(
     }
 }
 
-/// An open connection.
 enum Connection {
     Serial(serial2_tokio::SerialPort),
     Tcp(tokio::net::TcpStream),

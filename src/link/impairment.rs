@@ -15,7 +15,6 @@ const MAX_IN_FLIGHT: usize = 16_384;
 /// What goes wrong on the way.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LinkImpairment {
-    /// Nothing is sent.
     pub stall: bool,
     /// Fraction of packets lost.
     pub loss: f64,
@@ -43,7 +42,6 @@ struct DelayedPacket {
 
 impl ImpairedLink {
     /// A link on which nothing is in_flight; `rng` decides the fate of packets.
-    #[must_use]
     pub fn new(rng: ChaCha8Rng) -> Self {
         Self { rng, in_flight: VecDeque::new() }
     }
@@ -75,7 +73,6 @@ impl ImpairedLink {
     }
 
     /// When the next packet arrives, when any is on its way.
-    #[must_use]
     pub fn due(&self) -> Option<Instant> {
         self.in_flight.front().map(|packet| packet.arrives)
     }

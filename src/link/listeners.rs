@@ -75,7 +75,6 @@ pub enum ListenError {
     Busy {
         /// What it is for.
         kind: EndpointKind,
-        /// The port.
         port: u16,
     },
     /// The system refused for another reason.
@@ -99,7 +98,6 @@ struct Listener {
     stats: Arc<EndpointStats>,
 }
 
-/// All listeners.
 #[derive(Debug)]
 pub struct Listeners {
     all: Vec<Listener>,
@@ -207,7 +205,6 @@ impl Listeners {
     }
 
     /// How each is doing.
-    #[must_use]
     pub fn status(&self) -> Vec<EndpointStatus> {
         let now = Instant::now();
         self.all.iter().map(|listener| listener.status(now)).collect()
@@ -219,26 +216,22 @@ impl Listeners {
     }
 
     /// Where an endpoint listens.
-    #[must_use]
     pub fn address(&self, kind: EndpointKind) -> Option<SocketAddr> {
         let listener = self.all.iter().find(|listener| listener.kind == kind)?;
         listener.place.as_ref().ok().copied()
     }
 
     /// How many clients an endpoint has.
-    #[must_use]
     pub fn clients(&self, kind: EndpointKind) -> u32 {
         self.all.iter().find(|listener| listener.kind == kind).map_or(0, |listener| listener.stats.clients())
     }
 
     /// The states of an external simulator, when they are listened to.
-    #[must_use]
     pub fn states(&self) -> Option<StateQueue> {
         self.states.clone()
     }
 
     /// The signal that a restart of the firmware sends.
-    #[must_use]
     pub fn restart_signal(&self) -> RestartSignal {
         RestartSignal(self.restarts.clone())
     }

@@ -17,20 +17,16 @@ pub struct ClientId(pub u64);
 /// before it acts on what the answer announced (a restart, for one).
 #[derive(Debug)]
 pub enum Request {
-    /// An MSP message.
     Msp {
-        /// Who asks.
         client: ClientId,
         /// The message's code.
         code: u16,
-        /// Its payload.
         payload: Vec<u8>,
         /// Gets the reply's payload, or `None` for the protocol's error.
         reply: oneshot::Sender<Option<Vec<u8>>>,
     },
     /// A client wants the command line.
     EnterCli {
-        /// Who asks.
         client: ClientId,
         /// For a person: from now until the next restart, the craft does not arm.
         interactive: bool,
@@ -39,57 +35,42 @@ pub enum Request {
     },
     /// A line of the command line.
     Cli {
-        /// Who asks.
         client: ClientId,
         /// The line, without its end.
         line: String,
         /// What kind of session it comes from: the one that the client entered, or a message, which is its own.
         source: LineSource,
-        /// Gets the answer.
         reply: oneshot::Sender<LineReply>,
     },
     /// How a line being typed may go on.
     Complete {
         /// The line so far.
         line: String,
-        /// Gets the possibilities.
         reply: oneshot::Sender<Completion>,
     },
     /// A client left the command line, or went away inside it: what lasts for a session (a motor on the bench) ends.
-    LeftCli {
-        /// Who left.
-        client: ClientId,
-    },
+    LeftCli { client: ClientId },
     /// A client sent lines of text while its command line was closed; they were ignored. Comes once for lines of one paste.
     Ignored {
-        /// Who sent them.
         client: ClientId,
         /// The first word of the first line.
         word: String,
     },
     /// A client wants the firmware to start anew, losing what was not saved, and the links to close.
-    Restart {
-        /// Who asks.
-        client: ClientId,
-    },
+    Restart { client: ClientId },
     /// An RC frame from a script.
     Rc {
         /// The script's clock, s; nothing depends on it.
         stamp_s: f64,
-        /// The pulses.
         frame: RcFrame,
-        /// Who sent it.
         from: SocketAddr,
-        /// When it arrived.
         at: Instant,
     },
     /// A datagram from a simulator.
     Fdm {
         /// Its bytes, the surplus cut.
         datagram: Vec<u8>,
-        /// Who sent it.
         from: SocketAddr,
-        /// When it arrived.
         at: Instant,
     },
     /// Something the user should read, as a sentence.

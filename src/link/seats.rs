@@ -52,7 +52,6 @@ impl Seats {
 }
 
 impl Seat {
-    /// Who has it.
     pub(super) fn client(&self) -> ClientId {
         self.client
     }

@@ -35,9 +35,7 @@ const NOT_TOLD: [&str; 2] = ["[FLASH_ProgramWord]", "[SITL] t="];
 /// How a SITL executable is started.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ChildConfig {
-    /// The executable.
     pub program: PathBuf,
-    /// Its arguments.
     pub arguments: Vec<String>,
     /// Where it runs and keeps its `eeprom.bin`.
     pub directory: PathBuf,
@@ -48,7 +46,6 @@ pub struct ChildConfig {
 /// What happened to the child.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum ChildEvent {
-    /// It was started.
     Started,
     /// A line of its output.
     Line(String),
@@ -65,13 +62,11 @@ pub enum ChildEvent {
 pub enum ChildEnd {
     /// With this exit code.
     Code(i32),
-    /// By this signal.
     Signal(i32),
 }
 
 impl ChildEnd {
     /// Whether it ended as it does to reboot.
-    #[must_use]
     pub fn is_reboot(self) -> bool {
         self == Self::Code(0)
     }
@@ -118,7 +113,6 @@ impl SitlChild {
         Ok(Self { events, stop, keeper: Some(keeper) })
     }
 
-    /// What happened since.
     pub fn take_event(&mut self) -> Option<ChildEvent> {
         self.events.take(now())
     }

@@ -25,7 +25,6 @@ const BOOT: Duration = Duration::from_millis(500);
 /// Where a SITL executable listens, and where it sends to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SitlPorts {
-    /// Its machine.
     pub ip: IpAddr,
     /// Motor pulses come to this port.
     pub raw: u16,
@@ -187,25 +186,21 @@ impl SitlPeer {
     }
 
     /// Whether the executable answers.
-    #[must_use]
     pub fn state(&self, now: Instant) -> FeedState {
         self.feed.state(self.micros(now))
     }
 
     /// Whether the craft is to wait for it: see [`SitlFeed::waits`].
-    #[must_use]
     pub fn waits(&self, now: Instant) -> bool {
         self.feed.waits(self.micros(now))
     }
 
     /// What its packets mean.
-    #[must_use]
     pub fn dialect(&self) -> Dialect {
         self.feed.dialect()
     }
 
     /// Its line among the endpoints.
-    #[must_use]
     pub fn status(&self, now: Instant) -> EndpointStatus {
         EndpointStatus {
             kind: EndpointKind::Motors,

@@ -29,7 +29,6 @@ const QUEUED_MAX: usize = 4096;
 /// A socket whose datagrams become requests. The task that waits for them and the session may both empty it.
 #[derive(Debug)]
 pub(super) struct DatagramPort {
-    /// Waits for datagrams.
     socket: UdpSocket,
     /// The same socket, which is asked without waiting. Locked until what it gave is among the requests.
     queue: Mutex<StdUdpSocket>,
@@ -138,7 +137,6 @@ pub struct MotorPort {
 pub enum Sent {
     /// It is on its way.
     Sent,
-    /// Nobody listens.
     Refused,
 }
 
@@ -149,7 +147,6 @@ impl MotorPort {
     }
 
     /// Where the normalised values go.
-    #[must_use]
     pub fn address(&self) -> Option<SocketAddr> {
         self.servo.peer_addr().ok()
     }

@@ -85,7 +85,6 @@ pub fn channel_index(text: &str) -> Result<u8, String> {
 }
 
 /// The name of a channel from its index: `roll`, `aux2`.
-#[must_use]
 pub fn channel_name(index: u8) -> String {
     let index = usize::from(index);
     STICKS.get(index).map_or_else(|| format!("aux{}", index + 1 - STICKS.len()), |&name| name.to_owned())

@@ -15,13 +15,11 @@ pub struct RcTransmitter {
     cut: bool,
     /// The scripted pilot, while it flies.
     pilot: Option<Pilot>,
-    /// Forced channels.
     inputs: Vec<StickInput>,
 }
 
 impl RcTransmitter {
     /// The frame of the virtual sticks.
-    #[must_use]
     pub fn sticks(&self) -> RcFrame {
         self.sticks
     }
@@ -32,7 +30,6 @@ impl RcTransmitter {
     }
 
     /// Whether the link is cut.
-    #[must_use]
     pub fn is_cut(&self) -> bool {
         self.cut
     }
@@ -58,19 +55,16 @@ impl RcTransmitter {
     }
 
     /// The scripted pilot, while it flies.
-    #[must_use]
     pub fn pilot(&self) -> Option<&Pilot> {
         self.pilot.as_ref()
     }
 
     /// The channels that are forced to values.
-    #[must_use]
     pub fn inputs(&self) -> &[StickInput] {
         &self.inputs
     }
 
     /// What the scripted pilot is doing, in a word or two, while it flies.
-    #[must_use]
     pub fn pilot_doing(&self) -> Option<&'static str> {
         self.pilot.as_ref().map(Pilot::doing)
     }

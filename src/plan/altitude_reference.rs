@@ -8,7 +8,6 @@ pub enum AltitudeReference {
     /// It has not told yet.
     #[default]
     Untold,
-    /// From home.
     Home,
     /// From mean sea level.
     SeaLevel {

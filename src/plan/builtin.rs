@@ -32,13 +32,11 @@ pub const PLANS: &[BuiltinPlan] = &[
 
 impl BuiltinPlan {
     /// The built-in plan of this name.
-    #[must_use]
     pub fn find(name: &str) -> Option<Self> {
         PLANS.iter().copied().find(|plan| plan.name.eq_ignore_ascii_case(name))
     }
 
     /// The name of a built-in plan that `name` may stand for.
-    #[must_use]
     pub fn suggest(name: &str) -> Option<&'static str> {
         did_you_mean::closest(name, PLANS.iter().map(|plan| plan.name))
     }

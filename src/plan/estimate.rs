@@ -43,7 +43,6 @@ pub struct PlanEstimate {
 }
 
 /// Estimates a flight of the plan that begins above `home`.
-#[must_use]
 pub fn estimate(plan: &FlightPlan, home: LatLon, assumptions: &Assumptions) -> PlanEstimate {
     let mut walk = Walk {
         place: home,

@@ -42,7 +42,6 @@ pub enum Format {
 
 impl Format {
     /// The format that a file name stands for, by its ending.
-    #[must_use]
     pub fn from_file_name(name: &str) -> Option<Self> {
         let (stem, ending) = name.rsplit_once('.')?;
         if stem.is_empty() || ending.contains(['/', '\\']) {
@@ -53,7 +52,6 @@ impl Format {
 
     /// The format that a text without a file name is in: TOML when its first line that is no comment heads a table or
     /// gives one of the keys of a plan file, else CLI text.
-    #[must_use]
     pub fn of_text(text: &str) -> Self {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let first = text.lines().map(str::trim).find(|line| !line.is_empty() && !line.starts_with('#'));
@@ -65,7 +63,6 @@ impl Format {
     }
 
     /// What the format is, in words.
-    #[must_use]
     pub fn title(self) -> &'static str {
         match self {
             Self::Toml => "betadeck plan",
@@ -74,7 +71,6 @@ impl Format {
     }
 
     /// The file endings that are understood, for messages: `.toml, .txt`.
-    #[must_use]
     pub fn endings() -> String {
         Self::iter().map(|format| format!(".{format}")).collect::<Vec<_>>().join(", ")
     }
@@ -91,7 +87,6 @@ pub struct PlanFile {
     pub home: Option<HomePosition>,
     /// Settings the plan is made for, as `name = value`, in the order in which they are applied.
     pub settings: Vec<String>,
-    /// The waypoints.
     pub plan: FlightPlan,
     /// What the reader skipped.
     pub notes: Vec<Note>,
@@ -175,7 +170,6 @@ fn foreign_format(text: &str) -> Option<&'static str> {
 }
 
 /// Writes a plan file in its canonical form: reading it back gives the same plan, and writing that gives the same text.
-#[must_use]
 pub fn write(file: &PlanFile, format: Format) -> Written {
     match format {
         Format::Toml => native_write::write(file),

@@ -7,7 +7,6 @@ use nalgebra::Vector2;
 use super::{MAX_WAYPOINTS, Waypoint, WaypointType};
 use crate::geo::{GroundPlane, LatLon};
 
-/// What is generated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::Display, strum::EnumIter, strum::EnumString)]
 #[strum(serialize_all = "kebab-case", ascii_case_insensitive)]
 pub enum Shape {
@@ -25,7 +24,6 @@ pub enum Shape {
 /// A shape with its numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pattern {
-    /// What is generated.
     pub shape: Shape,
     /// Extent along the heading, m; of a circle the diameter.
     pub length_m: f64,
@@ -39,7 +37,6 @@ pub struct Pattern {
     pub alt_cm: i32,
     /// Leg speed, cm/s; 0 = `ap_max_velocity`.
     pub speed_cms: u16,
-    /// FLYOVER or FLYBY.
     pub kind: WaypointType,
 }
 
@@ -147,7 +144,6 @@ impl Pattern {
     }
 
     /// The narrowest spacing, in whole metres, with which the shape has at most this many waypoints.
-    #[must_use]
     pub fn spacing_that_fits(&self, most: usize) -> Option<f64> {
         let widest = self.length_m.max(self.width_m).ceil() * 4.0;
         let mut spacing_m = self.spacing_m.ceil();
@@ -164,7 +160,6 @@ impl Pattern {
 }
 
 /// The waypoints as plans of at most [`MAX_WAYPOINTS`], each beginning where the one before ends.
-#[must_use]
 pub fn split(waypoints: &[Waypoint]) -> Vec<Vec<Waypoint>> {
     let mut rest = waypoints;
     let mut plans = Vec::new();

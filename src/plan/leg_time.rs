@@ -41,7 +41,6 @@ pub(super) struct Motion {
 }
 
 impl Motion {
-    /// At rest.
     pub(super) const REST: Self = Self { velocity: Vector2::new(0.0, 0.0), setpoint_mps: 0.0 };
 
     /// Flies the leg in the direction of a unit vector; returns the time it takes, s.

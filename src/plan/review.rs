@@ -19,13 +19,11 @@ pub enum Finding {
     Fault(PlanFault),
     /// The craft refuses the plan because of the fence.
     OutsideFence {
-        /// The waypoint.
         index: usize,
         /// Its distance from home, m.
         distance_m: f64,
         /// The fence, m.
         limit_m: f64,
-        /// Whose it is.
         from: SettingSource,
     },
     /// The craft has the plan and another value of one of its settings.
@@ -37,19 +35,12 @@ pub enum Finding {
     NeverFlown {
         /// The waypoint that ends the mission.
         index: usize,
-        /// What it is.
         kind: WaypointType,
     },
     /// A modifier with no place behind it.
-    NothingToModify {
-        /// The waypoint.
-        index: usize,
-        /// What it is.
-        kind: WaypointType,
-    },
+    NothingToModify { index: usize, kind: WaypointType },
     /// The leg is flown slower than it asks for.
     SpeedLimited {
-        /// The waypoint.
         index: usize,
         /// What it asks for, m/s.
         speed_mps: f64,
@@ -67,7 +58,6 @@ pub enum Finding {
     },
     /// The leg is flown below the place where the craft is armed.
     BelowGround {
-        /// The waypoint.
         index: usize,
         /// Altitude of its leg above home, m.
         alt_m: f64,
@@ -98,13 +88,11 @@ pub enum Finding {
 
 impl Finding {
     /// Whether the craft refuses the plan because of it.
-    #[must_use]
     pub fn is_refusal(&self) -> bool {
         matches!(self, Self::Fault(_) | Self::OutsideFence { .. })
     }
 
     /// Whether the craft may be hurt or fly elsewhere than planned: its pilot is warned before it flies.
-    #[must_use]
     pub fn is_hazard(&self) -> bool {
         matches!(
             self,
@@ -183,7 +171,6 @@ impl fmt::Display for Finding {
 }
 
 /// All findings, refusals first.
-#[must_use]
 pub fn review(plan: &FlightPlan, home: LatLon, assumptions: &Assumptions) -> Vec<Finding> {
     let waypoints = &plan.waypoints;
     if let Err(fault) = check_plan(plan) {

@@ -29,7 +29,6 @@ pub struct SetpointLimits {
     pub landing_alt_m: f64,
 }
 
-/// The altitude setpoint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AltitudeSetpoint {
     /// Above home, m.
@@ -40,7 +39,6 @@ pub struct AltitudeSetpoint {
 
 impl AltitudeSetpoint {
     /// A setpoint at rest.
-    #[must_use]
     pub fn at(altitude_m: f64) -> Self {
         Self { altitude_m, rate_mps: 0.0 }
     }

@@ -5,7 +5,6 @@ use super::{FlightPlan, MAX_WAYPOINTS, Waypoint};
 /// Why a plan cannot be flown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, thiserror::Error)]
 pub enum PlanFault {
-    /// It is empty.
     #[error("the plan has no waypoints: add one")]
     Empty,
     /// The stored count is impossible.

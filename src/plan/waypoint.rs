@@ -43,7 +43,6 @@ pub enum WaypointType {
 
 impl WaypointType {
     /// Whether the record is a place to fly to; modifiers only change how the next one is flown.
-    #[must_use]
     pub fn is_positional(self) -> bool {
         match self {
             Self::Flyover | Self::Flyby | Self::Hold | Self::Land | Self::Takeoff => true,
@@ -52,7 +51,6 @@ impl WaypointType {
     }
 
     /// Whether the record's latitude and longitude mean anything: a TAKEOFF climbs where it stands.
-    #[must_use]
     pub fn uses_position(self) -> bool {
         self.is_positional() && self != Self::Takeoff
     }

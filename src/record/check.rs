@@ -27,7 +27,6 @@ pub struct CheckedFlight {
     pub case: String,
     /// The name that the file gives the case.
     pub base: String,
-    /// What is varied.
     pub variant: String,
     /// Seed of all randomness.
     pub seed: u64,
@@ -47,11 +46,9 @@ pub struct CheckedFlight {
     pub judgements: Vec<Judgement>,
     /// Numbers taken from the flight.
     pub measures: Vec<(String, f64)>,
-    /// The first engagement.
     pub engaged_at: Option<SimTime>,
     /// When the flight ended.
     pub ended_at: SimTime,
-    /// Simulated seconds.
     pub flown_s: f64,
     /// Seconds that it took.
     pub wall_s: f64,
@@ -63,19 +60,16 @@ pub struct CheckedFlight {
 
 impl CheckedFlight {
     /// Whether every expectation was met.
-    #[must_use]
     pub fn passed(&self) -> bool {
         self.problem.is_none() && !self.judgements.iter().any(|judgement| judgement.outcome.is_failure())
     }
 
     /// Expectations that need what the flight controller does not tell.
-    #[must_use]
     pub fn skipped(&self) -> usize {
         self.judgements.iter().filter(|judgement| is_skipped(judgement)).count()
     }
 
     /// Whether nothing of it was judged, for all that is expected needs what the flight controller does not tell.
-    #[must_use]
     pub fn is_skipped(&self) -> bool {
         self.problem.is_none() && !self.judgements.is_empty() && self.judgements.iter().all(is_skipped)
     }
@@ -86,7 +80,6 @@ impl CheckedFlight {
     }
 
     /// The expectation with the smallest margin, as a share of what it allows.
-    #[must_use]
     pub fn tightest(&self) -> Option<&Judgement> {
         let share = |judgement: &Judgement| judgement.outcome.margin().map(|margin| margin.verdict.share());
         self.judgements
@@ -96,7 +89,6 @@ impl CheckedFlight {
     }
 
     /// `guide-7 · crosswind · seed 3`.
-    #[must_use]
     pub fn title(&self) -> String {
         let mut title = self.scenario.clone();
         if !self.case.is_empty() {
@@ -116,13 +108,11 @@ impl CheckedFlight {
     }
 
     /// A time as people read it: seconds after the engagement, or after boot when there was none.
-    #[must_use]
     pub fn seconds(&self, time: SimTime) -> f64 {
         time.as_secs_f64() - self.engaged_at.map_or(0.0, SimTime::as_secs_f64)
     }
 
     /// The command that opens an instant of the flight in the screen.
-    #[must_use]
     pub fn open_command(&self, time: SimTime) -> String {
         let case =
             if self.case.is_empty() { String::new() } else { format!(" --case {}", shell_word(&self.case)) };
@@ -149,7 +139,6 @@ pub struct Compared {
     pub scenario: String,
     /// Its file, as its user named it.
     pub file: String,
-    /// What is varied.
     pub variant: String,
     /// The seed that all of them had.
     pub seed: u64,
@@ -159,7 +148,6 @@ pub struct Compared {
 
 impl Compared {
     /// `guide-2 · noise real · seed 3: all FLYBY is faster`.
-    #[must_use]
     pub fn title(&self) -> String {
         let variant = if self.variant.is_empty() { String::new() } else { format!(" · {}", self.variant) };
         format!("{}{variant} · seed {}", self.scenario, self.seed)
@@ -171,17 +159,14 @@ impl Compared {
 pub struct CaseCount {
     /// `guide-7 · crosswind`.
     pub name: String,
-    /// Those that passed.
     pub passed: usize,
     /// Those of which nothing was judged.
     pub skipped: usize,
-    /// All.
     pub flights: usize,
 }
 
 impl CaseCount {
     /// Whether one of them failed.
-    #[must_use]
     pub fn has_failures(&self) -> bool {
         self.passed + self.skipped < self.flights
     }
@@ -203,8 +188,6 @@ pub struct Summary {
 }
 
 impl Summary {
-    /// Of these flights.
-    #[must_use]
     pub fn new(
         flights: Vec<CheckedFlight>,
         compared: Vec<Compared>,
@@ -216,7 +199,6 @@ impl Summary {
     }
 
     /// Whether everything that was asked for was flown and every expectation met.
-    #[must_use]
     pub fn passed(&self) -> bool {
         self.flights.len() == self.wanted
             && self.flights.iter().all(CheckedFlight::passed)
@@ -224,13 +206,11 @@ impl Summary {
     }
 
     /// Flights that passed, those of which nothing was judged not among them.
-    #[must_use]
     pub fn passed_flights(&self) -> usize {
         self.flights.iter().filter(|flight| flight.passed() && !flight.is_skipped()).count()
     }
 
     /// Flights of which nothing was judged, and skipped expectations of all.
-    #[must_use]
     pub fn skipped(&self) -> (usize, usize) {
         let flights = self.flights.iter().filter(|flight| flight.is_skipped()).count();
         let compared = self.compared.iter().filter(|compared| is_skipped(&compared.judgement)).count();
@@ -238,13 +218,11 @@ impl Summary {
     }
 
     /// Simulated seconds of all flights.
-    #[must_use]
     pub fn flown_s(&self) -> f64 {
         self.flights.iter().map(|flight| flight.flown_s).sum()
     }
 
     /// Whether flights were flown or passed over and nothing of any was judged.
-    #[must_use]
     pub fn is_skipped(&self) -> bool {
         !self.flights.is_empty()
             && self.flights.iter().all(CheckedFlight::is_skipped)
@@ -252,7 +230,6 @@ impl Summary {
     }
 
     /// The cases in their order, each with its seeds and repetitions counted.
-    #[must_use]
     pub fn cases(&self) -> Vec<CaseCount> {
         let mut cases: Vec<CaseCount> = Vec::new();
         let mut file = "";
@@ -283,7 +260,6 @@ fn is_skipped(judgement: &Judgement) -> bool {
 }
 
 /// What was seen instead of what was expected, as one sentence.
-#[must_use]
 pub fn complaint(judgement: &Judgement) -> String {
     match &judgement.outcome {
         Outcome::Met(_) => format!("{}: met", judgement.label),

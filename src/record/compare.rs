@@ -30,7 +30,6 @@ pub struct Side {
     pub name: String,
     /// Each flight is equal to the last bit, so that one says all.
     pub repeatable: bool,
-    /// The flights.
     pub flights: Vec<Track>,
 }
 
@@ -71,7 +70,6 @@ struct Apart {
 
 impl Comparison {
     /// Measures the flights. `conditions` says in which air they were flown.
-    #[must_use]
     pub fn new(plan: &str, conditions: &str, route: Route, sides: [Side; 2]) -> Self {
         let measured = sides.each_ref().map(|side| {
             side.flights.iter().map(|flight| measures(&route, flight)).collect::<Vec<Vec<(Measure, f64)>>>()
@@ -91,19 +89,15 @@ impl Comparison {
     }
 
     /// The table for people.
-    #[must_use]
     pub fn text(&self) -> String {
         text::table(self)
     }
 
-    /// One JSON object.
-    #[must_use]
     pub fn json(&self) -> String {
         json::object(self)
     }
 
     /// A picture with both tracks, north up.
-    #[must_use]
     pub fn svg(&self) -> String {
         svg::picture(self)
     }

@@ -10,7 +10,6 @@ pub struct End {
     pub result: String,
     /// Why, as a sentence; may be empty.
     pub reason: String,
-    /// What really happened.
     pub truth: FlightTruth,
     /// Simulated seconds from engagement (or boot, if there was none) to the end.
     pub flown_s: f64,
@@ -20,20 +19,17 @@ pub struct End {
 
 impl End {
     /// How many times faster than real time the flight was; zero when the clock did not move.
-    #[must_use]
     pub fn speed_ratio(&self) -> f64 {
         if self.wall_s > 0.0 { self.flown_s / self.wall_s } else { 0.0 }
     }
 
     /// `complete: landed and disarmed`, the last line but one on standard error.
-    #[must_use]
     pub fn result_line(&self) -> String {
         let Self { result, reason, .. } = self;
         if reason.is_empty() { result.clone() } else { format!("{result}: {reason}") }
     }
 
     /// `flown 312.4 s in 0.21 s (1488x real time)`, the last line on standard error.
-    #[must_use]
     pub fn flown_line(&self) -> String {
         let (flown, wall, ratio) = (self.flown_s, self.wall_s, self.speed_ratio());
         let decimals = if ratio < 10.0 { 1 } else { 0 };

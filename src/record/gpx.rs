@@ -29,7 +29,6 @@ pub struct GpxHeader {
 
 impl GpxHeader {
     /// The header that the reference firmware simulator writes.
-    #[must_use]
     pub fn sitl(home_amsl_m: f64, boot: UtcSeconds) -> Self {
         let (creator, track) = ("Betaflight SITL".to_owned(), "SITL Flight Track".to_owned());
         Self { creator, track, home_amsl_m, boot }
@@ -39,7 +38,6 @@ impl GpxHeader {
 /// One place of the track.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GpxPoint {
-    /// When.
     pub time: SimTime,
     /// Latitude, degrees.
     pub lat_deg: f64,

@@ -18,19 +18,16 @@ use super::End;
 use super::number::{Decimals, Milli};
 
 /// An event's line, without line end; `None` for the few events that only matter inside the craft.
-#[must_use]
 pub fn event_line(event: &Event) -> Option<String> {
     event::Fields::of(&event.kind).map(|(name, fields)| line(event.time, name, &fields))
 }
 
 /// A sample's line, without line end.
-#[must_use]
 pub fn sample_line(snapshot: &Snapshot) -> String {
     line(snapshot.time, "sample", &sample::Fields::of(snapshot))
 }
 
 /// The last line of a flight, without line end.
-#[must_use]
 pub fn end_line(time: SimTime, end: &End) -> String {
     #[derive(Serialize)]
     struct Fields<'a> {

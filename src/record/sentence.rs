@@ -8,13 +8,11 @@ use crate::telemetry::{
 };
 
 /// `  12.4 s  Armed.`; `None` for the few events that only matter inside the craft.
-#[must_use]
 pub fn line(event: &Event) -> Option<String> {
     text(&event.kind).map(|text| format!("{:>7.1} s  {text}", event.time.as_secs_f64()))
 }
 
 /// The sentence without the time.
-#[must_use]
 pub fn text(kind: &SessionEvent) -> Option<String> {
     match kind {
         SessionEvent::Vehicle(event) => vehicle(event),

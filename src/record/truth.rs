@@ -5,7 +5,6 @@ use crate::signals::SimTime;
 use crate::telemetry::{FlightTruth, PlanSource, WaypointTruth};
 
 /// A line for each waypoint that was flown, at the time when it was measured, and the craft at the end.
-#[must_use]
 pub fn lines(end: SimTime, truth: &FlightTruth) -> Vec<String> {
     let mut lines: Vec<String> =
         truth.waypoints.iter().map(|waypoint| line(waypoint.at, &sentence(waypoint))).collect();

@@ -7,7 +7,6 @@ use super::signal::Signal;
 
 impl Expected {
     /// The same with wider bounds.
-    #[must_use]
     pub(super) fn widened(self, allowance: &Allowance) -> Self {
         let wide = |condition: Condition| condition.widened(allowance);
         match self {

@@ -11,7 +11,6 @@ use crate::telemetry::{NavState, PlanSource};
 /// The sources of command lines that stand in the scenario itself: their keys.
 pub(super) const OWN_LINES: [&str; 2] = ["settings", "lines"];
 
-/// A scenario.
 #[derive(Debug, Clone)]
 pub struct Scenario {
     /// The file, as its user named it.
@@ -35,7 +34,6 @@ pub struct Case {
     pub name: String,
     /// The name that the file gives.
     pub base: String,
-    /// What is varied.
     pub variant: String,
     /// The air of each seed.
     pub airs: Vec<Air>,
@@ -51,7 +49,6 @@ pub struct Case {
     pub watch_s: f64,
     /// When the scenario ends the flight.
     pub ends: Option<Instant>,
-    /// Samples a second.
     pub sample_hz: f64,
     /// Numbers with a name.
     pub parameters: Vec<(String, f64)>,
@@ -59,7 +56,6 @@ pub struct Case {
     pub inputs: Vec<TimedInput>,
     /// Numbers taken from the flight.
     pub measures: Vec<Measure>,
-    /// What is expected.
     pub expectations: Vec<Expectation>,
 }
 
@@ -68,13 +64,10 @@ pub struct Case {
 pub struct Air {
     /// Seed of all randomness.
     pub seed: u64,
-    /// Mean wind.
     pub wind: Wind,
     /// Size of random gusts, m/s.
     pub gust_mps: f64,
-    /// Level of turbulence.
     pub turbulence: Turbulence,
-    /// Whether sensors err.
     pub noise: Noise,
 }
 
@@ -86,7 +79,6 @@ impl Case {
     }
 
     /// What the flight of an air starts from.
-    #[must_use]
     pub fn setup_in(&self, air: &Air) -> FlightSetup {
         let mut setup = self.setup.clone();
         setup.world.seed = air.seed;
@@ -123,9 +115,7 @@ pub struct Window {
 /// A number taken from a flight.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Measure {
-    /// Its name.
     pub name: String,
-    /// What it measures.
     pub dimension: Dimension,
     /// How it is taken.
     pub measured: Measured,
@@ -136,11 +126,9 @@ pub struct Measure {
 pub enum Measured {
     /// Over a part of the flight.
     Over(Window, Statistic, Number),
-    /// At an instant.
     At(Instant, Number),
     /// The time between two instants, s.
     Time(Instant, Instant),
-    /// From other numbers.
     Of(Number),
 }
 
@@ -148,17 +136,13 @@ pub enum Measured {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, strum::Display, strum::EnumIter, strum::IntoStaticStr)]
 #[strum(serialize_all = "lowercase")]
 pub enum Statistic {
-    /// Arithmetic mean.
     Mean,
     /// Root of the mean square.
     Rms,
-    /// The greatest.
     Max,
-    /// The smallest.
     Min,
 }
 
-/// What is expected.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Expectation {
     /// What it is called: its name, or the text that says it.
@@ -167,11 +151,9 @@ pub struct Expectation {
     pub line: usize,
     /// The part of the flight that it is about.
     pub window: Window,
-    /// What.
     pub expected: Expected,
 }
 
-/// What is expected.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Expected {
     /// The flight ends with one of these results.
@@ -180,9 +162,7 @@ pub enum Expected {
     States(Vec<StateStep>),
     /// Something happens: as often as `count` says, else at least once.
     Event {
-        /// What.
         pattern: Pattern,
-        /// How often.
         count: Option<usize>,
         /// The first of them, seconds after an instant.
         within: Option<(f64, f64, Instant)>,
@@ -208,11 +188,8 @@ pub enum Expected {
 /// A step of an expected order of states.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StateStep {
-    /// This state.
     Enter {
-        /// Which.
         state: NavState,
-        /// With this waypoint.
         wp: Option<u8>,
         /// Of a plan of this origin.
         source: Option<PlanSource>,

@@ -31,7 +31,6 @@ pub struct Draft {
     seed: u64,
     /// When it ends, counted from boot.
     ends: Option<SimTime>,
-    /// When and what.
     inputs: Vec<(String, String)>,
 }
 
@@ -40,7 +39,6 @@ type Block = Vec<(&'static str, String)>;
 
 impl Draft {
     /// A flight of a plan without inputs: the scripted pilot flies it in calm air.
-    #[must_use]
     pub fn of_plan(file: &PlanFile) -> Self {
         Self {
             name: file.name.clone(),

@@ -31,7 +31,6 @@ pub use number::{MAX_NAME, read_number, read_quantity};
 pub struct Scope {
     /// Parameters and measures with their dimension; many expressions share them.
     pub names: Rc<BTreeMap<String, Dimension>>,
-    /// Names of inputs.
     pub inputs: Vec<String>,
     /// Waypoints of the plan.
     pub waypoints: usize,
@@ -44,15 +43,12 @@ pub struct Scope {
 pub enum Number {
     /// A literal, in SI units and degrees, with the unit it was written in.
     Literal(f64, Option<&'static Unit>),
-    /// A signal.
     Signal(Signal),
     /// A number of the happening that is looked at.
     Field(Field),
     /// A parameter or a measure.
     Name(String),
-    /// The other sign.
     Negative(Box<Number>),
-    /// Two numbers joined.
     Join(Operator, Box<Number>, Box<Number>),
     /// A function of numbers.
     Call(Function, Vec<Number>),
@@ -76,18 +72,12 @@ pub enum Number {
     Rate(Box<Number>),
 }
 
-/// An arithmetic operator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Operator {
-    /// Sum.
     Add,
-    /// Difference.
     Subtract,
-    /// Product.
     Multiply,
-    /// Quotient.
     Divide,
-    /// Remainder.
     Remainder,
 }
 
@@ -95,7 +85,6 @@ pub enum Operator {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, strum::EnumString, strum::EnumIter, strum::IntoStaticStr)]
 #[strum(serialize_all = "lowercase")]
 pub enum Function {
-    /// Size.
     Abs,
     /// The smaller of two.
     Min,
@@ -110,7 +99,6 @@ pub enum Function {
 /// A place on the ground.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Place {
-    /// The boot place.
     Home,
     /// North and east of the boot place, m.
     Offset(f64, f64),
@@ -125,9 +113,7 @@ pub enum Place {
 /// A yes or no of a flight.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Condition {
-    /// A number compared.
     Compare(Comparison),
-    /// A flag.
     Flag(Flag),
     /// The state machine is in this state, perhaps with this waypoint.
     State(NavState, Option<u8>),
@@ -135,9 +121,7 @@ pub enum Condition {
     Mode(Mode),
     /// A plan of this origin is flown.
     Flying(PlanSource),
-    /// The opposite.
     Not(Box<Condition>),
-    /// All of them.
     All(Vec<Condition>),
     /// At least one of them.
     Any(Vec<Condition>),
@@ -146,9 +130,7 @@ pub enum Condition {
 /// A number and what it may be.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
-    /// What is compared.
     pub left: Number,
-    /// What it measures.
     pub dimension: Dimension,
     /// What it may be.
     pub bound: Bound,
@@ -165,16 +147,13 @@ pub enum Bound {
     Between(Number, Number),
     /// A number with a tolerance to both sides.
     Around(Number, Number),
-    /// Exactly.
     Equal(Number),
 }
 
 /// An instant of a flight.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Instant {
-    /// What happens then.
     pub anchor: Anchor,
-    /// Which of several.
     pub occurrence: Occurrence,
     /// Only what happens after this counts.
     pub after: Option<Box<Instant>>,
@@ -185,11 +164,9 @@ pub struct Instant {
 /// What happens at an instant.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Anchor {
-    /// Boot.
     Boot,
     /// The end of the recording.
     Last,
-    /// Something happens.
     Happening(Pattern),
     /// A condition becomes true.
     When(Condition),
@@ -200,13 +177,11 @@ pub enum Anchor {
 pub enum Occurrence {
     /// The nth, from 1.
     Nth(usize),
-    /// The last.
     Last,
 }
 
 impl Condition {
     /// The parameters and measures in it.
-    #[must_use]
     pub fn names(&self) -> Vec<String> {
         let mut names = Vec::new();
         self.each_number(&mut |number| {
@@ -256,13 +231,11 @@ impl Number {
 
 impl Instant {
     /// Whether it can come several times.
-    #[must_use]
     pub(super) fn recurs(&self) -> bool {
         matches!(self.anchor, Anchor::Happening(_) | Anchor::When(_)) && self.occurrence != Occurrence::Last
     }
 
     /// Why nobody can wait for it during a flight: only a flight that is over shows it. `None` when one can.
-    #[must_use]
     pub(super) fn unseen_in_flight(&self) -> Option<&'static str> {
         if self.offset_s < 0.0 {
             Some("what is to happen is not known before it does")

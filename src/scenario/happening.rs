@@ -24,13 +24,11 @@ macro_rules! events {
 /// A kind of happening with its name.
 #[derive(Debug, Clone, Copy)]
 pub struct EventInfo {
-    /// The kind.
     pub event: EventName,
     /// How it is written; the words behind it choose among its happenings.
     pub name: &'static str,
     /// The numbers that it has.
     pub fields: &'static [Field],
-    /// What it is.
     pub help: &'static str,
 }
 
@@ -74,7 +72,6 @@ macro_rules! fields {
 
         impl Field {
             /// Name, dimension and meaning.
-            #[must_use]
             pub fn info(self) -> (&'static str, Dimension, &'static str) {
                 match self {
                     $(Self::$variant => ($name, Dimension::$dimension, $help),)*
@@ -100,13 +97,11 @@ fields! {
 
 impl EventName {
     /// Name, fields and meaning.
-    #[must_use]
     pub fn info(self) -> &'static EventInfo {
         &EVENTS[self as usize]
     }
 
     /// The words that may stand behind the name.
-    #[must_use]
     pub fn words(self) -> Vec<String> {
         let on_off = || ["on", "off"].map(str::to_owned);
         match self {
@@ -164,38 +159,30 @@ pub(super) const REFUSALS: [&str; 16] = [
 ];
 
 /// A mode as one word: `POS_HOLD`.
-#[must_use]
 pub fn mode_word(mode: Mode) -> String {
     mode.to_string().replace(' ', "_")
 }
 
-/// A state transition.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Entered {
-    /// State entered.
     pub state: NavState,
     /// Index of the current waypoint in the active plan.
     pub wp: u8,
     /// Origin of the active plan.
     pub source: PlanSource,
-    /// The cause.
     pub reason: &'static str,
 }
 
-/// What happened.
 #[derive(Debug, Clone, PartialEq)]
 pub enum HappeningKind {
     /// The state machine entered a state.
     State(Entered),
-    /// Everything else.
     Event {
-        /// Which.
         name: EventName,
         /// The words that tell it from others of its kind.
         words: Vec<String>,
         /// Its numbers, SI and degrees.
         fields: Vec<(Field, f64)>,
-        /// What was said.
         text: String,
     },
 }
@@ -205,20 +192,17 @@ pub enum HappeningKind {
 pub struct Happening {
     /// Simulated time since boot.
     pub time: SimTime,
-    /// What.
     pub kind: HappeningKind,
 }
 
 impl Happening {
     /// A happening that is no state transition.
-    #[must_use]
     pub fn event(time: SimTime, name: EventName, words: &[&str]) -> Self {
         let words = words.iter().map(|&word| word.to_owned()).collect();
         Self { time, kind: HappeningKind::Event { name, words, fields: Vec::new(), text: String::new() } }
     }
 
     /// The same with a number.
-    #[must_use]
     pub fn with(mut self, field: Field, value: f64) -> Self {
         if let HappeningKind::Event { fields, .. } = &mut self.kind {
             fields.push((field, value));
@@ -227,7 +211,6 @@ impl Happening {
     }
 
     /// The same with what was said.
-    #[must_use]
     pub fn saying(mut self, said: impl Into<String>) -> Self {
         if let HappeningKind::Event { text, .. } = &mut self.kind {
             *text = said.into();
@@ -236,7 +219,6 @@ impl Happening {
     }
 
     /// A number of it.
-    #[must_use]
     pub fn field(&self, field: Field) -> Option<f64> {
         match &self.kind {
             HappeningKind::State(_) => None,
@@ -252,20 +234,15 @@ impl Happening {
 pub enum Pattern {
     /// A state that is entered.
     State {
-        /// Which.
         state: NavState,
-        /// With this waypoint.
         wp: Option<u8>,
         /// Of a plan of this origin; `None` = any.
         source: Option<PlanSource>,
-        /// For this reason.
         reason: Option<String>,
     },
     /// A happening of a kind that has all of these words and says this.
     Event {
-        /// The kind.
         name: EventName,
-        /// Words.
         words: Vec<String>,
         /// A part of what is said, in any case.
         text: Option<String>,
@@ -274,7 +251,6 @@ pub enum Pattern {
 
 impl Pattern {
     /// Whether this is such a happening.
-    #[must_use]
     pub fn matches(&self, happening: &Happening) -> bool {
         match (self, &happening.kind) {
             (Self::State { state, wp, source, reason }, HappeningKind::State(entered)) => {
@@ -296,7 +272,6 @@ impl Pattern {
     }
 
     /// The numbers that it can have.
-    #[must_use]
     pub fn fields(&self) -> &'static [Field] {
         match self {
             Self::State { .. } => &[],

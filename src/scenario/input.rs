@@ -14,11 +14,9 @@ pub struct TimedInput {
     pub name: String,
     /// Line in the scenario's file, from 1.
     pub line: usize,
-    /// When.
     pub at: Instant,
     /// Each time that comes, not only once.
     pub each: bool,
-    /// What.
     pub action: Action,
     /// As it is written.
     pub text: String,
@@ -35,7 +33,6 @@ pub enum Action {
         channel: u8,
         /// Value, µs.
         value_us: u16,
-        /// Seconds.
         for_s: Option<f64>,
     },
     /// A channel goes back to who moves it.
@@ -50,13 +47,10 @@ pub enum Action {
     RestoreRc,
     /// A line on the command line.
     Cli(String),
-    /// Another plan.
     Upload(Box<FlightPlan>),
     /// Fly home and land.
     ReturnHome,
-    /// That taken back.
     CancelReturn,
-    /// To the navigator.
     InFlight(InFlightCommand),
     /// The scripted pilot takes the sticks, climbs to so many metres and engages.
     Pilot(f64),

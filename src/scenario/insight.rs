@@ -25,7 +25,6 @@ pub enum Insight {
 
 impl Insight {
     /// What is missing, as the end of a sentence.
-    #[must_use]
     pub fn missing(self) -> &'static str {
         match self {
             Self::Truth | Self::Telemetry => "this flight controller tells nothing",
@@ -37,7 +36,6 @@ impl Insight {
 
 impl Signal {
     /// What must be known for it.
-    #[must_use]
     pub fn insight(self) -> Insight {
         match self {
             Self::Time
@@ -85,7 +83,6 @@ impl Signal {
 
 impl Flag {
     /// What must be known for it.
-    #[must_use]
     pub fn insight(self) -> Insight {
         match self {
             Self::OnGround | Self::Crashed => Insight::Truth,
@@ -98,7 +95,6 @@ impl Flag {
 
 impl EventName {
     /// What must be known to see it.
-    #[must_use]
     pub fn insight(self) -> Insight {
         match self {
             Self::Fault

@@ -19,7 +19,6 @@ use outcome::{failed, met, unjudged};
 
 /// Judges a flight: a judgement for each expectation, in their order, then one for each input that was not carried out, and
 /// the measures that were taken.
-#[must_use]
 pub fn judge(case: &Case, flown: &Flown) -> (Vec<Judgement>, Vec<(String, f64)>) {
     let mut names = case.parameters.clone();
     for measure in &case.measures {
@@ -51,7 +50,6 @@ pub fn judge(case: &Case, flown: &Flown) -> (Vec<Judgement>, Vec<(String, f64)>)
 
 /// The judgements of a flight that is not flown with a flight controller outside, all skipped, as its inputs or its end need
 /// what none of them tells; `None` when it can be flown.
-#[must_use]
 pub fn skip(case: &Case) -> Option<Vec<Judgement>> {
     let needed = Needs::of(case).flight(case);
     let skipped =
@@ -75,7 +73,6 @@ pub(super) fn statistic(
 
 /// Judges what is expected of several flights together: `names` are their measures as `CASE.MEASURE`, and `told` is what was
 /// known of all of them.
-#[must_use]
 pub fn compare(compare: &Compare, names: &[(String, f64)], told: Insight) -> Judgement {
     let trace = Trace::of_nothing();
     let is_known = |name: &str| names.iter().any(|(known, _)| known == name);
@@ -89,7 +86,6 @@ pub fn compare(compare: &Compare, names: &[(String, f64)], told: Insight) -> Jud
 
 impl Compare {
     /// What becomes of it when the cases have no seed in common.
-    #[must_use]
     pub fn never_judged(&self) -> Judgement {
         let outcome = unjudged("no seed was flown by all the cases; give them the same seeds");
         Judgement { label: self.label.clone(), line: self.line, outcome }

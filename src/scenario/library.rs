@@ -72,19 +72,16 @@ const TEXTS: &[(&str, &str)] = &[("guide.txt", include_str!("../../plans/scenari
 pub struct BuiltinScenario {
     /// Its name, as given on the command line.
     pub name: &'static str,
-    /// Its text.
     pub text: &'static str,
 }
 
 impl BuiltinScenario {
     /// The built-in scenario of this name.
-    #[must_use]
     pub fn find(name: &str) -> Option<Self> {
         SCENARIOS.iter().copied().find(|scenario| scenario.name == name)
     }
 
     /// The name of a built-in scenario that `name` may stand for.
-    #[must_use]
     pub fn suggest(name: &str) -> Option<&'static str> {
         did_you_mean::closest(name, SCENARIOS.iter().map(|scenario| scenario.name))
     }

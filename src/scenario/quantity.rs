@@ -13,23 +13,17 @@ pub struct Dimension([i8; BASES]);
 impl Dimension {
     /// A count or a share.
     pub const NONE: Self = Self([0; BASES]);
-    /// Metres.
     pub const LENGTH: Self = Self([1, 0, 0, 0, 0, 0]);
-    /// Seconds.
     pub const TIME: Self = Self([0, 1, 0, 0, 0, 0]);
     /// Metres per second.
     pub const SPEED: Self = Self([1, -1, 0, 0, 0, 0]);
     /// Metres per second squared.
     pub const ACCELERATION: Self = Self([1, -2, 0, 0, 0, 0]);
-    /// Degrees.
     pub const ANGLE: Self = Self([0, 0, 1, 0, 0, 0]);
     /// Microseconds of an RC channel.
     pub const PULSE: Self = Self([0, 0, 0, 1, 0, 0]);
-    /// Volts.
     pub const VOLTAGE: Self = Self([0, 0, 0, 0, 1, 0]);
-    /// Amperes.
     pub const CURRENT: Self = Self([0, 0, 0, 0, 0, 1]);
-    /// Ampere seconds.
     pub const CHARGE: Self = Self([0, 1, 0, 0, 0, 1]);
 
     /// The dimension of a product, or of a quotient with `sign` −1.
@@ -43,7 +37,6 @@ impl Dimension {
 pub struct Unit {
     /// How it is written.
     pub name: &'static str,
-    /// What it measures.
     pub dimension: Dimension,
     /// Size in SI units and degrees.
     pub scale: f64,
@@ -86,7 +79,6 @@ impl Dimension {
     }
 
     /// The unit that values of this dimension are shown in; `None` for counts and for what has no unit of its own.
-    #[must_use]
     pub fn unit(self) -> Option<&'static Unit> {
         UNITS.iter().find(|unit| unit.dimension == self && unit.name != "%")
     }
@@ -119,7 +111,6 @@ impl fmt::Display for Dimension {
 }
 
 /// A value in its unit, for people: `1.82 m`.
-#[must_use]
 pub fn shown(value: f64, dimension: Dimension) -> String {
     let Some(unit) = dimension.unit() else { return number(value) };
     let space = if unit.name == "°" { "" } else { " " };

@@ -18,7 +18,6 @@ use log::Log;
 /// What a case's flight came to.
 #[derive(Debug, Clone)]
 pub struct Flown {
-    /// What happened.
     pub trace: Trace,
     /// How it ended: one of [`RESULTS`](super::happening::RESULTS).
     pub result: String,
@@ -95,8 +94,6 @@ impl<'a> CaseFlight<'a> {
         })
     }
 
-    /// The vehicle.
-    #[must_use]
     pub fn vehicle(&self) -> &Vehicle {
         self.flight.vehicle()
     }
@@ -107,19 +104,16 @@ impl<'a> CaseFlight<'a> {
     }
 
     /// The vehicle as the flight left it.
-    #[must_use]
     pub fn into_vehicle(self) -> Vehicle {
         self.flight.into_vehicle()
     }
 
     /// What was recorded so far.
-    #[must_use]
     pub fn trace(&self) -> &Trace {
         &self.trace
     }
 
     /// Flies to the end.
-    #[must_use]
     pub fn fly(mut self) -> Flown {
         while !self.is_over {
             self.prepare();
@@ -129,7 +123,6 @@ impl<'a> CaseFlight<'a> {
     }
 
     /// Whether the flight and what is to be watched after it are over.
-    #[must_use]
     pub fn is_over(&self) -> bool {
         self.is_over
     }
@@ -233,7 +226,6 @@ impl<'a> CaseFlight<'a> {
     }
 
     /// What it came to.
-    #[must_use]
     pub fn finish(mut self) -> Flown {
         // What happened last can be looked at.
         if self.trace.samples.last().is_some_and(|sample| sample.time < self.flight.vehicle().time()) {

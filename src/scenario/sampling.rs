@@ -19,7 +19,6 @@ const ENDLESS_DS: u16 = u16::MAX;
 pub(super) struct Origin {
     /// Height of the standing craft's centre of mass, m.
     pub(super) standing_m: f64,
-    /// The first engagement.
     pub(super) engaged_at: Option<SimTime>,
 }
 

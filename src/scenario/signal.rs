@@ -21,13 +21,10 @@ macro_rules! signals {
 /// A signal with its name.
 #[derive(Debug, Clone, Copy)]
 pub struct SignalInfo {
-    /// The signal.
     pub signal: Signal,
     /// How it is written.
     pub name: &'static str,
-    /// What it measures.
     pub dimension: Dimension,
-    /// What it is.
     pub help: &'static str,
 }
 
@@ -81,13 +78,11 @@ impl Signal {
     pub const COUNT: usize = SIGNALS.len();
 
     /// Name, dimension and meaning.
-    #[must_use]
     pub fn info(self) -> &'static SignalInfo {
         &SIGNALS[self as usize]
     }
 
     /// The signal of this name.
-    #[must_use]
     pub fn find(name: &str) -> Option<Self> {
         SIGNALS.iter().find(|info| info.name == name).map(|info| info.signal)
     }
@@ -119,8 +114,6 @@ pub enum Flag {
 }
 
 impl Flag {
-    /// What it says.
-    #[must_use]
     pub fn help(self) -> &'static str {
         match self {
             Self::Armed => "the craft is armed",

@@ -9,10 +9,8 @@ use crate::plan::FlightPlan;
 use crate::signals::SimTime;
 use crate::telemetry::{Guard, GuardName, ModeFlags, NavState, PlanSource};
 
-/// One sample.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sample {
-    /// The instant.
     pub time: SimTime,
     /// The signals, SI and degrees; NaN = unknown at the moment.
     pub values: [f32; Signal::COUNT],
@@ -24,27 +22,21 @@ pub struct Sample {
     pub wp: u8,
     /// Origin of the active plan.
     pub source: PlanSource,
-    /// Active modes.
     pub modes: ModeFlags,
     /// The navigator's target, m north and east of the boot place; NaN = none.
     pub target_ne: [f32; 2],
 }
 
 impl Sample {
-    /// A signal.
-    #[must_use]
     pub fn value(&self, signal: Signal) -> f64 {
         f64::from(self.values[signal as usize])
     }
 
-    /// A flag.
-    #[must_use]
     pub fn has(&self, flag: Flag) -> bool {
         self.flags & (1 << flag as u8) != 0
     }
 
     /// True place north and east of the boot place, m.
-    #[must_use]
     pub fn place(&self) -> [f64; 2] {
         [self.value(Signal::North), self.value(Signal::East)]
     }
@@ -55,18 +47,14 @@ impl Sample {
 pub struct NearestGuard {
     /// The guard at its best.
     pub guard: Guard,
-    /// When that was.
     pub time: SimTime,
 }
 
 /// A stay in a state, with the guards that were looked at.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stay {
-    /// When it began.
     pub since: SimTime,
-    /// The state.
     pub state: NavState,
-    /// The waypoint.
     pub wp: u8,
     /// The guards at their best.
     pub guards: Vec<NearestGuard>,
@@ -79,7 +67,6 @@ pub struct KnownPlan {
     pub since: SimTime,
     /// Where it comes from.
     pub source: PlanSource,
-    /// The plan.
     pub plan: FlightPlan,
 }
 
@@ -96,13 +83,11 @@ pub struct Trace {
     pub plans: Vec<KnownPlan>,
     /// Counts north and east from the boot place.
     pub frame: Option<LocalFrame>,
-    /// The first engagement.
     pub engaged_at: Option<SimTime>,
 }
 
 impl Trace {
     /// Nothing recorded yet of a flight of this plan.
-    #[must_use]
     pub fn new(plan: FlightPlan, frame: Option<LocalFrame>) -> Self {
         Self {
             samples: Vec::new(),
@@ -115,7 +100,6 @@ impl Trace {
     }
 
     /// One sample in which nothing is known: measures of several flights are compared on it.
-    #[must_use]
     pub(super) fn of_nothing() -> Self {
         let sample = Sample {
             time: SimTime::ZERO,
@@ -131,21 +115,18 @@ impl Trace {
     }
 
     /// The first sample at or after a time, µs since boot.
-    #[must_use]
     pub fn index_at(&self, time_us: i64) -> Option<usize> {
         let index = self.samples.partition_point(|sample| (sample.time.0 as i64) < time_us);
         (index < self.samples.len()).then_some(index)
     }
 
     /// When the record ends.
-    #[must_use]
     pub fn end(&self) -> SimTime {
         let sampled = self.samples.last().map_or(SimTime::ZERO, |sample| sample.time);
         self.happenings.last().map_or(sampled, |happening| happening.time.max(sampled))
     }
 
     /// The plan of an origin that counts at an instant: the newest that was active until then, else the first.
-    #[must_use]
     pub fn plan(&self, source: PlanSource, at: SimTime) -> Option<&FlightPlan> {
         let of_source = || self.plans.iter().filter(|known| known.source == source);
         let known = of_source().rfind(|known| known.since <= at).or_else(|| of_source().next());
@@ -153,7 +134,6 @@ impl Trace {
     }
 
     /// Place of a waypoint of the plan of an origin at an instant, m north and east of the boot place.
-    #[must_use]
     pub fn waypoint(&self, index: u8, source: PlanSource, at: SimTime) -> Option<[f64; 2]> {
         let plan = self.plan(source, at)?;
         let position = plan.waypoints.get(usize::from(index))?.position;
@@ -163,13 +143,11 @@ impl Trace {
     }
 
     /// Seconds since the first engagement, or since boot when there was none.
-    #[must_use]
     pub fn seconds(&self, time: SimTime) -> f64 {
         time.as_secs_f64() - self.engaged_at.map_or(0.0, SimTime::as_secs_f64)
     }
 
     /// A time as people read it: `34.2 s`, counted as [`Self::seconds`], with `after boot` when that is so.
-    #[must_use]
     pub fn shown_time(&self, time: SimTime) -> String {
         let from = if self.engaged_at.is_some() { "" } else { " after boot" };
         format!("{:.2} s{from}", self.seconds(time))
@@ -194,7 +172,6 @@ impl Trace {
     }
 
     /// Of the guards that did not fire in a stay, the one that would have ended it in the usual way, at its best.
-    #[must_use]
     pub fn nearest_guard(stay: &Stay) -> Option<&NearestGuard> {
         /// Guards that end a mission early: that they did not fire is no news.
         const PROTECTION: [GuardName; 5] =
@@ -207,7 +184,6 @@ impl Trace {
 
     /// A number that two flights share when all samples and happenings are the same to the last bit. It is compared within
     /// a run only: processors differ.
-    #[must_use]
     pub fn hash(&self) -> u64 {
         let mut hasher = DefaultHasher::new();
         for sample in &self.samples {

@@ -82,12 +82,10 @@ pub enum Command {
     Cli {
         /// The line, without line end.
         line: String,
-        /// Gets the output.
         reply: tokio::sync::oneshot::Sender<CliOutput>,
     },
     /// Hand a plan to the craft the way a ground station does; the reply says what the craft answered.
     Upload {
-        /// The plan.
         plan: Box<FlightPlan>,
         /// Setting lines that come with the plan file, without `set `.
         settings: Vec<String>,
@@ -118,7 +116,6 @@ pub enum Command {
     PermitChanges(u32),
     /// Change the air, the noise or a fault: `wind=5@270`, `fault=motor,,2:0.8`, `end=all`…
     World {
-        /// What to change.
         line: String,
         /// Gets `Ok` or why not.
         reply: tokio::sync::oneshot::Sender<Result<(), String>>,
@@ -127,7 +124,6 @@ pub enum Command {
     CopyVehicle(tokio::sync::oneshot::Sender<Result<VehicleCopy, String>>),
     /// Copy what was recorded of the flight up to the instant that is shown; or why there is nothing.
     RecordedFlight(tokio::sync::oneshot::Sender<Result<Box<RecordedFlight>, String>>),
-    /// End the session.
     Quit,
 }
 
@@ -153,9 +149,7 @@ pub struct CliOutput {
 /// What is published after each slice of simulation.
 #[derive(Debug, Clone, Default)]
 pub struct SessionView {
-    /// The vehicle.
     pub vehicle: Arc<Snapshot>,
-    /// Paused.
     pub paused: bool,
     /// Requested times real time; infinite = as fast as possible.
     pub speed_wanted: f64,
@@ -194,7 +188,6 @@ pub struct UploadView {
 
 impl SessionView {
     /// What a session would have shown of this vehicle: for a flight that was flown before it began.
-    #[must_use]
     pub fn of_recorded(vehicle: &Vehicle) -> Self {
         Self {
             vehicle: Arc::new(vehicle.snapshot()),
@@ -215,13 +208,11 @@ impl SessionView {
     }
 
     /// Whether an earlier instant is shown while the flight waits.
-    #[must_use]
     pub fn is_rewound(&self) -> bool {
         self.timeline.as_ref().is_some_and(|timeline| timeline.rewound)
     }
 
     /// Whether the craft is armed, at the newest instant while an earlier one is shown.
-    #[must_use]
     pub fn is_armed_now(&self) -> bool {
         match &self.timeline {
             Some(timeline) if timeline.rewound => timeline.head_is_armed,

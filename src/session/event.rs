@@ -16,14 +16,11 @@ use crate::vehicle::Vehicle;
 pub struct Event {
     /// Simulated time since boot.
     pub time: SimTime,
-    /// What happened.
     pub kind: SessionEvent,
 }
 
-/// What happened.
 #[derive(Debug, Clone, PartialEq)]
 pub enum SessionEvent {
-    /// To the vehicle.
     Vehicle(EventKind),
     /// A notice for the user, as a sentence.
     Notice(String),
@@ -39,14 +36,12 @@ pub enum SessionEvent {
     FirstState {
         /// The simulator's clock, s.
         stamp_s: f64,
-        /// Who sent it.
         from: SocketAddr,
     },
     /// The first RC frame from a script.
     FirstRc {
         /// The script's clock, s.
         stamp_s: f64,
-        /// The frame.
         frame: RcFrame,
     },
     /// The firmware started anew on what is stored, as a client of a link asked.
@@ -75,7 +70,6 @@ pub struct EndpointAddresses {
 
 impl Event {
     /// A notice at this time.
-    #[must_use]
     pub fn notice(time: SimTime, text: impl Into<String>) -> Self {
         Self { time, kind: SessionEvent::Notice(text.into()) }
     }
@@ -101,7 +95,6 @@ impl EventSender {
         Self { events, marks: Marks::default(), disarmed: false }
     }
 
-    /// When something happened.
     pub(super) fn marks(&self) -> &Marks {
         &self.marks
     }

@@ -23,7 +23,6 @@ const NICENESS: i32 = 5;
 pub enum ForecastRequest {
     /// This plan with its settings, from home.
     PlanEstimate {
-        /// The plan.
         plan: Box<FlightPlan>,
         /// Setting lines that come with it, without `set `.
         settings: Vec<String>,
@@ -35,8 +34,6 @@ pub enum ForecastRequest {
 }
 
 impl ForecastRequest {
-    /// Its kind.
-    #[must_use]
     pub fn kind(&self) -> ForecastKind {
         match self {
             Self::PlanEstimate { .. } => ForecastKind::PlanEstimate,

@@ -8,7 +8,6 @@ use crate::vehicle::{FlightController, Vehicle};
 
 /// Returns a sentence for each hazard of the stored plan, for a mission that begins `start_alt_m` above home and is to stay
 /// below `max_alt_m`, where that is given; none for a flight controller whose settings are not known.
-#[must_use]
 pub fn hazards(vehicle: &Vehicle, start_alt_m: f64, max_alt_m: Option<f64>) -> Vec<String> {
     let place = |frame: &LocalFrame| LatLon::from_degrees(frame.lat_deg, frame.lon_deg);
     let armed_at = vehicle.controller().embedded().and_then(Firmware::home);

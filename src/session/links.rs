@@ -52,7 +52,6 @@ impl Links {
     }
 
     /// The session's side of them, and where their state is to be published.
-    #[must_use]
     pub fn endpoints(
         self,
         simulator: Option<ExternalSimulator>,
@@ -66,7 +65,6 @@ impl Links {
 
 impl MotorTargets {
     /// Where motor commands go.
-    #[must_use]
     pub fn motors(self) -> SocketAddr {
         SocketAddr::new(self.ip, self.motors)
     }

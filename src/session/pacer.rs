@@ -31,7 +31,6 @@ pub struct Pacer {
 
 impl Pacer {
     /// A pacer for steps of `step_us` microseconds at `speed` times real time (infinite: as fast as possible).
-    #[must_use]
     pub fn new(step_us: u64, speed: f64) -> Self {
         Self {
             step: Duration::from_micros(step_us),
@@ -47,7 +46,6 @@ impl Pacer {
     }
 
     /// Requested times real time; infinite = as fast as possible.
-    #[must_use]
     pub fn speed(&self) -> f64 {
         self.speed
     }
@@ -59,7 +57,6 @@ impl Pacer {
     }
 
     /// Whether time stands still.
-    #[must_use]
     pub fn is_paused(&self) -> bool {
         self.paused
     }
@@ -76,7 +73,6 @@ impl Pacer {
     }
 
     /// Achieved times real time, averaged over the last second.
-    #[must_use]
     pub fn achieved(&self) -> f64 {
         self.achieved
     }
@@ -105,7 +101,6 @@ impl Pacer {
     }
 
     /// Wall time, counted as `now` is, at which the next step is due; none while time stands still.
-    #[must_use]
     pub fn next_due(&self) -> Option<Duration> {
         if self.paused || self.speed.is_infinite() {
             return None;
@@ -115,7 +110,6 @@ impl Pacer {
     }
 
     /// Whether a step was due that was not handed out.
-    #[must_use]
     pub fn is_behind(&self) -> bool {
         self.carry >= 1.0
     }

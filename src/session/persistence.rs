@@ -28,7 +28,6 @@ pub(super) struct CarriedOut {
 impl Persistence {
     /// Keeps the configuration of `controller`, which has just booted, in `store`; `starter_modes` gives a craft without
     /// mode conditions the usual ones at every restart.
-    #[must_use]
     pub fn new(store: Store, controller: &mut FlightController, starter_modes: bool) -> Self {
         controller.set_storage_facts(store.facts());
         let at_boot = controller.configuration().cloned().map(Box::new);

@@ -20,7 +20,6 @@ pub(super) struct LostTimeNotice {
 }
 
 impl fmt::Display for LostTimeNotice {
-    /// As a sentence.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let LostTime { sum, achieved } = self.lost;
         write!(

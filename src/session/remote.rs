@@ -65,7 +65,6 @@ const FIRST_ANSWER: Duration = Duration::from_secs(10);
 pub struct RemoteEnds {
     /// What it is called in sentences: a file, or where it is.
     pub name: String,
-    /// Its serial port.
     pub stream: FcStream,
     /// Where its states, RC and motors go, when it is a SITL executable.
     pub peer: Option<SitlPeer>,
@@ -84,7 +83,6 @@ enum Purpose {
     Message(Ticket, bool),
     /// To know what it is.
     Identity(Question),
-    /// To set it.
     Provision,
     /// To show how it is.
     Polled(Subject),
@@ -128,7 +126,6 @@ pub struct RemoteLink {
 
 impl RemoteLink {
     /// A link over these ends, whose program, if it has one here, starts now.
-    #[must_use]
     pub fn new(ends: RemoteEnds, now: Instant) -> Self {
         Self {
             schedule: Schedule::new(ends.stream.bytes_per_s),
@@ -157,13 +154,11 @@ impl RemoteLink {
     }
 
     /// How far the flight controller is known.
-    #[must_use]
     pub fn state(&self) -> &RemoteState {
         &self.state
     }
 
     /// What a screen shows of it.
-    #[must_use]
     pub fn view(&self) -> RemoteView {
         RemoteView {
             name: self.ends.name.clone(),
@@ -177,25 +172,21 @@ impl RemoteLink {
     }
 
     /// What may be done with it.
-    #[must_use]
     pub fn access(&self) -> Access {
         if self.is_fed() { Access::Everything } else { self.permission.access() }
     }
 
     /// Requests that it has answered so far; motors are no answer.
-    #[must_use]
     pub fn answers(&self) -> u64 {
         self.answers
     }
 
     /// The number of the present connection.
-    #[must_use]
     pub fn connection(&self) -> u32 {
         self.permission.connection()
     }
 
     /// Whether a line opens the interactive command line, which stays open then.
-    #[must_use]
     pub fn opens_cli(&self) -> bool {
         let is_disarmed = self.observer.armed() == Some(false);
         self.permission.opens_cli() && is_disarmed && !self.client.is_in_cli()
@@ -214,32 +205,27 @@ impl RemoteLink {
     }
 
     /// What it is called in sentences.
-    #[must_use]
     pub fn name(&self) -> &str {
         &self.ends.name
     }
 
     /// What it was to be set to and is not.
-    #[must_use]
     pub fn unset(&self) -> Option<&Unset> {
         self.unset.as_ref()
     }
 
     /// What is known of it.
-    #[must_use]
     pub fn observer(&self) -> &Observer {
         &self.observer
     }
 
     /// Whether it gets the states of the craft from here, in the rhythm of the steps.
-    #[must_use]
     pub fn is_fed(&self) -> bool {
         self.ends.peer.is_some()
     }
 
     /// Most steps of `step_us` at `speed` times real time that may be flown before the next exchange: motors are not to stand
     /// still for many steps where it is the machine that was held up.
-    #[must_use]
     pub fn most_steps(&self, step_us: u64, speed: f64, now: Instant) -> u64 {
         match &self.ends.peer {
             None => u64::MAX,
@@ -249,7 +235,6 @@ impl RemoteLink {
     }
 
     /// Its lines among the endpoints.
-    #[must_use]
     pub fn status(&self, now: Instant) -> Vec<EndpointStatus> {
         self.ends.peer.iter().map(|peer| peer.status(now)).collect()
     }

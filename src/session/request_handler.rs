@@ -69,7 +69,6 @@ pub struct RequestHandler {
 
 impl RequestHandler {
     /// A handler that sends `restart_signal` when the flight controller restarts.
-    #[must_use]
     pub fn new(restart_signal: RestartSignal) -> Self {
         Self {
             restart_signal,

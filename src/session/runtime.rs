@@ -56,7 +56,6 @@ const SLICE: u64 = 500;
 pub struct Endpoints {
     /// What clients, scripts and simulators ask.
     pub requests: mpsc::Receiver<Request>,
-    /// Answers them.
     pub handler: RequestHandler,
     /// How they are doing.
     pub status: watch::Receiver<Vec<EndpointStatus>>,
@@ -90,7 +89,6 @@ pub struct SessionConfig {
 /// A flight that was flown before the session began.
 #[derive(Debug)]
 pub struct FlownBefore {
-    /// Its recording.
     pub timeline: Timeline,
     /// What happened in it.
     pub events: Vec<telemetry::Event>,
@@ -101,9 +99,7 @@ pub struct FlownBefore {
 /// The ends of a running session that the outside holds.
 #[derive(Debug)]
 pub struct Handle {
-    /// Requests.
     pub commands: mpsc::Sender<Command>,
-    /// The newest view.
     pub view: watch::Receiver<SessionView>,
     /// Every event, in order.
     pub events: mpsc::UnboundedReceiver<Event>,

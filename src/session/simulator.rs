@@ -42,7 +42,6 @@ pub enum SimulatorNotice {
 }
 
 impl fmt::Display for SimulatorNotice {
-    /// As a sentence.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Connected => f.write_str("The simulator speaks: the craft's time is its time now."),

@@ -41,7 +41,6 @@ pub struct UploadReport {
 
 impl UploadReport {
     /// How altitudes were converted, as a sentence; `None` when they were not.
-    #[must_use]
     pub fn conversion(&self) -> Option<String> {
         let added_m = self.added_m;
         (added_m != 0.0).then(|| {
@@ -50,7 +49,6 @@ impl UploadReport {
     }
 
     /// What the user is to know of it, as sentences; `None` when the craft holds what was sent.
-    #[must_use]
     pub fn remark(&self) -> Option<String> {
         let refused = (!self.refused.is_empty()).then(|| {
             format!(

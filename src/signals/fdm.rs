@@ -24,9 +24,7 @@ pub enum Mirror {
     /// As the dialect does, until the motion shows otherwise.
     #[default]
     Auto,
-    /// Always.
     On,
-    /// Never.
     Off,
 }
 

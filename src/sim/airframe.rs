@@ -27,7 +27,6 @@ mod file;
 
 pub use file::{AirframeFileError, AirframeProblem};
 
-/// Number of rotors.
 pub const ROTORS: usize = 4;
 
 /// The most legs an airframe may have.
@@ -86,7 +85,6 @@ pub struct Airframe {
     pub friction_full_mps: f64,
     /// Where the inertial sensor sits, m.
     pub imu_position_m: Vector3<f64>,
-    /// The battery.
     pub battery: BatterySpec,
 }
 
@@ -96,7 +94,6 @@ impl Airframe {
     /// Mass, geometry, inertia, thrust constant and motor lag follow the Gazebo model; torque, rotor inertia and
     /// drag are the PX4 x500's (the model's blades give almost no yaw authority); the top rotor speed puts hover
     /// at 1500 µs.
-    #[must_use]
     pub fn iris() -> Self {
         Self {
             name: "iris".to_owned(),
@@ -131,7 +128,6 @@ impl Airframe {
     }
 
     /// A five-inch racing quadcopter: 0.70 kg, ten times its weight in thrust, from published bench figures.
-    #[must_use]
     pub fn five_inch() -> Self {
         Self {
             name: "five-inch".to_owned(),
@@ -166,25 +162,21 @@ impl Airframe {
     }
 
     /// The first rule that this airframe breaks, as a sentence that names the key; `None` when it can fly.
-    #[must_use]
     pub fn fault(&self) -> Option<String> {
         check::findings(self).into_iter().next().map(|finding| format!("{} {}", finding.key, finding.text))
     }
 
     /// Rotor speed at which four rotors carry the weight at the reference density, rad/s.
-    #[must_use]
     pub fn hover_rotor_speed(&self) -> f64 {
         (self.mass_kg * GRAVITY / (ROTORS as f64 * self.thrust_coeff)).sqrt()
     }
 
     /// Greatest thrust over weight at the reference density.
-    #[must_use]
     pub fn thrust_to_weight(&self) -> f64 {
         ROTORS as f64 * self.thrust_coeff * self.rotor_speed_max.powi(2) / (self.mass_kg * GRAVITY)
     }
 
     /// Height of the centre of mass above the ground when the craft stands on its legs, m.
-    #[must_use]
     pub fn standing_height_m(&self) -> f64 {
         let lowest = self.legs_m.iter().map(|leg| leg.z).fold(0.0, f64::min);
         let touching = self.legs_m.iter().filter(|leg| leg.z < lowest + 1e-3).count().max(1);

@@ -14,25 +14,21 @@ const GAS_CONSTANT: f64 = 287.052_87;
 const VALID_M: std::ops::RangeInclusive<f64> = -5_000.0..=11_000.0;
 
 /// Air temperature at an altitude above mean sea level (m), K.
-#[must_use]
 pub fn temperature_k(alt_amsl_m: f64) -> f64 {
     SEA_LEVEL_K - LAPSE_K_PER_M * alt_amsl_m.clamp(*VALID_M.start(), *VALID_M.end())
 }
 
 /// Static pressure at an altitude above mean sea level (m), Pa.
-#[must_use]
 pub fn pressure_pa(alt_amsl_m: f64) -> f64 {
     SEA_LEVEL_PA * (temperature_k(alt_amsl_m) / SEA_LEVEL_K).powf(PRESSURE_EXPONENT)
 }
 
 /// Air density at an altitude above mean sea level (m), kg/m³.
-#[must_use]
 pub fn density(alt_amsl_m: f64) -> f64 {
     pressure_pa(alt_amsl_m) / (GAS_CONSTANT * temperature_k(alt_amsl_m))
 }
 
 /// Density over the density at which an airframe's coefficients are stated.
-#[must_use]
 pub fn density_ratio(alt_amsl_m: f64) -> f64 {
     density(alt_amsl_m) / REFERENCE_DENSITY
 }

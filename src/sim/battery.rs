@@ -16,7 +16,6 @@ const BEYOND_EMPTY_V: f64 = 50.0;
 /// The battery of an airframe.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BatterySpec {
-    /// Cells in series.
     pub cells: u8,
     /// Voltage at which the motors reach their stated top speed, V.
     pub nominal_v: f64,
@@ -28,7 +27,6 @@ pub struct BatterySpec {
 
 impl BatterySpec {
     /// Open-circuit voltage with `left` of the charge left (1 full, 0 empty, negative beyond), V.
-    #[must_use]
     pub fn open_circuit_v(&self, left: f64) -> f64 {
         let [full, knee, empty] = CELL_V;
         let left = left.min(1.0);
@@ -44,7 +42,6 @@ impl BatterySpec {
 
     /// Terminal voltage (V) and current (A) under a constant-power load; a load beyond the greatest power the pack
     /// can give is cut to that. A dead pack gives nothing.
-    #[must_use]
     pub fn under_load(&self, open_circuit_v: f64, load_w: f64) -> (f64, f64) {
         if open_circuit_v <= 0.0 {
             return (0.0, 0.0);
@@ -58,7 +55,6 @@ impl BatterySpec {
 
 /// Electrical power the four motors take at the given rotor speeds (rad/s), W. `load_factor` is what density and
 /// efficiency make of each rotor's torque.
-#[must_use]
 pub fn motor_power_w(airframe: &Airframe, rotor_speeds: &[f64; ROTORS], load_factor: &[f64; ROTORS]) -> f64 {
     let cubes: f64 = rotor_speeds.iter().zip(load_factor).map(|(speed, load)| speed.powi(3) * load).sum();
     airframe.torque_per_thrust_m * airframe.thrust_coeff * cubes / DRIVE_EFFICIENCY
@@ -89,32 +85,27 @@ pub(super) struct Battery {
 
 impl Battery {
     /// A full battery under the base load.
-    #[must_use]
     pub(super) fn full(spec: BatterySpec) -> Self {
         let (voltage_v, current_a) = spec.under_load(spec.open_circuit_v(1.0), BASE_LOAD_W);
         Self { spec, voltage_v, current_a, drawn_mah: 0.0, drawn_wh: 0.0 }
     }
 
     /// What the full pack held, mA·h.
-    #[must_use]
     pub(super) fn capacity_mah(&self) -> f64 {
         self.spec.capacity_ah * 1000.0
     }
 
     /// Charge left: 1 full, 0 empty, negative when more than the capacity was drawn.
-    #[must_use]
     pub(super) fn charge_left(&self) -> f64 {
         1.0 - self.drawn_mah / self.capacity_mah()
     }
 
     /// Terminal voltage a cell, V.
-    #[must_use]
     pub(super) fn cell_v(&self) -> f64 {
         self.voltage_v / f64::from(self.spec.cells)
     }
 
     /// Terminal over nominal voltage: the scale of the rotor speeds where sag acts on them.
-    #[must_use]
     pub(super) fn speed_scale(&self) -> f64 {
         self.voltage_v / self.spec.nominal_v
     }

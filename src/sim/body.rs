@@ -17,7 +17,6 @@ pub struct BodyState {
 
 impl BodyState {
     /// Whether every number is finite.
-    #[must_use]
     pub fn is_finite(&self) -> bool {
         let sum = self.pos_enu.sum() + self.vel_enu.sum() + self.rate_flu.sum() + self.attitude.coords.sum();
         sum.is_finite()
@@ -79,7 +78,6 @@ impl Stage {
 }
 
 /// What an accelerometer away from the centre of mass shows on top: `α × r + ω × (ω × r)`, m/s².
-#[must_use]
 pub fn lever_arm_acceleration(
     rate_flu: Vector3<f64>,
     rate_dot_flu: Vector3<f64>,

@@ -14,7 +14,6 @@ pub enum WorldCommand {
     SetWind(Wind),
     /// Random gusts of this strength from now on, m/s; 0 for none.
     SetGust(f64),
-    /// One gust now.
     GustNow(Wind),
     /// Another level of turbulence.
     SetTurbulence(Turbulence),
@@ -38,7 +37,6 @@ pub enum WorldCommand {
 
 impl WorldCommand {
     /// The fault that it begins, now or later.
-    #[must_use]
     pub fn fault(&self) -> Option<&Fault> {
         match self {
             Self::FaultOn(fault, _) => Some(fault),

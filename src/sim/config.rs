@@ -23,9 +23,7 @@ pub const STEP_RATES_HZ: [u32; 6] = [400, 500, 1000, 2000, 4000, 8000];
 /// Everything a [`World`](super::World) needs to know at boot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WorldConfig {
-    /// What flies.
     pub airframe: Airframe,
-    /// Where it stands.
     pub home: Home,
     /// Steps per second, one of [`STEP_RATES_HZ`].
     pub rate_hz: u32,
@@ -33,13 +31,10 @@ pub struct WorldConfig {
     pub seed: u64,
     /// Whether the sensors err.
     pub noise: Noise,
-    /// Mean wind.
     pub wind: Wind,
     /// Size of random gusts, m/s; 0 for none.
     pub gust_mps: f64,
-    /// Level of turbulence.
     pub turbulence: Turbulence,
-    /// Rare switches.
     pub switches: Switches,
     /// Faults that will happen.
     pub faults: Vec<ScheduledFault>,
@@ -80,7 +75,6 @@ pub fn step_us(rate_hz: u32) -> Result<u64, WorldError> {
     }
 }
 
-/// Whether sensors err.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, Default, Hash, strum::Display, strum::EnumString, strum::VariantNames,
 )]
@@ -113,7 +107,6 @@ impl Turbulence {
     }
 
     /// Wind at 20 ft that stands for the level, kt: MIL-F-8785C gives 15, 30 and 45 kt.
-    #[must_use]
     pub fn wind_at_20ft_kt(self) -> f64 {
         match self {
             Self::None => 0.0,

@@ -10,7 +10,6 @@ const STEPS: u32 = 200;
 impl Airframe {
     /// Seconds of hover in still air from a full battery to an empty one, at an air density over the reference density.
     /// The power is that of the hover: a slow flight takes about as much, climbs and wind take more.
-    #[must_use]
     pub fn hover_endurance_s(&self, density_ratio: f64) -> f64 {
         let thrust = self.mass_kg * GRAVITY / ROTORS as f64;
         let speed = (thrust / (self.thrust_coeff * density_ratio)).sqrt();

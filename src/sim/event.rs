@@ -8,13 +8,10 @@ use super::fault::Fault;
 /// Something that happened at an instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WorldEvent {
-    /// When.
     pub time: SimTime,
-    /// What.
     pub kind: WorldEventKind,
 }
 
-/// What can happen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum WorldEventKind {
     /// First touch after a flight.
@@ -30,15 +27,11 @@ pub enum WorldEventKind {
         peak_mps2: f64,
     },
     /// The craft is lost.
-    Crash {
-        /// How.
-        cause: CrashCause,
-    },
+    Crash { cause: CrashCause },
     /// A fault began or ended. Impulses and displacements have no end, so only their beginning is told.
     Fault {
         /// Which; its `Display` is the value.
         fault: Fault,
-        /// Whether it began.
         on: bool,
     },
     /// All of the battery's charge is drawn.
@@ -47,8 +40,5 @@ pub enum WorldEventKind {
         cell_v: f64,
     },
     /// The integration failed; the world stands still from here on.
-    Diverged {
-        /// How.
-        cause: DivergeCause,
-    },
+    Diverged { cause: DivergeCause },
 }

@@ -31,13 +31,11 @@ pub struct MotorNumber(u8);
 
 impl MotorNumber {
     /// The motor with this number; `None` unless 1…4.
-    #[must_use]
     pub fn new(number: u8) -> Option<Self> {
         (1..=ROTORS as u8).contains(&number).then_some(Self(number))
     }
 
     /// Place in arrays of motors, 0…3.
-    #[must_use]
     pub fn index(self) -> usize {
         usize::from(self.0 - 1)
     }
@@ -63,7 +61,6 @@ impl fmt::Display for MotorNumber {
     strum::EnumIter,
 )]
 #[strum(serialize_all = "lowercase")]
-#[allow(missing_docs, reason = "the names say it")]
 pub enum Direction {
     North,
     East,
@@ -75,7 +72,6 @@ pub enum Direction {
 
 impl Direction {
     /// Unit vector, ENU.
-    #[must_use]
     pub fn enu(self) -> Vector3<f64> {
         match self {
             Self::North => Vector3::y(),
@@ -100,7 +96,6 @@ pub enum BatteryFault {
 /// One fault with its value. `Display` shows the value as it is written on the command line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Fault {
-    /// RC frames stop.
     RxLoss,
     /// This fraction of RC frames is lost at random.
     RxJitter(f64),
@@ -116,7 +111,6 @@ pub enum Fault {
     BaroDrift(f64),
     /// One sample a second is off by this many Pa.
     BaroSpike(f64),
-    /// No magnetometer samples.
     MagOff,
     /// The measured heading is off by this many degrees, clockwise positive.
     MagBias(f64),
@@ -134,11 +128,9 @@ pub enum Fault {
     PropImbalance(MotorNumber, f64),
     /// Accelerometer vibration at hover speed, m/s² rms per axis.
     Vibration(f64),
-    /// A weak battery.
     Battery(BatteryFault),
     /// One gust; lasts four seconds unless a time is given.
     Gust(Wind),
-    /// Another mean wind.
     Wind(Wind),
     /// An impulse, N·s.
     Push(f64, Direction),
@@ -160,7 +152,6 @@ pub enum Fault {
 
 impl Fault {
     /// Which kind it is.
-    #[must_use]
     pub fn kind(&self) -> FaultKind {
         match self {
             Self::RxLoss => FaultKind::RxLoss,
@@ -195,13 +186,11 @@ impl Fault {
     }
 
     /// The name on the command line.
-    #[must_use]
     pub fn name(&self) -> &'static str {
         self.kind().into()
     }
 
     /// The value, for those who show it.
-    #[must_use]
     pub fn value(&self) -> FaultValue {
         match *self {
             Self::RxLoss | Self::GpsLoss | Self::GpsFreeze | Self::MagOff | Self::ImuFreeze | Self::Stall => {
@@ -235,13 +224,11 @@ impl Fault {
     }
 
     /// Whether the fault acts at once and has no end.
-    #[must_use]
     pub fn is_instant(&self) -> bool {
         matches!(self, Self::Push(..) | Self::Teleport(_))
     }
 
     /// Whether the fault acts on the link to an external simulator.
-    #[must_use]
     pub fn needs_link(&self) -> bool {
         matches!(
             self,
@@ -250,14 +237,12 @@ impl Fault {
     }
 
     /// Whether the fault can act when a simulator outside moves the craft: it is on the way into the firmware.
-    #[must_use]
     pub fn is_on_the_way_in(&self) -> bool {
         self.needs_link() || matches!(self, Self::RxLoss | Self::GpsLoss)
     }
 
     /// Whether the fault does something when the flight controller runs outside: it is told of motion, position, pressure and
     /// RC, but neither of the magnetic field nor of the battery, which can act by weak motors only.
-    #[must_use]
     pub fn acts_on_controller_outside(&self, switches: &Switches) -> bool {
         match self {
             Self::MagOff | Self::MagBias(_) => false,
@@ -268,7 +253,6 @@ impl Fault {
 
     /// What distinguishes faults that can be on together; of faults with the same key the later takes the place of the
     /// earlier.
-    #[must_use]
     pub fn key(&self) -> FaultKey {
         FaultKey { kind: self.kind(), motor: self.motor() }
     }
@@ -290,7 +274,6 @@ pub struct FaultKey {
 
 impl FaultKey {
     /// Whether a fault is of this kind: without a motor, those of all motors are.
-    #[must_use]
     pub fn covers(&self, fault: &Fault) -> bool {
         self.kind == fault.kind() && (self.motor.is_none() || self.motor == fault.motor())
     }
@@ -314,16 +297,13 @@ impl fmt::Display for Fault {
 pub enum FaultStart {
     /// Seconds after the autopilot engaged for the first time since boot or reset.
     Engagement(f64),
-    /// Seconds after boot.
     Boot(f64),
 }
 
 /// A fault with its time. `Display` gives the text that parses back to it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ScheduledFault {
-    /// What.
     pub fault: Fault,
-    /// When.
     pub start: FaultStart,
     /// For how many seconds; to the end when `None`.
     pub for_s: Option<f64>,

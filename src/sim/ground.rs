@@ -45,7 +45,6 @@ pub struct GroundContact {
     pub any_leg: bool,
     /// Every leg carries load.
     pub all_legs: bool,
-    /// The hull touches.
     pub hull: bool,
     /// Distance of the lowest point from the ground, m; high up, a lower bound of it.
     pub clearance_m: f64,
@@ -62,7 +61,6 @@ struct Point {
 
 impl Ground {
     /// The contact model of an airframe.
-    #[must_use]
     pub fn new(airframe: &Airframe) -> Self {
         let points: ArrayVec<_, MAX_POINTS> =
             airframe.legs_m.iter().chain(&airframe.rotor_positions_m).copied().collect();
@@ -85,13 +83,11 @@ impl Ground {
     }
 
     /// The shape of the ground.
-    #[must_use]
     pub fn surface(&self) -> &Surface {
         &self.surface
     }
 
     /// Distance of the centre of mass from the ground above which nothing can contact, m.
-    #[must_use]
     pub fn reach_m(&self) -> f64 {
         self.reach
     }
@@ -150,7 +146,6 @@ impl Ground {
     }
 
     /// What touches the ground in a state.
-    #[must_use]
     pub fn contact(&self, state: &BodyState) -> GroundContact {
         let plane = self.surface.tangent_at(&state.pos_enu);
         let centre_m = plane.distance_m(&state.pos_enu);

@@ -49,7 +49,6 @@ pub struct Plant {
 
 impl Plant {
     /// The plant of an airframe stepped by `h` seconds, undamaged and without payload.
-    #[must_use]
     pub fn new(airframe: &Airframe, h: f64) -> Self {
         let rotors = &airframe.rotor_positions_m;
         Self {
@@ -81,7 +80,6 @@ impl Plant {
     }
 
     /// Thrust efficiency of each rotor, 0…1.
-    #[must_use]
     pub fn efficiency(&self) -> &[f64; ROTORS] {
         &self.efficiency
     }
@@ -106,19 +104,16 @@ impl Plant {
     }
 
     /// Mass with payload, kg.
-    #[must_use]
     pub fn mass_kg(&self) -> f64 {
         self.mass
     }
 
     /// The legs' and hull's part of the model.
-    #[must_use]
     pub fn ground(&self) -> &Ground {
         &self.ground
     }
 
     /// Loads in a state of the craft, for the accelerometer and as the first stage of the next step.
-    #[must_use]
     pub fn loads(
         &self,
         state: &BodyState,
@@ -260,7 +255,6 @@ impl Plant {
 
 /// Thrust near the ground over thrust far from it, after Cheeseman and Bennett: 1/(1 − (R/4z)²), for a rotor of
 /// radius R at height z (m), z not below R/2.
-#[must_use]
 pub fn ground_effect_factor(rotor_radius_m: f64, height_m: f64) -> f64 {
     let ratio = rotor_radius_m / (4.0 * height_m.max(0.5 * rotor_radius_m));
     1.0 / (1.0 - ratio * ratio)

@@ -28,7 +28,6 @@ pub enum Stream {
     GpsAcquisition = 8,
     /// Voltage and current readings.
     Battery = 9,
-    /// The turbulence filters.
     Turbulence = 10,
     /// Times and directions of gusts.
     Gusts = 11,
@@ -42,7 +41,6 @@ pub enum Stream {
 
 impl Stream {
     /// The generator of this consumer for a seed.
-    #[must_use]
     pub fn rng(self, seed: u64) -> ChaCha8Rng {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         rng.set_stream(self as u64);
@@ -64,7 +62,6 @@ impl Normals {
         StandardNormal.sample(&mut self.0)
     }
 
-    /// Three independent deviates.
     pub(super) fn next3(&mut self) -> nalgebra::Vector3<f64> {
         let x = self.next();
         let y = self.next();

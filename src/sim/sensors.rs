@@ -58,7 +58,6 @@ pub(super) struct SensorInputs<'a> {
 }
 
 impl Sensors {
-    /// Sensors at boot.
     pub(super) fn new(config: &WorldConfig, step_s: f64) -> Self {
         let home = &config.home;
         Self {

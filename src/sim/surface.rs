@@ -10,10 +10,8 @@ pub(super) const MAX_RISE_M: f64 = 40.0;
 /// The shape of the ground. Home lies on it, at height zero.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Surface {
-    /// Level everywhere.
     #[default]
     Flat,
-    /// An inclined plane.
     Slope(Slope),
 }
 
@@ -38,7 +36,6 @@ pub struct TangentPlane {
 
 impl Slope {
     /// A plane that rises by `rise_m` in 100 m towards `bearing_deg`, degrees from north.
-    #[must_use]
     pub fn new(rise_m: f64, bearing_deg: f64) -> Self {
         let (sin, cos) = bearing_deg.to_radians().sin_cos();
         let gradient = Vector2::new(sin, cos) * (rise_m / 100.0);
@@ -69,7 +66,6 @@ impl Surface {
     }
 
     /// Height of the ground at a place east and north of home, m.
-    #[must_use]
     pub fn elevation_m(&self, place: &Vector2<f64>) -> f64 {
         match self {
             Self::Flat => 0.0,
@@ -78,7 +74,6 @@ impl Surface {
     }
 
     /// The plane that touches the ground below or above a point. Exact for every point where the ground is a plane.
-    #[must_use]
     pub fn tangent_at(&self, _point: &Vector3<f64>) -> TangentPlane {
         let normal = match self {
             Self::Flat => Vector3::z(),
@@ -111,25 +106,21 @@ impl TangentPlane {
     pub const LEVEL: Self = Self { point: Vector3::new(0.0, 0.0, 0.0), normal: Vector3::new(0.0, 0.0, 1.0) };
 
     /// Unit vector that points up from the plane.
-    #[must_use]
     pub fn normal(&self) -> &Vector3<f64> {
         &self.normal
     }
 
     /// Distance of a point from the plane, negative below it, m.
-    #[must_use]
     pub fn distance_m(&self, point: &Vector3<f64>) -> f64 {
         (point - self.point).dot(&self.normal)
     }
 
     /// The part of a vector that lies in the plane.
-    #[must_use]
     pub fn along(&self, vector: &Vector3<f64>) -> Vector3<f64> {
         vector - self.normal * vector.dot(&self.normal)
     }
 
     /// The point of the plane at a place east and north of home.
-    #[must_use]
     pub fn point_at(&self, place: &Vector2<f64>) -> Vector3<f64> {
         let from = place - self.point.xy();
         let up = self.point.z - self.normal.xy().dot(&from) / self.normal.z;

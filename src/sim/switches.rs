@@ -22,7 +22,6 @@ pub enum WindProfile {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::Display)]
 #[strum(serialize_all = "lowercase")]
 pub enum AirDensity {
-    /// The standard atmosphere.
     #[default]
     Isa,
     /// The density at which the airframe's coefficients are stated, everywhere.
@@ -82,9 +81,7 @@ impl Default for Switches {
 pub struct SwitchInfo {
     /// Name before the `=`.
     pub name: &'static str,
-    /// Allowed values.
     pub values: &'static str,
-    /// What it does.
     pub help: &'static str,
 }
 
@@ -157,7 +154,6 @@ impl Switches {
     }
 
     /// The switches that differ from the default, as [`Self::set`] takes them.
-    #[must_use]
     pub fn changed(&self) -> Vec<String> {
         let usual = Self::default();
         let on_off = |on: bool| if on { "on" } else { "off" };

@@ -9,7 +9,6 @@ use super::airframe::ROTORS;
 /// The true state of the craft at one instant. World ENU with home on the ground as origin, body FLU.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Truth {
-    /// The instant.
     pub time: SimTime,
     /// Centre of mass, m; on the ground z is the height of the centre of mass above the legs.
     pub pos_enu: Vector3<f64>,
@@ -27,7 +26,6 @@ pub struct Truth {
     pub specific_force_flu: Vector3<f64>,
     /// Wind at the craft (the direction it blows to), m/s.
     pub wind_enu: Vector3<f64>,
-    /// Battery.
     pub battery: BatteryTruth,
     /// Height of the ground below the craft above that at home, m.
     pub ground_m: f64,
@@ -56,21 +54,18 @@ pub struct BatteryTruth {
 
 impl Truth {
     /// Heading of the nose, degrees clockwise from north, 0…360.
-    #[must_use]
     pub fn heading_deg(&self) -> f64 {
         let nose = self.attitude * Vector3::x();
         nose.x.atan2(nose.y).to_degrees().rem_euclid(360.0)
     }
 
     /// Roll, right wing down positive, degrees.
-    #[must_use]
     pub fn roll_deg(&self) -> f64 {
         let up = self.attitude.inverse_transform_vector(&Vector3::z());
         up.y.atan2(up.z).to_degrees()
     }
 
     /// Pitch, nose up positive, degrees.
-    #[must_use]
     pub fn pitch_deg(&self) -> f64 {
         let nose = self.attitude * Vector3::x();
         nose.z.clamp(-1.0, 1.0).asin().to_degrees()
@@ -78,14 +73,12 @@ impl Truth {
 }
 
 /// The attitude of a level craft with the given heading (degrees clockwise from north), body FLU → ENU.
-#[must_use]
 pub fn level_attitude(heading_deg: f64) -> UnitQuaternion<f64> {
     UnitQuaternion::from_axis_angle(&Vector3::z_axis(), (90.0 - heading_deg).to_radians())
 }
 
 /// The attitude from heading (clockwise from north), pitch (nose up positive) and roll (right positive), degrees,
 /// applied in this order; body FLU → ENU.
-#[must_use]
 pub fn attitude(heading_deg: f64, pitch_up_deg: f64, roll_right_deg: f64) -> UnitQuaternion<f64> {
     // In FLU a positive turn about y puts the nose down and one about x puts the right side down.
     level_attitude(heading_deg)

@@ -15,7 +15,6 @@ impl ParseError {
     }
 
     /// What is wrong, for a message that shows the text already.
-    #[must_use]
     pub fn problem(&self) -> &str {
         &self.problem
     }

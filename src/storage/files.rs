@@ -155,7 +155,6 @@ impl Files {
 }
 
 /// Where a path leads when it is a symbolic link, there or not; else the path itself.
-#[must_use]
 pub fn link_target(path: &Path) -> PathBuf {
     const MOST_LINKS: usize = 40;
     let mut path = path.to_owned();

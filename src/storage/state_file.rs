@@ -19,7 +19,6 @@ const TEMPORARY: (&str, &str) = (".betadeck-", ".tmp");
 /// What a file is opened for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Access {
-    /// To read it.
     Read,
     /// To read it and append to it.
     Append,
@@ -64,7 +63,6 @@ pub fn read(path: &Path, most: u64) -> io::Result<Option<Vec<u8>>> {
 }
 
 /// Whether a file has other names: what is written to it appears there, too.
-#[must_use]
 pub fn has_other_names(file: &File) -> bool {
     file.metadata().is_ok_and(|metadata| metadata.nlink() > 1)
 }
@@ -116,7 +114,6 @@ pub fn sweep(directory: &Path) {
 }
 
 /// Whether a name is that of a temporary file of this program.
-#[must_use]
 pub fn is_temporary(name: &OsStr) -> bool {
     name.to_str().is_some_and(|name| name.starts_with(TEMPORARY.0) && name.ends_with(TEMPORARY.1))
 }

@@ -7,12 +7,10 @@ use strum::IntoEnumIterator as _;
 #[strum(serialize_all = "SCREAMING_SNAKE_CASE")]
 #[repr(u8)]
 pub enum ArmingFlag {
-    /// No gyro.
     #[strum(to_string = "NOGYRO")]
     NoGyro = 0,
     /// A failsafe landing ended the flight and the link is not good again.
     Failsafe = 1,
-    /// No valid RC.
     #[strum(to_string = "RXLOSS")]
     RxLoss = 2,
     /// The link appeared with the ARM switch on.
@@ -24,17 +22,14 @@ pub enum ArmingFlag {
     Runaway = 5,
     /// Crash detection stopped the motors.
     Crash = 6,
-    /// Throttle not low.
     Throttle = 7,
     /// Tilted, or the attitude is not known yet.
     Angle = 8,
-    /// Just booted.
     #[strum(to_string = "BOOTGRACE")]
     BootGrace = 9,
     /// The PREARM switch is missing.
     #[strum(to_string = "NOPREARM")]
     NoPrearm = 10,
-    /// CPU overload.
     Load = 11,
     /// Sensors are being calibrated.
     #[strum(to_string = "CALIB")]
@@ -54,12 +49,10 @@ pub enum ArmingFlag {
     /// The GPS RESCUE switch is on.
     #[strum(to_string = "RESCUE_SW")]
     RescueSwitch = 19,
-    /// DShot telemetry.
     DshotTelem = 20,
     /// A change needs a reboot.
     #[strum(to_string = "REBOOT_REQD")]
     RebootRequired = 21,
-    /// DShot bit banging.
     #[strum(to_string = "DSHOT_BBANG")]
     DshotBitbang = 22,
     /// The accelerometer was never calibrated.
@@ -85,7 +78,6 @@ pub enum ArmingFlag {
 
 impl ArmingFlag {
     /// What sets it, as a phrase; for flags that are known but never set here, why not.
-    #[must_use]
     pub fn cause(self) -> &'static str {
         match self {
             Self::NoGyro => "never: the simulated gyro is always there",
@@ -125,7 +117,6 @@ impl ArmingFlag {
     }
 
     /// What to do about it, as a phrase.
-    #[must_use]
     pub fn hint(self) -> &'static str {
         match self {
             Self::NoGyro => "no gyro",
@@ -169,7 +160,6 @@ impl ArmingFlags {
     pub const NONE: Self = Self(0);
 
     /// Whether the flag is set.
-    #[must_use]
     pub fn has(self, flag: ArmingFlag) -> bool {
         self.0 & (1 << flag as u32) != 0
     }
@@ -180,26 +170,22 @@ impl ArmingFlags {
     }
 
     /// The set with one flag taken out.
-    #[must_use]
     pub fn without(mut self, flag: ArmingFlag) -> Self {
         self.set(flag, false);
         self
     }
 
     /// Whether nothing blocks arming.
-    #[must_use]
     pub fn is_empty(self) -> bool {
         self.0 == 0
     }
 
     /// The bits of the wire.
-    #[must_use]
     pub fn bits(self) -> u32 {
         self.0
     }
 
     /// The flags without those that only say that the ARM switch must be moved again.
-    #[must_use]
     pub fn causes(self) -> Self {
         self.without(ArmingFlag::ArmSwitch).without(ArmingFlag::NotDisarmed)
     }

@@ -22,6 +22,5 @@ pub struct CannotHold {
     pub distance_m: f64,
     /// Height above the altitude setpoint, m; negative below it.
     pub vertical_m: f64,
-    /// What binds.
     pub limit: HoldLimit,
 }

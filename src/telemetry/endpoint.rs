@@ -14,7 +14,6 @@ pub enum EndpointKind {
     /// States from a simulator.
     #[strum(to_string = "udp fdm")]
     Fdm,
-    /// RC from scripts.
     #[strum(to_string = "udp rc")]
     Rc,
     /// Motor commands to a simulator.
@@ -24,7 +23,6 @@ pub enum EndpointKind {
 
 impl EndpointKind {
     /// The protocol below it.
-    #[must_use]
     pub fn transport(self) -> Transport {
         match self {
             Self::WebSocket | Self::Tcp => Transport::Tcp,
@@ -33,7 +31,6 @@ impl EndpointKind {
     }
 
     /// Its name without the transport, where there is little room.
-    #[must_use]
     pub fn short_name(self) -> &'static str {
         match self {
             Self::WebSocket => "ws",
@@ -49,13 +46,10 @@ impl EndpointKind {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, strum::Display)]
 #[strum(serialize_all = "UPPERCASE")]
 pub enum Transport {
-    /// A stream.
     Tcp,
-    /// Datagrams.
     Udp,
 }
 
-/// One endpoint.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct EndpointStatus {
     /// What it is for.
@@ -88,9 +82,7 @@ pub struct ClientStats {
     pub clients: u32,
     /// Code of the newest MSP request.
     pub last_message: Option<u16>,
-    /// Bytes from clients.
     pub received_bytes: u64,
-    /// Bytes to clients.
     pub sent_bytes: u64,
     /// Clients turned away or lost, frames given up.
     pub errors: u64,
@@ -99,7 +91,6 @@ pub struct ClientStats {
 /// What a receiver of datagrams has seen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct PacketStats {
-    /// Good packets.
     pub packets: u64,
     /// Good packets a second; 0 once they stay away.
     pub rate_hz: u32,
@@ -118,7 +109,6 @@ pub struct SimulatorStats {
     pub link: LinkState,
     /// Its dialect, once known.
     pub dialect: Option<&'static str>,
-    /// Senseless packets.
     pub refused: u64,
     /// Packets from before the newest one.
     pub old: u64,
@@ -126,7 +116,6 @@ pub struct SimulatorStats {
 
 impl EndpointState {
     /// Whether nobody uses it at present.
-    #[must_use]
     pub fn is_idle(&self) -> bool {
         match self {
             Self::Busy | Self::Closed => true,
@@ -148,7 +137,6 @@ pub struct BadPackets {
 
 impl BadPackets {
     /// What all endpoints have seen.
-    #[must_use]
     pub fn of(endpoints: &[EndpointStatus]) -> Self {
         endpoints.iter().fold(Self::default(), |sum, endpoint| match endpoint.state {
             EndpointState::Packets(stats) => Self { wrong_size: sum.wrong_size + stats.wrong_size, ..sum },
@@ -158,7 +146,6 @@ impl BadPackets {
     }
 
     /// Whether there was none.
-    #[must_use]
     pub fn is_none(&self) -> bool {
         *self == Self::default()
     }

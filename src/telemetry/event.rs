@@ -8,33 +8,26 @@ use crate::telemetry::{FaultKind, FaultValue, FirmwareEvent};
 pub struct Event {
     /// Simulated time since boot.
     pub time: SimTime,
-    /// What happened.
     pub kind: EventKind,
 }
 
-/// What happened.
 #[derive(Debug, Clone, PartialEq)]
 pub enum EventKind {
     /// The vehicle was started.
     Boot {
         /// Seed of all randomness.
         seed: u64,
-        /// Steps a second.
         rate_hz: u32,
         /// Name of the airframe.
         airframe: String,
         /// Whether other programs can influence the flight, so that it is not repeatable.
         live: bool,
     },
-    /// The flight controller.
     Firmware(FirmwareEvent),
     /// A fault began or ended.
     Fault {
-        /// Which.
         kind: FaultKind,
-        /// Whether it began.
         on: bool,
-        /// Its value.
         value: FaultValue,
     },
     /// The craft touched the ground.
@@ -49,9 +42,7 @@ pub enum EventKind {
         /// Greatest specific force since the contact, m/s².
         peak_mps2: f64,
     },
-    /// The craft crashed.
     Crash {
-        /// What went wrong.
         cause: CrashCause,
     },
     /// All of the battery's charge is drawn: a real pack is empty now, whether it acts on the rotors or not.

@@ -30,7 +30,6 @@ pub enum RxLossPolicy {
 /// What stage 2 of the failsafe does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::IntoStaticStr)]
 pub enum FailsafeProcedure {
-    /// Disarm.
     #[strum(to_string = "DROP")]
     Drop,
     /// Level, hold the place, descend.

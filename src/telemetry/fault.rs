@@ -16,23 +16,18 @@ use std::fmt;
 )]
 #[strum(serialize_all = "kebab-case")]
 pub enum FaultKind {
-    /// RC frames stop.
     RxLoss,
     /// RC frames are lost at random.
     RxJitter,
-    /// No GPS solution.
     GpsLoss,
     /// The GPS position is shifted.
     GpsGlitch,
     /// The same GPS solution again and again.
     GpsFreeze,
-    /// Larger GPS errors.
     GpsNoise,
-    /// The pressure ramps.
     BaroDrift,
     /// Single pressure samples are off.
     BaroSpike,
-    /// No magnetometer samples.
     MagOff,
     /// The magnetic heading is off.
     MagBias,
@@ -46,17 +41,11 @@ pub enum FaultKind {
     Motor,
     /// A motor's command is frozen.
     MotorStuck,
-    /// An unbalanced propeller.
     PropImbalance,
-    /// Accelerometer vibration.
     Vibration,
-    /// A weak battery.
     Battery,
-    /// One gust.
     Gust,
-    /// Another mean wind.
     Wind,
-    /// An impulse.
     Push,
     /// The craft is moved at once.
     Teleport,
@@ -97,11 +86,9 @@ pub enum FaultValue {
     },
     /// One battery cell fails short.
     CellOut,
-    /// An impulse.
     Push {
         /// Size, N·s.
         impulse: f64,
-        /// Where it points.
         direction: &'static str,
     },
     /// A displacement north, east and up, m.

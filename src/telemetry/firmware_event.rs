@@ -13,29 +13,19 @@ use super::nav::NavEvent;
 pub enum DisarmReason {
     /// An arming-disable flag appeared.
     ArmingDisabled = 0,
-    /// The failsafe machine.
     Failsafe = 1,
     /// Throttle low for too long.
     ThrottleTimeout = 2,
-    /// Stick command.
     Sticks = 3,
-    /// The ARM switch.
     Switch = 4,
-    /// Crash protection.
     CrashProtection = 5,
-    /// Runaway take-off.
     RunawayTakeoff = 6,
-    /// GPS rescue.
     GpsRescue = 7,
-    /// A serial command.
     SerialCommand = 8,
-    /// Touchdown.
     Landing = 9,
-    /// Crash flip.
     Crashflip = 10,
     /// A remote flight controller does not tell.
     Unknown = 254,
-    /// The system (restart).
     System = 255,
 }
 
@@ -44,17 +34,13 @@ pub enum DisarmReason {
 pub enum FirmwareEvent {
     /// The first fix, or the fix came back.
     GpsFix {
-        /// Satellites in use.
         sats: u8,
     },
     /// The fix was lost.
     GpsLost {
-        /// Satellites in use.
         sats: u8,
     },
-    /// Armed.
     Armed,
-    /// Disarmed.
     Disarmed(DisarmReason),
     /// The set of active modes changed.
     Mode(ModeFlags),
@@ -68,14 +54,11 @@ pub enum FirmwareEvent {
         policy: RxLossPolicy,
         /// 1 at the loss, 2 when the procedure starts.
         stage: u8,
-        /// The procedure.
         procedure: FailsafeProcedure,
     },
-    /// The navigator.
     Nav(NavEvent),
     /// The battery runs low; nothing is done about it but telling.
     Battery {
-        /// How low.
         state: BatteryAlarm,
         /// Voltage a cell, V.
         cell_v: f64,

@@ -23,7 +23,6 @@ pub struct WaypointTruth {
     pub source: PlanSource,
     /// Index in that plan.
     pub wp: u8,
-    /// What it is.
     pub kind: WaypointType,
     /// Horizontal miss, m: the closest approach of a FLYOVER, that less the turn radius of a FLYBY that was turned at it,
     /// the greatest distance of a HOLD (from its pattern, if it has one) or TAKEOFF, the touchdown distance of a LAND.
@@ -43,7 +42,6 @@ pub struct WaypointTruth {
 pub struct ParkedTruth {
     /// Index of the waypoint.
     pub wp: u8,
-    /// What it is.
     pub kind: WaypointType,
     /// Distance from where it should stay, m; `None` while the pilot flies it or brings it back.
     pub distance_m: Option<f64>,

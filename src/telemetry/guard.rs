@@ -3,16 +3,12 @@
 /// Comparison a guard makes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, strum::Display)]
 pub enum GuardOp {
-    /// value ≤ limit
     #[strum(to_string = "≤")]
     AtMost,
-    /// value ≥ limit
     #[strum(to_string = "≥")]
     AtLeast,
-    /// value < limit
     #[strum(to_string = "<")]
     Below,
-    /// value > limit
     #[strum(to_string = ">")]
     Above,
 }
@@ -26,7 +22,6 @@ pub enum GuardName {
     /// Waypoints in the active plan.
     #[strum(to_string = "plan")]
     Plan,
-    /// Distance from home.
     #[strum(to_string = "fence")]
     Fence,
     /// Altitude in the climb before the first leg.
@@ -90,7 +85,6 @@ pub enum GuardName {
 
 impl GuardName {
     /// What is compared and what follows, in a sentence or two.
-    #[must_use]
     pub fn explanation(self) -> &'static str {
         match self {
             Self::Fix => "A GPS fix with altitude is needed: 1 when there is one.",
@@ -137,7 +131,6 @@ impl GuardName {
     }
 
     /// Unit of the value and its limit.
-    #[must_use]
     pub fn unit(self) -> GuardUnit {
         match self {
             Self::Fix => GuardUnit::None,
@@ -190,31 +183,25 @@ pub enum GuardUnit {
 /// A named condition of the state machine with everything needed to say why it does or does not hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Guard {
-    /// What is compared.
     pub name: GuardName,
-    /// The measured value.
     pub value: f64,
     /// The limit it is compared with, in the same unit.
     pub limit: f64,
-    /// How.
     pub op: GuardOp,
 }
 
 impl Guard {
     /// A condition on a measured value.
-    #[must_use]
     pub fn new(name: GuardName, value: f64, op: GuardOp, limit: f64) -> Self {
         Self { name, value, limit, op }
     }
 
     /// Unit of value and limit.
-    #[must_use]
     pub fn unit(&self) -> GuardUnit {
         self.name.unit()
     }
 
     /// Whether the condition holds; never for NaN.
-    #[must_use]
     pub fn holds(&self) -> bool {
         match self.op {
             GuardOp::AtMost => self.value <= self.limit,
@@ -225,7 +212,6 @@ impl Guard {
     }
 
     /// How far the value is on the fulfilled side: ≥ 0 when the condition holds.
-    #[must_use]
     pub fn margin(&self) -> f64 {
         match self.op {
             GuardOp::AtMost | GuardOp::Below => self.limit - self.value,

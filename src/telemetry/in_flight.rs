@@ -18,7 +18,6 @@ pub enum InFlightCommand {
 /// Why such a command is not taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum InFlightRefusal {
-    /// Nothing is flown.
     NotFlying,
     /// A procedure of the receiver failsafe runs.
     Failsafe,
@@ -26,7 +25,6 @@ pub enum InFlightRefusal {
     Injected(PlanSource),
     /// The stored plan has no waypoint of this index to fly to.
     NoWaypoint {
-        /// The index.
         wp: u8,
         /// Waypoints in the plan.
         count: u8,
@@ -43,7 +41,6 @@ pub enum InFlightRefusal {
 
 impl InFlightRefusal {
     /// One sentence: why not, and what to do.
-    #[must_use]
     pub fn sentence(&self) -> String {
         match self {
             Self::NotFlying => "The autopilot does not fly: engage it first.".to_owned(),

@@ -3,10 +3,8 @@
 /// State of the link to an external simulator.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display)]
 pub enum LinkState {
-    /// It never spoke.
     #[strum(to_string = "waiting for a simulator")]
     Waiting,
-    /// It speaks.
     #[strum(to_string = "flying")]
     Flowing,
     /// It has not spoken for a second.

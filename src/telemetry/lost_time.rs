@@ -16,7 +16,6 @@ impl LostTime {
     const NOTABLE: Duration = Duration::from_millis(500);
 
     /// Whether it is worth to be told.
-    #[must_use]
     pub fn is_notable(&self) -> bool {
         self.sum >= Self::NOTABLE
     }

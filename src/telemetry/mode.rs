@@ -8,7 +8,6 @@ pub struct ModeFlags(u32);
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::EnumIter, strum::IntoStaticStr)]
 #[repr(u8)]
 pub enum Mode {
-    /// Motors may run.
     #[strum(to_string = "ARM")]
     Arm = 0,
     /// Self-levelling with an angle limit.
@@ -17,22 +16,17 @@ pub enum Mode {
     /// Self-levelling around the stick centre.
     #[strum(to_string = "HORIZON")]
     Horizon = 2,
-    /// Heading hold.
     #[strum(to_string = "MAG")]
     Mag = 3,
-    /// Altitude hold.
     #[strum(to_string = "ALTHOLD")]
     AltHold = 4,
     /// Controls relative to the heading at arming.
     #[strum(to_string = "HEADFREE")]
     HeadFree = 5,
-    /// Position hold.
     #[strum(to_string = "POS HOLD")]
     PosHold = 6,
-    /// Receiver failsafe.
     #[strum(to_string = "FAILSAFE")]
     Failsafe = 7,
-    /// GPS rescue.
     #[strum(to_string = "GPS RESCUE")]
     GpsRescue = 8,
     /// The waypoint autopilot flies.
@@ -41,11 +35,9 @@ pub enum Mode {
 }
 
 impl ModeFlags {
-    /// The empty set.
     pub const NONE: Self = Self(0);
 
     /// Whether `mode` is in the set.
-    #[must_use]
     pub fn has(self, mode: Mode) -> bool {
         self.0 & (1 << mode as u32) != 0
     }

@@ -6,7 +6,6 @@ use super::mode::Mode;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::FromRepr, strum::IntoStaticStr)]
 #[repr(u8)]
 pub enum ModeBox {
-    /// Motors may run.
     #[strum(to_string = "ARM")]
     Arm = 0,
     /// Self-levelling with an angle limit.
@@ -15,7 +14,6 @@ pub enum ModeBox {
     /// Self-levelling about the stick centre.
     #[strum(to_string = "HORIZON")]
     Horizon = 2,
-    /// Altitude hold.
     #[strum(to_string = "ALTHOLD")]
     AltHold = 3,
     /// Gains rise in quick throttle changes.
@@ -30,28 +28,20 @@ pub enum ModeBox {
     /// Takes the present heading as the headfree reference.
     #[strum(to_string = "HEADADJ")]
     HeadAdjust = 7,
-    /// CAMSTAB.
     #[strum(to_string = "CAMSTAB")]
     CamStab = 8,
-    /// Position hold.
     #[strum(to_string = "POS HOLD")]
     PosHold = 11,
-    /// PASSTHRU.
     #[strum(to_string = "PASSTHRU")]
     PassThru = 12,
-    /// BEEPER.
     #[strum(to_string = "BEEPER")]
     Beeper = 13,
-    /// LEDLOW.
     #[strum(to_string = "LEDLOW")]
     LedLow = 15,
-    /// CALIB.
     #[strum(to_string = "CALIB")]
     Calib = 17,
-    /// OSD DISABLE.
     #[strum(to_string = "OSD DISABLE")]
     OsdDisable = 19,
-    /// TELEMETRY.
     #[strum(to_string = "TELEMETRY")]
     Telemetry = 20,
     /// SERVO1.
@@ -63,10 +53,8 @@ pub enum ModeBox {
     /// SERVO3.
     #[strum(to_string = "SERVO3")]
     Servo3 = 25,
-    /// BLACKBOX.
     #[strum(to_string = "BLACKBOX")]
     Blackbox = 26,
-    /// The FAILSAFE switch.
     #[strum(to_string = "FAILSAFE")]
     Failsafe = 27,
     /// Full stabilisation at zero throttle.
@@ -75,10 +63,8 @@ pub enum ModeBox {
     /// 3D DISABLE.
     #[strum(to_string = "3D DISABLE")]
     ThreeDDisable = 29,
-    /// FPV ANGLE MIX.
     #[strum(to_string = "FPV ANGLE MIX")]
     FpvAngleMix = 30,
-    /// BLACKBOX ERASE.
     #[strum(to_string = "BLACKBOX ERASE")]
     BlackboxErase = 31,
     /// CAMERA CONTROL 1.
@@ -99,7 +85,6 @@ pub enum ModeBox {
     /// GPS BEEP SATELLITE COUNT.
     #[strum(to_string = "GPS BEEP SATELLITE COUNT")]
     GpsBeepSatelliteCount = 37,
-    /// VTX PIT MODE.
     #[strum(to_string = "VTX PIT MODE")]
     VtxPitMode = 39,
     /// USER1.
@@ -114,7 +99,6 @@ pub enum ModeBox {
     /// USER4.
     #[strum(to_string = "USER4")]
     User4 = 43,
-    /// PID AUDIO.
     #[strum(to_string = "PID AUDIO")]
     PidAudio = 44,
     /// No arming until reboot.
@@ -123,37 +107,28 @@ pub enum ModeBox {
     /// Fly home and land.
     #[strum(to_string = "GPS RESCUE")]
     GpsRescue = 46,
-    /// ACRO TRAINER.
     #[strum(to_string = "ACRO TRAINER")]
     AcroTrainer = 47,
-    /// VTX CONTROL DISABLE.
     #[strum(to_string = "VTX CONTROL DISABLE")]
     VtxControlDisable = 48,
-    /// LAUNCH CONTROL.
     #[strum(to_string = "LAUNCH CONTROL")]
     LaunchControl = 49,
-    /// MSP OVERRIDE.
     #[strum(to_string = "MSP OVERRIDE")]
     MspOverride = 50,
     /// The sticks do not arm or disarm.
     #[strum(to_string = "STICK COMMANDS DISABLE")]
     StickCommandsDisable = 51,
-    /// BEEPER MUTE.
     #[strum(to_string = "BEEPER MUTE")]
     BeeperMute = 52,
-    /// READY.
     #[strum(to_string = "READY")]
     Ready = 53,
-    /// LAP TIMER RESET.
     #[strum(to_string = "LAP TIMER RESET")]
     LapTimerReset = 54,
-    /// CHIRP.
     #[strum(to_string = "CHIRP")]
     Chirp = 55,
     /// The waypoint autopilot flies.
     #[strum(to_string = "AUTOPILOT")]
     Autopilot = 56,
-    /// WP CAPTURE.
     #[strum(to_string = "WP CAPTURE")]
     WpCapture = 57,
 }

@@ -29,22 +29,17 @@ use crate::plan::{FlightPlan, WaypointType};
 #[strum(serialize_all = "UPPERCASE")]
 #[repr(u8)]
 pub enum NavState {
-    /// Not flying.
     #[default]
     Idle = 0,
     /// On the way to the current waypoint.
     Approaching = 1,
     /// Reached it; lasts one update.
     Arrived = 2,
-    /// Keeping station.
     Holding = 3,
-    /// Circling.
     Orbiting = 4,
     /// Flying the figure of eight.
     Figure8 = 5,
-    /// Descending.
     Landing = 6,
-    /// Mission over.
     Complete = 7,
 }
 
@@ -80,7 +75,6 @@ pub enum PlanSource {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, strum::Display)]
 #[strum(serialize_all = "UPPERCASE")]
 pub enum L1Mode {
-    /// No path following.
     #[default]
     Off,
     /// The carrot runs on the leg.
@@ -110,7 +104,6 @@ pub enum FenceAction {
     /// Land on the spot.
     #[default]
     Land = 0,
-    /// Return to home.
     Rth = 1,
 }
 
@@ -121,24 +114,18 @@ pub enum NavEvent {
     Plan {
         /// Where it came from.
         source: PlanSource,
-        /// The plan.
         plan: Box<FlightPlan>,
     },
-    /// A state transition.
     State {
-        /// State left.
         from: NavState,
-        /// State entered.
         to: NavState,
         /// Index of the current waypoint in the active plan.
         wp: u8,
         /// Its type, when there is one.
         kind: Option<WaypointType>,
-        /// The cause.
         reason: TransitionReason,
         /// The guard that fired, if one did.
         guard: Option<Guard>,
-        /// Target position.
         target: LatLon,
         /// Target altitude above home, m.
         target_alt_m: f64,
@@ -162,7 +149,6 @@ pub enum NavEvent {
     },
     /// The craft cannot stay where it should (`on`), or can again.
     CannotHold {
-        /// Whether it began.
         on: bool,
         /// How far off the craft is.
         deviation: CannotHold,
@@ -252,7 +238,6 @@ pub struct NavTelemetry {
 
 impl NavTelemetry {
     /// That of a navigator that flies nothing and tells everything.
-    #[must_use]
     pub fn idle() -> Self {
         Self { l1_mode: Some(L1Mode::Off), hold_remaining_ds: Some(0), ..Self::default() }
     }

@@ -11,9 +11,7 @@ pub enum Refusal {
     NotArmed,
     /// The throttle has not been raised since arming.
     Throttle,
-    /// No GPS fix.
     NoFix,
-    /// No altitude estimate.
     NoAltitude,
     /// The heading is unknown.
     NoHeading,
@@ -63,7 +61,6 @@ pub enum AbortReason {
 
 impl Refusal {
     /// One sentence: what is missing and what to do.
-    #[must_use]
     pub fn sentence(&self) -> Cow<'static, str> {
         match self {
             Self::NotArmed => "Autopilot needs an armed craft: arm first, then switch on.".into(),

@@ -13,7 +13,6 @@ use crate::telemetry::{
     switch,
 };
 
-/// The whole picture.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Snapshot {
     /// Simulated time since boot.
@@ -40,7 +39,6 @@ pub struct Snapshot {
 
 impl Snapshot {
     /// Whether the autopilot is known to fly a mission.
-    #[must_use]
     pub fn is_engaged(&self) -> bool {
         self.nav.as_ref().is_some_and(|nav| nav.engaged)
     }
@@ -77,7 +75,6 @@ pub struct TruthView {
     pub wind_ne: Option<Vector2<f64>>,
     /// Standing on the ground; with an external simulator: low and slow.
     pub on_ground: bool,
-    /// Crashed.
     pub crashed: bool,
     /// The simulation left the range where its numbers mean something.
     pub diverged: bool,
@@ -111,9 +108,7 @@ pub struct EstimateView {
 /// Modes, arming, receiver, battery; `None` is what a remote flight controller does not tell.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct CraftView {
-    /// Armed.
     pub armed: Option<bool>,
-    /// Active modes.
     pub modes: Option<ModeFlags>,
     /// The arming-disable flags that are set; none while armed.
     pub arming_blocked_by: Option<ArmingFlags>,
@@ -121,7 +116,6 @@ pub struct CraftView {
     pub gps_fix: Option<bool>,
     /// What the GPS said last, when it has said anything; old once the fix is lost.
     pub gps: Option<GpsView>,
-    /// Satellites.
     pub sats: Option<u8>,
     /// Horizontal dilution of precision, when reported.
     pub hdop: Option<f64>,
@@ -160,7 +154,6 @@ pub struct CraftView {
 /// What the GPS said, unfiltered.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct GpsView {
-    /// Where.
     pub position: LatLon,
     /// Altitude above mean sea level, m.
     pub alt_amsl_m: f64,
@@ -170,43 +163,36 @@ pub struct GpsView {
 
 impl CraftView {
     /// Whether the craft is known to be armed.
-    #[must_use]
     pub fn is_armed(&self) -> bool {
         self.armed == Some(true)
     }
 
     /// Whether a mode is known to be active.
-    #[must_use]
     pub fn is_active(&self, mode: Mode) -> bool {
         self.modes.is_some_and(|modes| modes.has(mode))
     }
 
     /// Whether there is known to be a fix.
-    #[must_use]
     pub fn has_fix(&self) -> bool {
         self.gps_fix == Some(true)
     }
 
     /// Whether the craft is known to fly home or land by a command.
-    #[must_use]
     pub fn is_commanded(&self) -> bool {
         self.commanded == Some(true)
     }
 
     /// The mode conditions that are known.
-    #[must_use]
     pub fn mode_ranges(&self) -> &[ModeRange] {
         self.mode_ranges.as_deref().unwrap_or_default()
     }
 
     /// Whether the switch of a mode is known to be on, as the flight controller sees its channel.
-    #[must_use]
     pub fn is_switched_on(&self, mode: Mode) -> bool {
         self.channels.is_some_and(|channels| switch::is_on(mode, self.mode_ranges(), &channels))
     }
 
     /// The arming-disable flags that are known to be set.
-    #[must_use]
     pub fn arming_flags(&self) -> ArmingFlags {
         self.arming_blocked_by.unwrap_or_default()
     }
@@ -227,7 +213,6 @@ pub struct ModeRange {
 
 impl ModeRange {
     /// Whether a value is inside.
-    #[must_use]
     pub fn contains(&self, us: u16) -> bool {
         (self.start_us..self.end_us).contains(&us)
     }
@@ -276,7 +261,6 @@ pub struct SettingsView {
 
 impl SettingsView {
     /// Returns what estimates and reviews of plans are made with on this craft.
-    #[must_use]
     pub fn assumptions(&self) -> Assumptions {
         Assumptions {
             max_velocity_mps: self.max_velocity_mps,
@@ -298,13 +282,11 @@ impl SettingsView {
     }
 
     /// Radius of a coordinated turn at this speed, m: R = V² / (g·tan θ) with the greatest lean.
-    #[must_use]
     pub fn turn_radius_m(&self, speed_mps: f64) -> f64 {
         speed_mps * speed_mps / (GRAVITY * self.max_angle_deg.to_radians().tan()).max(0.1)
     }
 
     /// How many laps of its ring an ORBIT of this waypoint flies in its time; `None` when it has no end.
-    #[must_use]
     pub fn orbit_laps(&self, wp: &Waypoint) -> Option<f64> {
         if wp.duration_ds == 0 {
             return None;
@@ -330,15 +312,11 @@ pub struct WorldView {
     pub wind: Option<WindView>,
     /// Gust amplitude, m/s.
     pub gust_mps: f64,
-    /// Turbulence level.
     pub turbulence: Turbulence,
-    /// Sensor noise on.
     pub noise: bool,
-    /// Active faults.
     pub faults: Vec<FaultView>,
 }
 
-/// The mean wind.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WindView {
     /// Speed, m/s.
@@ -350,9 +328,7 @@ pub struct WindView {
 /// A fault that is on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FaultView {
-    /// Which.
     pub kind: FaultKind,
-    /// Its value.
     pub value: FaultValue,
     /// Seconds left; `None` = to the end.
     pub left_s: Option<f64>,

@@ -17,7 +17,6 @@ pub struct Switch {
 
 impl Switch {
     /// The first switch of a mode; `None` when no channel turns it on.
-    #[must_use]
     pub fn of(mode: Mode, ranges: &[ModeRange]) -> Option<Self> {
         let range = own(mode, ranges).next()?;
         let channel = usize::from(range.channel).min(RC_CHANNELS - 1);
@@ -28,7 +27,6 @@ impl Switch {
 }
 
 /// Whether these channels turn a mode on.
-#[must_use]
 pub fn is_on(mode: Mode, ranges: &[ModeRange], channels: &[u16; RC_CHANNELS]) -> bool {
     own(mode, ranges)
         .any(|range| channels.get(usize::from(range.channel)).is_some_and(|&us| range.contains(us)))

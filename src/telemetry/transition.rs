@@ -7,7 +7,6 @@ use super::refusal::{AbortReason, Refusal};
 /// The cause of a transition; `Display` gives the word in events and on the screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum TransitionReason {
-    /// The mission starts.
     Reset,
     /// The mission goes on where it was left.
     Resume,
@@ -21,13 +20,11 @@ pub enum TransitionReason {
     ReturnHome,
     /// The switch went off.
     Disengage,
-    /// Disarmed.
     Disarm,
     /// The mission cannot start over.
     Refused(Refusal),
     /// The mission is given up.
     GivenUp(AbortReason),
-    /// Outside the fence.
     Fence,
     /// The climb before the first leg is done.
     Climb,
@@ -43,17 +40,14 @@ pub enum TransitionReason {
     Missed,
     /// On to the next waypoint, or the plan is flown.
     Advance,
-    /// The hold begins.
     Hold,
     /// The wait of a LAND or TAKEOFF begins.
     Loiter,
-    /// The descent begins.
     Land,
     /// The hold pattern begins.
     Pattern,
     /// The time of the hold is over.
     HoldTime,
-    /// On the ground.
     Touchdown,
 }
 
@@ -85,7 +79,6 @@ impl TransitionReason {
     ];
 
     /// The cause in a word.
-    #[must_use]
     pub fn word(self) -> &'static str {
         match self {
             Self::Reset => "reset",

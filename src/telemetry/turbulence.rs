@@ -17,13 +17,9 @@
 )]
 #[strum(serialize_all = "lowercase")]
 pub enum Turbulence {
-    /// Smooth air.
     #[default]
     None,
-    /// Light.
     Light,
-    /// Moderate.
     Moderate,
-    /// Severe.
     Severe,
 }

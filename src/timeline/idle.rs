@@ -11,7 +11,6 @@ const FOLD_US: u64 = 30_000_000;
 /// A part of the recording in which nothing happens.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct IdleSpan {
-    /// Where it begins.
     pub from: SimTime,
     /// Where it ends; not part of it.
     pub to: SimTime,
@@ -19,7 +18,6 @@ pub struct IdleSpan {
 
 impl IdleSpan {
     /// How long it lasts, µs.
-    #[must_use]
     pub fn length_us(&self) -> u64 {
         self.to.0.saturating_sub(self.from.0)
     }
@@ -28,7 +26,6 @@ impl IdleSpan {
 /// The idle parts of the recording.
 #[derive(Debug, Default)]
 pub(super) struct IdleTime {
-    /// The oldest first.
     spans: VecDeque<IdleSpan>,
     /// How long all idle parts lasted since the recording began, µs.
     total_us: u64,

@@ -8,12 +8,9 @@ use crate::telemetry::{BatteryAlarm, DisarmReason, Event, EventKind, FirmwareEve
 /// Marks kept; a flight of an hour has some hundred.
 const MOST: usize = 4096;
 
-/// Something happened.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Mark {
-    /// When.
     pub time: SimTime,
-    /// What.
     pub kind: MarkKind,
 }
 
@@ -82,7 +79,6 @@ impl MarkKind {
     }
 
     /// Whether the autopilot changed its state.
-    #[must_use]
     pub fn is_state(self) -> bool {
         matches!(self, Self::State(_))
     }
@@ -108,7 +104,6 @@ impl Marks {
         Arc::make_mut(&mut self.0).retain(|mark| mark.time <= time);
     }
 
-    /// All of them.
     pub fn all(&self) -> Arc<Vec<Mark>> {
         Arc::clone(&self.0)
     }

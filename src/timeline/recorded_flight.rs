@@ -18,7 +18,6 @@ pub struct RecordedFlight {
 
 impl Timeline {
     /// The flight since its start, up to `until`; `None` when the recording does not reach back so far.
-    #[must_use]
     pub fn recorded_flight(&self, until: SimTime) -> Option<RecordedFlight> {
         let begins = |input: &Input| matches!(input, Input::ResetCraft | Input::Restart(_));
         let recorded = || self.recording.inputs().filter(|(at, _)| *at < until);

@@ -48,7 +48,6 @@ impl Default for Bounds {
     }
 }
 
-/// A frozen vehicle.
 #[derive(Debug)]
 pub(super) struct KeyFrame {
     vehicle: Box<Vehicle>,

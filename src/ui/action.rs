@@ -30,11 +30,9 @@ pub enum Context {
 pub enum Action {
     /// The whole flight by the scripted pilot, or stop it.
     Fly,
-    /// The ARM switch.
     Arm,
     /// The throttle stick to hover, down gently, or low.
     Throttle,
-    /// The AUTOPILOT switch.
     Autopilot,
     /// Fly home and land, or take that back.
     ReturnHome,
@@ -48,7 +46,6 @@ pub enum Action {
     CutRc,
     /// Hand the plan to the craft.
     Upload,
-    /// Edit the plan.
     Edit(EditAction),
     /// Let the craft outside be changed.
     AllowChanges,
@@ -62,7 +59,6 @@ pub enum Action {
     Pause,
     /// One step of the navigator.
     Step,
-    /// One tick.
     Tick,
     /// Show the event before, or after.
     EventBack,
@@ -80,13 +76,9 @@ pub enum Action {
     FlyOn,
     /// Back to the newest instant.
     Newest,
-    /// Half the speed.
     Slower,
-    /// Twice the speed.
     Faster,
-    /// Real time.
     RealTime,
-    /// Focus a panel.
     Show(Panel),
     /// Focus the next panel.
     Next,
@@ -98,17 +90,13 @@ pub enum Action {
     WriteScenario,
     /// The first minutes, step by step.
     Tutorial,
-    /// Help.
     Help,
     /// A command by its name.
     CommandLine,
     /// All commands, to be searched.
     Palette,
-    /// One step back.
     Back,
-    /// Quit.
     Quit,
-    /// Cancel; twice: quit.
     Cancel,
     /// Back to the shell for a while.
     Suspend,
@@ -190,16 +178,13 @@ pub enum Action {
     PageUp,
     /// Scroll down a page.
     PageDown,
-    /// To the newest.
     Top,
-    /// To the oldest.
     Bottom,
 }
 
 /// A row of the table.
 #[derive(Debug, Clone, Copy)]
 pub struct Spec {
-    /// What is done.
     pub action: Action,
     /// Stable name for keymaps and scripts, `rc.cut`.
     pub name: &'static str,
@@ -214,14 +199,12 @@ pub struct Spec {
 }
 
 /// The row of an action.
-#[must_use]
 pub fn spec_of(action: Action) -> Option<&'static Spec> {
     ACTIONS.iter().find(|spec| spec.action == action)
 }
 
 impl Context {
     /// Whether keys of this context apply while `focus` has the focus. In a text field letters are text.
-    #[must_use]
     pub fn applies(self, focus: Panel) -> bool {
         match self {
             Self::Always => true,

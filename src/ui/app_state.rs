@@ -39,13 +39,11 @@ const MAX_TRANSITIONS: usize = 200;
 /// What the user interface is given at start.
 #[derive(Debug, Clone)]
 pub struct UiConfig {
-    /// Colours and characters.
     pub theme: Theme,
     /// Units of what is shown.
     pub units: Units,
     /// Altitude above home above which a waypoint is warned of, m.
     pub max_altitude_m: f64,
-    /// Keys.
     pub keymap: Keymap,
     /// Completion and help of the CLI panel.
     pub cli: CliHelp,
@@ -62,9 +60,7 @@ pub struct UiConfig {
 /// A sentence that is shown for a moment.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Notice {
-    /// The sentence.
     pub text: String,
-    /// How serious.
     pub severity: Severity,
     /// When it appeared, wall clock.
     pub at: Duration,
@@ -73,17 +69,12 @@ pub struct Notice {
 /// A transition of the state machine.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Transition {
-    /// Simulated time.
     pub time: SimTime,
     /// When the interface received it, wall clock.
     pub received: Duration,
-    /// State left.
     pub from: NavState,
-    /// State entered.
     pub to: NavState,
-    /// Waypoint.
     pub wp: u8,
-    /// Cause.
     pub reason: TransitionReason,
 }
 
@@ -92,16 +83,13 @@ pub struct Transition {
 pub struct Scrolls {
     /// Of the state panel's transitions.
     pub transitions: usize,
-    /// Of the log.
     pub log: usize,
 }
 
 /// Everything the user interface remembers.
 #[derive(Debug)]
 pub struct AppState {
-    /// The newest picture.
     pub view: SessionView,
-    /// Colours and characters.
     pub theme: Theme,
     /// Units of what is shown.
     pub units: Units,
@@ -111,7 +99,6 @@ pub struct AppState {
     pub cli_help: CliHelp,
     /// An event as a sentence.
     pub sentence: fn(&Event) -> String,
-    /// Keys.
     pub keymap: Keymap,
     /// The plans that are open, and what is being edited.
     pub editor: Editor,
@@ -123,13 +110,11 @@ pub struct AppState {
     pub zoomed: bool,
     /// Which panels the shared places show.
     pub slots: Slots,
-    /// Popups.
     pub popups: Vec<Popup>,
     /// Wall-clock time since start.
     pub now: Duration,
     /// The first minutes, while they are shown.
     pub tutorial: Option<Tutorial>,
-    /// The map.
     pub map: MapState,
     /// Selected channel of the RC panel.
     pub channel: usize,
@@ -137,25 +122,19 @@ pub struct AppState {
     pub cli: CliState,
     /// The `:` line.
     pub command_line: CommandLine,
-    /// The log.
     pub log: LogState,
     /// Search and filter of the Log panel.
     pub log_view: LogView,
-    /// The World panel.
     pub knobs: KnobsState,
-    /// The Graphs panel.
     pub graphs: GraphsState,
-    /// Recorded stick movements.
     pub stick_recording: StickRecording,
     /// Transitions, the newest last.
     pub transitions: VecDeque<Transition>,
-    /// First visible lines.
     pub scrolls: Scrolls,
     /// Where the craft has been.
     pub track: Track,
     /// What is left behind of earlier branches.
     pub timeline: TimelineState,
-    /// The newest notice.
     pub notice: Option<Notice>,
     /// Notices that stay until Esc takes them away, the oldest first.
     pub pinned: Vec<String>,
@@ -209,7 +188,6 @@ impl AppState {
 
 impl AppState {
     /// The state at start.
-    #[must_use]
     pub fn new(config: UiConfig, size: (u16, u16), view: SessionView) -> Self {
         Self {
             view,
@@ -333,7 +311,6 @@ impl AppState {
     }
 
     /// The plan the map shows: the one being flown, else the open one, else the craft's.
-    #[must_use]
     pub fn shown_plan(&self) -> &FlightPlan {
         let vehicle = &self.view.vehicle;
         match &vehicle.active_plan {
@@ -346,20 +323,17 @@ impl AppState {
     }
 
     /// Whether the autopilot flies a stored plan, not one of its own.
-    #[must_use]
     pub fn flies_stored_plan(&self) -> bool {
         let nav = self.view.vehicle.nav.as_ref();
         nav.is_some_and(|nav| nav.engaged && nav.source == PlanSource::Stored)
     }
 
     /// Whether the autopilot flies this plan.
-    #[must_use]
     pub fn flies(&self, plan: &FlightPlan) -> bool {
         self.view.vehicle.active_plan.as_ref() == Some(plan)
     }
 
     /// Whether the craft has stored another plan than the one it flies, which takes effect at the next engagement.
-    #[must_use]
     pub fn flies_older_plan(&self) -> bool {
         let stored = self.view.vehicle.stored_plan.as_ref();
         // Which plan a flight controller outside flies is not told.
@@ -369,7 +343,6 @@ impl AppState {
     }
 
     /// The waypoints of the open plan.
-    #[must_use]
     pub fn plan(&self) -> &FlightPlan {
         &self.editor.document().plan
     }
@@ -387,7 +360,6 @@ impl AppState {
     }
 
     /// Whether the craft stores the open plan.
-    #[must_use]
     pub fn plan_is_on_craft(&self) -> bool {
         self.view.vehicle.stored_plan.as_ref() == Some(self.plan())
     }

@@ -1,7 +1,6 @@
 //! What several completions of a line have in common.
 
 /// The longest beginning that all candidates share, ignoring case, as the first one writes it.
-#[must_use]
 pub(super) fn common_prefix<'a>(mut candidates: impl Iterator<Item = &'a str>) -> &'a str {
     let Some(mut common) = candidates.next() else { return "" };
     for candidate in candidates {

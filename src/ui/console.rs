@@ -24,7 +24,6 @@ pub struct CliHelp {
 }
 
 impl Default for CliHelp {
-    /// Knows nothing.
     fn default() -> Self {
         Self { complete: |_| Vec::new(), hint: |_| None, check_setting: |_, _| Ok(()) }
     }
@@ -55,7 +54,6 @@ struct Queued {
 pub struct CliState {
     /// The line being typed.
     pub input: TextField,
-    /// Everything above it.
     pub lines: VecDeque<(CliLineKind, String)>,
     /// Lines scrolled up from the newest.
     pub scroll: usize,
@@ -108,7 +106,6 @@ impl CliState {
     }
 
     /// Lines not run yet.
-    #[must_use]
     pub fn queued(&self) -> usize {
         self.queue.len()
     }

@@ -37,7 +37,6 @@ use crate::plan::{FlightPlan, MAX_WAYPOINTS, Waypoint};
 /// The state of the plan editor.
 #[derive(Debug)]
 pub struct Editor {
-    /// Never empty.
     plans: Vec<OpenPlan>,
     current: usize,
     /// Plans made here so far.
@@ -71,7 +70,6 @@ struct Uploaded {
 /// A cell that is being typed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct CellField {
-    /// What is typed.
     pub(crate) text: TextField,
     /// What is wrong with it.
     pub(crate) problem: Option<String>,
@@ -79,7 +77,6 @@ pub(crate) struct CellField {
 
 impl Editor {
     /// An editor with an open plan.
-    #[must_use]
     pub fn new(plan: OpenPlan) -> Self {
         Self {
             plans: vec![plan],
@@ -100,7 +97,6 @@ impl Editor {
     }
 
     /// The plan that is shown.
-    #[must_use]
     pub fn plan(&self) -> &OpenPlan {
         &self.plans[self.current.min(self.plans.len() - 1)]
     }
@@ -135,38 +131,31 @@ impl Editor {
         self.uploaded.as_ref().map(|uploaded| uploaded.id)
     }
 
-    /// All open plans.
-    #[must_use]
     pub fn plans(&self) -> &[OpenPlan] {
         &self.plans
     }
 
     /// Which of them is shown.
-    #[must_use]
     pub fn current(&self) -> usize {
         self.current
     }
 
     /// The document that is shown.
-    #[must_use]
     pub fn document(&self) -> &PlanDocument {
         self.plan().document()
     }
 
     /// The waypoint under the cursor; one behind the last when there is none.
-    #[must_use]
     pub fn row(&self) -> usize {
         self.row.min(self.document().plan.waypoints.len().saturating_sub(1))
     }
 
     /// The column under the cursor.
-    #[must_use]
     pub fn column(&self) -> Column {
         self.column
     }
 
     /// The selected waypoints, while there is a selection.
-    #[must_use]
     pub fn selection(&self) -> Option<std::ops::RangeInclusive<usize>> {
         let anchor = self.anchor?.min(self.document().plan.waypoints.len().saturating_sub(1));
         Some(anchor.min(self.row())..=anchor.max(self.row()))
@@ -178,19 +167,16 @@ impl Editor {
     }
 
     /// The cell that is being typed.
-    #[must_use]
     pub(crate) fn field(&self) -> Option<&CellField> {
         self.field.as_ref()
     }
 
     /// Whether letters are text here.
-    #[must_use]
     pub fn takes_text(&self) -> bool {
         self.field.is_some() || self.popup.is_some()
     }
 
     /// A waypoint whose altitude is dragged in the profile, and the altitude now, cm.
-    #[must_use]
     pub(crate) fn dragged_altitude(&self) -> Option<(usize, i32)> {
         self.dragged_altitude
     }
@@ -224,7 +210,6 @@ impl Editor {
         self.anchor = if self.anchor.is_some() { None } else { Some(self.row()) };
     }
 
-    /// Selects all waypoints.
     pub(super) fn select_all(&mut self) {
         self.anchor = Some(0);
         self.row = self.document().plan.waypoints.len().saturating_sub(1);

@@ -8,27 +8,21 @@ use crate::telemetry::{BatteryAlarm, DisarmReason, EventKind, FirmwareEvent, Nav
 
 use super::theme::Role;
 
-/// Lines kept.
 const MAX_LINES: usize = 5000;
 
 /// How serious a line is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
-    /// For the record.
     Info,
     /// The mission went on.
     Step,
-    /// Good news.
     Good,
-    /// Needs attention.
     Warn,
-    /// Something is wrong.
     Fault,
 }
 
 impl Severity {
     /// How serious an event is.
-    #[must_use]
     pub fn of(kind: &SessionEvent) -> Self {
         match kind {
             SessionEvent::Vehicle(event) => Self::of_vehicle(event),
@@ -92,7 +86,6 @@ impl Severity {
     }
 
     /// The mark in front of the line.
-    #[must_use]
     pub fn glyph(self) -> &'static str {
         match self {
             Self::Info => "·",
@@ -104,7 +97,6 @@ impl Severity {
     }
 
     /// Its role in the theme.
-    #[must_use]
     pub fn role(self) -> Role {
         match self {
             Self::Info => Role::Text,
@@ -121,11 +113,8 @@ impl Severity {
 pub struct LogLine {
     /// Its number, counted from the first line ever.
     pub number: u64,
-    /// Simulated time.
     pub time: SimTime,
-    /// How serious.
     pub severity: Severity,
-    /// The sentence.
     pub text: String,
     /// It belongs to a branch of the flight that was left.
     pub left_behind: bool,
@@ -160,7 +149,6 @@ impl LogState {
     }
 
     /// How many lines there are.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.lines.len()
     }

@@ -26,7 +26,6 @@ pub struct FilesLink {
 
 impl FilesLink {
     /// The link to whoever carries out `requests`, sends `replies`, and counts in `done` what was carried out.
-    #[must_use]
     pub fn new(
         requests: Sender<FileRequest>,
         replies: mpsc::UnboundedReceiver<FileReply>,

@@ -92,25 +92,21 @@ pub struct ForecastState {
 
 impl ForecastState {
     /// The newest flown estimate of the open plan; of an older state of it while [`Self::is_estimating`].
-    #[must_use]
     pub fn estimate(&self) -> Option<&Forecast> {
         self.estimate.forecast()
     }
 
     /// Whether a newer estimate is on its way.
-    #[must_use]
     pub fn is_estimating(&self) -> bool {
         self.estimate.waiting
     }
 
     /// Why there is no estimate, as a sentence.
-    #[must_use]
     pub fn estimate_refusal(&self) -> Option<&str> {
         self.estimate.answer.as_ref()?.as_ref().err().map(String::as_str)
     }
 
     /// Whether the look-ahead is on.
-    #[must_use]
     pub fn looks_ahead(&self) -> bool {
         self.look_ahead.is_some()
     }

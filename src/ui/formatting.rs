@@ -6,7 +6,6 @@ use crate::signals::SimTime;
 
 /// `value` with `decimals`, right-aligned in `width` columns, or a dash. A number that does not fit loses its
 /// decimals first and ends as an ellipsis, never as a wrong number.
-#[must_use]
 pub(super) fn fixed(value: Option<f64>, width: usize, decimals: usize) -> String {
     let Some(value) = value.filter(|value| value.is_finite()) else {
         return format!("{:>width$}", "—");
@@ -33,7 +32,6 @@ fn without_negative_zero(value: f64, decimals: usize) -> f64 {
 }
 
 /// Like [`fixed`], with a sign always shown.
-#[must_use]
 pub(super) fn signed(value: Option<f64>, width: usize, decimals: usize) -> String {
     match value.filter(|value| value.is_finite()) {
         Some(value) => {
@@ -46,21 +44,18 @@ pub(super) fn signed(value: Option<f64>, width: usize, decimals: usize) -> Strin
 }
 
 /// Minutes, seconds and tenths since boot: `01:12.4`.
-#[must_use]
 pub(super) fn clock(time: SimTime) -> String {
     let tenths = time.0 / 100_000;
     format!("{:02}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10)
 }
 
 /// Minutes, seconds and milliseconds since boot: `01:12.410`.
-#[must_use]
 pub(super) fn clock_ms(time: SimTime) -> String {
     let ms = time.0 / 1000;
     format!("{:02}:{:02}.{:03}", ms / 60_000, ms / 1000 % 60, ms % 1000)
 }
 
 /// A factor of real time: `0.25×`, `8×`, `312×`, `max`.
-#[must_use]
 pub(super) fn factor(times: f64) -> String {
     if times.is_infinite() {
         "max".to_owned()
@@ -73,13 +68,11 @@ pub(super) fn factor(times: f64) -> String {
 }
 
 /// Whether `earlier` lies less than `span` before `now`.
-#[must_use]
 pub(super) fn within(now: Duration, earlier: Duration, span: Duration) -> bool {
     now.saturating_sub(earlier) < span
 }
 
 /// `text` cut to `width` columns, ending in an ellipsis when something is lost.
-#[must_use]
 pub(super) fn cut(text: &str, width: usize) -> String {
     use unicode_width::{UnicodeWidthChar as _, UnicodeWidthStr as _};
     if text.width() <= width {

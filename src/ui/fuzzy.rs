@@ -8,7 +8,6 @@ const WORD_START: u32 = 8;
 const RUN: u32 = 5;
 
 /// How well `letters` fit `text`; none when they do not occur in this order. Case does not matter.
-#[must_use]
 pub(super) fn score(letters: &str, text: &str) -> Option<u32> {
     let text: Vec<char> = text.chars().flat_map(char::to_lowercase).collect();
     // For each place of the text the best score of the letters so far, the last of which stands there.

@@ -18,7 +18,6 @@ pub struct EnteredLines {
     pub cli: Vec<String>,
 }
 
-/// Lines kept.
 const MAX_LINES: usize = 500;
 
 /// Entered lines, the oldest first, and the one that is recalled.

@@ -20,7 +20,6 @@ pub struct KeyPress {
 
 impl KeyPress {
     /// The key of an event.
-    #[must_use]
     pub fn of(event: &KeyEvent) -> Self {
         let mut modifiers =
             event.modifiers & (KeyModifiers::CONTROL | KeyModifiers::ALT | KeyModifiers::SHIFT);
@@ -41,13 +40,11 @@ impl KeyPress {
     }
 
     /// The event that a terminal sends for it.
-    #[must_use]
     pub fn event(self) -> KeyEvent {
         KeyEvent::new(self.code, self.modifiers)
     }
 
     /// A key from text: `a`, `F`, `space`, `ctrl-c`, `shift-tab`, `f1`. Names may be written in capitals, too.
-    #[must_use]
     pub fn parse(text: &str) -> Option<Self> {
         let lower = text.to_ascii_lowercase();
         // A single character means itself: `F` is not `f`.
@@ -143,7 +140,6 @@ impl Default for Keymap {
 
 impl Keymap {
     /// The keys of an action, as they are shown.
-    #[must_use]
     pub fn shown_keys(&self, action: Action) -> Vec<String> {
         self.bindings
             .iter()
@@ -153,7 +149,6 @@ impl Keymap {
     }
 
     /// The first key of an action; without one the command that does it.
-    #[must_use]
     pub fn key(&self, action: Action) -> String {
         let first = self.shown_keys(action).into_iter().next();
         let name = || spec_of(action).map_or_else(String::new, |spec| format!(":{}", spec.name));
@@ -161,7 +156,6 @@ impl Keymap {
     }
 
     /// A sentence of the session, which names default keys in backquotes, with the keys in force.
-    #[must_use]
     pub fn in_force(&self, sentence: &str) -> String {
         let mut parts = sentence.split('`');
         let mut told = parts.next().unwrap_or_default().to_owned();
@@ -187,7 +181,6 @@ impl Keymap {
     }
 
     /// The action of a key while `focus` has the focus; the panel's own meaning comes before the general one.
-    #[must_use]
     pub fn action(&self, key: KeyPress, focus: Panel) -> Option<Action> {
         let own = |context: &Context| matches!(context, Context::In(_) | Context::Lists);
         // Function keys are never text.

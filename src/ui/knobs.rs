@@ -49,7 +49,6 @@ pub(super) fn knobs(state: &AppState) -> Vec<Knob> {
         .collect()
 }
 
-/// The selected knob.
 fn selected(state: &AppState) -> Option<Knob> {
     knobs(state).get(state.knobs.selected).copied()
 }
@@ -60,7 +59,6 @@ pub(super) fn active(world: &WorldView, fault: &FaultInfo) -> Option<FaultView> 
 }
 
 impl Knob {
-    /// Its name.
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::WindSpeed => "wind speed",

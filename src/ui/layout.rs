@@ -62,16 +62,13 @@ impl Slots {
     }
 }
 
-/// A screen divided.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Screen {
-    /// Two lines.
     pub status: Rect,
     /// The visible panels with their frames.
     pub panels: Vec<(Panel, Rect)>,
     /// One line, if there is one.
     pub timeline: Option<Rect>,
-    /// One line.
     pub hints: Rect,
 }
 
@@ -80,20 +77,17 @@ const TIMELINE_ROWS: u16 = 34;
 
 impl Screen {
     /// The place of a panel, if it is visible.
-    #[must_use]
     pub fn panel(&self, panel: Panel) -> Option<Rect> {
         self.panels.iter().find(|(p, _)| *p == panel).map(|(_, area)| *area)
     }
 
     /// The panel at a cell.
-    #[must_use]
     pub fn at(&self, column: u16, row: u16) -> Option<(Panel, Rect)> {
         self.panels.iter().find(|(_, area)| area.contains((column, row).into())).copied()
     }
 }
 
 /// The inside of a panel; empty, but within the area, when the frame takes all of it.
-#[must_use]
 pub fn inner(area: Rect) -> Rect {
     Rect::new(
         area.x.saturating_add(area.width.min(1)),
@@ -104,13 +98,11 @@ pub fn inner(area: Rect) -> Rect {
 }
 
 /// Divides the screen; `None` when it is too small.
-#[must_use]
 pub fn screen(state: &AppState) -> Option<Screen> {
     divided(state, state.size)
 }
 
 /// Divides a screen of this many columns and rows; `None` when it is too small.
-#[must_use]
 pub fn divided(state: &AppState, (width, height): (u16, u16)) -> Option<Screen> {
     if width < SMALLEST.0 || height < SMALLEST.1 {
         return None;

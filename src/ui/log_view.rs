@@ -15,7 +15,6 @@ const FILTERS: [(Severity, &str); 3] =
 /// Search and filter of the Log panel.
 #[derive(Debug, Default)]
 pub struct LogView {
-    /// What is searched.
     pub search: TextField,
     /// The search is being typed.
     pub typing: bool,
@@ -31,13 +30,11 @@ impl LogView {
     }
 
     /// What is left out, in words; empty when nothing is.
-    #[must_use]
     pub fn filter_name(&self) -> &'static str {
         FILTERS.get(self.filter).map_or("", |(_, name)| name)
     }
 
     /// Where the search occurs in a text, as bytes; none when nothing is searched.
-    #[must_use]
     pub fn find_in(&self, text: &str) -> Option<std::ops::Range<usize>> {
         let wanted = self.search.value();
         if wanted.is_empty() {
@@ -67,7 +64,6 @@ pub(super) fn cycle_filter(state: &mut AppState) -> Vec<Effect> {
     Vec::new()
 }
 
-/// Begins a search.
 pub(super) fn begin_search(state: &mut AppState) -> Vec<Effect> {
     state.log_view.search = TextField::default();
     state.log_view.typing = true;
@@ -90,7 +86,6 @@ pub(super) fn search_key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
     Vec::new()
 }
 
-/// Forgets the search.
 pub(super) fn end_search(state: &mut AppState) {
     state.log_view.search = TextField::default();
     state.log_view.typing = false;

@@ -13,7 +13,6 @@ const REACH_COLUMNS: f64 = 2.5;
 /// Something of the plan that has a place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum MapItem {
-    /// A waypoint.
     Waypoint(usize),
     /// Home of the plan.
     Home,
@@ -24,7 +23,6 @@ pub(super) enum MapItem {
 /// What is being moved, and where it is now.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Moving {
-    /// What.
     pub item: MapItem,
     /// Where, m.
     pub place: MapPoint,

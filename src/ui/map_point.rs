@@ -17,27 +17,22 @@ pub(super) struct MapPoint {
 }
 
 impl MapPoint {
-    /// A place.
-    #[must_use]
     pub(super) const fn new(n: f64, e: f64) -> Self {
         Self { n, e }
     }
 
     /// Distance to another place, m.
-    #[must_use]
     pub(super) fn distance(self, other: Self) -> f64 {
         (self.n - other.n).hypot(self.e - other.e)
     }
 
     /// The place `t` of the way to `other`.
-    #[must_use]
     pub(super) fn towards(self, other: Self, t: f64) -> Self {
         Self::new(self.n + (other.n - self.n) * t, self.e + (other.e - self.e) * t)
     }
 }
 
 /// The place from which positions count as the origin of the map; home or the first waypoint while there is none.
-#[must_use]
 pub(super) fn origin(state: &AppState) -> Option<LocalFrame> {
     let vehicle = &state.view.vehicle;
     if let Some(truth) = &vehicle.truth {
@@ -52,14 +47,12 @@ pub(super) fn origin(state: &AppState) -> Option<LocalFrame> {
 }
 
 /// A position in metres from the origin of the map.
-#[must_use]
 pub(super) fn to_map(origin: &LocalFrame, position: LatLon) -> MapPoint {
     let enu = origin.to_enu(position.lat_deg(), position.lon_deg(), 0.0);
     MapPoint::new(enu.y, enu.x)
 }
 
 /// Where the craft is: in truth if the world tells, else as it believes.
-#[must_use]
 pub(super) fn craft(view: &SessionView) -> Option<MapPoint> {
     let vehicle = &view.vehicle;
     match (&vehicle.truth, vehicle.estimate.n, vehicle.estimate.e) {

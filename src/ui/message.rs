@@ -19,7 +19,6 @@ pub enum Msg {
     Key(KeyEvent),
     /// The mouse was used.
     Mouse(MouseEvent),
-    /// Text was pasted.
     Paste(String),
     /// The terminal has this many columns and rows.
     Resize(u16, u16),
@@ -58,7 +57,6 @@ pub enum Msg {
     SaveReply(Result<(), String>),
     /// The flight was written as a scenario, a sentence tells where; or why not.
     ScenarioReply(Result<String, String>),
-    /// The files answered.
     Files(FileReply),
     /// A command could not be delivered because the session does not keep up.
     Busy,
@@ -67,7 +65,6 @@ pub enum Msg {
 /// Something to be done outside.
 #[derive(Debug)]
 pub enum Effect {
-    /// Ask the session.
     Send(Command),
     /// Run a CLI line; the reply comes back as [`Msg::CliReply`].
     Cli(String),
@@ -77,14 +74,12 @@ pub enum Effect {
     Upload {
         /// Which plan it is.
         id: PlanId,
-        /// The plan.
         plan: Box<FlightPlan>,
         /// Setting lines that come with it, without `set `.
         settings: Vec<String>,
     },
     /// Fly ahead on a copy of the vehicle; the forecast comes back as [`Msg::Forecast`].
     Forecast(ForecastJob),
-    /// Ask the files.
     Files(FileRequest),
     /// Read the plan of the craft for this open plan; it comes back as [`Msg::DownloadReply`].
     Download(PlanId),
@@ -93,7 +88,6 @@ pub enum Effect {
     /// Write the flight just flown as a scenario into this file, or into one with the name of the plan; it comes back as
     /// [`Msg::ScenarioReply`].
     WriteScenario {
-        /// The file.
         file: Option<PathBuf>,
         /// The name of the plan.
         plan: String,

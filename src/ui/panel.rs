@@ -22,25 +22,18 @@ use super::drawing;
 use super::formatting::cut;
 use super::theme::{Role, Theme};
 
-/// A panel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::EnumIter)]
 pub enum Panel {
-    /// The map.
     #[default]
     Map,
-    /// The waypoint table.
     Plan,
-    /// The state machine.
     State,
-    /// The channels.
     Rc,
     /// The firmware's command line.
     Cli,
-    /// Signals over time.
     Graphs,
     /// The air and the faults.
     World,
-    /// Events and notices.
     Log,
 }
 
@@ -49,8 +42,6 @@ impl Panel {
     pub const ALL: [Self; 8] =
         [Self::Map, Self::Plan, Self::State, Self::Rc, Self::Cli, Self::Graphs, Self::World, Self::Log];
 
-    /// Its name.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Map => "Map",
@@ -65,7 +56,6 @@ impl Panel {
     }
 
     /// Whether letters are text there.
-    #[must_use]
     pub fn takes_text(self) -> bool {
         self == Self::Cli
     }

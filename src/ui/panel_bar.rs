@@ -42,7 +42,6 @@ fn places(state: &AppState, screen: &Screen) -> Vec<(Panel, String, Rect)> {
     places
 }
 
-/// Draws the bar.
 pub(super) fn draw(state: &AppState, screen: &Screen, buffer: &mut Buffer) {
     let theme = &state.theme;
     let places = places(state, screen);

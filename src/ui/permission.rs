@@ -99,7 +99,6 @@ fn close(state: &mut AppState) {
     state.popups.retain(|popup| *popup != Popup::Permission);
 }
 
-/// The question.
 pub(super) fn question(state: &AppState) -> String {
     let Some(remote) = real_craft(state) else { return String::new() };
     let name = &remote.name;
@@ -113,7 +112,6 @@ pub(super) fn question(state: &AppState) -> String {
     }
 }
 
-/// Draws the question.
 pub(super) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     let text = question(state);

@@ -16,10 +16,7 @@ pub use palette::Palette;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Popup {
     /// The keys, scrolled down by this many lines.
-    Help {
-        /// First line shown.
-        scroll: usize,
-    },
+    Help { scroll: usize },
     /// Which waypoint to go to.
     GoTo(GoTo),
     /// What can be done at a place of the map.

@@ -42,11 +42,8 @@ const BATCH: usize = 256;
 /// The session, seen from the user interface.
 #[derive(Debug)]
 pub struct SessionLink {
-    /// Requests.
     pub commands: mpsc::Sender<Command>,
-    /// The newest picture.
     pub view: watch::Receiver<SessionView>,
-    /// Everything that happens.
     pub events: mpsc::UnboundedReceiver<Event>,
     /// Pictures of a flight that was flown before, oldest first.
     pub past: Vec<SessionView>,
@@ -58,7 +55,6 @@ pub struct SessionLink {
 /// How the user interface ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ending {
-    /// The user quit.
     Quit,
     /// A signal asked for it.
     Signal,

@@ -44,7 +44,6 @@ pub(super) fn sides(buffer: &mut Buffer, area: Rect, left: &[Span<'static>], rig
     drawing::line(buffer, area.x + room, area.y, &right, width);
 }
 
-/// Armed and modes.
 fn craft(state: &AppState) -> Vec<Span<'static>> {
     let theme = &state.theme;
     let craft = &state.view.vehicle.craft;

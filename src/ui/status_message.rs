@@ -18,11 +18,9 @@ use super::units::Units;
 /// The state of the craft as a sentence, and what to do.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct StatusMessage {
-    /// How serious.
     pub severity: Severity,
     /// What keeps the craft from flying, or how it flies.
     pub condition: String,
-    /// What to do.
     pub action: String,
 }
 
@@ -35,7 +33,6 @@ fn message(
 }
 
 /// The arming-disable flag that tells the user most; those that only repeat a cause come last.
-#[must_use]
 pub fn most_useful_flag(flags: ArmingFlags) -> Option<ArmingFlag> {
     let rank = |flag: &ArmingFlag| match flag {
         ArmingFlag::Cli => 0,
@@ -54,7 +51,6 @@ pub fn most_useful_flag(flags: ArmingFlags) -> Option<ArmingFlag> {
 }
 
 /// What to do about an arming-disable flag, and the key that does it here.
-#[must_use]
 pub fn arming_hint(state: &AppState, flag: ArmingFlag) -> String {
     let (action, does) = match flag {
         ArmingFlag::RxLoss => (Action::CutRc, "restores the link"),
@@ -68,7 +64,6 @@ pub fn arming_hint(state: &AppState, flag: ArmingFlag) -> String {
 }
 
 /// What the user should know and do now; `None` while the mission flies.
-#[must_use]
 pub fn current(state: &AppState) -> Option<StatusMessage> {
     let vehicle = &state.view.vehicle;
     let craft = &vehicle.craft;

@@ -22,13 +22,11 @@ pub struct TextField {
 
 impl TextField {
     /// A field with this text, the cursor behind it.
-    #[must_use]
     pub fn new(text: impl Into<String>) -> Self {
         Self { input: Input::new(text.into()), selected: false }
     }
 
     /// A field whose text is selected.
-    #[must_use]
     pub fn selected(text: impl Into<String>) -> Self {
         let mut field = Self::new(text);
         field.select(true);
@@ -41,19 +39,15 @@ impl TextField {
     }
 
     /// Whether the whole text is selected.
-    #[must_use]
     pub fn is_selected(&self) -> bool {
         self.selected
     }
 
-    /// The text.
-    #[must_use]
     pub fn value(&self) -> &str {
         self.input.value()
     }
 
     /// Whether there is no text.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.value().is_empty()
     }

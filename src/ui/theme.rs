@@ -8,7 +8,6 @@ use crate::telemetry::GuardOp;
 /// The meaning of a piece of text or a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, strum::EnumIter)]
 pub enum Role {
-    /// Ordinary text.
     Text,
     /// Less important: frames, units, things that are not active.
     Dim,
@@ -18,9 +17,7 @@ pub enum Role {
     Focus,
     /// As it should be.
     Ok,
-    /// Needs attention.
     Warn,
-    /// Wrong.
     Fault,
     /// What is active now.
     Active,
@@ -30,13 +27,10 @@ pub enum Role {
     Track,
     /// Where the craft would fly.
     Predicted,
-    /// The craft.
     Craft,
-    /// The geofence.
     Fence,
     /// A key that can be pressed.
     Key,
-    /// A selected row.
     Selected,
 }
 
@@ -73,16 +67,13 @@ pub enum Charset {
     /// Box drawing, arrows, Braille.
     #[default]
     Unicode,
-    /// Seven bits.
     Ascii,
 }
 
 /// Palette and character set in use.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Theme {
-    /// Colours.
     pub palette: Palette,
-    /// Characters.
     pub charset: Charset,
     /// The environment asks for no colours, whatever else is asked for.
     pub no_colour: bool,
@@ -91,7 +82,6 @@ pub struct Theme {
 impl Theme {
     /// The theme that fits the environment: `NO_COLOR`, `COLORTERM`, `TERM`, and the locale variables. Colours are
     /// decided here because the terminal library, left to itself under `NO_COLOR`, also wipes bold and reverse.
-    #[must_use]
     pub fn from_environment(get: impl Fn(&str) -> Option<String>) -> Self {
         let set = |name: &str| get(name).filter(|value| !value.is_empty());
         let term = set("TERM").unwrap_or_default();
@@ -114,7 +104,6 @@ impl Theme {
     }
 
     /// The marker lines on the map are drawn with.
-    #[must_use]
     pub fn marker(&self) -> Marker {
         match self.charset {
             Charset::Unicode => Marker::Braille,
@@ -123,7 +112,6 @@ impl Theme {
     }
 
     /// A comparison in the character set.
-    #[must_use]
     pub(super) fn operator(&self, op: GuardOp) -> &'static str {
         match (op, self.charset) {
             (GuardOp::AtMost, Charset::Unicode) => "≤",
@@ -136,13 +124,11 @@ impl Theme {
     }
 
     /// The background colour that is painted, where the terminal's own cannot be relied on.
-    #[must_use]
     pub fn background(&self) -> Option<Color> {
         (self.palette == Palette::Light).then_some(Color::Rgb(250, 250, 247))
     }
 
     /// The foreground colour of a role.
-    #[must_use]
     pub fn colour(&self, role: Role) -> Color {
         match self.palette {
             Palette::Mono => Color::Reset,
@@ -204,7 +190,6 @@ impl Theme {
     }
 
     /// The style of a role.
-    #[must_use]
     pub fn style(&self, role: Role) -> Style {
         let style = Style::new().fg(self.colour(role));
         match role {

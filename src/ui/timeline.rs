@@ -45,7 +45,6 @@ impl TimelineState {
         }
     }
 
-    /// Another flight begins.
     pub(super) fn forget_tracks(&mut self) {
         self.tracks.clear();
     }
@@ -58,7 +57,6 @@ impl TimelineState {
 
 impl AppState {
     /// Whether an earlier instant is shown while the flight waits.
-    #[must_use]
     pub fn is_rewound(&self) -> bool {
         self.view.is_rewound()
     }
@@ -106,7 +104,6 @@ pub(super) fn time_at(timeline: &TimelineView, area: Rect, column: u16) -> Optio
     Columns::new(timeline, area).time_at(column)
 }
 
-/// Draws the line.
 pub(super) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     let Some(timeline) = &state.view.timeline else { return };
     let theme = &state.theme;

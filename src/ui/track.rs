@@ -26,7 +26,6 @@ pub struct TrackPoint {
     pub wp: Option<u8>,
 }
 
-/// The flown track.
 #[derive(Debug)]
 pub struct Track {
     points: Vec<TrackPoint>,
@@ -86,7 +85,6 @@ impl Track {
         part
     }
 
-    /// Forgets everything.
     pub fn clear(&mut self) {
         *self = Self::default();
     }
@@ -106,7 +104,6 @@ impl Track {
     }
 
     /// The points, the oldest first.
-    #[must_use]
     pub fn points(&self) -> &[TrackPoint] {
         &self.points
     }

@@ -38,12 +38,10 @@ pub(super) enum ThrottleMove {
     Hover,
     /// Where ALTHOLD brings the craft down.
     Sink(u16),
-    /// The bottom.
     Low,
 }
 
 /// The frame that the next change starts from: what was sent last, until the session shows it or moves on.
-#[must_use]
 pub(super) fn frame(state: &AppState) -> RcFrame {
     match state.sticks_sent {
         Some((frame, at)) if within(state.now, at, CONFIRM_WITHIN) && state.view.pilot.is_none() => frame,
@@ -67,7 +65,6 @@ pub(super) fn switch(state: &AppState, mode: Mode) -> Result<Switch, String> {
 }
 
 /// Whether the switch of a mode is on, as the craft sees it.
-#[must_use]
 pub(super) fn switch_is_on(state: &AppState, mode: Mode) -> bool {
     state.view.vehicle.craft.is_switched_on(mode)
 }
@@ -114,7 +111,6 @@ fn rest_throttle(state: &AppState, next: &mut RcFrame) {
 }
 
 /// Whether the craft stands on the ground.
-#[must_use]
 pub(super) fn is_standing(state: &AppState) -> bool {
     let vehicle = &state.view.vehicle;
     match &vehicle.truth {
@@ -134,7 +130,6 @@ fn is_raised(state: &AppState, frame: &RcFrame) -> bool {
 }
 
 /// Whether the throttle stick lets the craft sink in ALTHOLD.
-#[must_use]
 pub(super) fn is_sinking(state: &AppState) -> bool {
     let frame = frame(state);
     let throttle_us = frame.channels[THROTTLE];
@@ -148,7 +143,6 @@ pub(super) fn is_sinking(state: &AppState) -> bool {
 
 /// What the throttle key does now: on the ground hover and low take turns; in the air the first press holds the craft,
 /// the next lets it sink, where a low stick in ALTHOLD would leave it hanging.
-#[must_use]
 pub(super) fn throttle_move(state: &AppState) -> ThrottleMove {
     let now = frame(state);
     if !is_airborne(state) {
@@ -285,7 +279,6 @@ pub(super) fn nudge(state: &mut AppState, channel: usize, by_us: i32) -> Vec<Eff
     send(state, next)
 }
 
-/// Sets a channel.
 pub(super) fn set(state: &mut AppState, channel: usize, us: u16) -> Vec<Effect> {
     let mut next = frame(state);
     let Some(value) = next.channels.get_mut(channel) else { return Vec::new() };

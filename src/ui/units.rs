@@ -19,7 +19,6 @@ pub enum Units {
 
 impl Units {
     /// A length in metres as it is shown.
-    #[must_use]
     pub fn length(self, metres: f64) -> f64 {
         match self {
             Self::Metric => metres,
@@ -28,7 +27,6 @@ impl Units {
     }
 
     /// A speed in metres a second as it is shown.
-    #[must_use]
     pub fn speed(self, metres_a_second: f64) -> f64 {
         match self {
             Self::Metric => metres_a_second,
@@ -37,31 +35,26 @@ impl Units {
     }
 
     /// A length as it is shown or typed, in metres.
-    #[must_use]
     pub fn metres(self, shown: f64) -> f64 {
         shown / self.length(1.0)
     }
 
     /// A speed as it is shown or typed, in metres a second.
-    #[must_use]
     pub fn metres_per_second(self, shown: f64) -> f64 {
         shown / self.speed(1.0)
     }
 
     /// A length with its unit and this many digits behind the point.
-    #[must_use]
     pub fn length_text(self, metres: f64, digits: usize) -> String {
         format!("{:.digits$} {}", self.length(metres), self.length_unit())
     }
 
     /// A speed with its unit and this many digits behind the point.
-    #[must_use]
     pub fn speed_text(self, metres_a_second: f64, digits: usize) -> String {
         format!("{:.digits$} {}", self.speed(metres_a_second), self.speed_unit())
     }
 
     /// A length moved by whole steps of what is shown: metres or feet.
-    #[must_use]
     pub(super) fn step_length(self, metres: f64, steps: i32) -> f64 {
         match self {
             Self::Metric => metres + f64::from(steps),
@@ -71,7 +64,6 @@ impl Units {
     }
 
     /// A speed moved by steps of half a metre a second, or of a mile an hour.
-    #[must_use]
     pub(super) fn step_speed(self, metres_a_second: f64, steps: i32) -> f64 {
         match self {
             Self::Metric => metres_a_second + 0.5 * f64::from(steps),
@@ -80,7 +72,6 @@ impl Units {
     }
 
     /// What a guard's values are multiplied by, and the unit they are then in.
-    #[must_use]
     pub fn of_guard(self, unit: GuardUnit) -> (f64, &'static str) {
         match unit {
             GuardUnit::Metres => (self.length(1.0), self.length_unit()),
@@ -92,7 +83,6 @@ impl Units {
     }
 
     /// Name of the unit of lengths in sentences.
-    #[must_use]
     pub(super) fn length_name(self) -> &'static str {
         match self {
             Self::Metric => "metres",
@@ -101,7 +91,6 @@ impl Units {
     }
 
     /// Name of the unit of lengths.
-    #[must_use]
     pub fn length_unit(self) -> &'static str {
         match self {
             Self::Metric => "m",
@@ -110,7 +99,6 @@ impl Units {
     }
 
     /// Name of the unit of speeds.
-    #[must_use]
     pub fn speed_unit(self) -> &'static str {
         match self {
             Self::Metric => "m/s",

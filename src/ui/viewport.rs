@@ -36,7 +36,6 @@ pub enum MapMode {
 /// The state of the map panel.
 #[derive(Debug, Default)]
 pub struct MapState {
-    /// Its place.
     pub mode: MapMode,
     /// The cursor, while waypoints are edited with it.
     pub(super) edit: Option<MapCursor>,
@@ -49,7 +48,6 @@ pub struct MapState {
 pub(super) struct Viewport {
     /// The cells it fills.
     pub area: Rect,
-    /// Its middle.
     pub centre: MapPoint,
     /// Metres per column; a row is twice that.
     pub scale: f64,
@@ -57,7 +55,6 @@ pub(super) struct Viewport {
 
 impl Viewport {
     /// The window of the map in these cells.
-    #[must_use]
     pub(super) fn of(state: &AppState, area: Rect) -> Self {
         match state.map.mode {
             MapMode::Fit => Self::fit(state, area),
@@ -108,7 +105,6 @@ impl Viewport {
     }
 
     /// Column and row of a place, in cells from the top left of the area; may lie outside.
-    #[must_use]
     pub(super) fn cell(&self, place: MapPoint) -> (f64, f64) {
         let column = f64::from(self.area.width) / 2.0 + (place.e - self.centre.e) / self.scale;
         let row = f64::from(self.area.height) / 2.0 - (place.n - self.centre.n) / (2.0 * self.scale);
@@ -116,7 +112,6 @@ impl Viewport {
     }
 
     /// The screen cell of a place, if it is inside.
-    #[must_use]
     pub(super) fn screen_cell(&self, place: MapPoint) -> Option<(u16, u16)> {
         let (column, row) = self.cell(place);
         let inside = column >= 0.0
@@ -127,7 +122,6 @@ impl Viewport {
     }
 
     /// The place under the middle of a screen cell.
-    #[must_use]
     pub(super) fn place(&self, column: u16, row: u16) -> MapPoint {
         let dc = f64::from(column) + 0.5 - f64::from(self.area.x) - f64::from(self.area.width) / 2.0;
         let dr = f64::from(row) + 0.5 - f64::from(self.area.y) - f64::from(self.area.height) / 2.0;
@@ -135,21 +129,18 @@ impl Viewport {
     }
 
     /// East limits of the window, m.
-    #[must_use]
     pub(super) fn east_bounds(&self) -> [f64; 2] {
         let half = f64::from(self.area.width) / 2.0 * self.scale;
         [self.centre.e - half, self.centre.e + half]
     }
 
     /// North limits of the window, m.
-    #[must_use]
     pub(super) fn north_bounds(&self) -> [f64; 2] {
         let half = f64::from(self.area.height) * self.scale;
         [self.centre.n - half, self.centre.n + half]
     }
 
     /// The window moved by a number of columns and rows.
-    #[must_use]
     pub(super) fn panned(&self, columns: f64, rows: f64) -> MapMode {
         MapMode::Free {
             n: self.centre.n - rows * 2.0 * self.scale,
@@ -159,7 +150,6 @@ impl Viewport {
     }
 
     /// The window with its scale times `factor`; `fixed` keeps its place on the screen.
-    #[must_use]
     pub(super) fn zoomed(&self, factor: f64, fixed: MapPoint) -> MapMode {
         let scale = limited(self.scale * factor);
         let ratio = scale / self.scale;
@@ -173,7 +163,6 @@ fn limited(scale: f64) -> f64 {
 }
 
 /// The longest round length (1, 2, 5 times a power of ten) not above `metres`.
-#[must_use]
 pub(super) fn round_length(metres: f64) -> f64 {
     let decade = 10_f64.powf(metres.max(1e-3).log10().floor());
     [5.0, 2.0].into_iter().map(|step| step * decade).find(|&length| length <= metres).unwrap_or(decade)

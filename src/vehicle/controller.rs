@@ -27,7 +27,6 @@ pub struct Ticket(u64);
 /// An answer of the flight controller.
 #[derive(Debug)]
 pub enum Answer<T> {
-    /// Here it is.
     Now(T),
     /// It comes with this ticket from [`FlightController::take_answer`].
     Later(Ticket),
@@ -90,13 +89,11 @@ impl FlightController {
     }
 
     /// Whether the virtual sticks win over the other sources of RC.
-    #[must_use]
     pub fn sticks_taken_over(&self) -> bool {
         self.embedded().is_some_and(|firmware| firmware.receiver().sources().taken_over())
     }
 
     /// The source of RC that is flown; `None` before the first frame.
-    #[must_use]
     pub fn rc_source(&self) -> Option<RcSource> {
         match self {
             Self::Embedded(embedded) => embedded.firmware.receiver().sources().in_charge(),
@@ -147,7 +144,6 @@ impl FlightController {
     }
 
     /// The configuration in the memory of an embedded one, for its owner to store; a remote one stores its own.
-    #[must_use]
     pub fn configuration(&self) -> Option<&Configuration> {
         self.embedded().map(Firmware::configuration)
     }
@@ -253,7 +249,6 @@ impl FlightController {
     }
 
     /// The embedded firmware, if that is what flies.
-    #[must_use]
     pub fn embedded(&self) -> Option<&Firmware> {
         match self {
             Self::Embedded(embedded) => Some(&embedded.firmware),
@@ -292,7 +287,6 @@ impl FlightController {
     }
 
     /// Whether the craft is armed; `None` when a remote one does not tell.
-    #[must_use]
     pub fn armed(&self) -> Option<bool> {
         match self {
             Self::Embedded(embedded) => Some(embedded.firmware.is_armed()),
@@ -301,13 +295,11 @@ impl FlightController {
     }
 
     /// Whether the craft is known to be armed.
-    #[must_use]
     pub fn is_armed(&self) -> bool {
         self.armed() == Some(true)
     }
 
     /// The modes that are known to be active.
-    #[must_use]
     pub fn modes(&self) -> ModeFlags {
         match self {
             Self::Embedded(embedded) => embedded.firmware.modes(),
@@ -316,7 +308,6 @@ impl FlightController {
     }
 
     /// Why the craft was disarmed last.
-    #[must_use]
     pub fn last_disarm(&self) -> Option<DisarmReason> {
         match self {
             Self::Embedded(embedded) => embedded.firmware.last_disarm(),
@@ -325,7 +316,6 @@ impl FlightController {
     }
 
     /// The navigator's telemetry.
-    #[must_use]
     pub fn nav(&self) -> Option<&NavTelemetry> {
         match self {
             Self::Embedded(embedded) => Some(embedded.firmware.nav()),
@@ -334,7 +324,6 @@ impl FlightController {
     }
 
     /// The plan in the craft's memory.
-    #[must_use]
     pub fn stored_plan(&self) -> Option<&FlightPlan> {
         match self {
             Self::Embedded(embedded) => Some(embedded.firmware.stored_plan()),
@@ -343,7 +332,6 @@ impl FlightController {
     }
 
     /// From where the altitudes of its waypoints count.
-    #[must_use]
     pub fn altitude_reference(&self) -> AltitudeReference {
         match self {
             Self::Embedded(_) => AltitudeReference::Home,
@@ -352,7 +340,6 @@ impl FlightController {
     }
 
     /// The motor command in force.
-    #[must_use]
     pub fn motors(&self) -> MotorCommand {
         match self {
             Self::Embedded(embedded) => embedded.firmware.control().motors,
@@ -361,7 +348,6 @@ impl FlightController {
     }
 
     /// Modes, arming, receiver, battery.
-    #[must_use]
     pub fn craft_view(&self) -> CraftView {
         match self {
             Self::Embedded(embedded) => embedded.firmware.craft_view(),
@@ -381,7 +367,6 @@ impl FlightController {
     }
 
     /// The settings that displays and checks need, as far as they are known.
-    #[must_use]
     pub fn settings_view(&self) -> Option<SettingsView> {
         match self {
             Self::Embedded(embedded) => Some(embedded.firmware.settings_view()),
@@ -390,7 +375,6 @@ impl FlightController {
     }
 
     /// The mode conditions in force.
-    #[must_use]
     pub fn mode_ranges(&self) -> Vec<ModeRange> {
         match self {
             Self::Embedded(embedded) => embedded.firmware.mode_ranges(),

@@ -54,7 +54,6 @@ pub struct Message {
 
 impl Input {
     /// About how much memory it takes, bytes.
-    #[must_use]
     pub fn bytes(&self) -> usize {
         let heap = match self {
             Self::Line(line) => size_of_val(&**line) + line.1.len(),
@@ -131,13 +130,11 @@ impl Vehicle {
     }
 
     /// Whether there were inputs since the last call of [`Self::take_inputs`].
-    #[must_use]
     pub fn has_inputs(&self) -> bool {
         self.transmitter_set || self.controller.input_log().is_some_and(|log| !log.is_empty())
     }
 
     /// About how much memory the inputs since the last call of [`Self::take_inputs`] take, bytes.
-    #[must_use]
     pub fn input_bytes(&self) -> usize {
         self.controller.input_log().map_or(0, |log| log.bytes)
     }

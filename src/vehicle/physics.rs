@@ -17,9 +17,7 @@ const EXTERNAL: &str = "external";
 /// What moves the craft. A clone goes on identically.
 #[derive(Debug, Clone)]
 pub(super) enum Physics {
-    /// The simulated world.
     World(Box<World>),
-    /// An external simulator.
     External(Box<ExternalPhysics>),
 }
 

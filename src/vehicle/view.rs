@@ -10,7 +10,6 @@ use crate::telemetry::snapshot::{EstimateView, Snapshot};
 
 impl Vehicle {
     /// A picture of the whole vehicle at this instant.
-    #[must_use]
     pub fn snapshot(&self) -> Snapshot {
         let nav = self.nav_view();
         let engaged = nav.as_ref().is_some_and(|nav| nav.engaged);
@@ -39,7 +38,6 @@ impl Vehicle {
     }
 
     /// The navigator with its points counted from the boot place; `None` when a remote one does not tell.
-    #[must_use]
     pub fn nav_view(&self) -> Option<NavTelemetry> {
         let mut nav = self.controller.nav()?.clone();
         for point in [&mut nav.aim_ne, &mut nav.target_ne].into_iter().flatten() {
@@ -49,7 +47,6 @@ impl Vehicle {
     }
 
     /// What the estimator believes, counted from the boot place.
-    #[must_use]
     pub fn estimate_view(&self) -> EstimateView {
         let mut view = self.controller.estimate_view();
         if let (Some(n), Some(e)) = (view.n, view.e) {

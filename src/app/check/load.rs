@@ -9,7 +9,6 @@ use crate::plan::format::{self, Format, PlanFile};
 use crate::record::check::STANDARD_INPUT;
 use crate::scenario::{self, BuiltinFiles, BuiltinScenario, Files, SCENARIOS, Scenario, read_at_most};
 
-/// What was read.
 #[derive(Debug)]
 pub(super) struct Loaded {
     /// The scenarios in the order in which they were named.

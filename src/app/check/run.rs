@@ -22,7 +22,6 @@ pub(super) struct Job {
     repetition: u32,
 }
 
-/// Time that passes.
 #[derive(Debug)]
 pub(super) struct Stopwatch(Instant);
 
@@ -31,7 +30,6 @@ impl Stopwatch {
         Self(Instant::now())
     }
 
-    /// Since the start.
     pub(super) fn seconds(&self) -> f64 {
         self.0.elapsed().as_secs_f64()
     }

@@ -37,7 +37,6 @@ impl Recorder {
         }
     }
 
-    /// Hears what happens.
     pub(super) fn hear(&mut self, report: &Report<'_>) {
         if let Report::Event(Event { kind: EventKind::Touchdown { .. }, .. }) = report {
             self.touched_down = true;

@@ -27,7 +27,6 @@ pub(in crate::app) struct FirmwareFolder {
 }
 
 impl FirmwareFolder {
-    /// Makes a folder.
     pub(super) fn make() -> io::Result<Self> {
         for _ in 0..ATTEMPTS {
             let directory = TempDir::with_prefix(PREFIX)?;

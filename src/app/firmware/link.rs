@@ -25,7 +25,6 @@ const PROVISIONED: &str = "provisioned";
 /// Longest text of that file, bytes.
 const LONGEST_NOTE: u64 = 64 << 10;
 
-/// An open link.
 #[derive(Debug)]
 pub(in crate::app) struct OpenLink {
     /// The link, for the session or the flight.

@@ -57,7 +57,6 @@ pub(super) struct Unready<'a> {
     pub(super) tcp: u16,
     /// Somebody else started it.
     pub(super) is_attached: bool,
-    /// Why.
     pub(super) why: NotReady,
 }
 

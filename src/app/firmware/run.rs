@@ -48,9 +48,7 @@ pub(in crate::app) struct RemoteRun {
 /// Why a run came to no end of its own.
 #[derive(Debug)]
 pub(in crate::app) enum Stopped {
-    /// By a signal.
     Interrupted,
-    /// By an error.
     Failed(AppError),
 }
 
@@ -77,9 +75,7 @@ pub(in crate::app) fn unless_interrupted<T>(result: Result<T, Stopped>) -> Resul
 pub(in crate::app) struct RunOptions<'a> {
     /// Where the firmware keeps its configuration; `None` = nowhere for long.
     pub(in crate::app) state: Option<&'a Path>,
-    /// Times real time.
     pub(in crate::app) speed: f64,
-    /// Raised by signals.
     pub(in crate::app) interrupted: Arc<AtomicBool>,
 }
 

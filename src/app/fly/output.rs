@@ -132,7 +132,6 @@ impl Output {
         }
     }
 
-    /// Writes an event.
     pub(super) fn event(&mut self, event: &Event) -> Result<(), AppError> {
         let line = if self.json { json::event_line(event) } else { sentence::line(event) };
         line.map_or(Ok(()), |line| self.line(&line))

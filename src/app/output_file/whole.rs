@@ -54,7 +54,6 @@ impl FinalOutput {
         Ok(output)
     }
 
-    /// Writes it.
     pub(in crate::app) fn write(self, contents: &[u8]) -> Result<(), AppError> {
         let written = match self.place {
             Place::Regular(target) => match replace_with(&target, contents, self.permissions) {

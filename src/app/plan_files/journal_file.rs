@@ -8,7 +8,6 @@ use super::set_aside::{self, SetAside};
 use crate::plan::edit::{Journal, JournalLine, Losses};
 use crate::storage::state_file::{self, Access};
 
-/// Ending of journals.
 const ENDING: &str = "journal";
 /// Largest journal that is read, bytes: some hundred thousand edits.
 const LARGEST: u64 = 64 << 20;
@@ -47,7 +46,6 @@ pub(super) struct Journals {
 }
 
 impl JournalFile {
-    /// Begins a journal.
     pub(super) fn create(directory: &Path, journal: &Journal) -> io::Result<Self> {
         std::fs::create_dir_all(directory)?;
         let stem = stem(journal.file.as_deref().unwrap_or("unnamed"));
@@ -95,7 +93,6 @@ impl JournalFile {
         })
     }
 
-    /// Where it is.
     pub(super) fn path(&self) -> &Path {
         &self.path
     }
@@ -161,7 +158,6 @@ impl JournalFile {
         }
     }
 
-    /// Deletes it.
     pub(super) fn remove(self) {
         std::fs::remove_file(&self.path).ok();
     }

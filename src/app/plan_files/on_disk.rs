@@ -15,7 +15,6 @@ use crate::ui::editor::{Entry, Listing};
 pub(super) enum Content {
     /// Nothing is there, or nothing of it was seen.
     Missing,
-    /// A text file.
     Text(String),
     /// Something that is not read as a plan: why.
     Unreadable(String),

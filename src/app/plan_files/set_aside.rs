@@ -12,7 +12,6 @@ const MOST: u32 = 1000;
 /// A journal of which nothing could be read.
 #[derive(Debug)]
 pub(super) struct SetAside {
-    /// Where it was.
     journal: PathBuf,
     /// Where it is now.
     kept: io::Result<PathBuf>,

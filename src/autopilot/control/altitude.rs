@@ -106,7 +106,6 @@ pub struct ThrottleTerms {
 
 impl ThrottleTerms {
     /// Throttle before its limits, µs: P, I, D and F about the hover throttle, compensated for the tilt.
-    #[must_use]
     pub fn throttle_us(&self, params: &Params) -> f64 {
         let p = 0.01 * f64::from(params.altitude_p) * self.error_cm;
         let q = self.climb_rate_cms.abs() / 500.0;
@@ -119,7 +118,6 @@ impl ThrottleTerms {
 }
 
 /// A throttle pulse as a share of the mixer's range, 0…1.
-#[must_use]
 pub fn throttle_share(throttle_us: f64, params: &Params) -> f64 {
     let zero = params.throttle_zero_us();
     ((throttle_us - zero) / (2000.0 - zero)).clamp(0.0, 1.0)
@@ -197,26 +195,22 @@ impl AltitudeController {
     }
 
     /// Altitude setpoint now, m above home.
-    #[must_use]
     pub fn setpoint_m(&self) -> f64 {
         self.setpoint_m
     }
 
     /// Hover throttle in use, µs.
-    #[must_use]
     pub fn hover_us(&self) -> f64 {
         self.hover.hover_us()
     }
 
     /// Returns whether the craft has hovered in this flight, so that its hover throttle is known.
-    #[must_use]
     pub fn has_hovered(&self) -> bool {
         self.hover.held_us().is_some()
     }
 
     /// The hover throttle that this flight has shown, µs; `None` before. Of a craft that its least throttle carried up it is
     /// less than that, even before it hovered.
-    #[must_use]
     pub fn learned_hover_us(&self) -> Option<f64> {
         self.hover.learned_us().or_else(|| {
             let lifting_us = f64::from(self.lifting_floor_us?) - 1.0;
@@ -226,7 +220,6 @@ impl AltitudeController {
 
     /// Where a throttle stick means no climb, µs: the hover throttle that this flight has shown, before that the parameter,
     /// and without one `centre_us`.
-    #[must_use]
     pub fn hover_stick_us(&self, params: &Params, centre_us: f64) -> f64 {
         let configured_us = match params.hover_throttle {
             0 => centre_us,
@@ -237,7 +230,6 @@ impl AltitudeController {
 
     /// The hover throttle that a touchdown is measured against, µs: the parameter, or what held the craft when this
     /// controller took over if there is none.
-    #[must_use]
     pub fn reference_hover_us(&self, params: &Params) -> f64 {
         match params.hover_throttle {
             0 => self.captured_us,
@@ -251,7 +243,6 @@ impl AltitudeController {
     }
 
     /// Throttle of the last update, µs.
-    #[must_use]
     pub fn throttle_us(&self) -> f64 {
         self.throttle_us
     }
@@ -263,19 +254,16 @@ impl AltitudeController {
     }
 
     /// Whether the throttle is all there is.
-    #[must_use]
     pub fn is_at_full_throttle(&self) -> bool {
         self.limits_us.is_some_and(|(_, max)| self.throttle_us >= max)
     }
 
     /// Whether the craft loses altitude although it has all the throttle there is.
-    #[must_use]
     pub(super) fn sinks_at_full_throttle(&self, now: &NavInputs) -> bool {
         self.is_at_full_throttle() && self.setpoint_m > now.alt_m + BELOW_M && now.climb_mps < -SINKING_MPS
     }
 
     /// Whether there is throttle left.
-    #[must_use]
     pub(super) fn has_throttle_to_spare(&self) -> bool {
         self.limits_us.is_none_or(|(_, max)| self.throttle_us < max - SPARE_US)
     }

@@ -17,7 +17,6 @@ impl BumplessTransfer {
         *self = if offset.is_finite() { Self { offset, left_s: FADE_S } } else { Self::default() };
     }
 
-    /// Forgets the difference.
     pub fn clear(&mut self) {
         *self = Self::default();
     }
@@ -30,7 +29,6 @@ impl BumplessTransfer {
     }
 
     /// The part of the difference that is still added.
-    #[must_use]
     pub fn remaining(&self) -> f64 {
         self.offset * (self.left_s / FADE_S)
     }

@@ -17,7 +17,6 @@ pub struct DisturbanceObserver {
 
 impl DisturbanceObserver {
     /// Estimated disturbance (north, east), m/s².
-    #[must_use]
     pub fn accel(&self) -> Vector2<f64> {
         self.accel
     }

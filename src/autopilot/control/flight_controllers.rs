@@ -14,13 +14,9 @@ use crate::autopilot::params::Params;
 /// throttle are known at the next takeover.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct FlightControllers {
-    /// Throttle.
     pub altitude: AltitudeController,
-    /// Lean.
     pub position: PositionController,
-    /// Ground or air.
     pub land: LandDetector,
-    /// Altitude before lean.
     lean: LeanLimiter,
 }
 
@@ -38,7 +34,6 @@ impl FlightControllers {
     }
 
     /// Whether the thrust does not suffice for the lean that is asked for.
-    #[must_use]
     pub fn thrust_limits_lean(&self) -> bool {
         self.lean.is_reduced() && self.position.is_saturated()
     }

@@ -88,31 +88,26 @@ pub struct HoverMeasurement {
 
 impl HoverThrottleEstimator {
     /// Hover throttle in use, µs.
-    #[must_use]
     pub fn hover_us(&self) -> f64 {
         self.hover_us
     }
 
     /// Throttle that balances the weight, at any speed, µs; in a climb it holds what inflow and drag take, too.
-    #[must_use]
     pub fn balance_us(&self) -> Option<f64> {
         self.balance_us
     }
 
     /// Vertical acceleration of the last cycle, m/s².
-    #[must_use]
     pub fn accel_mps2(&self) -> f64 {
         self.accel
     }
 
     /// The hover throttle that this flight has shown, µs; `None` before.
-    #[must_use]
     pub fn learned_us(&self) -> Option<f64> {
         self.held_us().or(self.found_us)
     }
 
     /// The throttle that held the craft in a hover of this flight, µs; `None` before.
-    #[must_use]
     pub fn held_us(&self) -> Option<f64> {
         self.estimate_us.filter(|_| self.airborne_s >= SETTLED_S)
     }

@@ -38,7 +38,6 @@ pub const LEAN_SLEW_RPS: f64 = 200.0 * DEG;
 const DEG: f64 = std::f64::consts::PI / 180.0;
 
 /// A lean towards (north, east) as (forward, right) of a craft heading `heading_rad`.
-#[must_use]
 pub fn earth_to_body(ne: Vector2<f64>, heading_rad: f64) -> Vector2<f64> {
     let (sin, cos) = heading_rad.sin_cos();
     Vector2::new(ne.x * cos + ne.y * sin, -ne.x * sin + ne.y * cos)
@@ -76,7 +75,6 @@ impl From<&NavInputs> for PositionMeasurement {
     }
 }
 
-/// Which law flies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PositionLaw {
     /// Position error → speed → lean: legs, and holds with `ap_velocity_control_enable`.
@@ -100,13 +98,11 @@ pub struct PositionTarget {
     pub pass_through: bool,
     /// Greatest speed, m/s.
     pub speed_mps: f64,
-    /// Which law flies.
     pub law: PositionLaw,
 }
 
 impl PositionTarget {
     /// Stop at `point` and stay.
-    #[must_use]
     pub fn stay(point: Vector2<f64>, params: &Params) -> Self {
         Self {
             aim: point,
@@ -173,7 +169,6 @@ impl PositionController {
     }
 
     /// Whether the demand is cut at the greatest lean.
-    #[must_use]
     pub fn is_saturated(&self) -> bool {
         self.saturated
     }
@@ -184,13 +179,11 @@ impl PositionController {
     }
 
     /// The greatest lean that may be flown, rad.
-    #[must_use]
     pub fn max_lean_rad(&self, params: &Params) -> f64 {
         self.thrust_limit_rad.unwrap_or(f64::INFINITY).min(params.max_lean_rad())
     }
 
     /// Speed setpoint, m/s.
-    #[must_use]
     pub fn speed_setpoint_mps(&self) -> f64 {
         self.speed
     }

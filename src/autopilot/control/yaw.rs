@@ -20,11 +20,9 @@ const RELEASE: f64 = 0.75;
 /// What the heading can be steered by; rad clockwise from north, SI.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct YawFacts {
-    /// Heading now.
     pub heading_rad: f64,
     /// Yaw rate now, rad/s, clockwise positive.
     pub yaw_rate_rps: f64,
-    /// Ground course.
     pub course_rad: f64,
     /// Ground speed, m/s.
     pub ground_speed_mps: f64,
@@ -38,7 +36,6 @@ pub struct YawFacts {
 
 /// Heading to steer for, rad, or `None` for no turning; `course_trusted` = the craft is fast enough for a course,
 /// `captured_rad` = the heading that FIXED holds. DAMPENER is for wings; a multirotor flies it as FIXED.
-#[must_use]
 pub fn desired_heading(
     mode: YawMode,
     facts: &YawFacts,
@@ -63,7 +60,6 @@ fn hybrid(facts: &YawFacts) -> f64 {
 }
 
 /// Yaw rate (deg/s, clockwise positive) towards `desired_rad`, faded by `ramp` (0…1) and limited by `max_dps`.
-#[must_use]
 pub fn yaw_rate_dps(desired_rad: f64, facts: &YawFacts, ramp: f64, max_dps: f64, params: &Params) -> f64 {
     let error = wrap_pi(desired_rad - facts.heading_rad).to_degrees();
     let p = 0.01 * f64::from(params.yaw_p) * error;

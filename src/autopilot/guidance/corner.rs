@@ -7,7 +7,6 @@ const TURN_GRAVITY: f64 = 9.8;
 
 /// Distance before a FLYBY waypoint at which the turn begins, m: `R = V²/(g·tan θ)` for the ground speed (m/s, at
 /// least 1) and the greatest lean (rad), within 0.5…1000 m. It is the exact tangent distance of a 90° corner.
-#[must_use]
 pub fn turn_radius_m(ground_speed_mps: f64, max_lean_rad: f64) -> f64 {
     let tan = max_lean_rad.tan();
     if tan < 0.1 {
@@ -41,7 +40,6 @@ pub enum PlaneCrossing {
 
 /// Where the step from `previous` to `position` lies to the plane of `waypoint` for a leg from `leg_start` (all north,
 /// east, m).
-#[must_use]
 pub fn plane_crossing(
     leg_start: Vector2<f64>,
     waypoint: Vector2<f64>,

@@ -28,7 +28,6 @@ pub struct L1Limits {
 
 impl L1Limits {
     /// The limits the parameters ask for.
-    #[must_use]
     pub fn from_params(params: &Params) -> Self {
         Self {
             period_s: f64::from(params.l1_period) / 10.0,
@@ -69,7 +68,6 @@ pub struct L1Result {
 }
 
 /// Steers along the leg from `start` to `end` (north, east, m) for a craft at `position` with ground `velocity` (m/s).
-#[must_use]
 pub fn l1(
     start: Vector2<f64>,
     end: Vector2<f64>,
@@ -149,7 +147,6 @@ pub struct CornerArc {
 impl CornerArc {
     /// The arc from `course_rad` to a leg on `leg_bearing_rad`; none when `turn_rate_rps` is zero or the corner is no
     /// more than 20°.
-    #[must_use]
     pub fn begin(course_rad: f64, leg_bearing_rad: f64, turn_rate_rps: f64) -> Option<Self> {
         let change = wrap_pi(leg_bearing_rad - course_rad);
         // A hair above 20°, so that a corner of exactly 20° does not arc by rounding.
@@ -162,7 +159,6 @@ impl CornerArc {
     }
 
     /// Turn rate, rad/s.
-    #[must_use]
     pub fn turn_rate_rps(&self) -> f64 {
         self.rate_rps.abs()
     }
@@ -170,7 +166,6 @@ impl CornerArc {
     /// Turns for `dt` seconds towards `normal_bearing_rad`, the bearing of the aim on the line; `false` when the arc
     /// is over: within 5° of it or past it, or turned by the corner and the steepest cut-in to the line. A waypoint inside
     /// the circle would otherwise be circled for ever.
-    #[must_use]
     pub fn advance(&mut self, dt: f64, normal_bearing_rad: f64) -> bool {
         let left_before = wrap_pi(normal_bearing_rad - self.bearing_rad);
         self.bearing_rad = (self.bearing_rad + self.rate_rps * dt).rem_euclid(TAU);

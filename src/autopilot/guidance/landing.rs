@@ -6,7 +6,6 @@ use crate::autopilot::params::Params;
 
 /// Altitude setpoint of a landing, m: from `start_m` down at `rate_mps` for `elapsed_s`, on below zero until the
 /// touchdown; above the landing altitude never more than 5 m below the craft, so that it cannot wind up.
-#[must_use]
 pub fn landing_setpoint_m(
     start_m: f64,
     rate_mps: f64,
@@ -31,7 +30,6 @@ pub struct Spiral {
 
 impl Spiral {
     /// The spiral the parameters ask for, if any.
-    #[must_use]
     pub fn from_params(params: &Params) -> Option<Self> {
         params.landing_spiral_enable.then(|| Self {
             radius_m: f64::from(params.landing_spiral_radius) / 100.0,
@@ -43,7 +41,6 @@ impl Spiral {
 
 /// Offset of the horizontal target from the centre of the landing (north, east), m. With a landing altitude of zero
 /// the spiral closes below 1 m.
-#[must_use]
 pub fn spiral_offset(spiral: &Spiral, elapsed_s: f64, altitude_m: f64) -> Vector2<f64> {
     let half = spiral.landing_altitude_m / 2.0;
     let open =

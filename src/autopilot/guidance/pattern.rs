@@ -21,7 +21,6 @@ pub struct PatternPoint {
 }
 
 /// A circle clockwise from north: phase 0 is north of the waypoint.
-#[must_use]
 pub fn orbit(radius_m: f64, phase_rad: f64) -> PatternPoint {
     let (sin, cos) = phase_rad.sin_cos();
     PatternPoint {
@@ -34,7 +33,6 @@ pub fn orbit(radius_m: f64, phase_rad: f64) -> PatternPoint {
 
 /// Two circles that touch at the waypoint: first the western one clockwise, then the eastern one counter-clockwise;
 /// `width_m` is the distance between their centres and the phase runs over 4π. It passes the waypoint heading south.
-#[must_use]
 pub fn figure8(width_m: f64, phase_rad: f64) -> PatternPoint {
     let radius = width_m / 2.0;
     let phase = phase_rad.rem_euclid(2.0 * TAU);
@@ -51,7 +49,6 @@ pub fn figure8(width_m: f64, phase_rad: f64) -> PatternPoint {
 
 /// Angular rate along a circle of `radius_m`, rad/s: `ap_max_turn_rate`, limited by the leg's speed and by half the
 /// acceleration of the greatest lean, so that it can be flown.
-#[must_use]
 pub fn pattern_rate_rps(radius_m: f64, leg_speed_mps: f64, params: &Params) -> f64 {
     let radius = radius_m.max(0.1);
     let by_lean = (0.5 * GRAVITY * params.max_lean_rad().tan() / radius).sqrt();
@@ -59,7 +56,6 @@ pub fn pattern_rate_rps(radius_m: f64, leg_speed_mps: f64, params: &Params) -> f
 }
 
 /// Deciseconds left of a hold; 65535 when it is endless.
-#[must_use]
 pub fn hold_remaining_ds(duration_ds: u16, elapsed_us: u64) -> u16 {
     if duration_ds == 0 {
         return u16::MAX;

@@ -44,7 +44,6 @@ impl Impact {
     }
 
     /// Whether a bump above `threshold` (setting units, 0 = never) ended the flight.
-    #[must_use]
     pub(super) fn is_touchdown(&self, threshold: f64, facts: &ImpactFacts) -> bool {
         let hands_off = facts.stick_percent < HANDS_OFF_PERCENT && facts.throttle_percent < HANDS_OFF_PERCENT;
         if threshold <= 0.0 || !facts.raised || !(hands_off || facts.alt_hold) {

@@ -50,7 +50,6 @@ pub struct DescentFacts {
 impl DescentFacts {
     /// A descent at `sink_mps` (m/s), by a controller whose setpoint is `setpoint_m` (m) and whose throttle is
     /// `throttle_us` (µs).
-    #[must_use]
     pub fn new(
         now: &NavInputs,
         params: &Params,
@@ -73,7 +72,6 @@ impl DescentFacts {
     }
 
     /// Vertical speed below which the descent neither sinks nor climbs, m/s.
-    #[must_use]
     pub fn still_mps(&self) -> f64 {
         STILL_SHARE * self.landing_rate_mps
     }

@@ -54,7 +54,6 @@ impl StationaryTimer {
         self.held_s = time.seconds_since(since);
     }
 
-    /// Begins anew.
     pub(super) fn restart(&mut self) {
         (self.since, self.held_s) = (None, 0.0);
     }

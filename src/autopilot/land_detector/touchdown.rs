@@ -42,7 +42,6 @@ pub struct TouchdownFacts {
 impl TouchdownFacts {
     /// The limits of the parameters around measured values; `hover_us` is the configured hover throttle, or the
     /// captured one where none is configured.
-    #[must_use]
     pub fn new(
         params: &Params,
         hover_us: f64,
@@ -77,7 +76,6 @@ pub struct GroundFacts {
 
 impl GroundFacts {
     /// What tells the ground from a craft that hovers low, whoever descends.
-    #[must_use]
     pub fn new(now: &NavInputs, params: &Params, altitude: &AltitudeController, land: &LandDetector) -> Self {
         let pressing = now.alt_m - altitude.setpoint_m() - PRESSING_M;
         Self {
@@ -99,7 +97,6 @@ pub struct TouchdownGuards([Guard; 6]);
 
 impl TouchdownGuards {
     /// Low, slow, throttle low, not descending, come down, throttle below the learned hover throttle.
-    #[must_use]
     pub fn new(touch: &TouchdownFacts, ground: &GroundFacts) -> Self {
         Self([
             Guard::new(
@@ -132,7 +129,6 @@ impl TouchdownGuards {
     }
 
     /// Whether the craft is on the ground as far as one update can tell.
-    #[must_use]
     pub fn all_hold(&self) -> bool {
         self.0.iter().all(Guard::holds)
     }

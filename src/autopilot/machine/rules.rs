@@ -10,7 +10,6 @@ use crate::plan::{HoldPattern, WaypointType};
 use crate::telemetry::{AbortReason, Guard, GuardName, GuardOp, NavState, PlanSource, TransitionReason};
 
 /// The rules of `state`, in the order they are tried; the first whose guards all hold fires.
-#[must_use]
 pub fn rules(state: NavState, facts: &Facts) -> Rules {
     let mut list = Rules::new();
     if state != NavState::Idle {

@@ -146,7 +146,6 @@ fn condition(guards: &[Guard]) -> String {
 
 /// Every transition as a Markdown table, with the default parameters as limits, in the order in which the rules of a
 /// state are tried.
-#[must_use]
 pub fn transition_table() -> String {
     let mut table =
         "| from | waypoint | condition | to | effect |\n| --- | --- | --- | --- | --- |\n".to_owned();

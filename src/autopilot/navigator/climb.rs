@@ -26,7 +26,6 @@ impl Climb {
         self.at
     }
 
-    /// Begins here.
     pub(super) fn begin(&mut self, at: Vector2<f64>) {
         self.at = Some(at);
     }

@@ -56,7 +56,6 @@ impl PlanCursor {
         self.plan.waypoints.get(usize::from(index)).copied()
     }
 
-    /// The current waypoint.
     pub(super) fn current(&self) -> Option<Waypoint> {
         self.waypoint(self.index)
     }

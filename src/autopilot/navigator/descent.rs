@@ -18,7 +18,6 @@ const NEAR_M: f64 = 0.5;
 /// The vertical approach ends this far above `ap_landing_altitude_m` at the least, m.
 const CLEARANCE_M: f64 = 5.0;
 
-/// The path down.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Path {
     began: SimTime,
@@ -43,12 +42,10 @@ impl Path {
 /// The part of a landing that is flown.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 enum Phase {
-    /// None yet.
     #[default]
     Pending,
     /// Vertically to this altitude (m), at the altitude controller's limit.
     Approach(f64),
-    /// The landing profile.
     Profile(Path),
 }
 

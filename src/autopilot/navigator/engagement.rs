@@ -17,7 +17,6 @@ pub(super) enum ArmingEdge {
     Disarmed,
 }
 
-/// Memory between missions.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Engagement {
     was_armed: bool,

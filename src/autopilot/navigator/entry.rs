@@ -66,19 +66,16 @@ impl Navigator {
     }
 
     /// Whether a landing that lost its fix waits for it.
-    #[must_use]
     pub fn has_landing_to_resume(&self) -> bool {
         self.engagement.landing_at().is_some()
     }
 
     /// Why the last mission was given up, while nothing has taken its place.
-    #[must_use]
     pub fn given_up(&self) -> Option<AbortReason> {
         self.engagement.given_up()
     }
 
     /// Whether there has been a fix for long enough to fly by it again.
-    #[must_use]
     pub fn has_fix_back(&self, inputs: &NavInputs) -> bool {
         self.engagement.has_fix_back(inputs)
     }

@@ -20,7 +20,6 @@ const FULL_STICK: f64 = 500.0;
 /// What an update flew.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Flown {
-    /// The demands.
     pub output: NavOutput,
     /// How the aim was chosen.
     pub path: PathView,

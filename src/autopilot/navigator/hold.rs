@@ -11,7 +11,6 @@ pub(super) struct Hold {
 }
 
 impl Hold {
-    /// HOLDING is entered.
     pub(super) fn begin(&mut self, time: SimTime) {
         self.began = time;
     }
@@ -32,7 +31,6 @@ impl Hold {
         time.0.saturating_sub(self.began.0)
     }
 
-    /// A pattern begins.
     pub(super) fn begin_pattern(&mut self) {
         self.phase_rad = 0.0;
     }

@@ -27,7 +27,6 @@ pub enum YawMode {
     /// Along the ground course.
     #[default]
     Velocity = 0,
-    /// To the waypoint.
     Bearing = 1,
     /// To the waypoint when far, along the course when near.
     Hybrid = 2,

@@ -8,7 +8,6 @@ const SATURATED_SHARE: f64 = 0.95;
 /// What follows a crash.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum CrashAction {
-    /// Nothing; nobody looks.
     #[default]
     Off,
     /// The sticks are ignored and the craft is levelled.
@@ -20,7 +19,6 @@ pub enum CrashAction {
 /// Settings of the detection.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct CrashConfig {
-    /// What follows.
     pub action: CrashAction,
     /// Angular acceleration beyond which it looks like a crash, °/s².
     pub slope_dps2: f64,
@@ -41,7 +39,6 @@ pub struct CrashConfig {
 /// What the detection looks at.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CrashFacts {
-    /// Time.
     pub now: SimTime,
     /// Filtered gyro, °/s.
     pub gyro_dps: [f64; 3],
@@ -53,7 +50,6 @@ pub struct CrashFacts {
     pub tilt_rad: f64,
 }
 
-/// The detection.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct CrashDetector {
     last: Option<(SimTime, [f64; 3])>,
@@ -63,7 +59,6 @@ pub struct CrashDetector {
 
 impl CrashDetector {
     /// Whether the craft is being levelled after a crash.
-    #[must_use]
     pub fn is_levelling(&self) -> bool {
         self.levelling_since.is_some()
     }

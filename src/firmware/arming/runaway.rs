@@ -38,7 +38,6 @@ impl Default for RunawayConfig {
 /// What the prevention looks at.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RunawayFacts {
-    /// Time.
     pub now: SimTime,
     /// Largest PID sum of any axis, before its limit.
     pub pid_sum: Vector3<f64>,
@@ -50,7 +49,6 @@ pub struct RunawayFacts {
     pub stick_percent: f64,
 }
 
-/// The prevention.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Runaway {
     given_up: bool,

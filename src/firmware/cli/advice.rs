@@ -7,7 +7,6 @@ use super::command_table::{COMMANDS, by_name};
 use crate::did_you_mean;
 
 /// What to tell the user after `line` was answered with `reply`, if anything.
-#[must_use]
 pub fn advice(line: &str, reply: &CliReply) -> Option<String> {
     let line = line.trim();
     let (word, rest) = line.split_once(' ').unwrap_or((line, ""));

@@ -3,7 +3,6 @@
 use super::session::Session;
 use super::{bench, craft, dump, get_set, leave, modes, names, profiles, receiver, serial, status, waypoint};
 
-/// One command.
 #[derive(Debug, Clone, Copy)]
 pub struct Command {
     /// Its name, in lower case.

@@ -20,14 +20,12 @@ pub struct Completion {
 
 impl Completion {
     /// What is certain to follow the line.
-    #[must_use]
     pub fn tail(&self, line: &str) -> &str {
         let typed = line.len().saturating_sub(self.start);
         self.common.get(typed..).unwrap_or("")
     }
 
     /// The lines that a line may become.
-    #[must_use]
     pub fn lines(&self, line: &str) -> Vec<String> {
         let head = line.get(..self.start).unwrap_or(line);
         self.candidates.iter().map(|word| format!("{head}{word}")).collect()
@@ -35,7 +33,6 @@ impl Completion {
 }
 
 /// Completes the last word of a line.
-#[must_use]
 pub fn complete(line: &str) -> Completion {
     let trimmed = line.trim_start();
     let indent = line.len() - trimmed.len();
@@ -119,7 +116,6 @@ fn waypoint(rest: &str, start: usize) -> Completion {
 
 /// What to show beside a line being typed: the setting's range, meaning and present value, as far as it is known, or the
 /// command's arguments.
-#[must_use]
 pub fn hint(line: &str, settings: Option<&Settings>) -> Option<String> {
     let trimmed = line.trim_start();
     let (word, rest) = trimmed.split_once(' ').unwrap_or((trimmed, ""));

@@ -3,7 +3,6 @@
 use super::super::config::KeptLine;
 use super::session::Session;
 
-/// Whole names.
 const NAMES: &[&str] = &[
     "beacon",
     "beeper",

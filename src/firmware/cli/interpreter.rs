@@ -46,21 +46,17 @@ impl Default for Interpreter {
 }
 
 impl Interpreter {
-    /// A fresh session.
-    #[must_use]
     pub fn new(mode: CliMode) -> Self {
         Self { mode, batch: Batch::Closed, section: (Scope::Master, 0), lenient: false }
     }
 
     /// A session in which errors do not stop a batch from being saved.
-    #[must_use]
     pub fn lenient(mut self, lenient: bool) -> Self {
         self.lenient = lenient;
         self
     }
 
     /// Whether a batch is open in which a line was refused.
-    #[must_use]
     pub fn batch_failed(&self) -> bool {
         self.batch == Batch::Failed
     }

@@ -13,19 +13,13 @@ const RX_IDLE_HZ: u32 = 20;
 /// Everything `status`, `env`, `tasks`, `version` and `waypoint status` tell about the running firmware.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct CliFacts {
-    /// Version and build.
     pub build: BuildInfo,
     /// Whether the craft is armed; many commands are refused then.
     pub armed: bool,
-    /// What blocks arming.
     pub arming_blocks: ArmingFlags,
-    /// Seconds since boot.
     pub uptime_s: u64,
-    /// The stored configuration.
     pub storage: StorageFacts,
-    /// The GPS.
     pub gps: GpsFacts,
-    /// The battery.
     pub battery: BatteryFacts,
     /// What scripts and simulators sent in vain.
     pub bad_packets: BadPackets,
@@ -33,19 +27,16 @@ pub struct CliFacts {
     pub lost_time: LostTime,
     /// An earlier instant is shown, during which clients change nothing.
     pub rewound: bool,
-    /// Loop rates.
     pub loops: LoopFacts,
     /// One row a task, in order of their numbers.
     pub tasks: Vec<TaskFacts>,
     /// The RC smoothing filters.
     pub smoothing: SmoothingFacts,
-    /// The navigator.
     pub nav: NavFacts,
 }
 
 impl CliFacts {
     /// The present instant of a firmware.
-    #[must_use]
     pub(in crate::firmware) fn observe(firmware: &Firmware) -> Self {
         let signal = firmware.receiver().signal();
         let rx_hz = if signal { firmware.receiver().sources().rate_hz().round() as u32 } else { 0 };
@@ -132,15 +123,12 @@ fn tasks(firmware: &Firmware, rx_hz: u32) -> Vec<TaskFacts> {
 /// Version and build, as announced by `version`, `env` and MSP.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct BuildInfo {
-    /// Firmware version.
     pub version: String,
-    /// MSP API version.
     pub api: String,
     /// Build date, `Mmm dd yyyy`.
     pub date: String,
     /// Build time, `hh:mm:ss`.
     pub time: String,
-    /// Source revision.
     pub revision: String,
 }
 
@@ -187,10 +175,8 @@ pub enum GpsFacts {
     Connected(Option<GpsSolutionFacts>),
 }
 
-/// A navigation solution.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct GpsSolutionFacts {
-    /// Satellites used.
     pub sats: u8,
     /// Horizontal dilution of precision; 0 = not reported.
     pub hdop: f64,
@@ -200,12 +186,10 @@ pub struct GpsSolutionFacts {
     pub position: Option<(LatLon, i32)>,
 }
 
-/// The battery.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BatteryFacts {
     /// Voltage, V.
     pub voltage_v: f64,
-    /// Cells in series.
     pub cells: u8,
     /// `OK`, `WARNING`, `CRITICAL`, `NOT PRESENT` or `INIT`.
     pub state: &'static str,
@@ -217,7 +201,6 @@ impl Default for BatteryFacts {
     }
 }
 
-/// Loop rates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LoopFacts {
     /// Processor load, percent.
@@ -232,12 +215,9 @@ pub struct LoopFacts {
     pub system_hz: u32,
 }
 
-/// One task.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct TaskFacts {
-    /// Its number.
     pub id: u8,
-    /// Its name.
     pub name: &'static str,
     /// How often it runs, Hz.
     pub rate_hz: u32,
@@ -260,10 +240,8 @@ pub struct SmoothingFacts {
     pub throttle_hz: u32,
 }
 
-/// The navigator.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct NavFacts {
-    /// Its telemetry.
     pub telemetry: NavTelemetry,
     /// The plan being flown, while one is.
     pub active_plan: Option<FlightPlan>,

@@ -33,7 +33,6 @@ impl Session<'_> {
         self.line(format_args!("\r\n# {title}"));
     }
 
-    /// Refuses the command.
     pub(super) fn error(&mut self, text: impl Display) {
         let command = self.command;
         self.line(format_args!("###ERROR IN {command}: {text}###"));

@@ -4,7 +4,6 @@ use super::super::settings::find;
 use super::observation::{GpsFacts, TaskFacts};
 use super::session::Session;
 
-/// The simulated processor.
 pub(super) const MCU: &str = "SIMULATOR";
 /// Its clock, MHz.
 const CLOCK_MHZ: u32 = 500;

@@ -18,7 +18,6 @@ use strum::IntoEnumIterator;
 )]
 #[strum(serialize_all = "SCREAMING_SNAKE_CASE")]
 #[repr(u8)]
-#[expect(missing_docs, reason = "the names are the documentation; most are features of other builds")]
 pub enum Feature {
     RxPpm = 0,
     /// The receiver is the RC packet on UDP.
@@ -30,7 +29,6 @@ pub enum Feature {
     ServoTilt = 5,
     #[strum(to_string = "SOFTSERIAL")]
     SoftSerial = 6,
-    /// Satellite navigation.
     Gps = 7,
     #[strum(to_string = "OPTICALFLOW")]
     OpticalFlow = 8,
@@ -58,13 +56,11 @@ pub enum Feature {
 
 impl Feature {
     /// Its bit in the mask.
-    #[must_use]
     pub const fn bit(self) -> u32 {
         1 << self as u32
     }
 
     /// Whether this vehicle has it.
-    #[must_use]
     pub fn is_available(self) -> bool {
         matches!(
             self,
@@ -80,7 +76,6 @@ impl Feature {
     }
 
     /// The feature of this name in any case, or the only one whose name starts with it.
-    #[must_use]
     pub fn by_name(name: &str) -> Option<Self> {
         let name = name.to_ascii_uppercase();
         let mut starting = Self::iter().filter(|feature| feature.to_string().starts_with(&name));
@@ -106,7 +101,6 @@ impl Default for Features {
 
 impl Features {
     /// Whether a feature is on.
-    #[must_use]
     pub const fn has(self, feature: Feature) -> bool {
         self.0 & feature.bit() != 0
     }

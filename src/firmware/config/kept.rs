@@ -7,7 +7,6 @@ const MAX_CHARACTERS: usize = 1 << 17;
 /// What a line costs beside its own characters.
 const LINE_COST: usize = 64;
 
-/// One kept line.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct KeptLine {
     /// Section it came in.
@@ -22,7 +21,6 @@ pub struct KeptLine {
 
 impl KeptLine {
     /// The line as it is typed.
-    #[must_use]
     pub fn command(&self) -> String {
         if self.name.is_empty() { self.text.clone() } else { format!("set {} = {}", self.name, self.text) }
     }

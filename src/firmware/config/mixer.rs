@@ -22,7 +22,6 @@ pub const MAX_MIX_ROWS: usize = 8;
 )]
 #[strum(serialize_all = "SCREAMING_SNAKE_CASE")]
 #[repr(u8)]
-#[expect(missing_docs, reason = "the names are the documentation")]
 pub enum MixerKind {
     Tri = 1,
     #[strum(to_string = "QUADP")]
@@ -73,7 +72,6 @@ pub enum MixerKind {
 
 impl MixerKind {
     /// The type of this name in any case, or the first whose name starts with it.
-    #[must_use]
     pub fn by_name(name: &str) -> Option<Self> {
         let name = name.to_ascii_uppercase();
         let starting = || Self::iter().find(|kind| kind.to_string().starts_with(&name));
@@ -83,7 +81,6 @@ impl MixerKind {
     }
 
     /// The motor rows of the types that fly here.
-    #[must_use]
     pub fn rows(self) -> Option<[MixRow; 4]> {
         let row = |roll, pitch, yaw| MixRow { throttle: 1.0, roll, pitch, yaw };
         match self {
@@ -110,6 +107,5 @@ pub struct MixRow {
     pub roll: f64,
     /// Share of pitch, nose down positive.
     pub pitch: f64,
-    /// Share of yaw.
     pub yaw: f64,
 }

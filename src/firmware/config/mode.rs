@@ -11,7 +11,6 @@ const HIGHEST_US: u16 = 2100;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, strum::FromRepr)]
 #[repr(u8)]
 pub enum ModeLogic {
-    /// Any one suffices.
     #[default]
     Or = 0,
     /// All of these must hold.
@@ -36,31 +35,26 @@ pub struct ModeCondition {
 }
 
 impl Default for ModeCondition {
-    /// An empty slot.
     fn default() -> Self {
         Self { box_id: 0, aux_channel: 0, start_us: 900, end_us: 900, logic: ModeLogic::Or, linked: 0 }
     }
 }
 
 impl ModeCondition {
-    /// Highest switch channel.
     pub const MAX_AUX: u8 = 13;
 
     /// A pulse brought to the range and step that conditions are stored in.
-    #[must_use]
     pub fn snap(pulse_us: i64) -> u16 {
         let clipped = pulse_us.clamp(i64::from(LOWEST_US), i64::from(HIGHEST_US)) as u16;
         clipped - (clipped - LOWEST_US) % STEP_US
     }
 
     /// Whether it can ever turn its mode on.
-    #[must_use]
     pub fn is_usable(&self) -> bool {
         self.start_us < self.end_us || self.linked != 0
     }
 
     /// Whether a pulse lies in the range; pulses beyond the ends count as the ends.
-    #[must_use]
     pub fn contains(&self, pulse_us: f64) -> bool {
         let pulse = pulse_us.max(f64::from(LOWEST_US)).min(f64::from(HIGHEST_US - 1));
         f64::from(self.start_us) <= pulse && pulse < f64::from(self.end_us)
@@ -87,7 +81,6 @@ pub struct AdjustmentRange {
 }
 
 impl Default for AdjustmentRange {
-    /// An empty slot.
     fn default() -> Self {
         Self {
             aux_channel: 0,

@@ -24,7 +24,6 @@ impl Default for ChannelMap {
 
 impl ChannelMap {
     /// Reads a permutation of `AERT1234`, in any case.
-    #[must_use]
     pub fn parse(text: &str) -> Option<Self> {
         let text = text.to_ascii_uppercase();
         let place =
@@ -72,13 +71,11 @@ pub enum RxFailMode {
     Auto = 0,
     /// The last value for ever.
     Hold = 1,
-    /// A given value.
     Set = 2,
 }
 
 impl RxFailMode {
     /// The letter of the command line.
-    #[must_use]
     pub const fn letter(self) -> char {
         match self {
             Self::Auto => 'a',
@@ -91,7 +88,6 @@ impl RxFailMode {
 /// The loss rule of one channel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct RxFail {
-    /// What happens.
     pub mode: RxFailMode,
     /// Value of mode [`RxFailMode::Set`], µs; 1500 otherwise.
     pub value_us: u16,
@@ -99,19 +95,16 @@ pub struct RxFail {
 
 impl RxFail {
     /// The rule of a fresh vehicle: the sticks automatic, the others held.
-    #[must_use]
     pub fn default_for(channel: usize) -> Self {
         Self::without_value(if channel < 4 { RxFailMode::Auto } else { RxFailMode::Hold })
     }
 
     /// A rule that needs no value.
-    #[must_use]
     pub const fn without_value(mode: RxFailMode) -> Self {
         Self { mode, value_us: 1500 }
     }
 
     /// A rule with a value, brought to the range and step in which values are stored.
-    #[must_use]
     pub fn set_to(pulse_us: i64) -> Self {
         let clipped = pulse_us.clamp(FAIL_LOWEST_US, FAIL_HIGHEST_US);
         let snapped = clipped - (clipped - FAIL_LOWEST_US) % FAIL_STEP_US;

@@ -14,7 +14,6 @@ const P_PER_I: f64 = 0.1;
 pub(super) struct GainBoost {
     /// Of P, roll and pitch.
     pub p: f64,
-    /// Of I.
     pub i: f64,
 }
 

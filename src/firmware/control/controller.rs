@@ -52,7 +52,6 @@ pub struct Controller {
 
 impl Controller {
     /// A controller at boot for steps of `dt` seconds.
-    #[must_use]
     pub fn new(tuning: Tuning, dt: f64) -> Self {
         let mut controller = Self {
             derived: Derived::new(&tuning, dt),
@@ -91,19 +90,16 @@ impl Controller {
     }
 
     /// The tuning in use.
-    #[must_use]
     pub fn tuning(&self) -> &Tuning {
         &self.tuning
     }
 
     /// Cutoffs of the smoothing of sticks and throttle in use, Hz; 0 while nothing is smoothed.
-    #[must_use]
     pub fn smoothing_hz(&self) -> [f64; 2] {
         self.smoothing.cutoffs_hz()
     }
 
     /// What the last step did.
-    #[must_use]
     pub fn state(&self) -> &ControlState {
         &self.state
     }

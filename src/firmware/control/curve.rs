@@ -20,7 +20,6 @@ pub enum RatesType {
 /// The curve of one axis; the fields are the settings' numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RateCurve {
-    /// The formula.
     pub kind: RatesType,
     /// `*_rc_rate`.
     pub rc_rate: f64,
@@ -36,7 +35,6 @@ pub struct RateCurve {
 
 impl RateCurve {
     /// Rate (°/s) for a stick position −1…1.
-    #[must_use]
     pub fn rate_dps(&self, stick: f64) -> f64 {
         let x = stick.clamp(-1.0, 1.0);
         let a = x.abs();
@@ -81,16 +79,12 @@ impl RateCurve {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::FromRepr)]
 #[repr(u8)]
 pub enum ThrottleLimit {
-    /// Nothing.
     #[default]
     Off = 0,
-    /// Scales the throttle.
     Scale = 1,
-    /// Cuts it off.
     Clip = 2,
 }
 
-/// The throttle curve.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ThrottleCurve {
     /// Pulse of zero throttle, µs (`min_check`).
@@ -109,7 +103,6 @@ pub struct ThrottleCurve {
 
 impl ThrottleCurve {
     /// Throttle 0…1 for a pulse (µs).
-    #[must_use]
     pub fn throttle(&self, pulse_us: f64) -> f64 {
         let stick = ((pulse_us - self.zero_us) / (2000.0 - self.zero_us).max(1.0)).clamp(0.0, 1.0);
         let curved = self.bend(stick);

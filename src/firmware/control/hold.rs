@@ -30,7 +30,6 @@ pub struct HoldModes {
 }
 
 impl HoldModes {
-    /// No hold.
     pub const NONE: Self = Self { altitude: false, position: false, descend: None };
 }
 
@@ -57,7 +56,6 @@ impl Default for HoldTuning {
 
 impl HoldTuning {
     /// The tuning in the settings.
-    #[must_use]
     pub fn from_settings(settings: &Settings) -> Self {
         let number = |name: &str| settings.number(name) as f64;
         Self {
@@ -73,7 +71,6 @@ impl HoldTuning {
 impl HoldTuning {
     /// The throttle stick that makes a craft with this hover throttle (µs) sink at a rate (m/s) in ALTHOLD, µs; `None` when
     /// no stick does.
-    #[must_use]
     pub fn sink_stick_us(&self, rate_mps: f64, hover_us: f64, params: &Params) -> Option<f64> {
         altitude::sink_stick_us(rate_mps, hover_us, params, self)
     }
@@ -82,7 +79,6 @@ impl HoldTuning {
 /// What the holds demand; `None` leaves it to the pilot.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct HoldOutput {
-    /// Lean.
     pub lean: Option<LeanDemand>,
     /// Throttle, 0…1.
     pub throttle: Option<f64>,
@@ -92,7 +88,6 @@ pub struct HoldOutput {
     pub touchdown: bool,
 }
 
-/// The holds.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Holds {
     altitude: AltitudeHold,

@@ -26,7 +26,6 @@ pub(super) struct RateDemand {
     pub tpa: f64,
     /// Rise of the gains in quick throttle changes.
     pub boost: GainBoost,
-    /// The integrals work.
     pub integrate: bool,
 }
 
@@ -50,7 +49,6 @@ pub(super) struct RateLoop {
 }
 
 impl RateLoop {
-    /// Empties the integrals.
     pub(super) fn clear_integrals(&mut self) {
         for axis in &mut self.axes {
             axis.integral = 0.0;

@@ -21,7 +21,6 @@ pub struct AxisGains {
 /// A low-pass as set: shape and cutoff, the cutoff moving with the throttle between two bounds.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct DynamicLowPass {
-    /// Shape.
     pub kind: LowPassKind,
     /// Cutoff at zero throttle, Hz.
     pub min_hz: f64,
@@ -33,7 +32,6 @@ pub struct DynamicLowPass {
 
 impl DynamicLowPass {
     /// Cutoff for a throttle 0…1, Hz.
-    #[must_use]
     pub fn cutoff_hz(&self, throttle: f64) -> f64 {
         let bent = throttle + throttle * (1.0 - throttle) * self.expo / 10.0;
         self.min_hz + (self.max_hz - self.min_hz) * bent
@@ -43,7 +41,6 @@ impl DynamicLowPass {
 /// A low-pass with a fixed cutoff.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct StaticLowPass {
-    /// Shape.
     pub kind: LowPassKind,
     /// Cutoff, Hz; 0 = off.
     pub hz: f64,
@@ -93,11 +90,8 @@ pub struct DMax {
 pub struct RateTuning {
     /// Gains of roll, pitch and yaw.
     pub gains: [AxisGains; 3],
-    /// Greatest sums.
     pub sum_limit: [f64; 3],
-    /// Greatest integrals.
     pub integral_limit: [f64; 3],
-    /// D-max.
     pub d_max: DMax,
     /// I-term rotation: the integrals turn with the craft, so that they go on pushing into the same direction of the world.
     pub iterm_rotation: bool,
@@ -111,7 +105,6 @@ pub struct RateTuning {
     pub d_lpf2: StaticLowPass,
     /// Cutoff of the yaw P term, Hz; 0 = off.
     pub yaw_lowpass_hz: f64,
-    /// Integral relaxation.
     pub relax: ItermRelax,
     /// Reduction works on P, too.
     pub tpa_on_p: bool,
@@ -192,7 +185,6 @@ pub struct TiltThrottle {
 
 impl TiltThrottle {
     /// The throttle to add at a tilt.
-    #[must_use]
     pub fn at(&self, cos_tilt: f64) -> f64 {
         if self.share <= 0.0 {
             return 0.0;
@@ -210,25 +202,18 @@ pub struct Tuning {
     pub rates: [RateCurve; 3],
     /// The yaw stick works the other way round.
     pub yaw_stick_reversed: bool,
-    /// Throttle curve.
     pub throttle: ThrottleCurve,
-    /// Throttle for tilt.
     pub tilt_throttle: TiltThrottle,
-    /// Quick throttle changes.
     pub boost: BoostTuning,
     /// Greatest change of the stick setpoints of roll, pitch and yaw, °/s²; 0 = any.
     pub accel_limit_dps2: [f64; 3],
-    /// Sticks are smoothed.
     pub smoothing: bool,
     /// `rc_smoothing_auto_factor` for sticks and throttle.
     pub smoothing_factor: [f64; 2],
     /// Fixed cutoffs of sticks and throttle, Hz; 0 = by the frame rate.
     pub smoothing_cutoff_hz: [f64; 2],
-    /// Rate loop.
     pub rate: RateTuning,
-    /// Levelling.
     pub level: LevelTuning,
-    /// Mixer.
     pub mixer: MixerTuning,
 }
 
@@ -254,7 +239,6 @@ const FULL_ANGLE_FEEDFORWARD: f64 = 67.0;
 
 impl Tuning {
     /// The tuning of the active profiles and of this airframe type. A type that cannot fly here flies as QUADX.
-    #[must_use]
     pub fn from_settings(settings: &Settings, mixer: MixerKind, custom_mix: &[MixRow]) -> Self {
         let reader = Reader(settings);
         Self {

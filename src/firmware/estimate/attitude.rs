@@ -22,7 +22,6 @@ pub(super) struct VerticalGains {
     pub ki: f64,
 }
 
-/// The attitude.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Attitude {
     /// Body FLU → world ENU.

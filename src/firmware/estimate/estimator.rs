@@ -87,7 +87,6 @@ pub struct Estimator {
 
 impl Estimator {
     /// An estimator at boot.
-    #[must_use]
     pub fn new(options: EstimatorOptions, tuning: EstimatorTuning) -> Self {
         let mut horizontal = Horizontal::new();
         horizontal.set_accel_trust(tuning.accel_trust);
@@ -138,8 +137,6 @@ impl Estimator {
         self.tuning = tuning;
     }
 
-    /// The newest estimate.
-    #[must_use]
     pub fn estimate(&self) -> &Estimate {
         &self.estimate
     }

@@ -47,7 +47,6 @@ pub struct GpsStatus {
     pub hdop: f64,
     /// The newest solution with a fix.
     pub solution: Option<GpsSample>,
-    /// Messages since boot.
     pub messages: u32,
     /// Seconds since the newest message.
     pub age_s: f64,

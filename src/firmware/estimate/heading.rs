@@ -42,7 +42,6 @@ pub(super) fn magnetic_error(
 /// How much the magnetometer is trusted now.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum MagTrust {
-    /// On the ground.
     Parked,
     /// In the air, `trust_mag` on.
     Trusted,

@@ -89,7 +89,6 @@ impl Default for EstimatorTuning {
 
 impl EstimatorTuning {
     /// The tuning of the active profiles.
-    #[must_use]
     pub fn from_settings(settings: &Settings) -> Self {
         let number = |name: &str| settings.number(name) as f64;
         Self {

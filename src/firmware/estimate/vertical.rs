@@ -32,9 +32,7 @@ pub enum AltitudeSource {
     /// Barometer, and GPS as far as it helps.
     #[default]
     Both,
-    /// Barometer only.
     BaroOnly,
-    /// GPS only.
     GpsOnly,
 }
 

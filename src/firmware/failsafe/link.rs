@@ -32,7 +32,6 @@ pub struct LinkMonitor {
 /// An edge of the signal that people want to know about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LinkChange {
-    /// The signal went.
     Lost,
     /// The signal is back for the recovery delay.
     Recovered,
@@ -40,13 +39,11 @@ pub enum LinkChange {
 
 impl LinkMonitor {
     /// Whether the link is up: valid frames within the failsafe delay, once they had come for the recovery delay.
-    #[must_use]
     pub fn up(&self) -> bool {
         self.up
     }
 
     /// Whether the signal has been there for the recovery delay.
-    #[must_use]
     pub fn good(&self) -> bool {
         self.good
     }

@@ -8,13 +8,9 @@ use crate::telemetry::ModeBox;
 /// Permanent id of a box.
 pub type BoxId = u8;
 
-/// ARM.
 pub const ARM: BoxId = ModeBox::Arm as BoxId;
-/// ANGLE.
 pub const ANGLE: BoxId = ModeBox::Angle as BoxId;
-/// HORIZON.
 pub const HORIZON: BoxId = ModeBox::Horizon as BoxId;
-/// ALTHOLD.
 pub const ALTHOLD: BoxId = ModeBox::AltHold as BoxId;
 /// ANTI GRAVITY: the gains rise in quick throttle changes.
 pub const ANTI_GRAVITY: BoxId = ModeBox::AntiGravity as BoxId;
@@ -24,23 +20,18 @@ pub const MAG: BoxId = ModeBox::Mag as BoxId;
 pub const HEADFREE: BoxId = ModeBox::HeadFree as BoxId;
 /// HEADADJ: take the present heading as the headfree reference.
 pub const HEADADJ: BoxId = ModeBox::HeadAdjust as BoxId;
-/// POS HOLD.
 pub const POS_HOLD: BoxId = ModeBox::PosHold as BoxId;
 /// FAILSAFE, the switch.
 pub const FAILSAFE: BoxId = ModeBox::Failsafe as BoxId;
-/// AIR MODE.
 pub const AIR_MODE: BoxId = ModeBox::AirMode as BoxId;
 /// FLIP OVER AFTER CRASH: blocks arming, since nothing here can be flipped.
 pub const CRASH_FLIP: BoxId = ModeBox::CrashFlip as BoxId;
-/// PREARM.
 pub const PREARM: BoxId = ModeBox::Prearm as BoxId;
 /// PARALYZE: no arming until reboot.
 pub const PARALYZE: BoxId = ModeBox::Paralyze as BoxId;
-/// GPS RESCUE.
 pub const GPS_RESCUE: BoxId = ModeBox::GpsRescue as BoxId;
 /// STICK COMMANDS DISABLE: the sticks do not arm or disarm.
 pub const STICK_COMMANDS_DISABLE: BoxId = ModeBox::StickCommandsDisable as BoxId;
-/// AUTOPILOT.
 pub const AUTOPILOT: BoxId = ModeBox::Autopilot as BoxId;
 
 /// What happens when a box is switched on.
@@ -54,24 +45,19 @@ pub enum BoxLevel {
     Name,
 }
 
-/// One box.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BoxInfo {
-    /// Which box.
     pub kind: ModeBox,
     /// What it does here.
     pub level: BoxLevel,
 }
 
 impl BoxInfo {
-    /// Its permanent id.
-    #[must_use]
     pub fn id(&self) -> BoxId {
         self.kind as BoxId
     }
 
     /// Its name as protocols and displays print it.
-    #[must_use]
     pub fn name(&self) -> &'static str {
         self.kind.into()
     }
@@ -144,13 +130,11 @@ pub const BOXES: [BoxInfo; 50] = [
 ];
 
 /// The box with this permanent id.
-#[must_use]
 pub fn by_id(id: BoxId) -> Option<&'static BoxInfo> {
     BOXES.iter().find(|entry| entry.id() == id)
 }
 
 /// Whether any build knows a box of this permanent id.
-#[must_use]
 pub fn is_known(id: BoxId) -> bool {
     by_id(id).is_some()
 }
@@ -158,11 +142,9 @@ pub fn is_known(id: BoxId) -> bool {
 /// What decides which boxes protocols list.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Equipment {
-    /// Feature GPS.
     pub gps: bool,
     /// Feature AIRMODE: airmode is on by itself and needs no box.
     pub airmode_feature: bool,
-    /// Feature ANTI_GRAVITY: likewise.
     pub anti_gravity_feature: bool,
     /// A magnetometer is present.
     pub mag: bool,
@@ -186,11 +168,9 @@ pub fn listed(equipment: Equipment) -> impl Iterator<Item = &'static BoxInfo> {
 pub struct BoxSet(u64);
 
 impl BoxSet {
-    /// The empty set.
     pub const NONE: Self = Self(0);
 
     /// Whether the box is in the set; ids above 63 never are.
-    #[must_use]
     pub fn has(self, id: BoxId) -> bool {
         id < 64 && self.0 & (1 << id) != 0
     }

@@ -33,7 +33,6 @@ impl Votes {
 /// The boxes that the conditions switch on; `aux` are the AUX channels in µs, absent channels never match.
 ///
 /// Links are one level deep: a link to a box sees what the ranges of that box say.
-#[must_use]
 pub fn evaluate(conditions: &[ModeCondition], aux: &[u16]) -> BoxSet {
     let usable = || conditions.iter().filter(|condition| condition.is_usable());
     let mut direct = Votes::default();

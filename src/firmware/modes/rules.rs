@@ -6,9 +6,7 @@ use crate::telemetry::{Mode, ModeFlags};
 /// What the rules look at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct ModeFacts {
-    /// Boxes switched on.
     pub switches: BoxSet,
-    /// Armed.
     pub armed: bool,
     /// The throttle has passed the raised threshold since arming.
     pub raised: bool,
@@ -40,7 +38,6 @@ pub enum AfterAbort {
 
 /// The flight modes for these facts. AUTOPILOT and the failsafe bring ANGLE, ALTHOLD and POS HOLD with them in the
 /// same pass.
-#[must_use]
 pub fn flight_modes(facts: &ModeFacts) -> ModeFlags {
     let switch = |id| facts.switches.has(id);
     let flying = facts.armed && facts.raised;

@@ -12,33 +12,26 @@ pub(super) enum Field {
     Scaled {
         /// Type on the wire.
         width: Width,
-        /// The setting.
         name: &'static str,
-        /// Multiplies the setting.
         factor: i64,
-        /// Is added.
         offset: i64,
     },
     /// Something this vehicle does not have: always this value, ignored when written.
     Fixed(Width, i64),
 }
 
-/// An unsigned byte.
 pub(super) const fn u8(name: &'static str) -> Field {
     Field::Setting(Width::U8, name)
 }
 
-/// A signed byte.
 pub(super) const fn i8(name: &'static str) -> Field {
     Field::Setting(Width::I8, name)
 }
 
-/// An unsigned word.
 pub(super) const fn u16(name: &'static str) -> Field {
     Field::Setting(Width::U16, name)
 }
 
-/// A signed word.
 pub(super) const fn i16(name: &'static str) -> Field {
     Field::Setting(Width::I16, name)
 }

@@ -10,21 +10,17 @@ use crate::geo::{LatLon, distance_bearing};
 use crate::signals::RC_CHANNELS;
 use crate::telemetry::{ArmingFlags, ModeFlags};
 
-/// Full signal strength.
 const RSSI_MAX: u16 = 1023;
 
 /// Figures of the running firmware.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MspFacts {
-    /// Version and build.
     pub build: BuildInfo,
     /// Whether the craft is armed.
     pub armed: bool,
-    /// Active flight modes.
     pub modes: ModeFlags,
     /// Boxes that are switched on.
     pub switches: BoxSet,
-    /// What blocks arming.
     pub arming_blocks: ArmingFlags,
     /// Whether a change waits for a restart.
     pub reboot_required: bool,
@@ -62,7 +58,6 @@ pub struct MspFacts {
     pub channels: [u16; RC_CHANNELS],
     /// Motor outputs M1…M4, µs.
     pub motors_us: [u16; 4],
-    /// The GPS.
     pub gps: GpsReading,
     /// Where home is; `None` without one.
     pub home: Option<HomeReading>,
@@ -170,20 +165,16 @@ fn rssi(firmware: &Firmware) -> u16 {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[repr(u8)]
 pub enum BatteryState {
-    /// Enough.
     Ok = 0,
     /// Below the warning voltage.
     Warning = 1,
     /// Below the lowest voltage.
     Critical = 2,
-    /// None.
     #[default]
     NotPresent = 3,
-    /// Being measured.
     Starting = 4,
 }
 
-/// The battery.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BatteryReading {
     /// Voltage, V.
@@ -192,9 +183,7 @@ pub struct BatteryReading {
     pub current_a: f64,
     /// Charge drawn, mAh.
     pub drawn_mah: f64,
-    /// Cells in series.
     pub cells: u8,
-    /// Its state.
     pub state: BatteryState,
 }
 
@@ -217,14 +206,11 @@ impl BatteryReading {
     }
 }
 
-/// The GPS.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct GpsReading {
     /// A 3-D fix.
     pub fix: bool,
-    /// Satellites used.
     pub sats: u8,
-    /// Position.
     pub position: LatLon,
     /// Altitude above mean sea level, m.
     pub alt_amsl_m: f64,

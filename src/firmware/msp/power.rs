@@ -8,13 +8,11 @@ use crate::firmware::settings::{Scope, Value, find};
 const VOLTAGE_SUBFRAME: u8 = 5;
 /// Bytes of one current meter's subframe.
 const CURRENT_SUBFRAME: u8 = 6;
-/// The measuring meters.
 const METER_MEASURED: u8 = 10;
 /// The current meter that computes from the throttle.
 const METER_VIRTUAL: u8 = 80;
 /// Type of a current meter with a converter.
 const CURRENT_ADC: u8 = 1;
-/// Highest cell count.
 const MAX_CELLS: u8 = 24;
 
 const VOLTAGE_FIELDS: &[Field] = &[u8("vbat_scale"), u8("vbat_divider"), u8("vbat_multiplier")];

@@ -41,7 +41,6 @@ impl Firmware {
     }
 
     /// What messages tell of the present instant.
-    #[must_use]
     pub fn msp_facts(&self, clock: Option<UtcTime>) -> MspFacts {
         MspFacts::observe(self, clock)
     }

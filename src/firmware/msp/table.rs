@@ -21,7 +21,6 @@ pub enum Access {
 /// How a message is answered.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Handler {
-    /// By code.
     Code(fn(&mut Call<'_>) -> Result<(), Refused>),
     /// By the values of settings.
     Get(&'static [Field]),
@@ -43,14 +42,11 @@ impl Handler {
     }
 }
 
-/// One message.
 #[derive(Debug, Clone, Copy)]
 pub struct Message {
-    /// Its code.
     pub code: u16,
     /// Its name, without the prefix.
     pub name: &'static str,
-    /// What it does.
     pub access: Access,
     pub(super) handler: Handler,
 }

@@ -32,7 +32,6 @@ pub(super) const PID_CONTROLLER: &[Field] = &[byte(1)];
 
 /// Where feed-forward averaging stands in [`PID_ADVANCED`], bytes.
 const AVERAGING_AT: usize = 50;
-/// Highest feed-forward averaging.
 const AVERAGING_MAX: u8 = 3;
 
 /// `PID_ADVANCED`.

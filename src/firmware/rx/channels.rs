@@ -90,7 +90,6 @@ pub struct Channels {
 
 impl Channels {
     /// Channels before the first frame: sticks centred, throttle at the bottom, AUX centred.
-    #[must_use]
     pub fn new(config: &ChannelConfig) -> Self {
         let mut values = [config.mid_us; RC_CHANNELS];
         values[THROTTLE] = config.min_us;
@@ -115,7 +114,6 @@ impl Channels {
     }
 
     /// Whether all four flight channels had a valid pulse within the hold time.
-    #[must_use]
     pub fn flight_channels_valid(&self, now: SimTime) -> bool {
         (0..AUX1).all(|index| self.is_held(index, now))
     }
@@ -153,19 +151,16 @@ impl Channels {
     }
 
     /// The channel values in use, µs: roll, pitch, yaw, throttle, AUX1….
-    #[must_use]
     pub fn values(&self) -> &[u16; RC_CHANNELS] {
         &self.values
     }
 
     /// The last valid pulses as received, µs, whatever a failsafe substitutes.
-    #[must_use]
     pub fn received(&self) -> &[u16; RC_CHANNELS] {
         &self.last_valid
     }
 
     /// The live AUX channels in use, µs.
-    #[must_use]
     pub fn aux(&self, config: &ChannelConfig) -> &[u16] {
         let live = (AUX1 + usize::from(config.max_aux)).min(RC_CHANNELS);
         &self.values[AUX1..live]

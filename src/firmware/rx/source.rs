@@ -78,25 +78,21 @@ impl Sources {
     }
 
     /// Whether the virtual sticks win over the other sources.
-    #[must_use]
     pub fn taken_over(&self) -> bool {
         self.sticks_first
     }
 
     /// The source whose frames are used; `None` before the first frame.
-    #[must_use]
     pub fn in_charge(&self) -> Option<RcSource> {
         self.in_charge
     }
 
     /// Age of a source's newest frame, s.
-    #[must_use]
     pub fn age_s(&self, source: RcSource, now: SimTime) -> Option<f64> {
         self.seat(source).map(|seat| now.seconds_since(seat.received))
     }
 
     /// Frames a second of the source in charge; 0 until it is measured.
-    #[must_use]
     pub fn rate_hz(&self) -> f64 {
         self.in_charge.and_then(|source| self.seat(source)).map_or(0.0, |seat| seat.rate_hz)
     }

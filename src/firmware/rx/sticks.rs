@@ -35,7 +35,6 @@ pub struct Sticks {
 
 impl Sticks {
     /// Positions of the sticks for these channel values (roll, pitch, yaw, throttle, …; µs).
-    #[must_use]
     pub fn from_channels(config: &StickConfig, values: &[u16; RC_CHANNELS]) -> Self {
         let deflection = |index: usize, deadband: u16| {
             let raw = (f64::from(values[index]) - f64::from(config.mid_us)).clamp(-500.0, 500.0);
@@ -50,7 +49,6 @@ impl Sticks {
     }
 
     /// The farthest deflection of roll, pitch and yaw, % of full stick.
-    #[must_use]
     pub fn deflection_percent(&self) -> f64 {
         self.roll.abs().max(self.pitch.abs()).max(self.yaw.abs()) / 5.0
     }

@@ -8,7 +8,6 @@ use crate::telemetry::FirmwareNotice;
 const RANGES: [(&str, i64, i64); 2] = [("ap_position_cutoff", 10, 50), ("ap_velocity_drag_coeff", 0, 100)];
 
 /// The notice about a setting that took `value`, as it is displayed, when current firmware refuses that value.
-#[must_use]
 pub fn beyond_current_firmware(setting: &Setting, value: &str) -> Option<FirmwareNotice> {
     let &(name, min, max) = RANGES.iter().find(|(name, ..)| *name == setting.name)?;
     let value = value.parse().ok()?;

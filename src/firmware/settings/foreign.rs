@@ -2,7 +2,6 @@
 //! loads: such a line is kept verbatim and has no effect.
 
 /// The canonical spelling of a setting of another build, or `None` when no build knows the name.
-#[must_use]
 pub fn foreign_name(name: &str) -> Option<&'static str> {
     let folded = name.to_ascii_lowercase();
     FOREIGN

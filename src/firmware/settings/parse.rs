@@ -13,10 +13,7 @@ pub enum AssignError {
     InvalidValue,
     /// The text has more characters than the setting holds.
     #[error("the text is longer than {max} characters")]
-    TextTooLong {
-        /// Most characters.
-        max: usize,
-    },
+    TextTooLong { max: usize },
 }
 
 /// Reads `text` as a value of `setting`.

@@ -12,7 +12,6 @@ pub enum Value {
     Number(i64),
     /// The elements of an array.
     Array(Vec<i64>),
-    /// A text.
     Text(String),
 }
 
@@ -42,7 +41,6 @@ fn of_scope(scope: Scope) -> impl Iterator<Item = &'static Setting> {
 
 impl Settings {
     /// A number, the position of the chosen word, or a port number, in the active profile; 0 for any other name.
-    #[must_use]
     pub fn number(&self, name: &str) -> i64 {
         match find(name).and_then(|setting| self.active_value(setting)) {
             Some(Value::Number(number)) => *number,
@@ -51,13 +49,11 @@ impl Settings {
     }
 
     /// Whether a switch of the active profile is ON; `false` for any other name.
-    #[must_use]
     pub fn flag(&self, name: &str) -> bool {
         self.number(name) != 0
     }
 
     /// A text, or the chosen word in canonical case; empty for any other name.
-    #[must_use]
     pub fn text(&self, name: &str) -> &str {
         let Some(setting) = find(name) else { return "" };
         match (self.active_value(setting), setting.kind) {
@@ -69,7 +65,6 @@ impl Settings {
     }
 
     /// The elements of an array setting; empty for any other name.
-    #[must_use]
     pub fn array(&self, name: &str) -> &[i64] {
         match find(name).and_then(|setting| self.active_value(setting)) {
             Some(Value::Array(numbers)) => numbers,
@@ -78,25 +73,21 @@ impl Settings {
     }
 
     /// The value of a setting in one profile; `None` when the profile does not exist.
-    #[must_use]
     pub fn value(&self, setting: &Setting, instance: u8) -> Option<&Value> {
         self.values.get(offset(setting, instance)?)
     }
 
     /// The value of a setting in the active profile.
-    #[must_use]
     pub fn active_value(&self, setting: &Setting) -> Option<&Value> {
         self.value(setting, self.active(setting.scope))
     }
 
     /// Whether a setting differs from the default in one profile.
-    #[must_use]
     pub fn is_changed(&self, setting: &Setting, instance: u8) -> bool {
         self.value(setting, instance).is_some_and(|value| *value != setting.default_value())
     }
 
     /// The active instance of a scope.
-    #[must_use]
     pub fn active(&self, scope: Scope) -> u8 {
         self.active[scope as usize]
     }

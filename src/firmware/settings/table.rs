@@ -26,7 +26,6 @@ pub const PORT_NAMES: [&str; 9] =
 /// Settings that belong together in the documentation.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Group {
-    /// Heading.
     pub title: &'static str,
     /// Where its settings live.
     pub scope: Scope,
@@ -71,7 +70,6 @@ pub(super) const GROUPS: [&Group; 33] = [
     &system::USER_BOXES,
 ];
 
-/// Number of settings.
 const COUNT: usize = {
     let mut count = 0;
     let mut at = 0;
@@ -98,7 +96,6 @@ const MOVED: [(&str, &str); 5] = [
 ];
 
 /// The setting of this name, or of this old name, in any case.
-#[must_use]
 pub fn find(name: &str) -> Option<&'static Setting> {
     let moved = MOVED.iter().find(|(old, _)| old.eq_ignore_ascii_case(name)).map(|(_, new)| *new);
     let name = moved.unwrap_or(name);
@@ -109,14 +106,12 @@ pub fn find(name: &str) -> Option<&'static Setting> {
 }
 
 /// The heading under which a setting is documented.
-#[must_use]
 pub fn group_of(setting: &Setting) -> &'static str {
     let holds = |group: &&&Group| group.settings.iter().any(|row| row.name == setting.name);
     GROUPS.iter().find(holds).map_or("", |group| group.title)
 }
 
 /// Whether a change works only after a restart of the firmware; all other settings are live from the next step.
-#[must_use]
 pub fn needs_restart(name: &str) -> bool {
     const NAMES: [&str; 5] =
         ["gps_provider", "pid_process_denom", "motor_pwm_protocol", "mag_hardware", "max_aux_channels"];

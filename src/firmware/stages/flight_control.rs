@@ -12,7 +12,6 @@ const MOTOR_STOP_US: f64 = 1000.0;
 /// Demands that take the place of the pilot's, renewed a hundred times a second.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(in crate::firmware) struct Demand {
-    /// Roll and pitch.
     pub lean: Option<LeanDemand>,
     /// Yaw rate, rad/s, clockwise positive.
     pub yaw_rate_rps: Option<f64>,
@@ -38,9 +37,7 @@ impl From<NavOutput> for Demand {
 pub(in crate::firmware) struct ControlStep<'a> {
     /// Loops that are due.
     pub due: DueTasks,
-    /// Motors may run.
     pub armed: bool,
-    /// Active modes.
     pub modes: ModeFlags,
     /// Stick positions in use.
     pub sticks: &'a Sticks,
@@ -74,7 +71,6 @@ pub(in crate::firmware) struct FlightControl {
 
 impl FlightControl {
     /// A controller at boot for so many steps a second.
-    #[must_use]
     pub(in crate::firmware) fn new(tuning: &Tuning, rate_hz: u32) -> Self {
         let step_s = 1.0 / f64::from(rate_hz.max(1));
         Self {
@@ -85,7 +81,6 @@ impl FlightControl {
         }
     }
 
-    /// Follows the settings.
     pub(in crate::firmware) fn set_tuning(&mut self, tuning: &Tuning) {
         self.controller.set_tuning(*tuning);
     }
@@ -118,7 +113,6 @@ impl FlightControl {
         self.controller.hold_heading(heading_rad);
     }
 
-    /// One step.
     pub(in crate::firmware) fn step(&mut self, step: &ControlStep<'_>, estimate: &Estimate) -> MotorCommand {
         let centred = Sticks { throttle_us: step.sticks.throttle_us, ..Sticks::default() };
         let sticks = if step.levels_after_crash { &centred } else { step.sticks };
@@ -147,13 +141,11 @@ impl FlightControl {
     }
 
     /// Cutoffs of the smoothing of sticks and throttle in use, Hz; 0 while nothing is smoothed.
-    #[must_use]
     pub(in crate::firmware) fn smoothing_hz(&self) -> [f64; 2] {
         self.controller.smoothing_hz()
     }
 
     /// What the controller did in the last step.
-    #[must_use]
     pub(in crate::firmware) fn state(&self) -> &ControlState {
         self.controller.state()
     }

@@ -28,7 +28,6 @@ use super::{RcInput, Safety, Sensing};
 /// What the failsafe asks of arming.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::firmware) enum FailsafeRequest {
-    /// Stop the motors.
     Disarm,
     /// No arming before the ARM switch was off.
     RequireSwitchOff,
@@ -384,7 +383,6 @@ impl Navigation {
         failsafe_response(&self.navigator, &parameters.nav, parameters.failsafe.procedure, self.inputs.fix)
     }
 
-    /// The failsafe.
     pub(in crate::firmware) fn failsafe(&self) -> &Failsafe {
         &self.failsafe
     }

@@ -110,7 +110,6 @@ impl RcInput {
         std::mem::take(&mut self.new_frame)
     }
 
-    /// The receiver.
     pub(in crate::firmware) fn receiver(&self) -> &Receiver {
         &self.receiver
     }
@@ -120,7 +119,6 @@ impl RcInput {
         self.boxes
     }
 
-    /// The debounced link.
     pub(in crate::firmware) fn link(&self) -> &LinkMonitor {
         &self.link
     }

@@ -39,7 +39,6 @@ impl Safety {
         self.arming.ever_armed()
     }
 
-    /// What blocks arming.
     pub(in crate::firmware) fn flags(&self) -> ArmingFlags {
         self.arming.flags()
     }

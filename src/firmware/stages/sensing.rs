@@ -42,7 +42,6 @@ impl Sensing {
         }
     }
 
-    /// Follows the settings.
     pub(in crate::firmware) fn set_tuning(&mut self, parameters: &Parameters) {
         self.estimator.set_tuning(parameters.estimator.clone());
     }
@@ -144,7 +143,6 @@ impl Sensing {
         self.estimator.estimate()
     }
 
-    /// The battery.
     pub(in crate::firmware) fn battery(&self) -> &Battery {
         &self.battery
     }

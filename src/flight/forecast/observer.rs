@@ -26,7 +26,6 @@ pub struct WorstXte {
 /// How long a waypoint took.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LegTime {
-    /// The waypoint.
     pub wp: u8,
     /// From the start of its leg to the start of the next, s.
     pub time_s: f64,

@@ -40,9 +40,7 @@ pub(super) struct Ended {
 /// A flight flown ahead of time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Forecast {
-    /// What was flown.
     pub kind: ForecastKind,
-    /// How it ends.
     pub end: ForecastEnd,
     /// Why, as a sentence without its full stop.
     pub reason: String,
@@ -64,13 +62,11 @@ pub struct Forecast {
 
 impl Forecast {
     /// Whether the plan is flown to its end as it should be.
-    #[must_use]
     pub fn is_complete(&self) -> bool {
         self.end == ForecastEnd::Flight(FlightResult::Complete)
     }
 
     /// The end in a line: `COMPLETE in 1:52, 41 % left`; `length` writes metres with the unit that is shown.
-    #[must_use]
     pub fn line(&self, length: impl Fn(f64) -> String) -> String {
         let (time, left) = (minutes(self.time_s), 100.0 - self.battery_used_pct);
         let left = format!("{left:.0} % left");

@@ -17,7 +17,6 @@ const NOT_SHOWN: &str = "(not shown: this is no command)";
 pub struct BootLines {
     /// The file or option, for messages.
     pub source: String,
-    /// The lines.
     pub text: String,
 }
 

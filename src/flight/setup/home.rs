@@ -11,7 +11,6 @@ const FAR_FROM_HOME_M: f64 = 10_000.0;
 impl FlightSetup {
     /// Where the craft stands at boot: the user's home, the plan's, the default, or the first waypoint when that is far
     /// from the default; with a notice when the place is a guess or far from the plan.
-    #[must_use]
     pub fn boot_home(&self) -> (sim::Home, Option<SetupNotice>) {
         let default = self.world.home;
         let at = |home: HomePosition| sim::Home {

@@ -22,7 +22,6 @@ pub enum SetupNotice {
     PlanFarFromHome {
         /// The first waypoint with a place.
         first: LatLon,
-        /// Home.
         home: LatLon,
         /// How far one is from the other, m.
         distance_m: f64,

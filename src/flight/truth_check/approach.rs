@@ -10,7 +10,6 @@ use crate::signals::SimTime;
 pub(super) struct ClosestApproach(Option<(f64, SimTime)>);
 
 impl ClosestApproach {
-    /// Takes an instant.
     pub(super) fn look(&mut self, craft: &CraftTruth, target_ne: Vector2<f64>) {
         if craft.stick_override || craft.climbing {
             return;

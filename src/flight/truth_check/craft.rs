@@ -7,7 +7,6 @@ use crate::signals::SimTime;
 /// The true motion of the craft at one instant, and who flies it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::flight) struct CraftTruth {
-    /// Now.
     pub(in crate::flight) time: SimTime,
     /// North and east of the boot place, m.
     pub(in crate::flight) ne: Vector2<f64>,

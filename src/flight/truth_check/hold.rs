@@ -58,7 +58,6 @@ impl HoldWatch {
         }
     }
 
-    /// Takes an instant.
     pub(super) fn look(&mut self, craft: &CraftTruth, target_ne: Vector2<f64>, target_alt_m: f64) {
         let alt_error_m = craft.alt_m - target_alt_m;
         if let Some(error_m) = self.error_m(craft, target_ne)

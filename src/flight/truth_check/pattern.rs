@@ -5,7 +5,6 @@ use nalgebra::Vector2;
 /// The figure of a hold around its waypoint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Pattern {
-    /// The point itself.
     Point,
     /// A circle of this radius, m.
     Orbit(f64),

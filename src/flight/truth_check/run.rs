@@ -38,7 +38,6 @@ pub(super) struct Run {
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Stage {
-    /// On the way.
     Leg(ClosestApproach),
     /// The time of a hold runs.
     Hold(HoldWatch),
@@ -65,7 +64,6 @@ impl Run {
         self.target.wp
     }
 
-    /// Takes an instant.
     pub(super) fn look(&mut self, craft: &CraftTruth) {
         let Target { ne, alt_m, .. } = self.target;
         match &mut self.stage {

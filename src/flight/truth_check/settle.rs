@@ -9,7 +9,6 @@ const GRACE_S: f64 = 20.0;
 /// there takes and 20 s.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Settle {
-    /// It counts.
     Counts,
     /// It counts at the latest from here on.
     Until(SimTime),

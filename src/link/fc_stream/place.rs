@@ -16,19 +16,15 @@ const BITS_PER_BYTE: u32 = 10;
 pub enum FcPlace {
     /// A serial port, USB among them.
     Serial {
-        /// Its device file.
         device: PathBuf,
         /// Its speed, bit/s.
         baud: u32,
     },
-    /// A TCP port.
     Tcp {
         /// Name or address; an IPv6 address without brackets.
         host: String,
-        /// Its port.
         port: u16,
     },
-    /// A websocket.
     WebSocket(
         /// Its address, `ws://…` or `wss://…`.
         Uri,
@@ -51,7 +47,6 @@ impl FcPlaceError {
 
 impl FcPlace {
     /// Bytes a second that the line carries; `None` = more than anybody asks for.
-    #[must_use]
     pub fn bytes_per_s(&self) -> Option<u32> {
         match self {
             Self::Serial { baud, .. } => Some(baud / BITS_PER_BYTE),

@@ -44,7 +44,6 @@ const STX: u8 = 0x02;
 /// Ends a command line that an earlier client left open; releases that know the word do not restart.
 const LEAVE_CLI: &[u8] = b"\nexit noreboot\n";
 
-/// The client.
 #[derive(Debug)]
 pub struct FcClient {
     connected: bool,
@@ -85,7 +84,6 @@ impl Echo {
 }
 
 impl Default for FcClient {
-    /// Not connected.
     fn default() -> Self {
         Self {
             connected: false,
@@ -146,19 +144,16 @@ impl FcClient {
     }
 
     /// Whether lines by MSP message work; `None` before the first was asked.
-    #[must_use]
     pub fn knows_message_lines(&self) -> Option<bool> {
         self.knows_messages
     }
 
     /// Whether the interactive command line is open, in which MSP rests.
-    #[must_use]
     pub fn is_in_cli(&self) -> bool {
         self.in_prompt
     }
 
     /// Whether an MSP message would be asked at once.
-    #[must_use]
     pub fn is_idle(&self) -> bool {
         self.connected && self.exchange.is_none() && self.queue.is_empty() && !self.in_prompt
     }
@@ -224,7 +219,6 @@ impl FcClient {
     }
 
     /// When [`Self::poll`] has something to do even without bytes.
-    #[must_use]
     pub fn due(&self) -> Option<Duration> {
         match &self.exchange {
             Some((_, exchange)) => Some(exchange.due()),

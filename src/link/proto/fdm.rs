@@ -98,7 +98,6 @@ impl Packet {
     }
 
     /// The 144 bytes of the datagram.
-    #[must_use]
     pub fn to_bytes(&self) -> [u8; SIZE] {
         let mut bytes = [0; SIZE];
         for (bytes, field) in bytes.as_chunks_mut::<8>().0.iter_mut().zip(self.fields) {
@@ -108,14 +107,12 @@ impl Packet {
     }
 
     /// Whether another datagram has the same size and the same numbers, bit by bit.
-    #[must_use]
     pub fn is_same(&self, other: &Self) -> bool {
         let bits = |packet: &Self| packet.fields.map(f64::to_bits);
         self.size == other.size && bits(self) == bits(other)
     }
 
     /// The sender's clock, s.
-    #[must_use]
     pub fn stamp_s(&self) -> f64 {
         self.fields[0]
     }
@@ -126,7 +123,6 @@ fn norm(fields: &[f64]) -> f64 {
 }
 
 /// Pressure (Pa) of the standard atmosphere at a height (m) in the troposphere.
-#[must_use]
 pub fn pressure_pa(altitude_m: f64) -> f64 {
     101_325.0 * (1.0 - 2.255_77e-5 * altitude_m).max(0.0).powf(5.255_88)
 }

@@ -52,7 +52,6 @@ impl Default for FdmLinkConfig {
 /// What to send back.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Reply {
-    /// Nothing.
     Nothing,
     /// The last servo packet again, no raw packet.
     Servo,
@@ -63,7 +62,6 @@ pub enum Reply {
 /// What a datagram was.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum PacketKind {
-    /// Unreadable.
     Refused(PacketError),
     /// From before the newest packet.
     Old,
@@ -86,7 +84,6 @@ pub enum FdmNotice {
         to_string = "the simulator's acceleration contains gravity, unlike that of the public plugin: adapted"
     )]
     GravityIncluded,
-    /// Likewise.
     #[strum(to_string = "the simulator's acceleration lacks gravity, unlike that of this dialect: adapted")]
     GravityMissing,
     /// The acceleration at rest makes no sense.
@@ -110,7 +107,6 @@ pub enum FdmNotice {
 /// What to do about one datagram.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Received {
-    /// What it was.
     pub kind: PacketKind,
     /// The sensors to run the firmware on, for [`PacketKind::State`]; their time is the caller's to set.
     pub sensors: Option<Box<SensorFrame>>,
@@ -140,9 +136,7 @@ impl Received {
 /// How many datagrams there were.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Counters {
-    /// All that came.
     pub received: u64,
-    /// Too short.
     pub wrong_size: u64,
     /// Long enough but senseless.
     pub senseless: u64,
@@ -174,7 +168,6 @@ pub struct FdmLink {
 impl FdmLink {
     /// A link that starts at `now_us`. The caller sends one servo and one raw packet at once and reports with
     /// [`Self::refused`] when nobody was there to take them.
-    #[must_use]
     pub fn new(config: FdmLinkConfig, now_us: u64) -> Self {
         Self {
             config,
@@ -189,7 +182,6 @@ impl FdmLink {
         }
     }
 
-    /// Takes a datagram.
     pub fn receive(&mut self, datagram: &[u8], now_us: u64) -> Received {
         self.counters.received += 1;
         let packet = match Packet::parse(datagram) {
@@ -279,7 +271,6 @@ impl FdmLink {
     }
 
     /// When [`Self::poll`] will have something to do, if nothing comes before.
-    #[must_use]
     pub fn due_us(&self) -> u64 {
         self.kicks.due_us()
     }
@@ -297,7 +288,6 @@ impl FdmLink {
     }
 
     /// Whether the simulator is there at `now_us`.
-    #[must_use]
     pub fn state(&self, now_us: u64) -> LinkState {
         match self.kicks.heard_at_us() {
             None => LinkState::Waiting,
@@ -307,13 +297,11 @@ impl FdmLink {
     }
 
     /// The simulator's dialect, once known.
-    #[must_use]
     pub fn dialect(&self) -> Option<Dialect> {
         self.dialect
     }
 
     /// How many datagrams there were.
-    #[must_use]
     pub fn counters(&self) -> Counters {
         self.counters
     }

@@ -25,7 +25,6 @@ const LINE_MAX: usize = 4 * 1024 * 1024;
 pub enum ForeignProtocol {
     /// A request of HTTP, or a word in capitals, which cannot be told from one.
     Http,
-    /// A TLS hello.
     Tls,
     /// Binary data, such as the STUN messages of WebRTC.
     Binary,

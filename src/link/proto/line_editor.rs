@@ -75,7 +75,6 @@ pub struct LineEditor {
 
 impl LineEditor {
     /// What the link speaks at the moment.
-    #[must_use]
     pub fn mode(&self) -> LinkMode {
         self.mode
     }
@@ -118,7 +117,6 @@ impl LineEditor {
     }
 
     /// The line as it was typed so far.
-    #[must_use]
     pub fn line(&self) -> &str {
         &self.buffer
     }

@@ -73,7 +73,6 @@ impl Kind {
     }
 }
 
-/// One MSP frame.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Frame {
     /// Its shape on the wire.
@@ -82,19 +81,15 @@ pub struct Frame {
     pub kind: Kind,
     /// Message code; version 1 carries the low byte only.
     pub code: u16,
-    /// The message.
     pub payload: Vec<u8>,
 }
 
 impl Frame {
-    /// A request.
-    #[must_use]
     pub fn request(form: Form, code: u16, payload: &[u8]) -> Self {
         Self { form, kind: Kind::Request, code, payload: payload.to_vec() }
     }
 
     /// The answer to this frame: `Some` payload is a reply, `None` an error.
-    #[must_use]
     pub fn answer(&self, payload: Option<Vec<u8>>) -> Self {
         let kind = if payload.is_some() { Kind::Reply } else { Kind::Error };
         Self { form: self.form, kind, code: self.code, payload: payload.unwrap_or_default() }
@@ -112,7 +107,6 @@ impl Frame {
     }
 
     /// The frame's bytes.
-    #[must_use]
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut out = Vec::with_capacity(self.payload.len() + 16);
         self.encode(&mut out);

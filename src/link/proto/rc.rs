@@ -11,7 +11,6 @@ use crate::signals::{RC_CHANNELS, RcFrame};
 pub const SIZE: usize = 8 + 2 * RC_CHANNELS;
 
 /// The timestamp (s) and the pulses of a datagram; `None` when it is too short.
-#[must_use]
 pub fn decode(datagram: &[u8]) -> Option<(f64, RcFrame)> {
     let (stamp, rest) = datagram.split_first_chunk::<8>()?;
     let pulses = rest.get(..2 * RC_CHANNELS)?;
@@ -23,7 +22,6 @@ pub fn decode(datagram: &[u8]) -> Option<(f64, RcFrame)> {
 }
 
 /// The datagram of a frame.
-#[must_use]
 pub fn encode(timestamp_s: f64, frame: &RcFrame) -> [u8; SIZE] {
     let mut datagram = [0; SIZE];
     let (stamp, pulses) = datagram.split_at_mut(8);

@@ -56,10 +56,7 @@ pub enum SerialRequest {
     /// The command line was left.
     LeftCli,
     /// A line of text came while the command line was closed, and was ignored. Asked once for lines that come in one paste.
-    Ignored {
-        /// Its first word.
-        word: String,
-    },
+    Ignored { word: String },
     /// What came is neither MSP nor text: the link is to be closed. Nothing that comes later is interpreted.
     Foreign,
 }
@@ -245,7 +242,6 @@ impl SerialSession {
     }
 
     /// Answers a line. Says whether the link is to be closed.
-    #[must_use]
     pub fn answer(&mut self, reply: &LineReply) -> bool {
         if let Some(frame) = self.message.answer(reply) {
             frame.encode(&mut self.output);
@@ -268,7 +264,6 @@ impl SerialSession {
     }
 
     /// When [`Self::next`] will have something even without bytes.
-    #[must_use]
     pub fn due(&self) -> Option<Duration> {
         match self.editor.mode() {
             LinkMode::Entering { since } => Some(since + ENTRY_QUIET),
@@ -277,13 +272,11 @@ impl SerialSession {
     }
 
     /// Whether the command line is open.
-    #[must_use]
     pub fn is_in_cli(&self) -> bool {
         self.in_cli
     }
 
     /// Frames given up so far.
-    #[must_use]
     pub fn dropped(&self) -> Dropped {
         self.decoder.dropped()
     }

@@ -21,7 +21,6 @@ pub const RAW_OUTPUTS: usize = 16;
 
 impl MotorOrder {
     /// Values of M1 … M4 in the order of the packet.
-    #[must_use]
     pub fn arrange<T>(self, [m1, m2, m3, m4]: [T; 4]) -> [T; 4] {
         match self {
             Self::Native => [m1, m2, m3, m4],
@@ -30,7 +29,6 @@ impl MotorOrder {
     }
 
     /// Values of M1 … M4 from the order of the packet.
-    #[must_use]
     pub fn in_native_order<T>(self, [first, second, third, fourth]: [T; 4]) -> [T; 4] {
         match self {
             Self::Native => [first, second, third, fourth],
@@ -40,7 +38,6 @@ impl MotorOrder {
 }
 
 /// Motor pulses in µs, 1000 at rest, 2000 at full power.
-#[must_use]
 pub fn pulses_us(motors: &MotorCommand) -> [f32; 4] {
     motors
         .0
@@ -48,13 +45,11 @@ pub fn pulses_us(motors: &MotorCommand) -> [f32; 4] {
 }
 
 /// The normalised value of a pulse: its whole microseconds above 1000 in thousandths, rounded down.
-#[must_use]
 pub fn normalised(pulse_us: f32) -> f32 {
     (pulse_us.trunc() - 1000.0) / 1000.0
 }
 
 /// The normalised datagram of four motor pulses, µs.
-#[must_use]
 pub fn encode(pulses_us: [f32; 4]) -> [u8; SIZE] {
     let mut datagram = [0; SIZE];
     for (field, pulse) in datagram.as_chunks_mut::<4>().0.iter_mut().zip(pulses_us) {
@@ -64,7 +59,6 @@ pub fn encode(pulses_us: [f32; 4]) -> [u8; SIZE] {
 }
 
 /// The four normalised motor values of a datagram; `None` when it is too short or a value is not a number.
-#[must_use]
 pub fn decode(datagram: &[u8]) -> Option<[f32; 4]> {
     let mut motors = [0.0; 4];
     for (motor, field) in motors.iter_mut().zip(datagram.get(..SIZE)?.as_chunks::<4>().0) {
@@ -77,7 +71,6 @@ pub fn decode(datagram: &[u8]) -> Option<[f32; 4]> {
 }
 
 /// The raw datagram: pulses in µs, motors first, of which there are `motor_count`; what is not given is 0.
-#[must_use]
 pub fn encode_raw(motor_count: u16, pulses_us: &[f32]) -> [u8; RAW_SIZE] {
     let mut datagram = [0; RAW_SIZE];
     datagram[..2].copy_from_slice(&motor_count.to_le_bytes());

@@ -43,7 +43,6 @@ pub struct FeedConfig {
 pub enum FeedState {
     /// It has not answered yet.
     Waiting,
-    /// It answers.
     Answering,
     /// It has answered, and has been silent for a second.
     Silent,
@@ -67,7 +66,6 @@ pub struct SitlFeed {
 
 impl SitlFeed {
     /// A feed that has sent nothing yet.
-    #[must_use]
     pub fn new(config: FeedConfig) -> Self {
         let (_, _, alt_amsl_m) = config.home;
         Self {
@@ -82,7 +80,6 @@ impl SitlFeed {
     }
 
     /// What its packets mean.
-    #[must_use]
     pub fn dialect(&self) -> Dialect {
         self.config.dialect
     }
@@ -104,7 +101,6 @@ impl SitlFeed {
     }
 
     /// The packet for what was sensed last; `now_us` is wall time.
-    #[must_use]
     pub fn packet(&self, now_us: u64) -> Packet {
         let Position { lat_deg, lon_deg, vel_enu } = match self.gps {
             Some((gps, at)) if !self.is_at_home(now_us) => self.measured(&gps, at),
@@ -149,8 +145,6 @@ impl SitlFeed {
         Some(MotorCommand(values.map(|value| f64::from(value).clamp(0.0, 1.0))))
     }
 
-    /// Whether it answers.
-    #[must_use]
     pub fn state(&self, now_us: u64) -> FeedState {
         let is_silent =
             self.unanswered_us.is_some_and(|since_us| now_us.saturating_sub(since_us) >= SILENCE_US);
@@ -163,20 +157,17 @@ impl SitlFeed {
 
     /// Whether the craft is to wait: an executable that answered and is held up now would find it elsewhere. Every 10 ms a
     /// step is flown all the same, for its packet or the answer may have been lost.
-    #[must_use]
     pub fn waits(&self, now_us: u64) -> bool {
         self.is_held_up(now_us) && now_us.saturating_sub(self.sent_us) < PATIENCE_US
     }
 
     /// Whether the executable has not answered for longer than motors may stand still, and not as long as to be silent.
-    #[must_use]
     pub fn is_held_up(&self, now_us: u64) -> bool {
         let is_late = |since_us| now_us.saturating_sub(since_us) >= PATIENCE_US;
         self.state(now_us) == FeedState::Answering && self.unanswered_us.is_some_and(is_late)
     }
 
     /// Since when packets are without an answer, µs of wall time.
-    #[must_use]
     pub fn unanswered_since_us(&self) -> Option<u64> {
         self.unanswered_us
     }

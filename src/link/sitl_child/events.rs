@@ -20,7 +20,6 @@ pub(super) struct Events(Mutex<Queue>);
 #[derive(Debug, Default)]
 struct Queue {
     events: VecDeque<ChildEvent>,
-    /// Lines among them.
     lines: usize,
     window: Option<Instant>,
     /// Lines that were taken in since the window began.
@@ -42,7 +41,6 @@ impl Events {
         queue.events.push_back(event);
     }
 
-    /// Takes the oldest.
     pub(super) fn take(&self, now: Instant) -> Option<ChildEvent> {
         self.lock().take(now)
     }

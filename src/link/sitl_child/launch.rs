@@ -26,7 +26,6 @@ pub enum LaunchError {
     /// Its directory cannot be made.
     #[error("cannot make the directory {directory} for the firmware: {error}")]
     Directory {
-        /// The directory.
         directory: PathBuf,
         /// What the system says.
         error: io::Error,
@@ -62,7 +61,6 @@ pub(super) fn spawn(config: &ChildConfig) -> Result<Child, LaunchError> {
 
 /// When this is the command line of a launcher (program name first): becomes the executable that it names. Comes back only
 /// when that failed, with an exit code after a sentence on standard error; `None` for any other command line.
-#[must_use]
 pub fn launch_firmware(arguments: &[OsString]) -> Option<u8> {
     let [_, command, parent, program, arguments @ ..] = arguments else { return None };
     if command != LAUNCH {

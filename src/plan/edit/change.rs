@@ -39,7 +39,6 @@ struct Splice<T> {
 
 impl Change {
     /// What makes `after` of `before`; `None` when they are equal.
-    #[must_use]
     pub fn between(before: &PlanDocument, after: &PlanDocument) -> Option<Self> {
         (before != after).then(|| Self {
             name: Replaced::between(&before.name, &after.name),
@@ -51,7 +50,6 @@ impl Change {
     }
 
     /// The change that takes this one back.
-    #[must_use]
     pub fn inverse(&self) -> Self {
         Self {
             name: self.name.as_ref().map(Replaced::inverse),
@@ -63,7 +61,6 @@ impl Change {
     }
 
     /// The document after the change; `None` when the change is not one of this document.
-    #[must_use]
     pub fn apply(&self, document: &PlanDocument) -> Option<PlanDocument> {
         let waypoints = apply_splice(self.waypoints.as_ref(), &document.plan.waypoints)?;
         Some(PlanDocument {

@@ -14,7 +14,6 @@ pub struct PlanDocument {
     pub home: Option<HomePosition>,
     /// Settings the plan is made for, as `name = value`.
     pub settings: Vec<String>,
-    /// The waypoints.
     pub plan: FlightPlan,
 }
 

@@ -28,7 +28,6 @@ pub struct Fix {
 }
 
 /// The first waypoint that a finding is about.
-#[must_use]
 pub fn waypoint_of(finding: &Finding) -> Option<usize> {
     match finding {
         Finding::Fault(PlanFault::BadWaypoint { index, .. }) => Some(usize::from(*index)),
@@ -49,7 +48,6 @@ pub fn waypoint_of(finding: &Finding) -> Option<usize> {
 }
 
 /// What takes the finding away, when an edit of the plan can.
-#[must_use]
 pub fn fix(document: &PlanDocument, finding: &Finding, home: LatLon) -> Option<Fix> {
     let mut fixed = document.clone();
     let waypoints = &mut fixed.plan.waypoints;

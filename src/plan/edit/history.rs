@@ -17,13 +17,10 @@ impl Revision {
     }
 
     /// What was done, a few words.
-    #[must_use]
     pub fn label(&self) -> &str {
         &self.label
     }
 
-    /// What changed.
-    #[must_use]
     pub fn change(&self) -> &Change {
         &self.change
     }
@@ -45,7 +42,6 @@ pub struct History {
 
 impl History {
     /// A document without a history; `is_saved` = a file holds it.
-    #[must_use]
     pub fn new(document: PlanDocument, is_saved: bool) -> Self {
         Self {
             base: document.clone(),
@@ -58,7 +54,6 @@ impl History {
     }
 
     /// The document as it is now.
-    #[must_use]
     pub fn document(&self) -> &PlanDocument {
         &self.document
     }
@@ -77,32 +72,27 @@ impl History {
     }
 
     /// The document that the file holds, as far as the history knows.
-    #[must_use]
     pub fn saved_document(&self) -> Option<PlanDocument> {
         let mut history = self.clone();
         if history.go_to(self.saved?) { Some(history.document) } else { None }
     }
 
     /// The revision that the document is at.
-    #[must_use]
     pub fn at(&self) -> usize {
         self.at
     }
 
     /// How many revisions there are.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.revisions.len()
     }
 
     /// Whether nothing was ever edited.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.revisions.is_empty()
     }
 
     /// Whether the file holds the document as it is now.
-    #[must_use]
     pub fn is_saved(&self) -> bool {
         self.saved == Some(self.at)
     }

@@ -19,11 +19,8 @@ pub enum JournalLine {
         /// The file holds it.
         saved: bool,
     },
-    /// An edit.
     Edited {
-        /// What was done.
         label: String,
-        /// What changed.
         change: Box<Change>,
     },
     /// Undo, redo or a jump, to this revision.
@@ -36,14 +33,12 @@ pub enum JournalLine {
 
 impl JournalLine {
     /// The first line of a document.
-    #[must_use]
     pub fn opened(document: &PlanDocument, file: Option<String>, saved: bool) -> Self {
         let text = format::write(&PlanFile::from(document.clone()), Format::Toml).text;
         Self::Opened { file, text, saved }
     }
 
     /// The line, with its line end.
-    #[must_use]
     pub fn to_text(&self) -> String {
         // Plain data with text keys always has a JSON form.
         serde_json::to_string(self).map(|line| line + "\n").unwrap_or_default()
@@ -74,7 +69,6 @@ pub struct Journal {
 
 impl Journal {
     /// The lines that read as this journal.
-    #[must_use]
     pub fn lines(&self) -> Vec<JournalLine> {
         let Self { file, history } = self;
         let mut lines = vec![JournalLine::opened(history.base(), file.clone(), history.saved() == Some(0))];
@@ -101,14 +95,12 @@ impl Journal {
 
     /// Reads a journal. A line that was cut short, and whatever follows, is left out; `None` when not even the first
     /// line makes sense.
-    #[must_use]
     pub fn read(text: &str) -> Option<Self> {
         Self::read_whole_part(text).map(|(journal, _)| journal)
     }
 
     /// Reads a journal up to the first line that does not make sense, and says what is lost with that line and those
     /// behind it; `None` when not even the first line makes sense.
-    #[must_use]
     pub fn read_whole_part(text: &str) -> Option<(Self, Losses)> {
         let parse = |line: &str| serde_json::from_str::<JournalLine>(line).ok();
         let mut lines = (1..).zip(text.split_inclusive('\n'));
@@ -141,7 +133,6 @@ impl Journal {
 
     /// This journal with the newest edits alone, whose lines take at most `room` bytes, and for every revision of this
     /// one its number there. The edits before them become one.
-    #[must_use]
     pub fn newest(&self, room: usize) -> (Self, Vec<Option<usize>>) {
         let size = |revision: &Revision| {
             let (label, change) = (revision.label().to_owned(), Box::new(revision.change().clone()));

@@ -68,7 +68,6 @@ fn about_middle(waypoints: &mut [Waypoint], place: impl Fn(Vector2<f64>) -> Vect
 }
 
 /// The middle of the places of some waypoints: of the box around them, as north-up maps show it.
-#[must_use]
 pub fn middle(waypoints: &[Waypoint]) -> Option<LatLon> {
     let mut places = waypoints.iter().filter(|wp| wp.kind.uses_position()).map(|wp| wp.position);
     let plane = GroundPlane::new(places.next()?);

@@ -82,7 +82,6 @@ pub struct TouchdownThrottle {
 
 impl TouchdownThrottle {
     /// Whether the autopilot never commands so little.
-    #[must_use]
     pub fn is_never_met(&self) -> bool {
         self.hover_us > 0.0 && self.hover_us - self.threshold_us <= self.min_us
     }
@@ -142,13 +141,11 @@ impl Assumptions {
     ];
 
     /// The defaults, changed by the lines `name = value` of a plan file.
-    #[must_use]
     pub fn from_settings(lines: &[String]) -> Self {
         Self::default().with_settings(lines)
     }
 
     /// The same, changed by the lines `name = value` of a plan file.
-    #[must_use]
     pub fn with_settings<L: AsRef<str>>(self, lines: &[L]) -> Self {
         let mut assumptions = self;
         for (name, value) in lines.iter().filter_map(|line| line.as_ref().split_once('=')) {
@@ -192,7 +189,6 @@ impl Assumptions {
     }
 
     /// What limits the altitude setpoint.
-    #[must_use]
     pub fn setpoint_limits(&self) -> SetpointLimits {
         SetpointLimits {
             climb_mps: self.climb_mps,

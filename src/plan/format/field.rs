@@ -22,7 +22,6 @@ impl FieldError {
 
 /// Decimal degrees as degrees × 10⁷: optional sign, at least one digit, optionally a point and digits, of which more
 /// than seven are cut, not rounded. `None` when the text is something else or does not fit (beyond ±214.7483647).
-#[must_use]
 pub fn degrees_e7(text: &str) -> Option<i32> {
     let (negative, digits) = match text.as_bytes().first()? {
         b'-' => (true, &text[1..]),
@@ -109,7 +108,6 @@ pub(super) fn duration_ds(text: &str) -> Result<u16, FieldError> {
     unsigned("duration", text, "deciseconds (0 = endless)")
 }
 
-/// A waypoint type.
 pub(super) fn waypoint_type(text: &str) -> Result<WaypointType, FieldError> {
     text.parse().map_err(|_| {
         FieldError::new(
@@ -119,7 +117,6 @@ pub(super) fn waypoint_type(text: &str) -> Result<WaypointType, FieldError> {
     })
 }
 
-/// A hold pattern.
 pub(super) fn pattern(text: &str) -> Result<HoldPattern, FieldError> {
     text.parse().map_err(|_| {
         FieldError::new(

@@ -10,7 +10,6 @@ use crate::geo::LatLon;
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(into = "String", try_from = "String")]
 pub struct HomePosition {
-    /// Position.
     pub position: LatLon,
     /// Altitude above mean sea level, m, when given.
     pub amsl_m: Option<f64>,
@@ -24,12 +23,7 @@ pub enum HomeError {
     Shape(String),
     /// A value is wrong.
     #[error("{message}; {hint}")]
-    Value {
-        /// What is wrong.
-        message: String,
-        /// What is allowed.
-        hint: String,
-    },
+    Value { message: String, hint: String },
 }
 
 /// Lowest and highest home above mean sea level, m: the range of the atmosphere model's troposphere.

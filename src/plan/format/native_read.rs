@@ -227,7 +227,6 @@ fn number<T>(
     read(text).map_err(|error| problems.add(value.span(), error.message, error.hint)).ok()
 }
 
-/// A keyword.
 fn word<T>(
     value: &Value<'_>,
     read: impl FnOnce(&str) -> Result<T, FieldError>,

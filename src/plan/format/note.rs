@@ -16,7 +16,6 @@ pub struct Note {
 /// Kinds of skipped lines.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub enum NoteKind {
-    /// Comments.
     Comment,
     /// `set …` lines: a text plan carries waypoints only.
     Setting,

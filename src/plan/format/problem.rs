@@ -20,7 +20,6 @@ pub struct PlanError {
     pub column: usize,
     /// Characters that are wrong, as far as `source` shows them, at least 1.
     pub width: usize,
-    /// What is wrong.
     pub message: String,
     /// What is allowed or what to do; may be empty.
     pub hint: String,
@@ -32,7 +31,6 @@ pub struct PlanError {
 
 impl PlanError {
     /// The message with its place in one line, without the source line.
-    #[must_use]
     pub fn headline(&self) -> String {
         format!("{}:{}:{}: {}", self.file, self.line, self.column, self.message)
     }
@@ -55,7 +53,6 @@ impl fmt::Display for PlanError {
 impl std::error::Error for PlanError {}
 
 /// All problems as one text, with their number at the end when there are several.
-#[must_use]
 pub fn report(errors: &[PlanError]) -> String {
     let mut text = errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n");
     if errors.len() > 1 {
@@ -81,7 +78,6 @@ pub struct Problems<'a> {
 
 impl<'a> Problems<'a> {
     /// No problems yet; `text` is what all spans refer to.
-    #[must_use]
     pub fn new(file: &'a str, text: &'a str) -> Self {
         let lines = std::iter::once(0).chain(text.match_indices('\n').map(|(at, _)| at + 1)).collect();
         Self { file, text, lines, errors: Vec::new(), unlisted: 0 }
@@ -135,25 +131,21 @@ impl<'a> Problems<'a> {
     }
 
     /// How many problems there are so far.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.errors.len() + self.unlisted
     }
 
     /// Whether further problems are only counted.
-    #[must_use]
     pub fn is_full(&self) -> bool {
         self.errors.len() == MOST_LISTED
     }
 
     /// Whether no problem was found so far.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.errors.is_empty()
     }
 
     /// The problems in the order of their places.
-    #[must_use]
     pub fn into_errors(mut self) -> Vec<PlanError> {
         self.errors.sort_by_key(|&(start, _)| start);
         if let Some((_, last)) = self.errors.last_mut() {

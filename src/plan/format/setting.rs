@@ -3,9 +3,7 @@
 /// A part of a setting's line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SettingPart {
-    /// The name.
     Name,
-    /// The value.
     Value,
 }
 
@@ -15,7 +13,6 @@ pub enum SettingPart {
 pub struct SettingFault {
     /// What of it is wrong.
     pub part: SettingPart,
-    /// What is wrong.
     pub message: String,
     /// What is allowed; may be empty.
     pub hint: String,
@@ -26,7 +23,6 @@ pub type SettingCheck = fn(&str, &str) -> Result<(), SettingFault>;
 
 /// A line `name = value`, `set name = value` or `name=value` in its canonical form `name = value`; `None` when it is
 /// none of them, or would not survive the CLI it goes through.
-#[must_use]
 pub fn setting_line(line: &str) -> Option<String> {
     let line = line.trim();
     let line = match line.get(..4) {

@@ -15,7 +15,6 @@ const TITLES: [&str; 10] = ["#", "type", "lat", "lon", "alt", "speed", "leg", "b
 const LEFT: [usize; 1] = [1];
 
 /// The plan with distances, times and findings, for a flight that starts above `home`.
-#[must_use]
 pub fn table(file: &PlanFile, home: LatLon, assumptions: &Assumptions) -> String {
     let estimate = estimate(&file.plan, home, assumptions);
     let mut text = printable::name(&file.name);

@@ -22,19 +22,15 @@ pub struct TomlTable<'t, 'i> {
 
 impl<'t, 'i> TomlTable<'t, 'i> {
     /// The table of a whole file.
-    #[must_use]
     pub fn of_document(what: &str, entries: &'t DeTable<'i>, span: Range<usize>) -> Self {
         Self { what: what.to_owned(), entries, span }
     }
 
     /// What it is, for messages.
-    #[must_use]
     pub fn what(&self) -> &str {
         &self.what
     }
 
-    /// Where it is.
-    #[must_use]
     pub fn span(&self) -> Range<usize> {
         self.span.clone()
     }
@@ -61,7 +57,6 @@ impl<'t, 'i> TomlTable<'t, 'i> {
     }
 
     /// The value of a key.
-    #[must_use]
     pub fn get(&self, key: &str) -> Option<&'t Value<'i>> {
         self.entry(key).map(|(_, value)| value)
     }

@@ -35,7 +35,6 @@ pub enum Remedy {
 /// A leg at whose end the craft is not at the altitude of the waypoint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SteepLeg {
-    /// The waypoint.
     pub index: usize,
     /// Altitude of its leg above home, m.
     pub alt_m: f64,

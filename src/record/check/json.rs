@@ -7,7 +7,6 @@ use crate::scenario::{Judgement, Outcome};
 use crate::signals::SimTime;
 
 /// The line of a flight.
-#[must_use]
 pub fn flight_line(flight: &CheckedFlight) -> String {
     let expectations: Vec<Value> =
         flight.judgements.iter().map(|judgement| expectation(judgement, Some(flight))).collect();
@@ -38,7 +37,6 @@ pub fn flight_line(flight: &CheckedFlight) -> String {
 }
 
 /// The lines of the comparisons, and the last line of a run.
-#[must_use]
 pub fn summary_line(summary: &Summary) -> Vec<String> {
     let mut lines: Vec<String> = summary.compared.iter().map(compared_line).collect();
     let cases: Vec<Value> = summary

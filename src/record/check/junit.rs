@@ -4,8 +4,6 @@ use super::{CheckedFlight, Compared, Summary, complaint, is_skipped};
 use crate::record::xml::escaped;
 use crate::scenario::Outcome;
 
-/// The whole file.
-#[must_use]
 pub fn junit(summary: &Summary) -> String {
     // Two files may give their scenarios the same name.
     let mut scenarios: Vec<(&str, &str)> = Vec::new();

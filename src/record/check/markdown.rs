@@ -3,8 +3,6 @@
 use super::{Summary, complaint};
 use crate::scenario::Outcome;
 
-/// The whole summary.
-#[must_use]
 pub fn markdown(summary: &Summary) -> String {
     let word = match summary.passed() {
         true if summary.is_skipped() => "– Nothing was judged",

@@ -8,7 +8,6 @@ use crate::scenario::{Margin, Outcome};
 const MANY: usize = 20;
 
 /// The lines of a flight: one when it passed; else what was seen, and how to open the worst moment.
-#[must_use]
 pub fn flight_lines(flight: &CheckedFlight) -> Vec<String> {
     let mark = match flight.passed() {
         true if flight.is_skipped() => "–",
@@ -92,7 +91,6 @@ fn spreads(summary: &Summary) -> Vec<String> {
 }
 
 /// The last lines of a run.
-#[must_use]
 pub fn summary_lines(summary: &Summary) -> Vec<String> {
     let mut lines = Vec::new();
     for case in summary.cases().iter().filter(|case| case.flights > 1 && case.has_failures()) {

@@ -72,7 +72,6 @@ impl Measure {
         }
     }
 
-    /// Its unit.
     pub(super) fn unit(self) -> &'static str {
         match self {
             Self::TimeTo(_) | Self::TouchdownTime | Self::Flown => "s",

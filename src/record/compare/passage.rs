@@ -15,7 +15,6 @@ const NEAR_M: f64 = 1.0;
 pub(super) struct Passage {
     /// Its place in the route.
     pub(super) index: usize,
-    /// The waypoint.
     pub(super) point: RoutePoint,
     /// The first sample within a metre of the closest approach.
     pub(super) reached: usize,

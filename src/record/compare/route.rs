@@ -23,7 +23,6 @@ pub struct Route {
 pub(super) struct RoutePoint {
     /// Index in the plan.
     pub(super) wp: u8,
-    /// What it is.
     pub(super) kind: WaypointType,
     /// North and east of home, m; `None` of a TAKEOFF, which climbs where it stands.
     pub(super) ne: Option<Vector2<f64>>,
@@ -39,7 +38,6 @@ pub(super) struct RoutePoint {
 
 impl Route {
     /// The route of a plan; `frame` places it in the world.
-    #[must_use]
     pub fn new(plan: &FlightPlan, frame: &LocalFrame, settings: &SettingsView) -> Self {
         let mut points = Vec::new();
         let mut alt_change_m = None;

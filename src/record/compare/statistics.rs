@@ -3,7 +3,6 @@
 /// Mean and spread of the values of several flights.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Statistics {
-    /// The mean.
     pub mean: f64,
     /// The standard deviation; `None` of a single value.
     pub spread: Option<f64>,

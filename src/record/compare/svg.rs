@@ -22,7 +22,6 @@ const LINE: f64 = 18.0;
 /// Left edge of texts, px.
 const LEFT: f64 = 16.0;
 
-/// The picture.
 pub(super) fn picture(comparison: &Comparison) -> String {
     let route = comparison.route.points.iter().filter_map(|point| point.ne);
     let flown = comparison.sides.iter().flat_map(|side| &side.flights).flat_map(|flight| &flight.samples);

@@ -8,7 +8,6 @@ use super::{Comparison, Side, Statistics};
 /// What stands for a value that is not known.
 const UNKNOWN: &str = "—";
 
-/// The table.
 pub(super) fn table(comparison: &Comparison) -> String {
     let [first, second] = &comparison.sides;
     let mut text = format!("{}, {}\n", comparison.plan, comparison.conditions);

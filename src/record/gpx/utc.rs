@@ -11,7 +11,6 @@ impl UtcSeconds {
     pub const SIMULATED_BOOT: Self = Self(1_767_225_600);
 
     /// Date and time as a version line shows them: `Jan 01 2026`, `00:00:00`.
-    #[must_use]
     pub fn build_stamp(self) -> (String, String) {
         const MONTHS: [&str; 12] =
             ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"];
@@ -23,7 +22,6 @@ impl UtcSeconds {
     }
 
     /// The instant `seconds` later.
-    #[must_use]
     pub fn plus(self, seconds: u64) -> Self {
         Self(self.0.saturating_add(seconds))
     }

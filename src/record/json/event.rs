@@ -43,7 +43,6 @@ pub(super) enum Fields<'a> {
     Branch { number: u32, left_at: Decimals<6> },
 }
 
-/// A state transition.
 #[derive(Debug, Serialize)]
 pub(super) struct State {
     from: String,

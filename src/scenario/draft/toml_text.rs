@@ -17,7 +17,6 @@ pub(super) fn after_boot(at: SimTime) -> String {
     format!("{:.decimals$} s after boot", at.as_secs_f64())
 }
 
-/// The whole file.
 pub(super) fn text(draft: &Draft, expectations: &[Block]) -> String {
     let mut out = format!("format = {FORMAT}\nname = {}\n", quoted(&draft.name));
     let mut line = |text: String| {

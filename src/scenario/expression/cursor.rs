@@ -9,9 +9,7 @@ use crate::did_you_mean;
 pub struct SyntaxError {
     /// Bytes of the text.
     pub span: Range<usize>,
-    /// What is wrong.
     pub message: String,
-    /// What is allowed.
     pub hint: String,
 }
 
@@ -21,7 +19,6 @@ pub struct Cursor<'a> {
     text: &'a str,
     at: usize,
     depth: usize,
-    /// Terms so far.
     terms: usize,
     /// Terms that were read so far, those of attempts that failed included.
     reads: usize,
@@ -40,7 +37,6 @@ const TOO_DEEP_HINT: &str = "use a measure for a part of it";
 
 impl<'a> Cursor<'a> {
     /// At the beginning of a text.
-    #[must_use]
     pub fn new(text: &'a str) -> Self {
         let mut cursor = Self { text, at: 0, depth: 0, terms: 0, reads: 0 };
         cursor.skip_space();
@@ -48,19 +44,15 @@ impl<'a> Cursor<'a> {
     }
 
     /// Bytes read so far, the space behind them included.
-    #[must_use]
     pub fn at(&self) -> usize {
         self.at
     }
 
-    /// What is left.
-    #[must_use]
     pub fn rest(&self) -> &'a str {
         &self.text[self.at..]
     }
 
     /// Whether nothing is left.
-    #[must_use]
     pub fn is_done(&self) -> bool {
         self.rest().is_empty()
     }
@@ -84,20 +76,17 @@ impl<'a> Cursor<'a> {
         found
     }
 
-    /// Demands these characters.
     pub(super) fn expect(&mut self, symbol: &str) -> Result<(), SyntaxError> {
         if self.take(symbol) { Ok(()) } else { Err(self.error(format!("{symbol} is expected here"), "")) }
     }
 
     /// The word that stands here: letters, digits and `_`, a letter first.
-    #[must_use]
     pub fn peek_word(&self) -> Option<&'a str> {
         self.word_of(|c| c.is_alphanumeric() || c == '_')
             .filter(|word| !word.starts_with(|c: char| c.is_ascii_digit()))
     }
 
     /// The word of an argument: also with digits first, and with `-` inside.
-    #[must_use]
     pub(super) fn peek_argument(&self) -> Option<&'a str> {
         self.word_of(|c| c.is_alphanumeric() || c == '_' || c == '-').filter(|word| !word.starts_with('-'))
     }
@@ -182,7 +171,6 @@ impl<'a> Cursor<'a> {
     }
 
     /// Something is wrong with what stands here.
-    #[must_use]
     pub fn error(&self, message: impl Into<String>, hint: impl Into<String>) -> SyntaxError {
         let rest = self.rest();
         let word =
@@ -191,7 +179,6 @@ impl<'a> Cursor<'a> {
     }
 
     /// Something is wrong with what was read since `start`.
-    #[must_use]
     pub fn error_since(
         &self,
         start: usize,
@@ -203,7 +190,6 @@ impl<'a> Cursor<'a> {
     }
 
     /// The word that stands here is none of these.
-    #[must_use]
     pub(super) fn unknown<'w>(&self, what: &str, words: impl Iterator<Item = &'w str>) -> SyntaxError {
         let rest = self.rest();
         let symbol = &rest[..rest.chars().next().map_or(0, char::len_utf8)];
@@ -232,13 +218,11 @@ impl<'a> Cursor<'a> {
         self.count(1)
     }
 
-    /// Terms so far.
     pub(super) fn terms(&self) -> usize {
         self.terms
     }
 
     /// Terms that were read so far.
-    #[must_use]
     pub fn reads(&self) -> usize {
         self.reads
     }
@@ -266,7 +250,6 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// Reads something nested.
     pub(super) fn nested<T>(
         &mut self,
         read: impl FnOnce(&mut Self) -> Result<T, SyntaxError>,

@@ -17,13 +17,11 @@ const RATE_US: u64 = 100_000;
 /// A value, what it may be, and how far inside it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Verdict {
-    /// The value.
     pub value: f64,
     /// The smallest that is allowed.
     pub low: f64,
     /// The greatest that is allowed.
     pub high: f64,
-    /// What it measures.
     pub dimension: Dimension,
     /// The bounds themselves are not allowed.
     pub strict: bool,
@@ -31,20 +29,17 @@ pub struct Verdict {
 
 impl Verdict {
     /// Distance to the nearer bound, negative outside.
-    #[must_use]
     pub fn margin(&self) -> f64 {
         (self.value - self.low).min(self.high - self.value)
     }
 
     /// Whether the value is allowed.
-    #[must_use]
     pub fn holds(&self) -> bool {
         if self.strict { self.margin() > 0.0 } else { self.margin() >= 0.0 }
     }
 
     /// The margin as a share of the allowed range: of its half width, or of the limit. Of a number that must be exact all of
     /// it is left, or nothing.
-    #[must_use]
     pub fn share(&self) -> f64 {
         if self.low >= self.high {
             return if self.holds() { 1.0 } else { -1.0 };
@@ -63,7 +58,6 @@ impl Verdict {
 #[derive(Debug)]
 pub struct Evaluator<'a> {
     trace: &'a Trace,
-    /// Parameters and measures.
     names: &'a [(String, f64)],
     /// Instants that were looked up.
     found: RefCell<BTreeMap<*const Instant, Option<i64>>>,
@@ -71,19 +65,15 @@ pub struct Evaluator<'a> {
 
 impl<'a> Evaluator<'a> {
     /// Over this flight, with these parameters and measures.
-    #[must_use]
     pub fn new(trace: &'a Trace, names: &'a [(String, f64)]) -> Self {
         Self { trace, names, found: RefCell::default() }
     }
 
-    /// The flight.
-    #[must_use]
     pub fn trace(&self) -> &'a Trace {
         self.trace
     }
 
     /// When an instant is, µs since boot; `None` when it did not come.
-    #[must_use]
     pub fn instant(&self, instant: &Instant) -> Option<i64> {
         let key = std::ptr::from_ref(instant);
         if let Some(&found) = self.found.borrow().get(&key) {
@@ -95,19 +85,16 @@ impl<'a> Evaluator<'a> {
     }
 
     /// When an instant is, as a time; not before boot.
-    #[must_use]
     pub fn time(&self, instant: &Instant) -> Option<SimTime> {
         self.instant(instant).map(|us| SimTime(us.max(0) as u64))
     }
 
     /// A number at a sample; NaN = unknown.
-    #[must_use]
     pub fn number(&self, number: &Number, index: usize) -> f64 {
         self.number_of(number, index, None)
     }
 
     /// A number at a sample, with those of a happening.
-    #[must_use]
     pub fn number_of(&self, number: &Number, index: usize, happening: Option<&Happening>) -> f64 {
         let Some(sample) = self.trace.samples.get(index) else { return f64::NAN };
         let at = |number| self.number_of(number, index, happening);
@@ -209,7 +196,6 @@ impl<'a> Evaluator<'a> {
     }
 
     /// The measures of a condition that were not taken, because what they wait for did not happen.
-    #[must_use]
     pub fn unknown_names(&self, condition: &Condition) -> Vec<&'a str> {
         let mut used = Vec::new();
         condition.each_number(&mut |number| {
@@ -222,13 +208,11 @@ impl<'a> Evaluator<'a> {
     }
 
     /// Whether a condition holds at a sample; `None` when that is unknown.
-    #[must_use]
     pub fn holds(&self, condition: &Condition, index: usize) -> Option<bool> {
         self.holds_of(condition, index, None)
     }
 
     /// Whether a condition holds at a sample, with the numbers of a happening.
-    #[must_use]
     pub fn holds_of(
         &self,
         condition: &Condition,
@@ -270,7 +254,6 @@ impl<'a> Evaluator<'a> {
 
     /// The comparison of a condition that decides at a sample: of several that must hold the tightest, of alternatives the
     /// widest. `None` when none is known.
-    #[must_use]
     pub fn deciding(
         &self,
         condition: &Condition,
@@ -295,7 +278,6 @@ impl<'a> Evaluator<'a> {
     }
 
     /// A comparison at a sample; `None` when a number is unknown.
-    #[must_use]
     pub fn compare(
         &self,
         comparison: &Comparison,
@@ -307,7 +289,6 @@ impl<'a> Evaluator<'a> {
     }
 
     /// A value against the bound of a comparison.
-    #[must_use]
     pub fn bound(
         &self,
         comparison: &Comparison,

@@ -278,7 +278,6 @@ pub struct Search<'a> {
 
 impl<'a> Search<'a> {
     /// Nothing looked at yet.
-    #[must_use]
     pub fn new(instant: &'a Instant) -> Self {
         let after = instant.after.as_deref().map(|after| Box::new(Search::new(after)));
         Self {

@@ -283,7 +283,6 @@ pub fn read_quantity(cursor: &mut Cursor<'_>) -> Result<(f64, Dimension), Syntax
 
 impl Number {
     /// The value of a number of literals and of names that are known; `None` when something else is in it.
-    #[must_use]
     pub fn constant(&self, names: &impl Fn(&str) -> Option<f64>) -> Option<f64> {
         match self {
             Self::Literal(value, _) => Some(*value),

@@ -8,7 +8,6 @@ use crate::telemetry::PlanSource;
 /// What a place may be, for messages.
 const PLACES: &str = "write home, wp 2, 60 N 0 E, target, or place at ARRIVED 1";
 
-/// Reads a place.
 pub(super) fn read_place(cursor: &mut Cursor<'_>, scope: &Scope) -> Result<Place, SyntaxError> {
     cursor.term()?;
     if cursor.take_keyword("home") {

@@ -10,7 +10,6 @@ use crate::plan::format::{PlanFile, TomlTable, setting_line};
 use crate::scenario::case::OWN_LINES;
 use crate::sim::{Airframe, Home, STEP_RATES_HZ, Switches, WorldConfig};
 
-/// What is flown.
 pub(super) fn read(layers: &Layers<'_, '_>, plan: PlanFile, reader: &mut Reader<'_, '_>) -> Craft {
     let section = layers.tables("craft", reader);
     for table in &section {

@@ -6,10 +6,8 @@ use super::keys::VARY_KEYS;
 use super::reader::Reader;
 use crate::plan::format::{TomlTable, Value};
 
-/// Most combinations.
 const MAX_VARIANTS: usize = 1000;
 
-/// One combination.
 #[derive(Debug, Default)]
 pub(super) struct Variant<'l, 't> {
     values: Vec<(&'l str, &'l Value<'t>)>,

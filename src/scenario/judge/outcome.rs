@@ -6,10 +6,8 @@ use crate::scenario::quantity::{Dimension, shown};
 use crate::scenario::trace::Trace;
 use crate::signals::SimTime;
 
-/// A judged expectation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Judgement {
-    /// What was expected.
     pub label: String,
     /// Line in the scenario's file, from 1.
     pub line: usize,
@@ -22,11 +20,8 @@ pub struct Judgement {
 pub enum Outcome {
     /// It was met, with the tightest number if it has one.
     Met(Option<Margin>),
-    /// It was not.
     Failed {
-        /// What was seen.
         sentence: String,
-        /// The worst moment.
         at: Option<SimTime>,
         /// Of the guards that did not fire then, the one that came closest.
         guard: Option<String>,
@@ -42,25 +37,21 @@ pub enum Outcome {
 pub struct Margin {
     /// The number and its bounds.
     pub verdict: Verdict,
-    /// When.
     pub time: SimTime,
 }
 
 impl Outcome {
     /// Whether it was met.
-    #[must_use]
     pub fn is_met(&self) -> bool {
         matches!(self, Self::Met(_))
     }
 
     /// Whether it was judged and not met, or could have been judged and was not.
-    #[must_use]
     pub fn is_failure(&self) -> bool {
         !matches!(self, Self::Met(_) | Self::Skipped(_))
     }
 
     /// The tightest number, if it was met and has one.
-    #[must_use]
     pub fn margin(&self) -> Option<&Margin> {
         match self {
             Self::Met(margin) => margin.as_ref(),
@@ -69,7 +60,6 @@ impl Outcome {
     }
 
     /// Both: the first that failed, or the tighter of two that were met.
-    #[must_use]
     pub(super) fn and(self, other: Self) -> Self {
         match (&self, &other) {
             (Self::Met(Some(a)), Self::Met(Some(b))) if b.verdict.share() < a.verdict.share() => other,
@@ -80,7 +70,6 @@ impl Outcome {
     }
 
     /// Adds the guard that came closest to firing at the time.
-    #[must_use]
     pub(super) fn with_guard(mut self, trace: &Trace, time: SimTime) -> Self {
         if let Self::Failed { guard, .. } = &mut self {
             let stay = trace.stays.iter().rev().find(|stay| stay.since <= time);
@@ -107,7 +96,6 @@ impl Outcome {
 
 impl Margin {
     /// `1.82 m, at most 2.00 m`.
-    #[must_use]
     pub fn shown(&self) -> String {
         describe(&self.verdict)
     }

@@ -13,7 +13,6 @@ pub(super) struct Log {
 }
 
 impl Log {
-    /// Records an event.
     pub(super) fn note(&mut self, event: &Event, trace: &mut Trace) {
         let time = event.time;
         let plain = |name| Happening::event(time, name, &[]);

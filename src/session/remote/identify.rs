@@ -14,7 +14,6 @@ pub(super) enum Question {
     Variant,
     /// The firmware's version.
     Version,
-    /// The board.
     Board,
     /// When and with what it was built.
     Build,

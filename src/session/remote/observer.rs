@@ -42,7 +42,6 @@ pub struct Observer {
     changed: bool,
 }
 
-/// What it is.
 #[derive(Debug, Clone, Default)]
 struct Identity {
     api: Option<ApiVersion>,
@@ -209,7 +208,6 @@ impl Observer {
     }
 
     /// Whether its waypoints' altitudes count from home; else from sea level.
-    #[must_use]
     pub fn counts_from_home(&self) -> bool {
         self.settings.waypoints_from_home()
     }
@@ -225,7 +223,6 @@ impl Observer {
     }
 
     /// Whether it holds and flies plans, as far as it has told.
-    #[must_use]
     pub fn has_plans(&self) -> bool {
         let built_in = self.identity.build.as_ref().and_then(BuildInfo::has_flight_plan);
         self.stored_plan.is_some() || built_in == Some(true)
@@ -237,7 +234,6 @@ impl Observer {
     }
 
     /// Whether it is known to be armed.
-    #[must_use]
     pub fn is_armed(&self) -> bool {
         self.observation.armed() == Some(true)
     }

@@ -62,7 +62,6 @@ impl Access {
     }
 
     /// Whether the craft is real.
-    #[must_use]
     pub fn is_limited(self) -> bool {
         self != Self::Everything
     }
@@ -85,7 +84,6 @@ enum Lines {
     NoneYet,
     /// None was answered: the craft is armed, or its command line has no framing.
     Closed,
-    /// One was answered.
     Work,
 }
 

@@ -61,10 +61,14 @@ pub struct Provision {
 #[derive(Debug)]
 enum Phase {
     /// These questions are left; `written` when everything was.
-    Look { left: VecDeque<Question>, written: bool },
+    Look {
+        left: VecDeque<Question>,
+        written: bool,
+    },
     /// The numbers of the wishes that are left.
-    Write { left: VecDeque<usize> },
-    /// It restarts.
+    Write {
+        left: VecDeque<usize>,
+    },
     Restart,
     /// Through, or given up for this reason.
     Done(Result<(), String>),
@@ -80,7 +84,6 @@ enum Asked {
 impl Provision {
     /// Sets what these command lines say; with `may_write` unset they are only compared with what the flight controller
     /// holds. Comments, `save` and batches are passed over.
-    #[must_use]
     pub fn new(lines: ProvisionLines, may_write: bool) -> Self {
         let wishes = wish::wishes(lines.in_order());
         let left = held::questions(&wishes);
@@ -103,7 +106,6 @@ impl Provision {
 
     /// One in whose configuration nothing was ever changed is set by these lines instead, which may be written: whether it was
     /// set before is not known.
-    #[must_use]
     pub fn or_when_bare(mut self, lines: ProvisionLines) -> Self {
         self.when_bare = Some(lines);
         self.begin();
@@ -111,7 +113,6 @@ impl Provision {
     }
 
     /// Once it is through, `file` holds these words.
-    #[must_use]
     pub fn noted_in(mut self, file: PathBuf, words: String) -> Self {
         self.note = Some((file, words));
         self

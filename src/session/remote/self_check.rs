@@ -55,7 +55,6 @@ pub(super) enum SelfCheck {
     Waiting,
     /// It answers; at this instant.
     At(Instant),
-    /// It was made.
     Done,
 }
 

@@ -43,7 +43,6 @@ pub struct RemoteView {
 pub enum RemoteNotice {
     /// A line that its program printed.
     Output(String),
-    /// A sentence.
     Told(String),
     /// It does not speak any more, or not as it should: a sentence.
     Lost(String),

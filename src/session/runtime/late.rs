@@ -17,19 +17,14 @@ use crate::vehicle::LateAnswer;
 /// A part of the user interface that awaits the answer of a remote flight controller.
 #[derive(Debug)]
 pub(super) enum WaitingInterface {
-    /// The console.
     Line {
         /// The line that was run.
         line: String,
-        /// Gets its output.
         reply: oneshot::Sender<CliOutput>,
     },
-    /// A download.
     Download {
-        /// Gets the plan.
         reply: oneshot::Sender<Result<Box<FlightPlan>, String>>,
     },
-    /// Storing the configuration.
     Save {
         /// Gets whether it is stored.
         reply: oneshot::Sender<Result<(), String>>,
@@ -38,7 +33,6 @@ pub(super) enum WaitingInterface {
     Upload {
         /// What is left of it.
         upload: Box<Upload>,
-        /// Gets its result.
         reply: oneshot::Sender<Result<UploadReport, String>>,
     },
 }

@@ -218,7 +218,6 @@ impl Session {
         }
     }
 
-    /// Shows another instant.
     pub(super) fn seek(&mut self, seek: Seek, now: Duration) {
         if self.timeline.is_none() {
             self.notice(NOT_RECORDED);

@@ -28,14 +28,12 @@ const CLIENT_INTERVAL: Duration = Duration::from_millis(5);
 /// Interval of the lines about the flight.
 const FLIGHT_INTERVAL: Duration = Duration::from_secs(1);
 
-/// How to run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SitlConfig {
     /// The doors; their UDP ports are those of `ports`.
     pub doors: ListenConfig,
     /// Where motors are sent.
     pub motors_ip: IpAddr,
-    /// The UDP ports.
     pub ports: SitlPorts,
     /// How the firmware is built.
     pub firmware: FirmwareOptions,
@@ -52,16 +50,12 @@ pub struct SitlConfig {
 /// A line for the user.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum OutputLine {
-    /// On standard output.
     Out(String),
-    /// On standard error.
     Err(String),
 }
 
-/// Why it ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SitlEnd {
-    /// Somebody stopped it.
     Stopped,
     /// The firmware restarted, and was told to end then.
     Rebooted,
@@ -84,7 +78,6 @@ pub enum SitlError {
     Thread(#[from] std::io::Error),
 }
 
-/// A running drop-in.
 pub struct Sitl {
     session: Handle,
     doors: Listeners,
@@ -135,7 +128,6 @@ impl Sitl {
     }
 
     /// Where a door listens.
-    #[must_use]
     pub fn address(&self, door: EndpointKind) -> Option<SocketAddr> {
         self.doors.address(door)
     }

@@ -12,7 +12,6 @@ use crate::link::proto::fdm;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(i8)]
 pub(super) enum OpenResult {
-    /// Done.
     Done = 0,
     /// The port could not be bound.
     BindFailed = -1,
@@ -23,13 +22,9 @@ pub(super) enum OpenResult {
 /// The ports of the links.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SitlPorts {
-    /// Raw pulses out.
     pub raw: u16,
-    /// Motors out.
     pub motors: u16,
-    /// States in.
     pub fdm: u16,
-    /// RC in.
     pub rc: u16,
 }
 
@@ -40,7 +35,6 @@ impl Default for SitlPorts {
 }
 
 /// The first line, before any link is open; `ip` is where motors are sent.
-#[must_use]
 pub(super) fn output_line(ip: &str, ports: SitlPorts) -> String {
     format!(
         "[SITL] The SITL will output to IP {ip}:{} (Gazebo) and {ip}:{} (RealFlightBridge)",
@@ -49,7 +43,6 @@ pub(super) fn output_line(ip: &str, ports: SitlPorts) -> String {
 }
 
 /// The lines about the motor links, then about state and RC, with the results of opening them.
-#[must_use]
 pub(super) fn link_lines(
     ip: &str,
     ports: SitlPorts,
@@ -67,13 +60,11 @@ pub(super) fn link_lines(
 }
 
 /// The first state datagram: the simulator's clock, s, and who sent it.
-#[must_use]
 pub(super) fn first_fdm_line(stamp_s: f64, from: SocketAddr) -> String {
     format!("[SITL] new fdm {} t:{stamp_s:.6} from {}:{}", fdm::SIZE, from.ip(), from.port())
 }
 
 /// The first RC datagram.
-#[must_use]
 pub(super) fn first_rc_line(stamp_s: f64, frame: &RcFrame) -> String {
     let [c1, c2, c3, c4, c5, c6, c7, c8, ..] = frame.channels;
     format!("[SITL] new rc 40: t:{stamp_s:.6} AETR: {c1} {c2} {c3} {c4} AUX1-4: {c5} {c6} {c7} {c8}")
@@ -86,7 +77,6 @@ pub(super) struct FlightLine {
     pub t_ms: u64,
     /// Ground speed, m/s.
     pub speed_mps: f64,
-    /// Position.
     pub position: LatLon,
     /// Altitude, m.
     pub alt_m: f64,
@@ -104,13 +94,11 @@ impl std::fmt::Display for FlightLine {
 }
 
 /// The once-a-second line while arming is blocked.
-#[must_use]
 pub(super) fn blocked_line(t_ms: u64, reasons: ArmingFlags) -> String {
     format!("[SITL] t={t_ms}ms Arming disabled: {reasons}")
 }
 
 /// The autopilot does not engage, or goes on waiting, and why.
-#[must_use]
 pub(super) fn refused_line(t_ms: u64, refusal: Refusal) -> String {
     format!("[SITL] t={t_ms}ms Autopilot refused: {}", refusal.sentence())
 }

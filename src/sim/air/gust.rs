@@ -22,7 +22,6 @@ const MAX_GUSTS: usize = 4;
 
 /// Strength of a gust of full strength `peak_mps` at `t` seconds after its start: `A/2·(1 − cos(πt/T))` while rising in
 /// `rise_s`, A while held for `hold_s`, mirrored while falling, 0 before and after.
-#[must_use]
 pub fn one_minus_cosine(peak_mps: f64, rise_s: f64, hold_s: f64, t: f64) -> f64 {
     let end = 2.0 * rise_s + hold_s;
     let into = t.min(end - t);

@@ -35,7 +35,6 @@ pub struct DrydenScales {
 impl DrydenScales {
     /// The scales at a height above ground (m) for a wind at 20 ft (kt): `L_w = h`, `L_u = L_v = h/(0.177 + 0.000823·h)^1.2`, `σ_w = 0.1·W20`,
     /// `σ_u = σ_v = σ_w/(0.177 + 0.000823·h)^0.4` with h in anchors.
-    #[must_use]
     pub fn at(height_m: f64, wind_at_20ft_kt: f64) -> Self {
         let (low, high) = HEIGHT_FT;
         let height_ft = (height_m * FEET_PER_METRE).clamp(low, high);
@@ -54,7 +53,6 @@ impl DrydenScales {
 impl DrydenScales {
     /// The longitudinal filter of unit variance, `u' = a·u + b·n`, at an airspeed (m/s) and tick (s): `a = exp(−VΔt/L)`,
     /// `b = √(1 − a²)`.
-    #[must_use]
     pub fn longitudinal_filter(&self, airspeed_mps: f64, dt: f64) -> (f64, f64) {
         let keep = decay(airspeed_mps * dt, self.length_uv_m);
         (keep, unit_drive(keep))

@@ -14,11 +14,9 @@ use super::WorldCommand;
 /// One word that a command can begin with: name, form of its value, meaning.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CommandWord {
-    /// The word.
     pub name: &'static str,
     /// What stands behind the `=`; empty when nothing does.
     pub value: &'static str,
-    /// What it does.
     pub help: &'static str,
 }
 

@@ -47,11 +47,8 @@ pub enum WorldError {
     OutOfRange {
         /// What the number is.
         name: &'static str,
-        /// The number.
         value: f64,
-        /// Least allowed.
         min: f64,
-        /// Greatest allowed.
         max: f64,
     },
 }

@@ -16,14 +16,12 @@ pub struct Wind {
 }
 
 impl Wind {
-    /// No wind.
     pub const CALM: Self = Self { speed_mps: 0.0, from_deg: 0.0 };
 
     /// The strongest wind that can be asked for, m/s.
     pub const MAX_MPS: f64 = 60.0;
 
     /// Velocity of the air, ENU, m/s: the direction it blows to.
-    #[must_use]
     pub fn velocity_enu(&self) -> Vector3<f64> {
         let (east, north) = self.from_deg.to_radians().sin_cos();
         Vector3::new(-self.speed_mps * east, -self.speed_mps * north, 0.0)

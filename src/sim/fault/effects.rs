@@ -34,20 +34,17 @@ pub(in crate::sim) struct Effects {
 /// What is wrong with the GPS.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct GpsFaults {
-    /// No solution.
     pub loss: bool,
     /// Shift of the position, ENU, m.
     pub shift_enu: Vector3<f64>,
     /// The last solution is repeated.
     pub freeze: bool,
-    /// Multiplies all errors.
     pub noise_factor: f64,
 }
 
 /// What is wrong with the link to an external simulator.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LinkFaults {
-    /// Nothing is sent.
     pub stall: bool,
     /// Fraction of packets lost.
     pub loss: f64,
@@ -60,7 +57,6 @@ pub struct LinkFaults {
 }
 
 impl Effects {
-    /// Nothing wrong.
     pub(crate) const NONE: Self = Self {
         rx_loss: false,
         rx_jitter: 0.0,

@@ -26,13 +26,11 @@ pub struct FaultInfo {
 
 impl FaultInfo {
     /// Name before the first `@`.
-    #[must_use]
     pub fn name(&self) -> &'static str {
         self.kind.into()
     }
 
     /// Whether the fault acts on the link to an external simulator.
-    #[must_use]
     pub fn needs_link(&self) -> bool {
         self.help.starts_with("external link")
     }

@@ -12,7 +12,6 @@ pub const MAX_FAULTS: usize = 64;
 /// An active fault and when it ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::sim) struct ActiveFault {
-    /// What.
     pub fault: Fault,
     /// When it ends; never when `None`.
     pub until: Option<SimTime>,

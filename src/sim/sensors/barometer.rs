@@ -14,7 +14,6 @@ const PERIOD_S: f64 = 0.02;
 /// Samples between two spikes of the spike fault: one second.
 const SPIKE_EVERY: u32 = 50;
 
-/// The barometer.
 #[derive(Debug, Clone)]
 pub(super) struct Barometer {
     normals: Normals,

@@ -77,10 +77,8 @@ impl Sky {
 /// Position and velocity at a slow tick, ENU, m and m/s.
 type Moment = (Vector3<f64>, Vector3<f64>);
 
-/// The receiver.
 #[derive(Debug, Clone)]
 pub(in crate::sim) struct Gps {
-    /// Solutions a second.
     rate_hz: u8,
     grade: GpsGrade,
     normals: Normals,

@@ -65,7 +65,6 @@ impl Bias {
     }
 }
 
-/// The inertial sensor.
 #[derive(Debug, Clone)]
 pub(super) struct Imu {
     position_m: Vector3<f64>,

@@ -17,14 +17,12 @@ pub const SITL_DECLINATION_DEG: f64 = 2.000_675_735_167_871_2;
 /// White noise per axis, counts: 0.4 mG of a field of 500 mG.
 const SIGMA: f64 = 0.4 / 500.0 * 4096.0;
 
-/// The magnetometer.
 #[derive(Debug, Clone)]
 pub(super) struct Magnetometer {
     normals: Normals,
 }
 
 /// The earth's magnetic field for a declination (degrees east), ENU, counts: 4096 counts are 500 mG.
-#[must_use]
 pub fn magnetic_field_enu(declination_deg: f64) -> Vector3<f64> {
     let (sin, cos) = declination_deg.to_radians().sin_cos();
     Vector3::new(HORIZONTAL * sin, HORIZONTAL * cos, UP)

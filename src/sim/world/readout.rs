@@ -11,44 +11,36 @@ use super::World;
 
 impl World {
     /// Greatest thrust over weight in the air at the craft, with its payload.
-    #[must_use]
     pub fn thrust_to_weight(&self) -> f64 {
         let unladen = self.airframe.thrust_to_weight() * self.air_now.density_ratio;
         unladen * self.airframe.mass_kg / self.plant.mass_kg()
     }
 
     /// The sensor readings of the present instant.
-    #[must_use]
     pub fn sensors(&self) -> &SensorFrame {
         &self.frame
     }
 
     /// The true state at the present instant.
-    #[must_use]
     pub fn truth(&self) -> &Truth {
         &self.truth
     }
 
     /// Simulated time since boot.
-    #[must_use]
     pub fn time(&self) -> SimTime {
         self.time
     }
 
     /// Length of a step, µs.
-    #[must_use]
     pub fn step_us(&self) -> u64 {
         self.step_us
     }
 
-    /// What flies.
-    #[must_use]
     pub fn airframe(&self) -> &Airframe {
         &self.airframe
     }
 
     /// The frame that turns truth into latitude and longitude.
-    #[must_use]
     pub fn local_frame(&self) -> &LocalFrame {
         self.sensors.local()
     }
@@ -64,31 +56,26 @@ impl World {
     }
 
     /// The seed of all randomness.
-    #[must_use]
     pub fn seed(&self) -> u64 {
         self.seed
     }
 
     /// Whether the `gps-loss` fault is on.
-    #[must_use]
     pub fn gps_lost(&self) -> bool {
         self.effects.gps.loss
     }
 
     /// Whether the `rx-loss` fault is on: no RC frame reaches the receiver.
-    #[must_use]
     pub fn rx_lost(&self) -> bool {
         self.effects.rx_loss
     }
 
     /// Fraction of RC frames that the `rx-jitter` fault drops, 0…1; draw from [`Stream::RxJitter`](crate::sim::Stream).
-    #[must_use]
     pub fn rx_drop_fraction(&self) -> f64 {
         self.effects.rx_jitter
     }
 
     /// What the active faults do to the packets of an external simulator.
-    #[must_use]
     pub fn link_faults(&self) -> LinkFaults {
         self.effects.link
     }

@@ -17,11 +17,8 @@ pub struct WorldStatus {
     pub gust_mps: f64,
     /// A gust is blowing.
     pub gust_blowing: bool,
-    /// Level of turbulence.
     pub turbulence: Turbulence,
-    /// Whether sensors err.
     pub noise: Noise,
-    /// The rare switches.
     pub switches: Switches,
     /// Active faults and how many seconds each will still last.
     pub faults: ArrayVec<(Fault, Option<f64>), MAX_FAULTS>,
@@ -33,13 +30,11 @@ pub struct WorldStatus {
 
 impl World {
     /// The faults that wait for their time.
-    #[must_use]
     pub fn waiting_faults(&self) -> &[ScheduledFault] {
         self.faults.waiting()
     }
 
     /// The settings of air, noise and faults as they are now.
-    #[must_use]
     pub fn status(&self) -> WorldStatus {
         let left =
             |fault: &ActiveFault| (fault.fault, fault.until.map(|until| until.seconds_since(self.time)));

@@ -16,7 +16,6 @@ pub enum EditAction {
     SaveAs,
     /// Begin a new plan.
     New,
-    /// Close the plan.
     Close,
     /// Show the next open plan.
     NextPlan,
@@ -40,9 +39,7 @@ pub enum EditAction {
     RaiseMuch,
     /// Lower the value a lot.
     LowerMuch,
-    /// Insert a waypoint.
     Insert,
-    /// Repeat the waypoint.
     Duplicate,
     /// Delete the selected waypoints.
     Delete,
@@ -52,7 +49,6 @@ pub enum EditAction {
     MoveDown,
     /// Begin or end a selection.
     Select,
-    /// Select all waypoints.
     SelectAll,
     /// Copy the selected waypoints.
     Copy,
@@ -60,7 +56,6 @@ pub enum EditAction {
     Paste,
     /// Change the selected waypoints at once.
     Bulk,
-    /// Generate a pattern.
     Generate,
     /// Name, home and settings.
     Properties,

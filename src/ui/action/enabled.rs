@@ -179,7 +179,6 @@ fn steers(action: Action) -> bool {
 }
 
 /// Whether the craft lies crashed, so that only a reset helps.
-#[must_use]
 pub(in crate::ui) fn is_wrecked(state: &AppState) -> bool {
     state.view.vehicle.truth.as_ref().is_some_and(|truth| truth.crashed)
 }

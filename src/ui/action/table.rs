@@ -32,7 +32,6 @@ const fn edit(
 /// The parts of the table, in the order help shows them.
 const PARTS: [&[Spec]; 4] = [general::ROWS, map::ROWS, plan::ROWS, panels::ROWS];
 
-/// The table.
 pub const ACTIONS: &[Spec] = &joined::<{ count() }>();
 
 const fn count() -> usize {

@@ -21,7 +21,6 @@ pub(super) fn theme(state: &mut AppState, _: &str, argument: &str) -> Result<Vec
     }
 }
 
-/// Names of themes.
 pub(super) fn complete_theme(_: &AppState, _: &str, typed: &str) -> Vec<String> {
     starting(typed, &Palette::NAMES.map(|(name, _)| name))
 }

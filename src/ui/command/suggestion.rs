@@ -10,18 +10,14 @@ const SHORT: usize = 24;
 /// A line that what is typed may become.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Suggestion {
-    /// The line.
     pub line: String,
     /// What is shown of it: the word that is being typed.
     pub word: String,
-    /// What it does.
     pub help: &'static str,
-    /// Its keys.
     pub keys: String,
 }
 
 /// The lines that `typed` may become, the commands of the `:` line first.
-#[must_use]
 pub fn suggestions(state: &AppState, typed: &str) -> Vec<Suggestion> {
     let typed = typed.trim_start().trim_start_matches(':').trim_start();
     if typed.contains([' ', '=']) {
@@ -57,7 +53,6 @@ pub fn suggestions(state: &AppState, typed: &str) -> Vec<Suggestion> {
 }
 
 /// A word about the line: how the command is used, or what the action does and why it cannot be done now.
-#[must_use]
 pub fn hint(state: &AppState, typed: &str) -> Option<String> {
     let (word, argument) = split(typed);
     if word == "set" {

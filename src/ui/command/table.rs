@@ -8,7 +8,6 @@ use crate::ui::message::Effect;
 /// A command that takes an argument.
 #[derive(Debug, Clone, Copy)]
 pub struct Command {
-    /// What is typed.
     pub name: &'static str,
     /// What is to be typed behind it, in capitals what stands for something.
     pub argument: &'static str,
@@ -20,7 +19,6 @@ pub struct Command {
     pub complete: fn(&AppState, &str, &str) -> Vec<String>,
 }
 
-/// The rows.
 const COMMANDS: &[Command] = &[
     Command {
         name: "set",

@@ -24,7 +24,6 @@ pub(super) fn speed(state: &mut AppState, _: &str, argument: &str) -> Result<Vec
     Ok(vec![Effect::Send(Command::Speed(factor))])
 }
 
-/// The usual factors.
 pub(super) fn complete_speed(_: &AppState, _: &str, typed: &str) -> Vec<String> {
     let usual = ["0.1", "0.25", "0.5", "1", "2", "4", "8", "16", "64", "max"];
     usual.into_iter().filter(|factor| factor.starts_with(typed)).map(str::to_owned).collect()

@@ -20,7 +20,6 @@ pub enum Purpose {
 /// A browser that is open.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Browser {
-    /// What for.
     pub purpose: Purpose,
     /// What is typed: a name, the beginning of one, or a path.
     pub text: TextField,
@@ -33,13 +32,10 @@ pub struct Browser {
 /// What a key did.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(in crate::ui) enum BrowserKey {
-    /// It goes on.
     Edited,
-    /// Show this directory.
     List(PathBuf),
     /// This file is meant.
     Chosen(PathBuf),
-    /// Close it.
     Cancel,
 }
 
@@ -49,7 +45,6 @@ impl Browser {
     }
 
     /// The entries that the typed text leaves: all while saving.
-    #[must_use]
     pub fn visible(&self) -> Vec<&Entry> {
         let typed = self.text.value().to_lowercase();
         let filters = self.purpose == Purpose::Open && !typed.contains('/');

@@ -11,7 +11,6 @@ use nalgebra::Vector2;
 /// The greatest speed of a leg, m/s.
 pub(super) const MOST_MPS: f64 = 655.35;
 
-/// A column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::EnumIter)]
 pub enum Column {
     /// What to do there.
@@ -27,13 +26,11 @@ pub enum Column {
     Speed,
     /// Hold or delay time, s.
     Time,
-    /// How to hold.
     Pattern,
 }
 
 impl Column {
     /// The column beside this one.
-    #[must_use]
     pub(crate) fn beside(self, step: isize) -> Self {
         let columns: Vec<Self> = Self::iter().collect();
         let at = columns.iter().position(|&column| column == self).unwrap_or(0);
@@ -41,7 +38,6 @@ impl Column {
     }
 
     /// What the column is called in sentences.
-    #[must_use]
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Type => "type",
@@ -55,7 +51,6 @@ impl Column {
     }
 
     /// What may be typed.
-    #[must_use]
     pub(crate) fn hint(self, kind: WaypointType, units: Units) -> String {
         match self {
             Self::Type => names(WaypointType::iter()),
@@ -74,7 +69,6 @@ impl Column {
     }
 
     /// Whether a waypoint of this type uses the value.
-    #[must_use]
     pub(crate) fn is_used(self, kind: WaypointType) -> bool {
         use WaypointType::{AltChange, Delay, Hold, YawRate};
         match self {
@@ -88,7 +82,6 @@ impl Column {
     }
 
     /// The value as it is typed.
-    #[must_use]
     pub(crate) fn text(self, wp: &Waypoint, units: Units) -> String {
         match self {
             Self::Type => wp.kind.to_string(),

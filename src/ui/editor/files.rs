@@ -6,18 +6,13 @@ use super::open_plan::PlanId;
 use crate::plan::edit::{History, JournalLine, PlanDocument};
 use crate::ui::history::LineField;
 
-/// A request.
 #[derive(Debug, Clone, PartialEq)]
 pub enum FileRequest {
     /// Read a plan, with the history that its journal has.
     Open(PathBuf),
-    /// Write a plan.
     Save {
-        /// The plan.
         id: PlanId,
-        /// Where.
         path: PathBuf,
-        /// What.
         document: Box<PlanDocument>,
         /// The revision that is written.
         revision: usize,
@@ -34,23 +29,19 @@ pub enum FileRequest {
     Begin(PlanId, Box<PlanDocument>),
     /// The plan was closed; its journal goes when edits are given up.
     Close {
-        /// The plan.
         id: PlanId,
         /// Its edits are given up.
         discard: bool,
     },
 }
 
-/// What comes back.
 #[derive(Debug, Clone)]
 pub enum FileReply {
     /// A plan was read.
     Opened(Box<Opened>),
     /// A plan was written.
     Saved {
-        /// The plan.
         id: PlanId,
-        /// Where.
         path: PathBuf,
         /// The revision that was written.
         revision: usize,
@@ -59,16 +50,13 @@ pub enum FileReply {
     },
     /// There is something else in the file: it was not written.
     Occupied {
-        /// The plan.
         id: PlanId,
-        /// Where.
         path: PathBuf,
         /// This plan had read or written the file, and somebody else changed it since.
         changed: bool,
     },
     /// Somebody else changed or removed the file of a plan.
     Changed(PlanId),
-    /// A directory.
     Listed(Listing),
     /// It did not work: why, in one sentence.
     Failed(String),
@@ -98,7 +86,6 @@ pub struct Opened {
 /// A directory as the file browser shows it.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Listing {
-    /// Which.
     pub directory: PathBuf,
     /// Directories, then plan files, each by name.
     pub entries: Vec<Entry>,
@@ -107,7 +94,6 @@ pub struct Listing {
 /// An entry of a directory.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Entry {
-    /// Its name.
     pub name: String,
     /// Whether it is a directory.
     pub is_directory: bool,

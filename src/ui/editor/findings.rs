@@ -7,7 +7,6 @@ use crate::ui::app_state::AppState;
 use crate::ui::editor::settings_in_force;
 
 /// Home as far as it is known: of the craft, of the plan, of the map.
-#[must_use]
 pub(crate) fn home(state: &AppState) -> Option<LatLon> {
     let document = state.editor.document();
     let planned = document.home.map(|home| home.position);
@@ -18,7 +17,6 @@ pub(crate) fn home(state: &AppState) -> Option<LatLon> {
 }
 
 /// All findings about the open plan, refusals first; none while it is empty.
-#[must_use]
 pub(crate) fn findings(state: &AppState) -> Vec<Finding> {
     let document = state.editor.document();
     match home(state) {
@@ -35,7 +33,6 @@ pub(crate) fn findings(state: &AppState) -> Vec<Finding> {
 }
 
 /// The finding that is shown: about the waypoint under the cursor, else the first; and what takes it away.
-#[must_use]
 pub(crate) fn shown(state: &AppState, findings: &[Finding]) -> Option<(Finding, Option<Fix>)> {
     let here = findings.iter().find(|finding| waypoint_of(finding) == Some(state.editor.row()));
     let finding = here.or_else(|| findings.first())?.clone();

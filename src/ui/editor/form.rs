@@ -18,7 +18,6 @@ pub enum FormKind {
     Properties,
 }
 
-/// A labelled value.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FormField {
     /// What the value is.
@@ -59,7 +58,6 @@ pub struct Form {
     pub kind: FormKind,
     /// The units in which lengths and speeds are typed.
     pub units: Units,
-    /// Its values.
     pub fields: Vec<FormField>,
     /// The value that has the cursor.
     pub at: usize,
@@ -70,11 +68,8 @@ pub struct Form {
 /// What a key did to a form.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::ui) enum FormKey {
-    /// It goes on.
     Edited,
-    /// Take the values.
     Accept,
-    /// Close it.
     Cancel,
 }
 
@@ -97,7 +92,6 @@ impl Form {
     }
 
     /// The text of the field with this label.
-    #[must_use]
     pub fn value(&self, label: &str) -> &str {
         self.fields.iter().find(|field| field.label == label).map_or("", |field| field.text.value().trim())
     }

@@ -20,37 +20,29 @@ pub struct OpenPlan {
 
 impl OpenPlan {
     /// A plan with its history, as the files gave it.
-    #[must_use]
     pub fn new(id: PlanId, file: Option<PathBuf>, history: History) -> Self {
         Self { id, file, history, changed_on_disk: false }
     }
 
-    /// Identifies it.
-    #[must_use]
     pub fn id(&self) -> PlanId {
         self.id
     }
 
     /// The document as it is now.
-    #[must_use]
     pub fn document(&self) -> &PlanDocument {
         self.history.document()
     }
 
-    /// Its edits.
-    #[must_use]
     pub fn history(&self) -> &History {
         &self.history
     }
 
     /// Its file, if it has one.
-    #[must_use]
     pub fn file(&self) -> Option<&Path> {
         self.file.as_deref()
     }
 
     /// The file's name, else the plan's.
-    #[must_use]
     pub fn title(&self) -> String {
         let file =
             self.file.as_deref().and_then(Path::file_name).map(|name| name.to_string_lossy().into_owned());
@@ -59,13 +51,11 @@ impl OpenPlan {
     }
 
     /// Whether leaving loses an edit: there is one that no file holds.
-    #[must_use]
     pub fn is_unsaved(&self) -> bool {
         !self.history.is_saved() && (self.file.is_some() || !self.history.is_empty())
     }
 
     /// Whether somebody else wrote the file meanwhile.
-    #[must_use]
     pub fn is_changed_on_disk(&self) -> bool {
         self.changed_on_disk
     }

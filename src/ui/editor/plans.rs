@@ -64,7 +64,6 @@ impl Editor {
     }
 
     /// The open plan of this identifier.
-    #[must_use]
     pub fn plan_of(&self, id: PlanId) -> Option<&OpenPlan> {
         self.plans.iter().find(|plan| plan.id() == id)
     }

@@ -7,11 +7,9 @@ use super::question::Question;
 /// A popup of the editor; it gets the keys.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum EditorPopup {
-    /// Values to type.
     Form(Form),
     /// A file to choose.
     Browser(Browser),
-    /// Something to decide.
     Question(Question),
 }
 

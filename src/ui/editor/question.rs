@@ -4,28 +4,23 @@ use std::path::PathBuf;
 
 use super::open_plan::PlanId;
 
-/// A question.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Question {
     /// There is something else in the file that is to be written.
     Replace {
-        /// The plan.
         id: PlanId,
-        /// The file.
         path: PathBuf,
         /// It was this plan's file, and somebody else changed it since.
         changed: bool,
     },
     /// The plan is to be uploaded in flight, and moves the waypoint that is flown to.
     MovesTarget {
-        /// The plan.
         id: PlanId,
         /// What it does to the waypoint, a sentence.
         change: String,
     },
     /// The plan is to be closed, and has edits that no file holds.
     Unsaved {
-        /// The plan.
         id: PlanId,
         /// The program ends when all plans are answered for.
         quits: bool,
@@ -34,7 +29,6 @@ pub enum Question {
 
 impl Question {
     /// The answers: key and what it does.
-    #[must_use]
     pub fn answers(&self) -> &'static [(char, &'static str)] {
         match self {
             Self::Replace { changed: true, .. } => {

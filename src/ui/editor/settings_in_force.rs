@@ -6,14 +6,12 @@ use crate::ui::app_state::AppState;
 
 /// Returns the lines of the plan that its upload would set before it is flown. A craft that has the plan already is flown
 /// without another upload, so that only the lines edited since then are left.
-#[must_use]
 pub(crate) fn to_upload<'a>(state: &AppState, document: &'a PlanDocument) -> Vec<&'a str> {
     let sent = sent(state);
     document.settings.iter().filter(|line| !sent.contains(line)).map(String::as_str).collect()
 }
 
 /// Returns the limits the plan is judged by, and whose the fence among them is.
-#[must_use]
 pub(crate) fn assumptions(state: &AppState, document: &PlanDocument) -> Assumptions {
     let max_alt_m = Some(state.max_altitude_m);
     let Some(settings) = &state.view.vehicle.settings else {
@@ -33,7 +31,6 @@ pub(crate) fn assumptions(state: &AppState, document: &PlanDocument) -> Assumpti
 }
 
 /// Returns whether the plan has a fence of its own.
-#[must_use]
 pub(crate) fn sets_a_fence(document: &PlanDocument) -> bool {
     document.settings.iter().any(|line| line.trim_start().starts_with("ap_max_distance_from_home"))
 }

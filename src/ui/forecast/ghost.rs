@@ -7,7 +7,6 @@ use crate::ui::units::Units;
 /// A way that was not flown yet, and what is said of it.
 #[derive(Debug)]
 pub(in crate::ui) struct Ghost<'a> {
-    /// The way.
     pub path: &'a [PathPoint],
     /// What it is, and how it ends, where that is asked for.
     pub line: String,

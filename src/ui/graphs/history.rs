@@ -30,7 +30,6 @@ impl Sample {
     }
 }
 
-/// The history.
 #[derive(Debug, Default)]
 pub(super) struct SignalHistory {
     fine: VecDeque<Sample>,
@@ -56,12 +55,10 @@ impl SignalHistory {
         }
     }
 
-    /// The oldest sample.
     pub(super) fn oldest(&self) -> Option<&Sample> {
         self.coarse.front()
     }
 
-    /// The newest sample.
     pub(super) fn newest(&self) -> Option<&Sample> {
         self.fine.back()
     }

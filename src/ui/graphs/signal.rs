@@ -58,7 +58,6 @@ pub(in crate::ui) enum Quantity {
 /// Curves over one axis.
 #[derive(Debug)]
 pub(in crate::ui) struct Plot {
-    /// Its name.
     pub(in crate::ui) name: &'static str,
     /// Of what the values are.
     pub(in crate::ui) quantity: Quantity,

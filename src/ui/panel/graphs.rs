@@ -30,7 +30,6 @@ pub(crate) fn title(state: &AppState) -> String {
     format!("{} — {span}{cursor}", state.panel_title(Panel::Graphs))
 }
 
-/// Draws the inside.
 pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     let plots: Vec<&Plot> = state.graphs.plots().collect();

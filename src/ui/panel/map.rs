@@ -63,7 +63,6 @@ pub(crate) fn title(state: &AppState) -> String {
     }
 }
 
-/// Draws the inside.
 pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     if area.width < 8 || area.height < 4 {
         return;

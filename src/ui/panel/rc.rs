@@ -136,7 +136,6 @@ fn name(craft: &CraftView, channel: usize) -> String {
     }
 }
 
-/// Draws the inside.
 pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     let craft = &state.view.vehicle.craft;

@@ -43,7 +43,6 @@ pub(crate) fn title(state: &AppState) -> String {
     format!("{name} WP{}/{}{kind}", nav.wp, nav.count.saturating_sub(1))
 }
 
-/// Draws the inside.
 pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     let diagram = diagram(area);
     let mut top = draw_status_message(state, area, diagram, buffer);

@@ -24,9 +24,7 @@ struct Edge {
 
 /// A drawing of the machine.
 pub(crate) struct Diagram {
-    /// Columns it needs.
     pub width: u16,
-    /// Rows it needs.
     pub height: u16,
     nodes: &'static [Node],
     edges: &'static [Edge],

@@ -37,7 +37,6 @@ pub(in crate::ui) enum Outcome {
     Typing,
     /// It is to be carried out; it is new in the history or not.
     Entered(String, bool),
-    /// It is left.
     Left,
 }
 

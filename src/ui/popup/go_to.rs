@@ -31,9 +31,7 @@ pub struct GoTo {
 pub(crate) enum Outcome {
     /// The choice goes on.
     Choosing,
-    /// None is chosen.
     Left,
-    /// This one.
     Chosen(u8),
 }
 
@@ -82,7 +80,6 @@ impl GoTo {
     }
 }
 
-/// Draws the popup.
 pub(crate) fn draw(state: &AppState, question: &GoTo, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     let shown = question.waypoints.len().min(ROWS);

@@ -25,7 +25,6 @@ pub(in crate::ui) enum MapChoice {
     SetFence,
     /// Show the waypoint that is there in the plan table.
     EditWaypoint(usize),
-    /// Delete it.
     DeleteWaypoint(usize),
     /// Fly to it now.
     GoTo(u8),
@@ -61,9 +60,7 @@ pub struct MapMenu {
 pub(in crate::ui) enum Outcome {
     /// The choice goes on.
     Choosing,
-    /// Nothing is chosen.
     Left,
-    /// This.
     Chosen(MapChoice),
 }
 
@@ -113,7 +110,6 @@ impl MapMenu {
     }
 }
 
-/// Draws the menu.
 pub(in crate::ui) fn draw(state: &AppState, menu: &MapMenu, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     let place = menu.rect(area);

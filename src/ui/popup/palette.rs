@@ -29,7 +29,6 @@ const IN_HELP: u32 = 6;
 /// What is searched, and the row that is selected.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Palette {
-    /// What is typed.
     pub query: TextField,
     /// Selected row of the list.
     pub selected: usize,
@@ -38,7 +37,6 @@ pub struct Palette {
 /// A row of the palette.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::ui) enum Entry {
-    /// An action.
     Action(&'static Spec),
     /// A command, which needs an argument.
     Command(Command),
@@ -51,7 +49,6 @@ pub(in crate::ui) enum Outcome {
     Searching,
     /// This row was chosen.
     Chosen(Entry),
-    /// It is left.
     Left,
 }
 

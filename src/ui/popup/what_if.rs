@@ -20,9 +20,7 @@ const WIDTH: u16 = 34;
 pub(crate) enum Outcome {
     /// The choice goes on.
     Choosing,
-    /// Nothing is chosen.
     Left,
-    /// This one.
     Chosen(WhatIf),
 }
 

@@ -38,10 +38,8 @@ pub enum RemoteRequest {
     Msp {
         /// The message's code.
         code: u16,
-        /// Its payload.
         payload: Vec<u8>,
     },
-    /// To restart.
     Restart,
     /// To fly home and land.
     ReturnHome,
@@ -56,9 +54,7 @@ pub struct RemoteTelemetry {
     pub estimate: EstimateView,
     /// Modes, arming, receiver and battery.
     pub craft: CraftView,
-    /// Its navigator.
     pub nav: Option<NavTelemetry>,
-    /// Its settings.
     pub settings: Option<SettingsView>,
     /// The plan it has stored, its altitudes above home.
     pub stored_plan: Option<FlightPlan>,
@@ -68,7 +64,6 @@ pub struct RemoteTelemetry {
     pub last_disarm: Option<DisarmReason>,
 }
 
-/// The mailbox.
 #[derive(Debug, Clone)]
 pub struct RemoteController {
     frames: VecDeque<FrameOut>,
@@ -118,7 +113,6 @@ impl RemoteController {
         self.telemetry = telemetry;
     }
 
-    /// Delivers an event.
     pub fn deliver_event(&mut self, event: FirmwareEvent) {
         self.events.push_back(event);
     }

@@ -20,7 +20,6 @@ pub(in crate::vehicle) struct ExternalPhysics {
     links: World,
     /// What was measured for the present step.
     sensors: SensorFrame,
-    /// Where it is.
     track: Track,
 }
 
@@ -84,7 +83,6 @@ impl ExternalPhysics {
 struct Track {
     /// Counts from the place where it was seen first.
     frame: Option<LocalFrame>,
-    /// The newest pose.
     pose: Option<Pose>,
 }
 

@@ -54,10 +54,8 @@ pub(super) enum AltitudeOrder {
     Descend(DescentRate),
 }
 
-/// What is held.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 enum Phase {
-    /// Nothing.
     #[default]
     Off,
     /// The stick moves the altitude.
@@ -70,7 +68,6 @@ enum Phase {
     Descending(f64),
 }
 
-/// Altitude hold.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct AltitudeHold {
     phase: Phase,

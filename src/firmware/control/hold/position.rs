@@ -13,7 +13,6 @@ const FULL_STICK: f64 = 500.0;
 /// Share of the greatest lean that the stop at a release is planned with.
 const STOP_SHARE: f64 = 0.4;
 
-/// Position hold.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct PositionHold {
     /// The point held, north and east, m; none while the pilot flies.

@@ -8,7 +8,6 @@ use crate::autopilot::params::{Effect, Field};
 /// Settings of this group; the parameters after them belong to other groups.
 const COUNT: usize = Params::FIELDS.len() - Params::SHARED;
 
-/// Autopilot.
 pub(super) const AUTOPILOT: Group =
     Group { title: "Autopilot", scope: Scope::Master, settings: &settings_of_parameters() };
 

@@ -5,7 +5,6 @@ use super::super::Scope;
 use super::super::Width::{U8, U32};
 use super::{BAUD, Group, choice, port, switch};
 
-/// Blackbox.
 #[rustfmt::skip]
 pub(super) const BLACKBOX: Group = Group {
     title: "Blackbox",

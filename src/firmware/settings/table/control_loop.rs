@@ -5,7 +5,6 @@ use super::super::Scope;
 use super::super::Width::{U8, U16};
 use super::{Group, number, switch};
 
-/// Control loop.
 #[rustfmt::skip]
 pub(super) const CONTROL_LOOP: Group = Group {
     title: "Control loop",
@@ -18,7 +17,6 @@ pub(super) const CONTROL_LOOP: Group = Group {
     ],
 };
 
-/// Simplified tuning.
 #[rustfmt::skip]
 pub(super) const SIMPLIFIED_FILTER: Group = Group {
     title: "Simplified tuning",

@@ -5,7 +5,6 @@ use super::super::Scope;
 use super::super::Width::{U8, U16};
 use super::{BAUD, Group, choice, number, port, switch, text};
 
-/// GPS.
 #[rustfmt::skip]
 pub(super) const GPS: Group = Group {
     title: "GPS",
@@ -30,7 +29,6 @@ pub(super) const GPS: Group = Group {
     ],
 };
 
-/// GPS rescue.
 #[rustfmt::skip]
 pub(super) const GPS_RESCUE: Group = Group {
     title: "GPS rescue",

@@ -5,7 +5,6 @@ use super::super::Scope;
 use super::super::Width::{U8, U16, U32};
 use super::{BAUD, Group, choice, number, port, switch};
 
-/// Hardware.
 #[rustfmt::skip]
 pub(super) const HARDWARE: Group = Group {
     title: "Hardware",
@@ -26,7 +25,6 @@ pub(super) const HARDWARE: Group = Group {
     ],
 };
 
-/// Serial ports.
 #[rustfmt::skip]
 pub(super) const SERIAL_PORTS: Group = Group {
     title: "Serial ports",

@@ -20,7 +20,6 @@ pub(super) const HOLD: Group = Group {
     ],
 };
 
-/// Altitude estimate.
 #[rustfmt::skip]
 pub(super) const ALTITUDE: Group = Group {
     title: "Altitude estimate",

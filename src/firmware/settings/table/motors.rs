@@ -5,7 +5,6 @@ use super::super::Scope;
 use super::super::Width::{I8, U8, U16};
 use super::{Group, array, choice, number, switch};
 
-/// Motors.
 #[rustfmt::skip]
 pub(super) const MOTORS: Group = Group {
     title: "Motors",
@@ -24,7 +23,6 @@ pub(super) const MOTORS: Group = Group {
     ],
 };
 
-/// Throttle correction.
 #[rustfmt::skip]
 pub(super) const THROTTLE_CORRECTION: Group = Group {
     title: "Throttle correction",
@@ -35,7 +33,6 @@ pub(super) const THROTTLE_CORRECTION: Group = Group {
     ],
 };
 
-/// Mixer.
 #[rustfmt::skip]
 pub(super) const MIXER: Group = Group {
     title: "Mixer",
@@ -49,7 +46,6 @@ pub(super) const MIXER: Group = Group {
     ],
 };
 
-/// Reversible motors.
 #[rustfmt::skip]
 pub(super) const REVERSIBLE_MOTORS: Group = Group {
     title: "Reversible motors",

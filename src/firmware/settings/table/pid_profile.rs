@@ -5,7 +5,6 @@ use super::super::Scope;
 use super::super::Width::{I8, I16, U8, U16};
 use super::{Group, choice, number, switch, text};
 
-/// PID profile.
 #[rustfmt::skip]
 pub(super) const PID_PROFILE: Group = Group {
     title: "PID profile",

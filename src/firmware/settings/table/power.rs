@@ -5,7 +5,6 @@ use super::super::Scope;
 use super::super::Width::{I16, U8, U16};
 use super::{Group, choice, number, switch};
 
-/// Power monitoring.
 #[rustfmt::skip]
 pub(super) const POWER: Group = Group {
     title: "Power monitoring",

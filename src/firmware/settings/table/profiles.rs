@@ -5,7 +5,6 @@ use super::super::Scope;
 use super::super::Width::{U8, U16};
 use super::{Group, choice, number, switch, text};
 
-/// Battery profile.
 #[rustfmt::skip]
 pub(super) const BATTERY_PROFILE: Group = Group {
     title: "Battery profile",
@@ -22,7 +21,6 @@ pub(super) const BATTERY_PROFILE: Group = Group {
     ],
 };
 
-/// Rate profile.
 #[rustfmt::skip]
 pub(super) const RATE_PROFILE: Group = Group {
     title: "Rate profile",

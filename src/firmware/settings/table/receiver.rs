@@ -5,7 +5,6 @@ use super::super::Scope;
 use super::super::Width::{I8, U8, U16, U32};
 use super::{Group, choice, number, port, switch};
 
-/// Receiver.
 #[rustfmt::skip]
 pub(super) const RECEIVER: Group = Group {
     title: "Receiver",
@@ -39,7 +38,6 @@ pub(super) const RECEIVER: Group = Group {
     ],
 };
 
-/// Failsafe.
 #[rustfmt::skip]
 pub(super) const FAILSAFE: Group = Group {
     title: "Failsafe",
@@ -56,7 +54,6 @@ pub(super) const FAILSAFE: Group = Group {
     ],
 };
 
-/// Sticks.
 #[rustfmt::skip]
 pub(super) const STICKS: Group = Group {
     title: "Sticks",

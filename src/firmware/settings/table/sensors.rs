@@ -5,7 +5,6 @@ use super::super::Scope;
 use super::super::Width::{I16, U8, U16};
 use super::{ACC_HARDWARE, Group, array, choice, number, switch};
 
-/// Gyro.
 #[rustfmt::skip]
 pub(super) const GYRO: Group = Group {
     title: "Gyro",
@@ -33,7 +32,6 @@ pub(super) const GYRO: Group = Group {
     ],
 };
 
-/// Accelerometer.
 #[rustfmt::skip]
 pub(super) const ACCELEROMETER: Group = Group {
     title: "Accelerometer",
@@ -47,7 +45,6 @@ pub(super) const ACCELEROMETER: Group = Group {
     ],
 };
 
-/// Magnetometer.
 #[rustfmt::skip]
 pub(super) const MAGNETOMETER: Group = Group {
     title: "Magnetometer",
@@ -66,7 +63,6 @@ pub(super) const MAGNETOMETER: Group = Group {
     ],
 };
 
-/// Barometer.
 #[rustfmt::skip]
 pub(super) const BAROMETER: Group = Group {
     title: "Barometer",
@@ -80,7 +76,6 @@ pub(super) const BAROMETER: Group = Group {
     ],
 };
 
-/// Board alignment.
 #[rustfmt::skip]
 pub(super) const BOARD: Group = Group {
     title: "Board alignment",
@@ -92,7 +87,6 @@ pub(super) const BOARD: Group = Group {
     ],
 };
 
-/// Attitude estimate.
 #[rustfmt::skip]
 pub(super) const ATTITUDE: Group = Group {
     title: "Attitude estimate",

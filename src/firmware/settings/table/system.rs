@@ -5,7 +5,6 @@ use super::super::Scope;
 use super::super::Width::{I8, I16, U8, U16, U32};
 use super::{DEBUG_MODE, Group, choice, number, switch, text};
 
-/// System.
 #[rustfmt::skip]
 pub(super) const SYSTEM: Group = Group {
     title: "System",
@@ -16,7 +15,6 @@ pub(super) const SYSTEM: Group = Group {
     ],
 };
 
-/// Arming.
 #[rustfmt::skip]
 pub(super) const ARMING: Group = Group {
     title: "Arming",
@@ -28,7 +26,6 @@ pub(super) const ARMING: Group = Group {
     ],
 };
 
-/// Maintenance.
 #[rustfmt::skip]
 pub(super) const MAINTENANCE: Group = Group {
     title: "Maintenance",
@@ -42,7 +39,6 @@ pub(super) const MAINTENANCE: Group = Group {
     ],
 };
 
-/// Clock and statistics.
 #[rustfmt::skip]
 pub(super) const STATISTICS: Group = Group {
     title: "Clock and statistics",
@@ -57,7 +53,6 @@ pub(super) const STATISTICS: Group = Group {
     ],
 };
 
-/// Identity.
 #[rustfmt::skip]
 pub(super) const IDENTITY: Group = Group {
     title: "Identity",
@@ -67,7 +62,6 @@ pub(super) const IDENTITY: Group = Group {
     ],
 };
 
-/// User modes.
 #[rustfmt::skip]
 pub(super) const USER_BOXES: Group = Group {
     title: "User modes",

@@ -1,6 +1,5 @@
 //! Long word lists of enumerated settings.
 
-/// Values of switches.
 pub(super) const OFF_ON: &[&str] = &["OFF", "ON"];
 
 /// Values of `acc_hardware`.

@@ -7,11 +7,8 @@ pub struct AskId(pub u64);
 /// What a flight controller is asked.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Ask {
-    /// An MSP message.
     Msp {
-        /// Its code.
         code: u16,
-        /// Its payload.
         payload: Vec<u8>,
     },
     /// A line of the command line, in the way of [`CliAccess`]; by MSP message while the command line does not open.
@@ -34,7 +31,6 @@ pub enum Answer {
         /// Whether the flight controller restarts, so that what was known of it is old.
         restarted: bool,
     },
-    /// Nothing.
     NotAnswered(Unanswered),
 }
 

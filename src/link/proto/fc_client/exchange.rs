@@ -17,7 +17,6 @@ pub(super) const LONGEST: Duration = Duration::from_secs(60);
 pub(super) enum Exchange {
     /// A message that nobody asked for: its answer shows that all earlier ones have come or never will.
     Synchronise(Request),
-    /// A message.
     Msp(Request),
     /// A line by message.
     Message(MessageLine),
@@ -32,18 +31,13 @@ pub(super) enum Exchange {
 pub(super) enum LineProgress {
     /// Its answer is still to come.
     Waiting,
-    /// Through.
     Answered {
-        /// Its output.
         text: String,
         /// Whether the prompt stays open.
         open: bool,
     },
     /// Through, and the flight controller says that it restarts.
-    Restarting {
-        /// Its output.
-        text: String,
-    },
+    Restarting { text: String },
     /// The output has stopped without its end.
     Silent,
     /// The command line did not open; the line was not sent.

@@ -10,7 +10,6 @@ const RESTARTING: [&str; 7] = ["save", "exit", "defaults", "reboot", "bl", "dfu"
 const ERRORS: [&str; 2] = ["###ERROR", "ERR_CMD_NA"];
 
 /// A line as it is sent: control characters and what is not ASCII would be dropped or mean something else.
-#[must_use]
 pub fn printable(line: &str) -> String {
     let printable: String = line.chars().filter(|letter| matches!(letter, ' '..='~')).collect();
     printable.trim().to_owned()

@@ -31,7 +31,6 @@ pub(super) enum Page {
     NotMine,
     /// A page; the next was asked for.
     More,
-    /// The last page.
     Last(Answer),
     /// The flight controller knows no such message.
     Unknown,
@@ -45,7 +44,6 @@ impl MessageLine {
         line.len() + OFFSET_BYTES <= MAX_REQUEST
     }
 
-    /// Sends a line.
     pub(super) fn send(line: &str, now: Duration, output: &mut Vec<u8>) -> Self {
         let request = Request::send(CLI_COMMAND, line.as_bytes(), now, output);
         Self { line: line.to_owned(), request, output: Vec::new(), begun: now }

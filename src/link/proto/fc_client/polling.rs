@@ -22,7 +22,6 @@ const FRAME_BYTES: usize = 15;
 /// Something that is asked again and again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Poll {
-    /// An MSP message.
     Message(u16),
     /// The progress of the mission, by message.
     Mission,
@@ -30,7 +29,6 @@ pub enum Poll {
 
 impl Poll {
     /// How it is asked.
-    #[must_use]
     pub fn ask(self) -> Ask {
         match self {
             Self::Message(code) => Ask::Msp { code, payload: Vec::new() },
@@ -76,7 +74,6 @@ struct Entry {
 
 impl Schedule {
     /// A schedule for a link that carries so many bytes a second; `None` = more than anybody asks for.
-    #[must_use]
     pub fn new(bytes_per_s: Option<u32>) -> Self {
         let entries = PLAN.map(|(poll, ms)| Entry {
             poll,

@@ -32,27 +32,20 @@ pub mod code {
     pub const FC_VARIANT: u16 = 2;
     /// Version of the firmware.
     pub const FC_VERSION: u16 = 3;
-    /// The board.
     pub const BOARD_INFO: u16 = 4;
     /// When and with what it was built.
     pub const BUILD_INFO: u16 = 5;
-    /// Mode conditions.
     pub const MODE_RANGES: u16 = 34;
-    /// Motor outputs.
     pub const MOTOR: u16 = 104;
-    /// Channels in use.
     pub const RC: u16 = 105;
     /// What the GPS says.
     pub const RAW_GPS: u16 = 106;
-    /// Where home is.
     pub const COMP_GPS: u16 = 107;
-    /// Attitude.
     pub const ATTITUDE: u16 = 108;
     /// Altitude and climb rate.
     pub const ALTITUDE: u16 = 109;
     /// The order of the mode bits.
     pub const BOX_IDS: u16 = 119;
-    /// The battery.
     pub const BATTERY_STATE: u16 = 130;
     /// Modes and what blocks arming.
     pub const STATUS_EX: u16 = 150;

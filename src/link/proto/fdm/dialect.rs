@@ -39,32 +39,27 @@ pub struct State {
 }
 
 /// The other side of `centre`: turns a mirrored coordinate into the true one and back.
-#[must_use]
 pub fn mirrored(centre_deg: f64, value_deg: f64) -> f64 {
     2.0 * centre_deg - value_deg
 }
 
 impl Dialect {
     /// The dialect that a datagram's size suggests.
-    #[must_use]
     pub fn of_size(size: usize) -> Self {
         if size == super::GZ_PLUGIN_SIZE { Self::GzPlugin } else { Self::SitlGz }
     }
 
     /// Whether positions on the wire are mirrored about the craft's first one.
-    #[must_use]
     pub fn mirrors(self) -> bool {
         self != Self::Legacy
     }
 
     /// Whether accelerations contain gravity, unless the packets show otherwise.
-    #[must_use]
     pub fn usual_gravity(self) -> Gravity {
         if self == Self::GzPlugin { Gravity::Missing } else { Gravity::Included }
     }
 
     /// What a packet means.
-    #[must_use]
     pub fn decode(self, packet: &Packet, gravity: Gravity) -> State {
         let [
             stamp_s,
@@ -114,7 +109,6 @@ impl Dialect {
     }
 
     /// The packet that says this, with the acceleration that is usual in the dialect.
-    #[must_use]
     pub fn encode(self, state: &State) -> Packet {
         let rate = state.rate_flu;
         let force = state.specific_force_flu;

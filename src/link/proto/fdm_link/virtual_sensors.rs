@@ -38,7 +38,6 @@ impl Sampler {
     }
 }
 
-/// The virtual sensors.
 #[derive(Debug, Clone, Default)]
 pub(super) struct VirtualSensors {
     baro: Sampler,

@@ -53,13 +53,11 @@ pub struct Decoder {
 impl Decoder {
     /// A decoder for the flight controller's side: requests up to [`MAX_REQUEST`]; replies that an echoing line
     /// sends back are consumed silently.
-    #[must_use]
     pub fn server() -> Self {
         Self::new(true, MAX_REQUEST)
     }
 
     /// A decoder for the configurator's side: replies and errors up to [`MAX_REPLY`].
-    #[must_use]
     pub fn client() -> Self {
         Self::new(false, MAX_REPLY)
     }
@@ -84,19 +82,16 @@ impl Decoder {
     }
 
     /// Whether the next byte is between frames.
-    #[must_use]
     pub fn is_between_frames(&self) -> bool {
         self.expect == Expect::Dollar
     }
 
     /// Frames given up so far.
-    #[must_use]
     pub fn dropped(&self) -> Dropped {
         self.dropped
     }
 
     /// Bytes that may still come of the frame that was dropped last for its size: payload and checksums.
-    #[must_use]
     pub fn oversized_rest(&self) -> usize {
         self.oversized_rest
     }

@@ -115,13 +115,11 @@ const REBOOT: u16 = 68;
 
 impl Impact {
     /// At least a change, if `changes`.
-    #[must_use]
     pub fn or_changes(self, changes: bool) -> Self {
         if changes { self.max(Self::Changes) } else { self }
     }
 
     /// What a line of the command line does, as it is typed and as it is sent; of several lines the worst.
-    #[must_use]
     pub fn of_line(line: &str) -> Self {
         let typed = line.split(['\r', '\n']).map(Self::of_single_line);
         typed.fold(Self::of_single_line(&sent_line(line)), Self::max)
@@ -154,7 +152,6 @@ impl Impact {
     }
 
     /// What an MSP message does. One that is not known here may change the craft.
-    #[must_use]
     pub fn of_message(code: u16, payload: &[u8]) -> Self {
         let access = || {
             let at = MESSAGES.binary_search_by_key(&code, |message| message.code).ok()?;

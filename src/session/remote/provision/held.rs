@@ -62,7 +62,6 @@ pub(super) fn questions(wishes: &[Wish]) -> VecDeque<Question> {
     questions
 }
 
-/// What was learnt.
 #[derive(Debug, Default)]
 pub(super) struct Held {
     /// `None` for a setting that the firmware does not have.

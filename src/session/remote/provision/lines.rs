@@ -16,7 +16,6 @@ pub struct ProvisionLines {
 
 impl ProvisionLines {
     /// Whether there is nothing to be set.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.usual.is_empty() && self.of_user.is_empty()
     }

@@ -42,7 +42,6 @@ pub struct UnsetLine {
 /// A line that was refused.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct RefusedLine {
-    /// The line.
     pub(super) line: String,
     /// What the flight controller says.
     pub(super) reason: String,
@@ -60,13 +59,11 @@ impl RefusedLine {
 pub(super) struct Difference {
     /// The line that says what is wanted.
     pub(super) line: String,
-    /// What is held.
     pub(super) held: String,
 }
 
 impl ProvisionReport {
     /// Whether everything that this firmware knows is as wanted.
-    #[must_use]
     pub(super) fn is_as_wanted(&self) -> bool {
         self.refused.is_empty() && self.differences.is_empty()
     }
@@ -95,7 +92,6 @@ impl ProvisionReport {
     }
 
     /// What there is to tell, as sentences; none when nothing had to be done.
-    #[must_use]
     pub(super) fn sentences(&self) -> Vec<String> {
         let mut sentences = Vec::new();
         if self.was_bare {

@@ -13,7 +13,6 @@ pub struct AirframeProblem {
     pub column: usize,
     /// The line, or the part of it around the place.
     pub source: SourceSnippet,
-    /// What is wrong.
     pub text: String,
 }
 
@@ -36,7 +35,6 @@ pub struct AirframeFileError {
 
 impl AirframeFileError {
     /// The problems as `FILE:LINE:COLUMN: …`, each with its line.
-    #[must_use]
     pub fn in_file(&self, file: &str) -> String {
         self.lines(|problem| format!("{file}:{problem}"))
     }

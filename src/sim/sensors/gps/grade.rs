@@ -31,7 +31,6 @@ pub(super) struct GradeErrors {
     pub horizontal_accuracy_m: f64,
     /// Horizontal dilution of precision.
     pub hdop: f64,
-    /// Satellites used.
     pub sats: u8,
     /// Whether buildings mask satellites and reflect their signals.
     pub is_urban: bool,

@@ -21,7 +21,6 @@ pub(super) struct Labels<'a> {
 }
 
 impl<'a> Labels<'a> {
-    /// Nothing written yet.
     pub(super) fn new(theme: &'a Theme, view: Viewport, buffer: &'a mut Buffer) -> Self {
         let taken = vec![false; usize::from(view.area.width) * usize::from(view.area.height)];
         Self { theme, view, buffer, taken }

@@ -7,7 +7,6 @@ use super::{Diagram, Edge, Node};
 
 const HOLDS: &[NavState] = &[Holding, Orbiting, Figure8];
 
-/// All transitions drawn.
 pub(crate) static FULL: Diagram = Diagram {
     width: 36,
     height: 11,

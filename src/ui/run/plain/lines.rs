@@ -47,7 +47,6 @@ impl<W: Write> Lines<W> {
         Ok(answered.effects)
     }
 
-    /// Writes a refusal.
     fn said<T: Default>(&mut self, result: Result<T, String>) -> io::Result<T> {
         result.or_else(|sentence| {
             self.write(&sentence)?;

@@ -21,8 +21,6 @@ pub struct ApiVersion {
 }
 
 impl ApiVersion {
-    /// Reads the message.
-    #[must_use]
     pub fn decode(payload: &[u8]) -> Option<Self> {
         let mut reader = Reader::new(payload);
         reader.u8()?; // version of the protocol
@@ -37,13 +35,11 @@ impl std::fmt::Display for ApiVersion {
 }
 
 /// `FC_VARIANT`: `BTFL` is Betaflight.
-#[must_use]
 pub fn variant(payload: &[u8]) -> Option<String> {
     Reader::new(payload).text(4)
 }
 
 /// `FC_VERSION`: the version as users write it.
-#[must_use]
 pub fn version(payload: &[u8]) -> Option<String> {
     let mut reader = Reader::new(payload);
     let [major, minor, patch] = [reader.u8()?, reader.u8()?, reader.u8()?];
@@ -57,7 +53,6 @@ pub fn version(payload: &[u8]) -> Option<String> {
 /// `BOARD_INFO`.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct BoardInfo {
-    /// Four letters.
     pub identifier: String,
     /// What the firmware was built for.
     pub target: Option<String>,
@@ -70,8 +65,6 @@ pub struct BoardInfo {
 }
 
 impl BoardInfo {
-    /// Reads the message.
-    #[must_use]
     pub fn decode(payload: &[u8]) -> Option<Self> {
         let mut reader = Reader::new(payload);
         let mut info = Self { identifier: reader.text(4)?, ..Self::default() };
@@ -101,8 +94,6 @@ pub struct BuildInfo {
 }
 
 impl BuildInfo {
-    /// Reads the message.
-    #[must_use]
     pub fn decode(payload: &[u8]) -> Option<Self> {
         let mut reader = Reader::new(payload);
         let [date, time, revision] = BUILD_TEXTS.map(|count| reader.bytes(count).map(text));
@@ -112,7 +103,6 @@ impl BuildInfo {
     }
 
     /// Whether waypoint missions are built in; `None` when it does not tell.
-    #[must_use]
     pub fn has_flight_plan(&self) -> Option<bool> {
         self.options.as_ref().map(|options| options.contains(&FLIGHT_PLAN_OPTION))
     }

@@ -46,7 +46,6 @@ pub enum MissionPhase {
 /// A waypoint as the status lists it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlannedWaypoint {
-    /// Where.
     pub position: LatLon,
     /// Altitude, m, from where this firmware counts it.
     pub alt_m: f64,
@@ -56,7 +55,6 @@ pub struct PlannedWaypoint {
 
 impl Mission {
     /// Reads the output; `None` when it is no status.
-    #[must_use]
     pub fn parse(output: &str) -> Option<Self> {
         let mut mission = Self::default();
         let (mut is_status, mut cause, mut state) = (false, None, None);
@@ -87,7 +85,6 @@ impl Mission {
     }
 
     /// The cause of an abortion, when it is one that is known here.
-    #[must_use]
     pub fn abort_reason(&self) -> Option<AbortReason> {
         let Some(MissionPhase::Aborted { cause }) = &self.phase else { return None };
         [AbortReason::Stalled, AbortReason::Flyaway, AbortReason::GpsLost, AbortReason::NoPlan]

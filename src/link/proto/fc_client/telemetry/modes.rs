@@ -16,7 +16,6 @@ const RANGE_STEPS: u8 = 48;
 
 /// `MODE_RANGES` and, when there is one, `MODE_RANGES_EXTRA`: the conditions that look at a channel. Those that follow
 /// another mode and those of unknown boxes are left out.
-#[must_use]
 pub fn mode_ranges(ranges: &[u8], extra: Option<&[u8]>) -> Vec<ModeRange> {
     let links = extra.and_then(|extra| extra.get(1..)).unwrap_or_default();
     let linked = |at: usize| links.get(3 * at + 2).is_some_and(|linked| *linked != 0);

@@ -18,8 +18,6 @@ pub struct Attitude {
 }
 
 impl Attitude {
-    /// Reads the message.
-    #[must_use]
     pub fn decode(payload: &[u8]) -> Option<Self> {
         let mut reader = Reader::new(payload);
         Some(Self {
@@ -41,8 +39,6 @@ pub struct Altitude {
 }
 
 impl Altitude {
-    /// Reads the message.
-    #[must_use]
     pub fn decode(payload: &[u8]) -> Option<Self> {
         let mut reader = Reader::new(payload);
         let alt_m = f64::from(reader.i32()?) / 100.0;
@@ -55,7 +51,6 @@ impl Altitude {
 pub struct RawGps {
     /// A 3-D fix.
     pub fix: bool,
-    /// Satellites used.
     pub sats: u8,
     /// Where; old without a fix.
     pub position: LatLon,
@@ -71,7 +66,6 @@ pub struct RawGps {
 
 impl RawGps {
     /// Reads the message; `None` also for a position that is not on the globe.
-    #[must_use]
     pub fn decode(payload: &[u8]) -> Option<Self> {
         let mut reader = Reader::new(payload);
         let gps = Self {
@@ -97,8 +91,6 @@ pub struct HomeVector {
 }
 
 impl HomeVector {
-    /// Reads the message.
-    #[must_use]
     pub fn decode(payload: &[u8]) -> Option<Self> {
         let mut reader = Reader::new(payload);
         let distance_m = f64::from(reader.u16()?);

@@ -11,7 +11,6 @@ use crate::telemetry::{ArmingFlag, ArmingFlags, Mode};
 /// The place that displays count from.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Origin {
-    /// Where.
     pub position: LatLon,
     /// Its altitude above mean sea level, m.
     pub alt_amsl_m: f64,
@@ -70,43 +69,36 @@ impl Observation {
     }
 
     /// Whether the craft is armed.
-    #[must_use]
     pub fn armed(&self) -> Option<bool> {
         self.status.and_then(|status| status.is_armed(&self.box_ids))
     }
 
     /// Whether a mode is known to be active.
-    #[must_use]
     pub fn is_active(&self, mode: Mode) -> bool {
         self.status.is_some_and(|status| status.modes(&self.box_ids).has(mode))
     }
 
     /// Whether the channels in use are known.
-    #[must_use]
     pub fn has_channels(&self) -> bool {
         self.channels.is_some()
     }
 
     /// The newest of the GPS.
-    #[must_use]
     pub fn gps(&self) -> Option<&RawGps> {
         self.gps.as_ref()
     }
 
     /// Motor outputs M1…M4, 0…1.
-    #[must_use]
     pub fn motors(&self) -> Option<[f64; 4]> {
         self.motors
     }
 
     /// The conditions of the modes.
-    #[must_use]
     pub fn mode_ranges(&self) -> Option<Vec<ModeRange>> {
         self.ranges.as_deref().map(|ranges| mode_ranges(ranges, self.range_links.as_deref()))
     }
 
     /// Modes, arming, receiver and battery, as far as they were told.
-    #[must_use]
     pub fn craft_view(&self) -> CraftView {
         let armed = self.armed();
         let flags = self.status.and_then(|status| status.arming_blocked_by);
@@ -139,7 +131,6 @@ impl Observation {
     }
 
     /// What the flight controller believes of the craft's motion; places count from `origin` and are unknown without one.
-    #[must_use]
     pub fn estimate_view(&self, origin: Option<Origin>) -> EstimateView {
         let fix = self.gps.filter(|gps| gps.fix);
         let offset = fix.zip(origin).map(|(gps, origin)| local_offset(origin.position, gps.position));

@@ -6,15 +6,12 @@ use super::reader::Reader;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, strum::FromRepr)]
 #[repr(u8)]
 pub enum BatteryState {
-    /// Enough.
     Ok = 0,
     /// Below the warning voltage.
     Warning = 1,
     /// Below the lowest voltage.
     Critical = 2,
-    /// None.
     NotPresent = 3,
-    /// Being measured.
     Starting = 4,
 }
 
@@ -34,8 +31,6 @@ pub struct BatteryReading {
 }
 
 impl BatteryReading {
-    /// Reads the message.
-    #[must_use]
     pub fn decode(payload: &[u8]) -> Option<Self> {
         let mut reader = Reader::new(payload);
         let cells = Some(reader.u8()?).filter(|cells| *cells > 0);
@@ -49,7 +44,6 @@ impl BatteryReading {
     }
 
     /// Whether there is a battery: its cells were counted, or it has a voltage.
-    #[must_use]
     pub fn is_present(&self) -> bool {
         self.state != Some(BatteryState::NotPresent) && (self.cells.is_some() || self.voltage_v > 0.0)
     }

@@ -10,7 +10,6 @@ const MOTOR_RANGE_US: (f64, f64) = (1000.0, 2000.0);
 
 /// `RC`: channels in use, µs, in wire order (roll, pitch, throttle, yaw, AUX1 …); what the flight controller does not have
 /// is in the middle.
-#[must_use]
 pub fn channels(payload: &[u8]) -> Option<[u16; RC_CHANNELS]> {
     let mut reader = Reader::new(payload);
     let mut channels = [ABSENT_US; RC_CHANNELS];
@@ -25,7 +24,6 @@ pub fn channels(payload: &[u8]) -> Option<[u16; RC_CHANNELS]> {
 }
 
 /// `MOTOR`: outputs M1…M4, 0…1.
-#[must_use]
 pub fn motors(payload: &[u8]) -> Option<[f64; 4]> {
     let (rest, full) = MOTOR_RANGE_US;
     let mut reader = Reader::new(payload);

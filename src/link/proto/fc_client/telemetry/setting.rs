@@ -13,7 +13,6 @@ pub fn settings(output: &str) -> impl Iterator<Item = (&str, &str)> {
 
 /// The value of one setting in an output of `get`, which shows all whose names contain the word that was asked for. `None`
 /// when the firmware does not have it.
-#[must_use]
 pub fn setting<'a>(output: &'a str, name: &str) -> Option<&'a str> {
     settings(output).find(|(found, _)| found.eq_ignore_ascii_case(name)).map(|(_, value)| value)
 }

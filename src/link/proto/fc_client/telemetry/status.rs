@@ -21,15 +21,12 @@ pub struct Status {
     pub load_percent: u16,
     /// Bit i tells of the i-th box of `BOX_IDS`.
     mode_bits: u128,
-    /// What blocks arming.
     pub arming_blocked_by: Option<ArmingFlags>,
     /// Whether a changed setting waits for a restart.
     pub reboot_required: Option<bool>,
 }
 
 impl Status {
-    /// Reads the message.
-    #[must_use]
     pub fn decode(payload: &[u8]) -> Option<Self> {
         let mut reader = Reader::new(payload);
         let cycle_time_us = reader.u16()?;
@@ -55,20 +52,16 @@ impl Status {
 
     /// Whether a box is on, by the order of `BOX_IDS`: modes while they are active, other boxes while they are switched on.
     /// `None` when the flight controller has no such box.
-    #[must_use]
     pub fn is_on(&self, wanted: ModeBox, box_ids: &[u8]) -> Option<bool> {
         let at = box_ids.iter().position(|id| *id == wanted as u8)?;
         Some(at < MOST_BOXES as usize && self.mode_bits >> at & 1 == 1)
     }
 
     /// Whether the craft is armed.
-    #[must_use]
     pub fn is_armed(&self, box_ids: &[u8]) -> Option<bool> {
         self.is_on(ModeBox::Arm, box_ids)
     }
 
-    /// The active modes.
-    #[must_use]
     pub fn modes(&self, box_ids: &[u8]) -> ModeFlags {
         let mut modes = ModeFlags::NONE;
         for mode in Mode::iter() {
