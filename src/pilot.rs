@@ -110,6 +110,8 @@ pub struct Pilot {
     takeoff_m: f64,
     switches: ModeSwitches,
     frame: RcFrame,
+    /// The throttle stick at rest in ALTHOLD, as seen last, µs.
+    hover_stick_us: u16,
 }
 
 impl Pilot {
@@ -125,7 +127,7 @@ impl Pilot {
             levelling: [Mode::Angle, Mode::AltHold, Mode::PosHold].map(find),
             autopilot: find(Mode::Autopilot).ok_or(Mode::Autopilot)?,
         };
-        Ok(Self { phase: Phase::Waiting, takeoff_m, switches, frame: RcFrame::SAFE })
+        Ok(Self { phase: Phase::Waiting, takeoff_m, switches, frame: RcFrame::SAFE, hover_stick_us: MID_US })
     }
 
     /// Altitude to which the pilot climbs before engaging, m.
@@ -155,6 +157,7 @@ impl Pilot {
 
     /// The next frame; to be called every 20 ms of simulated time.
     pub fn fly(&mut self, facts: &PilotFacts) -> RcFrame {
+        self.hover_stick_us = facts.hover_stick_us;
         self.advance(facts);
         let throttle = match self.phase {
             Phase::Waiting | Phase::Arming | Phase::Done => LOW_US,
@@ -172,6 +175,24 @@ impl Pilot {
         self.frame.channels[PITCH] =
             if matches!(self.phase, Phase::FlyingAhead { .. }) { facts.forward_stick_us } else { MID_US };
         self.frame
+    }
+
+    /// Returns the sticks as the pilot leaves them: a climbing craft holds its altitude, one that is still on the ground
+    /// stays there.
+    pub(super) fn released(&self) -> RcFrame {
+        let mut frame = self.frame;
+        match self.phase {
+            Phase::Climbing { .. } => frame.channels[THROTTLE] = self.hover_stick_us,
+            Phase::Raising { .. } => frame.channels[THROTTLE] = LOW_US as u16,
+            Phase::FlyingAhead { .. } => frame.channels[PITCH] = MID_US,
+            Phase::Waiting
+            | Phase::Arming
+            | Phase::Hovering { .. }
+            | Phase::Engaging
+            | Phase::Engaged
+            | Phase::Done => {}
+        }
+        frame
     }
 
     fn advance(&mut self, facts: &PilotFacts) {
@@ -334,6 +355,30 @@ mod tests {
         assert_eq!(pilot.fly(&at(14.2, true)).channels[PITCH], 1500);
         pilot.fly(&PilotFacts { engaged: true, ..at(14.3, true) });
         assert_eq!(pilot.doing(), "watching");
+    }
+
+    #[test]
+    fn a_pilot_that_is_stopped_leaves_no_stick_that_climbs() {
+        let mut transmitter = RcTransmitter::default();
+        transmitter.start_pilot(Pilot::new(10.0, &ranges()).unwrap());
+        let at = |seconds| PilotFacts { armed: true, ..facts(seconds) };
+        let facts = [facts(0.0), at(1.0), at(2.0), at(2.02)];
+        for facts in &facts {
+            transmitter.frame(facts, None);
+        }
+        assert_eq!(transmitter.pilot_doing(), Some("climbing"));
+        assert!(transmitter.sticks().channels[THROTTLE] > 1500);
+        transmitter.stop_pilot();
+        assert_eq!(transmitter.sticks().channels[THROTTLE], 1500);
+        assert_eq!(transmitter.sticks().channels[6], 1900, "ALTHOLD stays on");
+
+        transmitter.start_pilot(Pilot::new(10.0, &ranges()).unwrap());
+        transmitter.frame(&facts[0], None);
+        transmitter.frame(&facts[1], None);
+        transmitter.frame(&at(1.5), None);
+        assert_eq!(transmitter.pilot_doing(), Some("taking off"));
+        transmitter.stop_pilot();
+        assert_eq!(transmitter.sticks().channels[THROTTLE], 1000, "on the ground without ALTHOLD");
     }
 
     #[test]

@@ -18,6 +18,7 @@ mod waypoint;
 pub use altitude_reference::{AltitudeError, AltitudeReference};
 pub(crate) use cli_lines::waypoint_values;
 pub use cli_lines::{plan_lines, upload_lines};
+pub(crate) use review::{LegAltitude, leg_altitudes};
 pub use waypoint::{HoldPattern, Waypoint, WaypointType};
 
 /// The most waypoints a plan holds.

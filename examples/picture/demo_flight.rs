@@ -58,6 +58,7 @@ impl DemoFlight {
             sentence: |event| sentence::text(&event.kind).unwrap_or_default(),
             plan: OpenPlan::new(PlanId(1), None, History::new(file.into(), true)),
             mouse: true,
+            is_first_start: false,
             entered: EnteredLines::default(),
         };
         let state = AppState::new(config, size, view(&vehicle));

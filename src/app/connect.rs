@@ -31,6 +31,7 @@ pub(super) fn run(args: &TuiArgs, place: &FcPlace, keymap: Keymap) -> Result<u8,
         // It keeps its configuration itself.
         store: Store::in_memory(),
         directory: setup::store_directory(&args.flight)?,
+        was_used: true,
         flown: None,
         notices,
         review: args.review,

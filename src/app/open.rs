@@ -54,6 +54,7 @@ pub(super) fn run(args: &OpenArgs, keymap: Keymap) -> Result<u8, AppError> {
         vehicle: flight.into_vehicle(),
         store: Store::in_memory(),
         directory: None,
+        was_used: true,
         flown: Some((FlownBefore { timeline, events, show }, past)),
         notices,
         review: ReviewArgs::default(),

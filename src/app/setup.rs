@@ -178,9 +178,14 @@ pub(super) fn build_info() -> BuildInfo {
 
 /// The stored configuration. What is wrong with it is added to `notices`.
 pub(super) fn stored(store: &mut Store, notices: &mut Vec<String>) -> Configuration {
+    stored_before(store, notices).0
+}
+
+/// Returns what is stored, and `true` if something was.
+pub(super) fn stored_before(store: &mut Store, notices: &mut Vec<String>) -> (Configuration, bool) {
     let loaded = store.load();
     notices.extend(loaded.findings);
-    loaded.configuration
+    (loaded.configuration, !loaded.first_boot)
 }
 
 fn airframe(name: Option<&str>) -> Result<Airframe, AppError> {

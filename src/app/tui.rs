@@ -26,7 +26,9 @@ use crate::storage::Store;
 use crate::ui::editor::FileReply;
 use crate::ui::keymap::Keymap;
 use crate::ui::theme::{Charset, Palette};
-use crate::ui::{self, CliHelp, Ending, FilesLink, OpenPlan, SessionLink, Theme, Tui, UiConfig, Units};
+use crate::ui::{
+    self, CliHelp, Ending, EnteredLines, FilesLink, OpenPlan, SessionLink, Theme, Tui, UiConfig, Units,
+};
 use crate::vehicle::Vehicle;
 
 /// What the user interface starts with.
@@ -39,6 +41,8 @@ pub(super) struct Screen<'a> {
     pub(super) store: Store,
     /// Where edits are kept.
     pub(super) directory: Option<PathBuf>,
+    /// The program was used before, so that its first steps are known.
+    pub(super) was_used: bool,
     /// A flight that was flown before, and pictures of it.
     pub(super) flown: Option<(FlownBefore, Vec<SessionView>)>,
     /// What the user is told first.
@@ -71,7 +75,7 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
         Beside { ports: (&args.doors, &args.physics).into(), flight: &args.flight, physics: &args.physics };
     let firmware = firmware::choose(&args.firmware, beside, &mut notices)?;
     notices.extend(args.physics.idle_options(&args.flight, firmware.is_some()));
-    let stored = setup::stored(&mut store, &mut notices);
+    let (stored, was_stored) = setup::stored_before(&mut store, &mut notices);
     // The plan's settings go to the craft with its upload.
     let on_the_ground = PlanFile { settings: Vec::new(), ..plan.clone() };
     let mut setup = setup::for_session(&args.flight, &args.physics, &args.doors, on_the_ground, stored)?;
@@ -83,6 +87,7 @@ pub(super) fn run(args: &TuiArgs, keymap: Keymap) -> Result<u8, AppError> {
         vehicle,
         store,
         directory: setup::store_directory(&args.flight)?,
+        was_used: was_stored,
         flown: None,
         notices,
         review: args.review,
@@ -123,6 +128,8 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
     let recovered = files.recovered();
     let history = LineHistory::new(screen.directory.as_deref());
     notices.extend(history.problems());
+    let entered = history.read();
+    let is_first_start = !screen.was_used && screen.directory.is_some() && entered == EnteredLines::default();
     let config = UiConfig {
         theme: theme(screen.display),
         units: units(screen.display),
@@ -136,7 +143,8 @@ pub(super) fn show(screen: Screen<'_>, keymap: Keymap) -> Result<u8, AppError> {
         sentence: |event| sentence::text(&event.kind).unwrap_or_default(),
         plan: OpenPlan::new(opened.id, opened.file, opened.history),
         mouse: true,
-        entered: history.read(),
+        entered,
+        is_first_start,
     };
     let problem = |error| AppError::environment(format!("cannot use the terminal: {error}"));
     let (requests, asked) = std::sync::mpsc::channel();

@@ -51,7 +51,11 @@ impl RcTransmitter {
 
     /// The scripted pilot lets go; says whether it was flying.
     pub fn stop_pilot(&mut self) -> bool {
-        self.pilot.take().is_some()
+        let pilot = self.pilot.take();
+        if let Some(pilot) = &pilot {
+            self.sticks = pilot.released();
+        }
+        pilot.is_some()
     }
 
     /// The scripted pilot, while it flies.

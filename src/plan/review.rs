@@ -10,6 +10,7 @@ use crate::geo::{LatLon, distance_bearing};
 use super::estimate::{Assumptions, SettingSource, TouchdownThrottle, estimate};
 use super::validate::{PlanFault, check_plan};
 use super::{FlightPlan, Waypoint, WaypointType};
+pub(crate) use altitude::{LegAltitude, legs as leg_altitudes};
 pub use steep::{Remedy, SteepLeg};
 
 /// Something found in a plan.
@@ -92,6 +93,22 @@ impl Finding {
         matches!(self, Self::Fault(_) | Self::OutsideFence { .. })
     }
 
+    /// Returns the reason of a refusal; of any other finding the whole sentence.
+    pub fn reason(&self) -> String {
+        match self {
+            Self::Fault(fault) => fault.to_string(),
+            Self::OutsideFence { index, distance_m, limit_m, from } => {
+                let fence = match from {
+                    SettingSource::Unsaid => "the fence (ap_max_distance_from_home)",
+                    SettingSource::Craft => "the craft's ap_max_distance_from_home",
+                    SettingSource::Plan => "the plan's ap_max_distance_from_home, set at the upload,",
+                };
+                format!("waypoint {index} is {distance_m:.0} m from home, {fence} is {limit_m:.0} m")
+            }
+            _ => self.to_string(),
+        }
+    }
+
     /// Whether the craft may be hurt or fly elsewhere than planned: its pilot is warned before it flies.
     pub fn is_hazard(&self) -> bool {
         matches!(
@@ -108,19 +125,10 @@ impl Finding {
 impl fmt::Display for Finding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Fault(fault) => write!(f, "refused: {fault}"),
-            Self::OutsideFence { index, distance_m, limit_m, from } => write!(
-                f,
-                "refused: waypoint {index} is {distance_m:.0} m from home, {} is {limit_m:.0} m",
-                match from {
-                    SettingSource::Unsaid => "the fence (ap_max_distance_from_home)",
-                    SettingSource::Craft => "the craft's ap_max_distance_from_home",
-                    SettingSource::Plan => "the plan's ap_max_distance_from_home, set at the upload,",
-                }
-            ),
+            Self::Fault(_) | Self::OutsideFence { .. } => write!(f, "refused: {}", self.reason()),
             Self::CraftDiffers { setting } => write!(
                 f,
-                "the craft has not the plan's {setting} any more: it flies with its own value until the next upload"
+                "the plan sets {setting}, the craft has another value: it counts until the next upload"
             ),
             Self::NeverFlown { index, kind: WaypointType::Land } => {
                 write!(f, "waypoint {index} lands: the waypoints behind it are never flown")
@@ -152,10 +160,14 @@ impl fmt::Display for Finding {
                 "waypoint {index} is {:.1} m below home: where the ground is level, the craft hits it",
                 -alt_m
             ),
-            Self::AboveLimit { index, alt_m, limit_m } => write!(
-                f,
-                "waypoint {index} is {alt_m:.0} m above home, the limit (max_altitude_m) is {limit_m:.0} m"
-            ),
+            Self::AboveLimit { index, alt_m, limit_m } => {
+                // A decimal where both round to the same metre.
+                let decimals = usize::from(format!("{alt_m:.0}") == format!("{limit_m:.0}"));
+                write!(
+                    f,
+                    "waypoint {index} is {alt_m:.decimals$} m above home, the limit (max_altitude_m) is {limit_m:.decimals$} m"
+                )
+            }
             Self::FarAboveOthers { index, alt_m, usual_m } => write!(
                 f,
                 "waypoint {index} is {alt_m:.0} m above home, far above the others ({usual_m:.0} m)"
@@ -229,17 +241,8 @@ pub fn review(plan: &FlightPlan, home: LatLon, assumptions: &Assumptions) -> Vec
 
 /// The legs that are flown below home.
 fn below_ground(waypoints: &[Waypoint]) -> impl Iterator<Item = Finding> {
-    let mut alt_change_cm = None;
-    waypoints.iter().enumerate().filter_map(move |(index, waypoint)| {
-        if waypoint.kind == WaypointType::AltChange {
-            alt_change_cm = Some(waypoint.alt_cm);
-        }
-        if !waypoint.kind.is_positional() {
-            return None;
-        }
-        let alt_m = f64::from(alt_change_cm.take().unwrap_or(waypoint.alt_cm)) / 100.0;
-        (alt_m < 0.0).then_some(Finding::BelowGround { index, alt_m })
-    })
+    let below = altitude::legs(waypoints).filter(|leg| leg.alt_m < 0.0);
+    below.map(|leg| Finding::BelowGround { index: leg.index, alt_m: leg.alt_m })
 }
 
 fn ends_the_mission(waypoint: &Waypoint) -> bool {

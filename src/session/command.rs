@@ -52,6 +52,8 @@ pub enum Seek {
         /// Only its states count.
         states_only: bool,
     },
+    /// Shortly before the link loss, the disarming or another alarm that led to the shown crash or fall.
+    BeforeMishap,
     /// The event after; from the newest instant on, the flight goes on until there is one.
     Forward {
         /// Only the autopilot's states count.
@@ -122,7 +124,7 @@ pub enum Command {
     },
     /// Copy the vehicle as it is shown between two ticks, for a forecast; the reply is the copy, or why there can be none.
     CopyVehicle(tokio::sync::oneshot::Sender<Result<VehicleCopy, String>>),
-    /// Copy what was recorded of the flight up to the instant that is shown; or why there is nothing.
+    /// Copy the recorded flight to which the shown instant belongs, to its end; or why there is none.
     RecordedFlight(tokio::sync::oneshot::Sender<Result<Box<RecordedFlight>, String>>),
     Quit,
 }

@@ -7,6 +7,8 @@ use crate::telemetry::{BatteryAlarm, DisarmReason, Event, EventKind, FirmwareEve
 
 /// Marks kept; a flight of an hour has some hundred.
 const MOST: usize = 4096;
+/// Marks of one mishap follow each other within this time, in seconds.
+const MISHAP_GAP_S: f64 = 30.0;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Mark {
@@ -106,6 +108,24 @@ impl Marks {
 
     pub fn all(&self) -> Arc<Vec<Mark>> {
         Arc::clone(&self.0)
+    }
+
+    /// Returns the first mark of the mishap that ends at `time`: of the alarms, and of the disarming, the touchdown and the end
+    /// of the mission among them, that follow each other closely.
+    pub fn mishap_before(&self, time: SimTime) -> Option<Mark> {
+        let is_part = |mark: &Mark| {
+            use MarkKind::{Alarm, Disarmed, State, Touchdown};
+            matches!(mark.kind, Alarm | Disarmed | Touchdown | State(NavState::Idle))
+        };
+        let mut first: Option<Mark> = None;
+        for mark in self.0.iter().rev().filter(|mark| mark.time <= time) {
+            let is_close = first.is_none_or(|first| first.time.seconds_since(mark.time) <= MISHAP_GAP_S);
+            if !is_part(mark) || !is_close {
+                break;
+            }
+            first = Some(*mark);
+        }
+        first
     }
 
     /// The latest before `time`, of all or of the states alone.

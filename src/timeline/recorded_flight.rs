@@ -16,10 +16,19 @@ pub struct RecordedFlight {
     pub until: SimTime,
 }
 
+/// Returns `true` if the craft is put back home or restarts: a flight ends and another begins.
+fn begins(input: &Input) -> bool {
+    matches!(input, Input::ResetCraft | Input::Restart(_))
+}
+
 impl Timeline {
+    /// Returns the end of the flight that an instant belongs to; `None` for the last flight.
+    pub fn flight_ends(&self, instant: SimTime) -> Option<SimTime> {
+        self.recording.inputs().find(|(at, input)| *at > instant && begins(input)).map(|(at, _)| at)
+    }
+
     /// The flight since its start, up to `until`; `None` when the recording does not reach back so far.
     pub fn recorded_flight(&self, until: SimTime) -> Option<RecordedFlight> {
-        let begins = |input: &Input| matches!(input, Input::ResetCraft | Input::Restart(_));
         let recorded = || self.recording.inputs().filter(|(at, _)| *at < until);
         let last = recorded().enumerate().filter(|(_, (_, input))| begins(input)).last();
         let (skipped, start_at) = match last {

@@ -55,6 +55,8 @@ pub struct UiConfig {
     pub mouse: bool,
     /// Lines entered in earlier runs.
     pub entered: EnteredLines,
+    /// Names the tutorial on the first screen.
+    pub is_first_start: bool,
 }
 
 /// A sentence that is shown for a moment.
@@ -150,6 +152,8 @@ pub struct AppState {
     pub sticks_sent: Option<(RcFrame, Duration)>,
     /// The pilot starts when the upload of this plan, which is on its way, succeeds.
     pub fly_after_upload: Option<PlanId>,
+    /// The upload under way replaces the craft's fence: a sentence for its answer.
+    pub(super) replaced_fence: Option<String>,
     /// Ticks of one navigator update.
     pub step_ticks: u32,
     /// Flights flown ahead of time.
@@ -181,6 +185,7 @@ impl AppState {
             plan: OpenPlan::new(PlanId::default(), None, History::new(PlanDocument::default(), true)),
             mouse: false,
             entered: EnteredLines::default(),
+            is_first_start: false,
         };
         Self::new(config, size, view)
     }
@@ -189,6 +194,18 @@ impl AppState {
 impl AppState {
     /// The state at start.
     pub fn new(config: UiConfig, size: (u16, u16), view: SessionView) -> Self {
+        let is_first_start = config.is_first_start;
+        let mut state = Self::after_earlier_runs(config, size, view);
+        if is_first_start {
+            let (tutorial, help) = (state.key(Action::Tutorial), state.key(Action::Help));
+            let text =
+                format!("New here? {tutorial} starts a tutorial of five steps, {help} lists all keys.");
+            state.notify(Severity::Info, text);
+        }
+        state
+    }
+
+    fn after_earlier_runs(config: UiConfig, size: (u16, u16), view: SessionView) -> Self {
         Self {
             view,
             theme: config.theme,
@@ -226,6 +243,7 @@ impl AppState {
             disarm_asked: None,
             sticks_sent: None,
             fly_after_upload: None,
+            replaced_fence: None,
             step_ticks: 10,
             forecast: ForecastState::default(),
             pressed: None,
@@ -357,6 +375,12 @@ impl AppState {
     /// How far the upload of an open plan is, while it is under way.
     pub(super) fn upload_of(&self, id: PlanId) -> Option<UploadView> {
         self.view.upload.filter(|_| self.editor.uploaded_last() == Some(id))
+    }
+
+    /// Returns `true` if settings of the open plan, which the craft has, were edited after its upload.
+    pub(super) fn has_settings_to_upload(&self) -> bool {
+        self.plan_is_on_craft()
+            && !super::editor::settings_in_force::to_upload(self, self.editor.document()).is_empty()
     }
 
     /// Whether the craft stores the open plan.

@@ -65,6 +65,8 @@ struct Uploaded {
     id: PlanId,
     plan: FlightPlan,
     settings: Vec<String>,
+    /// Lines of them that the firmware did not take, with its reason.
+    refused: Vec<String>,
 }
 
 /// A cell that is being typed.
@@ -110,7 +112,19 @@ impl Editor {
     pub(super) fn remember_upload(&mut self) {
         let document = self.document();
         let (plan, settings) = (document.plan.clone(), document.settings.clone());
-        self.uploaded = Some(Uploaded { id: self.plan().id(), plan, settings });
+        self.uploaded = Some(Uploaded { id: self.plan().id(), plan, settings, refused: Vec::new() });
+    }
+
+    /// Remembers the settings of the plan uploaded last that the firmware did not take.
+    pub(super) fn remember_refused(&mut self, id: PlanId, refused: Vec<String>) {
+        if let Some(uploaded) = self.uploaded.as_mut().filter(|uploaded| uploaded.id == id) {
+            uploaded.refused = refused;
+        }
+    }
+
+    /// Returns the settings uploaded last that the firmware did not take.
+    pub(super) fn refused_settings(&self) -> &[String] {
+        self.uploaded.as_ref().map_or(&[], |uploaded| &uploaded.refused)
     }
 
     /// Whether a plan of the craft is there because this editor handed it over.
@@ -118,12 +132,10 @@ impl Editor {
         self.uploaded.as_ref().is_some_and(|uploaded| uploaded.plan == *plan)
     }
 
-    /// The settings that this editor handed over with a plan; none when it handed over another one last.
-    pub(super) fn uploaded_settings(&self, plan: &FlightPlan) -> &[String] {
-        self.uploaded
-            .as_ref()
-            .filter(|uploaded| uploaded.plan == *plan)
-            .map_or(&[], |uploaded| &uploaded.settings)
+    /// Returns the settings that this editor uploaded with a plan; `None` if it uploaded another one last.
+    pub(super) fn uploaded_settings(&self, plan: &FlightPlan) -> Option<&[String]> {
+        let uploaded = self.uploaded.as_ref().filter(|uploaded| uploaded.plan == *plan)?;
+        Some(&uploaded.settings)
     }
 
     /// The plan that was handed to the craft last.

@@ -19,7 +19,7 @@ use super::formatting::within;
 use super::message::Effect;
 use estimate_basis::EstimateBasis;
 
-pub(super) use estimate_line::line as estimate_line;
+pub(super) use estimate_line::lines as estimate_lines;
 pub(super) use ghost::ghost;
 
 /// Shortest time between two look-aheads while it is on.

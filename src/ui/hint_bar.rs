@@ -143,7 +143,7 @@ fn hint_actions(state: &AppState) -> Vec<(&'static [Action], &'static str)> {
                 hints.push((&[Action::Resume], "go on"));
             }
             if state.flies_older_plan() {
-                hints.push((&[Action::GoTo], "new plan"));
+                hints.push((&[Action::GoTo], "fly the new plan"));
             }
             hints.extend([
                 (&[Action::Autopilot] as &[_], autopilot),

@@ -22,29 +22,62 @@ const PINNED_ROWS: usize = 5;
 /// Ends a notice that stays.
 const CLOSED_BY: &str = "Esc closes this.";
 
-/// Draws the newest notice for a moment: in the frame of the lowest panels, and in the row above it when it is long; all of
-/// it above the tutorial while that is shown. Above it stands the oldest of those that stay.
-pub(super) fn draw(state: &AppState, hints: Rect, buffer: &mut Buffer) {
+/// A row of a notice.
+struct Row {
+    /// Cells of the row, those beside the text among them.
+    place: Rect,
+    /// From the first of these cells.
+    text: String,
+    severity: Severity,
+    /// It belongs to a notice that stays.
+    is_pinned: bool,
+}
+
+/// Lays out the newest notice for a moment, in the frame of the lowest panels, and in the row above it when it is long; all of
+/// it above the tutorial while that is shown. Above it is the oldest of those that stay.
+fn rows(state: &AppState, hints: Rect) -> Vec<Row> {
     let width = usize::from(hints.width.saturating_sub(6));
     let newest = state.notice.as_ref().filter(|notice| within(state.now, notice.at, NOTICE_FOR));
     let newest = newest.map(|notice| (notice.severity, notice.text.clone(), NOTICE_ROWS));
     let pinned =
         state.pinned.first().map(|text| (Severity::Fault, format!("{text} {CLOSED_BY}"), PINNED_ROWS));
     let mut above = 1 + tutorial::rows(state, hints);
-    for (severity, text, rows) in newest.into_iter().chain(pinned) {
-        let style = state.theme.style(severity.role());
+    let mut rows = Vec::new();
+    for (is_pinned, notice) in newest.map(|it| (false, it)).into_iter().chain(pinned.map(|it| (true, it))) {
+        let (severity, text, most) = notice;
         let mut lines = wrapped(&format!("{} {text}", severity.glyph()), width);
-        if lines.len() > rows {
-            let rest = lines.split_off(rows - 1).join(" ");
+        if lines.len() > most {
+            let rest = lines.split_off(most - 1).join(" ");
             lines.push(cut(&rest, width));
         }
-        let widest = lines.iter().map(|line| line.width()).max().unwrap_or(0);
         for line in lines.iter().rev() {
-            let fill = " ".repeat(widest - line.width());
-            // Above the frame it stands on what a panel shows, of which no letter stays in front of it.
-            let (x, lead) = if above == 1 { (hints.x + 2, " ") } else { (hints.x + 1, "  ") };
-            drawing::text(buffer, x, hints.y.saturating_sub(above), format!("{lead}{line}{fill} "), style);
+            // To both frames: no letter of the covered row is read as a part of it.
+            let fill = " ".repeat(width - line.width().min(width));
+            let place =
+                Rect::new(hints.x + 1, hints.y.saturating_sub(above), hints.width.saturating_sub(2), 1);
+            rows.push(Row { place, text: format!("  {line}{fill}  "), severity, is_pinned });
             above += 1;
         }
     }
+    rows
+}
+
+/// Draws the notices.
+pub(super) fn draw(state: &AppState, hints: Rect, buffer: &mut Buffer) {
+    for row in rows(state, hints) {
+        drawing::text(buffer, row.place.x, row.place.y, row.text, state.theme.style(row.severity.role()));
+    }
+}
+
+/// Closes the notice at a cell of the screen; returns `false` if there is none.
+pub(super) fn close_at(state: &mut AppState, hints: Rect, cell: (u16, u16)) -> bool {
+    let Some(row) = rows(state, hints).into_iter().find(|row| row.place.contains(cell.into())) else {
+        return false;
+    };
+    if row.is_pinned {
+        state.pinned.remove(0);
+    } else {
+        state.notice = None;
+    }
+    true
 }

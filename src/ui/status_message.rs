@@ -236,8 +236,7 @@ fn way_back(state: &AppState) -> String {
     if state.view.timeline.is_none() {
         return String::new();
     }
-    // The state before is that of the disarming itself, so a time before it is chosen.
-    format!("{}, then {} takes it back; ", state.key(Action::Earlier), state.key(Action::FlyOn))
+    format!("{}, then {} takes it back; ", state.key(Action::StateBack), state.key(Action::FlyOn))
 }
 
 /// What to know of a mission that is flown.

@@ -293,7 +293,14 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
         Action::GoTo => ask_where_to_go(state),
         Action::HoldHere => vec![Effect::Send(Command::InFlight(InFlightCommand::HoldHere))],
         Action::Resume => vec![Effect::Send(Command::InFlight(InFlightCommand::Resume))],
-        Action::CutRc => vec![Effect::Send(Command::CutRc(!state.view.rc_cut))],
+        Action::CutRc => {
+            let mut effects = vec![Effect::Send(Command::CutRc(!state.view.rc_cut))];
+            // The countdown of the failsafe is to be read.
+            if !state.view.rc_cut && state.view.speed_wanted > 1.0 && state.view.vehicle.craft.is_armed() {
+                effects.push(Effect::Send(Command::Speed(1.0)));
+            }
+            effects
+        }
         Action::Upload => upload(state),
         Action::Edit(action) => edit(state, action),
         Action::ResetCraft => {

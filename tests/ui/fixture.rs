@@ -101,6 +101,7 @@ pub(crate) fn state_after(
         plan: open(plan),
         mouse: true,
         entered,
+        is_first_start: false,
     };
     AppState::new(config, size, view(&SimpleFlight::default()))
 }

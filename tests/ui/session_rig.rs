@@ -70,6 +70,7 @@ impl Rig {
             plan: OpenPlan::new(PlanId(1), None, History::new(demo.into(), true)),
             mouse: true,
             entered: EnteredLines::default(),
+            is_first_start: false,
         };
         let view = session.view.borrow().clone();
         let mut rig = Self { session, state: AppState::new(config, (120, 40), view) };

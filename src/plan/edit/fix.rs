@@ -84,7 +84,8 @@ pub fn fix(document: &PlanDocument, finding: &Finding, home: LatLon) -> Option<F
         | Finding::FarAboveOthers { index, usual_m: lower_m, .. } => {
             // Saturates; a limit is far inside the range.
             waypoints.get_mut(index)?.alt_cm = (lower_m * 100.0).floor() as i32;
-            format!("lower WP{index} to {lower_m:.0} m")
+            let decimals = usize::from(lower_m.fract() != 0.0);
+            format!("lower WP{index} to {lower_m:.decimals$} m")
         }
         Finding::SteepLeg(SteepLeg { index, remedy: Remedy::Slow { speed_cms }, .. }) => {
             waypoints.get_mut(index)?.speed_cms = speed_cms;

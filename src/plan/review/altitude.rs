@@ -10,6 +10,33 @@ const ABOVE_THE_OTHERS_M: f64 = 50.0;
 /// With fewer others there is nothing usual.
 const FEWEST_OTHERS: usize = 2;
 
+/// The altitude of the leg to a waypoint.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct LegAltitude {
+    /// The positional waypoint.
+    pub(crate) index: usize,
+    /// The waypoint that says the altitude: itself, or the ALT_CHANGE before it.
+    pub(crate) said_by: usize,
+    /// Above home, m.
+    pub(crate) alt_m: f64,
+}
+
+/// Returns the altitude of the leg to each positional waypoint.
+pub(crate) fn legs(waypoints: &[Waypoint]) -> impl Iterator<Item = LegAltitude> {
+    let mut changed = None;
+    waypoints.iter().enumerate().filter_map(move |(index, waypoint)| {
+        let own = (index, f64::from(waypoint.alt_cm) / 100.0);
+        if waypoint.kind == WaypointType::AltChange {
+            changed = Some(own);
+        }
+        if !waypoint.kind.is_positional() {
+            return None;
+        }
+        let (said_by, alt_m) = changed.take().unwrap_or(own);
+        Some(LegAltitude { index, said_by, alt_m })
+    })
+}
+
 /// Returns the legs that are flown too high, those far above the others first.
 pub(super) fn too_high(waypoints: &[Waypoint], limit_m: Option<f64>) -> Vec<Finding> {
     let altitudes = altitudes(waypoints);
@@ -21,19 +48,8 @@ pub(super) fn too_high(waypoints: &[Waypoint], limit_m: Option<f64>) -> Vec<Find
     far_above.chain(above_the_limit).collect()
 }
 
-/// The altitude of each leg above home, and the waypoint that says it.
 fn altitudes(waypoints: &[Waypoint]) -> Vec<(usize, f64)> {
-    let mut changed = None;
-    let mut altitudes = Vec::new();
-    for (index, waypoint) in waypoints.iter().enumerate() {
-        let own = (index, f64::from(waypoint.alt_cm) / 100.0);
-        if waypoint.kind == WaypointType::AltChange {
-            changed = Some(own);
-        } else if waypoint.kind.is_positional() {
-            altitudes.push(changed.take().unwrap_or(own));
-        }
-    }
-    altitudes
+    legs(waypoints).map(|leg| (leg.said_by, leg.alt_m)).collect()
 }
 
 fn far_above_the_others(altitudes: &[(usize, f64)], at: usize) -> Option<Finding> {
@@ -43,7 +59,9 @@ fn far_above_the_others(altitudes: &[(usize, f64)], at: usize) -> Option<Finding
     others.sort_by(f64::total_cmp);
     let highest_m = *others.last().filter(|_| others.len() >= FEWEST_OTHERS)?;
     let usual_m = others[others.len() / 2];
-    let is_far = alt_m > TIMES_THE_OTHERS * usual_m && alt_m > highest_m + ABOVE_THE_OTHERS_M;
+    // Beside altitudes at or below home there is nothing usual, and nothing to lower it to.
+    let is_far =
+        usual_m > 0.0 && alt_m > TIMES_THE_OTHERS * usual_m && alt_m > highest_m + ABOVE_THE_OTHERS_M;
     is_far.then_some(Finding::FarAboveOthers { index, alt_m, usual_m })
 }
 
@@ -67,6 +85,8 @@ mod tests {
         assert!(found(&[50, 200, 50], None).is_empty(), "not five times as high");
         assert!(found(&[5, 500], None).is_empty(), "which of two is meant is not known");
         assert!(found(&[50, 500, 400], None).is_empty(), "another is as high");
+        assert!(found(&[-5, -5, 46], None).is_empty(), "it would be lowered into the ground");
+        assert!(found(&[0, 0, 60], None).is_empty(), "it would be lowered to the ground");
     }
 
     #[test]

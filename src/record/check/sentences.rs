@@ -133,11 +133,15 @@ pub fn summary_lines(summary: &Summary) -> Vec<String> {
     if summary.flights.len() < summary.wanted {
         last.push_str(&format!(", {} were not flown", summary.wanted - summary.flights.len()));
     }
-    last.push_str(&format!(
-        "; {flown:.1} s flown in {:.2} s ({:.0}x real time)",
-        summary.wall_s,
-        flown / summary.wall_s.max(1e-6)
-    ));
+    if summary.flights.is_empty() {
+        last.push_str(&format!("; nothing was flown in {:.2} s", summary.wall_s));
+    } else {
+        last.push_str(&format!(
+            "; {flown:.1} s flown in {:.2} s ({:.0}x real time)",
+            summary.wall_s,
+            flown / summary.wall_s.max(1e-6)
+        ));
+    }
     if summary.left_out > 0 {
         let slow = if summary.left_out == 1 {
             "1 slow scenario"

@@ -20,6 +20,9 @@ use crate::vehicle::{Answer, Vehicle};
 /// How long the flight goes on at most until something happens, µs.
 const RUN_ON_US: u64 = 600_000_000;
 
+/// Time before the first alarm of a mishap that is shown, µs: a link is cut before its loss is noticed.
+const MISHAP_LEAD_US: u64 = 2_000_000;
+
 /// What may come from outside while time stands still before it is recorded, bytes.
 const FLOOD_BYTES: usize = 1 << 20;
 
@@ -64,9 +67,10 @@ impl Session {
 
     /// What was recorded of the flight up to the instant that is shown.
     pub(super) fn recorded_flight(&mut self) -> Result<Box<RecordedFlight>, String> {
-        let until = self.shown_vehicle().time();
+        let (shown, head) = (self.shown_vehicle().time(), self.vehicle.time());
         let timeline = self.timeline.as_mut().ok_or(NOT_RECORDED)?;
         timeline.record(&mut self.vehicle);
+        let until = timeline.flight_ends(shown).unwrap_or(head);
         timeline.recorded_flight(until).map(Box::new).ok_or_else(|| BEGINNING_LOST.to_owned())
     }
 
@@ -233,6 +237,9 @@ impl Session {
                 Some(SimTime(shown.0.saturating_add_signed(us)))
             }
             Seek::Back { states_only } => before(states_only),
+            Seek::BeforeMishap => {
+                marks.mishap_before(shown).map(|mark| SimTime(mark.time.0.saturating_sub(MISHAP_LEAD_US)))
+            }
             Seek::Forward { states_only } => {
                 Some(marks.after(shown, states_only).map_or(head, |mark| mark.time))
             }

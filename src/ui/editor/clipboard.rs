@@ -19,7 +19,10 @@ pub(super) fn from_text(text: &str) -> Result<PlanFile, String> {
     let format = Format::of_text(&text);
     let text = if format == Format::CliText { renumbered(&text) } else { text };
     let file = format::parse("the pasted text", &text, format).map_err(|errors| {
-        errors.first().map_or_else(|| "The pasted text is no plan.".to_owned(), ToString::to_string)
+        // The marker below the line needs rows of its own.
+        let first = errors.first().map(ToString::to_string);
+        let sentence = first.as_deref().and_then(|text| text.lines().next().map(str::to_owned));
+        sentence.unwrap_or_else(|| "The pasted text is no plan.".to_owned())
     })?;
     if file.plan == FlightPlan::default() {
         return Err(

@@ -21,8 +21,8 @@ pub(crate) fn findings(state: &AppState) -> Vec<Finding> {
     let document = state.editor.document();
     match home(state) {
         Some(home) if !document.plan.waypoints.is_empty() => {
-            let differs = settings_in_force::differing(state, document)
-                .map(|setting| Finding::CraftDiffers { setting });
+            let differs = settings_in_force::differing(state, document).into_iter();
+            let differs = differs.map(|setting| Finding::CraftDiffers { setting });
             let mut findings = review(&document.plan, home, &settings_in_force::assumptions(state, document));
             let refusals = findings.iter().take_while(|finding| finding.is_refusal()).count();
             findings.splice(refusals..refusals, differs);

@@ -4,10 +4,13 @@ use crate::plan::edit::PlanDocument;
 use crate::plan::estimate::{Assumptions, SettingSource};
 use crate::ui::app_state::AppState;
 
-/// Returns the lines of the plan that its upload would set before it is flown. A craft that has the plan already is flown
-/// without another upload, so that only the lines edited since then are left.
+/// Returns the lines of the plan that its upload would set. A craft that has the plan is flown without another upload: only
+/// the lines edited since this editor uploaded it are left.
 pub(crate) fn to_upload<'a>(state: &AppState, document: &'a PlanDocument) -> Vec<&'a str> {
-    let sent = sent(state);
+    if !state.plan_is_on_craft() {
+        return document.settings.iter().map(String::as_str).collect();
+    }
+    let Some(sent) = state.editor.uploaded_settings(state.plan()) else { return Vec::new() };
     document.settings.iter().filter(|line| !sent.contains(line)).map(String::as_str).collect()
 }
 
@@ -30,22 +33,53 @@ pub(crate) fn assumptions(state: &AppState, document: &PlanDocument) -> Assumpti
     Assumptions { fence_from, ..uploaded }
 }
 
-/// Returns whether the plan has a fence of its own.
+/// Returns the limits by which the craft judges the plan that it stores; `None` if its settings are unknown.
+pub(crate) fn of_the_craft(state: &AppState) -> Option<Assumptions> {
+    let settings = state.view.vehicle.settings.as_ref()?;
+    Some(Assumptions { fence_from: SettingSource::Craft, ..settings.assumptions() })
+}
+
+/// Returns `true` if the plan has a fence of its own.
 pub(crate) fn sets_a_fence(document: &PlanDocument) -> bool {
     document.settings.iter().any(|line| line.trim_start().starts_with("ap_max_distance_from_home"))
 }
 
-/// Returns the lines of the plan that the craft got at the upload and does not follow any more.
-pub(crate) fn differing<'a>(
-    state: &'a AppState,
-    document: &'a PlanDocument,
-) -> impl Iterator<Item = String> + 'a {
-    let craft = state.view.vehicle.settings.map(|settings| settings.assumptions());
-    let sent = document.settings.iter().filter(|line| sent(state).contains(line));
-    sent.filter(move |line| craft.is_some_and(|craft| craft.with_settings(&[line]) != craft)).cloned()
+/// Returns the settings of a plan on the craft for which the craft has another value. Lines that the firmware refused at the
+/// upload are not among them: the answer to the upload named them.
+pub(crate) fn differing(state: &AppState, document: &PlanDocument) -> Vec<String> {
+    let Some(craft) = state.view.vehicle.settings.map(|settings| settings.assumptions()) else {
+        return Vec::new();
+    };
+    if !state.plan_is_on_craft() {
+        return Vec::new();
+    }
+    let edited = to_upload(state, document);
+    let lines = document.settings.iter().enumerate().filter(|(at, line)| {
+        // Of a setting that is there twice the last line counts.
+        let name = name_of(line);
+        !document.settings[at + 1..].iter().any(|later| name_of(later) == name)
+            && !edited.contains(&line.as_str())
+            && !state.editor.refused_settings().iter().any(|refused| name_of(refused) == name)
+    });
+    let differs = |line: &String| craft.with_settings(&[line]) != craft;
+    lines.map(|(_, line)| line).filter(|line| differs(line)).cloned().collect()
 }
 
-/// The settings that the craft got with the open plan, while it has it.
-fn sent(state: &AppState) -> &[String] {
-    if state.plan_is_on_craft() { state.editor.uploaded_settings(state.plan()) } else { &[] }
+/// Returns a sentence if the upload of the plan replaces a fence that the craft has by another.
+pub(crate) fn replaced_fence(state: &AppState, document: &PlanDocument) -> Option<String> {
+    let craft = state.view.vehicle.settings.as_ref()?.assumptions();
+    let (old_m, new_m) = (craft.fence_m, craft.with_settings(&document.settings).fence_m);
+    let length = |metres: f64| state.units.length_text(metres, 0);
+    match (old_m, new_m) {
+        (Some(old_m), Some(new_m)) if old_m != new_m => {
+            Some(format!("The plan sets the fence to {} (it was {}).", length(new_m), length(old_m)))
+        }
+        (Some(old_m), None) => Some(format!("The plan switches the fence off (it was {}).", length(old_m))),
+        _ => None,
+    }
+}
+
+/// The name in `name = value`, and in what a firmware says of such a line.
+fn name_of(line: &str) -> &str {
+    line.split([' ', '=']).find(|word| !word.is_empty()).unwrap_or_default()
 }

@@ -9,23 +9,24 @@ use crate::ui::app_state::AppState;
 use crate::ui::editor::settings_in_force;
 use crate::ui::formatting::cut;
 use crate::ui::panel::span;
-use crate::ui::theme::Role;
+use crate::ui::text_wrap::wrapped;
+use crate::ui::theme::{Role, Theme};
 use crate::ui::units::Units;
 
 /// `612 m   flown estimate 03:41   battery 38 %   worst xte 0.9 m   fence 58 m`, as much of it as `width` columns take;
-/// first of all why the plan would not be flown to its end.
-pub(in crate::ui) fn line(state: &AppState, width: u16) -> Line<'static> {
+/// or, in two lines at most, the reason why the plan would not be flown to its end.
+pub(in crate::ui) fn lines(state: &AppState, width: u16) -> Vec<Line<'static>> {
     let theme = &state.theme;
     let width = usize::from(width);
     let forecast = &state.forecast;
     if state.plan().waypoints.is_empty() {
-        return Line::default();
+        return Vec::new();
     }
     if let Some(reason) = forecast.estimate_refusal() {
-        return Line::from(span(theme, Role::Warn, cut(&format!("No flown estimate: {reason}"), width)));
+        return said(theme, Role::Warn, &format!("No flown estimate: {reason}"), width);
     }
     let Some(estimate) = forecast.estimate() else {
-        return Line::from(span(theme, Role::Dim, cut("flown estimate …", width)));
+        return said(theme, Role::Dim, "flown estimate …", width);
     };
     let (mark, role) = match estimate.end {
         ForecastEnd::Flight(ForecastResult::Complete) => ("", Role::Text),
@@ -35,7 +36,7 @@ pub(in crate::ui) fn line(state: &AppState, width: u16) -> Line<'static> {
     let role = if forecast.is_estimating() { Role::Dim } else { role };
     if !mark.is_empty() {
         let end = estimate.line(|metres| state.units.length_text(metres, 0));
-        return Line::from(span(theme, role, cut(&format!("{mark}flown: {end}"), width)));
+        return said(theme, role, &format!("{mark}flown: {end}"), width);
     }
     let document = state.editor.document();
     // A fence that only the craft has is not confused with another.
@@ -48,7 +49,17 @@ pub(in crate::ui) fn line(state: &AppState, width: u16) -> Line<'static> {
     let long = numbers.each_ref().map(|(long, _)| long.as_str()).join("   ");
     let short = numbers.each_ref().map(|(_, short)| short.as_str()).join("  ");
     let text = if long.width() <= width { long } else { short };
-    Line::from(span(theme, role, cut(&text, width)))
+    vec![Line::from(span(theme, role, cut(&text, width)))]
+}
+
+/// A sentence in at most two lines.
+fn said(theme: &Theme, role: Role, text: &str, width: usize) -> Vec<Line<'static>> {
+    let mut lines = wrapped(text, width);
+    if lines.len() > 2 {
+        let rest = lines.split_off(1).join(" ");
+        lines.push(cut(&rest, width));
+    }
+    lines.into_iter().map(|line| Line::from(span(theme, role, line))).collect()
 }
 
 /// The numbers, each in a long and a short form, the most important ones first; `waiting` marks those of an older plan.
@@ -67,7 +78,8 @@ fn numbers(
         None => "—".to_owned(),
     };
     let xte = metres(estimate.worst_xte.map(|worst| worst.xte_m), 1);
-    let fence = format!("fence {}", metres(estimate.fence_margin_m, 0));
+    let left = if estimate.fence_margin_m.is_some() { " left" } else { "" };
+    let fence = format!("fence {}{left}", metres(estimate.fence_margin_m, 0));
     let whose = |craft, plan| match fence_from {
         _ if estimate.fence_margin_m.is_none() => "",
         SettingSource::Unsaid => "",

@@ -35,6 +35,7 @@ pub(crate) fn title(state: &AppState) -> String {
     }
     let craft = match &state.view.vehicle.stored_plan {
         _ if plan.document().plan.waypoints.is_empty() => String::new(),
+        Some(_) if state.has_settings_to_upload() => " ● settings not on the craft".to_owned(),
         Some(stored) if *stored == plan.document().plan => " ✓ on the craft".to_owned(),
         Some(stored) => {
             format!(" ● {} not on the craft", table::differences(&plan.document().plan, stored))
@@ -117,7 +118,7 @@ fn nothing_planned(state: &AppState) -> [String; 3] {
 fn below(state: &AppState, findings: &[Finding], area: Rect) -> Vec<Line<'static>> {
     let mut lines = said_below(state, findings, usize::from(area.width));
     if state.editor.field().is_none() {
-        lines.push(forecast::estimate_line(state, area.width));
+        lines.extend(forecast::estimate_lines(state, area.width));
     }
     lines
 }

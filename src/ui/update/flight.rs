@@ -1,9 +1,12 @@
 //! The flight as a whole: the scripted pilot, the upload of the plan, the speed of the simulation.
 
+use crate::plan::FlightPlan;
+use crate::plan::estimate::Assumptions;
+use crate::plan::review::{Finding, review};
 use crate::session::{Command, UploadReport};
 use crate::ui::action::{Action, EditAction};
 use crate::ui::app_state::AppState;
-use crate::ui::editor::{EditorPopup, OpenPlan, PlanId, Question};
+use crate::ui::editor::{EditorPopup, OpenPlan, PlanId, Question, findings, settings_in_force};
 use crate::ui::event_log::Severity;
 use crate::ui::message::Effect;
 use crate::ui::panel::Panel;
@@ -23,12 +26,20 @@ pub(super) fn fly(state: &mut AppState) -> Vec<Effect> {
         let text = format!("The simulation is paused: {} goes on.", state.key(Action::Pause));
         state.notify(Severity::Info, text);
     }
-    if state.view.vehicle.stored_plan.as_ref().is_some_and(|plan| !plan.waypoints.is_empty()) {
+    if let Some(stored) = state.view.vehicle.stored_plan.as_ref().filter(|plan| !plan.waypoints.is_empty()) {
+        if let Some(limits) = settings_in_force::of_the_craft(state)
+            && let Some(refusal) = refusal(state, stored, &limits)
+        {
+            return not_flown(state, &refusal);
+        }
+        let upload = state.key(Action::Upload);
+        let title = state.editor.plan().title();
         if !state.plan().waypoints.is_empty() && !state.plan_is_on_craft() {
+            let text = format!("Flying the plan in the craft, which is not {title}: {upload} uploads it.");
+            state.notify(Severity::Info, text);
+        } else if state.has_settings_to_upload() {
             let text = format!(
-                "Flying the plan in the craft, which is not {}: {} uploads it.",
-                state.editor.plan().title(),
-                state.key(Action::Upload)
+                "Flying with the craft's settings: {upload} uploads those of {title} that you changed."
             );
             state.notify(Severity::Info, text);
         }
@@ -44,13 +55,30 @@ pub(super) fn fly(state: &mut AppState) -> Vec<Effect> {
         state.notify(Severity::Warn, text);
         return Vec::new();
     }
+    let limits = settings_in_force::assumptions(state, state.editor.document());
+    if let Some(refusal) = refusal(state, state.plan(), &limits) {
+        return not_flown(state, &refusal);
+    }
     state.fly_after_upload = Some(state.editor.plan().id());
     vec![upload_now(state)]
 }
 
+/// Returns the finding for which the autopilot would refuse a plan in the air.
+fn refusal(state: &AppState, plan: &FlightPlan, limits: &Assumptions) -> Option<Finding> {
+    review(plan, findings::home(state)?, limits).into_iter().find(Finding::is_refusal)
+}
+
+/// Keeps the craft on the ground: the autopilot would refuse the plan after the climb.
+fn not_flown(state: &mut AppState, refusal: &Finding) -> Vec<Effect> {
+    let by_hand = [Action::Arm, Action::Throttle].map(|action| state.key(action)).join(" and ");
+    let text = format!("Not flown, the autopilot would refuse: {}. By hand: {by_hand}.", refusal.reason());
+    state.notify(Severity::Warn, text);
+    Vec::new()
+}
+
 /// Uploads the open plan; in flight it asks before the waypoint that is flown to moves far.
 pub(super) fn upload(state: &mut AppState) -> Vec<Effect> {
-    if let Some(change) = moved_target::told(state) {
+    if let Some(change) = moved_target::question(state) {
         let id = state.editor.plan().id();
         state.editor.popup = Some(EditorPopup::Question(Question::MovesTarget { id, change }));
         return Vec::new();
@@ -59,6 +87,7 @@ pub(super) fn upload(state: &mut AppState) -> Vec<Effect> {
 }
 
 pub(super) fn upload_now(state: &mut AppState) -> Effect {
+    state.replaced_fence = settings_in_force::replaced_fence(state, state.editor.document());
     state.editor.remember_upload();
     Effect::Upload {
         id: state.editor.plan().id(),
@@ -90,7 +119,10 @@ pub(super) fn uploaded(
                 }
             };
             let converted = report.remark().map_or_else(String::new, |sentence| format!(" {sentence}"));
-            let text = format!("Uploaded {title}: {count} waypoints.{converted}{then}");
+            let fence =
+                state.replaced_fence.take().map_or_else(String::new, |sentence| format!(" {sentence}"));
+            let text = format!("Uploaded {title}: {count} waypoints.{fence}{converted}{then}");
+            state.editor.remember_refused(id, report.refused);
             state.notify(Severity::Good, text);
             if fly { vec![Effect::Send(Command::Pilot(true))] } else { Vec::new() }
         }

@@ -9,6 +9,7 @@ use crate::ui::layout;
 use crate::ui::map_edit::{MapItem, item_at};
 use crate::ui::map_point::MapPoint;
 use crate::ui::message::Effect;
+use crate::ui::notice;
 use crate::ui::panel::Panel;
 use crate::ui::panel::plan::{self as plan_panel, PlanTarget};
 use crate::ui::panel::{rc, world};
@@ -36,6 +37,12 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
         return if is_click { map_menu::take(state, place, outcome) } else { Vec::new() };
     }
     if !state.popups.is_empty() || state.editor.popup.is_some() {
+        return Vec::new();
+    }
+    if event.kind == MouseEventKind::Down(MouseButton::Left)
+        && let Some(screen) = layout::screen(state)
+        && notice::close_at(state, screen.timeline.unwrap_or(screen.hints), (event.column, event.row))
+    {
         return Vec::new();
     }
     if event.kind == MouseEventKind::Down(MouseButton::Left)

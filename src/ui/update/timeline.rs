@@ -2,7 +2,7 @@
 
 use crate::session::command::Seek;
 use crate::session::{Command, SessionView};
-use crate::ui::action::Action;
+use crate::ui::action::{Action, is_wrecked};
 use crate::ui::app_state::AppState;
 use crate::ui::layout;
 use crate::ui::message::Effect;
@@ -20,6 +20,9 @@ pub(super) fn act(state: &AppState, action: Action) -> Vec<Effect> {
         }
         Action::EventBack => Command::Seek(Seek::Back { states_only: false }),
         Action::EventForward => Command::Seek(Seek::Forward { states_only: false }),
+        Action::StateBack if is_wrecked(state) || state.is_disarmed_in_the_air() => {
+            Command::Seek(Seek::BeforeMishap)
+        }
         Action::StateBack => Command::Seek(Seek::Back { states_only: true }),
         Action::StateForward => Command::Seek(Seek::Forward { states_only: true }),
         Action::Earlier => Command::Seek(Seek::Seconds(-SKIP_S)),
