@@ -116,8 +116,8 @@ fn a_place_far_away_or_no_place_is_asked_about_in_flight_only() {
     // Armed on the ground before an engagement there is no leg yet.
     let mut view = state.view.clone();
     let vehicle = Arc::make_mut(&mut view.vehicle);
-    vehicle.nav = None;
     vehicle.active_plan = None;
+    vehicle.nav.as_mut().expect("an autopilot").engaged = false;
     keys(&mut state, "n");
     update(&mut state, Msg::View(view));
     assert!(uploads(&keys(&mut state, "U")));

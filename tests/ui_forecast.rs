@@ -277,6 +277,7 @@ fn an_upload_in_flight_takes_effect_at_the_next_engagement_or_by_going_there() {
     press(&mut state, '1');
     press(&mut state, 'U');
     // The waypoint that is flown to is gone from its place.
+    assert!(text(&state).contains("at the next engagement, or with `G`"), "{}", text(&state));
     press(&mut state, 'y');
     assert!(state.popups.is_empty());
     let id = state.editor.plan().id();
@@ -286,7 +287,7 @@ fn an_upload_in_flight_takes_effect_at_the_next_engagement_or_by_going_there() {
     let open = state.plan().clone();
     picture(&mut state, |vehicle| vehicle.stored_plan = Some(open));
     let shown = text(&state);
-    assert!(shown.contains("G new plan") && shown.contains("new plan, for the next"), "{shown}");
+    assert!(shown.contains("G fly the new plan") && shown.contains("new plan, for the next"), "{shown}");
     press(&mut state, 'G');
     assert!(text(&state).contains("Continue on the new plan from"));
 }

@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "tests may panic")]
 
+use betadeck::session::Command;
 use betadeck::telemetry::NavState;
 use betadeck::ui::AppState;
 
@@ -56,15 +57,65 @@ async fn a_cut_link_counts_down_to_the_drop_and_the_panel_says_how_to_take_it_ba
     step_until(&mut rig, |state| state.view.vehicle.craft.armed == Some(false)).await;
     let passed_s = rig.time().seconds_since(lost);
     assert!((passed_s - ahead.in_s).abs() < 0.1, "{ahead:?}, {passed_s} s passed");
-    rig.assert_shown(&["Disarmed in the air.", "<, then b takes it back", "R puts the craft"]);
+    rig.assert_shown(&["Disarmed in the air.", "{, then b takes it back", "R puts the craft"]);
     rig.keys(" ").await;
     rig.until("the crash", |state| state.view.vehicle.truth.as_ref().unwrap().crashed).await;
-    rig.assert_shown(&["The craft crashed.", "<, then b takes it back"]);
-    rig.keys("<").await;
-    rig.until("ten seconds before", AppState::is_rewound).await;
+    rig.assert_shown(&["The craft crashed.", "{, then b takes it back"]);
+    rig.keys("{").await;
+    rig.until("before the mishap", AppState::is_rewound).await;
+    assert!(rig.time() < lost, "{:?} {lost:?}", rig.time());
     rig.keys("b").await;
     rig.until("the flight", |state| !state.is_rewound()).await;
     assert_eq!(rig.picture().craft.armed, Some(true), "{}", rig.screen());
+}
+
+#[tokio::test]
+async fn a_wreck_that_lay_for_minutes_at_a_high_speed_is_taken_back_by_the_two_keys_that_are_named() {
+    let mut rig = Rig::new().await;
+    rig.keys("F").await;
+    rig.fly_to(NavState::Approaching).await;
+    let flown = rig.time();
+    rig.keys("x ").await;
+    rig.until("the crash", |state| state.view.vehicle.truth.as_ref().unwrap().crashed).await;
+    rig.session.commands.send(Command::Speed(f64::INFINITY)).await.unwrap();
+    rig.until("three minutes", |state| state.view.vehicle.time.seconds_since(flown) > 180.0).await;
+    rig.keys(" ").await;
+    rig.until("the pause", |state| state.view.paused).await;
+    rig.keys("{").await;
+    rig.until("before the mishap", AppState::is_rewound).await;
+    assert_eq!(rig.picture().craft.armed, Some(true), "{}", rig.screen());
+    assert!(rig.time().seconds_since(flown) < 5.0, "{}", rig.screen());
+    rig.keys("b").await;
+    rig.until("the flight", |state| !state.is_rewound()).await;
+    assert_eq!(rig.picture().craft.armed, Some(true), "{}", rig.screen());
+}
+
+#[tokio::test]
+async fn a_plan_that_the_autopilot_would_refuse_is_not_flown_and_the_pilot_keeps_the_throttle_when_stopped() {
+    let mut rig = Rig::new().await;
+    rig.keys("U").await;
+    rig.until("the plan", AppState::plan_is_on_craft).await;
+    rig.cli("set ap_max_distance_from_home = 60").await;
+    rig.until("the fence", |state| {
+        state.view.vehicle.settings.is_some_and(|settings| settings.assumptions().fence_m == Some(60.0))
+    })
+    .await;
+    rig.keys("F").await;
+    rig.assert_shown(&["Not flown, the autopilot would refuse: waypoint", "By hand: a and t."]);
+    assert_eq!(rig.state.view.pilot, None);
+    rig.cli("set ap_max_distance_from_home = 500").await;
+    rig.until("the fence", |state| {
+        state.view.vehicle.settings.is_some_and(|settings| settings.assumptions().fence_m == Some(500.0))
+    })
+    .await;
+    rig.keys("F ").await;
+    rig.until("the climb", |state| state.view.vehicle.truth.as_ref().unwrap().alt > 2.0).await;
+    rig.keys("F").await;
+    rig.until("the pilot is stopped", |state| state.view.pilot.is_none()).await;
+    let stopped = rig.time();
+    rig.session.commands.send(Command::Speed(4.0)).await.unwrap();
+    rig.until("ten seconds", |state| state.view.vehicle.time.seconds_since(stopped) > 10.0).await;
+    assert!(rig.picture().truth.as_ref().unwrap().alt < 12.0, "{}", rig.screen());
 }
 
 #[tokio::test]
@@ -77,7 +128,7 @@ async fn disarming_in_flight_says_how_to_take_it_back() {
     assert_eq!(rig.picture().craft.armed, Some(true));
     rig.keys("a").await;
     step_until(&mut rig, |state| state.view.vehicle.craft.armed == Some(false)).await;
-    rig.assert_shown(&["Disarmed in the air.", "<, then b takes it back"]);
+    rig.assert_shown(&["Disarmed in the air.", "{, then b takes it back"]);
 }
 
 #[tokio::test]

@@ -107,13 +107,16 @@ fn a_fence_set_on_the_craft_after_the_upload_counts_and_is_told() {
     );
     assert_eq!(set_fence(&mut state, 90.0), Some(Vec::new()));
     let seen = said(&state);
-    assert!(seen.contains("the craft has not the plan's ap_max_distance_from_home = 500"), "{seen}");
+    assert!(
+        seen.contains("the plan sets ap_max_distance_from_home = 500, the craft has another value"),
+        "{seen}"
+    );
     // The next upload sets the fence of the plan again.
     let mut view = state.view.clone();
     Arc::make_mut(&mut view.vehicle).stored_plan = None;
     update(&mut state, Msg::View(view));
     let seen = said(&state);
-    assert!(!seen.contains("has not the plan's") && !seen.contains("refused"), "{seen}");
+    assert!(!seen.contains("another value") && !seen.contains("refused"), "{seen}");
 }
 
 #[test]
@@ -140,17 +143,20 @@ fn the_estimate_says_whose_fence_it_keeps_to() {
         let revision = job.unwrap().revision;
         update(state, Msg::Forecast(ForecastReply { revision, kind: ForecastKind::PlanEstimate, forecast }));
     };
+    let mut view = state.view.clone();
+    Arc::make_mut(&mut view.vehicle).stored_plan = None;
+    update(&mut state, Msg::View(view));
     let effects = change(&mut state, |settings| settings.fence_m = Some(82.0));
     answer(&mut state, &effects);
-    assert!(said(&state).contains("fence 7 m (plan)"), "{}", said(&state));
+    assert!(said(&state).contains("fence 7 m left (plan)"), "{}", said(&state));
     upload(&mut state);
     let effects = change(&mut state, |settings| settings.fence_m = Some(95.0));
     answer(&mut state, &effects);
-    assert!(said(&state).contains("fence 7 m (craft)"), "{}", said(&state));
+    assert!(said(&state).contains("fence 7 m left (craft)"), "{}", said(&state));
     let effects = change(&mut state, |settings| settings.fence_m = Some(500.0));
     answer(&mut state, &effects);
-    assert!(said(&state).contains("fence 7 m"), "{}", said(&state));
-    assert!(!said(&state).contains("fence 7 m ("), "there is only one: {}", said(&state));
+    assert!(said(&state).contains("fence 7 m left"), "{}", said(&state));
+    assert!(!said(&state).contains("fence 7 m left ("), "there is only one: {}", said(&state));
 }
 
 #[test]

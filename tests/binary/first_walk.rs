@@ -102,6 +102,12 @@ fn a_new_user_flies_a_plan_from_nothing_and_makes_a_scenario_of_it() {
         terminal.until_shown("square has edits that no file holds");
         terminal.send("y");
         assert_eq!(terminal.end(), 0, "{}", terminal.screen());
+        let seen = terminal.screen();
+        let judged = seen.split("1 of 1 flight passed; ").nth(1).unwrap_or_else(|| panic!("{seen}"));
+        let flown_s: f64 =
+            judged.split(" s flown").next().and_then(|text| text.trim().parse().ok()).expect("a time");
+        // The whole flight and the wait after it, not only the climb that was shown.
+        assert!(flown_s > 60.0 * f64::from(landed), "{seen}");
         terminal.assert_given_back();
     }
 }

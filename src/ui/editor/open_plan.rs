@@ -16,12 +16,14 @@ pub struct OpenPlan {
     history: History,
     /// The file holds something else than was read or written last.
     changed_on_disk: bool,
+    opened_with: Vec<String>,
 }
 
 impl OpenPlan {
     /// A plan with its history, as the files gave it.
     pub fn new(id: PlanId, file: Option<PathBuf>, history: History) -> Self {
-        Self { id, file, history, changed_on_disk: false }
+        let opened_with = history.document().settings.clone();
+        Self { id, file, history, changed_on_disk: false, opened_with }
     }
 
     pub fn id(&self) -> PlanId {
@@ -35,6 +37,11 @@ impl OpenPlan {
 
     pub fn history(&self) -> &History {
         &self.history
+    }
+
+    /// Returns the settings that the plan had when it was opened.
+    pub(super) fn settings_at_opening(&self) -> &[String] {
+        &self.opened_with
     }
 
     /// Its file, if it has one.

@@ -5,12 +5,13 @@ use crate::plan::estimate::{Assumptions, SettingSource};
 use crate::ui::app_state::AppState;
 
 /// Returns the lines of the plan that its upload would set. A craft that has the plan is flown without another upload: only
-/// the lines edited since this editor uploaded it are left.
+/// the lines edited since this editor uploaded it, or opened it, are left.
 pub(crate) fn to_upload<'a>(state: &AppState, document: &'a PlanDocument) -> Vec<&'a str> {
     if !state.plan_is_on_craft() {
         return document.settings.iter().map(String::as_str).collect();
     }
-    let Some(sent) = state.editor.uploaded_settings(state.plan()) else { return Vec::new() };
+    let editor = &state.editor;
+    let sent = editor.uploaded_settings(state.plan()).unwrap_or_else(|| editor.plan().settings_at_opening());
     document.settings.iter().filter(|line| !sent.contains(line)).map(String::as_str).collect()
 }
 

@@ -48,8 +48,10 @@ pub(in crate::ui) fn lines(state: &AppState, width: u16) -> Vec<Line<'static>> {
     let numbers = numbers(estimate, state.units, fence_from, waiting);
     let long = numbers.each_ref().map(|(long, _)| long.as_str()).join("   ");
     let short = numbers.each_ref().map(|(_, short)| short.as_str()).join("  ");
-    let text = if long.width() <= width { long } else { short };
-    vec![Line::from(span(theme, role, cut(&text, width)))]
+    let shortest = short.replace(" left", "");
+    let forms = [long, short, shortest];
+    let text = forms.iter().find(|form| form.width() <= width).unwrap_or(&forms[2]);
+    vec![Line::from(span(theme, role, cut(text, width)))]
 }
 
 /// A sentence in at most two lines.
