@@ -32,7 +32,7 @@ impl MapPoint {
     }
 }
 
-/// Returns the boot place as the origin of the map, or home or the first waypoint while the boot place is unknown.
+/// Returns the position from which the map counts metres; home or the first waypoint while it is unknown.
 pub(super) fn origin(state: &AppState) -> Option<LocalFrame> {
     let vehicle = &state.view.vehicle;
     if let Some(truth) = &vehicle.truth {

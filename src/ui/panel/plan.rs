@@ -114,8 +114,8 @@ fn nothing_planned(state: &AppState) -> [String; 3] {
     ]
 }
 
-/// Returns the lines below the table: the problem with the value being typed, or the finding with its fix and the
-/// estimate.
+/// Returns the lines below the table: the hint or the problem of the value being typed, else the finding with its fix,
+/// and the estimate.
 fn below(state: &AppState, findings: &[Finding], area: Rect) -> Vec<Line<'static>> {
     let mut lines = said_below(state, findings, usize::from(area.width));
     if state.editor.field().is_none() {

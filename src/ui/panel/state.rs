@@ -111,7 +111,8 @@ fn is_lit(state: &AppState, last: &Transition) -> bool {
     within(state.now, last.received, LIT_FOR)
 }
 
-/// Draws the guards of the active state, and the remaining time of the leg. Returns the number of rows used.
+/// Draws the guards of the active state, the remaining time of the leg and the laps of an orbit. Returns the number of
+/// rows used.
 fn draw_guards(state: &AppState, area: Rect, buffer: &mut Buffer) -> u16 {
     let Some(nav) = state.view.vehicle.nav.as_ref().filter(|nav| !nav.guards.is_empty()) else { return 0 };
     if area.height == 0 {

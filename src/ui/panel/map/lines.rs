@@ -76,7 +76,7 @@ impl LinePainter<'_, '_> {
         }
     }
 
-    /// Draws a circle; two of four pieces if `broken`.
+    /// Draws a circle, dashed if `broken`.
     fn circle(&mut self, centre: MapPoint, radius_m: f64, broken: bool) {
         self.arcs(centre, radius_m, |piece, _| !broken || piece % 4 < 2);
     }
