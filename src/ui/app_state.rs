@@ -135,7 +135,7 @@ pub struct AppState {
     pub scrolls: Scrolls,
     /// The path that the craft has flown.
     pub track: Track,
-    /// Earlier branches of the flight.
+    /// The tracks of abandoned branches of the flight.
     pub timeline: TimelineState,
     pub notice: Option<Notice>,
     /// Notices that stay until Esc clears them, the oldest first.
@@ -378,7 +378,7 @@ impl AppState {
         self.view.upload.filter(|_| self.editor.uploaded_last() == Some(id))
     }
 
-    /// Returns `true` if settings of the open plan, which the craft has, were edited after its upload.
+    /// Returns `true` if the craft has the open plan, but not the latest edits of its settings.
     pub(super) fn has_settings_to_upload(&self) -> bool {
         self.plan_is_on_craft()
             && !super::editor::settings_in_force::to_upload(self, self.editor.document()).is_empty()

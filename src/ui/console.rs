@@ -185,7 +185,7 @@ impl CliState {
         }
     }
 
-    /// Recalls a newer line, in the end the one being typed.
+    /// Recalls a newer line; after the newest, the line being typed.
     pub fn newer(&mut self) {
         if let Some(line) = self.history.newer() {
             self.input = TextField::new(line);

@@ -12,9 +12,9 @@ pub enum LineField {
 /// The lines entered in earlier runs, the oldest first.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct EnteredLines {
-    /// In the `:` line.
+    /// The lines entered in the `:` line.
     pub commands: Vec<String>,
-    /// In the firmware's command line.
+    /// The lines entered in the firmware's command line.
     pub cli: Vec<String>,
 }
 
@@ -70,7 +70,7 @@ impl History {
         self.lines.get(at).cloned()
     }
 
-    /// Returns the line after the recalled one, at the end the typed text; `None` if no line is recalled.
+    /// Returns the line after the recalled one, or the typed text after the newest; `None` if no line is recalled.
     pub(super) fn newer(&mut self) -> Option<String> {
         let next = self.recalled? + 1;
         if next < self.lines.len() {

@@ -75,7 +75,7 @@ impl KeyPress {
             ("insert", ..) => KeyCode::Insert,
             ("delete", ..) => KeyCode::Delete,
             ("backspace", ..) => KeyCode::Backspace,
-            // Capitals count, but terminals send Ctrl with small letters only.
+            // Capitals are distinct, but terminals send Ctrl with small letters only.
             (_, Some(c), None) if modifiers.contains(KeyModifiers::CONTROL) => KeyCode::Char(c),
             (_, Some(_), None) if modifiers.contains(KeyModifiers::SHIFT) => {
                 modifiers -= KeyModifiers::SHIFT;

@@ -243,7 +243,7 @@ fn begin(state: &mut AppState, fault: &FaultInfo) -> Vec<Effect> {
     if fault.value.is_empty() || !fault.default.is_empty() {
         return world(format!("fault={}", fault.name()));
     }
-    // It needs a value.
+    // The fault needs a value.
     state.knobs.field = Some(TextField::new(","));
     Vec::new()
 }

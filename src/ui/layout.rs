@@ -26,11 +26,11 @@ pub const SMALLEST: (u16, u16) = (60, 20);
 /// The contents of the places that several panels share: the panel that had the focus last.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Slots {
-    /// 80x24: map (with the log below), or one of RC, CLI, plan, graphs, world instead of both.
+    /// From 80x24: map (with the log below), or one of RC, CLI, plan, graphs, world instead of both.
     main: Panel,
-    /// 120x40, bottom left: log, CLI or graphs; 200x60: log or graphs.
+    /// From 120x34, bottom left: log, CLI or graphs. From 180x48, bottom left: log or graphs.
     left: Panel,
-    /// 120x40, bottom right, and 200x60, top right: RC, plan or world.
+    /// From 120x34, bottom right: RC, plan or world. From 180x48, top right: RC or world.
     right: Panel,
 }
 

@@ -24,9 +24,9 @@ pub struct StickRecording {
 enum Activity {
     #[default]
     Idle,
-    /// Since this simulated time, s.
+    /// Recording since this simulated time, s.
     Recording(f64),
-    /// Since this simulated time, s, and the index of the next frame.
+    /// Playing since this simulated time, s, with the index of the next frame.
     Playing(f64, usize),
 }
 

@@ -142,7 +142,7 @@ pub(super) fn can_be_continued() -> bool {
     false
 }
 
-/// Returns the parent of another process, where the system has `/proc`.
+/// Returns the parent of another process, on systems with `/proc`.
 fn parent_of(process: Pid) -> Option<Pid> {
     let stat = std::fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
     // The name of the program is in brackets and may itself contain brackets and blanks.

@@ -44,7 +44,7 @@ pub enum Palette {
     Light,
     /// 24-bit colours far from each other and from a dark background.
     HighContrast,
-    /// The terminal's own sixteen.
+    /// The terminal's own sixteen colours.
     Ansi16,
     /// No colours: only weight and reverse video.
     Mono,

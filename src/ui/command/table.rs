@@ -108,7 +108,7 @@ const COMMANDS: &[Command] = &[
 
 /// Returns all commands with an argument: those of the table, and the words that change the world.
 pub fn all() -> impl Iterator<Item = Command> {
-    // The reset of the craft is an action, which the firmware hears of.
+    // The reset of the craft is an action, because the firmware is notified of it.
     let words = WORLD_WORDS.iter().filter(|word| !word.value.is_empty());
     let world_commands = words.map(|word| Command {
         name: word.name,

@@ -15,7 +15,7 @@ pub(crate) use drawings::{COMPACT, FULL, LOW};
 /// A state at a column and row.
 struct Node(NavState, u16, u16);
 
-/// Strokes (column, row, text) of the transitions from some states to some states.
+/// The strokes (column, row, text) of all transitions from one of `from` to one of `to`.
 struct Edge {
     from: &'static [NavState],
     to: &'static [NavState],

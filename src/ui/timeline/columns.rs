@@ -141,7 +141,7 @@ mod tests {
         columns
     }
 
-    /// Folds at the beginning, at the end, next to each other, at the border of columns, and more than there is room for.
+    /// Folds at the beginning, at the end, next to each other, at the border of columns, and more folds than fit.
     const CASES: [&[(u64, u64)]; 7] = [
         &[],
         &[(7, 100)],

@@ -42,8 +42,8 @@ pub(super) fn click(state: &AppState, column: u16, row: u16) -> Option<Vec<Effec
     Some(time.map_or_else(Vec::new, |time| vec![Effect::Send(Command::Seek(Seek::Time(time)))]))
 }
 
-/// Leaves the track after the fork behind if `view` is on another branch than the view before. Returns `true` in that
-/// case.
+/// Moves the track after the fork to the abandoned tracks if `view` is on another branch than the view before. Returns
+/// `true` in that case.
 pub(super) fn follow_branch(state: &mut AppState, view: &SessionView) -> bool {
     let branch = |view: &SessionView| view.timeline.as_ref().map_or(0, |timeline| timeline.branch);
     let Some(timeline) = view.timeline.as_ref().filter(|timeline| timeline.branch != branch(&state.view))
