@@ -7,19 +7,19 @@
 //!                                  draw(&AppState) ─► Frame
 //! ```
 //!
-//! * [`update`] is the only thing that changes [`AppState`]; it sees no clock (time comes as [`Msg::Clock`]), no
-//!   terminal and no channel, and answers with [`Effect`]s, which are data.
-//! * [`draw`] only reads. What depends on the size of the screen is computed by [`layout`], which both use.
-//! * Every key is a named [`action`]: keymap, hint bar, help, palette and the `:` line are read from one table. What
-//!   takes an argument is a [`command`].
-//! * `panel` has a file a panel, `popup` what lies over them, `keymap` the keys of the configuration file; `transmitter` is
-//!   the RC transmitter in the user's hand, `forecast` what is known of flights flown ahead of
-//!   time, `graphs` the history of its signals, `timeline` the row of the recording.
-//! * [`run`] is the shell around it: it waits for the terminal, the session and the clock, and carries effects out.
+//! * [`update`] alone changes [`AppState`]. It has no access to a clock (time comes as [`Msg::Clock`]), the terminal or
+//!   a channel, and returns [`Effect`]s, which are data.
+//! * [`draw`] only reads. [`layout`] computes everything that depends on the screen size; both use it.
+//! * Every key is a named [`action`]: keymap, hint bar, help, palette and the `:` line are read from one table. A
+//!   [`command`] takes an argument.
+//! * `panel` has one file per panel, `popup` the windows over them, `keymap` the keys of the configuration file.
+//!   `transmitter` is the user's virtual RC transmitter, `forecast` holds the results of flights flown ahead of time,
+//!   `graphs` the history of the graphs' signals, and `timeline` the timeline of the recording.
+//! * [`run`] is the shell around it: it waits for the terminal, the session and the clock, and carries out the effects.
 //!
-//! Inside: `action` is what keys can do, `keymap` which key means what, `command` what can be typed behind `:`; `editor` holds the open plans;
-//! `update` is what messages do, one file a subject; `panel` draws, one file a panel, `popup` what lies over them, which `prompt` asks line by line where there is no screen;
-//! `transmitter` moves the virtual sticks, `permission` asks before a real craft is changed, `status_message` says what to do next.
+//! `editor` holds the open plans. `update` handles messages, one file per subject. `prompt` asks the questions of the
+//! popups line by line in `--plain` mode, which has no screen. `permission` asks before a real craft is changed, and
+//! `status_message` suggests the next step.
 //!
 //! May use: ratatui, crossterm, the session's snapshots, events and commands, and plans. Never firmware internals,
 //! the simulator or sockets.

@@ -1,4 +1,4 @@
-//! Everything a key can do, by name: the one table behind keymap, hint bar, help, palette and the `:` line.
+//! Every action of a key, by name: the one table for keymap, hint bar, help, palette and the `:` line.
 
 use super::panel::Panel;
 
@@ -12,7 +12,7 @@ pub use enabled::enabled;
 pub(super) use enabled::is_wrecked;
 pub use table::ACTIONS;
 
-/// Where a key means what its action says.
+/// The context in which a key triggers its action.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Context {
     /// Everywhere but in text fields.
@@ -25,33 +25,33 @@ pub enum Context {
     Lists,
 }
 
-/// What can be done.
+/// An action that a key or a command triggers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, strum::EnumIter)]
 pub enum Action {
-    /// The whole flight by the scripted pilot, or stop it.
+    /// Fly the whole plan with the scripted pilot, or stop the pilot.
     Fly,
     Arm,
-    /// The throttle stick to hover, down gently, or low.
+    /// Move the throttle stick to hover, down gently, or low.
     Throttle,
     Autopilot,
-    /// Fly home and land, or take that back.
+    /// Fly home and land, or cancel the return.
     ReturnHome,
     /// Go to a waypoint of the plan, now.
     GoTo,
     /// Hold this place and altitude.
     HoldHere,
-    /// Go on after such a hold.
+    /// Go on with the plan after such a hold.
     Resume,
     /// Cut or restore the RC link.
     CutRc,
-    /// Hand the plan to the craft.
+    /// Upload the plan to the craft.
     Upload,
     Edit(EditAction),
-    /// Let the craft outside be changed.
+    /// Permit changes of the remote craft.
     AllowChanges,
     /// Put the craft back home.
     ResetCraft,
-    /// Fly ahead as things stand, or end that.
+    /// Fly ahead from the current state, or end that.
     LookAhead,
     /// Fly ahead with something going wrong.
     WhatIf,
@@ -60,21 +60,21 @@ pub enum Action {
     /// One step of the navigator.
     Step,
     Tick,
-    /// Show the event before, or after.
+    /// Show the previous event.
     EventBack,
-    /// See [`Action::EventBack`].
+    /// Show the next event.
     EventForward,
-    /// Show the state of the autopilot before, or after.
+    /// Show the previous state of the autopilot.
     StateBack,
-    /// See [`Action::StateBack`].
+    /// Show the next state of the autopilot.
     StateForward,
-    /// Show an instant some seconds earlier, or later.
+    /// Show an instant some seconds earlier.
     Earlier,
-    /// See [`Action::Earlier`].
+    /// Show an instant some seconds later.
     Later,
-    /// Fly on from the instant shown.
+    /// Fly on from the shown instant.
     FlyOn,
-    /// Back to the newest instant.
+    /// Show the newest instant.
     Newest,
     Slower,
     Faster,
@@ -84,21 +84,21 @@ pub enum Action {
     Next,
     /// Focus the previous panel.
     Previous,
-    /// The focused panel alone.
+    /// Show the focused panel alone.
     Zoom,
-    /// The flight as a scenario.
+    /// Write the flight as a scenario.
     WriteScenario,
-    /// The first minutes, step by step.
+    /// Start the tutorial.
     Tutorial,
     Help,
-    /// A command by its name.
+    /// Open the `:` line.
     CommandLine,
-    /// All commands, to be searched.
+    /// Search all commands.
     Palette,
     Back,
     Quit,
     Cancel,
-    /// Back to the shell for a while.
+    /// Return to the shell for a while.
     Suspend,
     /// Pan the map up.
     PanUp,
@@ -130,17 +130,17 @@ pub enum Action {
     RaiseMuch,
     /// Centre a stick or flip a switch.
     Flip,
-    /// The cursor of the graphs to an earlier instant.
+    /// Move the cursor of the graphs to an earlier instant.
     CursorBack,
-    /// The cursor of the graphs to a later instant.
+    /// Move the cursor of the graphs to a later instant.
     CursorOn,
-    /// A shorter time in the graphs.
+    /// Show a shorter time span in the graphs.
     SpanLess,
-    /// A longer time in the graphs.
+    /// Show a longer time span in the graphs.
     SpanMore,
-    /// Choose what the graphs show.
+    /// Choose the signals of the graphs.
     ChoosePlots,
-    /// The graphs show the newest instant.
+    /// Show the newest instant in the graphs.
     CursorOff,
     /// Record the sticks, or end that.
     Record,
@@ -150,25 +150,25 @@ pub enum Action {
     KnobUp,
     /// Select the knob below.
     KnobDown,
-    /// Less of the selected knob.
+    /// Lower the selected knob.
     KnobLess,
-    /// More of the selected knob.
+    /// Raise the selected knob.
     KnobMore,
     /// Change the selected knob, or type its value.
     KnobEnter,
     /// Type the value of the selected knob.
     KnobEdit,
-    /// The selected knob to its default.
+    /// Set the selected knob to its default.
     KnobDefault,
-    /// What the guards and abbreviations mean.
+    /// Explain the guards and abbreviations.
     ExplainGuards,
     /// Search in the log.
     Search,
-    /// To the next older match.
+    /// Go to the next older match.
     NextMatch,
-    /// To the next newer match.
+    /// Go to the next newer match.
     PreviousMatch,
-    /// Show only what is serious.
+    /// Show only serious lines.
     Filter,
     /// Scroll up a line.
     ScrollUp,
@@ -186,7 +186,7 @@ pub enum Action {
 #[derive(Debug, Clone, Copy)]
 pub struct Spec {
     pub action: Action,
-    /// Stable name for keymaps and scripts, `rc.cut`.
+    /// Stable name for keymaps and scripts, such as `rc.cut`.
     pub name: &'static str,
     /// A word or two for the hint bar.
     pub title: &'static str,
@@ -194,17 +194,17 @@ pub struct Spec {
     pub help: &'static str,
     /// Default keys as text.
     pub keys: &'static [&'static str],
-    /// Where the keys mean this.
+    /// The context in which the keys trigger the action.
     pub context: Context,
 }
 
-/// The row of an action.
+/// Returns the row of an action.
 pub fn spec_of(action: Action) -> Option<&'static Spec> {
     ACTIONS.iter().find(|spec| spec.action == action)
 }
 
 impl Context {
-    /// Whether keys of this context apply while `focus` has the focus. In a text field letters are text.
+    /// Returns `true` if keys of this context apply while `focus` has the focus. In a text field letters are text.
     pub fn applies(self, focus: Panel) -> bool {
         match self {
             Self::Always => true,

@@ -1,4 +1,4 @@
-//! Everything the user interface remembers.
+//! The state of the user interface.
 
 use std::collections::VecDeque;
 use std::time::Duration;
@@ -31,31 +31,31 @@ use super::tutorial::Tutorial;
 use super::units::Units;
 use super::viewport::MapState;
 
-/// From this altitude on a craft that touches nothing is in the air, m: a bounce is not.
+/// The altitude from which a craft that touches nothing counts as in the air, m. A bounce stays below it.
 const IN_THE_AIR_M: f64 = 1.0;
-/// Transitions remembered for the state panel.
+/// The number of transitions kept for the State panel.
 const MAX_TRANSITIONS: usize = 200;
 
-/// What the user interface is given at start.
+/// The configuration of the user interface at start.
 #[derive(Debug, Clone)]
 pub struct UiConfig {
     pub theme: Theme,
-    /// Units of what is shown.
+    /// Units of the shown values.
     pub units: Units,
-    /// Altitude above home above which a waypoint is warned of, m.
+    /// Altitude above home above which a waypoint gets a warning, m.
     pub max_altitude_m: f64,
     pub keymap: Keymap,
     /// Completion and help of the CLI panel.
     pub cli: CliHelp,
-    /// An event as a sentence; empty for events that nobody needs to read.
+    /// Returns an event as a sentence; empty for events that nobody needs to read.
     pub sentence: fn(&Event) -> String,
-    /// The plan that is open at first.
+    /// The plan that is open at start.
     pub plan: OpenPlan,
-    /// Whether the mouse is used.
+    /// `true` to use the mouse.
     pub mouse: bool,
     /// Lines entered in earlier runs.
     pub entered: EnteredLines,
-    /// Names the tutorial on the first screen.
+    /// `true` to point to the tutorial on the first screen.
     pub is_first_start: bool,
 }
 
@@ -64,7 +64,7 @@ pub struct UiConfig {
 pub struct Notice {
     pub text: String,
     pub severity: Severity,
-    /// When it appeared, wall clock.
+    /// The time at which it appeared, wall clock.
     pub at: Duration,
 }
 
@@ -72,7 +72,7 @@ pub struct Notice {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Transition {
     pub time: SimTime,
-    /// When the interface received it, wall clock.
+    /// The time at which the interface received it, wall clock.
     pub received: Duration,
     pub from: NavState,
     pub to: NavState,
@@ -80,42 +80,42 @@ pub struct Transition {
     pub reason: TransitionReason,
 }
 
-/// First visible line of the panels that scroll.
+/// The first visible line of each panel that scrolls.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Scrolls {
-    /// Of the state panel's transitions.
+    /// The first visible transition of the State panel.
     pub transitions: usize,
     pub log: usize,
 }
 
-/// Everything the user interface remembers.
+/// The state of the user interface.
 #[derive(Debug)]
 pub struct AppState {
     pub view: SessionView,
     pub theme: Theme,
-    /// Units of what is shown.
+    /// Units of the shown values.
     pub units: Units,
-    /// Altitude above home above which a waypoint is warned of, m.
+    /// Altitude above home above which a waypoint gets a warning, m.
     pub max_altitude_m: f64,
     /// Completion and help of the CLI panel.
     pub cli_help: CliHelp,
-    /// An event as a sentence.
+    /// Returns an event as a sentence.
     pub sentence: fn(&Event) -> String,
     pub keymap: Keymap,
-    /// The plans that are open, and what is being edited.
+    /// The open plans and the state of editing.
     pub editor: Editor,
     /// Columns and rows of the terminal.
     pub size: (u16, u16),
     /// The panel that gets the keys.
     pub focus: Panel,
-    /// The focused panel fills the screen.
+    /// `true` if the focused panel fills the screen.
     pub zoomed: bool,
-    /// Which panels the shared places show.
+    /// The panels in the shared places.
     pub slots: Slots,
     pub popups: Vec<Popup>,
     /// Wall-clock time since start.
     pub now: Duration,
-    /// The first minutes, while they are shown.
+    /// The tutorial, while it is shown.
     pub tutorial: Option<Tutorial>,
     pub map: MapState,
     /// Selected channel of the RC panel.
@@ -133,35 +133,35 @@ pub struct AppState {
     /// Transitions, the newest last.
     pub transitions: VecDeque<Transition>,
     pub scrolls: Scrolls,
-    /// Where the craft has been.
+    /// The path that the craft has flown.
     pub track: Track,
-    /// What is left behind of earlier branches.
+    /// The tracks of abandoned branches of the flight.
     pub timeline: TimelineState,
     pub notice: Option<Notice>,
-    /// Notices that stay until Esc takes them away, the oldest first.
+    /// Notices that stay until Esc clears them, the oldest first.
     pub pinned: Vec<String>,
-    /// What is to be done once changes of the craft outside are permitted.
+    /// Effects that wait until the user permits changes of the remote craft.
     pub held: Vec<Effect>,
-    /// The connection over which the user has permitted changes.
+    /// The connection for which the user has permitted changes.
     pub permitted: Option<u32>,
-    /// When Ctrl-C was pressed last.
+    /// The time of the last Ctrl-C.
     pub cancelled: Option<Duration>,
-    /// When the key that arms was pressed in the air, wall clock.
+    /// The time at which the key that arms was pressed in the air, wall clock.
     pub disarm_asked: Option<Duration>,
-    /// Sticks sent that the session has not confirmed yet, and when.
+    /// The sticks sent but not yet confirmed by the session, and the time of sending.
     pub sticks_sent: Option<(RcFrame, Duration)>,
-    /// The pilot starts when the upload of this plan, which is on its way, succeeds.
+    /// The plan whose upload is under way and after whose upload the pilot starts.
     pub fly_after_upload: Option<PlanId>,
-    /// The upload under way replaces the craft's fence: a sentence for its answer.
+    /// The sentence for the answer to the current upload, if that upload replaces the fence of the craft.
     pub(super) replaced_fence: Option<String>,
-    /// Ticks of one navigator update.
+    /// The number of ticks of one navigator update.
     pub step_ticks: u32,
     /// Flights flown ahead of time.
     pub forecast: ForecastState,
-    /// The panel on which the mouse button went down, as long as it is.
+    /// The panel on which the mouse button went down, while it is down.
     pub pressed: Option<Panel>,
-    /// Where the mouse button went down, and what it drags from there: of the map its centre (north, east), of the
-    /// altitude profile the metres in a row and the altitude, cm.
+    /// The cell where the mouse button went down, and the values that the drag changes: for the map its centre (north,
+    /// east), for the altitude profile the metres per row and the altitude, cm.
     pub drag: Option<(u16, u16, f64, f64)>,
 }
 
@@ -173,7 +173,7 @@ use crate::plan::estimate::MAX_ALTITUDE_M;
 
 #[cfg(test)]
 impl AppState {
-    /// A user interface with nothing but a picture.
+    /// Returns a user interface that only has a picture.
     pub(super) fn bare(size: (u16, u16), view: SessionView) -> Self {
         let config = UiConfig {
             theme: Theme::default(),
@@ -192,7 +192,7 @@ impl AppState {
 }
 
 impl AppState {
-    /// The state at start.
+    /// Returns the state at start.
     pub fn new(config: UiConfig, size: (u16, u16), view: SessionView) -> Self {
         let is_first_start = config.is_first_start;
         let mut state = Self::after_earlier_runs(config, size, view);
@@ -251,36 +251,36 @@ impl AppState {
         }
     }
 
-    /// The key of an action as it is now, for sentences.
+    /// Returns the current key of an action, for sentences.
     pub(super) fn key(&self, action: Action) -> String {
         self.keymap.key(action)
     }
 
-    /// The name of a panel behind the key that shows it, as it is now.
+    /// Returns the current key that shows a panel, followed by the panel's name.
     pub(super) fn panel_title(&self, panel: Panel) -> String {
         let key = self.keymap.shown_keys(Action::Show(panel)).into_iter().next();
         key.map_or_else(|| panel.name().to_owned(), |key| format!("{key} {}", panel.name()))
     }
 
-    /// Says something to the user: on the screen for a moment, in the log for good.
+    /// Shows a notice for a moment and keeps it in the log.
     pub fn notify(&mut self, severity: Severity, text: impl Into<String>) {
         let text = text.into();
         self.log.push(self.view.vehicle.time, severity, text.clone());
         self.notice = Some(Notice { text, severity, at: self.now });
     }
 
-    /// Reports a loss: in the log, and on the screen until Esc takes it away.
+    /// Reports a loss in the log, and on the screen until Esc clears it.
     pub(super) fn pin(&mut self, text: String) {
         self.log.push(self.view.vehicle.time, Severity::Fault, text.clone());
         self.pinned.push(text);
     }
 
-    /// Says something to the user for a moment that does not belong in the log.
+    /// Shows a notice for a moment without keeping it in the log.
     pub(super) fn say(&mut self, severity: Severity, text: impl Into<String>) {
         self.notice = Some(Notice { text: text.into(), severity, at: self.now });
     }
 
-    /// Takes an event in.
+    /// Processes an event.
     pub fn take_event(&mut self, event: &Event) {
         let text = self.keymap.in_force(&(self.sentence)(event));
         let severity = Severity::of(&event.kind);
@@ -323,16 +323,16 @@ impl AppState {
         }
     }
 
-    /// Whether the map shows what is edited rather than what is flown.
+    /// Returns `true` if the map shows the edited plan rather than the flown one.
     pub(super) fn edits_on_map(&self) -> bool {
         self.map.edit.is_some() || self.map.moving.is_some()
     }
 
-    /// The plan the map shows: the one being flown, else the open one, else the craft's.
+    /// Returns the plan on the map: the edited one, else the flown one, else the open one, else the craft's.
     pub fn shown_plan(&self) -> &FlightPlan {
         let vehicle = &self.view.vehicle;
         match &vehicle.active_plan {
-            // Whoever edits on the map sees what is edited.
+            // While the user edits on the map, it shows the edited plan.
             _ if self.edits_on_map() => self.plan(),
             Some(plan) => plan,
             None if self.plan().waypoints.is_empty() => vehicle.stored_plan.as_ref().unwrap_or(self.plan()),
@@ -340,50 +340,51 @@ impl AppState {
         }
     }
 
-    /// Whether the autopilot flies a stored plan, not one of its own.
+    /// Returns `true` if the autopilot flies a stored plan, not one of its own.
     pub fn flies_stored_plan(&self) -> bool {
         let nav = self.view.vehicle.nav.as_ref();
         nav.is_some_and(|nav| nav.engaged && nav.source == PlanSource::Stored)
     }
 
-    /// Whether the autopilot flies this plan.
+    /// Returns `true` if the autopilot flies this plan.
     pub fn flies(&self, plan: &FlightPlan) -> bool {
         self.view.vehicle.active_plan.as_ref() == Some(plan)
     }
 
-    /// Whether the craft has stored another plan than the one it flies, which takes effect at the next engagement.
+    /// Returns `true` if the craft has stored another plan than the one it flies. The stored one takes effect at the
+    /// next engagement.
     pub fn flies_older_plan(&self) -> bool {
         let stored = self.view.vehicle.stored_plan.as_ref();
-        // Which plan a flight controller outside flies is not told.
+        // A remote flight controller does not report the plan that it flies.
         self.view.remote.is_none()
             && self.flies_stored_plan()
             && stored.is_some_and(|stored| !stored.waypoints.is_empty() && !self.flies(stored))
     }
 
-    /// The waypoints of the open plan.
+    /// Returns the waypoints of the open plan.
     pub fn plan(&self) -> &FlightPlan {
         &self.editor.document().plan
     }
 
-    /// Whether the craft falls, or hangs, without its motors.
+    /// Returns `true` if the craft is in the air with its motors off.
     pub(super) fn is_disarmed_in_the_air(&self) -> bool {
         let vehicle = &self.view.vehicle;
         vehicle.craft.armed == Some(false)
             && vehicle.truth.as_ref().is_some_and(|truth| !truth.on_ground && truth.alt > IN_THE_AIR_M)
     }
 
-    /// How far the upload of an open plan is, while it is under way.
+    /// Returns the progress of the upload of an open plan while it is under way.
     pub(super) fn upload_of(&self, id: PlanId) -> Option<UploadView> {
         self.view.upload.filter(|_| self.editor.uploaded_last() == Some(id))
     }
 
-    /// Returns `true` if settings of the open plan, which the craft has, were edited after its upload.
+    /// Returns `true` if the craft has the open plan, but not the latest edits of its settings.
     pub(super) fn has_settings_to_upload(&self) -> bool {
         self.plan_is_on_craft()
             && !super::editor::settings_in_force::to_upload(self, self.editor.document()).is_empty()
     }
 
-    /// Whether the craft stores the open plan.
+    /// Returns `true` if the craft stores the open plan.
     pub fn plan_is_on_craft(&self) -> bool {
         self.view.vehicle.stored_plan.as_ref() == Some(self.plan())
     }

@@ -1,4 +1,5 @@
-//! The seven-bit picture: panels draw with the full character set, and this replaces what the terminal cannot show.
+//! The ASCII picture. Panels draw with the full character set; this module replaces characters that the terminal cannot
+//! show.
 
 use ratatui::buffer::Buffer;
 
@@ -11,7 +12,7 @@ pub(super) fn replace(buffer: &mut Buffer) {
             continue;
         }
         let first = symbol.chars().next();
-        // `<=` takes the blank behind it.
+        // `<=` uses the blank after it.
         if let Some('≤' | '≥') = first
             && (at + 1) % width != 0
             && let Some(next) = buffer.content.get_mut(at + 1).filter(|next| next.symbol() == " ")
@@ -22,7 +23,7 @@ pub(super) fn replace(buffer: &mut Buffer) {
     }
 }
 
-/// The nearest ASCII character.
+/// Returns the nearest ASCII character.
 fn plain(c: char) -> char {
     match c {
         '━' => '=',

@@ -1,7 +1,7 @@
 //! The language of the `:` line and of `--plain`: every action by its name, and commands that take an argument.
 //!
-//! A line is a word and, behind a blank or `=`, the argument: `flight.arm`, `arm`, `speed 4`, `wind=5@270`. The word is
-//! the name of a [`Command`], the full name of an action, or what stands behind the dot of it where that is unique.
+//! A line is a word and, after a blank or `=`, the argument: `flight.arm`, `arm`, `speed 4`, `wind=5@270`. The word is
+//! the name of a [`Command`], the full name of an action, or the part of that name after the dot if it is unique.
 
 mod display;
 pub(super) mod flight;
@@ -22,10 +22,10 @@ use super::panel::Panel;
 use super::update;
 use crate::did_you_mean;
 
-/// Carries a line out.
+/// Runs a line.
 ///
 /// # Errors
-/// Why not, in a sentence.
+/// Returns the reason for a refusal, in a sentence.
 pub fn run(state: &mut AppState, line: &str) -> Result<Vec<Effect>, String> {
     let (word, argument) = split(line);
     if word.is_empty() {
@@ -42,19 +42,19 @@ pub fn run(state: &mut AppState, line: &str) -> Result<Vec<Effect>, String> {
     Ok(update::perform(state, action))
 }
 
-/// The word of a line and its argument.
+/// Splits a line into its word and its argument.
 fn split(line: &str) -> (&str, &str) {
     let line = line.trim().trim_start_matches(':').trim_start();
     let (word, argument) = line.split_once([' ', '=']).unwrap_or((line, ""));
     (word, argument.trim())
 }
 
-/// What stands behind the dot of an action's name.
+/// Returns the part of an action's name after the dot.
 fn short_name(spec: &Spec) -> &'static str {
     spec.name.rsplit_once('.').map_or(spec.name, |(_, short)| short)
 }
 
-/// The action that a word names while `focus` has the focus.
+/// Returns the action that a word names while `focus` has the focus.
 fn action_named(word: &str, focus: Panel) -> Result<Action, String> {
     if let Some(spec) = ACTIONS.iter().find(|spec| spec.name == word) {
         return Ok(spec.action);
@@ -83,7 +83,7 @@ fn action_named(word: &str, focus: Panel) -> Result<Action, String> {
     }
 }
 
-/// The end of a sentence about a wrong word.
+/// Returns the end of a sentence about an unknown word.
 fn did_you_mean_end<'a>(word: &str, words: impl IntoIterator<Item = &'a str>) -> String {
     match did_you_mean::closest(word, words) {
         Some(close) => format!("; did you mean {close}?"),

@@ -1,6 +1,6 @@
-//! What several completions of a line have in common.
+//! The shared part of several completions.
 
-/// The longest beginning that all candidates share, ignoring case, as the first one writes it.
+/// Returns the longest prefix that all candidates share, ignoring case, spelled as in the first one.
 pub(super) fn common_prefix<'a>(mut candidates: impl Iterator<Item = &'a str>) -> &'a str {
     let Some(mut common) = candidates.next() else { return "" };
     for candidate in candidates {

@@ -1,4 +1,4 @@
-//! The command line of the firmware, seen from the user's side: input, history, scrollback, pasted lines.
+//! The user's side of the firmware's command line: input, history, scrollback, pasted lines.
 
 use std::collections::VecDeque;
 
@@ -9,17 +9,17 @@ use super::text_field::TextField;
 use crate::plan::format::SettingCheck;
 use crate::session::command::CliOutput;
 
-/// Lines of scrollback kept.
+/// The number of scrollback lines kept.
 const MAX_SCROLLBACK: usize = 5000;
 
-/// Completion and help, given by who knows the firmware.
+/// Completion and help, provided by the code that knows the firmware.
 #[derive(Debug, Clone, Copy)]
 pub struct CliHelp {
-    /// The lines that the given input may become.
+    /// Returns the possible completions of the input.
     pub complete: fn(&str) -> Vec<String>,
-    /// A word about the input: usage of the command, range of the setting.
+    /// Returns a hint about the input: usage of the command, range of the setting.
     pub hint: fn(&str) -> Option<String>,
-    /// Whether the firmware takes a setting.
+    /// Checks that the firmware accepts a setting.
     pub check_setting: SettingCheck,
 }
 
@@ -29,16 +29,16 @@ impl Default for CliHelp {
     }
 }
 
-/// What a line of the scrollback is.
+/// The origin of a scrollback line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CliLineKind {
-    /// What the user entered.
+    /// Entered by the user.
     Entered,
-    /// What the firmware answered.
+    /// Answered by the firmware.
     Output,
-    /// An error the firmware answered.
+    /// Answered by the firmware as an error.
     Error,
-    /// Said by the user interface.
+    /// Written by the user interface.
     Note,
 }
 
@@ -55,25 +55,25 @@ pub struct CliState {
     /// The line being typed.
     pub input: TextField,
     pub lines: VecDeque<(CliLineKind, String)>,
-    /// Lines scrolled up from the newest.
+    /// The number of lines scrolled up from the newest.
     pub scroll: usize,
     /// Candidates of the last completion.
     pub candidates: Vec<String>,
-    /// A line is being run.
+    /// `true` while a line is being run.
     pub waiting: bool,
     queue: VecDeque<Queued>,
-    /// The line that is being run is to be answered outside the panel, too.
+    /// `true` if the answer of the running line is also shown as a notice.
     reports: bool,
     history: History,
 }
 
 impl CliState {
-    /// A command line with the lines of earlier runs.
+    /// Returns a command line with the history of earlier runs.
     pub(super) fn with_history(lines: &[String]) -> Self {
         Self { history: History::of(lines), ..Self::default() }
     }
 
-    /// Takes the input as a line to run; gives it when it is new in the history.
+    /// Queues the input as a line to run. Returns the line if it is new in the history.
     pub fn enter(&mut self) -> Option<String> {
         let line = self.input.take();
         self.candidates.clear();
@@ -83,17 +83,17 @@ impl CliState {
         new
     }
 
-    /// Runs a line, of which only this panel tells.
+    /// Queues a line whose answer appears only in this panel.
     pub fn run_line(&mut self, line: String) {
         self.queue.push_back(Queued { line, reports: false });
     }
 
-    /// Runs a line whose answer is a notice, too.
+    /// Queues a line whose answer is also shown as a notice.
     pub fn run_and_report(&mut self, line: String) {
         self.queue.push_back(Queued { line, reports: true });
     }
 
-    /// The next line to run, if the firmware is free.
+    /// Returns the next line to run, if the firmware is free.
     pub fn next_to_run(&mut self) -> Option<String> {
         if self.waiting {
             return None;
@@ -105,12 +105,12 @@ impl CliState {
         Some(line)
     }
 
-    /// Lines not run yet.
+    /// Returns the number of lines not run yet.
     pub fn queued(&self) -> usize {
         self.queue.len()
     }
 
-    /// Takes the answer of the line that was run; gives the notice that it is to be.
+    /// Processes the answer of the line that was run. Returns the text of the notice if the answer is shown as one.
     pub fn answer(&mut self, output: Option<&CliOutput>) -> Option<(Severity, String)> {
         self.waiting = false;
         let Some(output) = output else {
@@ -141,7 +141,7 @@ impl CliState {
         std::mem::take(&mut self.reports).then(|| (severity, said.join(" ")))
     }
 
-    /// The line that was to be run is not, nor are those behind it: why.
+    /// Drops the line to run and all lines after it, and notes the reason.
     pub fn not_run(&mut self, why: &str) {
         self.waiting = false;
         self.reports = false;
@@ -156,7 +156,7 @@ impl CliState {
         self.lines.push_back((kind, text));
     }
 
-    /// Takes pasted text: every complete line is queued, the rest stays in the input.
+    /// Inserts pasted text: every complete line is queued, the rest stays in the input.
     pub fn paste(&mut self, text: &str) {
         let text = text.replace("\r\n", "\n").replace('\r', "\n");
         let mut parts = text.split('\n').peekable();
@@ -168,7 +168,7 @@ impl CliState {
         }
     }
 
-    /// Throws the input and all queued lines away; whether there was anything.
+    /// Discards the input and all queued lines. Returns `true` if there was anything.
     pub fn cancel(&mut self) -> bool {
         let any = !self.input.is_empty() || !self.queue.is_empty();
         self.queue.clear();
@@ -185,7 +185,7 @@ impl CliState {
         }
     }
 
-    /// Recalls a newer line, in the end the one being typed.
+    /// Recalls a newer line; after the newest, the line being typed.
     pub fn newer(&mut self) {
         if let Some(line) = self.history.newer() {
             self.input = TextField::new(line);

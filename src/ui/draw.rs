@@ -1,4 +1,4 @@
-//! The whole picture: status, panels, hints, popups.
+//! Draws the whole screen: status, panels, hints, popups.
 
 use ratatui::Frame;
 use ratatui::buffer::Buffer;
@@ -20,7 +20,7 @@ use super::theme::{Charset, Role};
 use super::{hint_bar, notice, panel_bar, permission, status_bar, timeline, tutorial};
 use crate::printable;
 
-/// Draws the state. Reads only.
+/// Draws the state; it only reads.
 pub fn draw(state: &AppState, frame: &mut Frame<'_>) {
     let area = frame.area();
     let buffer = frame.buffer_mut();
@@ -98,7 +98,7 @@ pub fn draw(state: &AppState, frame: &mut Frame<'_>) {
     }
 }
 
-/// Gives cells without colours of their own those of a theme that does not rely on the terminal's.
+/// Fills in the colours of cells that have none, for themes that do not rely on the terminal's colours.
 fn paint_background(state: &AppState, buffer: &mut Buffer) {
     let Some(background) = state.theme.background() else { return };
     let text = state.theme.colour(Role::Text);
@@ -112,7 +112,7 @@ fn paint_background(state: &AppState, buffer: &mut Buffer) {
     }
 }
 
-/// Takes out what a terminal would obey instead of show, whoever wrote it.
+/// Replaces characters that a terminal would obey instead of show, from any source.
 fn clean(buffer: &mut Buffer) {
     for cell in &mut buffer.content {
         // Most cells are one byte, which the buffer itself keeps free of control characters.
@@ -122,7 +122,7 @@ fn clean(buffer: &mut Buffer) {
     }
 }
 
-/// Draws a panel; gives the place of the cursor if it is there.
+/// Draws a panel with its frame. Returns the position of the cursor if it is in this panel.
 fn framed_panel(state: &AppState, panel: Panel, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     let theme = &state.theme;
     let focused = state.focus == panel;
@@ -185,7 +185,7 @@ fn quit_question(state: &AppState, area: Rect, buffer: &mut Buffer) {
     panel::line(buffer, inside, 2, &answers);
 }
 
-/// Clears a framed place in the middle for a popup of this inner size; gives the inside.
+/// Draws an empty frame in the middle for a popup of this inner size. Returns the inside.
 pub(super) fn popup(
     state: &AppState,
     area: Rect,

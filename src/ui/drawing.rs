@@ -1,16 +1,16 @@
-//! Writes text into a buffer. What lies outside the buffer is left out: a window may be smaller than anything in it.
+//! Writes text into a buffer. Text outside the buffer is left out, because a window may be smaller than anything in it.
 #![allow(clippy::disallowed_methods, reason = "this is the one place that checks the cell before it writes")]
 
 use ratatui::buffer::Buffer;
 use ratatui::style::Style;
 use ratatui::text::Line;
 
-/// Writes text from a cell on.
+/// Writes text starting at a cell.
 pub(super) fn text(buffer: &mut Buffer, x: u16, y: u16, text: impl AsRef<str>, style: Style) {
     text_within(buffer, x, y, text, usize::MAX, style);
 }
 
-/// Writes at most `width` columns of a text from a cell on; returns the column behind it.
+/// Writes at most `width` columns of a text starting at a cell. Returns the column after it.
 pub(super) fn text_within(
     buffer: &mut Buffer,
     x: u16,
@@ -25,7 +25,7 @@ pub(super) fn text_within(
     buffer.set_stringn(x, y, text, width, style).0
 }
 
-/// Writes at most `width` columns of a styled line from a cell on.
+/// Writes at most `width` columns of a styled line starting at a cell.
 pub(super) fn line(buffer: &mut Buffer, x: u16, y: u16, line: &Line<'_>, width: u16) {
     if buffer.area.contains((x, y).into()) {
         buffer.set_line(x, y, line, width);

@@ -1,7 +1,7 @@
-//! The plan editor: the plans that are open, the cursor in the waypoint table, and what is being typed.
+//! The plan editor: the open plans, the cursor in the waypoint table, and the value being typed.
 //!
-//! Every edit is one revision of a plan's history and one line of its journal; what is to be kept or written leaves as
-//! [`Effect::Files`].
+//! Every edit is one revision of a plan's history and one line of its journal. Requests to keep or write something
+//! leave as [`Effect::Files`].
 
 mod browser;
 mod clipboard;
@@ -39,46 +39,46 @@ use crate::plan::{FlightPlan, MAX_WAYPOINTS, Waypoint};
 pub struct Editor {
     plans: Vec<OpenPlan>,
     current: usize,
-    /// Plans made here so far.
+    /// The number of plans made here so far.
     made: u32,
     row: usize,
     column: Column,
     anchor: Option<usize>,
     field: Option<CellField>,
     register: Vec<Waypoint>,
-    /// What was handed to the craft last.
+    /// The plan uploaded to the craft last.
     uploaded: Option<Uploaded>,
     pub(super) popup: Option<EditorPopup>,
-    /// A waypoint whose altitude is dragged in the profile, and the altitude now, cm.
+    /// The waypoint whose altitude is dragged in the profile, and its current altitude, cm.
     pub(super) dragged_altitude: Option<(usize, i32)>,
-    /// The program ends as soon as every plan is saved or given up.
+    /// `true` if the program ends as soon as every plan is saved or given up.
     pub(super) quitting: bool,
-    /// Edits cannot be kept, so that they are lost when the program is killed.
+    /// `true` if edits cannot be kept, so that they are lost when the program is killed.
     pub(super) loses_edits: bool,
-    /// What the open generator's form would make.
+    /// The result that the open generator form would give.
     generator: Option<GeneratorFoot>,
 }
 
-/// A plan as it was handed to the craft.
+/// A plan as it was uploaded to the craft.
 #[derive(Debug)]
 struct Uploaded {
     id: PlanId,
     plan: FlightPlan,
     settings: Vec<String>,
-    /// Lines of them that the firmware did not take, with its reason.
+    /// The setting lines that the firmware refused, with its reason.
     refused: Vec<String>,
 }
 
-/// A cell that is being typed.
+/// The cell being typed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct CellField {
     pub(crate) text: TextField,
-    /// What is wrong with it.
+    /// The problem with the typed value.
     pub(crate) problem: Option<String>,
 }
 
 impl Editor {
-    /// An editor with an open plan.
+    /// Returns an editor with one open plan.
     pub fn new(plan: OpenPlan) -> Self {
         Self {
             plans: vec![plan],
@@ -98,7 +98,7 @@ impl Editor {
         }
     }
 
-    /// The plan that is shown.
+    /// Returns the shown plan.
     pub fn plan(&self) -> &OpenPlan {
         &self.plans[self.current.min(self.plans.len() - 1)]
     }
@@ -108,26 +108,26 @@ impl Editor {
         &mut self.plans[current]
     }
 
-    /// The plan that is shown is about to be handed to the craft.
+    /// Remembers the shown plan as the one being uploaded to the craft.
     pub(super) fn remember_upload(&mut self) {
         let document = self.document();
         let (plan, settings) = (document.plan.clone(), document.settings.clone());
         self.uploaded = Some(Uploaded { id: self.plan().id(), plan, settings, refused: Vec::new() });
     }
 
-    /// Remembers the settings of the plan uploaded last that the firmware did not take.
+    /// Remembers the settings of the plan uploaded last that the firmware refused.
     pub(super) fn remember_refused(&mut self, id: PlanId, refused: Vec<String>) {
         if let Some(uploaded) = self.uploaded.as_mut().filter(|uploaded| uploaded.id == id) {
             uploaded.refused = refused;
         }
     }
 
-    /// Returns the settings uploaded last that the firmware did not take.
+    /// Returns the settings uploaded last that the firmware refused.
     pub(super) fn refused_settings(&self) -> &[String] {
         self.uploaded.as_ref().map_or(&[], |uploaded| &uploaded.refused)
     }
 
-    /// Whether a plan of the craft is there because this editor handed it over.
+    /// Returns `true` if this editor uploaded this plan to the craft.
     pub(super) fn has_uploaded(&self, plan: &FlightPlan) -> bool {
         self.uploaded.as_ref().is_some_and(|uploaded| uploaded.plan == *plan)
     }
@@ -138,7 +138,7 @@ impl Editor {
         Some(&uploaded.settings)
     }
 
-    /// The plan that was handed to the craft last.
+    /// Returns the plan uploaded to the craft last.
     pub(super) fn uploaded_last(&self) -> Option<PlanId> {
         self.uploaded.as_ref().map(|uploaded| uploaded.id)
     }
@@ -147,48 +147,48 @@ impl Editor {
         &self.plans
     }
 
-    /// Which of them is shown.
+    /// Returns the index of the shown plan.
     pub fn current(&self) -> usize {
         self.current
     }
 
-    /// The document that is shown.
+    /// Returns the shown document.
     pub fn document(&self) -> &PlanDocument {
         self.plan().document()
     }
 
-    /// The waypoint under the cursor; one behind the last when there is none.
+    /// Returns the index of the waypoint under the cursor; 0 for an empty plan.
     pub fn row(&self) -> usize {
         self.row.min(self.document().plan.waypoints.len().saturating_sub(1))
     }
 
-    /// The column under the cursor.
+    /// Returns the column under the cursor.
     pub fn column(&self) -> Column {
         self.column
     }
 
-    /// The selected waypoints, while there is a selection.
+    /// Returns the selected waypoints, while there is a selection.
     pub fn selection(&self) -> Option<std::ops::RangeInclusive<usize>> {
         let anchor = self.anchor?.min(self.document().plan.waypoints.len().saturating_sub(1));
         Some(anchor.min(self.row())..=anchor.max(self.row()))
     }
 
-    /// The selected waypoints, else the one under the cursor.
+    /// Returns the selected waypoints, else the one under the cursor.
     fn selected(&self) -> std::ops::RangeInclusive<usize> {
         self.selection().unwrap_or_else(|| self.row()..=self.row())
     }
 
-    /// The cell that is being typed.
+    /// Returns the cell being typed.
     pub(crate) fn field(&self) -> Option<&CellField> {
         self.field.as_ref()
     }
 
-    /// Whether letters are text here.
+    /// Returns `true` if letters are text here.
     pub fn takes_text(&self) -> bool {
         self.field.is_some() || self.popup.is_some()
     }
 
-    /// A waypoint whose altitude is dragged in the profile, and the altitude now, cm.
+    /// The waypoint whose altitude is dragged in the profile, and its current altitude, cm.
     pub(crate) fn dragged_altitude(&self) -> Option<(usize, i32)> {
         self.dragged_altitude
     }
@@ -201,7 +201,7 @@ impl Editor {
         self.field = None;
     }
 
-    /// Moves the cursor, unless a value is typed under it.
+    /// Moves the cursor, unless a value is being typed.
     pub(super) fn move_cursor(&mut self, rows: isize, columns: isize) {
         if self.field.is_some() {
             return;
@@ -227,7 +227,7 @@ impl Editor {
         self.row = self.document().plan.waypoints.len().saturating_sub(1);
     }
 
-    /// Ends selection and typing; whether there was any.
+    /// Ends selection and typing. Returns `true` if there was any.
     pub(super) fn cancel(&mut self) -> bool {
         let field = self.field.take().is_some();
         let popup = self.popup.take().is_some();
@@ -235,14 +235,15 @@ impl Editor {
         field || popup || self.anchor.take().is_some()
     }
 
-    /// Makes an edit as one revision; nothing when it changes nothing.
+    /// Makes an edit as one revision. Does nothing if the edit changes nothing.
     pub(super) fn edit(&mut self, label: &str, change: impl FnOnce(&mut PlanDocument)) -> Vec<Effect> {
         let mut after = self.document().clone();
         change(&mut after);
         self.replace_document(label, after)
     }
 
-    /// Makes the document `after`, as one revision. What is typed is given up: its waypoint may be another now.
+    /// Replaces the document by `after`, as one revision. Discards the value being typed, because its row may hold
+    /// another waypoint now.
     pub(super) fn replace_document(&mut self, label: &str, after: PlanDocument) -> Vec<Effect> {
         self.field = None;
         let plan = self.plan_mut();
@@ -251,7 +252,7 @@ impl Editor {
         line.map(|line| Effect::Files(FileRequest::Journal(id, line))).into_iter().collect()
     }
 
-    /// Takes the last edit back; its label.
+    /// Undoes the last edit. Returns its label.
     pub(super) fn undo(&mut self) -> Option<(String, Effect)> {
         let id = self.plan().id();
         let (label, line) = self.plan_mut().undo()?;
@@ -259,7 +260,7 @@ impl Editor {
         Some((label, Effect::Files(FileRequest::Journal(id, line))))
     }
 
-    /// Makes the edit again that was taken back.
+    /// Redoes the edit that was undone last.
     pub(super) fn redo(&mut self) -> Option<(String, Effect)> {
         let id = self.plan().id();
         let (label, line) = self.plan_mut().redo()?;
@@ -267,7 +268,7 @@ impl Editor {
         Some((label, Effect::Files(FileRequest::Journal(id, line))))
     }
 
-    /// Inserts waypoints behind the cursor and selects them.
+    /// Inserts waypoints after the cursor and selects them.
     pub(super) fn insert(&mut self, label: &str, waypoints: &[Waypoint]) -> Result<Vec<Effect>, String> {
         let have = self.document().plan.waypoints.len();
         if have + waypoints.len() > MAX_WAYPOINTS {
@@ -324,7 +325,7 @@ impl Editor {
         effects
     }
 
-    /// Changes the value under the cursor, in all selected waypoints that use it.
+    /// Changes the value under the cursor in all selected waypoints that use it.
     pub(super) fn nudge(&mut self, steps: i32, units: Units) -> Vec<Effect> {
         let (column, selected) = (self.column, self.selected());
         self.edit(&format!("{} of {}", column.name(), which(&selected)), |document| {
@@ -340,7 +341,7 @@ impl Editor {
     /// Begins typing the value under the cursor.
     ///
     /// # Errors
-    /// The waypoint has no such value.
+    /// Returns a sentence if the waypoint has no such value.
     pub(super) fn begin_typing(&mut self, units: Units) -> Result<(), String> {
         let Some(wp) = self.document().plan.waypoints.get(self.row()) else {
             return Err("There is no waypoint to edit.".to_owned());
@@ -353,12 +354,12 @@ impl Editor {
         Ok(())
     }
 
-    /// The cell that is being typed, to give it keys.
+    /// Returns the cell being typed, to pass keys to it.
     pub(super) fn field_mut(&mut self) -> Option<&mut CellField> {
         self.field.as_mut()
     }
 
-    /// Takes what was typed, in all selected waypoints that use it; a wrong value stays with what is wrong with it.
+    /// Sets the typed value in all selected waypoints that use it. A wrong value stays in the field with its problem.
     pub(super) fn end_typing(&mut self, units: Units) -> Vec<Effect> {
         let Some(mut field) = self.field.take() else { return Vec::new() };
         let (column, selected) = (self.column, self.selected());
@@ -377,7 +378,7 @@ impl Editor {
         self.replace_document(&format!("{} of {}", column.name(), which(&selected)), after)
     }
 
-    /// Copies the selected waypoints; their CLI lines.
+    /// Copies the selected waypoints. Returns their number and their CLI lines.
     pub(super) fn copy(&mut self) -> Option<(usize, String)> {
         let waypoints = self.document().plan.waypoints.get(self.selected())?.to_vec();
         let text = clipboard::to_text(&waypoints);
@@ -387,18 +388,18 @@ impl Editor {
         (count > 0).then_some((count, text))
     }
 
-    /// Whether waypoints were copied.
+    /// Returns `true` if waypoints were copied.
     pub(super) fn has_copy(&self) -> bool {
         !self.register.is_empty()
     }
 
-    /// Inserts what was copied last.
+    /// Inserts the waypoints copied last.
     pub(super) fn paste_copied(&mut self) -> Result<Vec<Effect>, String> {
         let waypoints = self.register.clone();
         self.insert("paste", &waypoints)
     }
 
-    /// Inserts the waypoints of a pasted text; how many.
+    /// Inserts the waypoints of a pasted text. Returns their number.
     pub(super) fn paste_text(&mut self, text: &str) -> Result<(usize, Vec<Effect>), String> {
         let file = clipboard::from_text(text)?;
         let count = file.plan.waypoints.len();
@@ -406,7 +407,7 @@ impl Editor {
     }
 }
 
-/// `WP3`, or `WP1…3`.
+/// Returns `WP3` or `WP1…3`.
 fn which(selected: &std::ops::RangeInclusive<usize>) -> String {
     if selected.start() == selected.end() {
         format!("WP{}", selected.start())

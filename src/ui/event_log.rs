@@ -10,11 +10,11 @@ use super::theme::Role;
 
 const MAX_LINES: usize = 5000;
 
-/// How serious a line is.
+/// The severity of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
     Info,
-    /// The mission went on.
+    /// The mission progressed.
     Step,
     Good,
     Warn,
@@ -22,11 +22,11 @@ pub enum Severity {
 }
 
 impl Severity {
-    /// How serious an event is.
+    /// Returns the severity of an event.
     pub fn of(kind: &SessionEvent) -> Self {
         match kind {
             SessionEvent::Vehicle(event) => Self::of_vehicle(event),
-            // What the store says of a save that failed.
+            // The store's notice about a failed save.
             SessionEvent::Notice(text) if text.starts_with("Not saved: ") => Self::Warn,
             SessionEvent::Branch { .. } => Self::Step,
             SessionEvent::Remote(RemoteNotice::Lost(_) | RemoteNotice::Restarted(_)) => Self::Warn,
@@ -62,7 +62,7 @@ impl Severity {
         match event {
             FirmwareEvent::GpsFix { .. } | FirmwareEvent::RxRecovered | FirmwareEvent::Armed => Self::Good,
             FirmwareEvent::Disarmed(DisarmReason::Landing) => Self::Good,
-            // A restart was asked for.
+            // The user requested the restart.
             FirmwareEvent::Disarmed(DisarmReason::Switch | DisarmReason::System)
             | FirmwareEvent::Mode(_)
             | FirmwareEvent::Notice(_) => Self::Info,
@@ -85,7 +85,7 @@ impl Severity {
         }
     }
 
-    /// The mark in front of the line.
+    /// Returns the mark in front of the line.
     pub fn glyph(self) -> &'static str {
         match self {
             Self::Info => "·",
@@ -96,7 +96,7 @@ impl Severity {
         }
     }
 
-    /// Its role in the theme.
+    /// Returns its role in the theme.
     pub fn role(self) -> Role {
         match self {
             Self::Info => Role::Text,
@@ -111,12 +111,12 @@ impl Severity {
 /// A line of the log.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LogLine {
-    /// Its number, counted from the first line ever.
+    /// The number of the line, counted from the first line ever.
     pub number: u64,
     pub time: SimTime,
     pub severity: Severity,
     pub text: String,
-    /// It belongs to a branch of the flight that was left.
+    /// `true` if it belongs to a branch of the flight that was left.
     pub left_behind: bool,
 }
 
@@ -128,7 +128,7 @@ pub struct LogState {
 }
 
 impl LogState {
-    /// Appends a line; the oldest goes when the log is full. Line breaks and control characters become blanks.
+    /// Appends a line. The oldest is removed if the log is full. Line breaks and control characters become blanks.
     pub fn push(&mut self, time: SimTime, severity: Severity, text: String) {
         if self.lines.len() == MAX_LINES {
             self.lines.pop_front();
@@ -138,17 +138,17 @@ impl LogState {
         self.count += 1;
     }
 
-    /// The flight goes on from `time`: what came after it is left behind.
+    /// Marks the lines after `time` as left behind, because the flight continues from there.
     pub fn leave_behind(&mut self, time: SimTime) {
         self.lines.iter_mut().filter(|line| line.time > time).for_each(|line| line.left_behind = true);
     }
 
-    /// The lines, the newest first.
+    /// Returns the lines, the newest first.
     pub fn newest_first(&self) -> impl DoubleEndedIterator<Item = &LogLine> {
         self.lines.iter().rev()
     }
 
-    /// How many lines there are.
+    /// Returns the number of lines.
     pub fn len(&self) -> usize {
         self.lines.len()
     }

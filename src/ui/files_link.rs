@@ -1,4 +1,4 @@
-//! The plan files, seen from the user interface.
+//! The user interface's link to the plan files.
 #![allow(clippy::disallowed_methods, reason = "the shell of the user interface waits in wall-clock time")]
 
 use std::sync::mpsc::Sender;
@@ -9,15 +9,15 @@ use tokio::time::timeout;
 
 use super::editor::{FileReply, FileRequest};
 
-/// Longest wait for an edit to be kept: a disk that hangs must not hold the screen up.
+/// The longest wait for an edit to be kept. A slow disk must not block the screen.
 const PATIENCE: Duration = Duration::from_millis(100);
 
-/// The plan files, seen from the user interface.
+/// The user interface's link to the plan files.
 #[derive(Debug)]
 pub struct FilesLink {
     requests: Sender<FileRequest>,
     pub(super) replies: mpsc::UnboundedReceiver<FileReply>,
-    /// How many requests were carried out.
+    /// The number of requests carried out.
     done: watch::Receiver<u64>,
     asked: u64,
     /// The number of the newest edit among the requests.
@@ -25,7 +25,8 @@ pub struct FilesLink {
 }
 
 impl FilesLink {
-    /// The link to whoever carries out `requests`, sends `replies`, and counts in `done` what was carried out.
+    /// Returns the link to the thread that carries out `requests`, sends `replies`, and counts finished requests in
+    /// `done`.
     pub fn new(
         requests: Sender<FileRequest>,
         replies: mpsc::UnboundedReceiver<FileReply>,
@@ -34,7 +35,7 @@ impl FilesLink {
         Self { requests, replies, done, asked: 0, edited: 0 }
     }
 
-    /// Asks; whether anybody listens.
+    /// Sends a request. Returns `false` if nobody receives it.
     pub(super) fn ask(&mut self, request: FileRequest) -> bool {
         self.asked += 1;
         if matches!(request, FileRequest::Journal(..)) {
@@ -43,10 +44,10 @@ impl FilesLink {
         self.requests.send(request).is_ok()
     }
 
-    /// Waits until the newest edit is kept: what the screen shows survives the program.
+    /// Waits until the newest edit is kept, so that the edits on the screen survive the program.
     pub(super) async fn keep_edits(&mut self) {
         let edited = self.edited;
-        // Slow or gone: the files tell that themselves.
+        // If the files are slow or gone, they report it themselves.
         timeout(PATIENCE, self.done.wait_for(|&done| done >= edited)).await.ok();
     }
 }

@@ -1,7 +1,7 @@
-//! What the user interface knows of flights flown ahead of time, and when it asks for them.
+//! The flights flown ahead of time: the requests of the user interface and the answers.
 //!
-//! The flown estimate of the open plan is kept up to date by itself: [`follow_plan`] compares what the newest one was asked
-//! for with what it would be asked for now. The look-ahead is asked for again while it is on; a what-if once.
+//! The flown estimate of the open plan keeps itself up to date: [`follow_plan`] compares the input of the newest
+//! request with the current one. The look-ahead is requested again and again while it is on, a what-if once.
 
 mod estimate_basis;
 mod estimate_line;
@@ -22,19 +22,19 @@ use estimate_basis::EstimateBasis;
 pub(super) use estimate_line::lines as estimate_lines;
 pub(super) use ghost::ghost;
 
-/// Shortest time between two look-aheads while it is on.
+/// The shortest time between two look-aheads while it is on.
 const LOOK_AHEAD_INTERVAL: Duration = Duration::from_secs(1);
-/// After this time without an answer it is asked for again.
+/// The time without an answer after which a forecast is requested again.
 const LOST_AFTER: Duration = Duration::from_secs(30);
 
-/// A forecast that was asked for, and the newest one that came.
+/// A requested forecast, and the newest answer.
 #[derive(Debug, Default)]
 struct Asked {
-    /// Of the newest request.
+    /// The revision of the newest request.
     revision: u64,
-    /// When that was made, wall clock.
+    /// The time of the newest request, wall clock.
     at: Duration,
-    /// An answer to it is on its way.
+    /// `true` while an answer to it is on its way.
     waiting: bool,
     /// The newest answer, perhaps to an older request.
     answer: Option<Result<Box<Forecast>, String>>,
@@ -47,7 +47,7 @@ impl Asked {
         self.waiting = true;
     }
 
-    /// Whether no answer will come any more, as when the session did not keep up.
+    /// Returns `true` if no answer will come any more, as when the session did not keep up.
     fn is_lost(&self, now: Duration) -> bool {
         self.waiting && !within(now, self.at, LOST_AFTER)
     }
@@ -61,57 +61,57 @@ impl Asked {
 #[derive(Debug, Default)]
 struct LookAhead {
     asked: Asked,
-    /// From which instant of the flight it was asked for last.
+    /// The instant of the flight from which it was last requested.
     from: SimTime,
 }
 
-/// A what-if that was chosen.
+/// The chosen what-if.
 #[derive(Debug)]
 struct ChosenWhatIf {
     what_if: WhatIf,
     asked: Asked,
 }
 
-/// What the user interface knows of forecasts.
+/// The forecasts of the user interface.
 #[derive(Debug, Default)]
 pub struct ForecastState {
-    /// Of the newest request of any kind.
+    /// The revision of the newest request of any kind.
     revision: u64,
-    /// A picture of the session has come, so that there is something to ask.
+    /// `true` once the session has sent a picture. Before that there is nothing to estimate.
     has_session: bool,
-    /// With the next picture the estimate is asked for anew.
+    /// `true` if the next picture triggers a new estimate.
     settings_changed: bool,
-    /// What the newest estimate was asked for.
+    /// The input of the newest estimate.
     basis: Option<EstimateBasis>,
     estimate: Asked,
-    /// The plan that the estimate is of.
+    /// The plan of the estimate.
     estimated: Option<PlanId>,
     look_ahead: Option<LookAhead>,
     what_if: Option<ChosenWhatIf>,
 }
 
 impl ForecastState {
-    /// The newest flown estimate of the open plan; of an older state of it while [`Self::is_estimating`].
+    /// Returns the newest flown estimate of the open plan; of an older state of it while [`Self::is_estimating`].
     pub fn estimate(&self) -> Option<&Forecast> {
         self.estimate.forecast()
     }
 
-    /// Whether a newer estimate is on its way.
+    /// Returns `true` while a newer estimate is on its way.
     pub fn is_estimating(&self) -> bool {
         self.estimate.waiting
     }
 
-    /// Why there is no estimate, as a sentence.
+    /// Returns the reason for a missing estimate, as a sentence.
     pub fn estimate_refusal(&self) -> Option<&str> {
         self.estimate.answer.as_ref()?.as_ref().err().map(String::as_str)
     }
 
-    /// Whether the look-ahead is on.
+    /// Returns `true` if the look-ahead is on.
     pub fn looks_ahead(&self) -> bool {
         self.look_ahead.is_some()
     }
 
-    /// The session has sent a picture.
+    /// Records that the session has sent a picture.
     pub(super) fn take_view(&mut self) {
         self.has_session = true;
         if std::mem::take(&mut self.settings_changed) {
@@ -119,7 +119,7 @@ impl ForecastState {
         }
     }
 
-    /// Settings of the craft may have changed in a way that its pictures do not show.
+    /// Records that settings of the craft may have changed in a way that its pictures do not show.
     pub(super) fn settings_changed(&mut self) {
         self.settings_changed = true;
     }
@@ -129,19 +129,19 @@ impl ForecastState {
         Effect::Forecast(ForecastJob { revision: self.revision, request })
     }
 
-    /// The flight goes on from another instant than the one a what-if was flown from.
+    /// Drops the what-if, because the flight continues from another instant.
     pub(super) fn forget_what_if(&mut self) {
         self.what_if = None;
     }
 
-    /// The ghost and its line are not wanted any more; says whether there were any.
+    /// Removes the ghost and its line from the map. Returns `true` if there were any.
     pub(super) fn dismiss(&mut self) -> bool {
         let what_if = self.what_if.take().is_some();
         self.look_ahead.take().is_some() || what_if
     }
 }
 
-/// Asks for an estimate of the open plan when the newest one was for another, or for other air.
+/// Requests an estimate of the open plan if the newest one was for another plan or other air.
 pub(super) fn follow_plan(state: &mut AppState) -> Option<Effect> {
     let holds = state.forecast.basis.as_ref().is_some_and(|basis| basis.still_holds(state));
     if holds || !state.forecast.has_session {
@@ -152,7 +152,7 @@ pub(super) fn follow_plan(state: &mut AppState) -> Option<Effect> {
     let forecast = &mut state.forecast;
     let is_other = forecast.estimated.replace(id).is_some_and(|estimated| estimated != id);
     if is_other {
-        // A result of the plan before, as numbers or as a refusal, says nothing of this one.
+        // A result of the previous plan, numbers or a refusal, says nothing about this one.
         forecast.estimate.answer = None;
     }
     let effect = basis.has_waypoints().then(|| forecast.job(basis.request()));
@@ -165,7 +165,7 @@ pub(super) fn follow_plan(state: &mut AppState) -> Option<Effect> {
     effect
 }
 
-/// Asks again for what grows old, or whose answer was lost.
+/// Requests a forecast again if it is outdated or its answer was lost.
 pub(super) fn repeat(state: &mut AppState) -> Option<Effect> {
     if state.forecast.estimate.is_lost(state.now) {
         state.forecast.basis = None;
@@ -202,7 +202,7 @@ pub(super) fn toggle_look_ahead(state: &mut AppState) -> Vec<Effect> {
     vec![ask_look_ahead(state)]
 }
 
-/// Flies ahead with something going wrong now.
+/// Requests a flight ahead with something going wrong now.
 pub(super) fn ask_what_if(state: &mut AppState, what_if: WhatIf) -> Vec<Effect> {
     let now = state.now;
     let forecast = &mut state.forecast;
@@ -214,7 +214,7 @@ pub(super) fn ask_what_if(state: &mut AppState, what_if: WhatIf) -> Vec<Effect> 
     vec![effect]
 }
 
-/// Takes an answer in.
+/// Processes an answer.
 pub(super) fn take_answer(state: &mut AppState, reply: ForecastReply) {
     let forecast = &mut state.forecast;
     let asked = match reply.kind {

@@ -1,11 +1,11 @@
-//! Numbers for people: right-aligned, of fixed width, with units; what is not known is a dash.
+//! Numbers as readable text: right-aligned, of fixed width, with units. An unknown value is a dash.
 
 use std::time::Duration;
 
 use crate::signals::SimTime;
 
-/// `value` with `decimals`, right-aligned in `width` columns, or a dash. A number that does not fit loses its
-/// decimals first and ends as an ellipsis, never as a wrong number.
+/// Formats `value` with `decimals`, right-aligned in `width` columns, or a dash. A number that does not fit loses its
+/// decimals first and then becomes an ellipsis, never a wrong number.
 pub(super) fn fixed(value: Option<f64>, width: usize, decimals: usize) -> String {
     let Some(value) = value.filter(|value| value.is_finite()) else {
         return format!("{:>width$}", "—");
@@ -20,12 +20,12 @@ pub(super) fn fixed(value: Option<f64>, width: usize, decimals: usize) -> String
     format!("{:>width$}", "…")
 }
 
-/// A direction by whole degrees, 0 to 359.
+/// Rounds a direction to whole degrees, 0 to 359.
 pub(super) fn compass(degrees: f64) -> f64 {
     degrees.round().rem_euclid(360.0)
 }
 
-/// No "-0.0".
+/// Returns 0 instead of a value that would print as "-0.0".
 fn without_negative_zero(value: f64, decimals: usize) -> f64 {
     let floor = 0.5 * 0.1_f64.powi(decimals as i32);
     if value.abs() < floor { 0.0 } else { value }
@@ -43,19 +43,19 @@ pub(super) fn signed(value: Option<f64>, width: usize, decimals: usize) -> Strin
     }
 }
 
-/// Minutes, seconds and tenths since boot: `01:12.4`.
+/// Formats minutes, seconds and tenths since boot: `01:12.4`.
 pub(super) fn clock(time: SimTime) -> String {
     let tenths = time.0 / 100_000;
     format!("{:02}:{:02}.{}", tenths / 600, tenths / 10 % 60, tenths % 10)
 }
 
-/// Minutes, seconds and milliseconds since boot: `01:12.410`.
+/// Formats minutes, seconds and milliseconds since boot: `01:12.410`.
 pub(super) fn clock_ms(time: SimTime) -> String {
     let ms = time.0 / 1000;
     format!("{:02}:{:02}.{:03}", ms / 60_000, ms / 1000 % 60, ms % 1000)
 }
 
-/// A factor of real time: `0.25×`, `8×`, `312×`, `max`.
+/// Formats a factor of real time: `0.25×`, `8×`, `312×`, `max`.
 pub(super) fn factor(times: f64) -> String {
     if times.is_infinite() {
         "max".to_owned()
@@ -67,12 +67,12 @@ pub(super) fn factor(times: f64) -> String {
     }
 }
 
-/// Whether `earlier` lies less than `span` before `now`.
+/// Returns `true` if `earlier` is less than `span` before `now`.
 pub(super) fn within(now: Duration, earlier: Duration, span: Duration) -> bool {
     now.saturating_sub(earlier) < span
 }
 
-/// `text` cut to `width` columns, ending in an ellipsis when something is lost.
+/// Cuts `text` to `width` columns, with an ellipsis at the end if something is lost.
 pub(super) fn cut(text: &str, width: usize) -> String {
     use unicode_width::{UnicodeWidthChar as _, UnicodeWidthStr as _};
     if text.width() <= width {

@@ -1,16 +1,16 @@
-//! How well a few typed letters fit a name: they occur in it in this order, best at the beginning of words.
+//! Scores a few typed letters against a name. They must occur in it in this order, best at the beginning of words.
 
-/// A letter that occurs.
+/// The score of a letter that occurs.
 const HIT: u32 = 1;
-/// A letter at the beginning of a word.
+/// The score of a letter at the beginning of a word.
 const WORD_START: u32 = 8;
-/// A letter right behind the one before it.
+/// The score of a letter right after the one before it.
 const RUN: u32 = 5;
 
-/// How well `letters` fit `text`; none when they do not occur in this order. Case does not matter.
+/// Scores `letters` against `text`; `None` if they do not occur in this order. Case does not matter.
 pub(super) fn score(letters: &str, text: &str) -> Option<u32> {
     let text: Vec<char> = text.chars().flat_map(char::to_lowercase).collect();
-    // For each place of the text the best score of the letters so far, the last of which stands there.
+    // For each position of the text: the best score of the letters so far, with the last of them at that position.
     let mut ending: Vec<Option<u32>> = Vec::new();
     for letter in letters.chars().flat_map(char::to_lowercase) {
         let is_first = ending.is_empty();

@@ -1,4 +1,4 @@
-//! The graphs of a flight: the history of its signals, which plots are shown, over which time, and the cursor in it.
+//! The graphs of a flight: the history of its signals, the shown plots, the time span, and the cursor.
 
 mod history;
 mod signal;
@@ -11,12 +11,12 @@ use super::map_point::MapPoint;
 use crate::signals::SimTime;
 use history::SignalHistory;
 
-/// The spans of time that can be shown, s.
+/// The selectable time spans, s.
 const SPANS_S: [f64; 8] = [10.0, 30.0, 60.0, 120.0, 300.0, 600.0, 1800.0, 7200.0];
-/// A step of the cursor is this share of the span.
+/// The number of cursor steps in a span.
 const CURSOR_STEPS: f64 = 60.0;
 
-/// What the Graphs panel remembers.
+/// The state of the Graphs panel.
 #[derive(Debug)]
 pub struct GraphsState {
     history: SignalHistory,
@@ -26,7 +26,7 @@ pub struct GraphsState {
 }
 
 impl Default for GraphsState {
-    /// Altitude, speed, cross-track and attitude of the last minute.
+    /// Returns a state that shows altitude, speed, cross-track error, roll and pitch over the last minute.
     fn default() -> Self {
         let shown = std::array::from_fn(|plot| plot < 5);
         Self { history: SignalHistory::default(), shown, span: 2, cursor_s: None }
@@ -34,34 +34,34 @@ impl Default for GraphsState {
 }
 
 impl GraphsState {
-    /// The plots that are shown.
+    /// Returns the shown plots.
     pub(super) fn plots(&self) -> impl Iterator<Item = &'static Plot> + '_ {
         PLOTS.iter().zip(self.shown).filter_map(|(plot, shown)| shown.then_some(plot))
     }
 
-    /// Whether a plot is shown, by its place in [`PLOTS`].
+    /// Returns `true` if the plot at this index of [`PLOTS`] is shown.
     pub(super) fn is_shown(&self, plot: usize) -> bool {
         self.shown.get(plot).copied().unwrap_or(false)
     }
 
-    /// Shows a plot, or no longer.
+    /// Shows a plot, or hides it.
     pub(super) fn toggle(&mut self, plot: usize) {
         if let Some(shown) = self.shown.get_mut(plot) {
             *shown = !*shown;
         }
     }
 
-    /// A longer span of time, or a shorter one.
+    /// Selects a longer time span, or a shorter one.
     pub(super) fn change_span(&mut self, by: isize) {
         self.span = self.span.saturating_add_signed(by).min(SPANS_S.len() - 1);
     }
 
-    /// The span of time that is shown, s.
+    /// Returns the shown time span, s.
     pub(super) fn span_s(&self) -> f64 {
         SPANS_S.get(self.span).copied().unwrap_or(60.0)
     }
 
-    /// The time that is shown, from and to, s: up to the newest sample, or around an older cursor.
+    /// Returns the start and end of the shown time, s: up to the newest sample, or around an older cursor.
     pub(super) fn window(&self, cursor_s: Option<f64>) -> (f64, f64) {
         let span = self.span_s();
         let newest = self.history.newest().map_or(0.0, |sample| sample.time_s);
@@ -71,26 +71,26 @@ impl GraphsState {
         (to - span, to)
     }
 
-    /// Moves the cursor by a step, from the newest sample when there is none.
+    /// Moves the cursor by steps, starting from the newest sample if there is no cursor.
     pub(super) fn move_cursor(&mut self, steps: f64) {
         let (Some(oldest), Some(newest)) = (self.history.oldest(), self.history.newest()) else { return };
         let from = self.cursor_s.unwrap_or(newest.time_s);
         let to = (from + steps * self.span_s() / CURSOR_STEPS).max(oldest.time_s);
-        // Beyond the newest sample there is nothing to point at: the present is shown again.
+        // Beyond the newest sample there is nothing to point at, so the graphs show the present again.
         self.cursor_s = (to < newest.time_s).then_some(to);
     }
 
-    /// Takes the cursor away; whether there was one.
+    /// Removes the cursor. Returns `true` if there was one.
     pub(super) fn leave_cursor(&mut self) -> bool {
         self.cursor_s.take().is_some()
     }
 
-    /// The samples between two times.
+    /// Returns the samples between two times.
     pub(super) fn samples(&self, from_s: f64, to_s: f64) -> impl Iterator<Item = &Sample> {
         self.history.between(from_s, to_s)
     }
 
-    /// The sample that belongs to a time; the newest without one.
+    /// Returns the sample for a time, or the newest one without a time.
     pub(super) fn sample_at(&self, time_s: Option<f64>) -> Option<&Sample> {
         match time_s {
             Some(time_s) => self.history.at(time_s),
@@ -99,24 +99,24 @@ impl GraphsState {
     }
 }
 
-/// Takes the newest picture into the history.
+/// Adds the newest picture to the history.
 pub(super) fn record(state: &mut AppState) {
     let sample = Sample::of(&state.view.vehicle);
     state.graphs.history.push(sample);
 }
 
-/// The instant that the cursor points at, s: the user's, else the earlier one that the screen shows.
+/// Returns the instant of the cursor, s: of the user's cursor, else the earlier instant on the screen.
 pub(super) fn cursor_s(state: &AppState) -> Option<f64> {
     let shown = state.is_rewound().then(|| state.view.vehicle.time.as_secs_f64());
     state.graphs.cursor_s.or(shown)
 }
 
-/// The instant that the user points at.
+/// Returns the instant of the user's cursor.
 pub(super) fn pointed_at(state: &AppState) -> Option<SimTime> {
     state.graphs.cursor_s.map(SimTime::from_secs_f64)
 }
 
-/// Where the craft was at the user's cursor.
+/// Returns the position of the craft at the user's cursor.
 pub(super) fn cursor_place(state: &AppState) -> Option<MapPoint> {
     let sample = state.graphs.history.at(state.graphs.cursor_s?)?;
     let place = MapPoint::new(sample.value(Signal::North)?, sample.value(Signal::East)?);

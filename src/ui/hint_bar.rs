@@ -1,4 +1,4 @@
-//! The line at the bottom: what the keys do here and now, help and quit, and the doors.
+//! The line at the bottom: the keys of the moment, help and quit, and the doors.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -17,10 +17,10 @@ use super::theme::{Role, Theme};
 use super::transmitter;
 use super::transmitter::ThrottleMove;
 
-/// Width from which a door says what is wrong with it.
+/// The width from which a door also shows its fault.
 const WIDE: u16 = 120;
 
-/// Draws the hint line: keys at the left; at the right help, quit and the doors.
+/// Draws the hint line: keys on the left; help, quit and the doors on the right.
 pub(super) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     let mut right: Vec<Span<'static>> =
@@ -51,7 +51,7 @@ pub(super) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     sides(buffer, area, &spans, &right);
 }
 
-/// The actions of the hint bar, in the order of their use here and now.
+/// Returns the actions of the hint bar, the most useful first.
 fn hint_actions(state: &AppState) -> Vec<(&'static [Action], &'static str)> {
     let craft = &state.view.vehicle.craft;
     let mut hints: Vec<(&'static [Action], &'static str)> = Vec::new();
@@ -183,7 +183,7 @@ fn hint_actions(state: &AppState) -> Vec<(&'static [Action], &'static str)> {
     }
     if craft.is_armed() && engaged {
         hints.extend([(&[Action::HoldHere] as &[_], "hold here"), (&[Action::GoTo], "go to")]);
-        // Last: in the air nobody should press it by mistake.
+        // Last, so that nobody presses it by mistake in the air.
         hints.push((&[Action::Arm], "disarm"));
     }
     if state.focus == Panel::Rc {
@@ -194,12 +194,12 @@ fn hint_actions(state: &AppState) -> Vec<(&'static [Action], &'static str)> {
     hints
 }
 
-/// Whether a hold was commanded.
+/// Returns `true` if a hold was commanded.
 fn vehicle_is_held(state: &AppState) -> bool {
     state.view.vehicle.nav.as_ref().is_some_and(|nav| nav.held_by_command)
 }
 
-/// What the throttle key does here and now.
+/// Returns the current effect of the throttle key.
 fn throttle_label(state: &AppState) -> &'static str {
     match (transmitter::throttle_move(state), transmitter::is_standing(state)) {
         (ThrottleMove::Low, _) => "throttle low",
@@ -209,7 +209,7 @@ fn throttle_label(state: &AppState) -> &'static str {
     }
 }
 
-/// The keys that are never left out: help and quit.
+/// Returns the keys that are never left out: help and quit; in the CLI panel Esc.
 fn permanent_hints(state: &AppState) -> Vec<(String, &'static str)> {
     if state.focus == Panel::Cli {
         return vec![("Esc".to_owned(), "leave")];
@@ -217,18 +217,18 @@ fn permanent_hints(state: &AppState) -> Vec<(String, &'static str)> {
     vec![(keys_of(state, &[Action::Help]), "help"), (keys_of(state, &[Action::Quit]), "quit")]
 }
 
-/// The first key of each action.
+/// Returns the first key of each action.
 fn keys_of(state: &AppState, actions: &[Action]) -> String {
     let first = |&action: &Action| state.keymap.shown_keys(action).into_iter().next();
     actions.iter().filter_map(first).collect::<Vec<_>>().join(" ")
 }
 
-/// A key and what it does, as it stands in the hint line.
+/// Returns a key and its effect as spans of the hint line.
 fn hint(theme: &Theme, keys: &str, label: &str) -> [Span<'static>; 2] {
     [span(theme, Role::Key, format!(" {keys}")), span(theme, Role::Text, format!(" {label} "))]
 }
 
-/// The doors: name, whether somebody is connected, and what is wrong; then the real time that was lost.
+/// Returns the doors: the name, a mark for a connection, the fault; then the lost real time.
 fn doors(state: &AppState, width: u16) -> Vec<Span<'static>> {
     let theme = &state.theme;
     let mut spans = Vec::new();
@@ -250,7 +250,7 @@ fn doors(state: &AppState, width: u16) -> Vec<Span<'static>> {
     spans
 }
 
-/// What is wrong with an endpoint, in a word or two.
+/// Returns the fault of an endpoint, in a word or two.
 fn fault(state: &EndpointState) -> Option<&'static str> {
     match state {
         EndpointState::Busy => Some("busy"),
@@ -282,7 +282,7 @@ mod tests {
         assert_eq!((shown(1).trim(), shown(0).trim()), ("●tcp", "○tcp"));
     }
 
-    /// The clock's line and the hint line while a simulator outside is in this state.
+    /// Returns the text of the status lines and the hint line for an external simulator in this state.
     fn lines(simulator: LinkState, rate_hz: u32) -> String {
         let states = [
             (EndpointKind::Fdm, EndpointState::Packets(PacketStats { rate_hz, ..PacketStats::default() })),

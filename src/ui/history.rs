@@ -1,6 +1,6 @@
-//! The lines that were entered in a text field, to be recalled.
+//! The lines entered in a text field, for recall.
 
-/// A text field whose lines are kept over a restart.
+/// A text field whose lines survive a restart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LineField {
     /// The `:` line.
@@ -12,25 +12,25 @@ pub enum LineField {
 /// The lines entered in earlier runs, the oldest first.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct EnteredLines {
-    /// In the `:` line.
+    /// The lines entered in the `:` line.
     pub commands: Vec<String>,
-    /// In the firmware's command line.
+    /// The lines entered in the firmware's command line.
     pub cli: Vec<String>,
 }
 
 const MAX_LINES: usize = 500;
 
-/// Entered lines, the oldest first, and the one that is recalled.
+/// The entered lines, the oldest first, and the recalled one.
 #[derive(Debug, Default)]
 pub(super) struct History {
     lines: Vec<String>,
     recalled: Option<usize>,
-    /// What was being typed when the first line was recalled.
+    /// The text that was being typed when the first line was recalled.
     draft: String,
 }
 
 impl History {
-    /// A history that begins with these lines.
+    /// Returns a history that begins with these lines.
     pub(super) fn of(lines: &[String]) -> Self {
         let mut history = Self::default();
         for line in lines {
@@ -39,7 +39,7 @@ impl History {
         history
     }
 
-    /// Remembers an entered line, unless it is blank or the same as the one before; says whether it is new.
+    /// Adds an entered line, unless it is blank or equal to the one before. Returns `true` if it was added.
     pub(super) fn remember(&mut self, line: &str) -> bool {
         self.recalled = None;
         if line.trim().is_empty() || self.lines.last().is_some_and(|last| last == line) {
@@ -52,12 +52,12 @@ impl History {
         true
     }
 
-    /// Ends recalling: what is typed next is new.
+    /// Ends recalling: the text typed next is new.
     pub(super) fn forget_place(&mut self) {
         self.recalled = None;
     }
 
-    /// The line before the recalled one, or the newest instead of `typed`; none when there is no older one.
+    /// Returns the line before the recalled one, or the newest instead of `typed`; `None` if there is no older one.
     pub(super) fn older(&mut self, typed: &str) -> Option<String> {
         let at = match self.recalled {
             None => self.lines.len().checked_sub(1)?,
@@ -70,7 +70,7 @@ impl History {
         self.lines.get(at).cloned()
     }
 
-    /// The line after the recalled one, in the end what was being typed; none when nothing is recalled.
+    /// Returns the line after the recalled one, or the typed text after the newest; `None` if no line is recalled.
     pub(super) fn newer(&mut self) -> Option<String> {
         let next = self.recalled? + 1;
         if next < self.lines.len() {

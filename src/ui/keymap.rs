@@ -1,4 +1,4 @@
-//! Keys as text and as events, and which action a key means where the focus is.
+//! Keys as text and as events, and the action of a key for the current focus.
 
 use std::fmt;
 
@@ -11,7 +11,7 @@ mod remap;
 
 pub use remap::KeyLine;
 
-/// A key with its modifiers; shift is part of the character where there is one.
+/// A key with its modifiers. Shift is part of the character if there is one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct KeyPress {
     code: KeyCode,
@@ -19,7 +19,7 @@ pub struct KeyPress {
 }
 
 impl KeyPress {
-    /// The key of an event.
+    /// Returns the key of an event.
     pub fn of(event: &KeyEvent) -> Self {
         let mut modifiers =
             event.modifiers & (KeyModifiers::CONTROL | KeyModifiers::ALT | KeyModifiers::SHIFT);
@@ -29,7 +29,7 @@ impl KeyPress {
                 KeyCode::Tab
             }
             KeyCode::Char(c) => {
-                // Terminals differ in whether they report shift beside the capital letter.
+                // Not all terminals report shift beside the capital letter.
                 let c = if modifiers.contains(KeyModifiers::SHIFT) { c.to_ascii_uppercase() } else { c };
                 modifiers -= KeyModifiers::SHIFT;
                 KeyCode::Char(c)
@@ -39,12 +39,12 @@ impl KeyPress {
         Self { code, modifiers }
     }
 
-    /// The event that a terminal sends for it.
+    /// Returns the event that a terminal sends for it.
     pub fn event(self) -> KeyEvent {
         KeyEvent::new(self.code, self.modifiers)
     }
 
-    /// A key from text: `a`, `F`, `space`, `ctrl-c`, `shift-tab`, `f1`. Names may be written in capitals, too.
+    /// Parses a key from text: `a`, `F`, `space`, `ctrl-c`, `shift-tab`, `f1`. Names may be written in capitals, too.
     pub fn parse(text: &str) -> Option<Self> {
         let lower = text.to_ascii_lowercase();
         // A single character means itself: `F` is not `f`.
@@ -75,7 +75,7 @@ impl KeyPress {
             ("insert", ..) => KeyCode::Insert,
             ("delete", ..) => KeyCode::Delete,
             ("backspace", ..) => KeyCode::Backspace,
-            // Capitals count, but terminals send Ctrl with small letters only.
+            // Capitals are distinct, but terminals send Ctrl with small letters only.
             (_, Some(c), None) if modifiers.contains(KeyModifiers::CONTROL) => KeyCode::Char(c),
             (_, Some(_), None) if modifiers.contains(KeyModifiers::SHIFT) => {
                 modifiers -= KeyModifiers::SHIFT;
@@ -90,7 +90,7 @@ impl KeyPress {
 }
 
 impl fmt::Display for KeyPress {
-    /// The key as hint bar and help show it.
+    /// Formats the key for hint bar and help.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (modifier, name) in
             [(KeyModifiers::CONTROL, "Ctrl-"), (KeyModifiers::ALT, "Alt-"), (KeyModifiers::SHIFT, "Shift-")]
@@ -119,14 +119,14 @@ impl fmt::Display for KeyPress {
     }
 }
 
-/// Which key means what.
+/// The actions of the keys.
 #[derive(Debug, Clone)]
 pub struct Keymap {
     bindings: Vec<(Context, KeyPress, Action)>,
 }
 
 impl Default for Keymap {
-    /// The default keys of the action table.
+    /// Returns the default keys of the action table.
     fn default() -> Self {
         let bindings = ACTIONS
             .iter()
@@ -139,7 +139,7 @@ impl Default for Keymap {
 }
 
 impl Keymap {
-    /// The keys of an action, as they are shown.
+    /// Returns the keys of an action as text.
     pub fn shown_keys(&self, action: Action) -> Vec<String> {
         self.bindings
             .iter()
@@ -148,14 +148,14 @@ impl Keymap {
             .collect()
     }
 
-    /// The first key of an action; without one the command that does it.
+    /// Returns the first key of an action, or the command that triggers it if it has no key.
     pub fn key(&self, action: Action) -> String {
         let first = self.shown_keys(action).into_iter().next();
         let name = || spec_of(action).map_or_else(String::new, |spec| format!(":{}", spec.name));
         first.unwrap_or_else(name)
     }
 
-    /// A sentence of the session, which names default keys in backquotes, with the keys in force.
+    /// Replaces the default keys in backquotes in a sentence of the session with the current keys.
     pub fn in_force(&self, sentence: &str) -> String {
         let mut parts = sentence.split('`');
         let mut told = parts.next().unwrap_or_default().to_owned();
@@ -163,7 +163,7 @@ impl Keymap {
         for part in parts {
             let pressed = KeyPress::parse(part).filter(|_| is_quoted);
             let is_default = |key: &&str| pressed.is_some() && KeyPress::parse(key) == pressed;
-            // Those of the plan editor are named from outside, too.
+            // Sentences from other modules name the keys of the plan editor, too.
             let named = |wanted: fn(Context) -> bool| {
                 ACTIONS
                     .iter()
@@ -180,7 +180,7 @@ impl Keymap {
         told
     }
 
-    /// The action of a key while `focus` has the focus; the panel's own meaning comes before the general one.
+    /// Returns the action of a key while `focus` has the focus. The panel's own actions come before the general ones.
     pub fn action(&self, key: KeyPress, focus: Panel) -> Option<Action> {
         let own = |context: &Context| matches!(context, Context::In(_) | Context::Lists);
         // Function keys are never text.

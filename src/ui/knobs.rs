@@ -1,4 +1,4 @@
-//! The knobs of the world: air, noise and faults, and what turning one asks of the session.
+//! The knobs of the World panel: air, noise and faults, and the requests to the session when one is turned.
 
 use crossterm::event::{KeyCode, KeyEvent};
 use strum::IntoEnumIterator as _;
@@ -14,17 +14,17 @@ use crate::telemetry::{FaultValue, Turbulence};
 
 /// A step of the wind's speed and of gusts, m/s.
 const SPEED_STEP: f64 = 0.5;
-/// The strongest wind that can be asked for, m/s.
+/// The strongest wind that the user can set, m/s.
 const MOST_MPS: f64 = 60.0;
 /// A step of the wind's direction, degrees.
 const DIRECTION_STEP: f64 = 15.0;
 
-/// What the World panel remembers.
+/// The state of the World panel.
 #[derive(Debug, Default)]
 pub struct KnobsState {
     /// Index of the selected knob.
     pub selected: usize,
-    /// The value that is being typed.
+    /// The value being typed.
     pub field: Option<TextField>,
 }
 
@@ -39,7 +39,7 @@ pub(super) enum Knob {
     Fault(&'static FaultInfo),
 }
 
-/// The knobs that have something to act on, in the order in which they are shown.
+/// Returns the knobs that have an effect in the current world, in display order.
 pub(super) fn knobs(state: &AppState) -> Vec<Knob> {
     let external = state.view.simulator.is_some();
     let faults = FAULTS.iter().filter(|fault| external || !fault.needs_link()).map(Knob::Fault);
@@ -53,7 +53,7 @@ fn selected(state: &AppState) -> Option<Knob> {
     knobs(state).get(state.knobs.selected).copied()
 }
 
-/// The fault of this kind that is on, if one is.
+/// Returns the active fault of this kind, if there is one.
 pub(super) fn active(world: &WorldView, fault: &FaultInfo) -> Option<FaultView> {
     world.faults.iter().find(|active| active.kind == fault.kind).copied()
 }
@@ -70,7 +70,7 @@ impl Knob {
         }
     }
 
-    /// Its value with the unit; a dash when nobody tells it.
+    /// Returns its value with the unit, or a dash if nothing reports it.
     pub(super) fn value(self, state: &AppState) -> String {
         let world = &state.view.vehicle.world;
         let speed = |speed: Option<f64>| {
@@ -95,7 +95,7 @@ impl Knob {
         }
     }
 
-    /// Whether it stands where it is when nobody asks for anything.
+    /// Returns `true` if the knob is at its default.
     pub(super) fn is_default(self, world: &WorldView) -> bool {
         let Some(wind) = world.wind else {
             return !matches!(self, Self::Fault(fault) if active(world, fault).is_some());
@@ -110,7 +110,7 @@ impl Knob {
         }
     }
 
-    /// What its value means, or how it is written.
+    /// Returns the meaning of its value, or the form in which it is written.
     pub(super) fn help(self, units: Units) -> String {
         match self {
             Self::WindSpeed => {
@@ -126,7 +126,7 @@ impl Knob {
     }
 }
 
-/// Turns the selected knob by steps; a fault goes on or off.
+/// Turns the selected knob by steps. A fault is switched on or off.
 pub(super) fn turn(state: &mut AppState, steps: i32) -> Vec<Effect> {
     let Some(knob) = selected(state) else { return Vec::new() };
     let world = &state.view.vehicle.world;
@@ -155,7 +155,7 @@ pub(super) fn turn(state: &mut AppState, steps: i32) -> Vec<Effect> {
     }
 }
 
-/// Enter: a level or a fault changes at once, a number is typed.
+/// Handles Enter: a level or a fault changes at once, a number is typed.
 pub(super) fn enter(state: &mut AppState) -> Vec<Effect> {
     match selected(state) {
         Some(Knob::Noise) => {
@@ -181,7 +181,7 @@ pub(super) fn edit(state: &mut AppState) -> Vec<Effect> {
     Vec::new()
 }
 
-/// Puts the selected knob to its default.
+/// Sets the selected knob to its default.
 pub(super) fn reset(state: &mut AppState) -> Vec<Effect> {
     let Some(knob) = selected(state) else { return Vec::new() };
     if knob.is_default(&state.view.vehicle.world) {
@@ -196,7 +196,7 @@ pub(super) fn reset(state: &mut AppState) -> Vec<Effect> {
     }
 }
 
-/// A key while a value is typed.
+/// Handles a key while a value is typed.
 pub(super) fn field_key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
     let Some(field) = &mut state.knobs.field else { return Vec::new() };
     match event.code {
@@ -216,7 +216,7 @@ pub(super) fn field_key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
     }
 }
 
-/// Asks for what was typed. A speed is typed in the units that are shown.
+/// Requests the typed value. A speed is typed in the shown units.
 fn take_typed(state: &mut AppState, typed: &str) -> Vec<Effect> {
     let Some(knob) = selected(state).filter(|_| !typed.is_empty()) else { return Vec::new() };
     let wind = state.view.vehicle.world.wind.unwrap_or(WindView { speed_mps: 0.0, from_deg: 0.0 });
@@ -234,7 +234,7 @@ fn take_typed(state: &mut AppState, typed: &str) -> Vec<Effect> {
     }
 }
 
-/// A number without the noise of a conversion.
+/// Removes the rounding noise of a unit conversion.
 fn tidy(speed_mps: f64) -> f64 {
     (speed_mps * 1000.0).round() / 1000.0
 }
@@ -243,7 +243,7 @@ fn begin(state: &mut AppState, fault: &FaultInfo) -> Vec<Effect> {
     if fault.value.is_empty() || !fault.default.is_empty() {
         return world(format!("fault={}", fault.name()));
     }
-    // It needs a value.
+    // The fault needs a value.
     state.knobs.field = Some(TextField::new(","));
     Vec::new()
 }
@@ -252,7 +252,7 @@ fn end(fault: &FaultInfo) -> Vec<Effect> {
     world(format!("end={}", fault.name()))
 }
 
-// Until the session confirms, a second press counts from what the first one asked for.
+// The new value is shown at once, so that a second press counts from it before the session confirms.
 
 fn set_wind(state: &mut AppState, wind: WindView) -> Vec<Effect> {
     if let Some(shown) = &mut shown(state).wind {

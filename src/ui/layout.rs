@@ -1,4 +1,4 @@
-//! Which panels stand where at a size of the screen.
+//! The places of the panels for each screen size.
 //!
 //! ```text
 //!  60x20 and zoomed    from 80x24           from 120x34           from 180x48
@@ -10,10 +10,10 @@
 //!  └──────────────┘    └───────────────┘    └─────────┴ plan─┘    └──────┴──────┴───────┘
 //! ```
 //!
-//! World takes the place of RC when it is shown, and Graphs that of the log.
+//! World takes the place of RC when it is shown, Graphs the place of the log.
 //!
-//! Two lines of status stand above, one of hints below; above the hints the timeline, on a tall screen or while an earlier
-//! instant is shown.
+//! Two status lines are at the top, one hint line at the bottom. The timeline is above the hints, on a tall screen or
+//! while an earlier instant is shown.
 
 use ratatui::layout::Rect;
 
@@ -23,14 +23,14 @@ use super::panel::Panel;
 /// The smallest screen that shows anything useful.
 pub const SMALLEST: (u16, u16) = (60, 20);
 
-/// What the places that several panels share show: the one that had the focus last.
+/// The contents of the places that several panels share: the panel that had the focus last.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Slots {
-    /// 80x24: map (with the log below), or one of RC, CLI, plan, graphs, world instead of both.
+    /// From 80x24: map (with the log below), or one of RC, CLI, plan, graphs, world instead of both.
     main: Panel,
-    /// 120x40, bottom left: log, CLI or graphs; 200x60: log or graphs.
+    /// From 120x34, bottom left: log, CLI or graphs. From 180x48, bottom left: log or graphs.
     left: Panel,
-    /// 120x40, bottom right, and 200x60, top right: RC, plan or world.
+    /// From 120x34, bottom right: RC, plan or world. From 180x48, top right: RC or world.
     right: Panel,
 }
 
@@ -67,27 +67,27 @@ pub struct Screen {
     pub status: Rect,
     /// The visible panels with their frames.
     pub panels: Vec<(Panel, Rect)>,
-    /// One line, if there is one.
+    /// The line of the timeline, if it is shown.
     pub timeline: Option<Rect>,
     pub hints: Rect,
 }
 
-/// Rows from which the timeline is always there.
+/// The number of rows from which the timeline is always shown.
 const TIMELINE_ROWS: u16 = 34;
 
 impl Screen {
-    /// The place of a panel, if it is visible.
+    /// Returns the area of a panel, if it is visible.
     pub fn panel(&self, panel: Panel) -> Option<Rect> {
         self.panels.iter().find(|(p, _)| *p == panel).map(|(_, area)| *area)
     }
 
-    /// The panel at a cell.
+    /// Returns the panel at a cell.
     pub fn at(&self, column: u16, row: u16) -> Option<(Panel, Rect)> {
         self.panels.iter().find(|(_, area)| area.contains((column, row).into())).copied()
     }
 }
 
-/// The inside of a panel; empty, but within the area, when the frame takes all of it.
+/// Returns the inside of a panel. It is empty, but within the area, if the frame fills the area.
 pub fn inner(area: Rect) -> Rect {
     Rect::new(
         area.x.saturating_add(area.width.min(1)),
@@ -97,12 +97,12 @@ pub fn inner(area: Rect) -> Rect {
     )
 }
 
-/// Divides the screen; `None` when it is too small.
+/// Divides the screen; `None` if it is too small.
 pub fn screen(state: &AppState) -> Option<Screen> {
     divided(state, state.size)
 }
 
-/// Divides a screen of this many columns and rows; `None` when it is too small.
+/// Divides a screen of this many columns and rows; `None` if it is too small.
 pub fn divided(state: &AppState, (width, height): (u16, u16)) -> Option<Screen> {
     if width < SMALLEST.0 || height < SMALLEST.1 {
         return None;

@@ -1,4 +1,4 @@
-//! What the Log panel shows of the log: from which severity on, and what is searched in it.
+//! Filter and search of the Log panel.
 
 use crossterm::event::{KeyCode, KeyEvent};
 
@@ -8,7 +8,7 @@ use super::event_log::{LogLine, Severity};
 use super::message::Effect;
 use super::text_field::TextField;
 
-/// The filters, the widest first, with the names they have in the title.
+/// The filters, the widest first, with their names in the title.
 const FILTERS: [(Severity, &str); 3] =
     [(Severity::Info, ""), (Severity::Warn, "warnings and faults"), (Severity::Fault, "faults")];
 
@@ -16,25 +16,25 @@ const FILTERS: [(Severity, &str); 3] =
 #[derive(Debug, Default)]
 pub struct LogView {
     pub search: TextField,
-    /// The search is being typed.
+    /// `true` while the search is being typed.
     pub typing: bool,
-    /// Number of the line that was found last, as [`LogLine::number`] counts.
+    /// The number of the line found last, as in [`LogLine::number`].
     pub found: Option<u64>,
     filter: usize,
 }
 
 impl LogView {
-    /// Whether a line is shown.
+    /// Returns `true` if a line passes the filter.
     fn shows(&self, line: &LogLine) -> bool {
         FILTERS.get(self.filter).is_none_or(|(least, _)| line.severity >= *least)
     }
 
-    /// What is left out, in words; empty when nothing is.
+    /// Returns the name of the filter; empty if it shows all lines.
     pub fn filter_name(&self) -> &'static str {
         FILTERS.get(self.filter).map_or("", |(_, name)| name)
     }
 
-    /// Where the search occurs in a text, as bytes; none when nothing is searched.
+    /// Returns the byte range of the first match in a text; `None` if there is no match or no search.
     pub fn find_in(&self, text: &str) -> Option<std::ops::Range<usize>> {
         let wanted = self.search.value();
         if wanted.is_empty() {
@@ -46,18 +46,18 @@ impl LogView {
     }
 }
 
-/// The lines that are shown, the newest first.
+/// Returns the shown lines, the newest first.
 pub(super) fn newest_first(state: &AppState) -> impl DoubleEndedIterator<Item = &LogLine> {
     state.log.newest_first().filter(|line| state.log_view.shows(line))
 }
 
-/// The newest lines that are left out while an earlier instant is shown: all that came later but one.
+/// Returns the number of newest lines left out while an earlier instant is shown: all later ones but one.
 pub(super) fn later_above(state: &AppState) -> usize {
     let later = newest_first(state).take_while(|entry| state.is_later_than_shown(entry.time)).count();
     later.saturating_sub(1)
 }
 
-/// The next wider or narrower filter.
+/// Selects the next filter; the widest follows the narrowest.
 pub(super) fn cycle_filter(state: &mut AppState) -> Vec<Effect> {
     state.log_view.filter = (state.log_view.filter + 1) % FILTERS.len();
     state.scrolls.log = 0;
@@ -71,7 +71,7 @@ pub(super) fn begin_search(state: &mut AppState) -> Vec<Effect> {
     Vec::new()
 }
 
-/// A key while the search is typed.
+/// Handles a key while the search is typed.
 pub(super) fn search_key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
     match event.code {
         KeyCode::Esc => end_search(state),
@@ -92,7 +92,7 @@ pub(super) fn end_search(state: &mut AppState) {
     state.log_view.found = None;
 }
 
-/// To the next older line in which the search occurs, or the next newer one; says when there is none.
+/// Scrolls to the next older or newer line with a match, and reports if there is none.
 pub(super) fn next_match(state: &mut AppState, newer: bool) -> Vec<Effect> {
     if state.log_view.search.is_empty() {
         let text = format!("Nothing is searched: `{}` in the log begins.", state.key(Action::Search));
@@ -100,13 +100,13 @@ pub(super) fn next_match(state: &mut AppState, newer: bool) -> Vec<Effect> {
     } else if !show_match(state, newer) {
         let end = if newer { "newer" } else { "older" };
         let text = format!("No {end} line has {:?}.", state.log_view.search.value());
-        // Not in the log, which would have the line then.
+        // Not in the log, because that line would then match.
         state.say(Severity::Info, text);
     }
     Vec::new()
 }
 
-/// Scrolls to the match after the last one; whether there is one.
+/// Scrolls to the match after the last one. Returns `true` if there is one.
 fn show_match(state: &mut AppState, newer: bool) -> bool {
     let last = state.log_view.found;
     let is_beyond = |number: u64| match (last, newer) {

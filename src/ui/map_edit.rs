@@ -1,4 +1,4 @@
-//! What of a plan is edited on the map: waypoints, home and the fence, by a cursor or by the mouse.
+//! Edits on the map: waypoints, home and the fence, by a cursor or by the mouse.
 
 use super::app_state::AppState;
 use super::editor::PlanId;
@@ -7,41 +7,41 @@ use super::map_point::{MapPoint, origin, to_map};
 use crate::geo::{LatLon, LocalFrame, distance_bearing};
 use nalgebra::Vector3;
 
-/// How far a thing may be from the cursor to be meant, columns of the map.
+/// The greatest distance from the cursor at which an item is selected, columns of the map.
 const REACH_COLUMNS: f64 = 2.5;
 
-/// Something of the plan that has a place.
+/// An item of the plan that has a place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum MapItem {
     Waypoint(usize),
     /// Home of the plan.
     Home,
-    /// The fence, by its ring.
+    /// The fence, which is picked up at its ring.
     Fence,
 }
 
-/// What is being moved, and where it is now.
+/// The item being moved, and its current place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Moving {
     pub item: MapItem,
-    /// Where, m.
+    /// The place, m.
     pub place: MapPoint,
-    /// It was moved from where it was picked up.
+    /// `true` once it has left the place where it was picked up.
     pub moved: bool,
-    /// By the mouse: it is put down when the button is released.
+    /// `true` if the mouse moves it: it is put down when the button is released.
     pub by_mouse: bool,
-    /// Plan and revision in which it was picked up.
+    /// The plan and revision in which it was picked up.
     pub of: (PlanId, usize),
 }
 
 /// The keyboard's cursor on the map.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct MapCursor {
-    /// Where, m.
+    /// The place, m.
     pub place: MapPoint,
 }
 
-/// Where home of the plan is on the map: the plan's, else the craft's, else the boot place.
+/// Returns home on the map: the plan's, else the craft's, else the boot place.
 pub(super) fn home(state: &AppState) -> Option<MapPoint> {
     let frame = origin(state)?;
     let planned = state.editor.document().home.map(|home| home.position);
@@ -50,18 +50,18 @@ pub(super) fn home(state: &AppState) -> Option<MapPoint> {
     )
 }
 
-/// Radius of the fence that the plan or the craft asks for, m.
+/// Returns the radius of the fence that the plan or the craft sets, m.
 pub(super) fn fence_m(state: &AppState) -> Option<f64> {
     super::editor::settings_in_force::assumptions(state, state.editor.document()).fence_m
 }
 
-/// The place as latitude and longitude.
+/// Converts a place to latitude and longitude.
 pub(super) fn position(frame: &LocalFrame, place: MapPoint) -> LatLon {
     let (lat, lon, _) = frame.to_geodetic(Vector3::new(place.e, place.n, 0.0));
     LatLon::from_degrees(lat, lon)
 }
 
-/// What is meant by a place on the map at this scale: the nearest waypoint, else home, else the fence.
+/// Returns the item at a place on the map at this scale: the nearest waypoint, else home, else the fence.
 pub(super) fn item_at(state: &AppState, place: MapPoint, metres_per_column: f64) -> Option<MapItem> {
     let frame = origin(state)?;
     let reach = REACH_COLUMNS * metres_per_column;
@@ -79,7 +79,7 @@ pub(super) fn item_at(state: &AppState, place: MapPoint, metres_per_column: f64)
     fence_m(state).filter(|fence_m| (from_home - fence_m).abs() <= reach).map(|_| MapItem::Fence)
 }
 
-/// Distances and bearings of a place, for whoever is about to put something there.
+/// Returns distances and bearings to a place where the user is about to put something.
 pub(super) fn measured(state: &AppState, place: MapPoint, moving: Option<MapItem>) -> Option<String> {
     let frame = origin(state)?;
     let here = position(&frame, place);

@@ -21,18 +21,18 @@ impl MapPoint {
         Self { n, e }
     }
 
-    /// Distance to another place, m.
+    /// Returns the distance to another place, m.
     pub(super) fn distance(self, other: Self) -> f64 {
         (self.n - other.n).hypot(self.e - other.e)
     }
 
-    /// The place `t` of the way to `other`.
+    /// Returns the place at the fraction `t` of the way to `other`.
     pub(super) fn towards(self, other: Self, t: f64) -> Self {
         Self::new(self.n + (other.n - self.n) * t, self.e + (other.e - self.e) * t)
     }
 }
 
-/// The place from which positions count as the origin of the map; home or the first waypoint while there is none.
+/// Returns the position from which the map counts metres; home or the first waypoint while it is unknown.
 pub(super) fn origin(state: &AppState) -> Option<LocalFrame> {
     let vehicle = &state.view.vehicle;
     if let Some(truth) = &vehicle.truth {
@@ -46,13 +46,13 @@ pub(super) fn origin(state: &AppState) -> Option<LocalFrame> {
     Some(LocalFrame::new(place.lat_deg(), place.lon_deg(), 0.0))
 }
 
-/// A position in metres from the origin of the map.
+/// Converts a position to metres from the origin of the map.
 pub(super) fn to_map(origin: &LocalFrame, position: LatLon) -> MapPoint {
     let enu = origin.to_enu(position.lat_deg(), position.lon_deg(), 0.0);
     MapPoint::new(enu.y, enu.x)
 }
 
-/// Where the craft is: in truth if the world tells, else as it believes.
+/// Returns the position of the craft: the true one if the simulator reports it, else the estimate.
 pub(super) fn craft(view: &SessionView) -> Option<MapPoint> {
     let vehicle = &view.vehicle;
     match (&vehicle.truth, vehicle.estimate.n, vehicle.estimate.e) {

@@ -1,4 +1,4 @@
-//! The messages that the user interface gets, and the effects that it asks for.
+//! The messages to the user interface, and the effects that it requests.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -10,7 +10,7 @@ use crate::plan::FlightPlan;
 use crate::session::command::{CliOutput, Command, SessionView};
 use crate::session::{Event, ForecastJob, ForecastReply, UploadReport};
 
-/// Something that happened outside.
+/// An input of the user interface.
 #[derive(Debug)]
 pub enum Msg {
     /// Wall-clock time since the user interface started; sent ahead of the messages that it dates.
@@ -32,70 +32,71 @@ pub enum Msg {
     UploadReply {
         /// The plan that was uploaded.
         id: PlanId,
-        /// How many waypoints it had.
+        /// The number of its waypoints.
         count: usize,
-        /// What was done, or the sentence of the first refusal.
+        /// The report of the upload, or the sentence of the first refusal.
         result: Result<UploadReport, String>,
     },
     /// The session answered a change of the world.
     WorldReply {
-        /// What was to change.
+        /// The requested change.
         line: String,
-        /// The sentence of the refusal otherwise.
+        /// The error is the sentence of the refusal.
         result: Result<(), String>,
     },
-    /// A forecast, or why there is none.
+    /// A forecast, or the reason for its refusal.
     Forecast(ForecastReply),
     /// The craft answered a download.
     DownloadReply {
-        /// The plan that takes it in.
+        /// The open plan that receives it.
         id: PlanId,
         /// The plan of the craft, or the sentence of the refusal.
         result: Result<Box<FlightPlan>, String>,
     },
-    /// The craft saved its configuration: the sentence of why not otherwise.
+    /// The craft saved its configuration. The error is the reason for a failure, a sentence.
     SaveReply(Result<(), String>),
-    /// The flight was written as a scenario, a sentence tells where; or why not.
+    /// The flight was written as a scenario. The result is a sentence with the place, or with the reason for a failure.
     ScenarioReply(Result<String, String>),
     Files(FileReply),
     /// A command could not be delivered because the session does not keep up.
     Busy,
 }
 
-/// Something to be done outside.
+/// A request that the shell carries out.
 #[derive(Debug)]
 pub enum Effect {
     Send(Command),
     /// Run a CLI line; the reply comes back as [`Msg::CliReply`].
     Cli(String),
-    /// Change the world, `wind=5@270`; the reply comes back as [`Msg::WorldReply`].
+    /// Change the world, such as `wind=5@270`; the reply comes back as [`Msg::WorldReply`].
     World(String),
-    /// Hand a plan to the craft; the reply comes back as [`Msg::UploadReply`].
+    /// Upload a plan to the craft; the reply comes back as [`Msg::UploadReply`].
     Upload {
-        /// Which plan it is.
+        /// The identifier of the plan.
         id: PlanId,
         plan: Box<FlightPlan>,
-        /// Setting lines that come with it, without `set `.
+        /// The setting lines of the plan, without `set `.
         settings: Vec<String>,
     },
     /// Fly ahead on a copy of the vehicle; the forecast comes back as [`Msg::Forecast`].
     Forecast(ForecastJob),
     Files(FileRequest),
-    /// Read the plan of the craft for this open plan; it comes back as [`Msg::DownloadReply`].
+    /// Read the plan of the craft into this open plan; the reply comes back as [`Msg::DownloadReply`].
     Download(PlanId),
-    /// Save the configuration in the craft's flash, as a ground station does; a notice tells how it went.
+    /// Save the configuration in the craft's flash, as a ground station does; the reply comes back as
+    /// [`Msg::SaveReply`].
     SaveToFlash,
-    /// Write the flight just flown as a scenario into this file, or into one with the name of the plan; it comes back as
+    /// Write the flight just flown as a scenario to this file, or to one named after the plan; the reply comes back as
     /// [`Msg::ScenarioReply`].
     WriteScenario {
         file: Option<PathBuf>,
         /// The name of the plan.
         plan: String,
     },
-    /// Give text to the terminal's clipboard.
+    /// Copy text to the terminal's clipboard.
     Copy(String),
-    /// Give the terminal back until the shell continues the program.
+    /// Restore the terminal and stop until the shell continues the program.
     Suspend,
-    /// Give the terminal back and end.
+    /// Restore the terminal and end the program.
     Quit,
 }

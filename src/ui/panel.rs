@@ -1,5 +1,5 @@
-//! The panels by their numbers, one file each: `draw(state, area, buffer)` fills the inside, `title(state)` stands on
-//! the frame.
+//! The panels in the order of their numbers, one file each. `draw(state, area, buffer)` fills the inside;
+//! `title(state)` returns the title in the frame.
 
 pub(super) mod cli;
 pub(super) mod editor_popup;
@@ -55,18 +55,18 @@ impl Panel {
         }
     }
 
-    /// Whether letters are text there.
+    /// Returns `true` if letters are text in this panel.
     pub fn takes_text(self) -> bool {
         self == Self::Cli
     }
 }
 
-/// A span in a role.
+/// Returns a span in the style of a role.
 pub(super) fn span(theme: &Theme, role: Role, text: impl Into<String>) -> Span<'static> {
     Span::styled(text.into(), theme.style(role))
 }
 
-/// Writes `text` at a row of the area, cut to its width.
+/// Writes `text` in a row of the area, cut to its width.
 pub(super) fn row(buffer: &mut Buffer, area: Rect, row: u16, theme: &Theme, role: Role, text: &str) {
     if row < area.height {
         let text = cut(text, usize::from(area.width));
@@ -74,7 +74,7 @@ pub(super) fn row(buffer: &mut Buffer, area: Rect, row: u16, theme: &Theme, role
     }
 }
 
-/// Writes a styled line at a row of the area.
+/// Writes a styled line in a row of the area.
 pub(super) fn line(buffer: &mut Buffer, area: Rect, row: u16, line: &Line<'_>) {
     if row < area.height {
         drawing::line(buffer, area.x, area.y + row, line, area.width);

@@ -1,4 +1,4 @@
-//! The bar in the lowest frame that names every panel behind its key; a click shows the panel.
+//! The bar in the lowest frame: the key and the name of every panel. A click shows the panel.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -12,15 +12,15 @@ use super::layout::Screen;
 use super::panel::{Panel, span};
 use super::theme::Role;
 
-/// Columns from which names are further apart.
+/// The width from which names are further apart.
 const WIDE: u16 = 80;
 
-/// The row of the bar: the lowest of the frames.
+/// Returns the row of the bar: the lowest of the frames.
 fn row(screen: &Screen) -> u16 {
     screen.timeline.unwrap_or(screen.hints).y.saturating_sub(1)
 }
 
-/// The name of each panel that has room, its key, and the cells of both.
+/// Returns each panel that has room, its key, and the cells of key and name.
 fn places(state: &AppState, screen: &Screen) -> Vec<(Panel, String, Rect)> {
     let y = row(screen);
     let gap = if screen.hints.width >= WIDE { 2 } else { 1 };
@@ -28,7 +28,7 @@ fn places(state: &AppState, screen: &Screen) -> Vec<(Panel, String, Rect)> {
     let mut x = screen.hints.x + 3;
     let mut places = Vec::new();
     for panel in Panel::ALL {
-        // Where letters are text, the keys of the panels are, too.
+        // While letters are text, the keys of the panels are text, too.
         let key = state.keymap.shown_keys(Action::Show(panel)).into_iter().next();
         let key = key.filter(|_| !state.focus.takes_text()).unwrap_or_default();
         let blank = u16::from(!key.is_empty());
@@ -46,7 +46,7 @@ pub(super) fn draw(state: &AppState, screen: &Screen, buffer: &mut Buffer) {
     let theme = &state.theme;
     let places = places(state, screen);
     let (Some((_, _, first)), Some((_, _, last))) = (places.first(), places.last()) else { return };
-    // A blank keeps the names off the frame.
+    // A blank separates the names from the frame.
     let whole = Rect::new(first.x - 1, first.y, last.right() - first.x + 2, 1);
     let blank = " ".repeat(usize::from(whole.width));
     drawing::text(buffer, whole.x, whole.y, blank, theme.style(Role::Text));
@@ -61,7 +61,7 @@ pub(super) fn draw(state: &AppState, screen: &Screen, buffer: &mut Buffer) {
     }
 }
 
-/// The panel that is named at a cell.
+/// Returns the panel whose name is at a cell.
 pub(super) fn panel_at(state: &AppState, screen: &Screen, cell: (u16, u16)) -> Option<Panel> {
     places(state, screen).into_iter().find(|(_, _, place)| place.contains(cell.into())).map(|place| place.0)
 }

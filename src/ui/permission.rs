@@ -1,4 +1,4 @@
-//! Keeps back what would change a craft outside until the user permits it, once a connection.
+//! Holds effects that would change a real remote craft until the user permits changes, once per connection.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -14,18 +14,18 @@ use super::text_wrap::wrapped;
 use super::theme::Role;
 use crate::session::{Access, Command, Denial, Impact, RemoteView};
 
-/// Columns of the inside.
+/// The width of the inside.
 const WIDTH: u16 = 56;
 
-/// The flight controller outside, when its craft is real.
+/// Returns the remote flight controller if its craft is real.
 pub(super) fn real_craft(state: &AppState) -> Option<&RemoteView> {
     state.view.remote.as_ref().filter(|remote| remote.access.is_limited())
 }
 
-/// Gives the effects back that may be carried out; what would change a real craft is kept back, and asked about.
+/// Returns the effects that may be carried out. Effects that would change a real craft are held, and the user is asked.
 pub(super) fn hold(state: &mut AppState, effects: Vec<Effect>) -> Vec<Effect> {
     let Some(remote) = real_craft(state) else { return effects };
-    // The session confirms with the next picture.
+    // The session confirms the permission only with the next picture.
     let permitted = state.permitted == Some(remote.connection);
     let (access, opens_cli) = (if permitted { Access::Changing } else { remote.access }, remote.opens_cli);
     let (held, free): (Vec<Effect>, Vec<Effect>) = effects
@@ -38,14 +38,14 @@ pub(super) fn hold(state: &mut AppState, effects: Vec<Effect>) -> Vec<Effect> {
     free
 }
 
-/// Asks whether the craft may be changed.
+/// Asks the user to permit changes of the craft.
 pub(super) fn ask(state: &mut AppState) {
     if !state.popups.contains(&Popup::Permission) {
         state.popups.push(Popup::Permission);
     }
 }
 
-/// What an effect does to the craft.
+/// Returns the impact of an effect on the craft.
 fn impact_of(effect: &Effect, opens_cli: bool) -> Impact {
     match effect {
         Effect::Cli(line) => Impact::of_line(line).or_changes(opens_cli),
@@ -62,7 +62,7 @@ fn impact_of(effect: &Effect, opens_cli: bool) -> Impact {
     }
 }
 
-/// The user permits changes: what was kept back goes on.
+/// Permits changes and releases the held effects.
 pub(super) fn permit(state: &mut AppState) -> Vec<Effect> {
     close(state);
     let Some(remote) = real_craft(state) else { return Vec::new() };
@@ -76,7 +76,7 @@ pub(super) fn permit(state: &mut AppState) -> Vec<Effect> {
     effects
 }
 
-/// The user does not: what was kept back is dropped.
+/// Declines changes and drops the held effects.
 pub(super) fn decline(state: &mut AppState) {
     close(state);
     let held = std::mem::take(&mut state.held);
@@ -86,7 +86,7 @@ pub(super) fn decline(state: &mut AppState) {
     state.notify(Severity::Info, "Nothing was changed.");
 }
 
-/// Drops what was kept back when the question is gone: closed in another way, or asked over a connection that ended.
+/// Drops the held effects if the question is gone: it was closed in another way, or its connection ended.
 pub(super) fn follow(state: &mut AppState, connection_before: Option<u32>) {
     let connection = real_craft(state).map(|remote| remote.connection);
     let is_asked = state.popups.contains(&Popup::Permission);

@@ -12,36 +12,36 @@ pub(super) use go_to::GoTo;
 pub(super) use map_menu::MapMenu;
 pub use palette::Palette;
 
-/// What lies over the panels; the last one opened gets the keys first.
+/// A popup over the panels. The last one opened gets the keys first.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Popup {
     /// The keys, scrolled down by this many lines.
     Help { scroll: usize },
-    /// Which waypoint to go to.
+    /// The choice of a waypoint to go to.
     GoTo(GoTo),
-    /// What can be done at a place of the map.
+    /// The menu of a place on the map.
     MapMenu(MapMenu),
-    /// What may go wrong now, to fly ahead with it.
+    /// The list of what-ifs to fly ahead with.
     WhatIf {
-        /// The row that Enter takes.
+        /// The selected row.
         selected: usize,
     },
-    /// What the guards and abbreviations mean.
+    /// The explanations of guards and abbreviations.
     Guards {
-        /// The row that is explained.
+        /// The explained row.
         selected: usize,
     },
     /// "The craft is armed. Quit?"
     Quit,
     /// "This changes the flight controller. Go on?"
     Permission,
-    /// The plots that can be shown.
+    /// The choice of plots for the graphs.
     Plots {
-        /// Index of the selected one.
+        /// The index of the selected plot.
         selected: usize,
     },
     /// The `:` line.
     CommandLine,
-    /// All commands, to be searched.
+    /// The search of all commands.
     Palette(Palette),
 }

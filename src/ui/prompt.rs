@@ -1,4 +1,4 @@
-//! What lies over the panels as lines to read, and lines as answers to it: for whoever has no screen.
+//! The popups as lines of text, and lines of input as answers, for use without a screen.
 
 mod file;
 mod form;
@@ -14,14 +14,14 @@ use super::popup::Popup;
 use super::update::update;
 use crate::session::WHAT_IFS;
 
-/// How a list of choices ends.
+/// The last line of a list of choices.
 const NONE: &str = "A number chooses, an empty line leaves it.";
 
-/// What an answer did.
+/// The result of an answer.
 #[derive(Debug, Default)]
 pub(super) struct Answered {
     pub(super) effects: Vec<Effect>,
-    /// What it changed in a question that goes on.
+    /// The change, if the question stays open.
     pub(super) told: Option<String>,
 }
 
@@ -31,7 +31,8 @@ impl From<Vec<Effect>> for Answered {
     }
 }
 
-/// What is asked now, one sentence or choice a line; `None` when nothing is, or its choices are not known yet.
+/// Returns the current question, one sentence or choice per line; `None` if there is none, or if its choices are not
+/// known yet.
 pub(super) fn question(state: &AppState) -> Option<Vec<String>> {
     match &state.editor.popup {
         Some(EditorPopup::Form(open)) => return Some(form::question(state, open)),
@@ -60,10 +61,10 @@ pub(super) fn question(state: &AppState) -> Option<Vec<String>> {
     }
 }
 
-/// Takes a line as the answer to what is asked.
+/// Handles a line as the answer to the question.
 ///
 /// # Errors
-/// What can be answered, in a sentence; it is still asked.
+/// Returns the possible answers in a sentence; the question stays open.
 pub(super) fn answer(state: &mut AppState, line: &str) -> Result<Answered, String> {
     let line = line.trim();
     let quits = line == "quit" || line == "app.quit";
@@ -137,7 +138,7 @@ fn decision(state: &AppState, question: &Question) -> Vec<String> {
     vec![format!("{text} Answer {}{later}.", choices(question))]
 }
 
-/// `s save, d discard, n stay`.
+/// Returns the choices of a question, such as `s save, d discard, n stay`.
 fn choices(question: &Question) -> String {
     let answers = question.answers().iter().map(|(key, what)| format!("{key} {what}"));
     answers.collect::<Vec<_>>().join(", ")

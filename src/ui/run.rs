@@ -1,4 +1,4 @@
-//! The loop around the user interface: waits, feeds messages in, carries effects out, draws.
+//! The loop around the user interface: waits, passes messages in, carries out effects, draws.
 
 #![allow(clippy::disallowed_methods, reason = "the shell of the user interface lives on wall-clock time")]
 
@@ -30,33 +30,33 @@ mod plain;
 
 pub use plain::run_plain;
 
-/// Shortest time between two frames after a key.
+/// The shortest time between two frames after a key.
 const KEY_FRAME: Duration = Duration::from_millis(16);
-/// Shortest time between two frames when only the flight went on.
+/// The shortest time between two frames when only the flight went on.
 const FLIGHT_FRAME: Duration = Duration::from_millis(50);
-/// Longest time without a frame while something on the screen fades.
+/// The longest time without a frame while something on the screen fades.
 const FADE_FRAME: Duration = Duration::from_millis(500);
-/// Events taken at once.
+/// The number of events processed at once.
 const BATCH: usize = 256;
 
-/// The session, seen from the user interface.
+/// The user interface's link to the session.
 #[derive(Debug)]
 pub struct SessionLink {
     pub commands: mpsc::Sender<Command>,
     pub view: watch::Receiver<SessionView>,
     pub events: mpsc::UnboundedReceiver<Event>,
-    /// Pictures of a flight that was flown before, oldest first.
+    /// Pictures of an earlier flight, oldest first.
     pub past: Vec<SessionView>,
-    /// Writes a flight as a scenario: gets the file, or the name of the plan where none is given; a sentence tells where it
-    /// was written, or why not.
+    /// Writes a flight as a scenario. Receives the file, or the name of the plan if there is none. Returns a sentence
+    /// with the place, or with the reason for a failure.
     pub write_scenario: fn(Option<PathBuf>, &str, RecordedFlight) -> Result<String, String>,
 }
 
-/// How the user interface ended.
+/// The reason for the end of the user interface.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ending {
     Quit,
-    /// A signal asked for it.
+    /// A signal requested it.
     Signal,
     /// The session ended by itself.
     SessionEnded,
@@ -64,22 +64,23 @@ pub enum Ending {
     TerminalLost,
 }
 
-/// Why the loop woke.
+/// The reason for which the loop woke.
 enum Wake {
     Msg(Msg),
-    /// The program is to be stopped, or goes on after it was.
+    /// The program has to stop.
     Suspend,
+    /// The program continues after a stop.
     Resume,
     Flight(Msg),
     Time,
     End(Ending),
 }
 
-/// Runs the user interface until it ends, at the latest when `stop` does. The terminal is given back when `tui` is
-/// dropped, at the end of this.
+/// Runs the user interface until it ends, at the latest when `stop` does. Drops `tui` at the end, which restores the
+/// terminal.
 ///
 /// # Errors
-/// The terminal could not be read or written.
+/// Returns an error if the terminal could not be read or written.
 pub async fn run(
     tui: Tui,
     link: SessionLink,
@@ -88,7 +89,7 @@ pub async fn run(
     stop: impl Future<Output = ()>,
 ) -> io::Result<Ending> {
     match run_loop(tui, link, files, config, stop).await {
-        // Whatever fails first when it is closed.
+        // A closed terminal may fail in different ways.
         Err(_) if !io::stdout().is_terminal() => Ok(Ending::TerminalLost),
         ended => ended,
     }
@@ -101,7 +102,7 @@ async fn run_loop(
     config: UiConfig,
     stop: impl Future<Output = ()>,
 ) -> io::Result<Ending> {
-    // From outside; the key is an effect.
+    // Signals of other programs; the Ctrl-Z key is an effect.
     let mut suspend = signal(SignalKind::from_raw(Signal::TSTP.as_raw()))?;
     let mut resume = signal(SignalKind::from_raw(Signal::CONT.as_raw()))?;
     let started = Instant::now();
@@ -109,11 +110,11 @@ async fn run_loop(
     let size = tui.terminal().size()?;
     let view = link.view.borrow_and_update().clone();
     let mut state = AppState::new(config, (size.width, size.height), view.clone());
-    // Tracks and graphs grow with the pictures.
+    // Each picture extends tracks and graphs.
     for past in link.past.drain(..).chain([view]) {
         update(&mut state, Msg::View(past));
     }
-    // Before the first frame: a terminal that is closed when it has seen that gives no keys any more.
+    // Before the first frame: a terminal that is closed once it has seen that frame sends no keys any more.
     let mut keys = EventStream::new();
     tui.draw(&state)?;
 
@@ -122,13 +123,13 @@ async fn run_loop(
     let forecaster = Forecaster::start(move |reply| drop(forecasts.send(Msg::Forecast(reply))))?;
     let mut events = Vec::with_capacity(BATCH);
     let mut drawn = Instant::now();
-    // The time of the next frame; none while nothing changed.
+    // The time of the next frame; `None` while nothing has changed.
     let mut due: Option<Instant> = None;
 
     loop {
         let frame_at = due.unwrap_or(drawn + FADE_FRAME);
         let wake = tokio::select! {
-            // Keys first: what the user does is answered before the flight is shown.
+            // Keys first: the user gets an answer before the flight is shown.
             biased;
             () = &mut stop => Wake::End(Ending::Signal),
             Some(()) = suspend.recv() => Wake::Suspend,
@@ -204,7 +205,7 @@ async fn run_loop(
     }
 }
 
-/// The message of a terminal event, if it means anything.
+/// Returns the message of a terminal event, if there is one.
 fn terminal_message(event: TerminalEvent) -> Option<Msg> {
     match event {
         TerminalEvent::Key(key) => Some(Msg::Key(key)),
@@ -215,7 +216,7 @@ fn terminal_message(event: TerminalEvent) -> Option<Msg> {
     }
 }
 
-/// Does what an effect says; replies come back as messages.
+/// Carries out an effect; replies come back as messages.
 fn carry_out(
     effect: Effect,
     link: &SessionLink,
@@ -232,7 +233,7 @@ fn carry_out(
             Ok(())
         }
         Effect::Copy(text) => {
-            // Terminals that do not know it show nothing; the editor keeps its own copy.
+            // Terminals without this feature show nothing; the editor keeps its own copy.
             execute!(io::stdout(), CopyToClipboard::to_clipboard_from(text)).ok();
             Ok(())
         }
@@ -251,7 +252,7 @@ fn carry_out(
             tokio::spawn(async move {
                 let recorded: Result<Box<RecordedFlight>, String> =
                     answer.await.unwrap_or_else(|_| Err("the session did not answer.".to_owned()));
-                // It is flown again, which takes a while.
+                // This flies the flight again, which takes a while.
                 let written = tokio::task::spawn_blocking(move || write(file, &plan, *recorded?)).await;
                 let answer =
                     written.unwrap_or_else(|_| Err("the flight could not be flown again.".to_owned()));

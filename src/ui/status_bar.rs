@@ -15,9 +15,9 @@ use super::panel::span;
 use super::theme::Role;
 use super::units::Units;
 
-/// Empty and full cell, V.
+/// The voltage of an empty and a full cell, V.
 const CELL_V: (f64, f64) = (3.3, 4.2);
-/// Parts of the battery bar.
+/// The number of parts of the battery bar.
 const BAR: usize = 5;
 
 /// Draws the two status lines.
@@ -30,7 +30,8 @@ pub(super) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     sides(buffer, second, &mission(state, room), &time);
 }
 
-/// Left and right part of a line; the right one is never cut, the left one ends in an ellipsis where it must.
+/// Draws the left and right part of a line. The right one is never shortened; the left one ends in an ellipsis if there
+/// is no room.
 pub(super) fn sides(buffer: &mut Buffer, area: Rect, left: &[Span<'static>], right: &[Span<'static>]) {
     let right = Line::from(right.to_vec());
     let width = (right.width() as u16).min(area.width);
@@ -66,14 +67,14 @@ fn craft(state: &AppState) -> Vec<Span<'static>> {
             Mode::Autopilot | Mode::GpsRescue => Role::Target,
             _ => Role::Text,
         };
-        // One word a mode, so that the line can be read as a list.
+        // One word per mode, so that the line can be read as a list.
         let name = mode.to_string().replace(' ', "");
         spans.push(span(theme, role, format!("{name} ")));
     }
     spans
 }
 
-/// GPS, battery, RC.
+/// Returns GPS, battery and RC.
 fn sensors(state: &AppState) -> Vec<Span<'static>> {
     let theme = &state.theme;
     let craft = &state.view.vehicle.craft;
@@ -106,7 +107,7 @@ fn battery_bar(volts: Option<f64>, cells: Option<u8>) -> (String, Role) {
     ("▮".repeat(full) + &"▯".repeat(BAR - full), role)
 }
 
-/// Who drives the channels, in at most ten columns.
+/// Returns the source of the channels, in at most ten columns.
 pub(super) fn rc(state: &AppState) -> (String, Role) {
     let craft = &state.view.vehicle.craft;
     let ours = matches!(craft.rc_source, Some(RcSource::Sticks) | None);
@@ -125,8 +126,8 @@ pub(super) fn rc(state: &AppState) -> (String, Role) {
     }
 }
 
-/// State, waypoint and the numbers of the leg; without a mission those of the craft alone. A part that does not fit is
-/// left out as a whole, the least important first.
+/// Returns state, waypoint and the numbers of the leg; without a mission those of the craft alone. A part that does not
+/// fit is left out as a whole, the least important first.
 fn mission(state: &AppState, room: usize) -> Vec<Span<'static>> {
     let theme = &state.theme;
     let vehicle = &state.view.vehicle;
@@ -152,7 +153,7 @@ fn mission(state: &AppState, room: usize) -> Vec<Span<'static>> {
     let speed = |value: Option<f64>| value.map(|speed| units.speed(speed));
     let estimate = &vehicle.estimate;
     let leg = engaged.map_or_else(Vec::new, |nav| leg(nav, units));
-    // How important, label, value, unit.
+    // Rank (a low one is kept longest), label, value, unit.
     let craft = [
         (2, "", fixed(speed(estimate.ground_speed_mps), 5, 1), format!(" {mps}")),
         (1, "", fixed(length(estimate.alt), 6, 1), format!(" {m}")),
@@ -178,7 +179,7 @@ fn mission(state: &AppState, room: usize) -> Vec<Span<'static>> {
     spans
 }
 
-/// The numbers of the leg: how important, label, value, unit.
+/// Returns the numbers of the leg: rank, label, value, unit.
 fn leg(nav: &NavTelemetry, units: Units) -> Vec<(u8, &'static str, String, String)> {
     let m = || format!(" {}", units.length_unit());
     let length = |value: Option<f64>| value.map(|metres| units.length(metres));
@@ -199,7 +200,7 @@ fn leg(nav: &NavTelemetry, units: Units) -> Vec<(u8, &'static str, String, Strin
     ]
 }
 
-/// Simulated time and speed.
+/// Returns simulated time and speed.
 fn time(state: &AppState) -> Vec<Span<'static>> {
     let theme = &state.theme;
     let view = &state.view;
@@ -222,7 +223,7 @@ fn time(state: &AppState) -> Vec<Span<'static>> {
     if view.paused {
         return vec![span(theme, Role::Active, format!(" {} ‖ ", clock_ms(view.vehicle.time)))];
     }
-    // In the first second after a start or a pause there is no figure yet.
+    // There is no measured speed in the first second after a start or a pause.
     let measured = view.speed_achieved > 0.0;
     let keeps_up = !measured || view.speed_achieved >= 0.9 * view.speed_wanted;
     let speed = if measured && (view.speed_wanted.is_infinite() || !keeps_up) {

@@ -1,4 +1,4 @@
-//! The message on top of the State panel: what keeps the craft from flying, or how it flies, and what to do now.
+//! The message at the top of the State panel: the obstacle to flying or the state of the flight, and the next step.
 
 mod remote;
 
@@ -15,11 +15,11 @@ use super::transmitter;
 use super::transmitter::ThrottleMove;
 use super::units::Units;
 
-/// The state of the craft as a sentence, and what to do.
+/// The state of the craft as a sentence, and the next step.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct StatusMessage {
     pub severity: Severity,
-    /// What keeps the craft from flying, or how it flies.
+    /// The obstacle to flying, or the state of the flight.
     pub condition: String,
     pub action: String,
 }
@@ -32,7 +32,7 @@ fn message(
     Some(StatusMessage { severity, condition: condition.into(), action: action.into() })
 }
 
-/// The arming-disable flag that tells the user most; those that only repeat a cause come last.
+/// Returns the arming disable flag that helps the user most. Flags that only repeat a cause come last.
 pub fn most_useful_flag(flags: ArmingFlags) -> Option<ArmingFlag> {
     let rank = |flag: &ArmingFlag| match flag {
         ArmingFlag::Cli => 0,
@@ -50,7 +50,7 @@ pub fn most_useful_flag(flags: ArmingFlags) -> Option<ArmingFlag> {
     flags.iter().min_by_key(rank)
 }
 
-/// What to do about an arming-disable flag, and the key that does it here.
+/// Returns the advice for an arming disable flag, with the key for it.
 pub fn arming_hint(state: &AppState, flag: ArmingFlag) -> String {
     let (action, does) = match flag {
         ArmingFlag::RxLoss => (Action::CutRc, "restores the link"),
@@ -63,7 +63,7 @@ pub fn arming_hint(state: &AppState, flag: ArmingFlag) -> String {
     format!("{}; `{}` {does}", flag.hint(), state.key(action))
 }
 
-/// What the user should know and do now; `None` while the mission flies.
+/// Returns the current message; `None` while the mission flies.
 pub fn current(state: &AppState) -> Option<StatusMessage> {
     let vehicle = &state.view.vehicle;
     let craft = &vehicle.craft;
@@ -199,7 +199,7 @@ pub fn current(state: &AppState) -> Option<StatusMessage> {
     message(Severity::Good, "Ready.", format!("{} flies the plan; by hand: {by_hand}", key(Action::Fly)))
 }
 
-/// How long the lost link has to come back, and what happens if it does not.
+/// Returns the time that the lost link has to come back, and the failsafe action after it.
 fn failsafe_ahead(state: &AppState, ahead: FailsafeAhead) -> Option<StatusMessage> {
     let does = match ahead.procedure {
         FailsafeProcedure::Drop => "motors off",
@@ -221,7 +221,7 @@ fn failsafe_ahead(state: &AppState, ahead: FailsafeAhead) -> Option<StatusMessag
     message(severity, condition, action)
 }
 
-/// A craft that falls without its motors.
+/// Returns the message for a craft that falls without its motors.
 fn disarmed_in_the_air(state: &AppState) -> Option<StatusMessage> {
     let action = if state.view.simulator.is_some() {
         "reset the simulator's world".to_owned()
@@ -231,7 +231,7 @@ fn disarmed_in_the_air(state: &AppState) -> Option<StatusMessage> {
     message(Severity::Fault, "Disarmed in the air.", action)
 }
 
-/// The keys that take a mishap back, where the flight is recorded.
+/// Returns the keys that undo a mishap, if the flight is recorded.
 fn way_back(state: &AppState) -> String {
     if state.view.timeline.is_none() {
         return String::new();
@@ -239,7 +239,7 @@ fn way_back(state: &AppState) -> String {
     format!("{}, then {} takes it back; ", state.key(Action::StateBack), state.key(Action::FlyOn))
 }
 
-/// What to know of a mission that is flown.
+/// Returns the message for a mission in flight.
 fn in_flight(state: &AppState) -> Option<StatusMessage> {
     let nav = state.view.vehicle.nav.as_ref()?;
     if let Some(deviation) = nav.cannot_hold {
@@ -258,7 +258,7 @@ fn in_flight(state: &AppState) -> Option<StatusMessage> {
     None
 }
 
-/// A craft that is blown off its place, or cannot keep its altitude.
+/// Returns the message for a craft that is blown off its place or cannot keep its altitude.
 fn cannot_hold_message(deviation: CannotHold, units: Units) -> Option<StatusMessage> {
     let CannotHold { distance_m, vertical_m, limit } = deviation;
     let side = if vertical_m < 0.0 { "low" } else { "high" };
@@ -273,12 +273,12 @@ fn cannot_hold_message(deviation: CannotHold, units: Units) -> Option<StatusMess
     message(Severity::Warn, condition, action)
 }
 
-/// Whether the craft has no plan to fly.
+/// Returns `true` if the craft has no plan to fly.
 fn lacks_plan(state: &AppState) -> bool {
     state.view.vehicle.stored_plan.as_ref().is_some_and(|plan| plan.waypoints.is_empty())
 }
 
-/// An armed craft on the sticks: where it is, and the keys that lead on from there.
+/// Returns the message for an armed craft flown by hand: its state, and the keys for the next step.
 fn by_hand(state: &AppState) -> Option<StatusMessage> {
     let craft = &state.view.vehicle.craft;
     let [arm, throttle, autopilot, home, upload] =
@@ -311,7 +311,7 @@ fn by_hand(state: &AppState) -> Option<StatusMessage> {
     message(Severity::Info, condition, action)
 }
 
-/// What to do after a refusal, with the keys of the screen.
+/// Returns the advice after a refusal, with its keys.
 fn action_after(state: &AppState, refusal: Refusal) -> String {
     let key = |action| state.key(action);
     match refusal {

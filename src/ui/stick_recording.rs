@@ -1,4 +1,4 @@
-//! Movements of the sticks and switches, recorded in simulated time and played again.
+//! Stick and switch movements, recorded in simulated time and played again.
 
 use super::action::Action;
 use super::app_state::AppState;
@@ -8,13 +8,13 @@ use super::transmitter;
 use crate::session::Command;
 use crate::signals::RcFrame;
 
-/// Frames kept at most; a frame is kept when it changes.
+/// The greatest number of frames kept. A frame is kept when it changes.
 const MAX_FRAMES: usize = 60_000;
 
-/// A recording, and what is done with it.
+/// A recording, and the current activity.
 #[derive(Debug, Default)]
 pub struct StickRecording {
-    /// Seconds since the beginning, and the frame from then on.
+    /// Each frame with its start, in seconds since the beginning.
     frames: Vec<(f64, RcFrame)>,
     length_s: f64,
     activity: Activity,
@@ -24,14 +24,14 @@ pub struct StickRecording {
 enum Activity {
     #[default]
     Idle,
-    /// Since this simulated time, s.
+    /// Recording since this simulated time, s.
     Recording(f64),
-    /// Since this simulated time, s, and the index of the next frame.
+    /// Playing since this simulated time, s, with the index of the next frame.
     Playing(f64, usize),
 }
 
 impl StickRecording {
-    /// What is done, for the title of the RC panel; none when nothing is.
+    /// Returns the activity for the title of the RC panel; `None` while idle.
     pub(super) fn shown(&self, now_s: f64) -> Option<String> {
         match self.activity {
             Activity::Idle => None,
@@ -42,7 +42,7 @@ impl StickRecording {
         }
     }
 
-    /// The flight goes on from this earlier instant, s: what was recorded after it is forgotten, and playing ends.
+    /// Follows the flight back to this earlier instant, s: drops the frames recorded after it and ends playing.
     pub(super) fn go_back_to(&mut self, time_s: f64) {
         match self.activity {
             Activity::Recording(since) if since <= time_s => {
@@ -54,7 +54,7 @@ impl StickRecording {
         }
     }
 
-    /// The hand takes the sticks: playing ends. Whether it was on.
+    /// Ends playing, because the user takes the sticks. Returns `true` if it was on.
     pub(super) fn stop_playing(&mut self) -> bool {
         let was_on = matches!(self.activity, Activity::Playing(..));
         if was_on {
@@ -98,10 +98,10 @@ pub(super) fn toggle_playing(state: &mut AppState) -> Vec<Effect> {
     advance(state)
 }
 
-/// Whether there is something to play.
+/// Checks that there is something to play.
 ///
 /// # Errors
-/// Why not, in a sentence.
+/// Returns the reason in a sentence if there is not.
 pub(super) fn can_play(state: &AppState) -> Result<(), String> {
     let recording = &state.stick_recording;
     match recording.activity {
@@ -114,7 +114,7 @@ pub(super) fn can_play(state: &AppState) -> Result<(), String> {
     }
 }
 
-/// With each picture: records what changed, or sends the frame that is due.
+/// Records a changed frame, or sends the frame that is due. Called with each picture.
 pub(super) fn advance(state: &mut AppState) -> Vec<Effect> {
     let now_s = state.view.vehicle.time.as_secs_f64();
     let frame = transmitter::frame(state);

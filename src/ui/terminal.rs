@@ -1,4 +1,4 @@
-//! The terminal, borrowed and always given back: at the end, on an error, and before a panic is printed.
+//! The terminal: taken over, and always restored at the end, on an error, and before a panic is printed.
 
 use std::io::{self, Stdout, Write as _, stdout};
 use std::mem::ManuallyDrop;
@@ -20,25 +20,25 @@ use ratatui::backend::CrosstermBackend;
 use super::app_state::AppState;
 use super::draw::draw;
 
-/// Whether the terminal is ours at the moment; the panic hook of any thread must know.
+/// `true` while the program has taken over the terminal. The panic hook of any thread reads it.
 static TAKEN_OVER: AtomicBool = AtomicBool::new(false);
 static HOOK: Once = Once::new();
 
-/// The terminal while it is ours; dropping it gives it back.
+/// The terminal while the program has taken it over. Dropping it restores the terminal.
 pub struct Tui {
-    /// Never dropped: that would complain on a standard error that may be the terminal that went away. The cursor is shown
-    /// by [`restore`].
+    /// Never dropped: the drop would complain on standard error, which may be the terminal that went away. [`restore`]
+    /// shows the cursor.
     terminal: ManuallyDrop<Terminal<CrosstermBackend<Stdout>>>,
     mouse: bool,
-    /// What is on the screen is not what was drawn.
+    /// `true` if the screen no longer shows the drawn frame.
     is_lost: bool,
 }
 
 impl Tui {
-    /// Takes the terminal: raw mode, alternate screen, bracketed paste, mouse if wanted.
+    /// Takes over the terminal: raw mode, alternate screen, bracketed paste, mouse if wanted.
     ///
     /// # Errors
-    /// Whatever the terminal says.
+    /// Returns the error of the terminal.
     pub fn enter(mouse: bool) -> io::Result<Self> {
         HOOK.call_once(|| {
             let before = std::panic::take_hook();
@@ -47,7 +47,7 @@ impl Tui {
                 before(info);
             }));
         });
-        // The theme decides about colours; the library's own reading of NO_COLOR would wipe bold and reverse, too.
+        // The theme decides about colours; the library's own handling of NO_COLOR would remove bold and reverse, too.
         style::force_color_output(true);
         match take_over(mouse).and_then(|()| Terminal::new(CrosstermBackend::new(stdout()))) {
             Ok(terminal) => Ok(Self { terminal: ManuallyDrop::new(terminal), mouse, is_lost: false }),
@@ -58,39 +58,39 @@ impl Tui {
         }
     }
 
-    /// Gives the terminal back and stops the program, until the shell continues it.
+    /// Restores the terminal and stops the program until the shell continues it.
     ///
     /// # Errors
-    /// Whatever the terminal says.
+    /// Returns the error of the terminal.
     pub fn suspend(&mut self) -> io::Result<()> {
         restore();
-        // The whole job, as the terminal does: a script or cargo may have started the program, and the shell waits for
-        // them. The signal of Ctrl-Z is handled here, and would not stop it.
+        // Stops the whole job, as the terminal does: a script or cargo may have started the program, and the shell
+        // waits for them. This program handles the signal of Ctrl-Z, which would not stop it.
         rustix::process::kill_current_process_group(rustix::process::Signal::STOP)?;
         self.resume()
     }
 
-    /// Takes the terminal again after the program was stopped: the shell has used it meanwhile.
+    /// Takes over the terminal again after a stop, during which the shell has used it.
     ///
     /// # Errors
-    /// Whatever the terminal says.
+    /// Returns the error of the terminal.
     pub fn resume(&mut self) -> io::Result<()> {
         take_over(self.mouse)?;
-        // Clearing the terminal that is there would ask for the place of the cursor, and wait for the answer.
+        // Clearing the existing terminal would query the cursor position and wait for the answer.
         self.terminal = ManuallyDrop::new(Terminal::new(CrosstermBackend::new(stdout()))?);
         execute!(stdout(), Clear(ClearType::All))
     }
 
-    /// The next frame is drawn anew: a window that shrinks and grows again before anybody looks has its old size, and has
-    /// lost what was drawn.
+    /// Makes the next frame redraw everything. A window that shrinks and grows again between two looks has its old
+    /// size, but has lost its contents.
     pub fn lose_screen(&mut self) {
         self.is_lost = true;
     }
 
-    /// Draws a frame; a terminal that can shows it all at once.
+    /// Draws a frame. Terminals with synchronized updates show it all at once.
     ///
     /// # Errors
-    /// Whatever the terminal says.
+    /// Returns the error of the terminal.
     pub fn draw(&mut self, state: &AppState) -> io::Result<()> {
         execute!(stdout(), BeginSynchronizedUpdate)?;
         if std::mem::take(&mut self.is_lost) {
@@ -101,7 +101,7 @@ impl Tui {
         execute!(stdout(), EndSynchronizedUpdate)
     }
 
-    /// The terminal to draw on.
+    /// Returns the terminal to draw on.
     pub fn terminal(&mut self) -> &mut Terminal<CrosstermBackend<Stdout>> {
         &mut self.terminal
     }
@@ -113,7 +113,7 @@ impl Drop for Tui {
     }
 }
 
-/// Raw mode, alternate screen, bracketed paste, mouse if wanted.
+/// Turns on raw mode, alternate screen, bracketed paste, and the mouse if wanted.
 fn take_over(mouse: bool) -> io::Result<()> {
     enable_raw_mode()?;
     TAKEN_OVER.store(true, Ordering::SeqCst);
@@ -121,15 +121,15 @@ fn take_over(mouse: bool) -> io::Result<()> {
     if mouse { execute!(stdout(), EnableMouseCapture) } else { Ok(()) }
 }
 
-/// Returns whether a shell with jobs waits for this program: only such a one continues it after it was stopped. The process
-/// that leads a session, as under `xterm -e` or in a container, has none.
+/// Returns `true` if a shell with job control waits for this program. Only such a shell continues it after a stop. The
+/// process that leads a session, as under `xterm -e` or in a container, has no such shell.
 pub(super) fn can_be_continued() -> bool {
-    /// Programs between this one and the shell, such as scripts and cargo.
+    /// The greatest number of programs between this one and the shell, such as scripts and cargo.
     const MOST: usize = 64;
     let (Ok(session), group) = (getsid(None), getpgrp()) else { return false };
     let mut ancestor = Some(getppid());
     for _ in 0..MOST {
-        // 0 is the parent in another PID namespace; asked for its session, the system answers for this program.
+        // 0 is a parent in another PID namespace; for the session of 0, the system would return that of this program.
         let parent = match ancestor {
             Some(parent) if parent.as_raw() > 0 && getsid(Some(parent)) == Ok(session) => parent,
             _ => return false,
@@ -142,10 +142,10 @@ pub(super) fn can_be_continued() -> bool {
     false
 }
 
-/// Returns the parent of another process, where the system has `/proc`.
+/// Returns the parent of another process, on systems with `/proc`.
 fn parent_of(process: Pid) -> Option<Pid> {
     let stat = std::fs::read_to_string(format!("/proc/{process}/stat")).ok()?;
-    // The name of the program stands in brackets, and may have brackets and blanks in it.
+    // The name of the program is in brackets and may itself contain brackets and blanks.
     let parent = stat.rsplit_once(") ")?.1.split(' ').nth(1)?;
     Some(Pid::from_raw(parent.parse().ok()?))
 }
@@ -162,7 +162,7 @@ fn restore() {
     if !TAKEN_OVER.swap(false, Ordering::SeqCst) {
         return;
     }
-    // Each on its own: when one fails the others still help.
+    // Each command on its own: if one fails, the others still help.
     let mut out = stdout();
     execute!(out, EndSynchronizedUpdate, DisableMouseCapture).ok();
     execute!(out, DisableBracketedPaste).ok();

@@ -1,4 +1,4 @@
-//! One line of text that is being typed: what editing keys do to it, and how it is drawn in a row.
+//! A line of text being typed: its editing keys, and drawing it in a row.
 
 use crossterm::event::{Event as TerminalEvent, KeyCode, KeyEvent, KeyModifiers};
 use ratatui::buffer::Buffer;
@@ -10,10 +10,10 @@ use super::drawing;
 use super::theme::{Role, Theme};
 use crate::printable;
 
-/// Most characters that are inserted at once: what is pasted by mistake must not hold the screen up.
+/// The greatest length, characters. Text pasted by mistake must not block the screen.
 const LONGEST: usize = 2048;
 
-/// A line of text with a cursor. While its whole text is selected, what is typed replaces it.
+/// A line of text with a cursor. While its whole text is selected, typed text replaces it.
 #[derive(Debug, Clone, Default)]
 pub struct TextField {
     input: Input,
@@ -21,24 +21,24 @@ pub struct TextField {
 }
 
 impl TextField {
-    /// A field with this text, the cursor behind it.
+    /// Returns a field with this text and the cursor after it.
     pub fn new(text: impl Into<String>) -> Self {
         Self { input: Input::new(text.into()), selected: false }
     }
 
-    /// A field whose text is selected.
+    /// Returns a field whose text is selected.
     pub fn selected(text: impl Into<String>) -> Self {
         let mut field = Self::new(text);
         field.select(true);
         field
     }
 
-    /// Selects the whole text or none of it.
+    /// Selects or deselects the whole text.
     pub fn select(&mut self, selected: bool) {
         self.selected = selected && !self.is_empty();
     }
 
-    /// Whether the whole text is selected.
+    /// Returns `true` if the whole text is selected.
     pub fn is_selected(&self) -> bool {
         self.selected
     }
@@ -47,19 +47,19 @@ impl TextField {
         self.input.value()
     }
 
-    /// Whether there is no text.
+    /// Returns `true` if there is no text.
     pub fn is_empty(&self) -> bool {
         self.value().is_empty()
     }
 
-    /// Takes the text out, which leaves the field empty.
+    /// Removes and returns the text, which leaves the field empty.
     pub fn take(&mut self) -> String {
         self.selected = false;
         self.input.value_and_reset()
     }
 
-    /// Inserts text at the cursor or in place of the selected text, without what no terminal shows and what is longer
-    /// than any line.
+    /// Inserts text at the cursor or in place of the selected text. Leaves out characters that no terminal shows and
+    /// text beyond the greatest length.
     pub fn insert(&mut self, text: &str) {
         if std::mem::take(&mut self.selected) && text.chars().any(printable::is_printable) {
             self.input.reset();
@@ -70,9 +70,9 @@ impl TextField {
         }
     }
 
-    /// Does what an editing key says: characters, cursor keys, Home, End, Backspace, Delete, and the usual keys with
-    /// control. Returns whether it was one. A character replaces selected text, Backspace and Delete delete it, the other
-    /// keys keep it.
+    /// Handles an editing key: characters, cursor keys, Home, End, Backspace, Delete, and the usual control keys.
+    /// Returns `true` if it was one. A character replaces selected text, Backspace and Delete delete it, the other keys
+    /// keep it.
     pub fn key(&mut self, event: KeyEvent) -> bool {
         let is_selected = std::mem::take(&mut self.selected);
         let types = matches!(event.code, KeyCode::Char(_))
@@ -87,13 +87,14 @@ impl TextField {
         self.input.handle_event(&TerminalEvent::Key(event)).is_some()
     }
 
-    /// Draws the text in the first row of the area, scrolled so that the cursor is visible; gives the cursor's place.
+    /// Draws the text in the first row of the area, scrolled so that the cursor is visible. Returns the position of the
+    /// cursor.
     pub fn draw(&self, theme: &Theme, area: Rect, buffer: &mut Buffer) -> Option<Position> {
         let area = area.intersection(buffer.area);
         if area.is_empty() {
             return None;
         }
-        // The last column is the cursor's behind a full row.
+        // The last column is for the cursor after a full row.
         let room = usize::from(area.width - 1);
         let scroll = self.input.visual_scroll(room);
         let visible: String = self.value().chars().skip(scroll).take(room).collect();

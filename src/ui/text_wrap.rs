@@ -1,7 +1,7 @@
-//! Text in lines of a width.
+//! Wraps text to a width.
 
-/// `text` in lines of at most `width` columns, broken at blanks; a word that is longer is broken anywhere. A character
-/// that is wider than a line has one of its own.
+/// Wraps `text` to lines of at most `width` columns at blanks. A longer word is broken anywhere. A character that is
+/// wider than a line has a line of its own.
 pub(super) fn wrapped(text: &str, width: usize) -> Vec<String> {
     use unicode_width::{UnicodeWidthChar as _, UnicodeWidthStr as _};
     let mut lines: Vec<String> = Vec::new();
@@ -32,14 +32,14 @@ pub(super) fn wrapped(text: &str, width: usize) -> Vec<String> {
     lines
 }
 
-/// `text` as it is in lines of at most `width` columns, blanks kept; the lines after the first are indented.
+/// Wraps `text` to lines of at most `width` columns and keeps its blanks. The lines after the first are indented.
 pub(super) fn folded(text: &str, width: usize) -> Vec<String> {
     use unicode_width::UnicodeWidthChar as _;
     const INDENT: &str = "  ";
     let mut lines: Vec<String> = Vec::new();
     let mut current = String::new();
     let mut used = 0;
-    // Byte behind the last blank of `current`: where it is broken.
+    // The byte after the last blank of `current`, where the line is broken.
     let mut blank = None;
     for c in text.chars() {
         let columns = c.width().unwrap_or(0);
@@ -60,7 +60,7 @@ pub(super) fn folded(text: &str, width: usize) -> Vec<String> {
     lines
 }
 
-/// How many of these entries, each so many rows high, fit into a height; at least one.
+/// Returns how many of these entries, each with its number of rows, fit into a height; at least one.
 pub(super) fn fitting(rows: impl Iterator<Item = usize>, height: usize) -> usize {
     let mut left = height;
     let fits = |rows: &usize| match left.checked_sub(*rows) {

@@ -1,4 +1,4 @@
-//! What colours and marks mean: panels name roles, the theme turns them into styles the terminal can show.
+//! The meaning of colours and marks: panels name roles, the theme turns them into styles that the terminal can show.
 
 use ratatui::style::{Color, Modifier, Style};
 use ratatui::symbols::Marker;
@@ -13,19 +13,19 @@ pub enum Role {
     Dim,
     /// Names of panels and columns.
     Title,
-    /// What has the focus.
+    /// The element with the focus.
     Focus,
-    /// As it should be.
+    /// A good state.
     Ok,
     Warn,
     Fault,
-    /// What is active now.
+    /// The active element.
     Active,
-    /// Where the craft is going.
+    /// The current target of the craft.
     Target,
-    /// Where the craft has been.
+    /// The flown track of the craft.
     Track,
-    /// Where the craft would fly.
+    /// The predicted track of the craft.
     Predicted,
     Craft,
     Fence,
@@ -34,24 +34,24 @@ pub enum Role {
     Selected,
 }
 
-/// How many colours the terminal shows.
+/// The colours that the terminal shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Palette {
     /// 24-bit colours for a dark background, a set that colour-blind people can tell apart.
     #[default]
     Dark,
-    /// The same for a light background.
+    /// The same set for a light background.
     Light,
     /// 24-bit colours far from each other and from a dark background.
     HighContrast,
-    /// The terminal's own sixteen.
+    /// The terminal's own sixteen colours.
     Ansi16,
-    /// None: weight and reverse only.
+    /// No colours: only weight and reverse video.
     Mono,
 }
 
 impl Palette {
-    /// The palettes by the names that themes have.
+    /// The palettes with their names in theme settings.
     pub const NAMES: [(&'static str, Self); 5] = [
         ("dark", Self::Dark),
         ("light", Self::Light),
@@ -61,7 +61,7 @@ impl Palette {
     ];
 }
 
-/// Which characters the terminal shows.
+/// The characters that the terminal shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Charset {
     /// Box drawing, arrows, Braille.
@@ -70,18 +70,18 @@ pub enum Charset {
     Ascii,
 }
 
-/// Palette and character set in use.
+/// The palette and character set in use.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Theme {
     pub palette: Palette,
     pub charset: Charset,
-    /// The environment asks for no colours, whatever else is asked for.
+    /// `true` if the environment requests no colours, which overrides all other settings.
     pub no_colour: bool,
 }
 
 impl Theme {
-    /// The theme that fits the environment: `NO_COLOR`, `COLORTERM`, `TERM`, and the locale variables. Colours are
-    /// decided here because the terminal library, left to itself under `NO_COLOR`, also wipes bold and reverse.
+    /// Returns the theme that fits the environment: `NO_COLOR`, `COLORTERM`, `TERM`, and the locale variables. Colours
+    /// are decided here because the terminal library on its own would also remove bold and reverse under `NO_COLOR`.
     pub fn from_environment(get: impl Fn(&str) -> Option<String>) -> Self {
         let set = |name: &str| get(name).filter(|value| !value.is_empty());
         let term = set("TERM").unwrap_or_default();
@@ -103,7 +103,7 @@ impl Theme {
         Self { palette, charset, no_colour }
     }
 
-    /// The marker lines on the map are drawn with.
+    /// Returns the marker for lines on the map.
     pub fn marker(&self) -> Marker {
         match self.charset {
             Charset::Unicode => Marker::Braille,
@@ -111,7 +111,7 @@ impl Theme {
         }
     }
 
-    /// A comparison in the character set.
+    /// Returns a comparison operator in the character set.
     pub(super) fn operator(&self, op: GuardOp) -> &'static str {
         match (op, self.charset) {
             (GuardOp::AtMost, Charset::Unicode) => "≤",
@@ -123,12 +123,12 @@ impl Theme {
         }
     }
 
-    /// The background colour that is painted, where the terminal's own cannot be relied on.
+    /// Returns the background colour to paint if the terminal's own cannot be relied on.
     pub fn background(&self) -> Option<Color> {
         (self.palette == Palette::Light).then_some(Color::Rgb(250, 250, 247))
     }
 
-    /// The foreground colour of a role.
+    /// Returns the foreground colour of a role.
     pub fn colour(&self, role: Role) -> Color {
         match self.palette {
             Palette::Mono => Color::Reset,
@@ -189,7 +189,7 @@ impl Theme {
         }
     }
 
-    /// The style of a role.
+    /// Returns the style of a role.
     pub fn style(&self, role: Role) -> Style {
         let style = Style::new().fg(self.colour(role));
         match role {

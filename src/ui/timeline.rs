@@ -1,11 +1,11 @@
-//! The flight as a line: its states, what happened, and where in it the shown instant is.
+//! The flight as a line: its states, its events, and the shown instant.
 //!
 //! ```text
 //!  00:00.0 I────●─A━━━━━━━━━━━━H━━━━┃──────A─────────▲──L──── 03:12.4
 //! ```
 //!
-//! A letter stands where a state begins, thick up to the shown instant; marks tell alarms, arming and touchdown. A long part in
-//! which nothing happens is folded into one column, `≈`.
+//! A letter is at the start of a state. The line is thick up to the shown instant. Marks show alarms, arming and
+//! touchdown. A long part in which nothing happens is folded into one column, `≈`.
 
 mod columns;
 
@@ -25,17 +25,17 @@ use crate::telemetry::NavState;
 use crate::timeline::{Mark, MarkKind, TimelineView};
 use columns::Columns;
 
-/// Tracks of branches that were left, the newest last.
+/// The number of tracks of abandoned branches, the newest last.
 const MAX_TRACKS: usize = 4;
 
-/// What is left behind of earlier branches of the flight.
+/// The tracks of abandoned branches of the flight.
 #[derive(Debug, Default)]
 pub struct TimelineState {
     tracks: Vec<Vec<TrackPoint>>,
 }
 
 impl TimelineState {
-    /// Keeps the track of a branch that was left.
+    /// Keeps the track of an abandoned branch.
     pub(super) fn keep_track(&mut self, track: Vec<TrackPoint>) {
         if track.len() > 1 {
             if self.tracks.len() == MAX_TRACKS {
@@ -49,30 +49,30 @@ impl TimelineState {
         self.tracks.clear();
     }
 
-    /// The tracks of branches that were left.
+    /// Returns the tracks of abandoned branches.
     pub(super) fn tracks(&self) -> &[Vec<TrackPoint>] {
         &self.tracks
     }
 }
 
 impl AppState {
-    /// Whether an earlier instant is shown while the flight waits.
+    /// Returns `true` if an earlier instant is shown while the flight waits.
     pub fn is_rewound(&self) -> bool {
         self.view.is_rewound()
     }
 
-    /// Whether `time` lies after the earlier instant that is shown.
+    /// Returns `true` if `time` is after the shown earlier instant.
     pub(super) fn is_later_than_shown(&self, time: SimTime) -> bool {
         self.is_rewound() && time > self.view.vehicle.time
     }
 
-    /// How far before the newest instant the shown one lies, s; `None` when it is the newest.
+    /// Returns the time from the shown instant to the newest, s; `None` if the newest is shown.
     pub(super) fn rewound_s(&self) -> Option<f64> {
         let timeline = self.view.timeline.as_ref().filter(|timeline| timeline.rewound)?;
         Some(timeline.head.seconds_since(self.view.vehicle.time))
     }
 
-    /// How many points of the track lie before the instant that is shown.
+    /// Returns the number of track points up to the shown instant.
     pub(super) fn track_points_shown(&self) -> usize {
         let points = self.track.points();
         if !self.is_rewound() {
@@ -82,7 +82,7 @@ impl AppState {
         points.partition_point(|point| point.time_s <= shown_s)
     }
 
-    /// The transitions up to the instant that is shown, the oldest first.
+    /// Returns the transitions up to the shown instant, the oldest first.
     pub(super) fn transitions_shown(
         &self,
     ) -> impl DoubleEndedIterator<Item = &Transition> + ExactSizeIterator {
@@ -91,7 +91,7 @@ impl AppState {
         self.transitions.iter().take(shown)
     }
 
-    /// The flight goes on from `time`: what was logged after it belongs to a branch that was left.
+    /// Marks the log after `time` as left behind and drops later transitions, because the flight continues from there.
     pub(super) fn leave_behind(&mut self, time: SimTime) {
         self.log.leave_behind(time);
         let kept = self.transitions.partition_point(|step| step.time <= time);
@@ -99,7 +99,7 @@ impl AppState {
     }
 }
 
-/// The instant at a column; `None` beside the line.
+/// Returns the instant at a column; `None` beside the line.
 pub(super) fn time_at(timeline: &TimelineView, area: Rect, column: u16) -> Option<SimTime> {
     Columns::new(timeline, area).time_at(column)
 }
@@ -109,7 +109,7 @@ pub(super) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     let columns = Columns::new(timeline, area);
     let shown = columns.column_of(state.view.vehicle.time);
-    // The cursor of the graphs, where the recording reaches.
+    // The cursor of the graphs, if it is within the recording.
     let pointed_at = graphs::pointed_at(state).filter(|time| *time >= timeline.first);
     let pointed_at = pointed_at.map(|time| columns.column_of(time));
     let mut spans: Vec<Span<'_>> = vec![span(theme, Role::Dim, format!(" {} ", clock(timeline.first)))];
@@ -121,7 +121,7 @@ pub(super) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
             if let MarkKind::State(to) = mark.kind {
                 flying = to;
             }
-            // What ended before the line begins only tells its first state.
+            // A mark before the start of the line only sets its first state.
             let recorded = mark.time >= timeline.first;
             if recorded && here.is_none_or(|other| weight(mark.kind) >= weight(other.kind)) {
                 here = Some(*mark);
@@ -146,7 +146,7 @@ pub(super) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     drawing::line(buffer, area.x, area.y, &Line::from(spans), area.width);
 }
 
-/// Which of two marks in one column is shown.
+/// Returns the weight of a mark; of several marks in one column the heaviest is shown.
 fn weight(kind: MarkKind) -> u8 {
     match kind {
         MarkKind::Recovery => 0,

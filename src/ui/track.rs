@@ -1,12 +1,12 @@
-//! Where the craft has been: a polyline that never grows beyond a bound.
+//! The flown track: a polyline that never grows beyond a bound.
 
-/// Points kept; when full, every second one is dropped and the spacing doubles.
+/// The number of points kept. When it is reached, every second point is dropped and the spacing doubles.
 const MAX_POINTS: usize = 20_480;
-/// Spacing of points at first, m.
+/// The initial spacing of points, m.
 const SPACING_M: f64 = 0.4;
-/// Faster than this is no flight but a jump: a reset, a glitch.
+/// A faster movement is a jump, not flight: a reset or a glitch.
 const JUMP_MPS: f64 = 60.0;
-/// A step that is never a jump, m.
+/// The greatest step that is never a jump, m.
 const STEP_M: f64 = 5.0;
 
 /// A point of the track, metres from the boot place.
@@ -16,13 +16,13 @@ pub struct TrackPoint {
     pub n: f64,
     /// East, m.
     pub e: f64,
-    /// Altitude above home, m: in truth if the world tells.
+    /// Altitude above home, m: the true one if the simulator reports it.
     pub alt_m: f64,
     /// Simulated time, s.
     pub time_s: f64,
-    /// Whether the autopilot was flying.
+    /// `true` if the autopilot was flying.
     pub engaged: bool,
-    /// Index of the waypoint it flew to, of the stored plan.
+    /// The index of the current waypoint of the stored plan.
     pub wp: Option<u8>,
 }
 
@@ -30,9 +30,9 @@ pub struct TrackPoint {
 pub struct Track {
     points: Vec<TrackPoint>,
     spacing_m: f64,
-    /// Where the craft was seen last, though it may have been too near the last point to be kept.
+    /// The last known position of the craft, which may be too near the last point to be kept.
     seen: Option<TrackPoint>,
-    /// A reset was asked for, so the next jump is one however long ago the last place was.
+    /// `true` after a reset was requested: the next jump counts as that reset, however old the last position is.
     awaits_reset: bool,
 }
 
@@ -43,13 +43,14 @@ impl Default for Track {
 }
 
 impl Track {
-    /// Appends a point if it is far enough from the last one; a jump starts the track anew.
+    /// Appends a point if it is far enough from the last one. A jump starts a new track.
     pub fn push(&mut self, point: TrackPoint) {
         if !(point.n.is_finite() && point.e.is_finite() && point.alt_m.is_finite()) {
             return;
         }
         let distance = |from: &TrackPoint| (point.n - from.n).hypot(point.e - from.e);
-        // Measured from the last place seen: since the last point kept a standing craft has had time to go anywhere.
+        // Measured from the last known position: since the last kept point a standing craft has had time to go
+        // anywhere.
         let jumped =
             self.seen.is_some_and(|seen| distance(&seen) > STEP_M + JUMP_MPS * (point.time_s - seen.time_s));
         if jumped {
@@ -74,7 +75,7 @@ impl Track {
         self.points.push(point);
     }
 
-    /// Cuts off the part after `time_s`, s; gives it, beginning where the rest ends.
+    /// Removes the part after `time_s`, s. Returns it, starting with the last kept point.
     pub fn cut_after(&mut self, time_s: f64) -> Vec<TrackPoint> {
         let kept = self.points.partition_point(|point| point.time_s <= time_s);
         let mut part = self.points.split_off(kept);
@@ -89,13 +90,13 @@ impl Track {
         *self = Self::default();
     }
 
-    /// The craft is about to be put somewhere else: once it is `disarmed` away from where it was, the track starts
-    /// anew, even if at high speed of the simulation it could have flown there.
+    /// Prepares for a reset: if the craft is then disarmed away from its last position, the track starts again, even if
+    /// at high simulation speed it could have flown there.
     pub fn await_reset(&mut self) {
         self.awaits_reset = true;
     }
 
-    /// Takes note of a disarmed craft at a place; a reset that was awaited ends the track.
+    /// Records a disarmed craft at a place, which ends the track if a reset was requested.
     pub fn disarmed_at(&mut self, n: f64, e: f64) {
         let moved = self.seen.is_some_and(|seen| (n - seen.n).hypot(e - seen.e) > STEP_M);
         if self.awaits_reset && moved {
@@ -103,7 +104,7 @@ impl Track {
         }
     }
 
-    /// The points, the oldest first.
+    /// Returns the points, the oldest first.
     pub fn points(&self) -> &[TrackPoint] {
         &self.points
     }

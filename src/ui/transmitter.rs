@@ -1,4 +1,4 @@
-//! The keyboard as an RC transmitter: the next frame of sticks and switches when a key is pressed.
+//! The keyboard as an RC transmitter: computes the next frame of sticks and switches when a key is pressed.
 
 use std::time::Duration;
 
@@ -18,7 +18,7 @@ use super::panel::Panel;
 use super::status_message;
 use super::update::TWICE_WITHIN;
 
-/// Channel of the throttle.
+/// The channel of the throttle.
 const THROTTLE: usize = 2;
 /// The stick at the bottom, µs.
 const LOW_US: u16 = 1000;
@@ -26,22 +26,22 @@ const LOW_US: u16 = 1000;
 const MIDDLE_US: u16 = 1500;
 /// The modes that hold the craft level and in place with centred sticks.
 const HOLD_MODES: [Mode; 3] = [Mode::Angle, Mode::AltHold, Mode::PosHold];
-/// Below this the craft counts as standing when no simulator tells, m.
+/// The altitude below which the craft counts as standing if no simulator reports it, m.
 const STANDING_BELOW_M: f64 = 0.5;
-/// Longest time that sticks not yet confirmed by the session count.
+/// The longest time for which sticks not yet confirmed by the session count.
 const CONFIRM_WITHIN: Duration = Duration::from_millis(500);
 
-/// Where the throttle key puts the stick next.
+/// The next position of the throttle stick.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum ThrottleMove {
     /// Hover, with the hold modes on.
     Hover,
-    /// Where ALTHOLD brings the craft down.
+    /// The position at which ALTHOLD lets the craft descend, µs.
     Sink(u16),
     Low,
 }
 
-/// The frame that the next change starts from: what was sent last, until the session shows it or moves on.
+/// Returns the base of the next change: the frame sent last, until the session confirms it or it is too old.
 pub(super) fn frame(state: &AppState) -> RcFrame {
     match state.sticks_sent {
         Some((frame, at)) if within(state.now, at, CONFIRM_WITHIN) && state.view.pilot.is_none() => frame,
@@ -49,10 +49,10 @@ pub(super) fn frame(state: &AppState) -> RcFrame {
     }
 }
 
-/// The switch of a mode.
+/// Returns the switch of a mode.
 ///
 /// # Errors
-/// A sentence when no channel is assigned to it.
+/// Returns a sentence if no channel is assigned to it.
 pub(super) fn switch(state: &AppState, mode: Mode) -> Result<Switch, String> {
     let Some(ranges) = &state.view.vehicle.craft.mode_ranges else {
         return Err(format!("The flight controller does not tell which switch turns {mode} on."));
@@ -64,17 +64,17 @@ pub(super) fn switch(state: &AppState, mode: Mode) -> Result<Switch, String> {
     })
 }
 
-/// Whether the switch of a mode is on, as the craft sees it.
+/// Returns `true` if the craft sees the switch of a mode as on.
 pub(super) fn switch_is_on(state: &AppState, mode: Mode) -> bool {
     state.view.vehicle.craft.is_switched_on(mode)
 }
 
-/// Whether the switch of a mode is on in this frame.
+/// Returns `true` if the switch of a mode is on in this frame.
 fn is_on(state: &AppState, frame: &RcFrame, mode: Mode) -> bool {
     switch::is_on(mode, state.view.vehicle.craft.mode_ranges(), &frame.channels)
 }
 
-/// The switch of a hold mode, unless its channel also arms, engages or is a stick.
+/// Returns the switch of a hold mode, unless its channel also arms, engages or is a stick.
 fn hold_switch(state: &AppState, mode: Mode) -> Option<Switch> {
     let switch = switch(state, mode).ok()?;
     let is_reserved = |range: &ModeRange| {
@@ -85,8 +85,8 @@ fn hold_switch(state: &AppState, mode: Mode) -> Option<Switch> {
     free.then_some(switch)
 }
 
-/// Puts the switches of the hold modes on or off, as far as they have channels of their own: without them a craft
-/// that is flown by keys, or whose autopilot is switched off, has nobody who levels it.
+/// Sets the switches of the hold modes that have channels of their own. Without these modes nothing levels a craft that
+/// is flown by keys, or whose autopilot is switched off.
 fn set_hold_modes(state: &AppState, next: &mut RcFrame, on: bool) {
     for mode in HOLD_MODES {
         if let Some(switch) = hold_switch(state, mode)
@@ -97,20 +97,21 @@ fn set_hold_modes(state: &AppState, next: &mut RcFrame, on: bool) {
     }
 }
 
-/// Prepares the sticks for the moment when the navigator gives the craft back: it shall be held, not sink or climb.
+/// Prepares the sticks for the moment when the navigator releases the craft, so that it holds its place and neither
+/// sinks nor climbs.
 fn prepare_hold(state: &AppState, next: &mut RcFrame) {
     rest_throttle(state, next);
     set_hold_modes(state, next, true);
 }
 
-/// Puts the throttle stick of a flying craft to where ALTHOLD keeps the altitude.
+/// Moves the throttle stick of a flying craft to the position where ALTHOLD keeps the altitude.
 fn rest_throttle(state: &AppState, next: &mut RcFrame) {
     if is_airborne(state) {
         next.channels[THROTTLE] = hover_us(state);
     }
 }
 
-/// Whether the craft stands on the ground.
+/// Returns `true` if the craft is on the ground.
 pub(super) fn is_standing(state: &AppState) -> bool {
     let vehicle = &state.view.vehicle;
     match &vehicle.truth {
@@ -119,21 +120,21 @@ pub(super) fn is_standing(state: &AppState) -> bool {
     }
 }
 
-/// Whether the craft flies, armed.
+/// Returns `true` if the craft is armed and in the air.
 fn is_airborne(state: &AppState) -> bool {
     state.view.vehicle.craft.is_armed() && !is_standing(state)
 }
 
-/// Whether the throttle stick of a frame counts as raised.
+/// Returns `true` if the throttle stick of a frame counts as raised.
 fn is_raised(state: &AppState, frame: &RcFrame) -> bool {
     frame.channels[THROTTLE] >= settings(state).raised_stick_us
 }
 
-/// Whether the throttle stick lets the craft sink in ALTHOLD.
+/// Returns `true` if the throttle stick lets the craft sink in ALTHOLD.
 pub(super) fn is_sinking(state: &AppState) -> bool {
     let frame = frame(state);
     let throttle_us = frame.channels[THROTTLE];
-    // The hover throttle in use moves a little while it is learned, and the sinking stick with it.
+    // The hover throttle changes a little while it is learned, and the sinking stick with it.
     let is_below = |sink_us: u16| throttle_us <= u16::midpoint(sink_us, hover_us(state));
     is_airborne(state)
         && is_on(state, &frame, Mode::AltHold)
@@ -141,8 +142,8 @@ pub(super) fn is_sinking(state: &AppState) -> bool {
         && settings(state).sink_stick_us.is_some_and(is_below)
 }
 
-/// What the throttle key does now: on the ground hover and low take turns; in the air the first press holds the craft,
-/// the next lets it sink, where a low stick in ALTHOLD would leave it hanging.
+/// Returns the current effect of the throttle key. On the ground it alternates between hover and low. In the air the
+/// first press holds the craft, the next lets it sink: a low stick in ALTHOLD would leave it hanging.
 pub(super) fn throttle_move(state: &AppState) -> ThrottleMove {
     let now = frame(state);
     if !is_airborne(state) {
@@ -159,24 +160,24 @@ pub(super) fn throttle_move(state: &AppState) -> ThrottleMove {
     }
 }
 
-/// Whether moving the ARM switch now does what the user wants.
+/// Checks that moving the ARM switch now arms or disarms the craft.
 ///
 /// # Errors
-/// The sentence that says what blocks arming and what to do.
+/// Returns a sentence with the cause that blocks arming and the remedy.
 pub(super) fn can_arm(state: &AppState) -> Result<(), String> {
     let switch = switch(state, Mode::Arm)?;
     let craft = &state.view.vehicle.craft;
     if craft.is_armed() || frame(state).channels[switch.channel] == switch.on_us {
         return Ok(());
     }
-    // The others only say "switch off, then on again", which is what the key does.
+    // The other flags only say "switch off, then on again", which is the effect of the key.
     match status_message::most_useful_flag(craft.arming_flags().causes()) {
         None => Ok(()),
         Some(flag) => Err(format!("Cannot arm, {flag}: {}.", status_message::arming_hint(state, flag))),
     }
 }
 
-/// Moves the ARM switch; disarming also lowers the throttle and releases the hold modes, which would block the next
+/// Moves the ARM switch. Disarming also lowers the throttle and releases the hold modes, which would block the next
 /// arming.
 pub(super) fn toggle_arm(state: &mut AppState) -> Vec<Effect> {
     let Ok(switch) = switch(state, Mode::Arm) else { return Vec::new() };
@@ -190,7 +191,7 @@ pub(super) fn toggle_arm(state: &mut AppState) -> Vec<Effect> {
     send(state, next)
 }
 
-/// As [`toggle_arm`]; in the air the key disarms when it is pressed again within [`TWICE_WITHIN`].
+/// Like [`toggle_arm`], but in the air the key disarms only if it is pressed again within [`TWICE_WITHIN`].
 pub(super) fn arm_key(state: &mut AppState) -> Vec<Effect> {
     let was_asked = state.disarm_asked.take().is_some_and(|at| within(state.now, at, TWICE_WITHIN));
     if !is_airborne(state) || was_asked {
@@ -203,8 +204,8 @@ pub(super) fn arm_key(state: &mut AppState) -> Vec<Effect> {
     Vec::new()
 }
 
-/// Moves the AUTOPILOT switch; engaging also puts the hold modes on, which take over when it is switched off. Where a
-/// command flies the craft, the switch could only wait for its end: then it is the command that is taken back.
+/// Moves the AUTOPILOT switch. Engaging also switches on the hold modes, which take over when the autopilot is switched
+/// off. While a command flies the craft, the switch could only wait for its end, so the command is cancelled instead.
 pub(super) fn toggle_autopilot(state: &mut AppState) -> Vec<Effect> {
     let Ok(switch) = switch(state, Mode::Autopilot) else { return Vec::new() };
     let mut next = frame(state);
@@ -224,7 +225,7 @@ pub(super) fn toggle_autopilot(state: &mut AppState) -> Vec<Effect> {
     send(state, next)
 }
 
-/// Sends the craft home, or takes that back. The hold modes go on, which take over when it is taken back; the scripted
+/// Sends the craft home, or cancels that. Switches on the hold modes, which take over after a cancel; the scripted
 /// pilot has them on.
 pub(super) fn toggle_return(state: &mut AppState) -> Vec<Effect> {
     if state.view.vehicle.craft.is_commanded() {
@@ -241,7 +242,7 @@ pub(super) fn toggle_return(state: &mut AppState) -> Vec<Effect> {
     effects
 }
 
-/// Moves the throttle stick as [`throttle_move`] says.
+/// Moves the throttle stick to the position given by [`throttle_move`].
 pub(super) fn move_throttle(state: &mut AppState) -> Vec<Effect> {
     let mut next = frame(state);
     let to = throttle_move(state);
@@ -258,14 +259,14 @@ pub(super) fn move_throttle(state: &mut AppState) -> Vec<Effect> {
     send(state, next)
 }
 
-/// The settings of the sticks; a throttle in the middle hovers where the flight controller does not tell.
+/// Returns the settings of the sticks; with hover at mid-throttle if the flight controller does not report them.
 fn settings(state: &AppState) -> SettingsView {
     let unknown =
         SettingsView { hover_stick_us: MIDDLE_US, raised_stick_us: MIDDLE_US, ..SettingsView::default() };
     state.view.vehicle.settings.unwrap_or(unknown)
 }
 
-/// Where the throttle stick hovers, with ALTHOLD and without; raised in any case.
+/// Returns the stick position for hovering, with ALTHOLD and without; it always counts as raised.
 fn hover_us(state: &AppState) -> u16 {
     let settings = settings(state);
     settings.hover_stick_us.max(settings.raised_stick_us)
@@ -298,7 +299,7 @@ pub(super) fn flip(state: &mut AppState, channel: usize) -> Vec<Effect> {
     set(state, channel, us)
 }
 
-/// Sends a frame; the keys take over from the scripted pilot.
+/// Sends a frame. The keys take over from the scripted pilot.
 fn send(state: &mut AppState, next: RcFrame) -> Vec<Effect> {
     let mut effects = Vec::new();
     if state.stick_recording.stop_playing() {

@@ -1,4 +1,4 @@
-//! The first minutes: five steps, each of which waits for what the user does.
+//! The tutorial: five steps, each of which waits for the user's action.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -13,23 +13,23 @@ use super::panel::Panel;
 use super::text_wrap::wrapped;
 use super::theme::Role;
 
-/// A tutorial that is under way.
+/// A tutorial in progress.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Tutorial {
     step: usize,
-    /// Where the history of the plan stood when the step began.
+    /// The revision of the plan at the start of the step.
     revision: usize,
-    /// An earlier instant was shown.
+    /// `true` once an earlier instant was shown.
     rewound: bool,
 }
 
-/// What to do, the keys of the actions in place of `{}`.
+/// The instruction, with `{}` in place of the keys of the actions.
 struct Text {
     text: &'static str,
     actions: &'static [Action],
 }
 
-/// A step: what to do, what to do once its first key was pressed, and when it is done.
+/// A step: the instruction, the instruction after its first key, and the condition for its end.
 struct Step {
     first: Text,
     is_begun: fn(&AppState) -> bool,
@@ -108,7 +108,7 @@ pub(super) fn toggle(state: &mut AppState) {
     }
 }
 
-/// Goes on to the next step when the user has done this one.
+/// Goes on to the next step once the user has done this one.
 pub(super) fn follow(state: &mut AppState) {
     let Some(mut tutorial) = state.tutorial else { return };
     tutorial.rewound |= state.is_rewound();
@@ -128,7 +128,7 @@ pub(super) fn follow(state: &mut AppState) {
     }
 }
 
-/// What to do now, with the keys as they are.
+/// Returns the current instruction with the current keys.
 fn text(state: &AppState, tutorial: Tutorial) -> String {
     let Some(step) = STEPS.get(tutorial.step) else { return String::new() };
     let Text { text, actions } = if (step.is_begun)(state) { &step.then } else { &step.first };
@@ -137,10 +137,10 @@ fn text(state: &AppState, tutorial: Tutorial) -> String {
     format!("{}/{} {text}", tutorial.step + 1, STEPS.len())
 }
 
-/// Rows that the step takes at most.
+/// The greatest number of rows of a step.
 const ROWS: usize = 2;
 
-/// The step in rows.
+/// Returns the rows of the step.
 fn lines(state: &AppState, hints: Rect) -> Vec<String> {
     let Some(tutorial) = state.tutorial else { return Vec::new() };
     let width = usize::from(hints.width.saturating_sub(6));
@@ -152,12 +152,12 @@ fn lines(state: &AppState, hints: Rect) -> Vec<String> {
     lines
 }
 
-/// The rows that the tutorial takes above the hints.
+/// Returns the number of rows of the tutorial above the hints.
 pub(super) fn rows(state: &AppState, hints: Rect) -> u16 {
     lines(state, hints).len() as u16
 }
 
-/// Draws the step in the frame above the hints, and in the row above it when it is long.
+/// Draws the step in the frame above the hints, and also in the row above it if it is long.
 pub(super) fn draw(state: &AppState, hints: Rect, buffer: &mut Buffer) {
     let lines = lines(state, hints);
     let widest = lines.iter().map(|line| line.width()).max().unwrap_or(0);

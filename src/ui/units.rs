@@ -1,24 +1,24 @@
-//! Metric or imperial: what is shown, never what is stored or sent.
+//! Metric or imperial units for display. Stored and sent values are always metric.
 
 use crate::telemetry::GuardUnit;
 
-/// Feet in a metre.
+/// Feet per metre.
 const FEET: f64 = 1.0 / 0.3048;
-/// Miles an hour in a metre a second.
+/// Miles per hour in a metre per second.
 const MILES_AN_HOUR: f64 = 3600.0 / 1609.344;
 
 /// The units of lengths and speeds on the screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Units {
-    /// Metres, metres a second.
+    /// Metres, metres per second.
     #[default]
     Metric,
-    /// Feet, miles an hour.
+    /// Feet, miles per hour.
     Imperial,
 }
 
 impl Units {
-    /// A length in metres as it is shown.
+    /// Converts a length from metres to the shown unit.
     pub fn length(self, metres: f64) -> f64 {
         match self {
             Self::Metric => metres,
@@ -26,7 +26,7 @@ impl Units {
         }
     }
 
-    /// A speed in metres a second as it is shown.
+    /// Converts a speed from metres per second to the shown unit.
     pub fn speed(self, metres_a_second: f64) -> f64 {
         match self {
             Self::Metric => metres_a_second,
@@ -34,36 +34,36 @@ impl Units {
         }
     }
 
-    /// A length as it is shown or typed, in metres.
+    /// Converts a shown or typed length to metres.
     pub fn metres(self, shown: f64) -> f64 {
         shown / self.length(1.0)
     }
 
-    /// A speed as it is shown or typed, in metres a second.
+    /// Converts a shown or typed speed to metres per second.
     pub fn metres_per_second(self, shown: f64) -> f64 {
         shown / self.speed(1.0)
     }
 
-    /// A length with its unit and this many digits behind the point.
+    /// Formats a length with its unit and this many decimals.
     pub fn length_text(self, metres: f64, digits: usize) -> String {
         format!("{:.digits$} {}", self.length(metres), self.length_unit())
     }
 
-    /// A speed with its unit and this many digits behind the point.
+    /// Formats a speed with its unit and this many decimals.
     pub fn speed_text(self, metres_a_second: f64, digits: usize) -> String {
         format!("{:.digits$} {}", self.speed(metres_a_second), self.speed_unit())
     }
 
-    /// A length moved by whole steps of what is shown: metres or feet.
+    /// Returns a length changed by whole steps of the shown unit: metres or feet.
     pub(super) fn step_length(self, metres: f64, steps: i32) -> f64 {
         match self {
             Self::Metric => metres + f64::from(steps),
-            // What is stored is whole centimetres: without rounding, steps of a foot would drift.
+            // Stored values are whole centimetres: without rounding, steps of a foot would drift.
             Self::Imperial => self.metres(tenths(self.length(metres)) + f64::from(steps)),
         }
     }
 
-    /// A speed moved by steps of half a metre a second, or of a mile an hour.
+    /// Returns a speed changed by steps of 0.5 m/s or 1 mph.
     pub(super) fn step_speed(self, metres_a_second: f64, steps: i32) -> f64 {
         match self {
             Self::Metric => metres_a_second + 0.5 * f64::from(steps),
@@ -71,7 +71,7 @@ impl Units {
         }
     }
 
-    /// What a guard's values are multiplied by, and the unit they are then in.
+    /// Returns the factor for a guard's values, and the unit after multiplication.
     pub fn of_guard(self, unit: GuardUnit) -> (f64, &'static str) {
         match unit {
             GuardUnit::Metres => (self.length(1.0), self.length_unit()),
@@ -82,7 +82,7 @@ impl Units {
         }
     }
 
-    /// Name of the unit of lengths in sentences.
+    /// Returns the name of the unit of lengths for sentences.
     pub(super) fn length_name(self) -> &'static str {
         match self {
             Self::Metric => "metres",
@@ -90,7 +90,7 @@ impl Units {
         }
     }
 
-    /// Name of the unit of lengths.
+    /// Returns the symbol of the unit of lengths.
     pub fn length_unit(self) -> &'static str {
         match self {
             Self::Metric => "m",
@@ -98,7 +98,7 @@ impl Units {
         }
     }
 
-    /// Name of the unit of speeds.
+    /// Returns the symbol of the unit of speeds.
     pub fn speed_unit(self) -> &'static str {
         match self {
             Self::Metric => "m/s",

@@ -1,4 +1,4 @@
-//! What a message does to the state, and what it asks for.
+//! Applies a message to the state and returns the requested effects.
 
 use std::time::Duration;
 
@@ -48,12 +48,12 @@ pub(super) use cli::run_cli;
 pub(super) use plan::{write_scenario, write_shown as write_plan};
 pub(super) use view::focus;
 
-/// A key that is pressed again within this time does what it asked about.
+/// The time within which a second press of a key confirms the first.
 pub(super) const TWICE_WITHIN: Duration = Duration::from_secs(2);
 
-/// Takes a message in and says what is to be done.
+/// Processes a message and returns its effects.
 pub fn update(state: &mut AppState, msg: Msg) -> Vec<Effect> {
-    // These ask for nothing: their effects would not be carried out.
+    // These messages have no effects: the loop would not carry them out.
     let is_followed = !matches!(msg, Msg::Clock(_) | Msg::Resize(..));
     let is_picture = matches!(msg, Msg::View(_));
     let connection = permission::real_craft(state).map(|remote| remote.connection);
@@ -106,7 +106,7 @@ fn take(state: &mut AppState, msg: Msg) -> Vec<Effect> {
         }
         Msg::WorldReply { line, result } => {
             match result {
-                // The log has the faults from the craft itself.
+                // The log gets the faults from the craft itself.
                 Ok(()) => state.say(Severity::Good, format!("World: {line}.")),
                 Err(sentence) => {
                     let sentence = state.keymap.in_force(&sentence);
@@ -174,14 +174,14 @@ fn key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
     if found != Some(Action::Cancel) {
         state.cancelled = None;
     }
-    // What went wrong must be read, however busy the hands are; Esc takes it away.
+    // A fault must be read, however busy the user is; only Esc clears it.
     if event.code == KeyCode::Esc
         || state.notice.as_ref().is_some_and(|notice| notice.severity != Severity::Fault)
     {
         state.notice = None;
     }
     let types = fields::open(state).is_some();
-    // Esc leaves what is open first.
+    // Esc first closes an open popup or field.
     let is_open = !state.popups.is_empty() || state.editor.takes_text() || types;
     if event.code == KeyCode::Esc && !is_open && !state.pinned.is_empty() {
         state.pinned.remove(0);
@@ -200,12 +200,12 @@ fn key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
     }
 }
 
-/// Whether an open text field gets a key that means this elsewhere: what leaves the field does not belong to it.
+/// Returns `true` if an open text field gets a key with this action. Keys that leave the field do not belong to it.
 fn takes_as_text(found: Option<Action>) -> bool {
     !matches!(found, Some(Action::Palette | Action::Suspend | Action::Previous))
 }
 
-/// Ctrl-C: once cancels, twice quits.
+/// Handles Ctrl-C: the first press cancels, the second quits.
 fn cancel(state: &mut AppState) -> Vec<Effect> {
     if state.cancelled.is_some_and(|at| within(state.now, at, TWICE_WITHIN)) {
         return vec![Effect::Quit];
@@ -221,7 +221,7 @@ fn cancel(state: &mut AppState) -> Vec<Effect> {
     Vec::new()
 }
 
-/// Carries an action of the plan editor out.
+/// Carries out an action of the plan editor.
 fn edit(state: &mut AppState, action: EditAction) -> Vec<Effect> {
     match action {
         EditAction::Undo => plan::undo(state, false),
@@ -273,7 +273,7 @@ fn moved(state: &mut AppState, columns: isize) -> Vec<Effect> {
     Vec::new()
 }
 
-/// Carries an action out, or says why not.
+/// Carries out an action, or notifies the user of the reason for its refusal.
 fn act(state: &mut AppState, action: Action) -> Vec<Effect> {
     if let Err(reason) = action::enabled(state, action) {
         state.notify(Severity::Warn, reason);
@@ -282,7 +282,7 @@ fn act(state: &mut AppState, action: Action) -> Vec<Effect> {
     perform(state, action)
 }
 
-/// Carries an action out that makes sense now.
+/// Carries out an action that is enabled.
 pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
     match action {
         Action::Fly => fly(state),
@@ -295,7 +295,7 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
         Action::Resume => vec![Effect::Send(Command::InFlight(InFlightCommand::Resume))],
         Action::CutRc => {
             let mut effects = vec![Effect::Send(Command::CutRc(!state.view.rc_cut))];
-            // The countdown of the failsafe is to be read.
+            // At real time the user can read the countdown of the failsafe.
             if !state.view.rc_cut && state.view.speed_wanted > 1.0 && state.view.vehicle.craft.is_armed() {
                 effects.push(Effect::Send(Command::Speed(1.0)));
             }
@@ -363,11 +363,11 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
             Vec::new()
         }
         Action::Back => {
-            // Out of the text first: keys pressed next must not be typed.
+            // Leave the text first, so that the next keys are not typed.
             if state.focus.takes_text() {
                 focus(state, Panel::Map);
             } else if state.focus == Panel::Graphs && state.graphs.leave_cursor() {
-                // That was the step.
+                // Leaving the cursor was the step.
             } else if state.focus == Panel::Log && !state.log_view.search.is_empty() {
                 log_view::end_search(state);
             } else if !state.forecast.dismiss() && !state.editor.cancel() && !map_edit::leave(state) {
@@ -379,7 +379,7 @@ pub(super) fn perform(state: &mut AppState, action: Action) -> Vec<Effect> {
             permission::ask(state);
             Vec::new()
         }
-        // One that is real flies on without this program.
+        // A real craft flies on without this program.
         Action::Quit if state.view.is_armed_now() && permission::real_craft(state).is_none() => {
             state.popups.push(Popup::Quit);
             Vec::new()

@@ -1,7 +1,7 @@
-//! What part of the world the map shows: metres on one side, cells on the other.
+//! The window of the map: converts between metres and cells.
 //!
-//! World: metres north and east of the boot place. A cell is taken to be twice as high as wide, so a row spans twice
-//! the metres of a column.
+//! Places are metres north and east of the boot place. A cell is taken to be twice as high as wide, so a row spans
+//! twice the metres of a column.
 
 use ratatui::layout::Rect;
 
@@ -9,24 +9,24 @@ use super::app_state::AppState;
 use super::map_edit::{MapCursor, Moving};
 use super::map_point::{MapPoint, craft, origin, to_map};
 
-/// Metres per column at the closest and the widest.
+/// The limits of the scale, metres per column.
 const SCALE_LIMITS: (f64, f64) = (0.02, 20_000.0);
-/// Steps of the automatic scale in an octave.
+/// The number of steps of the automatic scale per octave.
 const STEPS_PER_OCTAVE: f64 = 4.0;
 
-/// How the map chooses its place.
+/// The mode that selects the window of the map.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum MapMode {
-    /// The whole plan and the craft.
+    /// The map shows the whole plan and the craft.
     #[default]
     Fit,
-    /// The craft in the middle, at this many metres per column.
+    /// The craft stays in the middle, at this many metres per column.
     Follow(f64),
-    /// Where the user put it.
+    /// The user has chosen the window.
     Free {
-        /// Middle, north, m.
+        /// The middle, north, m.
         n: f64,
-        /// Middle, east, m.
+        /// The middle, east, m.
         e: f64,
         /// Metres per column.
         scale: f64,
@@ -37,16 +37,16 @@ pub enum MapMode {
 #[derive(Debug, Default)]
 pub struct MapState {
     pub mode: MapMode,
-    /// The cursor, while waypoints are edited with it.
+    /// The cursor, while the user edits with it.
     pub(super) edit: Option<MapCursor>,
-    /// What is being moved.
+    /// The item being moved.
     pub(super) moving: Option<Moving>,
 }
 
 /// The window of the map.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Viewport {
-    /// The cells it fills.
+    /// The cells of the window.
     pub area: Rect,
     pub centre: MapPoint,
     /// Metres per column; a row is twice that.
@@ -54,7 +54,7 @@ pub(super) struct Viewport {
 }
 
 impl Viewport {
-    /// The window of the map in these cells.
+    /// Returns the window of the map in these cells.
     pub(super) fn of(state: &AppState, area: Rect) -> Self {
         match state.map.mode {
             MapMode::Fit => Self::fit(state, area),
@@ -68,13 +68,13 @@ impl Viewport {
         }
     }
 
-    /// The window that shows plan, home and craft. Its scale moves in steps, so that it stands still while the craft
-    /// flies inside the plan.
+    /// Returns the window that shows plan, home and craft. Its scale changes in steps, so that it stays constant while
+    /// the craft flies inside the plan.
     fn fit(state: &AppState, area: Rect) -> Self {
         let origin = origin(state);
         let home = state.view.vehicle.craft.home;
         let places = origin.iter().flat_map(|frame| {
-            // The open plan, too: the map shall not jump when a return home or a landing takes over.
+            // The open plan, too, so that the map does not jump when a return home or a landing takes over.
             let plans = [state.shown_plan(), state.plan()];
             let waypoints =
                 plans.into_iter().flat_map(|plan| &plan.waypoints).filter(|wp| wp.kind.uses_position());
@@ -104,14 +104,14 @@ impl Viewport {
         Self { area, centre, scale }
     }
 
-    /// Column and row of a place, in cells from the top left of the area; may lie outside.
+    /// Returns column and row of a place, in cells from the top left of the area; they may be outside of it.
     pub(super) fn cell(&self, place: MapPoint) -> (f64, f64) {
         let column = f64::from(self.area.width) / 2.0 + (place.e - self.centre.e) / self.scale;
         let row = f64::from(self.area.height) / 2.0 - (place.n - self.centre.n) / (2.0 * self.scale);
         (column, row)
     }
 
-    /// The screen cell of a place, if it is inside.
+    /// Returns the screen cell of a place, if it is inside.
     pub(super) fn screen_cell(&self, place: MapPoint) -> Option<(u16, u16)> {
         let (column, row) = self.cell(place);
         let inside = column >= 0.0
@@ -121,26 +121,26 @@ impl Viewport {
         inside.then(|| (self.area.x + column as u16, self.area.y + row as u16))
     }
 
-    /// The place under the middle of a screen cell.
+    /// Returns the place under the middle of a screen cell.
     pub(super) fn place(&self, column: u16, row: u16) -> MapPoint {
         let dc = f64::from(column) + 0.5 - f64::from(self.area.x) - f64::from(self.area.width) / 2.0;
         let dr = f64::from(row) + 0.5 - f64::from(self.area.y) - f64::from(self.area.height) / 2.0;
         MapPoint::new(self.centre.n - dr * 2.0 * self.scale, self.centre.e + dc * self.scale)
     }
 
-    /// East limits of the window, m.
+    /// Returns the east limits of the window, m.
     pub(super) fn east_bounds(&self) -> [f64; 2] {
         let half = f64::from(self.area.width) / 2.0 * self.scale;
         [self.centre.e - half, self.centre.e + half]
     }
 
-    /// North limits of the window, m.
+    /// Returns the north limits of the window, m.
     pub(super) fn north_bounds(&self) -> [f64; 2] {
         let half = f64::from(self.area.height) * self.scale;
         [self.centre.n - half, self.centre.n + half]
     }
 
-    /// The window moved by a number of columns and rows.
+    /// Returns the window moved by a number of columns and rows.
     pub(super) fn panned(&self, columns: f64, rows: f64) -> MapMode {
         MapMode::Free {
             n: self.centre.n - rows * 2.0 * self.scale,
@@ -149,7 +149,7 @@ impl Viewport {
         }
     }
 
-    /// The window with its scale times `factor`; `fixed` keeps its place on the screen.
+    /// Returns the window with its scale times `factor`; `fixed` keeps its place on the screen.
     pub(super) fn zoomed(&self, factor: f64, fixed: MapPoint) -> MapMode {
         let scale = limited(self.scale * factor);
         let ratio = scale / self.scale;
@@ -162,7 +162,7 @@ fn limited(scale: f64) -> f64 {
     if scale.is_finite() { scale.clamp(SCALE_LIMITS.0, SCALE_LIMITS.1) } else { 1.0 }
 }
 
-/// The longest round length (1, 2, 5 times a power of ten) not above `metres`.
+/// Returns the longest round length (1, 2, 5 times a power of ten) not above `metres`.
 pub(super) fn round_length(metres: f64) -> f64 {
     let decade = 10_f64.powf(metres.max(1e-3).log10().floor());
     [5.0, 2.0].into_iter().map(|step| step * decade).find(|&length| length <= metres).unwrap_or(decade)

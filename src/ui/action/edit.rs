@@ -1,12 +1,12 @@
-//! What can be done to plans.
+//! The actions of the plan editor.
 
 /// An action of the plan editor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::EnumIter)]
 pub enum EditAction {
-    /// Take the last edit back.
+    /// Undo the last edit.
     #[default]
     Undo,
-    /// Make the edit again.
+    /// Redo the edit.
     Redo,
     /// Choose a file to open.
     Open,
@@ -21,15 +21,15 @@ pub enum EditAction {
     NextPlan,
     /// Show the previous open plan.
     PreviousPlan,
-    /// Take the plan in the craft.
+    /// Download the plan of the craft.
     Download,
     /// Save the configuration of the craft.
     SaveToFlash,
-    /// The column to the left.
+    /// Move one column to the left.
     Left,
-    /// The column to the right.
+    /// Move one column to the right.
     Right,
-    /// Type the value, or go on to the next name.
+    /// Type the value, or choose the next name.
     Cell,
     /// Raise the value a little.
     Raise,
@@ -52,14 +52,14 @@ pub enum EditAction {
     SelectAll,
     /// Copy the selected waypoints.
     Copy,
-    /// Insert what was copied.
+    /// Insert the copied waypoints.
     Paste,
-    /// Change the selected waypoints at once.
+    /// Change all selected waypoints at once.
     Bulk,
     Generate,
-    /// Name, home and settings.
+    /// Edit name, description, home and settings of the plan.
     Properties,
-    /// Take the offered fix.
+    /// Apply the offered fix.
     Fix,
     /// Edit on the map, or stop it.
     OnMap,

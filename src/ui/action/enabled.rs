@@ -1,4 +1,4 @@
-//! Which actions make sense now, and why the others do not.
+//! Decides which actions are possible now, and gives the reason for each refusal.
 
 use crate::session::command::{
     NOT_RECORDED, PLACE_IS_EXTERNAL, REWOUND, TIME_IS_EXTERNAL, TIME_IS_THE_FIRMWARES,
@@ -11,10 +11,10 @@ use crate::ui::transmitter;
 
 use super::{Action, real_craft};
 
-/// Whether the action makes sense now, else why not, in one sentence with the way out.
+/// Checks that the action is possible now.
 ///
 /// # Errors
-/// The sentence.
+/// Returns the reason for a refusal and the way out, in one sentence.
 pub fn enabled(state: &AppState, action: Action) -> Result<(), String> {
     let craft = &state.view.vehicle.craft;
     let remote = state.view.remote.as_ref();
@@ -103,7 +103,7 @@ pub fn enabled(state: &AppState, action: Action) -> Result<(), String> {
     }
 }
 
-/// A switch that is missing may only not be known yet.
+/// Replaces the reason for a missing switch while the remote firmware has not yet reported its switches.
 fn or_not_known_yet(state: &AppState, why: String) -> String {
     match &state.view.remote {
         Some(remote) if remote.state != RemoteState::Ready => real_craft::NOT_KNOWN_YET.to_owned(),
@@ -111,7 +111,7 @@ fn or_not_known_yet(state: &AppState, why: String) -> String {
     }
 }
 
-/// Whether the navigator takes a command in flight.
+/// Checks that the navigator accepts a command in flight.
 fn can_command(state: &AppState, action: Action) -> Result<(), String> {
     let vehicle = &state.view.vehicle;
     let Some(nav) = vehicle.nav.as_ref().filter(|nav| nav.engaged) else {
@@ -140,7 +140,7 @@ fn can_command(state: &AppState, action: Action) -> Result<(), String> {
     }
 }
 
-/// Whether an action moves through the recording of the flight.
+/// Returns `true` if the action moves through the recording of the flight.
 fn is_in_recording(action: Action) -> bool {
     matches!(
         action,
@@ -155,7 +155,7 @@ fn is_in_recording(action: Action) -> bool {
     )
 }
 
-/// Whether an action would change the flight, which waits while an earlier instant of it is shown.
+/// Returns `true` if the action would change the flight. Such actions wait while an earlier instant is shown.
 fn steers(action: Action) -> bool {
     matches!(
         action,
@@ -178,7 +178,7 @@ fn steers(action: Action) -> bool {
     )
 }
 
-/// Whether the craft lies crashed, so that only a reset helps.
+/// Returns `true` if the craft has crashed, so that only a reset helps.
 pub(in crate::ui) fn is_wrecked(state: &AppState) -> bool {
     state.view.vehicle.truth.as_ref().is_some_and(|truth| truth.crashed)
 }

@@ -1,21 +1,21 @@
-//! What is not offered with a flight controller outside, and less with one whose craft is real.
+//! The actions that are refused with a remote flight controller, and further ones that are refused with a real craft.
 
 use crate::session::{NOTHING_MOVES, NOTHING_SIMULATED, RemoteState, RemoteView};
 
 use super::{Action, EditAction};
 
-/// Why a plan cannot go to a flight controller that has none.
+/// The refusal for a flight controller without waypoints.
 const NO_PLANS: &str = "This flight controller has no waypoints: build its firmware with flight plans, \
                         EXTRA_FLAGS=\"-DENABLE_FLIGHT_PLANNING=1\" (board or SITL).";
 
-/// Why the navigator of another program takes no orders.
+/// The refusal for orders to the navigator of another program.
 const NO_ORDERS: &str = "A firmware outside takes no such order in flight: switch the autopilot off and fly there, or upload another plan.";
 
-/// Why a firmware that has not told how it is set is not flown.
+/// The refusal for a firmware that has not yet reported its settings.
 pub(super) const NOT_KNOWN_YET: &str =
     "The firmware outside has not told what it is and which switches it has: wait until it answers.";
 
-/// Why an action makes no sense with this flight controller outside.
+/// Returns the reason to refuse an action with this remote flight controller.
 pub(super) fn refusal(remote: &RemoteView, action: Action) -> Option<&'static str> {
     let is_real = remote.access.is_limited();
     match action {
@@ -33,7 +33,7 @@ pub(super) fn refusal(remote: &RemoteView, action: Action) -> Option<&'static st
     }
 }
 
-/// Whether an action moves a switch or a stick, or has the craft fly elsewhere.
+/// Returns `true` if the action moves a switch or a stick, or makes the craft fly elsewhere.
 fn moves(action: Action) -> bool {
     matches!(
         action,
@@ -56,7 +56,7 @@ fn moves(action: Action) -> bool {
     )
 }
 
-/// Whether an action changes place, air or faults of a simulated craft.
+/// Returns `true` if the action changes place, air or faults of a simulated craft.
 fn changes_world(action: Action) -> bool {
     matches!(
         action,

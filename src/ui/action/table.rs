@@ -43,7 +43,7 @@ const fn count() -> usize {
     count
 }
 
-/// The parts as one list.
+/// Joins the parts into one list.
 const fn joined<const N: usize>() -> [Spec; N] {
     let mut all = [PARTS[0][0]; N];
     let (mut at, mut part) = (0, 0);

@@ -1,4 +1,4 @@
-//! Commands about how things are shown.
+//! Commands that change the display.
 
 use super::did_you_mean_end;
 use crate::ui::app_state::AppState;
@@ -6,7 +6,7 @@ use crate::ui::message::Effect;
 use crate::ui::theme::{Charset, Palette};
 use crate::ui::units::Units;
 
-/// `theme light`.
+/// Runs `theme light`.
 pub(super) fn theme(state: &mut AppState, _: &str, argument: &str) -> Result<Vec<Effect>, String> {
     if state.theme.no_colour {
         return Err("The environment variable NO_COLOR asks for no colours: start without it.".to_owned());
@@ -25,7 +25,7 @@ pub(super) fn complete_theme(_: &AppState, _: &str, typed: &str) -> Vec<String> 
     starting(typed, &Palette::NAMES.map(|(name, _)| name))
 }
 
-/// `charset ascii`.
+/// Runs `charset ascii`.
 pub(super) fn charset(state: &mut AppState, _: &str, argument: &str) -> Result<Vec<Effect>, String> {
     state.theme.charset = match argument {
         "unicode" => Charset::Unicode,
@@ -35,12 +35,12 @@ pub(super) fn charset(state: &mut AppState, _: &str, argument: &str) -> Result<V
     Ok(Vec::new())
 }
 
-/// Names of character sets.
+/// Returns the matching names of character sets.
 pub(super) fn complete_charset(_: &AppState, _: &str, typed: &str) -> Vec<String> {
     starting(typed, &["unicode", "ascii"])
 }
 
-/// `units imperial`.
+/// Runs `units imperial`.
 pub(super) fn units(state: &mut AppState, _: &str, argument: &str) -> Result<Vec<Effect>, String> {
     state.units = match argument {
         "metric" => Units::Metric,
@@ -50,7 +50,7 @@ pub(super) fn units(state: &mut AppState, _: &str, argument: &str) -> Result<Vec
     Ok(Vec::new())
 }
 
-/// Names of systems of units.
+/// Returns the matching names of systems of units.
 pub(super) fn complete_units(_: &AppState, _: &str, typed: &str) -> Vec<String> {
     starting(typed, &["metric", "imperial"])
 }

@@ -1,4 +1,4 @@
-//! Commands in flight that choose something; without an argument they ask, as the keys do.
+//! Flight commands with a choice. Without an argument they open the same list as their keys.
 
 use super::did_you_mean_end;
 use crate::session::{Command, WHAT_IFS};
@@ -9,7 +9,7 @@ use crate::ui::forecast;
 use crate::ui::message::Effect;
 use crate::ui::update;
 
-/// `go-to 2`.
+/// Runs `go-to 2`.
 pub(super) fn go_to(state: &mut AppState, _: &str, argument: &str) -> Result<Vec<Effect>, String> {
     action::enabled(state, Action::GoTo)?;
     if argument.is_empty() {
@@ -18,7 +18,7 @@ pub(super) fn go_to(state: &mut AppState, _: &str, argument: &str) -> Result<Vec
     go_to_waypoint(state, argument)
 }
 
-/// Goes to the waypoint with this number.
+/// Sends the craft to the waypoint with this number.
 pub(in crate::ui) fn go_to_waypoint(state: &AppState, number: &str) -> Result<Vec<Effect>, String> {
     let numbers = waypoints(state);
     match number.parse().ok().filter(|_| numbers.iter().any(|known| known == number)) {
@@ -27,18 +27,18 @@ pub(in crate::ui) fn go_to_waypoint(state: &AppState, number: &str) -> Result<Ve
     }
 }
 
-/// Numbers of the waypoints that can be gone to.
+/// Returns the matching numbers of waypoints that have a place.
 pub(super) fn complete_go_to(state: &AppState, _: &str, typed: &str) -> Vec<String> {
     waypoints(state).into_iter().filter(|number| number.starts_with(typed)).collect()
 }
 
-/// The waypoints of the craft that have a place, by number.
+/// Returns the numbers of the craft's waypoints that have a place.
 fn waypoints(state: &AppState) -> Vec<String> {
     let stored = state.view.vehicle.stored_plan.iter().flat_map(|plan| plan.waypoints.iter().enumerate());
     stored.filter(|(_, waypoint)| waypoint.kind.is_positional()).map(|(index, _)| index.to_string()).collect()
 }
 
-/// `what-if gps-loss`.
+/// Runs `what-if gps-loss`.
 pub(super) fn what_if(state: &mut AppState, _: &str, argument: &str) -> Result<Vec<Effect>, String> {
     action::enabled(state, Action::WhatIf)?;
     if argument.is_empty() {
@@ -47,7 +47,7 @@ pub(super) fn what_if(state: &mut AppState, _: &str, argument: &str) -> Result<V
     ask_what_if(state, argument)
 }
 
-/// Flies ahead with what has this name, or this number in the list.
+/// Flies ahead with the what-if of this name, or of this number in the list.
 pub(in crate::ui) fn ask_what_if(state: &mut AppState, name: &str) -> Result<Vec<Effect>, String> {
     let numbered = name.parse::<usize>().ok().and_then(|number| number.checked_sub(1));
     let found = match numbered {
@@ -64,7 +64,7 @@ pub(in crate::ui) fn ask_what_if(state: &mut AppState, name: &str) -> Result<Vec
     Ok(forecast::ask_what_if(state, found))
 }
 
-/// Names of what may go wrong.
+/// Returns the matching names of what-ifs.
 pub(super) fn complete_what_if(_: &AppState, _: &str, typed: &str) -> Vec<String> {
     let names = WHAT_IFS.iter().map(|what_if| what_if.name);
     names.filter(|name| name.starts_with(typed)).map(str::to_owned).collect()

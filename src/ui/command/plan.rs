@@ -1,4 +1,4 @@
-//! Commands for plan files; without a name they do what the keys do.
+//! Commands that write or open files. Without a name they do the same as their keys.
 
 use crate::ui::action::{Action, EditAction};
 use crate::ui::app_state::AppState;
@@ -30,7 +30,7 @@ pub(super) fn scenario(state: &mut AppState, _: &str, file: &str) -> Result<Vec<
     Ok(update::write_scenario(state, path))
 }
 
-/// Files are not completed here: `:open` alone shows them.
+/// Returns nothing: file names are not completed here. `:open` alone lists the files.
 pub(super) fn complete(_: &AppState, _: &str, _: &str) -> Vec<String> {
     Vec::new()
 }

@@ -1,23 +1,23 @@
-//! What a line that is being typed may become, and a word about it.
+//! Suggestions for the line being typed, and a hint about it.
 
 use super::{all, short_name, split};
 use crate::ui::action::{self, ACTIONS};
 use crate::ui::app_state::AppState;
 
-/// Longest form of an argument that stands beside the help.
+/// The longest argument form shown beside the help.
 const SHORT: usize = 24;
 
-/// A line that what is typed may become.
+/// A possible completion of the typed line.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Suggestion {
     pub line: String,
-    /// What is shown of it: the word that is being typed.
+    /// The part that is shown: the word being typed.
     pub word: String,
     pub help: &'static str,
     pub keys: String,
 }
 
-/// The lines that `typed` may become, the commands of the `:` line first.
+/// Returns the possible completions of `typed`, the commands of the `:` line first.
 pub fn suggestions(state: &AppState, typed: &str) -> Vec<Suggestion> {
     let typed = typed.trim_start().trim_start_matches(':').trim_start();
     if typed.contains([' ', '=']) {
@@ -36,12 +36,12 @@ pub fn suggestions(state: &AppState, typed: &str) -> Vec<Suggestion> {
         line: format!("{} ", command.name),
         word: command.name.to_owned(),
         help: command.help,
-        // A long form stands in the hint, once the word is typed.
+        // The hint shows a long form once the word is typed.
         keys: if command.argument.len() > SHORT { String::new() } else { command.argument.to_owned() },
     });
     let by_name = |name: &str| name.starts_with(typed);
     let full = ACTIONS.iter().any(|spec| by_name(spec.name));
-    // Who types what stands behind the dot gets the whole name offered.
+    // A user who types only the part after the dot is offered the whole name.
     let actions = ACTIONS.iter().filter(|spec| by_name(if full { spec.name } else { short_name(spec) }));
     let actions = actions.map(|spec| Suggestion {
         line: spec.name.to_owned(),
@@ -52,7 +52,8 @@ pub fn suggestions(state: &AppState, typed: &str) -> Vec<Suggestion> {
     commands.chain(actions).collect()
 }
 
-/// A word about the line: how the command is used, or what the action does and why it cannot be done now.
+/// Returns a hint about the line: the usage of the command, or the effect of the action and the reason if it is refused
+/// now.
 pub fn hint(state: &AppState, typed: &str) -> Option<String> {
     let (word, argument) = split(typed);
     if word == "set" {

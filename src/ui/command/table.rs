@@ -1,4 +1,4 @@
-//! The commands that take an argument. To add one: a row here, its function in the file of its subject.
+//! The commands that take an argument. To add one, add a row here and its function in the file of its subject.
 
 use super::{display, flight, plan, time, vehicle, world};
 use crate::session::command::WORLD_WORDS;
@@ -9,13 +9,13 @@ use crate::ui::message::Effect;
 #[derive(Debug, Clone, Copy)]
 pub struct Command {
     pub name: &'static str,
-    /// What is to be typed behind it, in capitals what stands for something.
+    /// The form of the argument; capitals are placeholders.
     pub argument: &'static str,
-    /// What it does, in one sentence.
+    /// The effect of the command, in one sentence.
     pub help: &'static str,
-    /// Does it: gets the name and the argument, gives a sentence when that is refused.
+    /// Runs the command with its name and argument. Returns a sentence if it refuses.
     pub run: fn(&mut AppState, &str, &str) -> Result<Vec<Effect>, String>,
-    /// The arguments that what is typed so far may become.
+    /// Returns the possible completions of the typed argument.
     pub complete: fn(&AppState, &str, &str) -> Vec<String>,
 }
 
@@ -106,9 +106,9 @@ const COMMANDS: &[Command] = &[
     },
 ];
 
-/// All commands with an argument: those of the table, and the words that change the world.
+/// Returns all commands with an argument: those of the table, and the words that change the world.
 pub fn all() -> impl Iterator<Item = Command> {
-    // The craft is reset by the action, which the firmware hears of.
+    // The reset of the craft is an action, because the firmware is notified of it.
     let words = WORLD_WORDS.iter().filter(|word| !word.value.is_empty());
     let world_commands = words.map(|word| Command {
         name: word.name,

@@ -4,7 +4,7 @@ use crate::session::{Command, SPEED_RANGE};
 use crate::ui::app_state::AppState;
 use crate::ui::message::Effect;
 
-/// `speed 4`, `speed max`.
+/// Runs `speed 4` or `speed max`.
 pub(super) fn speed(state: &mut AppState, _: &str, argument: &str) -> Result<Vec<Effect>, String> {
     if state.view.simulator.is_some() {
         return Err(crate::session::command::TIME_IS_EXTERNAL.to_owned());

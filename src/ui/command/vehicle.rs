@@ -1,11 +1,11 @@
-//! Commands for the craft, which go through its command line.
+//! Commands that go through the craft's command line.
 
 use crate::ui::app_state::AppState;
 use crate::ui::message::Effect;
 use crate::ui::panel::Panel;
 use crate::ui::update;
 
-/// `set NAME=VALUE`, or `set NAME` for what it is.
+/// Runs `set NAME=VALUE`, or `set NAME` to read the value.
 pub(super) fn set(state: &mut AppState, _: &str, argument: &str) -> Result<Vec<Effect>, String> {
     if argument.is_empty() {
         return Err("Write :set NAME=VALUE, such as :set ap_max_angle=25.".to_owned());
@@ -20,13 +20,14 @@ pub(super) fn set(state: &mut AppState, _: &str, argument: &str) -> Result<Vec<E
     Ok(update::run_cli(state))
 }
 
-/// Names of settings and their values.
+/// Returns the matching names of settings and their values.
 pub(super) fn complete_set(state: &AppState, _: &str, typed: &str) -> Vec<String> {
     let lines = (state.cli_help.complete)(&format!("set {typed}"));
     lines.iter().filter_map(|line| line.strip_prefix("set ")).map(str::to_owned).collect()
 }
 
-/// Any line of the firmware's command line, whose panel shows the answer; without one: the panel.
+/// Runs a line of the firmware's command line and shows the CLI panel with the answer. Without an argument it only
+/// shows the panel.
 pub(super) fn cli(state: &mut AppState, _: &str, argument: &str) -> Result<Vec<Effect>, String> {
     let mut effects = update::focus(state, Panel::Cli);
     if !argument.is_empty() {
@@ -36,7 +37,7 @@ pub(super) fn cli(state: &mut AppState, _: &str, argument: &str) -> Result<Vec<E
     Ok(effects)
 }
 
-/// What the firmware completes.
+/// Returns the firmware's completions.
 pub(super) fn complete_cli(state: &AppState, _: &str, typed: &str) -> Vec<String> {
     (state.cli_help.complete)(typed)
 }

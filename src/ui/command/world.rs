@@ -1,11 +1,11 @@
-//! Commands that change the simulated world: wind, noise, faults. The session reads and judges the values.
+//! Commands that change the simulated world: wind, noise, faults. The session parses and checks the values.
 
 use super::did_you_mean_end;
 use crate::session::command::{FAULTS, FaultInfo, WORLD_SWITCHES, WORLD_WORDS};
 use crate::ui::app_state::AppState;
 use crate::ui::message::Effect;
 
-/// `wind 5@270`, `fault gps-loss,6`…
+/// Runs `wind 5@270`, `fault gps-loss,6` and the like.
 pub(super) fn change(_: &mut AppState, name: &str, argument: &str) -> Result<Vec<Effect>, String> {
     match WORLD_WORDS.iter().find(|word| word.name == name) {
         Some(word) if argument.is_empty() => Err(format!("Write :{name} {}.", word.value)),
@@ -13,7 +13,7 @@ pub(super) fn change(_: &mut AppState, name: &str, argument: &str) -> Result<Vec
     }
 }
 
-/// Values that are words.
+/// Returns the matching values that are words.
 pub(super) fn complete(_: &AppState, name: &str, typed: &str) -> Vec<String> {
     let starting = |words: Vec<&str>| -> Vec<String> {
         words.into_iter().filter(|word| word.starts_with(typed)).map(str::to_owned).collect()
@@ -28,7 +28,7 @@ pub(super) fn complete(_: &AppState, name: &str, typed: &str) -> Vec<String> {
     }
 }
 
-/// `world battery_sag=on`.
+/// Runs `world battery_sag=on`.
 pub(super) fn switch(_: &mut AppState, _: &str, argument: &str) -> Result<Vec<Effect>, String> {
     let usage = "Write :world NAME=VALUE, such as :world battery_sag=on.";
     let (name, value) = argument.split_once(['=', ' ']).ok_or(usage)?;
@@ -40,7 +40,7 @@ pub(super) fn switch(_: &mut AppState, _: &str, argument: &str) -> Result<Vec<Ef
     Ok(vec![Effect::World(format!("{name}={value}"))])
 }
 
-/// Names of switches, then their values.
+/// Returns the matching names of switches, then their values.
 pub(super) fn complete_switch(_: &AppState, _: &str, typed: &str) -> Vec<String> {
     let lines = WORLD_SWITCHES.iter().flat_map(|switch| match typed.split_once('=') {
         Some((name, _)) if name == switch.name => {
@@ -52,7 +52,7 @@ pub(super) fn complete_switch(_: &AppState, _: &str, typed: &str) -> Vec<String>
     lines.filter(|line| line.starts_with(typed)).collect()
 }
 
-/// The words of a description of values, `real, none`; none where it is a form to be filled in.
+/// Returns the words of a description of values such as `real, none`. Parts of a form to be filled in are left out.
 fn words_of(values: &str) -> Vec<&str> {
     let parts: Vec<&str> = values.split([',', ' ']).map(str::trim).filter(|part| !part.is_empty()).collect();
     let is_word = |part: &&str| part.chars().all(|c| c.is_ascii_lowercase() || c == '-');

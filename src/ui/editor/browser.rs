@@ -1,4 +1,4 @@
-//! The file browser: a name that is typed above the plan files and directories of a directory.
+//! The file browser: a text field above the plan files and directories of a directory.
 
 use std::path::{Path, PathBuf};
 
@@ -8,33 +8,33 @@ use super::files::{Entry, Listing};
 use super::open_plan::PlanId;
 use crate::ui::text_field::TextField;
 
-/// What the file is chosen for.
+/// The purpose of the chosen file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Purpose {
     /// To open a plan.
     Open,
-    /// To save a plan in it.
+    /// To save a plan.
     Save(PlanId),
 }
 
-/// A browser that is open.
+/// An open browser.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Browser {
     pub purpose: Purpose,
-    /// What is typed: a name, the beginning of one, or a path.
+    /// The typed text: a name, the beginning of one, or a path.
     pub text: TextField,
-    /// The directory; empty until it was read.
+    /// The directory; empty until it has been read.
     pub listing: Listing,
-    /// The entry under the cursor among the visible ones; `None` = the typed text counts.
+    /// The entry under the cursor among the visible ones; `None` if the typed text counts.
     pub at: Option<usize>,
 }
 
-/// What a key did.
+/// The effect of a key.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(in crate::ui) enum BrowserKey {
     Edited,
     List(PathBuf),
-    /// This file is meant.
+    /// The user chose this file.
     Chosen(PathBuf),
     Cancel,
 }
@@ -44,7 +44,7 @@ impl Browser {
         Self { purpose, text: TextField::selected(name), listing: Listing::default(), at: None }
     }
 
-    /// The entries that the typed text leaves: all while saving.
+    /// Returns the entries that match the typed text; all of them while saving.
     pub fn visible(&self) -> Vec<&Entry> {
         let typed = self.text.value().to_lowercase();
         let filters = self.purpose == Purpose::Open && !typed.contains('/');
@@ -65,7 +65,7 @@ impl Browser {
             KeyCode::Left if self.text.is_empty() => return self.parent(),
             KeyCode::Tab => {
                 let typed = self.text.value();
-                // Whoever saves has typed a name: it is completed, never replaced.
+                // While saving, the user has typed a name: it is completed, never replaced.
                 let completes = |entry: &&&Entry| {
                     self.purpose == Purpose::Open || !typed.is_empty() && entry.name.starts_with(typed)
                 };
@@ -91,7 +91,7 @@ impl Browser {
     fn enter(&mut self) -> BrowserKey {
         let visible = self.visible();
         let typed = self.text.value().trim().to_owned();
-        // A filter that leaves one entry means that entry, when it is not a file's name itself.
+        // A filter that leaves one entry selects it, unless the text is the exact name of that entry.
         let only = match visible[..] {
             [only] if self.purpose == Purpose::Open && !typed.is_empty() => {
                 Some(0).filter(|_| only.name != typed)

@@ -1,25 +1,25 @@
-//! Waypoints as CLI text and back, for the clipboard.
+//! Converts waypoints to CLI text and back, for the clipboard.
 
 use crate::plan::format::{self, Format, PlanFile};
 use crate::plan::{FlightPlan, Waypoint, plan_lines};
 
-/// The lines that insert these waypoints, numbered from `first`.
+/// Returns the lines that insert these waypoints.
 pub(super) fn to_text(waypoints: &[Waypoint]) -> String {
     let plan = super::forms::plan_of(waypoints);
-    // Without `waypoint clear`: whoever pastes it into a command line keeps what is there.
+    // Without `waypoint clear`: the waypoints of the command line that they are pasted into stay.
     plan_lines(&plan).skip(1).map(|line| line + "\n").collect()
 }
 
-/// The waypoints of a text: CLI lines whatever their numbers, or a whole plan file.
+/// Parses the waypoints of a text: CLI lines with any numbers, or a whole plan file.
 ///
 /// # Errors
-/// Why there are none, in one sentence.
+/// Returns the reason in one sentence if there are no waypoints.
 pub(super) fn from_text(text: &str) -> Result<PlanFile, String> {
     let text = text.replace("\r\n", "\n").replace('\r', "\n");
     let format = Format::of_text(&text);
     let text = if format == Format::CliText { renumbered(&text) } else { text };
     let file = format::parse("the pasted text", &text, format).map_err(|errors| {
-        // The marker below the line needs rows of its own.
+        // Only the first line of the error: the marker below it needs rows of its own.
         let first = errors.first().map(ToString::to_string);
         let sentence = first.as_deref().and_then(|text| text.lines().next().map(str::to_owned));
         sentence.unwrap_or_else(|| "The pasted text is no plan.".to_owned())
@@ -32,7 +32,7 @@ pub(super) fn from_text(text: &str) -> Result<PlanFile, String> {
     Ok(file)
 }
 
-/// The lines with the waypoints numbered from 0: a part of a list is pasted as well as a whole one.
+/// Renumbers the waypoints of the lines from 0, so that a part of a list can be pasted as well as a whole one.
 fn renumbered(text: &str) -> String {
     let mut next = 0;
     text.lines().fold(String::new(), |mut out, line| {

@@ -1,4 +1,4 @@
-//! The columns of the waypoint table: how a value is shown, typed and nudged.
+//! The columns of the waypoint table: a value as text, typing and nudging it.
 
 use strum::IntoEnumIterator as _;
 
@@ -13,7 +13,7 @@ pub(super) const MOST_MPS: f64 = 655.35;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::EnumIter)]
 pub enum Column {
-    /// What to do there.
+    /// The type of the waypoint.
     #[default]
     Type,
     /// Latitude, degrees.
@@ -30,14 +30,14 @@ pub enum Column {
 }
 
 impl Column {
-    /// The column beside this one.
+    /// Returns the column `step` columns to the right.
     pub(crate) fn beside(self, step: isize) -> Self {
         let columns: Vec<Self> = Self::iter().collect();
         let at = columns.iter().position(|&column| column == self).unwrap_or(0);
         columns[at.saturating_add_signed(step).min(columns.len() - 1)]
     }
 
-    /// What the column is called in sentences.
+    /// Returns the name of the column for sentences.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Type => "type",
@@ -50,7 +50,7 @@ impl Column {
         }
     }
 
-    /// What may be typed.
+    /// Returns a hint about the values that may be typed.
     pub(crate) fn hint(self, kind: WaypointType, units: Units) -> String {
         match self {
             Self::Type => names(WaypointType::iter()),
@@ -68,7 +68,7 @@ impl Column {
         }
     }
 
-    /// Whether a waypoint of this type uses the value.
+    /// Returns `true` if a waypoint of this type uses the value.
     pub(crate) fn is_used(self, kind: WaypointType) -> bool {
         use WaypointType::{AltChange, Delay, Hold, YawRate};
         match self {
@@ -81,7 +81,7 @@ impl Column {
         }
     }
 
-    /// The value as it is typed.
+    /// Returns the value as the user types it.
     pub(crate) fn text(self, wp: &Waypoint, units: Units) -> String {
         match self {
             Self::Type => wp.kind.to_string(),
@@ -95,10 +95,10 @@ impl Column {
         }
     }
 
-    /// Takes a typed value; the beginning of a name will do.
+    /// Sets a typed value. The beginning of a name is enough.
     ///
     /// # Errors
-    /// What is wrong and what is allowed, in one sentence.
+    /// Returns the problem and the allowed values in one sentence.
     pub(crate) fn set(self, wp: &mut Waypoint, text: &str, units: Units) -> Result<(), String> {
         let text = text.trim();
         let wrong = || format!("{text} is no {}: {}.", self.name(), self.hint(wp.kind, units));
@@ -124,8 +124,8 @@ impl Column {
         Ok(())
     }
 
-    /// Moves the value by steps: a metre or a foot on the ground and in altitude, half a metre per second or a mile per
-    /// hour, a second; names go round.
+    /// Changes the value by steps: a metre or a foot for position and altitude, 0.5 m/s or 1 mph for speed, a second
+    /// for time. Names wrap around.
     pub(crate) fn nudge(self, wp: &mut Waypoint, steps: i32, units: Units) {
         let ground_m = units.metres(f64::from(steps));
         let add = |value: u16, by: i32| (i32::from(value) + by).clamp(0, i32::from(u16::MAX)) as u16;
@@ -152,7 +152,7 @@ impl Column {
     }
 }
 
-/// A number without needless zeros: `50`, `62.5`.
+/// Formats a number without needless zeros: `50`, `62.5`.
 pub(crate) fn shortest(value: f64) -> String {
     let text = format!("{value:.2}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
@@ -164,7 +164,7 @@ fn names<T: ToString>(all: impl Iterator<Item = T>) -> String {
 
 fn by_prefix<T: ToString>(text: &str, all: impl Iterator<Item = T>) -> Option<T> {
     let text = text.to_ascii_uppercase();
-    // `FLY` would be a guess between FLYOVER and FLYBY: the first of them is the usual one.
+    // `FLY` fits both FLYOVER and FLYBY: the first of them is the usual one.
     all.into_iter().find(|name| !text.is_empty() && name.to_string().starts_with(&text))
 }
 

@@ -1,4 +1,4 @@
-//! What the editor asks of the file system, and what comes back. Carried out in the order of asking.
+//! The editor's requests to the file system, and the replies. Requests are carried out in order.
 
 use std::path::PathBuf;
 
@@ -8,29 +8,31 @@ use crate::ui::history::LineField;
 
 #[derive(Debug, Clone, PartialEq)]
 pub enum FileRequest {
-    /// Read a plan, with the history that its journal has.
+    /// Read a plan, with the history from its journal.
     Open(PathBuf),
     Save {
         id: PlanId,
         path: PathBuf,
         document: Box<PlanDocument>,
-        /// The revision that is written.
+        /// The revision to write.
         revision: usize,
-        /// Replace whatever is there. Otherwise only what was read from there or written there by this plan.
+        /// Replace any content of the file. Otherwise only content that this plan has read or written there is
+        /// replaced.
         replace: bool,
     },
-    /// List a directory for the file browser; `None` = where plans were opened last.
+    /// List a directory for the file browser; `None` for the one in which a plan was opened last.
     List(Option<PathBuf>),
-    /// Keep an action, so that it survives the program. The first line of a plan is kept by whoever opens it.
+    /// Keep an edit, an undo or a redo in the journal, so that it survives the program. The first line of a journal is
+    /// written when the plan is opened or begun.
     Journal(PlanId, JournalLine),
-    /// Keep a line that was entered in a text field, so that it can be recalled after a restart.
+    /// Keep a line entered in a text field, so that it can be recalled after a restart.
     KeepLine(LineField, String),
-    /// A new plan begins its journal.
+    /// Begin the journal of a new plan.
     Begin(PlanId, Box<PlanDocument>),
-    /// The plan was closed; its journal goes when edits are given up.
+    /// Close a plan. Its journal is removed if its edits are given up.
     Close {
         id: PlanId,
-        /// Its edits are given up.
+        /// `true` if its edits are given up.
         discard: bool,
     },
 }
@@ -43,43 +45,43 @@ pub enum FileReply {
     Saved {
         id: PlanId,
         path: PathBuf,
-        /// The revision that was written.
+        /// The written revision.
         revision: usize,
-        /// What the format could not carry, one sentence each.
+        /// The parts that the format could not carry, one sentence each.
         lost: Vec<String>,
     },
-    /// There is something else in the file: it was not written.
+    /// The file has other content, so it was not written.
     Occupied {
         id: PlanId,
         path: PathBuf,
-        /// This plan had read or written the file, and somebody else changed it since.
+        /// `true` if this plan had read or written the file and somebody else has changed it since.
         changed: bool,
     },
     /// Somebody else changed or removed the file of a plan.
     Changed(PlanId),
     Listed(Listing),
-    /// It did not work: why, in one sentence.
+    /// The request failed; the reason in one sentence.
     Failed(String),
-    /// Edits cannot be kept from now on: why, in one sentence.
+    /// Edits cannot be kept from now on; the reason in one sentence.
     NotKept(String),
     /// All edits are kept again.
     KeptAgain,
-    /// Edits of an earlier start could not be read: which, and where they are kept, in a sentence or two.
+    /// Edits of an earlier run could not be read. One or two sentences name them and where they are kept.
     EditsLost(String),
 }
 
 /// A plan that was read.
 #[derive(Debug, Clone)]
 pub struct Opened {
-    /// What it is called from now on.
+    /// The identifier of the plan from now on.
     pub id: PlanId,
     /// Its file, if it has one.
     pub file: Option<PathBuf>,
-    /// The document with the history that its journal has.
+    /// The document with the history from its journal.
     pub history: History,
-    /// What is worth knowing about the file, one sentence each.
+    /// Notes about the file, one sentence each.
     pub notes: Vec<String>,
-    /// Edits that were never saved are in it.
+    /// `true` if it contains edits that were never saved.
     pub recovered: bool,
 }
 
@@ -95,6 +97,6 @@ pub struct Listing {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Entry {
     pub name: String,
-    /// Whether it is a directory.
+    /// `true` for a directory.
     pub is_directory: bool,
 }

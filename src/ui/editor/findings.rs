@@ -1,4 +1,4 @@
-//! What is wrong with the open plan or worth knowing, with the craft's settings and the edit that takes it away.
+//! The findings about the open plan with the craft's settings, and the edits that fix them.
 
 use crate::geo::LatLon;
 use crate::plan::edit::fix::{Fix, fix, waypoint_of};
@@ -6,7 +6,7 @@ use crate::plan::review::{Finding, review};
 use crate::ui::app_state::AppState;
 use crate::ui::editor::settings_in_force;
 
-/// Home as far as it is known: of the craft, of the plan, of the map.
+/// Returns the home position: of the craft, else of the plan, else the origin of the map, else the first waypoint.
 pub(crate) fn home(state: &AppState) -> Option<LatLon> {
     let document = state.editor.document();
     let planned = document.home.map(|home| home.position);
@@ -16,7 +16,7 @@ pub(crate) fn home(state: &AppState) -> Option<LatLon> {
     state.view.vehicle.craft.home.or(planned).or(map).or_else(first)
 }
 
-/// All findings about the open plan, refusals first; none while it is empty.
+/// Returns all findings about the open plan, refusals first; empty for an empty plan.
 pub(crate) fn findings(state: &AppState) -> Vec<Finding> {
     let document = state.editor.document();
     match home(state) {
@@ -32,7 +32,7 @@ pub(crate) fn findings(state: &AppState) -> Vec<Finding> {
     }
 }
 
-/// The finding that is shown: about the waypoint under the cursor, else the first; and what takes it away.
+/// Returns the shown finding (about the waypoint under the cursor, else the first) and its fix.
 pub(crate) fn shown(state: &AppState, findings: &[Finding]) -> Option<(Finding, Option<Fix>)> {
     let here = findings.iter().find(|finding| waypoint_of(finding) == Some(state.editor.row()));
     let finding = here.or_else(|| findings.first())?.clone();

@@ -1,4 +1,4 @@
-//! A form: a few labelled values that are typed or chosen, then taken together.
+//! A form: a few labelled values that are typed or chosen and then applied together.
 
 use crossterm::event::{KeyCode, KeyEvent};
 
@@ -7,7 +7,7 @@ use crate::plan::edit::PlanDocument;
 use crate::ui::text_field::TextField;
 use crate::ui::units::Units;
 
-/// What a form is for.
+/// The purpose of a form.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FormKind {
     /// Edits of the selected waypoints.
@@ -20,23 +20,23 @@ pub enum FormKind {
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FormField {
-    /// What the value is.
+    /// The name of the value.
     pub label: String,
-    /// Its unit, or what it may be.
+    /// Its unit or its allowed values.
     pub hint: String,
-    /// The value that is typed; of a choice the chosen word.
+    /// The typed value, or the chosen word of a choice.
     pub text: TextField,
-    /// The words of a choice; empty = anything is typed.
+    /// The words of a choice; empty for a typed value.
     pub choices: &'static [&'static str],
 }
 
 impl FormField {
-    /// A value that is typed.
+    /// Returns a field for a typed value.
     pub(super) fn typed(label: impl Into<String>, hint: impl Into<String>, value: impl Into<String>) -> Self {
         Self { label: label.into(), hint: hint.into(), text: TextField::new(value), choices: &[] }
     }
 
-    /// A value that is chosen; the first word stands at first.
+    /// Returns a field for a choice; the first word is selected at first.
     pub(super) fn choice(label: &'static str, choices: &'static [&'static str]) -> Self {
         let first = choices.first().copied().unwrap_or_default();
         Self { label: label.to_owned(), hint: "← →".to_owned(), text: TextField::new(first), choices }
@@ -51,21 +51,21 @@ impl FormField {
     }
 }
 
-/// A form that is open.
+/// An open form.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Form {
-    /// What it is for.
+    /// The purpose of the form.
     pub kind: FormKind,
-    /// The units in which lengths and speeds are typed.
+    /// The units of typed lengths and speeds.
     pub units: Units,
     pub fields: Vec<FormField>,
-    /// The value that has the cursor.
+    /// The index of the field with the cursor.
     pub at: usize,
-    /// What is wrong with it, after it was tried.
+    /// The problem with the form, after the user tried to accept it.
     pub problem: Option<String>,
 }
 
-/// What a key did to a form.
+/// The effect of a key on a form.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::ui) enum FormKey {
     Edited,
@@ -80,7 +80,7 @@ impl Form {
         form
     }
 
-    /// Moves the cursor to the field at this place and selects its value.
+    /// Moves the cursor to this field and selects its value.
     fn go_to(&mut self, at: usize) {
         if let Some(left) = self.fields.get_mut(self.at) {
             left.text.select(false);
@@ -91,15 +91,15 @@ impl Form {
         }
     }
 
-    /// The text of the field with this label.
+    /// Returns the text of the field with this label.
     pub fn value(&self, label: &str) -> &str {
         self.fields.iter().find(|field| field.label == label).map_or("", |field| field.text.value().trim())
     }
 
-    /// The number in the field with this label; `None` when it is empty.
+    /// Returns the number in the field with this label; `None` if it is empty.
     ///
     /// # Errors
-    /// A sentence, when it is not a number.
+    /// Returns a sentence if it is not a number.
     pub(super) fn number(&self, label: &str) -> Result<Option<f64>, String> {
         let text = self.value(label);
         if text.is_empty() {
@@ -111,23 +111,23 @@ impl Form {
         }
     }
 
-    /// The length in the field with this label, m; `None` when it is empty.
+    /// Returns the length in the field with this label, m; `None` if it is empty.
     ///
     /// # Errors
-    /// A sentence, when it is not a number.
+    /// Returns a sentence if it is not a number.
     pub(super) fn metres(&self, label: &str) -> Result<Option<f64>, String> {
         Ok(self.number(label)?.map(|shown| self.units.metres(shown)))
     }
 
-    /// The speed in the field with this label, m/s; `None` when it is empty.
+    /// Returns the speed in the field with this label, m/s; `None` if it is empty.
     ///
     /// # Errors
-    /// A sentence, when it is not a number.
+    /// Returns a sentence if it is not a number.
     pub(super) fn metres_per_second(&self, label: &str) -> Result<Option<f64>, String> {
         Ok(self.number(label)?.map(|shown| self.units.metres_per_second(shown)))
     }
 
-    /// The form of a kind, for this document.
+    /// Returns the form of this kind for a document.
     pub(in crate::ui) fn of(kind: FormKind, document: &PlanDocument, units: Units) -> Self {
         match kind {
             FormKind::Bulk => forms::bulk(units),
@@ -136,10 +136,10 @@ impl Form {
         }
     }
 
-    /// Gives a value to the field at this place.
+    /// Sets the value of a field.
     ///
     /// # Errors
-    /// The words of a choice, when it is none of them, as a sentence.
+    /// Returns a sentence with the words of a choice if the value is not among them.
     pub(in crate::ui) fn set(&mut self, at: usize, value: &str) -> Result<(), String> {
         let Some(field) = self.fields.get_mut(at) else { return Ok(()) };
         if !field.choices.is_empty() && !field.choices.contains(&value) {
@@ -150,7 +150,7 @@ impl Form {
         Ok(())
     }
 
-    /// Whether what is generated comes behind the waypoints that are there.
+    /// Returns `true` if the generated waypoints are appended to the existing ones.
     pub(super) fn appends(&self) -> bool {
         self.value("result").starts_with("append")
     }
@@ -176,7 +176,7 @@ impl Form {
         FormKey::Edited
     }
 
-    /// Inserts pasted text into the value that has the cursor; whether it is typed.
+    /// Inserts pasted text into the field with the cursor. Returns `true` if that field takes typed text.
     pub(super) fn paste(&mut self, text: &str) -> bool {
         let typed = self.fields.get_mut(self.at).filter(|field| field.choices.is_empty());
         if let Some(field) = typed {

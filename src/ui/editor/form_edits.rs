@@ -1,4 +1,4 @@
-//! What the forms do to the open plans.
+//! Applies the forms to the open plans.
 
 use super::{Editor, EditorPopup, Form, FormField, FormKind, forms, which};
 use crate::geo::LatLon;
@@ -8,18 +8,18 @@ use crate::plan::edit::transform::middle;
 use crate::plan::format::SettingCheck;
 use crate::ui::message::Effect;
 
-/// What the generator's form would make, and from what.
+/// The result that the generator form would give, and its input.
 #[derive(Debug, PartialEq)]
 pub(super) struct GeneratorFoot {
     fields: Vec<FormField>,
     middle: Option<LatLon>,
-    /// Waypoints that are there already.
+    /// The number of waypoints already in the plan.
     taken: usize,
     told: Result<String, String>,
 }
 
 impl Editor {
-    /// Runs the generator of an open form when its values, the plan or home have changed since.
+    /// Runs the generator of an open form again if its values, the plan or home have changed.
     pub(in crate::ui) fn follow_generator(&mut self, home: Option<LatLon>) {
         let Some(EditorPopup::Form(form)) = self.popup.as_ref().filter(|popup| popup.generates()) else {
             self.generator = None;
@@ -36,10 +36,10 @@ impl Editor {
         self.generator = Some(GeneratorFoot { fields: form.fields.clone(), middle, taken, told });
     }
 
-    /// Does what the values of a form say; the sentence tells what was done.
+    /// Applies the values of a form. Returns the effects and a sentence about the result.
     ///
     /// # Errors
-    /// What is wrong with a value, as a sentence.
+    /// Returns the problem with a value, as a sentence.
     pub(in crate::ui) fn take_form(
         &mut self,
         form: &Form,
@@ -76,7 +76,7 @@ impl Editor {
                     let name = format!("{name}-{}", number + 1);
                     let empty = PlanDocument { name, ..PlanDocument::default() };
                     effects.push(self.open_new(empty.clone()));
-                    // As an edit, so that it is kept and asked for.
+                    // As an edit, so that it is kept and the user is asked before it is lost.
                     let plan = forms::plan_of(waypoints);
                     effects.extend(self.replace_document("generate", PlanDocument { plan, ..empty }));
                 }
@@ -86,17 +86,17 @@ impl Editor {
         }
     }
 
-    /// What the generator's form would make now: about the middle of the plan, else about home.
+    /// Returns the result that the generator form would give now, centred on the middle of the plan, else on home.
     fn generated(&self, form: &Form, home: Option<LatLon>) -> Result<forms::Generated, String> {
         let waypoints = &self.document().plan.waypoints;
         let middle = middle(waypoints).or(home).ok_or("Home is not known yet: wait for the GPS fix.")?;
         forms::generated(form, middle, waypoints.len())
     }
 
-    /// The line under a form: what it would make, or what is wrong.
+    /// Returns the line under a form: the result it would give, or the problem.
     ///
     /// # Errors
-    /// What is wrong with a value, as a sentence.
+    /// Returns the problem with a value, as a sentence.
     pub(crate) fn form_told(&self, form: &Form) -> Result<String, String> {
         match (&form.problem, form.kind) {
             (Some(problem), _) => Err(problem.clone()),

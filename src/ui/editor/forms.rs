@@ -1,4 +1,4 @@
-//! The forms of the editor: what they ask, and what their values make of the plan.
+//! The forms of the editor: their fields, and the edits that their values make.
 
 use nalgebra::Vector2;
 use strum::IntoEnumIterator as _;
@@ -19,7 +19,7 @@ const KINDS: &[&str] = &["FLYOVER", "FLYBY"];
 const WHERE: &[&str] = &["replace the plan", "append to it"];
 const TOO_MANY: &[&str] = &["wider spacing", "several plans"];
 
-/// Edits of many waypoints at once; what stays empty stays as it is.
+/// Returns the form that edits many waypoints at once. Empty fields change nothing.
 pub(super) fn bulk(units: Units) -> Form {
     let length = units.length_unit();
     Form::new(
@@ -38,10 +38,10 @@ pub(super) fn bulk(units: Units) -> Form {
     )
 }
 
-/// Does what a bulk form says to the selected waypoints.
+/// Applies a bulk form to the selected waypoints.
 ///
 /// # Errors
-/// What is wrong with a value, as a sentence.
+/// Returns the problem with a value, as a sentence.
 pub(super) fn take_bulk(
     form: &Form,
     document: &mut PlanDocument,
@@ -81,7 +81,7 @@ pub(super) fn take_bulk(
     Ok(())
 }
 
-/// A plan from a shape.
+/// Returns the form that generates a plan from a shape.
 pub(super) fn generate(is_empty: bool, units: Units) -> Form {
     let usual = Pattern::default();
     let length = units.length_unit();
@@ -115,7 +115,7 @@ pub(super) fn generate(is_empty: bool, units: Units) -> Form {
     form
 }
 
-/// The numbers of a generator's form.
+/// Reads the pattern from a generator form.
 fn pattern(form: &Form) -> Result<Pattern, String> {
     let missing = |label: &str| format!("{label}: a number is needed.");
     let metres = |label: &str| form.metres(label)?.ok_or_else(|| missing(label));
@@ -133,19 +133,19 @@ fn pattern(form: &Form) -> Result<Pattern, String> {
     })
 }
 
-/// What a generator's form makes.
+/// The result of a generator form.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Generated {
-    /// One plan, or several that continue each other.
+    /// One plan, or several, each of which continues the one before.
     pub(super) plans: Vec<Vec<Waypoint>>,
-    /// What it is, for the form's foot.
+    /// A summary for the line under the form.
     pub(super) told: String,
 }
 
-/// What the form would make now, `taken` waypoints being there already.
+/// Generates the result of the form for a plan that has `taken` waypoints already.
 ///
 /// # Errors
-/// What is wrong with a value, as a sentence.
+/// Returns the problem with a value, as a sentence.
 pub(super) fn generated(form: &Form, middle: LatLon, taken: usize) -> Result<Generated, String> {
     let pattern = pattern(form)?;
     let taken = if form.value("result") == WHERE[1] { taken } else { 0 };
@@ -173,7 +173,7 @@ pub(super) fn generated(form: &Form, middle: LatLon, taken: usize) -> Result<Gen
     Ok(Generated { plans: vec![wider], told })
 }
 
-/// What a plan has beside waypoints.
+/// Returns the form for name, description, home and settings of a plan.
 pub(super) fn properties(document: &PlanDocument, units: Units) -> Form {
     let home = document.home.map_or_else(String::new, |home| home.to_string());
     let mut fields = vec![
@@ -186,10 +186,10 @@ pub(super) fn properties(document: &PlanDocument, units: Units) -> Form {
     Form::new(FormKind::Properties, units, fields)
 }
 
-/// Takes the values of a properties form.
+/// Applies the values of a properties form.
 ///
 /// # Errors
-/// What is wrong with a value, as a sentence.
+/// Returns the problem with a value, as a sentence.
 pub(super) fn take_properties(
     form: &Form,
     document: &mut PlanDocument,
@@ -211,7 +211,7 @@ pub(super) fn take_properties(
     Ok(())
 }
 
-/// A setting that the plan's file can be read with again.
+/// Checks a setting and returns it as a line that can be read back from the plan's file.
 fn checked_setting(text: &str, check: SettingCheck) -> Result<String, String> {
     let line = setting_line(text).ok_or_else(|| format!("{text} is not a setting: write name = value."))?;
     if let Some((name, value)) = line.split_once(" = ") {
@@ -220,7 +220,7 @@ fn checked_setting(text: &str, check: SettingCheck) -> Result<String, String> {
     Ok(line)
 }
 
-/// A plan of these waypoints, or as many of them as it holds.
+/// Returns a plan of these waypoints, or of as many as fit.
 pub(super) fn plan_of(waypoints: &[Waypoint]) -> FlightPlan {
     FlightPlan { waypoints: waypoints.iter().copied().take(MAX_WAYPOINTS).collect() }
 }

@@ -1,26 +1,26 @@
-//! A plan that is open: its document with the history, and the file it came from.
+//! An open plan: its document with the history, and the file it came from.
 
 use std::path::{Path, PathBuf};
 
 use crate::plan::edit::{History, JournalLine, PlanDocument};
 
-/// Identifies an open plan towards the files.
+/// Identifies an open plan in requests to the files.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
 pub struct PlanId(pub u32);
 
-/// A plan that is open.
+/// An open plan.
 #[derive(Debug, Clone)]
 pub struct OpenPlan {
     id: PlanId,
     file: Option<PathBuf>,
     history: History,
-    /// The file holds something else than was read or written last.
+    /// `true` if the file has other content than was last read or written.
     changed_on_disk: bool,
     opened_with: Vec<String>,
 }
 
 impl OpenPlan {
-    /// A plan with its history, as the files gave it.
+    /// Returns a plan with its history, as the files provided it.
     pub fn new(id: PlanId, file: Option<PathBuf>, history: History) -> Self {
         let opened_with = history.document().settings.clone();
         Self { id, file, history, changed_on_disk: false, opened_with }
@@ -30,7 +30,7 @@ impl OpenPlan {
         self.id
     }
 
-    /// The document as it is now.
+    /// Returns the current document.
     pub fn document(&self) -> &PlanDocument {
         self.history.document()
     }
@@ -44,12 +44,12 @@ impl OpenPlan {
         &self.opened_with
     }
 
-    /// Its file, if it has one.
+    /// Returns its file, if it has one.
     pub fn file(&self) -> Option<&Path> {
         self.file.as_deref()
     }
 
-    /// The file's name, else the plan's.
+    /// Returns the name of the file, else of the plan.
     pub fn title(&self) -> String {
         let file =
             self.file.as_deref().and_then(Path::file_name).map(|name| name.to_string_lossy().into_owned());
@@ -57,12 +57,12 @@ impl OpenPlan {
         file.unwrap_or_else(|| if name.is_empty() { "unnamed".to_owned() } else { name.clone() })
     }
 
-    /// Whether leaving loses an edit: there is one that no file holds.
+    /// Returns `true` if closing the plan loses an edit that no file holds.
     pub fn is_unsaved(&self) -> bool {
         !self.history.is_saved() && (self.file.is_some() || !self.history.is_empty())
     }
 
-    /// Whether somebody else wrote the file meanwhile.
+    /// Returns `true` if somebody else has changed the file since.
     pub fn is_changed_on_disk(&self) -> bool {
         self.changed_on_disk
     }
@@ -71,25 +71,25 @@ impl OpenPlan {
         self.changed_on_disk = changed;
     }
 
-    /// Makes an edit; the line is for the journal.
+    /// Makes an edit. Returns the line for the journal.
     pub(super) fn commit(&mut self, label: &str, after: PlanDocument) -> Option<JournalLine> {
         let revision = self.history.commit(label, after)?;
         Some(JournalLine::Edited { label: label.to_owned(), change: Box::new(revision.change().clone()) })
     }
 
-    /// Takes the last edit back; its label, and the line for the journal.
+    /// Undoes the last edit. Returns its label and the line for the journal.
     pub(super) fn undo(&mut self) -> Option<(String, JournalLine)> {
         let label = self.history.undo()?.to_owned();
         Some((label, JournalLine::Moved(self.history.at())))
     }
 
-    /// Makes the edit again that was taken back.
+    /// Redoes the edit that was undone last.
     pub(super) fn redo(&mut self) -> Option<(String, JournalLine)> {
         let label = self.history.redo()?.to_owned();
         Some((label, JournalLine::Moved(self.history.at())))
     }
 
-    /// The file was written with the document of this revision.
+    /// Records that this revision was written to a file.
     pub(super) fn saved(&mut self, file: PathBuf, revision: usize) {
         self.changed_on_disk = false;
         self.file = Some(file);

@@ -1,4 +1,4 @@
-//! The plans that are open: which of them is shown; opened, closed, written.
+//! The open plans: showing, opening, closing, saving.
 
 use std::path::PathBuf;
 
@@ -7,7 +7,7 @@ use crate::plan::FlightPlan;
 use crate::plan::edit::{History, PlanDocument};
 use crate::ui::message::Effect;
 
-/// First identifier of plans that are made here; those that the files open have lower ones.
+/// The first identifier of plans made here. Plans opened from files have lower ones.
 const FIRST_NEW: u32 = 1 << 16;
 
 impl Editor {
@@ -24,8 +24,8 @@ impl Editor {
         self.field = None;
     }
 
-    /// Opens a new plan with this document, under an identifier that no plan had before: what is still on its way to
-    /// a closed one must not reach it.
+    /// Opens a new plan with this document, under an identifier that no plan had before, so that replies still on their
+    /// way to a closed plan do not reach it.
     pub(in crate::ui) fn open_new(&mut self, document: PlanDocument) -> Effect {
         let id = PlanId(FIRST_NEW + self.made);
         self.made += 1;
@@ -34,7 +34,7 @@ impl Editor {
         Effect::Files(begin)
     }
 
-    /// Shows a plan that was read; one that is open already is replaced by it.
+    /// Shows a plan that was read. It replaces an open plan with the same identifier.
     pub(in crate::ui) fn opened(&mut self, opened: Opened) {
         let plan = OpenPlan::new(opened.id, opened.file, opened.history);
         match self.plans.iter().position(|other| other.id() == plan.id()) {
@@ -51,7 +51,7 @@ impl Editor {
         self.show(self.plans.len() - 1);
     }
 
-    /// Closes a plan; the last one leaves an empty one behind.
+    /// Closes a plan. Closing the last one opens an empty one.
     pub(in crate::ui) fn close(&mut self, id: PlanId) -> Vec<Effect> {
         let discard = self.plan_of(id).is_some_and(OpenPlan::is_unsaved);
         let mut effects = vec![Effect::Files(FileRequest::Close { id, discard })];
@@ -63,19 +63,19 @@ impl Editor {
         effects
     }
 
-    /// The open plan of this identifier.
+    /// Returns the open plan with this identifier.
     pub fn plan_of(&self, id: PlanId) -> Option<&OpenPlan> {
         self.plans.iter().find(|plan| plan.id() == id)
     }
 
-    /// Shows the open plan of this identifier.
+    /// Shows the open plan with this identifier.
     pub(in crate::ui) fn show_plan(&mut self, id: PlanId) {
         if let Some(index) = self.plans.iter().position(|plan| plan.id() == id) {
             self.show(index);
         }
     }
 
-    /// Makes a plan hold these waypoints, as one revision, whether it is shown or not; `None` when it was closed.
+    /// Replaces the waypoints of an open plan, shown or not, as one revision. Returns `None` if it was closed.
     pub(in crate::ui) fn replace_waypoints(
         &mut self,
         id: PlanId,
@@ -91,14 +91,14 @@ impl Editor {
         Some(line.map(|line| Effect::Files(FileRequest::Journal(id, line))).into_iter().collect())
     }
 
-    /// A plan was written.
+    /// Records that a plan was written.
     pub(in crate::ui) fn saved(&mut self, id: PlanId, file: PathBuf, revision: usize) {
         if let Some(plan) = self.plan_of_mut(id) {
             plan.saved(file, revision);
         }
     }
 
-    /// Somebody else changed the file of a plan; the plan's title, if it is open.
+    /// Records that somebody else changed the file of a plan. Returns the plan's title if it is open.
     pub(in crate::ui) fn changed_on_disk(&mut self, id: PlanId) -> Option<String> {
         let plan = self.plan_of_mut(id)?;
         plan.set_changed_on_disk(true);

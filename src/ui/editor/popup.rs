@@ -1,25 +1,24 @@
-//! What of the editor lies over the panels.
+//! The popups of the editor.
 
 use super::browser::Browser;
 use super::form::{Form, FormKind};
 use super::question::Question;
 
-/// A popup of the editor; it gets the keys.
+/// A popup of the editor, which receives the keys.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum EditorPopup {
     Form(Form),
-    /// A file to choose.
     Browser(Browser),
     Question(Question),
 }
 
 impl EditorPopup {
-    /// Whether a plan is generated from its values.
+    /// Returns `true` for the form of the generator.
     pub(super) fn generates(&self) -> bool {
         matches!(self, Self::Form(form) if form.kind == FormKind::Generate)
     }
 
-    /// Inserts pasted text where one types; whether one does.
+    /// Inserts pasted text into the active field. Returns `true` if there is one.
     pub(in crate::ui) fn paste(&mut self, text: &str) -> bool {
         match self {
             Self::Form(form) => form.paste(text),

@@ -1,4 +1,4 @@
-//! What the editor asks before an edit or a file is lost, or a flight is led elsewhere.
+//! Questions of the editor before an edit or a file is lost, or before an upload changes the current target.
 
 use std::path::PathBuf;
 
@@ -6,29 +6,29 @@ use super::open_plan::PlanId;
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Question {
-    /// There is something else in the file that is to be written.
+    /// The file to be written has other content.
     Replace {
         id: PlanId,
         path: PathBuf,
-        /// It was this plan's file, and somebody else changed it since.
+        /// `true` if it was this plan's file and somebody else has changed it since.
         changed: bool,
     },
-    /// The plan is to be uploaded in flight, and moves the waypoint that is flown to.
+    /// An upload in flight would move the waypoint that the craft is flying to.
     MovesTarget {
         id: PlanId,
-        /// What it does to the waypoint, a sentence.
+        /// The change of that waypoint, a sentence.
         change: String,
     },
-    /// The plan is to be closed, and has edits that no file holds.
+    /// The plan to be closed has edits that no file holds.
     Unsaved {
         id: PlanId,
-        /// The program ends when all plans are answered for.
+        /// `true` if the program ends once this is answered for all plans.
         quits: bool,
     },
 }
 
 impl Question {
-    /// The answers: key and what it does.
+    /// Returns the answers: the key and its effect.
     pub fn answers(&self) -> &'static [(char, &'static str)] {
         match self {
             Self::Replace { changed: true, .. } => {

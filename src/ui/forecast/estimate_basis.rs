@@ -1,4 +1,4 @@
-//! What a flown estimate depends on, as far as the screen knows it.
+//! The input of a flown estimate, as far as the screen knows it.
 
 use crate::plan::FlightPlan;
 use crate::session::ForecastRequest;
@@ -7,11 +7,11 @@ use crate::telemetry::snapshot::{SettingsView, WindView};
 use crate::ui::app_state::AppState;
 use crate::ui::editor::settings_in_force;
 
-/// Changes of the mean wind below these are not worth another estimate.
+/// Smaller changes of the mean wind are not worth another estimate.
 const WIND_MPS: f64 = 0.5;
 const WIND_DEG: f64 = 10.0;
 
-/// What an estimate was asked for.
+/// The input of an estimate.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct EstimateBasis {
     plan: FlightPlan,
@@ -31,7 +31,7 @@ struct Air {
 }
 
 impl EstimateBasis {
-    /// That of the open plan now.
+    /// Returns the input for the open plan now.
     pub(super) fn of(state: &AppState) -> Self {
         let world = &state.view.vehicle.world;
         Self {
@@ -48,7 +48,7 @@ impl EstimateBasis {
         }
     }
 
-    /// Whether an estimate for this is still one for the open plan, but for small changes of the wind.
+    /// Returns `true` if an estimate for this input still fits the open plan, apart from small changes of the wind.
     pub(super) fn still_holds(&self, state: &AppState) -> bool {
         let world = &state.view.vehicle.world;
         self.plan == *state.plan()
@@ -61,24 +61,25 @@ impl EstimateBasis {
             && is_like(self.air.wind, world.wind)
     }
 
-    /// Whether there is something to fly.
+    /// Returns `true` if the plan has waypoints to fly.
     pub(super) fn has_waypoints(&self) -> bool {
         !self.plan.waypoints.is_empty()
     }
 
-    /// What to ask for.
+    /// Returns the request for this input.
     pub(super) fn request(&self) -> ForecastRequest {
         ForecastRequest::PlanEstimate { plan: Box::new(self.plan.clone()), settings: self.settings.clone() }
     }
 }
 
-/// The settings of the open plan that the craft, which the estimate flies with its own, gets before.
+/// Returns the settings of the open plan that have yet to be uploaded. The estimate sets them on its copy of the craft,
+/// which has all other settings.
 fn to_upload(state: &AppState) -> Vec<String> {
     let lines = settings_in_force::to_upload(state, state.editor.document());
     lines.into_iter().map(str::to_owned).collect()
 }
 
-/// The settings without what the craft learns in flight.
+/// Returns the settings without the values that the craft learns in flight.
 fn chosen(settings: SettingsView) -> SettingsView {
     SettingsView { hover_stick_us: 0, raised_stick_us: 0, sink_stick_us: None, ..settings }
 }

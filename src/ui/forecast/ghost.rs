@@ -4,16 +4,16 @@ use crate::session::{Forecast, PathPoint};
 use crate::ui::app_state::AppState;
 use crate::ui::units::Units;
 
-/// A way that was not flown yet, and what is said of it.
+/// A path that was not flown yet, and its description.
 #[derive(Debug)]
 pub(in crate::ui) struct Ghost<'a> {
     pub path: &'a [PathPoint],
-    /// What it is, and how it ends, where that is asked for.
+    /// The description of the path and, if the user requested it, of its end.
     pub line: String,
 }
 
-/// What the map shows: the what-if or the look-ahead that was asked for, else the estimate of the open plan while no plan is
-/// flown, or another one.
+/// Returns the forecast on the map: the requested what-if or look-ahead, else the estimate of the open plan while no
+/// plan or another one is flown.
 pub(in crate::ui) fn ghost(state: &AppState) -> Option<Ghost<'_>> {
     let forecast = &state.forecast;
     if let Some(chosen) = &forecast.what_if {

@@ -1,13 +1,13 @@
-//! The values of all signals over time, bounded: the last ten minutes finely, two hours coarsely.
+//! The values of all signals over time, bounded: the last ten minutes in fine steps, two hours in coarse steps.
 
 use std::collections::VecDeque;
 
 use super::signal::{Signal, Values, values};
 use crate::telemetry::Snapshot;
 
-/// Time between two fine samples, s, and how many there are: ten minutes.
+/// The time between two fine samples, s, and their number: ten minutes.
 const FINE: (f64, usize) = (0.1, 6000);
-/// Time between two coarse samples, s, and how many there are: two hours.
+/// The time between two coarse samples, s, and their number: two hours.
 const COARSE: (f64, usize) = (1.0, 7200);
 
 /// All signals at one instant.
@@ -19,12 +19,12 @@ pub(in crate::ui) struct Sample {
 }
 
 impl Sample {
-    /// The signals of a picture.
+    /// Returns the signals of a picture.
     pub(super) fn of(vehicle: &Snapshot) -> Self {
         Self { time_s: vehicle.time.as_secs_f64(), values: values(vehicle) }
     }
 
-    /// The value of a signal, where it is known.
+    /// Returns the value of a signal, if it is known.
     pub(in crate::ui) fn value(&self, signal: Signal) -> Option<f64> {
         self.values.get(signal as usize).map(|value| f64::from(*value)).filter(|value| value.is_finite())
     }
@@ -37,14 +37,14 @@ pub(super) struct SignalHistory {
 }
 
 impl SignalHistory {
-    /// Adds a sample. One that is not newer is of a flight that goes on from an earlier instant: what came after that is
-    /// forgotten.
+    /// Adds a sample. An older one than the last belongs to a flight that continues from an earlier instant, so the
+    /// samples after it are removed.
     pub(super) fn push(&mut self, sample: Sample) {
         for (ring, (interval_s, most)) in [(&mut self.fine, FINE), (&mut self.coarse, COARSE)] {
             while ring.back().is_some_and(|last| last.time_s > sample.time_s) {
                 ring.pop_back();
             }
-            // A little less than the interval: pictures come when they come.
+            // A little less than the interval, because pictures do not come at exact times.
             if ring.back().is_some_and(|last| sample.time_s - last.time_s < interval_s * 0.999) {
                 continue;
             }
@@ -63,7 +63,7 @@ impl SignalHistory {
         self.fine.back()
     }
 
-    /// The samples between two times, the oldest first: fine ones as far back as there are.
+    /// Returns the samples between two times, the oldest first: fine ones as far back as there are.
     pub(super) fn between(&self, from_s: f64, to_s: f64) -> impl Iterator<Item = &Sample> {
         let first_fine = self.fine.front().map_or(f64::INFINITY, |sample| sample.time_s);
         let older = self.coarse.iter().take_while(move |sample| sample.time_s < first_fine);
@@ -73,7 +73,7 @@ impl SignalHistory {
             .take_while(move |sample| sample.time_s <= to_s)
     }
 
-    /// The newest sample that is not later than a time; the oldest when all are.
+    /// Returns the newest sample that is not later than a time, or the oldest sample if all are later.
     pub(super) fn at(&self, time_s: f64) -> Option<&Sample> {
         let in_ring = |ring: &'_ VecDeque<Sample>| ring.partition_point(|sample| sample.time_s <= time_s);
         let fine = in_ring(&self.fine).checked_sub(1).and_then(|at| self.fine.get(at));

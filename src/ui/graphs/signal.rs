@@ -1,4 +1,4 @@
-//! The signals that are plotted, and the plots they stand in.
+//! The plotted signals, and their plots.
 
 use strum::EnumCount as _;
 
@@ -32,10 +32,10 @@ pub(in crate::ui) enum Signal {
     Wind,
 }
 
-/// Values of all signals; NaN where one is unknown.
+/// The values of all signals; NaN for an unknown one.
 pub(super) type Values = [f32; Signal::COUNT];
 
-/// How a curve is drawn, so that it is known without its colour.
+/// The stroke of a curve, which identifies it without its colour.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::ui) enum Stroke {
     Solid,
@@ -43,7 +43,7 @@ pub(in crate::ui) enum Stroke {
     Dotted,
 }
 
-/// What the values of a plot are, which says their unit.
+/// The physical quantity of a plot, which determines its unit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::ui) enum Quantity {
     Length,
@@ -59,15 +59,15 @@ pub(in crate::ui) enum Quantity {
 #[derive(Debug)]
 pub(in crate::ui) struct Plot {
     pub(in crate::ui) name: &'static str,
-    /// Of what the values are.
+    /// The quantity of the values.
     pub(in crate::ui) quantity: Quantity,
-    /// Least range of the axis, in SI units: noise is not blown up.
+    /// The least range of the axis, in SI units, so that noise does not fill the plot.
     pub(in crate::ui) least_range: f64,
     /// The curves, with names.
     pub(in crate::ui) curves: &'static [(Signal, &'static str, Stroke)],
 }
 
-/// All plots, in the order in which they stand below each other.
+/// All plots, from top to bottom.
 pub(in crate::ui) const PLOTS: [Plot; 12] = [
     Plot {
         name: "altitude",
@@ -162,7 +162,7 @@ pub(in crate::ui) const PLOTS: [Plot; 12] = [
     },
 ];
 
-/// The values of a picture.
+/// Returns the values of a picture.
 pub(super) fn values(vehicle: &Snapshot) -> Values {
     let mut values = [f32::NAN; Signal::COUNT];
     let mut set = |signal: Signal, value: Option<f64>| {

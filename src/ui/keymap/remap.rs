@@ -1,4 +1,4 @@
-//! Keys of the user's own, and what may be wrong with them.
+//! The user's own keys, and checks of them.
 
 use crossterm::event::{KeyCode, KeyModifiers};
 
@@ -7,22 +7,22 @@ use crate::did_you_mean;
 use crate::ui::action::{ACTIONS, Context, Spec};
 use crate::ui::panel::Panel;
 
-/// A line of the configuration file: an action and the keys that it has instead of its default ones.
+/// A line of the configuration file: an action and the keys that replace its default ones.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct KeyLine {
-    /// Line of the file, from 1.
+    /// The line number in the file, from 1.
     pub line: usize,
     /// Name of the action.
     pub action: String,
-    /// Its keys as text; "" is none.
+    /// Its keys as text; "" for no key.
     pub keys: Vec<String>,
 }
 
 impl Keymap {
-    /// The default keymap with these changes.
+    /// Returns the default keymap with these changes.
     ///
     /// # Errors
-    /// A sentence for each problem, with the line it stands in.
+    /// Returns a sentence for each problem, with the number of its line.
     pub fn remapped(lines: &[KeyLine]) -> Result<Self, Vec<(usize, String)>> {
         let mut map = Self::default();
         let mut problems = Vec::new();
@@ -56,7 +56,7 @@ impl Keymap {
         if problems.is_empty() { Ok(map) } else { Err(problems) }
     }
 
-    /// A sentence for each key that has two meanings in one place since the changes.
+    /// Returns a sentence for each key that has two meanings in one place because of the changes.
     fn conflicts(&self, changed: &[(usize, &'static Spec)]) -> Vec<(usize, String)> {
         let mut problems = Vec::new();
         for (at, (context, key, action)) in self.bindings.iter().enumerate() {
@@ -66,7 +66,7 @@ impl Keymap {
             let same_place = |other: &Spec| clash(*context, other.context);
             for (before, (_, other_key, other)) in self.bindings.iter().enumerate() {
                 let Some(other) = ACTIONS.iter().find(|spec| spec.action == *other) else { continue };
-                // Of two changed actions the later one tells.
+                // Of two changed actions only the later one reports the conflict.
                 let told_there = before > at && changed.iter().any(|(_, spec)| spec.action == other.action);
                 if key == other_key && other.action != *action && same_place(other) && !told_there {
                     problems.push((
@@ -83,7 +83,7 @@ impl Keymap {
     }
 }
 
-/// Whether keys of the two contexts meet on one level: a panel's own keys come before the general ones.
+/// Returns `true` if keys of the two contexts meet on one level. A panel's own keys come before the general ones.
 fn clash(one: Context, other: Context) -> bool {
     let is_general = |context| matches!(context, Context::Global | Context::Always);
     match (is_general(one), is_general(other)) {
@@ -94,7 +94,7 @@ fn clash(one: Context, other: Context) -> bool {
 }
 
 impl KeyPress {
-    /// Whether a text field takes it as text.
+    /// Returns `true` if a text field takes it as text.
     fn is_text(&self) -> bool {
         matches!(self.code, KeyCode::Char(_))
             && !self.modifiers.intersects(KeyModifiers::CONTROL | KeyModifiers::ALT)

@@ -12,17 +12,17 @@ use crate::ui::theme::Role;
 use super::row;
 use crate::ui::text_wrap::{fitting, folded, wrapped};
 
-/// Rows of completion candidates shown at most.
+/// The greatest number of rows of completion candidates.
 const CANDIDATE_ROWS: usize = 4;
 
-/// Stands in front of what is typed.
+/// The prompt before the typed text.
 const PROMPT: &str = "# ";
 
-/// Shown while nothing was entered yet.
+/// The text shown before the first entry.
 const WELCOME: &str =
     "The firmware's own command line. Type `help`, paste a `diff all`; Tab completes, Esc leaves.";
 
-/// The title: what it is doing.
+/// Returns the title with the current activity.
 pub(crate) fn title(state: &AppState) -> String {
     let name = state.panel_title(Panel::Cli);
     match (state.cli.queued(), state.cli.waiting, state.cli.scroll) {
@@ -33,7 +33,7 @@ pub(crate) fn title(state: &AppState) -> String {
     }
 }
 
-/// Draws the inside; gives the place of the cursor.
+/// Draws the inside. Returns the position of the cursor.
 pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     if area.height < 2 || area.width < 4 {
         return None;
@@ -47,7 +47,7 @@ pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<
         row(buffer, area, bottom + 1 + at as u16, theme, Role::Dim, text);
     }
 
-    // Upwards from the prompt: candidates, then what was entered and answered, as much as there is room for.
+    // Upwards from the prompt: candidates, then entered lines and answers, as many as fit.
     let mut rows: Vec<(Role, String)> = Vec::new();
     let candidates = candidate_rows(&cli.candidates, width);
     rows.extend(candidates.into_iter().rev().map(|text| (Role::Title, text)));
@@ -62,7 +62,7 @@ pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<
     if cli.lines.is_empty() && rows.is_empty() {
         rows.extend(wrapped(WELCOME, width).into_iter().rev().map(|text| (Role::Dim, text)));
     }
-    // Like a terminal: the prompt follows the text until the panel is full.
+    // As in a terminal, the prompt follows the text until the panel is full.
     let prompt_row = bottom.min(rows.len() as u16);
     for (above, (role, text)) in (1..=prompt_row).zip(&rows) {
         row(buffer, area, prompt_row - above, theme, *role, text);
@@ -74,7 +74,7 @@ pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<
     cli.input.draw(theme, place.intersection(area), buffer)
 }
 
-/// The furthest that the panel scrolls up: then its oldest line is the first on the screen.
+/// Returns the greatest scroll position, at which the oldest line is the first on the screen.
 pub(crate) fn last_scroll(state: &AppState, area: Rect) -> usize {
     let lines_of = &state.cli.lines;
     let height = usize::from(area.height).saturating_sub(1 + help_rows(state, area).len());
@@ -82,7 +82,8 @@ pub(crate) fn last_scroll(state: &AppState, area: Rect) -> usize {
     lines_of.len().saturating_sub(fitting(rows, height))
 }
 
-/// The help of what is being typed: at least one row, so that the prompt stands still, and not more than a quarter.
+/// Returns the help for the typed text: at least one row, so that the prompt keeps its place, at most three rows and
+/// about a quarter of the panel.
 fn help_rows(state: &AppState, area: Rect) -> Vec<String> {
     let width = usize::from(area.width);
     let most = usize::from(area.height / 4).clamp(1, 3);
@@ -105,7 +106,7 @@ fn role(kind: CliLineKind) -> Role {
     }
 }
 
-/// The rows of an entry.
+/// Returns the rows of an entry.
 fn lines((kind, text): &(CliLineKind, String), width: usize) -> Vec<String> {
     let prefix = match kind {
         CliLineKind::Entered => "# ",
@@ -115,7 +116,7 @@ fn lines((kind, text): &(CliLineKind, String), width: usize) -> Vec<String> {
     folded(&format!("{prefix}{text}"), width)
 }
 
-/// The last words of the candidates, in columns.
+/// Returns the last words of the candidates, in columns.
 fn candidate_rows(candidates: &[String], width: usize) -> Vec<String> {
     let words: Vec<&str> =
         candidates.iter().map(|line| line.rsplit_once(' ').map_or(line.as_str(), |(_, word)| word)).collect();

@@ -11,14 +11,14 @@ use crate::ui::editor::{Browser, EditorPopup, Form, FormField, FormKind, OpenPla
 use crate::ui::text_wrap::wrapped;
 use crate::ui::theme::Role;
 
-/// Columns of a form: labels, values, hints.
+/// The columns of a form: labels, values, hints.
 const LABEL: u16 = 14;
 const VALUE: u16 = 30;
-/// The fewest columns of a value.
+/// The least width of a value.
 const NARROW: u16 = 16;
 const WIDTH: u16 = 72;
 
-/// Draws the popup that is open; gives the place of the cursor.
+/// Draws the open popup. Returns the position of the cursor.
 pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     match state.editor.popup.as_ref()? {
         EditorPopup::Form(open) => form(state, open, area, buffer),
@@ -77,7 +77,7 @@ fn form(state: &AppState, form: &Form, area: Rect, buffer: &mut Buffer) -> Optio
     cursor
 }
 
-/// Columns of a value: a narrow form leaves the hint behind it whole.
+/// Returns the width of a value. A narrow form shortens it so that the hint after it stays whole.
 fn value_width(field: &FormField, columns: u16) -> u16 {
     let hint = field.hint.chars().count() as u16 + 1;
     VALUE.min(columns.saturating_sub(LABEL + hint).max(NARROW)).min(columns.saturating_sub(LABEL))

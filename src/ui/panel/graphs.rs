@@ -1,4 +1,4 @@
-//! 6 Graphs: signals over time, plots below each other over one axis, and a cursor.
+//! 6 Graphs: signals over time, in plots below each other with one time axis, and a cursor.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -16,12 +16,12 @@ use crate::ui::theme::Role;
 
 use super::{line, row, span};
 
-/// Columns of the numbers left of a plot.
+/// The width of the numbers left of a plot.
 const AXIS: u16 = 8;
-/// Least rows of a plot with its title.
+/// The least number of rows of a plot with its title.
 const LEAST_ROWS: u16 = 4;
 
-/// The title: the time that is shown.
+/// Returns the title with the shown time span and the cursor.
 pub(crate) fn title(state: &AppState) -> String {
     let span = state.graphs.span_s();
     let span = if span < 120.0 { format!("{span:.0} s") } else { format!("{:.0} min", span / 60.0) };
@@ -67,7 +67,7 @@ pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     draw_time_axis(state, area, window, plots.len() - fitting, buffer);
 }
 
-/// A factor and a unit for the values of a plot, and the decimals they are shown with.
+/// Returns the factor and the unit for the values of a plot, and the number of decimals.
 fn unit(state: &AppState, quantity: Quantity) -> (f64, &'static str, usize) {
     let units = state.units;
     match quantity {
@@ -81,7 +81,7 @@ fn unit(state: &AppState, quantity: Quantity) -> (f64, &'static str, usize) {
     }
 }
 
-/// The role of the curve at this place of its plot; the last one is the most important.
+/// Returns the role of the curve at this index of its plot; the last one is the most important.
 fn role(plot: &Plot, at: usize) -> Role {
     match plot.curves.len() - 1 - at {
         0 => Role::Track,
@@ -148,7 +148,7 @@ fn draw_plot(state: &AppState, plot: &Plot, area: Rect, (from, to): (f64, f64), 
         .render(canvas, buffer);
 }
 
-/// The strokes of a curve: at most one step a column of dots, over the least and the greatest value in it.
+/// Returns the strokes of a curve: at most one step per column of dots, over the least and the greatest value in it.
 fn segments(
     samples: &[&Sample],
     signal: Signal,
@@ -156,7 +156,7 @@ fn segments(
     (from, to): (f64, f64),
     columns: usize,
 ) -> Vec<((f64, f64), (f64, f64))> {
-    // As the canvas rounds, so that no column of dots is left out.
+    // Rounds as the canvas does, so that no column of dots is left out.
     let last = columns.saturating_sub(1) as f64;
     let column_of = |time_s: f64| ((time_s - from) / (to - from) * last).round() as usize;
     let is_drawn = |column: usize| match stroke {
@@ -190,7 +190,7 @@ fn segments(
                 let joined = before.map(|(_, time, .., last)| (time, last));
                 close(before.take());
                 if let Some((time, last)) = joined {
-                    // Over the columns between: samples may be further apart than they are wide.
+                    // Fills the columns between: samples may be several columns apart.
                     let steps = column.saturating_sub(column_of(time)).clamp(1, 2 * columns);
                     let mix = |a: f64, b: f64, step: usize| a + (b - a) * step as f64 / steps as f64;
                     for step in 1..steps {
@@ -238,7 +238,7 @@ fn draw_time_axis(state: &AppState, area: Rect, (from, to): (f64, f64), hidden: 
     row(buffer, area, area.height - 1, theme, Role::Dim, &text);
 }
 
-/// Draws the list of plots of the popup.
+/// Draws the popup with the list of plots.
 pub(crate) fn draw_choice(state: &AppState, selected: usize, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     let size = (50, PLOTS.len() as u16);

@@ -1,4 +1,4 @@
-//! The keys of this place, from the action table.
+//! The help popup: the keys of the focused panel and the general ones, from the action table.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -12,13 +12,13 @@ use crate::ui::theme::{Role, Theme};
 
 use super::{line, span};
 
-/// Columns of the keys.
+/// The width of the keys.
 const KEYS: usize = 12;
 
 /// Draws the popup, scrolled down by `scroll` lines.
 pub(crate) fn draw(state: &AppState, scroll: usize, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
-    // Within the frame.
+    // The width inside the frame.
     let columns = usize::from(area.width.saturating_sub(2));
     let mut lines: Vec<Line<'static>> = Vec::new();
     let own =
@@ -57,7 +57,7 @@ pub(crate) fn draw(state: &AppState, scroll: usize, area: Rect, buffer: &mut Buf
     }
 }
 
-/// Keys, and behind them what they do: in as many lines as it takes in these columns.
+/// Returns keys and their explanation, in as many lines as it takes at this width.
 fn explained(theme: &Theme, keys: &str, text: &str, columns: usize) -> Vec<Line<'static>> {
     let rows = wrapped(text, columns.saturating_sub(KEYS.max(keys.chars().count()) + 2).max(1));
     let keys = std::iter::once(keys).chain(std::iter::repeat(""));

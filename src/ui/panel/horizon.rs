@@ -11,16 +11,16 @@ use crate::ui::theme::Role;
 
 use super::row;
 
-/// Columns and rows of the horizon.
+/// The columns and rows of the horizon.
 pub(super) const SIZE: (u16, u16) = (21, 5);
-/// Degrees of pitch in a row.
+/// Degrees of pitch per row.
 const DEGREES_A_ROW: f64 = 10.0;
 
-/// Draws the horizon at the left of the area, roll, pitch and heading right of it.
+/// Draws the horizon on the left of the area, and roll, pitch and heading to its right.
 pub(super) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     let (estimate, truth) = (&state.view.vehicle.estimate, &state.view.vehicle.truth);
-    // Where the firmware does not tell, the simulator may.
+    // Values that the firmware does not report come from the simulator.
     let roll = estimate.roll_deg.or(truth.map(|truth| truth.roll_deg)).filter(|deg| deg.is_finite());
     let pitch = estimate.pitch_deg.or(truth.map(|truth| truth.pitch_deg)).filter(|deg| deg.is_finite());
     let heading = estimate.heading_deg.or(truth.map(|truth| truth.heading_deg));
@@ -49,7 +49,7 @@ pub(super) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     }
 }
 
-/// The points of the horizon around the craft, right and up; a row is as high as two columns are wide.
+/// Returns the points of the horizon relative to the craft, right and up. A row is as high as two columns are wide.
 fn horizon(roll_deg: f64, pitch_deg: f64, half_width: f64, half_height: f64) -> Vec<(f64, f64)> {
     let (sin, cos) = roll_deg.to_radians().sin_cos();
     let reach = (half_width * 5.0) as i32;

@@ -15,10 +15,10 @@ use crate::ui::theme::Role;
 use super::{line, row, span};
 use crate::ui::text_wrap::{fitting, wrapped};
 
-/// Columns of time and mark in front of the text.
+/// The width of time and mark before the text.
 const STAMP: usize = 12;
 
-/// The title: how many lines are above the first one shown, what is left out and what is searched.
+/// Returns the title with the number of lines above the first shown one, the filter and the search.
 pub(crate) fn title(state: &AppState) -> String {
     let mut title = state.panel_title(Panel::Log).to_owned();
     let view = &state.log_view;
@@ -40,25 +40,25 @@ pub(crate) fn title(state: &AppState) -> String {
     title
 }
 
-/// Columns of the text.
+/// Returns the width of the text.
 fn text_width(area: Rect) -> usize {
     usize::from(area.width).saturating_sub(STAMP)
 }
 
-/// The rows of the lines, without the one of a search that is typed.
+/// Returns the area of the lines, without the row of a search that is being typed.
 fn list(state: &AppState, area: Rect) -> Rect {
     let search = u16::from(state.log_view.typing && state.focus == Panel::Log);
     Rect { height: area.height.saturating_sub(search), ..area }
 }
 
-/// The furthest that the panel scrolls: then its oldest line is the last on the screen.
+/// Returns the greatest scroll position, at which the oldest line is the last on the screen.
 pub(crate) fn last_scroll(state: &AppState, area: Rect) -> usize {
     let rows = newest_first(state).rev().map(|entry| wrapped(&entry.text, text_width(area)).len());
     let fitting = fitting(rows, usize::from(list(state, area).height));
     newest_first(state).count().saturating_sub(fitting)
 }
 
-/// Draws the inside; gives the place of the cursor while a search is typed.
+/// Draws the inside. Returns the position of the cursor while a search is typed.
 pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     let theme = &state.theme;
     let list = list(state, area);
@@ -109,7 +109,7 @@ fn draw_lines(state: &AppState, area: Rect, buffer: &mut Buffer) {
     }
 }
 
-/// A text with what is searched marked in it.
+/// Returns a text with the match marked.
 fn highlighted(state: &AppState, role: Role, text: &str) -> Vec<Span<'static>> {
     let theme = &state.theme;
     let Some(found) = state.log_view.find_in(text) else { return vec![span(theme, role, text)] };

@@ -27,19 +27,19 @@ struct PlacedWaypoint {
     wp: Waypoint,
 }
 
-/// Everything the map shows, placed on the ground.
+/// The contents of the map, placed on the ground.
 struct Scene {
     view: Viewport,
     spots: Vec<PlacedWaypoint>,
     home: MapPoint,
-    /// Home of the open plan, where it is not that of the craft.
+    /// Home of the open plan, if it differs from that of the craft.
     planned_home: Option<MapPoint>,
     craft: Option<MapPoint>,
     believed: Option<MapPoint>,
     current: Option<usize>,
 }
 
-/// The title: how the map chooses its place.
+/// Returns the title with the source of the plan and the map mode.
 pub(crate) fn title(state: &AppState) -> String {
     let name = state.panel_title(Panel::Map);
     let source = match &state.view.vehicle.active_plan {
@@ -85,7 +85,7 @@ fn scene(state: &AppState, area: Rect) -> Scene {
     let craft_home =
         origin.zip(vehicle.craft.home).map_or(at_boot_place, |(frame, home)| to_map(&frame, home));
     let planned_home = map_edit::home(state).unwrap_or(craft_home);
-    // Whoever edits sees what is edited: home of the plan, and the fence around it.
+    // While editing, the map shows home of the edited plan and the fence around it.
     let mut home = if state.edits_on_map() { planned_home } else { craft_home };
     let mut spots = origin.map_or_else(Vec::new, |frame| spots(plan, &frame, home));
     match state.map.moving {
@@ -110,7 +110,7 @@ fn scene(state: &AppState, area: Rect) -> Scene {
     }
 }
 
-/// The positional waypoints; a TAKEOFF stands at home, wherever its record points.
+/// Returns the positional waypoints. A TAKEOFF is at home, whatever position its record has.
 fn spots(plan: &FlightPlan, frame: &LocalFrame, home: MapPoint) -> Vec<PlacedWaypoint> {
     let positional = plan.waypoints.iter().enumerate().filter(|(_, wp)| wp.kind.is_positional());
     positional

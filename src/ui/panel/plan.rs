@@ -1,4 +1,4 @@
-//! 2 Plan: the waypoints of the open plan, edited in place, with what is wrong beside them and the altitudes below.
+//! 2 Plan: the waypoints of the open plan, edited in place, with their findings and the altitude profile below.
 
 mod profile;
 mod table;
@@ -17,10 +17,10 @@ use crate::ui::panel::Panel;
 use crate::ui::text_wrap::wrapped;
 use crate::ui::theme::Role;
 
-/// The height of the panel from which the altitude profile is there.
+/// The panel height from which the altitude profile is shown.
 const PROFILE_FROM: u16 = 16;
 
-/// The title: name of the plan, what of it is unsaved and what of it the craft does not have.
+/// Returns the title: the name of the plan, its unsaved edits, and its differences from the craft.
 pub(crate) fn title(state: &AppState) -> String {
     let plan = state.editor.plan();
     let count = state.editor.plans().len();
@@ -28,7 +28,7 @@ pub(crate) fn title(state: &AppState) -> String {
     let unsaved = if plan.is_unsaved() { " ✎ unsaved" } else { "" };
     let kept = if state.editor.loses_edits { " ✗ edits not kept" } else { "" };
     let disk = if plan.is_changed_on_disk() { " ▲ changed on disk" } else { "" };
-    // It passes, so it stands where it is not cut off.
+    // It is temporary, so it is in front, where it is not cut off.
     if let Some(upload) = state.upload_of(plan.id()) {
         let uploading = format!("↑ uploading {}/{}", upload.sent, upload.total);
         return format!("{}{which} — {uploading} {}{unsaved}", state.panel_title(Panel::Plan), plan.title());
@@ -45,7 +45,7 @@ pub(crate) fn title(state: &AppState) -> String {
     format!("{}{which} — {}{unsaved}{kept}{disk}{craft}", state.panel_title(Panel::Plan), plan.title())
 }
 
-/// What is under the mouse in the panel.
+/// An item of the panel under the mouse.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum PlanTarget {
     /// A value of the table.
@@ -54,7 +54,7 @@ pub(crate) enum PlanTarget {
     Altitude(usize),
 }
 
-/// What is under a cell of the screen.
+/// Returns the item at a cell of the screen.
 pub(crate) fn target_at(state: &AppState, area: Rect, at: (u16, u16)) -> Option<PlanTarget> {
     if state.plan().waypoints.is_empty() {
         return None;
@@ -64,13 +64,13 @@ pub(crate) fn target_at(state: &AppState, area: Rect, at: (u16, u16)) -> Option<
     cell.or_else(|| profile::waypoint_at(state, profile?, at).map(PlanTarget::Altitude))
 }
 
-/// What a row of the altitude profile is worth, m.
+/// Returns the height of a row of the altitude profile, m.
 pub(crate) fn metres_per_row(state: &AppState, area: Rect) -> Option<f64> {
     let (_, _, profile) = divided(area, below(state, &findings::findings(state), area).len());
     profile::metres_per_row(state, profile?)
 }
 
-/// Table, what stands below it, and profile.
+/// Divides the area into table, the lines below it, and profile.
 fn divided(area: Rect, below_rows: usize) -> (Rect, Rect, Option<Rect>) {
     let profile = if area.height >= PROFILE_FROM { (area.height / 4).clamp(6, 12) } else { 0 };
     let below_rows = (below_rows as u16).min(area.height.saturating_sub(2));
@@ -80,7 +80,7 @@ fn divided(area: Rect, below_rows: usize) -> (Rect, Rect, Option<Rect>) {
     (table, foot, (profile > 0).then_some(bottom))
 }
 
-/// Draws the inside; gives the place of the cursor while a cell is typed.
+/// Draws the inside. Returns the position of the cursor while a cell is typed.
 pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     let theme = &state.theme;
     if state.plan().waypoints.is_empty() {
@@ -102,7 +102,7 @@ pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<
     cursor
 }
 
-/// What to do about an empty plan.
+/// Returns the advice for an empty plan.
 fn nothing_planned(state: &AppState) -> [String; 3] {
     use EditAction::{Download, Generate, Insert, Open};
     let [insert, generate, open, download] =
@@ -114,7 +114,8 @@ fn nothing_planned(state: &AppState) -> [String; 3] {
     ]
 }
 
-/// What stands below the table: what is wrong with the value being typed, or the finding with its fix.
+/// Returns the lines below the table: the hint or the problem of the value being typed, else the finding with its fix,
+/// and the estimate.
 fn below(state: &AppState, findings: &[Finding], area: Rect) -> Vec<Line<'static>> {
     let mut lines = said_below(state, findings, usize::from(area.width));
     if state.editor.field().is_none() {

@@ -14,12 +14,12 @@ use crate::ui::theme::Role;
 
 use super::row;
 
-/// Columns of name and value in front of the bar.
+/// The width of name and value before the bar.
 const LABEL: u16 = 17;
-/// Ends of the bars, µs.
+/// The ends of the bars, µs.
 const SPAN_US: (f64, f64) = (900.0, 2100.0);
 
-/// The title: who drives the channels, and how old the newest frame is.
+/// Returns the title with the source of the channels and the age of the newest frame.
 pub(crate) fn title(state: &AppState) -> String {
     let now_s = state.view.vehicle.time.as_secs_f64();
     let recording = state.stick_recording.shown(now_s);
@@ -48,7 +48,7 @@ pub(crate) fn title(state: &AppState) -> String {
     format!("{name} — {source}, {age}")
 }
 
-/// Where each visible channel is drawn: one column, or two when the panel is low and wide; else scrolled so that the
+/// Returns the area of each visible channel: one column, or two if the panel is low and wide, else scrolled so that the
 /// selected one is visible.
 fn grid(area: Rect, selected: usize) -> Vec<(usize, Rect)> {
     let rows = usize::from(area.height);
@@ -73,13 +73,13 @@ fn grid(area: Rect, selected: usize) -> Vec<(usize, Rect)> {
         .collect()
 }
 
-/// The bar of a channel's row.
+/// Returns the bar of a channel's row.
 fn bar(row: Rect) -> Rect {
     let label = LABEL.min(row.width);
     Rect { x: row.x + label, width: row.width - label, ..row }
 }
 
-/// The channel at a screen cell, and the value there if it is on the bar.
+/// Returns the channel at a screen cell, and the value there if the cell is on the bar.
 pub(crate) fn channel_at(
     area: Rect,
     selected: usize,
@@ -91,7 +91,8 @@ pub(crate) fn channel_at(
     Some((channel, value_on(bar(place), column).filter(|_| on_bar)))
 }
 
-/// The value of a channel's slider at a screen column, beyond its ends that of the end; `None` when it is not visible.
+/// Returns the value of a channel's slider at a screen column, limited to the ends of the bar; `None` if the channel is
+/// not visible.
 pub(crate) fn value_at(area: Rect, channel: usize, column: u16) -> Option<u16> {
     let (_, place) = grid(area, channel).into_iter().find(|(there, _)| *there == channel)?;
     value_on(bar(place), column)
@@ -104,13 +105,13 @@ fn value_on(bar: Rect, column: u16) -> Option<u16> {
     Some((us / 10.0).round() as u16 * 10)
 }
 
-/// The column of a value on a bar.
+/// Returns the column of a value on a bar.
 fn column_of(bar: Rect, us: u16) -> u16 {
     let share = ((f64::from(us) - SPAN_US.0) / (SPAN_US.1 - SPAN_US.0)).clamp(0.0, 1.0);
     bar.x + (share * f64::from(bar.width.saturating_sub(1))).round() as u16
 }
 
-/// The ranges on a channel.
+/// Returns the mode ranges on a channel.
 fn ranges(craft: &CraftView, channel: usize) -> impl Iterator<Item = &ModeRange> {
     craft
         .mode_ranges()
@@ -118,7 +119,7 @@ fn ranges(craft: &CraftView, channel: usize) -> impl Iterator<Item = &ModeRange>
         .filter(move |range| usize::from(range.channel) == channel && range.start_us < range.end_us)
 }
 
-/// Name of a channel: the stick, or the first mode on it and how many more.
+/// Returns the name of a channel: the stick, or its first mode and the number of further ones.
 fn name(craft: &CraftView, channel: usize) -> String {
     match channel {
         0 => "ROLL".to_owned(),

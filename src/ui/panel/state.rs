@@ -19,21 +19,21 @@ use super::state_diagram::{COMPACT, Diagram, FULL, LOW};
 use super::{line, row, span};
 use crate::ui::text_wrap::wrapped;
 
-/// How long the strokes of the last transition stay lit.
+/// The time for which the strokes of the last transition stay lit.
 const LIT_FOR: Duration = Duration::from_millis(2500);
-/// Share of a limit from which it needs attention.
+/// The share of a limit from which a guard needs attention.
 const NEAR: f64 = 0.75;
-/// What is left of the flyaway limit when it needs attention, m: the limit lies 20 m or more beyond the least distance
-/// so far, so a craft that comes nearer is never this close to it, however long the leg.
+/// The margin to the flyaway limit below which it needs attention, m. The limit is 20 m or more above the least
+/// distance so far, so a craft that comes nearer is never this close to it, however long the leg.
 const FLYAWAY_LEFT_M: f64 = 10.0;
-/// Width from which a guard is shown with its margin.
+/// The width from which a guard is shown with its margin.
 const WIDE: u16 = 36;
-/// Room below the guards from which it takes the artificial horizon, too.
+/// The room below the guards from which the artificial horizon is shown, too.
 const HORIZON_ROOM: (u16, u16) = (42, 9);
-/// Rows that guards need below the machine.
+/// The number of rows that guards need below the state diagram.
 const GUARD_ROWS: u16 = 8;
 
-/// The title: the waypoint of the mission.
+/// Returns the title with the waypoint of the mission.
 pub(crate) fn title(state: &AppState) -> String {
     let name = state.panel_title(Panel::State);
     let Some(nav) = state.view.vehicle.nav.as_ref().filter(|nav| nav.engaged && nav.count > 0) else {
@@ -57,19 +57,19 @@ pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     draw_transitions(state, rest, buffer);
 }
 
-/// The drawing that leaves room for the guards.
+/// Returns the largest state diagram that leaves room for the guards.
 fn diagram(area: Rect) -> &'static Diagram {
     let fits = |diagram: &Diagram| area.width >= diagram.width && area.height >= diagram.height + GUARD_ROWS;
     [&FULL, &COMPACT].into_iter().find(|diagram| fits(diagram)).unwrap_or(&LOW)
 }
 
-/// What is left of the area under its first rows.
+/// Returns the area below its first rows.
 fn below(area: Rect, rows: u16) -> Rect {
     let rows = rows.min(area.height);
     Rect { y: area.y + rows, height: area.height - rows, ..area }
 }
 
-/// The status message; gives the rows used.
+/// Draws the status message. Returns the number of rows used.
 fn draw_status_message(state: &AppState, area: Rect, diagram: &Diagram, buffer: &mut Buffer) -> u16 {
     let theme = &state.theme;
     let Some(message) = status_message::current(state) else { return 0 };
@@ -85,11 +85,11 @@ fn draw_status_message(state: &AppState, area: Rect, diagram: &Diagram, buffer: 
             used += 1;
         }
     }
-    // A blank line below, where there is room for everything.
+    // A blank line below, if there is room for everything.
     if area.height > used + diagram.height { used + 1 } else { used }
 }
 
-/// The machine; gives the rows used.
+/// Draws the state machine. Returns the number of rows used.
 fn draw_machine(state: &AppState, area: Rect, diagram: &Diagram, buffer: &mut Buffer) -> u16 {
     let Some(nav) = &state.view.vehicle.nav else {
         row(buffer, area, 0, &state.theme, Role::Dim, " — the firmware does not tell its state");
@@ -102,7 +102,8 @@ fn draw_machine(state: &AppState, area: Rect, diagram: &Diagram, buffer: &mut Bu
     diagram.height.min(area.height)
 }
 
-/// Whether the strokes of a transition are lit: it has just come, or it lies just before the earlier instant that is shown.
+/// Returns `true` while the strokes of a transition are lit: it has just occurred, or it is just before the earlier
+/// instant on the screen.
 fn is_lit(state: &AppState, last: &Transition) -> bool {
     if state.is_rewound() {
         return state.view.vehicle.time.seconds_since(last.time) < LIT_FOR.as_secs_f64();
@@ -110,7 +111,8 @@ fn is_lit(state: &AppState, last: &Transition) -> bool {
     within(state.now, last.received, LIT_FOR)
 }
 
-/// The guards of the active state, and how fast it gets nearer; gives the rows used.
+/// Draws the guards of the active state, the remaining time of the leg and the laps of an orbit. Returns the number of
+/// rows used.
 fn draw_guards(state: &AppState, area: Rect, buffer: &mut Buffer) -> u16 {
     let Some(nav) = state.view.vehicle.nav.as_ref().filter(|nav| !nav.guards.is_empty()) else { return 0 };
     if area.height == 0 {
@@ -119,7 +121,7 @@ fn draw_guards(state: &AppState, area: Rect, buffer: &mut Buffer) -> u16 {
     let theme = &state.theme;
     let units = state.units;
     let wide = area.width >= WIDE;
-    // What the mission waits for comes first, what would end it below.
+    // The conditions that the mission waits for come first; those that would end it are below.
     let (watched, awaited): (Vec<&Guard>, Vec<&Guard>) = nav.guards.iter().partition(|guard| is_watch(guard));
     let mut lines: Vec<Line<'_>> = awaited
         .iter()
@@ -146,7 +148,7 @@ fn draw_guards(state: &AppState, area: Rect, buffer: &mut Buffer) -> u16 {
     used.min(area.height)
 }
 
-/// How much of its ring an orbit flies in its time.
+/// Returns the share of its ring that an orbit flies in its time.
 fn laps(state: &AppState) -> Option<String> {
     let vehicle = &state.view.vehicle;
     let nav = vehicle.nav.as_ref().filter(|nav| nav.state == NavState::Orbiting)?;
@@ -156,8 +158,8 @@ fn laps(state: &AppState) -> Option<String> {
     Some(format!("  {laps:.2} {unit} in {} s", short(f64::from(wp.duration_ds) / 10.0)))
 }
 
-/// How long the rest of the leg takes at the speed of the leg, s, and that speed, m/s. The speed of the moment says little
-/// while the craft speeds up or turns.
+/// Returns the time for the rest of the leg at the speed of the leg, s, and that speed, m/s. The current speed says
+/// little while the craft speeds up or turns.
 fn time_of_leg(state: &AppState) -> Option<(f64, f64)> {
     let vehicle = &state.view.vehicle;
     let nav = vehicle.nav.as_ref().filter(|nav| nav.eta_s.is_some())?;
@@ -171,12 +173,12 @@ fn time_of_leg(state: &AppState) -> Option<(f64, f64)> {
     seconds.is_finite().then_some((seconds, speed_mps))
 }
 
-/// Whether a guard ends the mission when it holds, so that it is good that it does not.
+/// Returns `true` for a guard that ends the mission when it holds. Such a guard is good as long as it does not hold.
 fn is_watch(guard: &Guard) -> bool {
     matches!(guard.name, GuardName::Fence | GuardName::NoProgress | GuardName::Flyaway | GuardName::Overrun)
 }
 
-/// The name without what the state already says.
+/// Returns the name of a guard without the part that the state already implies.
 fn short_name(guard: &Guard) -> &'static str {
     match guard.name {
         GuardName::TouchdownAltitude => "altitude",
@@ -189,7 +191,7 @@ fn short_name(guard: &Guard) -> &'static str {
     }
 }
 
-/// How much attention a guard needs that nobody wants to hold.
+/// Returns mark and role of a guard that should not hold.
 fn watch_verdict(guard: &Guard) -> (&'static str, Role) {
     let near = if guard.name == GuardName::Flyaway {
         guard.limit - guard.value < FLYAWAY_LEFT_M
@@ -203,7 +205,7 @@ fn watch_verdict(guard: &Guard) -> (&'static str, Role) {
     }
 }
 
-/// `· fence           56.1 of   500 m`: how much of a limit is used up.
+/// Returns the used part of a limit: `· fence           56.1 of   500 m`.
 fn watch(theme: &Theme, units: Units, guard: &Guard) -> Line<'static> {
     let (mark, role) = watch_verdict(guard);
     let (factor, unit) = units.of_guard(guard.unit());
@@ -213,19 +215,19 @@ fn watch(theme: &Theme, units: Units, guard: &Guard) -> Line<'static> {
     Line::from(span(theme, role, text))
 }
 
-/// `· fence       56.1/500 m`.
+/// Returns the same in one narrow line: `· fence       56.1/500 m`.
 fn narrow_watch(theme: &Theme, units: Units, guard: &Guard, width: u16) -> Line<'static> {
     let (mark, role) = watch_verdict(guard);
     Line::from(span(theme, role, narrow(units, guard, mark, "/", width)))
 }
 
-/// `✗ turn radius 62.4≤5.5 m`.
+/// Returns a guard in one narrow line: `✗ turn radius 62.4≤5.5 m`.
 fn narrow_guard(theme: &Theme, units: Units, guard: &Guard, width: u16) -> Line<'static> {
     let (mark, role) = verdict(guard);
     Line::from(span(theme, role, narrow(units, guard, mark, theme.operator(guard.op), width)))
 }
 
-/// A guard in one narrow line: name at the left, numbers at the right, as many blanks between as there is room for.
+/// Returns a guard in one narrow line: the name on the left, the numbers on the right, as many blanks between as fit.
 fn narrow(units: Units, guard: &Guard, mark: &str, op: &str, width: u16) -> String {
     let (factor, unit) = units.of_guard(guard.unit());
     let value = fixed(Some(guard.value * factor), 5, 1);
@@ -237,7 +239,7 @@ fn narrow(units: Units, guard: &Guard, mark: &str, op: &str, width: u16) -> Stri
     format!("{:<room$}{numbers}{unit}", cut(&name, room))
 }
 
-/// A number as short as it is exact to a tenth.
+/// Formats a number with one decimal, or with none if it is whole.
 fn short(value: f64) -> String {
     if value.fract() == 0.0 { format!("{value:.0}") } else { format!("{value:.1}") }
 }
@@ -246,7 +248,7 @@ fn verdict(guard: &Guard) -> (&'static str, Role) {
     if guard.holds() { ("✓", Role::Ok) } else { ("✗", Role::Warn) }
 }
 
-/// `✗ turn radius    62.4 ≤   5.5 m   −56.9`.
+/// Returns a guard with its margin: `✗ turn radius    62.4 ≤   5.5 m   −56.9`.
 fn wide_guard(theme: &Theme, units: Units, guard: &Guard) -> Line<'static> {
     let (factor, unit) = units.of_guard(guard.unit());
     let (mark, role) = verdict(guard);
@@ -260,7 +262,7 @@ fn wide_guard(theme: &Theme, units: Units, guard: &Guard) -> Line<'static> {
     ])
 }
 
-/// The last transitions, the newest on top.
+/// Draws the last transitions, the newest on top.
 fn draw_transitions(state: &AppState, area: Rect, buffer: &mut Buffer) {
     let transitions = state.transitions_shown();
     if area.height < 3 || transitions.len() == 0 {
@@ -290,7 +292,8 @@ fn draw_transitions(state: &AppState, area: Rect, buffer: &mut Buffer) {
     }
 }
 
-/// The waypoint and the cause of a transition; of a start in the words of the log, where there is no room without the waypoint.
+/// Returns the waypoint and the cause of a transition. The start of a mission uses the words of the log, without the
+/// waypoint if there is no room.
 fn why(step: &Transition, room: usize) -> String {
     match step.reason {
         TransitionReason::Reset => {

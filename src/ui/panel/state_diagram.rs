@@ -1,4 +1,4 @@
-//! The waypoint state machine as a drawing: states as words, transitions as strokes.
+//! The waypoint state machine as a drawing: states are words, transitions are strokes.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -12,10 +12,10 @@ mod drawings;
 
 pub(crate) use drawings::{COMPACT, FULL, LOW};
 
-/// A word at a column and row.
+/// A state at a column and row.
 struct Node(NavState, u16, u16);
 
-/// Strokes (column, row, text) of the transitions from some states to some states.
+/// The strokes (column, row, text) of all transitions from one of `from` to one of `to`.
 struct Edge {
     from: &'static [NavState],
     to: &'static [NavState],
@@ -31,7 +31,7 @@ pub(crate) struct Diagram {
 }
 
 impl Diagram {
-    /// Draws the machine at the top left of the area: `active` lit, and the strokes of `last` if given.
+    /// Draws the machine at the top left of the area, with `active` and the strokes of `last` lit.
     pub(crate) fn draw(
         &self,
         theme: &Theme,
@@ -48,7 +48,7 @@ impl Diagram {
         };
         let lit =
             |edge: &Edge| last.is_some_and(|(from, to)| edge.from.contains(&from) && edge.to.contains(&to));
-        // Lit strokes last: some are shared.
+        // Lit strokes last, because some strokes are shared.
         for pass in [false, true] {
             for edge in self.edges.iter().filter(|edge| lit(edge) == pass) {
                 for &(column, row, text) in edge.strokes {
@@ -59,7 +59,7 @@ impl Diagram {
         for &Node(state, column, row) in self.nodes {
             let name: &'static str = state.into();
             if state == active {
-                // The ends show the state where a terminal shows no reverse.
+                // The ends mark the state on terminals without reverse video.
                 let ends = Style::new().fg(theme.colour(Role::Active));
                 put(column.saturating_sub(1), row, "▐", ends);
                 put(column, row, name, theme.style(Role::Active));

@@ -1,4 +1,4 @@
-//! 7 World: wind, turbulence, noise and faults as a list of knobs, and a mark where one is not at its default.
+//! 7 World: wind, turbulence, noise and faults as a list of knobs. A mark shows each knob that is not at its default.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
@@ -12,10 +12,10 @@ use crate::ui::theme::Role;
 
 use super::row;
 
-/// Columns of a name with its mark.
+/// The width of a name with its mark.
 const NAME: usize = 18;
 
-/// The title: what flies.
+/// Returns the title with the airframe.
 pub(crate) fn title(state: &AppState) -> String {
     let name = state.panel_title(Panel::World);
     match state.view.vehicle.world.airframe.as_str() {
@@ -24,13 +24,13 @@ pub(crate) fn title(state: &AppState) -> String {
     }
 }
 
-/// First knob shown, so that the selected one is visible.
+/// Returns the first shown knob, so that the selected one is visible.
 fn first(state: &AppState, rows: usize) -> usize {
     let last = knobs(state).len().saturating_sub(rows);
     state.knobs.selected.saturating_sub(rows / 2).min(last)
 }
 
-/// The knob at a row of the inside.
+/// Returns the knob at a row of the inside.
 pub(crate) fn knob_at(state: &AppState, area: Rect, line: u16) -> Option<usize> {
     let rows = usize::from(area.height.saturating_sub(1));
     let at = usize::from(line.checked_sub(area.y)?);
@@ -38,7 +38,7 @@ pub(crate) fn knob_at(state: &AppState, area: Rect, line: u16) -> Option<usize> 
     (at < rows && index < knobs(state).len()).then_some(index)
 }
 
-/// Draws the inside; gives the place of the cursor while a value is typed.
+/// Draws the inside. Returns the position of the cursor while a value is typed.
 pub(crate) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     let theme = &state.theme;
     let rows = usize::from(area.height.checked_sub(1)?);

@@ -1,4 +1,4 @@
-//! The `:` line: a command typed by its name, with its history and what it may become.
+//! The `:` line: a command typed by its name, with history and suggestions.
 
 use crossterm::event::{KeyCode, KeyEvent};
 use ratatui::buffer::Buffer;
@@ -17,52 +17,52 @@ use crate::ui::text_field::TextField;
 use crate::ui::text_wrap::wrapped;
 use crate::ui::theme::Role;
 
-/// Suggestions shown at most.
+/// The greatest number of suggestions shown.
 const MOST: usize = 8;
-/// Columns of a suggested word.
+/// The width of a suggested word.
 const WORD: usize = 21;
 
-/// The line, and what was entered before.
+/// The line and its history.
 #[derive(Debug, Default)]
 pub struct CommandLine {
-    /// What is being typed.
+    /// The typed text.
     pub field: TextField,
     history: History,
 }
 
-/// What a key did to the line.
+/// The effect of a key on the line.
 #[derive(Debug, PartialEq, Eq)]
 pub(in crate::ui) enum Outcome {
-    /// It is being typed.
+    /// The user is still typing.
     Typing,
-    /// It is to be carried out; it is new in the history or not.
+    /// The entered line, and `true` if it is new in the history.
     Entered(String, bool),
     Left,
 }
 
 impl CommandLine {
-    /// A line with the history of earlier runs.
+    /// Returns a line with the history of earlier runs.
     pub(in crate::ui) fn with_history(lines: &[String]) -> Self {
         Self { history: History::of(lines), ..Self::default() }
     }
 
-    /// Begins a new line.
+    /// Opens the line with this text.
     pub(in crate::ui) fn open(&mut self, text: &str) {
         self.field = TextField::new(text);
         self.history.forget_place();
     }
 
-    /// Completes the word that is being typed as far as all suggestions agree.
+    /// Completes the typed word as far as all suggestions agree.
     fn complete(&mut self, suggestions: &[Suggestion]) {
         let common = common_prefix(suggestions.iter().map(|suggestion| suggestion.line.as_str()));
-        // A name that is offered instead of a shorter word need not begin with it.
+        // A suggested full name need not begin with the typed short word.
         if common.len() > self.field.value().trim_start().len() {
             self.field = TextField::new(common);
         }
     }
 }
 
-/// A key while the line is open.
+/// Handles a key while the line is open.
 pub(in crate::ui) fn key(state: &mut AppState, event: KeyEvent) -> Outcome {
     match event.code {
         KeyCode::Esc => return Outcome::Left,
@@ -91,7 +91,7 @@ pub(in crate::ui) fn key(state: &mut AppState, event: KeyEvent) -> Outcome {
     Outcome::Typing
 }
 
-/// Draws the line in the last row, and above it what it may become; gives the place of the cursor.
+/// Draws the line in the last row and the suggestions above it. Returns the position of the cursor.
 pub(in crate::ui) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     let theme = &state.theme;
     let bottom = Rect { y: area.y + area.height.checked_sub(1)?, height: 1, ..area };

@@ -1,4 +1,4 @@
-//! The question which waypoint to go to.
+//! The popup to choose a waypoint to go to.
 
 use crossterm::event::{KeyCode, KeyEvent};
 use ratatui::buffer::Buffer;
@@ -11,32 +11,32 @@ use crate::ui::draw::popup;
 use crate::ui::panel::{line, row, span};
 use crate::ui::theme::Role;
 
-/// Columns of the inside.
+/// The width of the inside.
 const WIDTH: u16 = 40;
-/// Most rows of waypoints.
+/// The greatest number of waypoint rows.
 const ROWS: usize = 12;
 
-/// The waypoints that can be gone to, and the one that Enter takes.
+/// The waypoints to choose from, and the selected one.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct GoTo {
-    /// Index and type of those with a place.
+    /// Index and type of the waypoints with a place.
     waypoints: Vec<(u8, String)>,
     selected: usize,
     /// The digits typed so far.
     typed: String,
 }
 
-/// What a key did.
+/// The effect of a key.
 #[derive(Debug)]
 pub(crate) enum Outcome {
-    /// The choice goes on.
+    /// The user is still choosing.
     Choosing,
     Left,
     Chosen(u8),
 }
 
 impl GoTo {
-    /// The question for `plan`; the waypoint `current` is selected first.
+    /// Returns the popup for `plan`. The first waypoint from `current` on is selected.
     pub(crate) fn new(plan: &FlightPlan, current: u8) -> Self {
         let placed = (0..).zip(&plan.waypoints).filter(|(_, waypoint)| waypoint.kind.is_positional());
         let waypoints: Vec<_> = placed.map(|(index, waypoint)| (index, waypoint.kind.to_string())).collect();
@@ -44,7 +44,7 @@ impl GoTo {
         Self { waypoints, selected, typed: String::new() }
     }
 
-    /// Index and type of those that can be chosen.
+    /// Returns index and type of the waypoints to choose from.
     pub(crate) fn waypoints(&self) -> impl Iterator<Item = (u8, &str)> {
         self.waypoints.iter().map(|(index, kind)| (*index, kind.as_str()))
     }
@@ -66,7 +66,7 @@ impl GoTo {
         Outcome::Choosing
     }
 
-    /// Selects by number; digits that lead nowhere begin a new one.
+    /// Selects by number. A digit that leads to no waypoint begins a new number.
     fn type_digit(&mut self, digit: char) {
         self.typed.push(digit);
         for _ in 0..2 {

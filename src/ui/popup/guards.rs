@@ -1,4 +1,4 @@
-//! Explanations of the guards that are shown, and of the abbreviations of the screen.
+//! The popup that explains the shown guards and the abbreviations of the screen.
 
 use crossterm::event::{KeyCode, KeyEvent};
 use ratatui::buffer::Buffer;
@@ -11,12 +11,12 @@ use crate::ui::panel::row;
 use crate::ui::text_wrap::wrapped;
 use crate::ui::theme::Role;
 
-/// Columns of the inside.
+/// The width of the inside.
 const WIDTH: u16 = 54;
-/// Rows of an explanation.
+/// The number of rows of an explanation.
 const ROWS: u16 = 3;
 
-/// What the status lines and panels abbreviate.
+/// The abbreviations of the status lines and panels.
 const ABBREVIATIONS: [(&str, &str); 6] = [
     ("xte", "Cross-track error: how far the craft is beside its leg, positive to the right."),
     ("fence", "Distance from home at which the mission ends: ap_max_distance_from_home."),
@@ -29,7 +29,7 @@ const ABBREVIATIONS: [(&str, &str); 6] = [
 /// A name and its explanation.
 type Entry = (&'static str, &'static str);
 
-/// The guards of the active state, then the abbreviations.
+/// Returns the guards of the active state, then the abbreviations.
 fn entries(state: &AppState) -> Vec<Entry> {
     let nav = state.view.vehicle.nav.as_ref();
     let explain = |guard: &Guard| -> Entry { (guard.name.into(), guard.name.explanation()) };
@@ -37,7 +37,7 @@ fn entries(state: &AppState) -> Vec<Entry> {
     guards.chain(ABBREVIATIONS).collect()
 }
 
-/// A key for the list; `false` closes it.
+/// Handles a key. Returns `false` if it closes the list.
 pub(crate) fn key(selected: &mut usize, event: KeyEvent) -> bool {
     match event.code {
         KeyCode::Up | KeyCode::Char('k') => *selected = selected.saturating_sub(1),
@@ -48,12 +48,12 @@ pub(crate) fn key(selected: &mut usize, event: KeyEvent) -> bool {
     true
 }
 
-/// Keeps the selection on an entry.
+/// Limits the selection to the existing entries.
 pub(crate) fn limit(state: &AppState, selected: usize) -> usize {
     selected.min(entries(state).len() - 1)
 }
 
-/// Draws the list, and the explanation of the selected entry under it.
+/// Draws the list and, below it, the explanation of the selected entry.
 pub(crate) fn draw(state: &AppState, selected: usize, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     let entries = entries(state);

@@ -11,27 +11,27 @@ use crate::ui::layout;
 use crate::ui::panel::row;
 use crate::ui::theme::Role;
 
-/// Columns of the inside.
+/// The width of the inside.
 const WIDTH: u16 = 30;
 
-/// Something that can be done at the place.
+/// An action at the place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::ui) enum MapChoice {
     /// Put a waypoint there.
     AddWaypoint,
-    /// Make it home of the plan.
+    /// Make it the home of the plan.
     SetHome,
-    /// Let the fence go through it.
+    /// Set the fence so that it goes through the place.
     SetFence,
-    /// Show the waypoint that is there in the plan table.
+    /// Show the waypoint at the place in the plan table.
     EditWaypoint(usize),
     DeleteWaypoint(usize),
-    /// Fly to it now.
+    /// Fly to the waypoint now.
     GoTo(u8),
 }
 
 impl MapChoice {
-    /// The key that takes it, and what it is called.
+    /// Returns its key and its label.
     fn shown(self) -> (char, String) {
         match self {
             Self::AddWaypoint => ('i', "add a waypoint here".to_owned()),
@@ -44,10 +44,10 @@ impl MapChoice {
     }
 }
 
-/// The menu that is open.
+/// The open menu.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct MapMenu {
-    /// The place it is about.
+    /// The place of the menu.
     pub(in crate::ui) place: LatLon,
     /// Column and row of the mouse when it was opened.
     at: (u16, u16),
@@ -55,17 +55,17 @@ pub struct MapMenu {
     selected: usize,
 }
 
-/// What a key or a click did.
+/// The effect of a key or a click.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::ui) enum Outcome {
-    /// The choice goes on.
+    /// The user is still choosing.
     Choosing,
     Left,
     Chosen(MapChoice),
 }
 
 impl MapMenu {
-    /// A menu of these choices.
+    /// Returns a menu of these choices.
     pub(in crate::ui) fn new(place: LatLon, at: (u16, u16), choices: Vec<MapChoice>) -> Self {
         Self { place, at, choices, selected: 0 }
     }
@@ -88,7 +88,7 @@ impl MapMenu {
         Outcome::Choosing
     }
 
-    /// A click anywhere on a screen of this size: outside it closes the menu.
+    /// Handles a click on a screen of this size. A click outside closes the menu.
     pub(in crate::ui) fn click(&self, size: (u16, u16), (column, line): (u16, u16)) -> Outcome {
         let inside = layout::inner(self.rect(Rect::new(0, 0, size.0, size.1)));
         let is_inside = (inside.left()..inside.right()).contains(&column)
@@ -100,7 +100,7 @@ impl MapMenu {
         self.choices.get(index).map_or(Outcome::Left, |choice| Outcome::Chosen(*choice))
     }
 
-    /// Beside the mouse, where there is room.
+    /// Returns the area of the menu: beside the mouse if there is room.
     fn rect(&self, area: Rect) -> Rect {
         let width = (WIDTH + 2).min(area.width);
         let height = (self.choices.len() as u16 + 2).min(area.height);

@@ -15,22 +15,22 @@ use crate::ui::panel::{line, row, span};
 use crate::ui::text_field::TextField;
 use crate::ui::theme::Role;
 
-/// Inner size on a screen that has room for it.
+/// The inner size on a screen that has room for it.
 const SIZE: (u16, u16) = (72, 16);
-/// Columns of a name.
+/// The width of a name.
 const NAME: usize = 21;
-/// Rows of the search line above the list, and of the reason below it.
+/// The number of rows around the list: the search line above it and the reason below it.
 const AROUND: u16 = 2;
-/// Weight of letters found in the title or the name.
+/// The weight of letters found in the title or the name.
 const IN_NAME: u32 = 4;
-/// Weight of a letter of a word that stands in the help: more than letters scattered over a name.
+/// The weight of each letter of a word found in the help: more than letters scattered over a name.
 const IN_HELP: u32 = 6;
 
-/// What is searched, and the row that is selected.
+/// The search text, and the selected row.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Palette {
     pub query: TextField,
-    /// Selected row of the list.
+    /// The selected row of the list.
     pub selected: usize,
 }
 
@@ -38,16 +38,16 @@ pub struct Palette {
 #[derive(Debug, Clone, Copy)]
 pub(in crate::ui) enum Entry {
     Action(&'static Spec),
-    /// A command, which needs an argument.
+    /// A command with an argument.
     Command(Command),
 }
 
-/// What a key did.
+/// The effect of a key.
 #[derive(Debug)]
 pub(in crate::ui) enum Outcome {
-    /// It is being searched.
+    /// The user is still searching.
     Searching,
-    /// This row was chosen.
+    /// The user chose this row.
     Chosen(Entry),
     Left,
 }
@@ -74,7 +74,7 @@ impl Entry {
         }
     }
 
-    /// Why it makes no sense now, if it does not.
+    /// Returns the reason if it is refused now.
     fn refusal(&self, state: &AppState) -> Option<String> {
         match self {
             Self::Action(spec) => action::enabled(state, spec.action).err(),
@@ -82,7 +82,7 @@ impl Entry {
         }
     }
 
-    /// How well a query fits: each of its words must occur.
+    /// Scores a query; each of its words must occur.
     fn score(&self, query: &str) -> Option<u32> {
         let title = match self {
             Self::Action(spec) => spec.title,
@@ -97,17 +97,17 @@ impl Entry {
     }
 }
 
-/// The rows that a query leaves, the best first.
+/// Returns the rows that match a query, the best first.
 pub(in crate::ui) fn entries(query: &str) -> Vec<Entry> {
     let actions = ACTIONS.iter().filter(|spec| spec.action != Action::Palette).map(Entry::Action);
     let all = actions.chain(command::all().map(Entry::Command));
     let mut scored: Vec<(u32, Entry)> = all.filter_map(|entry| Some((entry.score(query)?, entry))).collect();
-    // Stable: what fits equally well stays in the order of the table.
+    // Stable: entries with equal scores stay in the order of the table.
     scored.sort_by_key(|(score, _)| std::cmp::Reverse(*score));
     scored.into_iter().map(|(_, entry)| entry).collect()
 }
 
-/// A key while the palette is open.
+/// Handles a key while the palette is open.
 pub(in crate::ui) fn key(palette: &mut Palette, event: KeyEvent) -> Outcome {
     let found = entries(palette.query.value());
     let last = found.len().saturating_sub(1);
@@ -132,7 +132,7 @@ pub(in crate::ui) fn key(palette: &mut Palette, event: KeyEvent) -> Outcome {
     Outcome::Searching
 }
 
-/// Draws it; gives the place of the cursor.
+/// Draws the palette. Returns the position of the cursor.
 pub(in crate::ui) fn draw(
     state: &AppState,
     palette: &Palette,

@@ -1,4 +1,4 @@
-//! The list of what may go wrong.
+//! The popup to choose a what-if.
 
 use crossterm::event::{KeyCode, KeyEvent};
 use ratatui::buffer::Buffer;
@@ -12,19 +12,19 @@ use crate::ui::theme::Role;
 
 use crate::ui::panel::{line, row, span};
 
-/// Columns of the inside.
+/// The width of the inside.
 const WIDTH: u16 = 34;
 
-/// What a key did.
+/// The effect of a key.
 #[derive(Debug)]
 pub(crate) enum Outcome {
-    /// The choice goes on.
+    /// The user is still choosing.
     Choosing,
     Left,
     Chosen(WhatIf),
 }
 
-/// A key for the list; `selected` is the row that Enter takes.
+/// Handles a key for the list; `selected` is the selected row.
 pub(crate) fn key(selected: &mut usize, event: KeyEvent) -> Outcome {
     match event.code {
         KeyCode::Up | KeyCode::Char('k') => *selected = selected.saturating_sub(1),
@@ -38,7 +38,7 @@ pub(crate) fn key(selected: &mut usize, event: KeyEvent) -> Outcome {
     Outcome::Choosing
 }
 
-/// Draws the popup; `selected` is the row that Enter takes.
+/// Draws the popup; `selected` is the selected row.
 pub(crate) fn draw(state: &AppState, selected: usize, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     let height = WHAT_IFS.len() as u16 + 2;

@@ -7,7 +7,7 @@ use crate::ui::app_state::AppState;
 use crate::ui::editor::{Browser, EditorPopup, Purpose};
 use crate::ui::text_field::TextField;
 
-/// What is asked; `None` until the directory was read.
+/// Returns the question; `None` until the directory has been read.
 pub(super) fn question(browser: &Browser) -> Option<Vec<String>> {
     let directory = &browser.listing.directory;
     if directory.as_os_str().is_empty() {
@@ -26,7 +26,7 @@ pub(super) fn question(browser: &Browser) -> Option<Vec<String>> {
     Some(std::iter::once(title).chain(entries).chain([end]).collect())
 }
 
-/// Takes a number or a name.
+/// Handles a number or a name.
 pub(super) fn answer(state: &mut AppState, line: &str) -> Result<Answered, String> {
     let Some(EditorPopup::Browser(browser)) = &mut state.editor.popup else { return Ok(Answered::default()) };
     if line.is_empty() {
@@ -34,7 +34,7 @@ pub(super) fn answer(state: &mut AppState, line: &str) -> Result<Answered, Strin
     }
     let numbered = line.parse::<usize>().ok().and_then(|number| number.checked_sub(1));
     browser.at = numbered.filter(|&at| at < browser.listing.entries.len());
-    // What is typed would filter the entries by which the number counts.
+    // A typed text would filter the entries that the number refers to.
     browser.text = if browser.at.is_some() { TextField::default() } else { TextField::new(line) };
     Ok(press(state, KeyCode::Enter).into())
 }

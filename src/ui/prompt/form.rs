@@ -1,4 +1,4 @@
-//! A form without a screen: its values by number or name, one a line.
+//! A form without a screen: its values by number or name, one per line.
 
 use crossterm::event::KeyCode;
 
@@ -6,7 +6,7 @@ use super::{Answered, press};
 use crate::ui::app_state::AppState;
 use crate::ui::editor::{EditorPopup, Form, FormField, FormKind, findings};
 
-/// What is asked: the values as they stand.
+/// Returns the question: the current values.
 pub(super) fn question(state: &AppState, form: &Form) -> Vec<String> {
     let title = match form.kind {
         FormKind::Bulk => "Change waypoints.",
@@ -23,7 +23,7 @@ pub(super) fn question(state: &AppState, form: &Form) -> Vec<String> {
     lines.chain(told(state, form)).collect()
 }
 
-/// Takes a line: a value, `take`, or nothing.
+/// Handles a line: a value, `take`, or nothing.
 pub(super) fn answer(state: &mut AppState, line: &str) -> Result<Answered, String> {
     match line {
         "" => return Ok(press(state, KeyCode::Esc).into()),
@@ -48,7 +48,7 @@ pub(super) fn answer(state: &mut AppState, line: &str) -> Result<Answered, Strin
     })
 }
 
-/// Sets the value that a line names; gives it back with its name.
+/// Sets the value that a line names. Returns it with its name.
 fn set(form: &mut Form, line: &str) -> Result<String, String> {
     let (name, value) = line.split_once('=').unwrap_or((line, ""));
     let (name, value) = (name.trim(), value.trim());
@@ -67,12 +67,12 @@ fn set(form: &mut Form, line: &str) -> Result<String, String> {
     Ok(format!("{label} = {value}"))
 }
 
-/// The unit, or what may be chosen.
+/// Returns the unit, or the words of a choice.
 fn hint(field: &FormField) -> String {
     if field.choices.is_empty() { field.hint.to_owned() } else { field.choices.join(", ") }
 }
 
-/// What the form would make now, or what is wrong.
+/// Returns the result that the form would give now, or the problem.
 fn told(state: &AppState, form: &Form) -> Option<String> {
     let told = state.editor.form_told(form);
     Some(told.unwrap_or_else(|problem| problem)).filter(|told| !told.is_empty())

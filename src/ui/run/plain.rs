@@ -1,4 +1,4 @@
-//! The user interface without a screen: what happens as sentences, one a line, and commands of the `:` line as input.
+//! The user interface without a screen: events as sentences, one per line, and commands of the `:` line as input.
 
 use std::io::{self, ErrorKind, Write};
 use std::time::Instant;
@@ -16,14 +16,14 @@ use lines::Lines;
 
 mod lines;
 
-/// The size that the state believes in; nothing is drawn.
+/// The screen size that the state assumes; nothing is drawn.
 const SIZE: (u16, u16) = (80, 24);
 
-/// Runs until a command or `stop` ends it; when the input ends the flight goes on, as in `serve`. A line of input waits
-/// for the answers to the one before. An error in the place of a line is a sentence that is written.
+/// Runs until a command or `stop` ends it. At the end of the input the flight goes on, as in `serve`. A line of input
+/// waits for the answers to the one before. An error in place of a line is a sentence to write.
 ///
 /// # Errors
-/// The output cannot be written; a reader that went away is an ordinary end.
+/// Returns an error if the output cannot be written. A reader that went away is an ordinary end.
 pub async fn run_plain(
     link: SessionLink,
     files: FilesLink,
@@ -76,7 +76,7 @@ async fn run_loop(
                         lines.write(&format!("{:>7.1} s  {text}", event.time.as_secs_f64()))?;
                     }
                     let effects = update(&mut state, Msg::Event(event));
-                    // The same sentence.
+                    // The notice has the same sentence.
                     state.notice = None;
                     effects
                 }
@@ -119,7 +119,7 @@ async fn run_loop(
     Ok(ending)
 }
 
-/// Whether an effect is answered by a message, before which no further line is read.
+/// Returns `true` if a message answers the effect. The next line is read only after that answer.
 fn is_question(effect: &Effect) -> bool {
     match effect {
         Effect::Cli(_)
@@ -136,7 +136,7 @@ fn is_question(effect: &Effect) -> bool {
     }
 }
 
-/// Whether a message is such an answer.
+/// Returns `true` if the message is such an answer.
 fn is_answer(msg: &Msg) -> bool {
     match msg {
         Msg::CliReply(_)

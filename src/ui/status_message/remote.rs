@@ -1,4 +1,4 @@
-//! What to know of a flight controller outside: its connection, and the state of a real craft.
+//! Messages about a remote flight controller: its connection, and the state of a real craft.
 
 use super::{StatusMessage, message, most_useful_flag};
 use crate::session::{RemoteState, RemoteView};
@@ -7,7 +7,8 @@ use crate::ui::app_state::AppState;
 use crate::ui::event_log::Severity;
 use crate::ui::panel::Panel;
 
-/// What the connection lets the user know first, and of a real craft all; `None` = as with any other craft.
+/// Returns the message about the connection, or any message about a real craft; `None` if the messages of a simulated
+/// craft apply.
 pub(super) fn current(state: &AppState, remote: &RemoteView) -> Option<StatusMessage> {
     let name = &remote.name;
     let is_real = remote.access.is_limited();
@@ -34,7 +35,7 @@ pub(super) fn current(state: &AppState, remote: &RemoteView) -> Option<StatusMes
     }
 }
 
-/// A real craft that answers.
+/// Returns the message for a real craft that answers.
 fn ready(state: &AppState, remote: &RemoteView) -> Option<StatusMessage> {
     let vehicle = &state.view.vehicle;
     let craft = &vehicle.craft;

@@ -1,6 +1,6 @@
-//! Which column of the timeline shows which instant.
+//! Converts between columns of the timeline and instants.
 //!
-//! Time is spread evenly over the columns, but for long idle parts: each is folded into one column.
+//! Time is spread evenly over the columns, except for long idle parts, each of which is folded into one column.
 
 use ratatui::layout::Rect;
 use unicode_width::UnicodeWidthStr as _;
@@ -9,32 +9,32 @@ use crate::signals::SimTime;
 use crate::timeline::{IdleSpan, TimelineView};
 use crate::ui::formatting::clock;
 
-/// There are at least so many columns for each fold; when there are more folds the shortest are drawn as they are.
+/// The least number of columns for each fold. If there are too many folds, the shortest are drawn unfolded.
 const COLUMNS_A_FOLD: usize = 6;
 
 /// A folded part of the time.
 #[derive(Debug, Clone, Copy)]
 struct Fold {
     span: IdleSpan,
-    /// Its column, counted from the first.
+    /// The column of the fold, counted from the first.
     column: u64,
 }
 
 /// The columns of the line between its labels.
 #[derive(Debug)]
 pub(super) struct Columns {
-    /// Column of the screen at which they begin, and how many there are.
+    /// The screen column at which they begin; `width` is their number.
     pub(super) x: u16,
     pub(super) width: u16,
     first: SimTime,
     head: SimTime,
     folds: Vec<Fold>,
-    /// The time that is not folded, µs, at least 1.
+    /// The unfolded time, µs, at least 1.
     unfolded_us: u64,
 }
 
 impl Columns {
-    /// The columns of a timeline that is drawn into `area`.
+    /// Returns the columns of a timeline drawn into `area`.
     pub(super) fn new(timeline: &TimelineView, area: Rect) -> Self {
         let label = |time| clock(time).width() as u16 + 2;
         let (left, right) = (label(timeline.first), label(timeline.head));
@@ -54,7 +54,7 @@ impl Columns {
         let mut before_us = 0;
         for (number, span) in spans.into_iter().enumerate() {
             let since_us = span.from.0.saturating_sub(first.0).saturating_sub(before_us);
-            // Behind the columns in which some time before it begins.
+            // After the columns that show the time before it.
             let column = since_us.checked_sub(1).map_or(0, |us| columns.share(us, last) + 1);
             columns.folds.push(Fold { span, column: column + number as u64 });
             before_us += span.length_us();
@@ -62,18 +62,18 @@ impl Columns {
         columns
     }
 
-    /// The number of the last column of the time that is not folded, folds left out.
+    /// Returns the number of the last column of unfolded time, without counting folds.
     fn last_unfolded(&self, folds: usize) -> u64 {
         u64::from(self.width).saturating_sub(1 + folds as u64)
     }
 
-    /// The column of so much time since the first, folds left out.
+    /// Returns the column at this time since the first instant, without counting folds.
     fn share(&self, since_us: u64, last: u64) -> u64 {
         let share = u128::from(since_us.min(self.unfolded_us)) * u128::from(last);
         (share / u128::from(self.unfolded_us)) as u64
     }
 
-    /// The column of an instant.
+    /// Returns the column of an instant.
     pub(super) fn column_of(&self, time: SimTime) -> u16 {
         if time >= self.head {
             return self.width.saturating_sub(1);
@@ -87,7 +87,7 @@ impl Columns {
         (self.share(since_us, self.last_unfolded(self.folds.len())) + ended as u64) as u16
     }
 
-    /// The instant at which a column begins; the last one is the newest instant.
+    /// Returns the instant at which a column begins; for the last column the newest instant.
     pub(super) fn start_of(&self, column: u16) -> SimTime {
         if column + 1 >= self.width {
             return self.head;
@@ -103,19 +103,19 @@ impl Columns {
         SimTime(self.first.0 + unfolded.div_ceil(last) as u64 + folded_us)
     }
 
-    /// The instant at a column of the screen; `None` beside the line.
+    /// Returns the instant at a column of the screen; `None` beside the line.
     pub(super) fn time_at(&self, screen_column: u16) -> Option<SimTime> {
         let column = screen_column.checked_sub(self.x).filter(|at| *at < self.width)?;
         Some(self.start_of(column))
     }
 
-    /// Whether a fold is in a column.
+    /// Returns `true` if a column is a fold.
     pub(super) fn is_fold(&self, column: u16) -> bool {
         self.folds.iter().any(|fold| fold.column == u64::from(column))
     }
 }
 
-/// The longest folds, at most `most`, the oldest first.
+/// Returns the longest folds, at most `most`, the oldest first.
 fn chosen(timeline: &TimelineView, most: usize) -> Vec<IdleSpan> {
     let inside = |span: &&IdleSpan| span.from >= timeline.first && span.to <= timeline.head;
     let mut spans: Vec<IdleSpan> = timeline.folds.iter().filter(inside).copied().collect();
@@ -141,7 +141,7 @@ mod tests {
         columns
     }
 
-    /// Folds at the beginning, at the end, next to each other, at the border of columns, and more than there is room for.
+    /// Folds at the beginning, at the end, next to each other, at the border of columns, and more folds than fit.
     const CASES: [&[(u64, u64)]; 7] = [
         &[],
         &[(7, 100)],
@@ -159,7 +159,7 @@ mod tests {
                 let columns = columns(width, 4000, folds);
                 for column in 0..columns.width {
                     let time = columns.time_at(columns.x + column).unwrap();
-                    // Without any time to show there are columns that show nothing.
+                    // Without any time, some columns show nothing.
                     if columns.unfolded_us > 1 {
                         assert_eq!(columns.column_of(time), column, "{time:?} of {columns:?}");
                     }

@@ -1,4 +1,4 @@
-//! Keys that fly by hand, and the frames they send.
+//! Tests of the keys that fly by hand, and of their frames.
 
 use super::*;
 use crate::session::SessionView;
@@ -92,7 +92,7 @@ fn switching_the_autopilot_off_in_the_air_leaves_the_craft_held() {
     }
 }
 
-/// An armed craft twenty metres up, with all switches.
+/// Returns an armed craft 20 m up, with all switches.
 fn flying() -> AppState {
     let mut state = state(&HOLDS);
     let vehicle = std::sync::Arc::make_mut(&mut state.view.vehicle);

@@ -13,7 +13,7 @@ use crate::ui::popup::Popup;
 
 use super::view::{focus, neighbour, scroll_panel};
 
-/// A key while the CLI has the focus.
+/// Handles a key while the CLI has the focus.
 pub(super) fn cli_key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
     match event.code {
         KeyCode::Enter => {
@@ -43,7 +43,7 @@ pub(super) fn cli_key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
     Vec::new()
 }
 
-/// Pasted text goes to the text field that has the focus: the first line to one of a single line.
+/// Inserts pasted text into the field with the focus; a field of a single line gets the first line.
 pub(super) fn paste(state: &mut AppState, text: &str) -> Vec<Effect> {
     let field = match state.popups.last_mut() {
         Some(Popup::CommandLine) => Some(&mut state.command_line.field),
@@ -82,7 +82,7 @@ pub(super) fn paste(state: &mut AppState, text: &str) -> Vec<Effect> {
     run_cli(state)
 }
 
-/// Runs the next line that waits, if the firmware is free.
+/// Runs the next waiting line, if the firmware is free.
 pub(in crate::ui) fn run_cli(state: &mut AppState) -> Vec<Effect> {
     state.cli.next_to_run().map(Effect::Cli).into_iter().collect()
 }

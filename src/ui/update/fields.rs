@@ -8,7 +8,7 @@ use crate::ui::panel::Panel;
 use crate::ui::text_field::TextField;
 use crate::ui::{knobs, log_view};
 
-/// The field that takes letters, if one does.
+/// Returns the field that takes letters, if there is one.
 pub(super) fn open(state: &mut AppState) -> Option<&mut TextField> {
     match state.focus {
         Panel::Log if state.log_view.typing => Some(&mut state.log_view.search),
@@ -17,7 +17,7 @@ pub(super) fn open(state: &mut AppState) -> Option<&mut TextField> {
     }
 }
 
-/// A key while a field is open.
+/// Handles a key while a field is open.
 pub(super) fn key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
     match state.focus {
         Panel::Log => log_view::search_key(state, event),
@@ -26,7 +26,7 @@ pub(super) fn key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
     }
 }
 
-/// Closes the open field; whether there was one.
+/// Closes the open field. Returns `true` if there was one.
 pub(super) fn close(state: &mut AppState) -> bool {
     let was_open = open(state).is_some();
     if was_open {

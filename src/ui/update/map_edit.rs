@@ -12,7 +12,7 @@ use crate::ui::map_point::{self, MapPoint};
 use crate::ui::message::Effect;
 use crate::ui::viewport::MapMode;
 
-/// The greatest radius of the fence that the craft takes, m.
+/// The greatest radius of the fence that the craft accepts, m.
 const WIDEST_FENCE_M: f64 = 10_000.0;
 
 /// Shows or hides the cursor.
@@ -23,12 +23,12 @@ pub(super) fn toggle(state: &mut AppState) -> Vec<Effect> {
     }
     let Some(view) = view::viewport(state) else { return Vec::new() };
     state.map.edit = Some(MapCursor { place: view.centre });
-    // A map that follows or fits would move under the cursor.
+    // In the modes Follow and Fit the map would move under the cursor.
     state.map.mode = MapMode::Free { n: view.centre.n, e: view.centre.e, scale: view.scale };
     Vec::new()
 }
 
-/// An arrow key: moves the cursor by a cell while there is one, else the map.
+/// Handles an arrow key: moves the cursor by a cell if there is one, else the map.
 pub(super) fn arrow(state: &mut AppState, columns: f64, rows: f64) -> Vec<Effect> {
     let (Some(cursor), Some(view)) = (state.map.edit, view::viewport(state)) else {
         return view::pan(state, columns, rows);
@@ -46,7 +46,7 @@ pub(super) fn arrow(state: &mut AppState, columns: f64, rows: f64) -> Vec<Effect
     Vec::new()
 }
 
-/// Picks up what is at the cursor, or puts down what was picked up.
+/// Picks up the item at the cursor, or puts down the item picked up before.
 pub(super) fn pick(state: &mut AppState) -> Vec<Effect> {
     let Some(cursor) = state.map.edit else {
         let key = state.key(Action::Edit(EditAction::OnMap));
@@ -76,13 +76,13 @@ pub(super) fn pick_up(state: &mut AppState, item: MapItem, place: MapPoint, by_m
     state.map.moving = Some(Moving { item, place, moved: false, by_mouse, of: revision(state) });
 }
 
-/// Which plan is shown, and in which revision.
+/// Returns the shown plan and its revision.
 fn revision(state: &AppState) -> (PlanId, usize) {
     let plan = state.editor.plan();
     (plan.id(), plan.history().at())
 }
 
-/// Leaves what was picked up where it was, else hides the cursor; whether there was one.
+/// Drops the picked-up item at its old place, else hides the cursor. Returns `true` if there was either.
 pub(super) fn leave(state: &mut AppState) -> bool {
     state.map.moving.take().is_some() || state.map.edit.take().is_some()
 }
@@ -93,7 +93,7 @@ pub(super) fn put(state: &mut AppState, item: MapItem, place: MapPoint) -> Vec<E
     put_down(state)
 }
 
-/// Puts down what is being moved, as one edit.
+/// Puts down the item being moved, as one edit.
 pub(super) fn put_down(state: &mut AppState) -> Vec<Effect> {
     let (Some(moving), Some(frame)) = (state.map.moving.take(), map_point::origin(state)) else {
         return Vec::new();

@@ -1,4 +1,4 @@
-//! The menu of a place on the map: what is in it, and what a choice does.
+//! Opens the menu of a place on the map and carries out a choice.
 
 use super::{map_edit, view};
 use crate::geo::LatLon;
@@ -31,7 +31,7 @@ pub(super) fn open(state: &mut AppState, view: &Viewport, at: (u16, u16)) {
     state.popups.push(Popup::MapMenu(MapMenu::new(position(&frame, place), at, choices)));
 }
 
-/// Does what a key or a click chose.
+/// Carries out the choice of a key or a click.
 pub(super) fn take(state: &mut AppState, place: LatLon, outcome: Outcome) -> Vec<Effect> {
     let choice = match outcome {
         Outcome::Choosing => return Vec::new(),

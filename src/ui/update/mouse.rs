@@ -1,4 +1,4 @@
-//! The mouse: click focuses and sets, drag moves, the wheel zooms and scrolls.
+//! The mouse: a click focuses and sets, a drag moves, the wheel zooms and scrolls.
 
 use crossterm::event::{KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
 use ratatui::layout::Rect;
@@ -23,10 +23,10 @@ use super::map_menu;
 use super::timeline;
 use super::view::{ZOOM_STEP, focus, scroll_panel};
 
-/// Lines a turn of the wheel scrolls.
+/// The number of lines per step of the wheel.
 const WHEEL_LINES: isize = 3;
 
-/// Takes a mouse event in.
+/// Processes a mouse event.
 pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
     if let MouseEventKind::Up(_) = event.kind {
         return release(state);
@@ -57,7 +57,7 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
         return focus(state, panel);
     }
     let at = match event.kind {
-        // A drag belongs to the panel where it began, whatever it comes across.
+        // A drag belongs to the panel in which it began, even if the mouse leaves it.
         MouseEventKind::Drag(_) => state.pressed.and_then(|panel| Some((panel, screen.panel(panel)?))),
         _ => screen.at(event.column, event.row),
     };
@@ -91,7 +91,7 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
                 }
                 Vec::new()
             }
-            // The slider that was pressed, though the mouse may slip to the one below.
+            // The pressed slider, even if the mouse slips to the one below.
             Panel::Rc => rc::value_at(layout::inner(area), state.channel, event.column)
                 .map_or_else(Vec::new, |us| transmitter::set(state, state.channel, us)),
             Panel::Plan => {
@@ -120,7 +120,7 @@ pub(super) fn update(state: &mut AppState, event: MouseEvent) -> Vec<Effect> {
     }
 }
 
-/// Ends a drag, wherever the mouse is by then.
+/// Ends a drag, at any position of the mouse.
 fn release(state: &mut AppState) -> Vec<Effect> {
     state.drag = None;
     state.pressed = None;
@@ -150,8 +150,8 @@ fn wheel(state: &mut AppState, panel: Panel, area: Rect, event: &MouseEvent, dir
     };
 }
 
-/// A waypoint, home or the fence under the mouse is picked up; with the edit cursor a press with control adds a
-/// waypoint. Elsewhere the map is dragged.
+/// Picks up a waypoint, home or the fence under the mouse, or starts dragging the map. A press with Ctrl adds a
+/// waypoint.
 fn press_on_map(state: &mut AppState, area: Rect, event: &MouseEvent) -> Vec<Effect> {
     let view = Viewport::of(state, layout::inner(area));
     let place = view.place(event.column, event.row);
@@ -159,7 +159,7 @@ fn press_on_map(state: &mut AppState, area: Rect, event: &MouseEvent) -> Vec<Eff
         return map_edit::add_at(state, place);
     }
     let item = item_at(state, place, view.scale);
-    // Home and fence are only moved by whoever edits: they lie where the map is dragged, too.
+    // Home and fence move only in edit mode, because they are in areas where the map is dragged, too.
     let item = item.filter(|item| matches!(item, MapItem::Waypoint(_)) || state.map.edit.is_some());
     match item.filter(|_| state.view.vehicle.active_plan.is_none() || state.map.edit.is_some()) {
         Some(item) => map_edit::pick_up(state, item, place, true),
@@ -168,7 +168,7 @@ fn press_on_map(state: &mut AppState, area: Rect, event: &MouseEvent) -> Vec<Eff
     Vec::new()
 }
 
-/// The cursor goes to the value under the mouse; a waypoint of the altitude profile is picked up.
+/// Moves the cursor to the value under the mouse, or picks up a waypoint of the altitude profile.
 fn press_on_plan(state: &mut AppState, area: Rect, event: &MouseEvent) {
     match plan_panel::target_at(state, layout::inner(area), (event.column, event.row)) {
         Some(PlanTarget::Cell(row, column)) => state.editor.go_to_cell(row, column),
@@ -176,7 +176,7 @@ fn press_on_plan(state: &mut AppState, area: Rect, event: &MouseEvent) {
             state.editor.go_to_cell(index, Column::Altitude);
             let altitude = state.plan().waypoints.get(index).map(|wp| wp.alt_cm);
             state.editor.dragged_altitude = altitude.map(|alt_cm| (index, alt_cm));
-            // The scale of now: it changes with the altitude.
+            // The current scale: it changes with the altitude.
             let metres = plan_panel::metres_per_row(state, layout::inner(area)).unwrap_or_default();
             state.drag = Some((event.column, event.row, metres, f64::from(altitude.unwrap_or_default())));
         }
@@ -197,7 +197,7 @@ fn drag_altitude(state: &mut AppState, event: &MouseEvent) {
     state.editor.dragged_altitude = Some((index, (altitude_m * 100.0).round() as i32));
 }
 
-/// Moves what was picked up by the mouse; the window stands still meanwhile.
+/// Moves the item that the mouse has picked up. The window stays still meanwhile.
 fn drag_item(state: &mut AppState, area: Rect, event: &MouseEvent) {
     let view = Viewport::of(state, layout::inner(area));
     state.map.mode = MapMode::Free { n: view.centre.n, e: view.centre.e, scale: view.scale };

@@ -15,12 +15,12 @@ use crate::ui::editor::{
 use crate::ui::event_log::Severity;
 use crate::ui::message::Effect;
 
-/// How far behind the last waypoint a new one stands, m.
+/// The distance from the last waypoint to a new one, m.
 const NEXT_LEG_M: f64 = 50.0;
-/// Altitude of the first waypoint, cm.
+/// The altitude of the first waypoint, cm.
 const FIRST_ALT_CM: i32 = 2000;
 
-/// A key while a cell is typed.
+/// Handles a key while a cell is typed.
 pub(super) fn field_key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
     match event.code {
         KeyCode::Enter => return state.editor.end_typing(state.units),
@@ -49,7 +49,7 @@ fn insert_key(state: &AppState) -> String {
     state.key(Action::Edit(EditAction::Insert))
 }
 
-/// Enter on a cell: names go on to the next, numbers are typed.
+/// Handles Enter on a cell: chooses the next name, or begins typing a number.
 pub(super) fn edit_cell(state: &mut AppState) -> Vec<Effect> {
     match state.editor.column() {
         Column::Type | Column::Pattern => nudge(state, 1),
@@ -77,7 +77,7 @@ pub(super) fn nudge(state: &mut AppState, steps: i32) -> Vec<Effect> {
     }
 }
 
-/// The waypoint that `i` inserts: as the one under the cursor, a leg farther on.
+/// Returns the waypoint that `i` inserts: like the one under the cursor, one leg farther on.
 pub(super) fn next_waypoint(state: &AppState) -> Option<Waypoint> {
     let waypoints = &state.editor.document().plan.waypoints;
     let row = state.editor.row();
@@ -111,7 +111,7 @@ pub(super) fn insert(state: &mut AppState) -> Vec<Effect> {
     }
 }
 
-/// Inserts a waypoint behind the cursor.
+/// Inserts a waypoint after the cursor.
 pub(super) fn insert_waypoint(state: &mut AppState, waypoint: Waypoint) -> Vec<Effect> {
     let inserted = state.editor.insert("insert a waypoint", &[waypoint]);
     told(state, inserted)
@@ -143,7 +143,7 @@ pub(super) fn paste_copied(state: &mut AppState) -> Vec<Effect> {
     told(state, pasted)
 }
 
-/// Text pasted by the terminal.
+/// Inserts text pasted by the terminal.
 pub(super) fn paste_text(state: &mut AppState, text: &str) -> Vec<Effect> {
     if let Some(field) = state.editor.field_mut() {
         field.text.insert(text.trim());
@@ -181,7 +181,7 @@ pub(super) fn undo(state: &mut AppState, redo: bool) -> Vec<Effect> {
     vec![effect]
 }
 
-/// Takes the edit that is offered for the finding that is shown.
+/// Applies the offered fix of the shown finding.
 pub(super) fn take_fix(state: &mut AppState) -> Vec<Effect> {
     let found = findings::findings(state);
     match findings::shown(state, &found) {
@@ -215,7 +215,7 @@ pub(super) fn open_browser(state: &mut AppState) -> Vec<Effect> {
     vec![Effect::Files(FileRequest::List(beside))]
 }
 
-/// Saves the plan in its file; one without a file asks for a name.
+/// Saves the plan in its file. Asks for a name if it has none.
 pub(super) fn save(state: &mut AppState) -> Vec<Effect> {
     let plan = state.editor.plan();
     match plan.file().map(std::path::Path::to_owned) {
@@ -255,7 +255,7 @@ pub(super) fn new_plan(state: &mut AppState) -> Vec<Effect> {
     vec![effect]
 }
 
-/// Closes the plan that is shown; unsaved edits are asked about.
+/// Closes the shown plan. Asks first if it has unsaved edits.
 pub(super) fn close(state: &mut AppState) -> Vec<Effect> {
     let id = state.editor.plan().id();
     if state.editor.plan().is_unsaved() {
@@ -276,7 +276,7 @@ pub(super) fn show_other(state: &mut AppState, step: isize) -> Vec<Effect> {
     Vec::new()
 }
 
-/// Takes the plan of the craft into the open plan for which it was asked, as one edit.
+/// Puts the downloaded plan of the craft into the open plan that requested it, as one edit.
 pub(super) fn downloaded(
     state: &mut AppState,
     id: PlanId,
@@ -310,7 +310,7 @@ pub(super) fn downloaded(
     }
 }
 
-/// Tells that somebody else changed the plan in the craft: the App, a script, a line of the CLI.
+/// Reports that somebody else changed the plan in the craft: the App, a script, a line of the CLI.
 pub(super) fn craft_plan_changed(state: &mut AppState, before: &FlightPlan, now: &FlightPlan) {
     let (a, b) = (&before.waypoints, &now.waypoints);
     let mut differs: Vec<String> = std::iter::zip(a, b)
@@ -340,7 +340,7 @@ pub(super) fn place_waypoint(state: &mut AppState, index: usize, position: LatLo
     })
 }
 
-/// The craft saved its configuration, or says why not.
+/// Reports that the craft saved its configuration, or the reason for a failure.
 pub(super) fn saved_to_flash(state: &mut AppState, result: Result<(), String>) -> Vec<Effect> {
     match result {
         Ok(()) => {
@@ -371,7 +371,7 @@ pub(super) fn scenario_written(state: &mut AppState, result: Result<String, Stri
     Vec::new()
 }
 
-/// Writes the plan that is shown to a file.
+/// Writes the shown plan to a file.
 pub(in crate::ui) fn write_shown(state: &AppState, path: std::path::PathBuf) -> Effect {
     write(state, state.editor.plan().id(), path, false)
 }

@@ -1,4 +1,4 @@
-//! Keys for the editor's popups, and what comes back from the files.
+//! Handles keys for the editor's popups, and replies of the files.
 
 use std::path::Path;
 
@@ -15,7 +15,7 @@ use crate::ui::editor::{
 use crate::ui::event_log::Severity;
 use crate::ui::message::Effect;
 
-/// A key while a popup of the editor is open.
+/// Handles a key while a popup of the editor is open.
 pub(super) fn key(state: &mut AppState, event: KeyEvent) -> Vec<Effect> {
     match state.editor.popup.take() {
         Some(EditorPopup::Form(form)) => form_key(state, form, event),
@@ -111,7 +111,7 @@ fn save_plan(state: &mut AppState, id: PlanId) -> Vec<Effect> {
     plan::save(state)
 }
 
-/// Quits when no plan has an edit that nobody saved; else asks about the first of them.
+/// Quits if all edits are saved; else asks about the first plan with an unsaved edit.
 pub(super) fn quit(state: &mut AppState) -> Vec<Effect> {
     match state.editor.plans().iter().find(|plan| plan.is_unsaved()).map(super::super::editor::OpenPlan::id) {
         Some(id) => {
@@ -122,7 +122,7 @@ pub(super) fn quit(state: &mut AppState) -> Vec<Effect> {
     }
 }
 
-/// Takes an answer of the files in.
+/// Processes a reply of the files.
 pub(super) fn answered(state: &mut AppState, reply: FileReply) -> Vec<Effect> {
     match reply {
         FileReply::Opened(opened) => {

@@ -1,4 +1,4 @@
-//! Keys while something lies over the panels.
+//! Handles keys while a popup is open.
 
 use crossterm::event::{KeyCode, KeyEvent};
 
@@ -18,7 +18,7 @@ use crate::ui::permission;
 use crate::ui::popup::palette::Entry;
 use crate::ui::popup::{Popup, command_line, go_to, guards, palette, what_if};
 
-/// A key for the popup that was opened last; `found` is what it means without one.
+/// Handles a key for the popup opened last; `found` is the action of the key without a popup.
 pub(super) fn key(state: &mut AppState, event: KeyEvent, found: Option<Action>) -> Vec<Effect> {
     match state.popups.last_mut() {
         None => Vec::new(),
@@ -91,7 +91,7 @@ pub(super) fn key(state: &mut AppState, event: KeyEvent, found: Option<Action>) 
                 state.popups.pop();
                 let mut effects = run(state, &line);
                 if is_new {
-                    // Ahead of the line's own: `quit` is remembered, too.
+                    // Before the line's own effects, so that `quit` is kept, too.
                     effects.insert(0, Effect::Files(FileRequest::KeepLine(LineField::Command, line)));
                 }
                 effects
@@ -128,7 +128,7 @@ pub(super) fn key(state: &mut AppState, event: KeyEvent, found: Option<Action>) 
             }
             state.popups.pop();
             match found {
-                // Any other key closes the help and does what it does, so that keys can be tried as they are read.
+                // Any other key closes the help and triggers its action, so that the user can try keys while reading.
                 None | Some(Action::Help | Action::Back | Action::Quit) => Vec::new(),
                 Some(action) => act(state, action),
             }
@@ -142,7 +142,7 @@ pub(super) fn open_command_line(state: &mut AppState, text: &str) {
     state.popups.push(Popup::CommandLine);
 }
 
-/// Carries out what was entered, or says why not.
+/// Runs the entered line, or notifies the user of the reason for its refusal.
 fn run(state: &mut AppState, line: &str) -> Vec<Effect> {
     command::run(state, line).unwrap_or_else(|sentence| {
         let sentence = state.keymap.in_force(&sentence);

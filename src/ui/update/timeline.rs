@@ -8,7 +8,7 @@ use crate::ui::layout;
 use crate::ui::message::Effect;
 use crate::ui::timeline;
 
-/// What one press of the keys for earlier and later skips, s.
+/// The time that one press of the keys for earlier and later skips, s.
 const SKIP_S: f64 = 10.0;
 
 /// Carries out an action of the timeline.
@@ -34,7 +34,7 @@ pub(super) fn act(state: &AppState, action: Action) -> Vec<Effect> {
     vec![Effect::Send(command)]
 }
 
-/// A click on the timeline shows that instant; `None` when it is somewhere else.
+/// Handles a click on the timeline, which shows that instant; `None` if the click is elsewhere.
 pub(super) fn click(state: &AppState, column: u16, row: u16) -> Option<Vec<Effect>> {
     let area = layout::screen(state)?.timeline.filter(|area| area.contains((column, row).into()))?;
     let recorded = state.view.timeline.as_ref()?;
@@ -42,7 +42,8 @@ pub(super) fn click(state: &AppState, column: u16, row: u16) -> Option<Vec<Effec
     Some(time.map_or_else(Vec::new, |time| vec![Effect::Send(Command::Seek(Seek::Time(time)))]))
 }
 
-/// When `view` is of another branch than the one before, the track after the fork is left behind; says so.
+/// Moves the track after the fork to the abandoned tracks if `view` is on another branch than the view before. Returns
+/// `true` in that case.
 pub(super) fn follow_branch(state: &mut AppState, view: &SessionView) -> bool {
     let branch = |view: &SessionView| view.timeline.as_ref().map_or(0, |timeline| timeline.branch);
     let Some(timeline) = view.timeline.as_ref().filter(|timeline| timeline.branch != branch(&state.view))

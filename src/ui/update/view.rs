@@ -1,4 +1,4 @@
-//! What the screen shows: focus, window of the map, scrolling.
+//! The view: focus, window of the map, scrolling.
 
 use crate::ui::app_state::AppState;
 use crate::ui::knobs;
@@ -9,30 +9,30 @@ use crate::ui::panel;
 use crate::ui::panel::Panel;
 use crate::ui::viewport::{MapMode, Viewport};
 
-/// A zoom step of the map.
+/// The factor of a zoom step of the map.
 pub(super) const ZOOM_STEP: f64 = 1.5;
 
-/// Gives a panel the keys.
+/// Gives a panel the focus.
 pub(in crate::ui) fn focus(state: &mut AppState, panel: Panel) -> Vec<Effect> {
     state.focus = panel;
     state.slots.visit(panel);
     Vec::new()
 }
 
-/// The panel before or after the focused one in the order of numbers.
+/// Returns the panel before or after the focused one in the order of numbers.
 pub(super) fn neighbour(state: &AppState, step: isize) -> Panel {
     let count = Panel::ALL.len();
     let at = Panel::ALL.iter().position(|&panel| panel == state.focus).unwrap_or(0);
     Panel::ALL[(at + count).wrapping_add_signed(step) % count]
 }
 
-/// The window of the map as it is on the screen.
+/// Returns the current window of the map.
 pub(super) fn viewport(state: &AppState) -> Option<Viewport> {
     let area = layout::screen(state)?.panel(Panel::Map)?;
     Some(Viewport::of(state, layout::inner(area)))
 }
 
-/// Keeps the craft in the middle of the map, at the scale of now.
+/// Keeps the craft in the middle of the map, at the current scale.
 pub(super) fn follow(state: &mut AppState) -> Vec<Effect> {
     if let Some(view) = viewport(state) {
         state.map.mode = MapMode::Follow(view.scale);
@@ -49,7 +49,7 @@ pub(super) fn pan(state: &mut AppState, columns: f64, rows: f64) -> Vec<Effect> 
     Vec::new()
 }
 
-/// Zooms around the edit cursor, else around the craft where it is in the window, else around the middle.
+/// Zooms around the edit cursor, else around the craft if it is in the window, else around the middle.
 pub(super) fn zoom_map(state: &mut AppState, factor: f64) -> Vec<Effect> {
     if let Some(view) = viewport(state) {
         state.map.mode = match state.map.mode {
@@ -70,7 +70,7 @@ pub(super) fn scroll(state: &mut AppState, by: isize) -> Vec<Effect> {
     Vec::new()
 }
 
-/// Scrolls a panel by lines, as far as it has some.
+/// Scrolls a panel by lines, within its content.
 pub(super) fn scroll_panel(state: &mut AppState, panel: Panel, by: isize) {
     let Some(area) = layout::screen(state).and_then(|screen| screen.panel(panel)).map(layout::inner) else {
         return;
@@ -88,7 +88,7 @@ pub(super) fn scroll_panel(state: &mut AppState, panel: Panel, by: isize) {
             state.editor.move_cursor(by, 0);
             return;
         }
-        // The newest line of the CLI is below, so up is forwards in its own count.
+        // The newest line of the CLI is at the bottom, so scrolling up increases its position.
         Panel::Cli => {
             let last = panel::cli::last_scroll(state, area);
             (&mut state.cli.scroll, by.saturating_neg(), last)

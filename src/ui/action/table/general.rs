@@ -1,4 +1,4 @@
-//! What keys do everywhere: the flight, time, the panels, the program.
+//! Actions that work in every panel: the flight, time, the panels, the program.
 
 use super::{edit, spec};
 use crate::ui::action::Context::{Always, Global};

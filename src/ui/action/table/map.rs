@@ -1,4 +1,4 @@
-//! What keys do on the map.
+//! Actions of the Map panel.
 
 use super::{edit, spec};
 use crate::ui::action::Context::In;

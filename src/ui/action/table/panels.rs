@@ -1,4 +1,4 @@
-//! What keys do in the panels RC, World and Log, and in all that scroll.
+//! Actions of the RC, World and Log panels and of all panels that scroll.
 
 use super::spec;
 use crate::ui::action::Context::{In, Lists};

@@ -1,4 +1,4 @@
-//! What keys do in the Plan panel.
+//! Actions of the Plan panel.
 
 use super::edit;
 use crate::ui::action::Context::In;

@@ -9,10 +9,10 @@ use crate::ui::text_wrap::wrapped;
 use crate::ui::theme::{Role, Theme};
 use crate::ui::viewport::Viewport;
 
-/// Most lines at the top.
+/// The greatest number of lines at the top.
 const TOP_LINES: usize = 3;
 
-/// Writes marks and labels, and remembers which cells are taken.
+/// Writes marks and labels, and keeps track of the occupied cells.
 pub(super) struct Labels<'a> {
     theme: &'a Theme,
     view: Viewport,
@@ -26,7 +26,7 @@ impl<'a> Labels<'a> {
         Self { theme, view, buffer, taken }
     }
 
-    /// The window of the map.
+    /// Returns the window of the map.
     pub(super) fn view(&self) -> &Viewport {
         &self.view
     }
@@ -36,7 +36,7 @@ impl<'a> Labels<'a> {
             + usize::from(column - self.view.area.x)
     }
 
-    /// A mark of one column at a place, over everything.
+    /// Writes a mark of one column at a place, over everything.
     pub(super) fn mark(&mut self, place: MapPoint, symbol: &str, role: Role) {
         if let Some((column, row)) = self.view.screen_cell(place) {
             self.put(column, row, symbol, role);
@@ -64,7 +64,7 @@ impl<'a> Labels<'a> {
                 .all(|column| self.taken.get(self.index(column as u16, row as u16)) == Some(&false))
     }
 
-    /// A label beside a place: right, left, below, above; the short form where the long one does not fit, else none.
+    /// Writes a label right, left, below or above a place: the short form if the long one does not fit, else nothing.
     pub(super) fn beside(&mut self, place: MapPoint, long: &str, short: &str, role: Role) {
         let Some((column, row)) = self.view.screen_cell(place) else { return };
         let (column, row) = (i32::from(column), i32::from(row));
@@ -87,7 +87,7 @@ impl<'a> Labels<'a> {
         }
     }
 
-    /// A line in the middle.
+    /// Writes a line in the middle.
     pub(super) fn middle(&mut self, text: &str, role: Role) {
         let area = self.view.area;
         let width = text.width() as u16;
@@ -96,7 +96,7 @@ impl<'a> Labels<'a> {
         }
     }
 
-    /// Lines at the top, as many as the text takes, at most three.
+    /// Writes lines at the top, as many as the text takes, at most three.
     pub(super) fn top(&mut self, text: &str, role: Role) {
         let area = self.view.area;
         for (row, line) in (area.y..area.bottom()).zip(wrapped(text, usize::from(area.width))).take(TOP_LINES)
@@ -105,7 +105,7 @@ impl<'a> Labels<'a> {
         }
     }
 
-    /// The bottom line: text at the left, and at the right if there is room for both.
+    /// Writes the bottom line: text on the left, and on the right if there is room for both.
     pub(super) fn bottom(&mut self, left: &str, right: &str) {
         let area = self.view.area;
         let row = area.bottom() - 1;

@@ -16,16 +16,16 @@ use crate::ui::track::TrackPoint;
 use super::track_line::TrackLine;
 use super::{PlacedWaypoint, Scene};
 
-/// Dots of a dash and of the gap behind it.
+/// The number of dots of a dash and of the gap after it.
 const DASH_DOTS: f64 = 3.0;
-/// Dots from one dot of a predicted way to the next.
+/// The distance between two dots of a predicted path, in dots.
 const DOT_GAP: f64 = 4.0;
-/// Of the part of a ring that is not flown, one piece in this many is drawn.
+/// One piece in this many is drawn of the part of a ring that is not flown.
 const RING_GAP: u32 = 6;
-/// A line of more dashes than this is drawn solid: the rest lies outside anyhow.
+/// A line of more dashes than this is drawn solid, because most of it is outside the window.
 const MAX_DASHES: f64 = 400.0;
 
-/// Draws the lines of a layer: of one colour, in the metres of the map.
+/// Draws the lines of a layer in one colour, in metres.
 struct LinePainter<'a, 'c> {
     context: &'a mut Context<'c>,
     colour: Color,
@@ -43,7 +43,7 @@ impl LinePainter<'_, '_> {
         self.context.draw(&TrackLine { points, colour: self.colour, dot_m: self.dot_m });
     }
 
-    /// A dot every few dots along a way.
+    /// Draws a dot every few dots along a path.
     fn dotted(&mut self, way: impl Iterator<Item = MapPoint>) {
         let gap_m = DOT_GAP * self.dot_m;
         let mut last: Option<MapPoint> = None;
@@ -76,19 +76,21 @@ impl LinePainter<'_, '_> {
         }
     }
 
-    /// A circle; every second piece only if `broken`.
+    /// Draws a circle, dashed if `broken`.
     fn circle(&mut self, centre: MapPoint, radius_m: f64, broken: bool) {
         self.arcs(centre, radius_m, |piece, _| !broken || piece % 4 < 2);
     }
 
-    /// The ring of an orbit, clockwise from north: of less than a lap, what is not flown in its time is faint.
+    /// Draws the ring of an orbit, clockwise from north. If its time is shorter than a lap, the part that is not flown
+    /// is faint.
     fn ring(&mut self, centre: MapPoint, radius_m: f64, laps: f64) {
         self.arcs(centre, radius_m, |piece, pieces| {
             f64::from(piece) < laps * f64::from(pieces) || piece % RING_GAP == 0
         });
     }
 
-    /// The pieces of a circle that are wanted, by their number clockwise from north and the number of all.
+    /// Draws the pieces of a circle that `is_wanted` accepts. It receives the number of a piece, clockwise from north,
+    /// and the number of all pieces.
     fn arcs(&mut self, centre: MapPoint, radius_m: f64, is_wanted: impl Fn(u32, u32) -> bool) {
         if !(radius_m.is_finite() && radius_m > self.dot_m) {
             return;
@@ -133,7 +135,7 @@ pub(super) fn paint(state: &AppState, scene: &Scene, context: &mut Context<'_>) 
             painter.dotted(ghost.path.iter().map(|point| MapPoint::new(point.n, point.e)));
         }
     });
-    // Up to the instant that is shown; what comes after it, and what was left behind, is faint.
+    // The track is bright up to the shown instant. The part after it and abandoned branches are faint.
     let (points, later) = state.track.points().split_at(state.track_points_shown());
     layer(Role::Dim, &mut |painter| {
         for track in state.timeline.tracks().iter().map(Vec::as_slice).chain([later]) {
@@ -142,7 +144,7 @@ pub(super) fn paint(state: &AppState, scene: &Scene, context: &mut Context<'_>) 
     });
     layer(Role::Track, &mut |painter| {
         painter.track(points);
-        // From the last point kept to where the craft is.
+        // From the last kept point to the craft.
         if let (Some(last), Some(craft)) = (points.last(), scene.craft) {
             painter.line(MapPoint::new(last.n, last.e), craft);
         }
@@ -154,7 +156,7 @@ pub(super) fn paint(state: &AppState, scene: &Scene, context: &mut Context<'_>) 
     });
 }
 
-/// The legs in flight order, from home.
+/// Draws the legs in flight order, from home.
 fn legs(scene: &Scene, painter: &mut LinePainter<'_, '_>) {
     let mut from = scene.home;
     for spot in &scene.spots {
@@ -163,7 +165,7 @@ fn legs(scene: &Scene, painter: &mut LinePainter<'_, '_>) {
     }
 }
 
-/// Where the current leg starts and ends.
+/// Returns the start and end of the current leg.
 fn current_leg(state: &AppState, scene: &Scene) -> Option<(MapPoint, MapPoint)> {
     let nav: &NavTelemetry = state.view.vehicle.nav.as_ref()?;
     let to = scene.spots.iter().find(|spot| Some(spot.index) == scene.current)?.place;
@@ -171,7 +173,7 @@ fn current_leg(state: &AppState, scene: &Scene) -> Option<(MapPoint, MapPoint)> 
     Some((from.or(scene.craft)?, to))
 }
 
-/// What is flown at a waypoint: the radius that ends the leg, the hold pattern, the cut corner.
+/// Draws the figure at a waypoint: the radius that ends the leg, the hold pattern, the cut corner.
 fn figure(
     state: &AppState,
     scene: &Scene,
@@ -209,7 +211,7 @@ fn figure(
     }
 }
 
-/// Radius of the turn at the speed of the leg, m.
+/// Returns the turn radius at the speed of the leg, m.
 fn turn_radius(wp: &Waypoint, settings: &SettingsView) -> f64 {
     settings.turn_radius_m(match wp.speed_cms {
         0 => settings.max_velocity_mps,
@@ -217,7 +219,7 @@ fn turn_radius(wp: &Waypoint, settings: &SettingsView) -> f64 {
     })
 }
 
-/// The curve that leaves one leg and joins the next at `radius` from the corner.
+/// Draws the curve that leaves one leg and joins the next at `radius` from the corner.
 fn cut_corner(
     from: MapPoint,
     corner: MapPoint,

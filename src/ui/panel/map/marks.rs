@@ -16,7 +16,7 @@ use super::{PlacedWaypoint, Scene};
 /// Eight directions, clockwise from north.
 const ARROWS: [&str; 8] = ["↑", "↗", "→", "↘", "↓", "↙", "←", "↖"];
 
-/// Writes what is text: marks, numbers, craft, scale, wind.
+/// Writes the text of the map: marks, numbers, craft, scale, wind.
 pub(super) fn write(state: &AppState, scene: &Scene, buffer: &mut Buffer) {
     let theme = &state.theme;
     let vehicle = &state.view.vehicle;
@@ -58,7 +58,7 @@ pub(super) fn write(state: &AppState, scene: &Scene, buffer: &mut Buffer) {
     if let Some(cursor) = state.map.edit {
         labels.mark(cursor.place, "┼", Role::Focus);
     }
-    // The current waypoint chooses its place first.
+    // The label of the current waypoint is placed first.
     let mut order: Vec<&PlacedWaypoint> = scene.spots.iter().collect();
     order.sort_by_key(|spot| Some(spot.index) != scene.current);
     for spot in order {
@@ -75,13 +75,13 @@ pub(super) fn write(state: &AppState, scene: &Scene, buffer: &mut Buffer) {
     if scene.craft.is_none() && scene.spots.is_empty() {
         labels.middle("No position yet: waiting for GPS.", Role::Dim);
     }
-    // Again, over the marks: it stays readable.
+    // Again, over the marks, so that it stays readable.
     if let Some(line) = &ghost_line {
         labels.top(line, Role::Predicted);
     }
 }
 
-/// The mark of a waypoint.
+/// Returns the mark of a waypoint.
 fn glyph(kind: WaypointType) -> &'static str {
     match kind {
         WaypointType::Flyover => "◆",
@@ -93,13 +93,13 @@ fn glyph(kind: WaypointType) -> &'static str {
     }
 }
 
-/// The arrow nearest to a heading.
+/// Returns the arrow nearest to a heading.
 fn arrow(heading_deg: f64) -> &'static str {
     let eighth = (heading_deg / 45.0).round().rem_euclid(8.0);
     ARROWS.get(eighth as usize).copied().unwrap_or("↑")
 }
 
-/// Wind at the bottom left, scale bar and north at the bottom right.
+/// Writes the wind at the bottom left, scale bar and north at the bottom right.
 fn frame_notes(state: &AppState, labels: &mut Labels<'_>) {
     let vehicle = &state.view.vehicle;
     let units = state.units;

@@ -1,14 +1,14 @@
-//! The flown track as a shape of the map: a line through thousands of points.
+//! The flown track as a canvas shape: a line through thousands of points.
 
 use ratatui::style::Color;
 use ratatui::widgets::canvas::{Line, Painter, Shape};
 
 use crate::ui::track::TrackPoint;
 
-/// Points nearer than this to the last one drawn are left out, dots.
+/// Points closer than this to the last drawn one are left out, dots.
 const NEAR_DOTS: f64 = 0.7;
 
-/// A line through the points. Where they are dense, dots are set instead of lines drawn between them.
+/// A line through the points. Dense points are set as dots, without lines between them.
 pub(super) struct TrackLine<'a> {
     pub(super) points: &'a [TrackPoint],
     pub(super) colour: Color,
@@ -36,7 +36,7 @@ impl Shape for TrackLine<'_> {
                 (Some(a), Some(b)) if a.0.abs_diff(b.0) <= 1 && a.1.abs_diff(b.1) <= 1 => {
                     painter.paint(b.0, b.1, self.colour);
                 }
-                // Clipped where it leaves the window.
+                // Clipped at the edge of the window.
                 _ => Line::new(from.e, from.n, to.e, to.n, self.colour).draw(painter),
             }
             (from, from_dot) = (to, to_dot);
@@ -52,7 +52,7 @@ mod tests {
     use ratatui::widgets::Widget as _;
     use ratatui::widgets::canvas::Canvas;
 
-    /// Braille rows of a window of 40 m by 40 m.
+    /// Returns the Braille rows of a window of 40 m by 40 m.
     fn drawn(shape: &impl Shape) -> Buffer {
         let area = Rect::new(0, 0, 20, 10);
         let mut buffer = Buffer::empty(area);

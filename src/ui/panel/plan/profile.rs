@@ -1,4 +1,4 @@
-//! The altitudes of the plan over its length.
+//! The altitude profile: the altitudes of the plan over its length.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -13,14 +13,14 @@ mod flown;
 
 use flown::{FlownPoint, flown};
 
-/// Columns of the scale at the left.
+/// The width of the scale on the left.
 const SCALE: u16 = 6;
-/// Marks of the three lines.
+/// The marks of the three lines.
 const PLANNED: (&str, Role) = ("·", Role::Text);
 const ESTIMATED: (&str, Role) = ("˙", Role::Predicted);
 const FLOWN: (&str, Role) = ("•", Role::Track);
 
-/// A place of the profile: metres flown, metres above home, waypoint.
+/// A point of the profile: metres flown, metres above home, index of the waypoint.
 struct Point {
     along_m: f64,
     alt_m: f64,
@@ -50,7 +50,7 @@ fn points(state: &AppState) -> Vec<Point> {
     .collect()
 }
 
-/// Where metres stand in the panel.
+/// The scales of the profile.
 struct Axes {
     area: Rect,
     length_m: f64,
@@ -59,7 +59,7 @@ struct Axes {
 }
 
 impl Axes {
-    /// `None` when there is nothing to show, or no room.
+    /// Returns `None` if there is nothing to show, or no room.
     fn of(points: &[Point], flown: &[FlownPoint], area: Rect) -> Option<Self> {
         let has_room = area.width > SCALE + 8 && area.height > 3;
         let length_m = points.last().filter(|_| has_room)?.along_m.max(1.0);
@@ -84,7 +84,7 @@ impl Axes {
     }
 }
 
-/// The waypoint whose number stands at a cell.
+/// Returns the waypoint whose number is at a cell.
 pub(super) fn waypoint_at(state: &AppState, area: Rect, (column, row): (u16, u16)) -> Option<usize> {
     let points = points(state);
     let axes = Axes::of(&points, &flown(state, &points), area)?;
@@ -93,7 +93,7 @@ pub(super) fn waypoint_at(state: &AppState, area: Rect, (column, row): (u16, u16
     points.iter().rev().find(here).map(|point| point.index)
 }
 
-/// What a row of the profile is worth, m.
+/// Returns the height of a row of the profile, m.
 pub(super) fn metres_per_row(state: &AppState, area: Rect) -> Option<f64> {
     let points = points(state);
     Axes::of(&points, &flown(state, &points), area).map(|axes| axes.metres_per_row())
@@ -115,7 +115,7 @@ pub(super) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
             cell.set_symbol(symbol).set_style(theme.style(role));
         }
     };
-    // What the craft makes of it, below the plan itself.
+    // The estimated altitudes, below the plan itself.
     for point in state.forecast.estimate().iter().flat_map(|forecast| &forecast.path) {
         if point.along_m >= 0.0 && point.alt.is_finite() {
             let column = axes.column(point.along_m.min(axes.length_m));
@@ -142,7 +142,7 @@ pub(super) fn draw(state: &AppState, area: Rect, buffer: &mut Buffer) {
     }
 }
 
-/// The rule above the profile: the unit, and what the marks of the lines are.
+/// Draws the rule above the profile: the unit, and the meaning of the marks.
 fn legend(state: &AppState, has_flown: bool, area: Rect, buffer: &mut Buffer) {
     let theme = &state.theme;
     let rule = "─".repeat(usize::from(area.width));

@@ -16,12 +16,12 @@ use crate::ui::panel::{Panel, row};
 use crate::ui::theme::Role;
 use crate::ui::units::Units;
 
-/// Width from which all columns have room.
+/// The width from which all columns have room.
 const WIDE: u16 = 75;
-/// Mark and number before the first column.
+/// The width of mark and number before the first column.
 const NUMBER: u16 = 4;
 
-/// Head and width of a column.
+/// Returns the head and the width of a column.
 fn column(column: Column, wide: bool, units: Units) -> (String, u16) {
     let (head, width) = match (column, wide) {
         (Column::Type, _) => ("type", 11),
@@ -38,13 +38,13 @@ fn column(column: Column, wide: bool, units: Units) -> (String, u16) {
     (head.to_owned(), width)
 }
 
-/// The columns that fit, with their first cell: the one with the cursor always does.
+/// Returns the columns that fit, with head, first cell and width. The one with the cursor is always among them.
 fn columns(state: &AppState, width: u16) -> Vec<(Column, String, u16, u16)> {
     let wide = width >= WIDE;
     let mut shown: Vec<Column> = Column::iter().collect();
     let total =
         |shown: &[Column]| NUMBER + shown.iter().map(|&c| column(c, wide, state.units).1).sum::<u16>();
-    // Pattern and speed are the ones that most plans can be read without.
+    // Pattern and speed go first: most plans can be read without them.
     for spare in [Column::Pattern, Column::Speed, Column::Time, Column::Latitude, Column::Longitude] {
         if total(&shown) > width && state.editor.column() != spare {
             shown.retain(|&column| column != spare);
@@ -61,13 +61,13 @@ fn columns(state: &AppState, width: u16) -> Vec<(Column, String, u16, u16)> {
         .collect()
 }
 
-/// How many waypoints differ between two plans.
+/// Returns the number of waypoints that differ between two plans.
 pub(super) fn differences(plan: &FlightPlan, other: &FlightPlan) -> usize {
     let (a, b) = (&plan.waypoints, &other.waypoints);
     std::iter::zip(a, b).filter(|(a, b)| a != b).count() + a.len().abs_diff(b.len())
 }
 
-/// How a waypoint of the craft's plan differs from the one that is open, if it does.
+/// Returns the difference between a waypoint of the craft's plan and of the open one, if there is one.
 pub(super) fn difference(state: &AppState, index: usize) -> Option<String> {
     let stored = state.view.vehicle.stored_plan.as_ref().filter(|plan| !plan.waypoints.is_empty())?;
     let ours = state.plan().waypoints.get(index)?;
@@ -94,13 +94,13 @@ pub(super) fn difference(state: &AppState, index: usize) -> Option<String> {
     Some(format!("● On the craft WP{index} is: {}.", parts.join(", ")))
 }
 
-/// The first waypoint that is shown, of as many rows as there are.
+/// Returns the first shown waypoint for this number of rows.
 fn first_row(state: &AppState, rows: usize) -> usize {
     let count = state.plan().waypoints.len();
     state.editor.row().saturating_sub(rows / 2).min(count.saturating_sub(rows))
 }
 
-/// The waypoint and the column at a cell of the screen.
+/// Returns the waypoint and the column at a cell of the screen.
 pub(super) fn cell_at(state: &AppState, area: Rect, (x, y): (u16, u16)) -> Option<(usize, Column)> {
     let rows = area.height.saturating_sub(1);
     let row = y.checked_sub(area.y + 1).filter(|&row| row < rows)?;
@@ -112,7 +112,7 @@ pub(super) fn cell_at(state: &AppState, area: Rect, (x, y): (u16, u16)) -> Optio
     (index < state.plan().waypoints.len()).then(|| (index, hit.map_or(Column::Type, |(column, ..)| column)))
 }
 
-/// Draws the table; gives the place of the cursor while a cell is typed.
+/// Draws the table. Returns the position of the cursor while a cell is typed.
 pub(super) fn draw(
     state: &AppState,
     findings: &[Finding],
@@ -167,7 +167,7 @@ pub(super) fn draw(
     cursor
 }
 
-/// What stands before a waypoint: it is wrong, flown now, or not as on the craft.
+/// Returns the mark before a waypoint: it has a finding, is being flown, or differs from the craft's.
 fn mark(state: &AppState, findings: &[Finding], index: usize, wp: &Waypoint) -> (char, Role) {
     let vehicle = &state.view.vehicle;
     let wrong = findings.iter().find(|finding| waypoint_of(finding) == Some(index));
@@ -183,7 +183,7 @@ fn mark(state: &AppState, findings: &[Finding], index: usize, wp: &Waypoint) -> 
     }
 }
 
-/// The value as the table shows it.
+/// Returns the value as the table shows it.
 fn value(column: Column, wp: &Waypoint, units: Units) -> String {
     if !column.is_used(wp.kind) {
         return "—".to_owned();
@@ -204,7 +204,7 @@ fn aligned(text: &str, width: u16, left: bool) -> String {
     if left { format!(" {text:<0$}", width.saturating_sub(1)) } else { format!("{text:>width$}") }
 }
 
-/// The value under the cursor in brackets, in the room it has.
+/// Returns the value under the cursor in brackets, padded to its column.
 fn in_brackets(text: &str, left: bool) -> String {
     let inside = text.trim();
     let blank = text.chars().count().saturating_sub(inside.chars().count() + 2);

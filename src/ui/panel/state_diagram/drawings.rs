@@ -72,7 +72,7 @@ pub(crate) static FULL: Diagram = Diagram {
     ],
 };
 
-/// The states and the main ways, for a narrow panel.
+/// The states and the main transitions, for a narrow panel.
 pub(crate) static COMPACT: Diagram = Diagram {
     width: 21,
     height: 10,
@@ -107,7 +107,7 @@ pub(crate) static COMPACT: Diagram = Diagram {
     ],
 };
 
-/// The states and the main ways, for a low panel.
+/// The states and the main transitions, for a low panel.
 pub(crate) static LOW: Diagram = Diagram {
     width: 22,
     height: 7,

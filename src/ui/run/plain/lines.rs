@@ -1,4 +1,4 @@
-//! What is written: a sentence a line.
+//! The output: one sentence per line.
 
 use std::io::{self, Write};
 
@@ -14,7 +14,7 @@ use crate::ui::popup::Popup;
 use crate::ui::prompt;
 use crate::ui::update::update;
 
-/// The output, and what was asked on it last.
+/// The output, and the question written last.
 #[derive(Debug)]
 pub(super) struct Lines<W> {
     output: W,
@@ -31,7 +31,7 @@ impl<W: Write> Lines<W> {
         self.output.flush()
     }
 
-    /// Carries a line of input out: the answer to what was asked, else a command.
+    /// Handles a line of input: as the answer to the question if there is one, else as a command.
     pub(super) fn enter(&mut self, state: &mut AppState, line: &str) -> io::Result<Vec<Effect>> {
         let is_asked = state.editor.popup.is_some() || !state.popups.is_empty();
         if !is_asked {
@@ -41,7 +41,7 @@ impl<W: Write> Lines<W> {
         let answered = self.said(prompt::answer(state, line))?;
         if let Some(told) = answered.told {
             self.write(&told)?;
-            // Not all of it again.
+            // The question is not written again.
             self.asked = prompt::question(state);
         }
         Ok(answered.effects)
@@ -54,7 +54,8 @@ impl<W: Write> Lines<W> {
         })
     }
 
-    /// Passes an answer on, and writes what no notice tells of it: the firmware's own words, and how a flight would end.
+    /// Passes an answer on, and writes the parts that no notice reports: the firmware's own words, and the end of a
+    /// flight ahead.
     pub(super) fn answer(&mut self, state: &mut AppState, msg: Msg) -> io::Result<Vec<Effect>> {
         match msg {
             Msg::CliReply(Some(output)) => {
@@ -69,7 +70,7 @@ impl<W: Write> Lines<W> {
                 let effects = update(state, Msg::Forecast(reply));
                 if let Some(ghost) = forecast::ghost(state).filter(|_| state.forecast.looks_ahead()) {
                     self.write(&ghost.line)?;
-                    // Once for each time that it is asked for.
+                    // Once for each request.
                     state.forecast.dismiss();
                 }
                 Ok(effects)
@@ -78,7 +79,7 @@ impl<W: Write> Lines<W> {
         }
     }
 
-    /// Writes the newest notice, and what is asked when that is something else than before.
+    /// Writes the newest notice, and the question if it has changed.
     pub(super) fn follow(&mut self, state: &mut AppState) -> io::Result<()> {
         if let Some(notice) = state.notice.take() {
             self.write(&notice.text)?;

@@ -1,21 +1,21 @@
-//! The altitudes that were flown, over the length of the open plan.
+//! The flown altitudes, over the length of the open plan.
 
 use super::Point;
 use crate::plan::Waypoint;
 use crate::ui::app_state::AppState;
 use crate::ui::map_point::{self, MapPoint, to_map};
 
-/// Points of the track nearer to each other than this fall on one mark of the profile: a share of its length, and m.
+/// Track points closer than this to each other share a mark of the profile: a share of its length, and m.
 const NEAR_SHARE: f64 = 1.0 / 2000.0;
 const NEAR_ALT_M: f64 = 0.05;
 
-/// A place of the flown track: metres along the plan, metres above home.
+/// A point of the flown track: metres along the plan, metres above home.
 pub(super) struct FlownPoint {
     pub(super) along_m: f64,
     pub(super) alt_m: f64,
 }
 
-/// What was flown of the open plan, up to the instant that is shown; nothing when the craft flew other places.
+/// Returns the flown part of the open plan up to the shown instant; empty if the craft's plan has other places.
 pub(super) fn flown(state: &AppState, points: &[Point]) -> Vec<FlownPoint> {
     let waypoints = &state.plan().waypoints;
     let vehicle = &state.view.vehicle;
@@ -26,7 +26,7 @@ pub(super) fn flown(state: &AppState, points: &[Point]) -> Vec<FlownPoint> {
     if !are_at_the_same_places(waypoints, &flown.waypoints) {
         return Vec::new();
     }
-    // Once for each waypoint, not for each of thousands of points: where its leg ends, along the plan and on the map.
+    // Once for each waypoint, not for each of thousands of points: the end of its leg, along the plan and on the map.
     let ends: Vec<(Option<f64>, Option<MapPoint>)> = waypoints
         .iter()
         .enumerate()
@@ -41,7 +41,7 @@ pub(super) fn flown(state: &AppState, points: &[Point]) -> Vec<FlownPoint> {
     let mut seen: Vec<FlownPoint> = Vec::new();
     let track = state.track.points().iter().take(state.track_points_shown());
     for (place, wp) in track.filter_map(|place| Some((place, usize::from(place.wp?)))) {
-        // Where the leg ends, less what is left of it; the distance never shrinks, as in a hold.
+        // The end of the leg, less the remaining distance. The result never shrinks, as it would in a hold.
         if let Some(&(Some(end_m), target)) = ends.get(wp) {
             let left_m = target.map_or(0.0, |to| {
                 let (north_m, east_m) = (to.n - place.n, to.e - place.e);
@@ -59,7 +59,7 @@ pub(super) fn flown(state: &AppState, points: &[Point]) -> Vec<FlownPoint> {
     seen
 }
 
-/// Whether two plans lead through the same places; their altitudes may differ.
+/// Returns `true` if two plans have the same types and places; their altitudes may differ.
 fn are_at_the_same_places(a: &[Waypoint], b: &[Waypoint]) -> bool {
     let place = |wp: &Waypoint| (wp.kind, wp.kind.uses_position().then_some(wp.position));
     a.len() == b.len() && std::iter::zip(a, b).all(|(a, b)| place(a) == place(b))
