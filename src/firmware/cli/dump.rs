@@ -258,7 +258,7 @@ fn plan(session: &mut Session<'_>, style: Style) {
 fn setting_lines(session: &Session<'_>, style: Style, scope: Scope, instance: u8) -> Vec<String> {
     let settings = &session.configuration.settings;
     let hardware = style.part == Part::Hardware;
-    // A port row may move the MSP ports, so the settings that own them are printed after it.
+    // A port row may move the MSP ports, so the settings that own them are printed even if unchanged.
     let fresh_ports = super::super::config::SerialTable::default() == session.configuration.serial;
     let line = |setting: &Setting| {
         let now = setting.display(settings.value(setting, instance)?);

@@ -50,7 +50,7 @@ impl Interpreter {
         Self { mode, batch: Batch::Closed, section: (Scope::Master, 0), lenient: false }
     }
 
-    /// Sets whether errors leave a batch open for saving (`true`) or fail it (`false`).
+    /// With `true`, errors do not stop a batch from being saved.
     pub fn lenient(mut self, lenient: bool) -> Self {
         self.lenient = lenient;
         self
