@@ -77,7 +77,7 @@ pub struct ControlInput {
     pub yaw_rate_rps: Option<f64>,
     /// The throttle demanded instead of the pilot's, 0…1.
     pub throttle: Option<f64>,
-    /// The legs carry weight: what the integrals gather while the attitude is levelled is dropped.
+    /// `true` while the legs carry weight. The integrals are then cleared while the attitude is levelled.
     pub stands: bool,
     /// Full stabilisation at zero throttle: the AIRMODE feature or its switch, once the throttle has been raised.
     pub airmode: bool,

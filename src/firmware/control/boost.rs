@@ -7,7 +7,7 @@ use super::derived::Derived;
 use super::tuning::BoostTuning;
 use crate::firmware::filter::Pt1;
 
-/// The rise of the P gain per anti-gravity setting, relative to the rise of the I gain.
+/// The scale of the rise of P relative to that of I.
 const P_PER_I: f64 = 0.1;
 
 /// Factors for the gains of the rate loop; 1 = unchanged.
