@@ -51,7 +51,7 @@ pub enum Response {
     Continue,
     /// The navigator lands where the craft is.
     EmergencyLand,
-    /// The navigator is landing already and goes on.
+    /// The navigator is already landing and continues.
     KeepLanding,
 }
 
