@@ -47,9 +47,9 @@ pub enum Procedure {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Response {
     Procedure(Procedure),
-    /// The mission goes on.
+    /// The mission continues.
     Continue,
-    /// The navigator lands where the craft is.
+    /// The navigator lands at the present position.
     EmergencyLand,
     /// The navigator is already landing and continues.
     KeepLanding,
