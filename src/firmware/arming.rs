@@ -21,7 +21,7 @@ const ASSIST_LOW_THROTTLE_US: f64 = 1150.0;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ArmingConfig {
-    /// Throttle below this is low, µs.
+    /// The throttle below which it counts as low, µs.
     pub min_check_us: f64,
     /// The largest tilt at which arming is allowed, rad; `None` = arming is refused only while the attitude is unknown.
     pub small_angle_rad: Option<f64>,

@@ -6,7 +6,7 @@
 //!    ▲                    MISSION ├───────────────► MONITORING ─────────┐
 //!    │                    (drop)  ┘  disarm                             │
 //!    └──────────────────────── recovered ◄──────────────────────────────┘
-//!              link up (MISSION: and a stick moved, or made by the switch)
+//!              link up (MISSION: and a stick moved, or started by the switch)
 //! ```
 //!
 //! The link is debounced by [`LinkMonitor`]. The machine itself runs a hundred times a second.
@@ -171,7 +171,7 @@ pub struct Failsafe {
 }
 
 impl Failsafe {
-    /// Returns `true` while a procedure (stage 2) controls the craft.
+    /// Returns `true` from the start of stage 2 until recovery. The pilot's sticks have no effect then.
     pub fn active(&self) -> bool {
         self.phase != Phase::Idle
     }

@@ -93,7 +93,7 @@ pub enum MspAction {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Refused;
 
-/// The run of one request.
+/// One request in progress.
 #[derive(Debug)]
 struct Call<'a> {
     configuration: &'a mut Configuration,

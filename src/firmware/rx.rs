@@ -1,7 +1,7 @@
 //! The receiver: sources, channels, sticks, and the check of the signal.
 //!
 //! ```text
-//! frames ─► Sources (who drives) ─► Channels (map, range, hold, substitution) ─► Sticks
+//! frames ─► Sources (by rank)    ─► Channels (map, range, hold, substitution) ─► Sticks
 //!                                        └► Signal (lost after 150 ms)
 //! ```
 //!

@@ -128,7 +128,7 @@ impl Firmware {
         self.safety.home()
     }
 
-    /// Returns `true` if an armed craft at full throttle has not left the ground.
+    /// Returns `true` if an armed craft should climb but has not left the ground at full throttle.
     pub fn is_too_heavy(&self) -> bool {
         self.safety.armed() && self.navigation.is_too_heavy()
     }

@@ -1,5 +1,5 @@
 //! Runaway take-off prevention. A craft with swapped motors or propellers spins faster the harder the controller works
-//! against it. The motors are stopped before it hurts somebody.
+//! against it. The motors are stopped before it hurts anyone.
 
 use nalgebra::Vector3;
 

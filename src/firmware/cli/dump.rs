@@ -15,9 +15,9 @@ enum Part {
     Master,
     /// The active PID profile.
     Profile,
-    /// The settings that describe the hardware.
+    /// The active rate profile.
     Rates,
-    /// What describes the hardware.
+    /// The settings that describe the hardware.
     Hardware,
     /// Everything, with all profiles.
     All,

@@ -5,7 +5,7 @@ use std::fmt::{Display, Write as _};
 use super::super::config::Configuration;
 use super::{CliAction, CliFacts, CliReply, Interpreter};
 
-/// The run of one command.
+/// One command in progress.
 #[derive(Debug)]
 pub(super) struct Session<'a> {
     pub(super) interpreter: &'a mut Interpreter,
@@ -22,7 +22,7 @@ impl Session<'_> {
         self.raw("\r\n");
     }
 
-    /// Writes text without a line end.
+    /// Writes text without adding a line end.
     pub(super) fn raw(&mut self, text: impl Display) {
         // Writing to a string cannot fail.
         let _infallible = write!(self.reply.text, "{text}");

@@ -6,7 +6,7 @@ use nalgebra::{Quaternion, Rotation3, UnitQuaternion, Vector3};
 
 use crate::geo::GRAVITY;
 
-/// The part of gravity by which the accelerometer may differ from it and still show the vertical.
+/// The largest relative difference from gravity at which the accelerometer shows the vertical.
 const STEADY_PART: f64 = 0.1;
 /// The turn rate (rad/s) above which the integral of the correction stops.
 const INTEGRAL_RATE_LIMIT: f64 = 20.0 * std::f64::consts::PI / 180.0;

@@ -13,7 +13,7 @@ const NOISE: ProcessNoise = ProcessNoise { accel: 4e-4, drift: 4e-4 };
 const BARO_SIGMA: f64 = 0.1;
 /// The steps between the pressure and its sample: halfway between an ideal sensor and a filtered one.
 const BARO_AGE: usize = 1;
-/// The error beyond which a sample counts as a spike and is ignored, m.
+/// The error beyond five standard deviations at which a sample counts as a spike and is ignored, m.
 const BARO_GATE: f64 = 1.0;
 /// The number of spikes in a row after which a sample is accepted.
 const PATIENCE: u8 = 10;
