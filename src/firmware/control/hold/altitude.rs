@@ -354,7 +354,8 @@ mod tests {
         assert_eq!(sink_stick_us(1.0, 1050.0, &params, &tuning), None);
     }
 
-    /// Returns the time (s) until a drifting craft that neither sinks nor carries its weight counts as landed; 10 s at most.
+    /// Returns the time (s) until a drifting craft that neither sinks nor carries its weight counts as landed. It is
+    /// 10 s at most.
     fn seconds_to_touchdown(drift_mps: f64, fix: bool) -> f64 {
         let (params, tuning) = (Params::default(), HoldTuning::default());
         let mut now = NavInputs {
