@@ -1,23 +1,23 @@
 //! The flight controller: settings, modes, arming, receiver, failsafe, estimation, control, CLI and MSP.
 //!
-//! One step takes one sensor frame and gives one motor command, in this order; slower parts run when their time has
-//! come, counted in time and not in steps, so that every step rate flies alike:
+//! Each step takes one sensor frame and returns one motor command, in the order below. The slower parts run on a
+//! schedule in time, not in steps, so the craft flies the same at every step rate:
 //!
 //! ```text
 //!  SensorFrame ─► Estimator ─► receiver, link, modes, arming ─► failsafe, orders, navigator, holds ─► controller ─► MotorCommand
 //!   every step    every step    per RC frame, at least 20 Hz           100 Hz                     every step
 //! ```
 //!
-//! Layers, from the outside in; a module uses only its own layer and the ones below it:
+//! The layers, from the outermost to the innermost. A module uses only its own layer and the ones below it:
 //!
-//! | layer | modules | is |
+//! | layer | modules | purpose |
 //! | --- | --- | --- |
-//! | the craft as a whole | this file, [`Firmware`]'s requests and views | wires the stages: one step, what its owner asks of it, what displays see |
-//! | how it is talked to | [`cli`], [`msp`], [`storage`] | command line, MSP messages, the stored image: text and bytes in and out of the configuration |
-//! | stages | `stages` | who owns which state of the step, and in which order it is updated |
-//! | decisions | [`rx`], [`modes`], [`arming`], [`failsafe`], [`orders`], [`battery`] | state machines of plain facts: which sticks count, which modes are on, may the motors run, who tells the navigator what to do |
-//! | flying | [`estimate`], [`control`], [`filter`] | where the craft is, and what the motors do |
-//! | memory | [`config`], [`settings`], [`parameters`] | what the craft remembers, one table of settings, and the same as typed numbers, made outside the step |
+//! | the whole craft | this file, [`Firmware`]'s requests and views | wires the stages: one step, the requests of its owner, the data for displays |
+//! | interfaces | [`cli`], [`msp`], [`storage`] | command line, MSP messages, the stored image: text and bytes in and out of the configuration |
+//! | stages | `stages` | own the state of the step and update it in order |
+//! | decisions | [`rx`], [`modes`], [`arming`], [`failsafe`], [`orders`], [`battery`] | state machines of plain facts: the sticks that count, the active modes, permission to run the motors, orders for the navigator |
+//! | flying | [`estimate`], [`control`], [`filter`] | estimation of the craft's state, and control of the motors |
+//! | memory | [`config`], [`settings`], [`parameters`] | the configuration, one table of settings, and the same as typed numbers, computed outside the step |
 //!
 //! Nothing here reads a clock, allocates in a step, or panics.
 
@@ -57,17 +57,17 @@ use stages::{
     ControlStep, Demand, FailsafeRequest, FlightControl, Navigation, RcInput, Safety, Sensing, Setup,
 };
 
-/// How the firmware is built and helped; not part of its configuration.
+/// Options that the firmware is created with. They are not part of its configuration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FirmwareOptions {
     pub rate_hz: u32,
-    /// Arming rules are softened for RC from UDP, so that a simple script can arm.
+    /// Softens the arming rules for RC from UDP, so that a simple script can arm.
     pub arm_assist: bool,
-    /// Where the attitude comes from.
+    /// The source of the attitude.
     pub attitude: AttitudeSource,
-    /// Silence of the GPS that ends the fix, s: short for the embedded world, long for a link that may stall.
+    /// The GPS silence that ends the fix, s: short for the embedded world, long for a link that may stall.
     pub gps_timeout_s: f64,
-    /// Declination of the magnetic field where the craft flies, degrees east.
+    /// The declination of the magnetic field at the flying site, degrees east.
     pub declination_deg: f64,
 }
 
@@ -84,7 +84,7 @@ impl Default for FirmwareOptions {
     }
 }
 
-/// The flight controller. A clone is a frozen copy that goes on identically.
+/// The flight controller. A clone is a frozen copy that continues identically.
 #[derive(Debug, Clone)]
 pub struct Firmware {
     booted_at: SimTime,
@@ -100,7 +100,7 @@ pub struct Firmware {
 }
 
 impl Firmware {
-    /// Boots with this configuration, made consistent.
+    /// Boots with this configuration after making it consistent.
     pub fn new(configuration: Configuration, options: FirmwareOptions) -> Self {
         let mut outbox = Outbox::default();
         let setup = Setup::new(configuration, options, &mut outbox);
@@ -123,7 +123,7 @@ impl Firmware {
         }
     }
 
-    /// One step: one frame of the sensors in, one command for the motors out.
+    /// Runs one step: takes one sensor frame and returns one motor command.
     pub fn step(&mut self, frame: &SensorFrame) -> MotorCommand {
         self.now = frame.time;
         let due = self.sensing.update(frame, self.setup.parameters(), &mut self.outbox);
@@ -156,12 +156,12 @@ impl Firmware {
         motors
     }
 
-    /// Time since this firmware booted.
+    /// Returns the time since this firmware booted.
     fn uptime(&self) -> SimTime {
         SimTime(self.now.0.saturating_sub(self.booted_at.0))
     }
 
-    /// Receiver, link, switches, arming: at every RC frame, and at least twenty times a second.
+    /// Updates receiver, link, switches and arming. Runs at every RC frame, and at least twenty times a second.
     fn update_arming(&mut self) {
         let parameters = self.setup.parameters();
         let failsafe = self.navigation.failsafe();
@@ -192,7 +192,7 @@ impl Firmware {
         }
     }
 
-    /// Stops the motors for a reason, if they were not stopped already.
+    /// Stops the motors for the given reason, unless they are already stopped.
     fn disarm(&mut self, reason: DisarmReason) {
         if self.safety.disarm(reason) {
             self.on_disarm(reason);
@@ -206,7 +206,7 @@ impl Firmware {
         self.outbox.push(FirmwareEvent::Disarmed(reason));
     }
 
-    /// The hundred-a-second part: failsafe, navigator, touchdown, modes, holds.
+    /// Runs the part that is due a hundred times a second: failsafe, navigator, touchdown, modes, holds.
     fn update_navigation(&mut self) {
         self.keep_calibrations();
         self.sensing.watch_heading(&mut self.outbox);
@@ -243,7 +243,7 @@ impl Firmware {
         }
     }
 
-    /// Takes over the results of calibrations that have just ended.
+    /// Applies the results of calibrations that have just ended.
     fn keep_calibrations(&mut self) {
         self.sensing.watch_imu(&mut self.outbox);
         if let Some(offsets) = self.sensing.take_acc_calibration() {
@@ -267,7 +267,7 @@ impl Firmware {
         }
     }
 
-    /// Runaway take-off and crash, judged by what the controller just did.
+    /// Disarms on a runaway take-off or a crash, judged by the controller's last step.
     fn watch_for_crash(&mut self) {
         let (parameters, state) = (self.setup.parameters(), self.control.state());
         if self.safety.is_runaway(parameters, self.now, &self.rc, state) {
@@ -283,7 +283,7 @@ impl Firmware {
         }
     }
 
-    /// Makes the typed parameters and what is tuned by them follow the configuration.
+    /// Updates the typed parameters, and everything tuned by them, from the configuration.
     fn refresh(&mut self) {
         self.setup.refresh();
         let parameters = self.setup.parameters();

@@ -1,6 +1,6 @@
-//! Arming and disarming: the switch, the reasons that block it, and everything that stops the motors by itself.
+//! Arming and disarming: the switch, the arming disable flags, and everything that stops the motors by itself.
 //!
-//! The flags are judged at every RC update while disarmed; a flag that stands while the ARM switch is on sets
+//! The flags are judged at every RC update while disarmed. A flag that is set while the ARM switch is on also sets
 //! ARM_SWITCH, which stays until the switch goes off.
 
 pub mod crash;
@@ -12,48 +12,48 @@ use super::modes::boxes::{self, BoxSet};
 use super::rx::Sticks;
 use crate::telemetry::{ArmingFlag, ArmingFlags, DisarmReason};
 
-/// RC updates with the ARM switch off that disarm.
+/// The number of RC updates with the ARM switch off that disarm the craft.
 const SWITCH_OFF_UPDATES: u8 = 4;
-/// How long a stick command must be held, s.
+/// The time for which a stick command must be held, s.
 const STICK_COMMAND_S: f64 = 0.5;
-/// Throttle that counts as low with arm assist, µs.
+/// The throttle below which it counts as low with arm assist, µs.
 const ASSIST_LOW_THROTTLE_US: f64 = 1150.0;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ArmingConfig {
-    /// Throttle below this is low, µs.
+    /// The throttle below which it counts as low, µs.
     pub min_check_us: f64,
-    /// Arming is refused when tilted more, rad; `None` = never.
+    /// The largest tilt at which arming is allowed, rad; `None` = arming is refused only while the attitude is unknown.
     pub small_angle_rad: Option<f64>,
-    /// Time after boot before arming, s.
+    /// The time after boot before which arming is refused, s.
     pub boot_grace_s: f64,
-    /// The PREARM switch may stay on for the next arming.
+    /// Allows the PREARM switch to stay on for the next arming.
     pub prearm_allow_rearm: bool,
-    /// A mode condition for ARM exists.
+    /// `true` if a mode condition for ARM exists.
     pub has_arm_condition: bool,
-    /// A mode condition for PREARM exists.
+    /// `true` if a mode condition for PREARM exists.
     pub has_prearm_condition: bool,
-    /// GPS rescue is the failsafe procedure or has a mode condition.
+    /// `true` if GPS rescue is the failsafe procedure or has a mode condition.
     pub rescue_configured: bool,
-    /// Rescue needs this many satellites.
+    /// The number of satellites that rescue needs.
     pub rescue_min_sats: u8,
-    /// Arming is allowed although rescue cannot work.
+    /// Allows arming even if rescue cannot work.
     pub rescue_allow_without_fix: bool,
-    /// Yaw stick beyond this is fully to the right, or to the left, RC units.
+    /// The yaw stick deflection that counts as full right or full left, RC units.
     pub full_yaw: f64,
-    /// Arming by stick command, when no mode condition for ARM exists.
+    /// Enables arming by stick command if no mode condition for ARM exists.
     pub stick_arming: bool,
-    /// Low throttle for this long disarms a stick-armed craft whose motors stand still then, s; `None` = never.
+    /// The time at low throttle after which a stick-armed craft with stopped motors is disarmed, s; `None` = never.
     pub auto_disarm_s: Option<f64>,
-    /// Throttle that counts as raised, µs.
+    /// The throttle from which it counts as raised, µs.
     pub raised_throttle_us: f64,
-    /// The rules are softened for RC from UDP, so that a simple script can arm.
+    /// Softens the rules for RC from UDP, so that a simple script can arm.
     pub assist: bool,
-    /// The first arming since boot calibrates the gyro and waits for it.
+    /// Makes the first arming since boot calibrate the gyro and wait for it.
     pub calibrate_gyro_first: bool,
-    /// The motor protocol was DISABLED at boot.
+    /// `true` if the motor protocol was DISABLED at boot.
     pub motors_disabled: bool,
-    /// The configuration in memory differs from the running one in something that needs a restart.
+    /// `true` if the configuration in memory differs from the running one in something that needs a restart.
     pub reboot_required: bool,
 }
 
@@ -81,45 +81,45 @@ impl Default for ArmingConfig {
     }
 }
 
-/// What arming looks at.
+/// The inputs of the arming logic.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ArmingFacts {
     pub now: SimTime,
-    /// Whether a new RC frame came with this update.
+    /// `true` if a new RC frame came with this update.
     pub new_frame: bool,
     pub boxes: BoxSet,
-    /// Stick positions in use.
+    /// The stick positions in use.
     pub sticks: Sticks,
-    /// The RC signal is there.
+    /// `true` while the RC signal is present.
     pub signal: bool,
-    /// The RC signal has been there for the recovery delay.
+    /// `true` once the RC signal has been present for the recovery delay.
     pub link_good: bool,
-    /// RC comes from UDP.
+    /// `true` if RC comes from UDP.
     pub from_udp: bool,
-    /// A failsafe landing ended the last flight and the link is not good again.
+    /// `true` if a failsafe landing ended the last flight and the link has not recovered yet.
     pub failsafe_landed: bool,
-    /// Tilt from level, rad; `None` = attitude unknown.
+    /// The tilt from level, rad; `None` = attitude unknown.
     pub tilt_rad: Option<f64>,
-    /// Sensors are being calibrated.
+    /// `true` while sensors are being calibrated.
     pub calibrating: bool,
-    /// A fix with this many satellites; `None` = no fix.
+    /// The number of satellites in the fix; `None` = no fix.
     pub fix_sats: Option<u8>,
 }
 
-/// What an update did.
+/// The outcome of an update.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ArmingChange {
-    /// Armed; `assisted` when the strict rules would have refused.
+    /// The craft was armed.
     Armed {
-        /// Arm assist was needed.
+        /// `true` if the strict rules would have refused, so arm assist was needed.
         assisted: bool,
     },
-    /// Everything is fine, but the gyro is to be calibrated before the first arming; it goes on when that is done.
+    /// Nothing blocks arming, but the gyro must be calibrated before the first arming. Arming continues after that.
     CalibrateGyro,
     Disarmed(DisarmReason),
 }
 
-/// The gyro calibration before the first arming, where one is asked for.
+/// The gyro calibration before the first arming, if the configuration requires one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 enum FirstCalibration {
     #[default]
@@ -128,7 +128,6 @@ enum FirstCalibration {
     Done,
 }
 
-/// The state of arming.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Arming {
     armed: bool,
@@ -146,37 +145,36 @@ pub struct Arming {
 }
 
 impl Arming {
-    /// Whether the craft is armed.
     pub fn armed(&self) -> bool {
         self.armed
     }
 
-    /// Whether the throttle has been raised since arming.
+    /// Returns `true` if the throttle has been raised since arming.
     pub fn raised(&self) -> bool {
         self.raised
     }
 
-    /// Whether the craft was armed since boot.
+    /// Returns `true` if the craft has been armed since boot.
     pub fn ever_armed(&self) -> bool {
         self.ever_armed
     }
 
-    /// What blocks arming, as judged at the last update while disarmed.
+    /// Returns the flags that block arming, as judged at the last update while disarmed.
     pub fn flags(&self) -> ArmingFlags {
         self.flags
     }
 
-    /// A command line session was opened: no arming until reboot.
+    /// Records that a command line session was opened. This blocks arming until reboot.
     pub fn cli_opened(&mut self) {
         self.latch(ArmingFlag::Cli);
     }
 
-    /// The failsafe ended with the ARM switch on: it must be switched off first.
+    /// Requires the ARM switch to be turned off first. Called when the failsafe ends with the switch on.
     pub fn require_switch_off(&mut self) {
         self.latch(ArmingFlag::NotDisarmed);
     }
 
-    /// Stops the motors; `false` when they were stopped already.
+    /// Stops the motors. Returns `false` if they were already stopped.
     pub fn disarm(&mut self, reason: DisarmReason) -> bool {
         if !self.armed {
             return false;
@@ -270,7 +268,7 @@ impl Arming {
             true => self.judge(config, facts, config.min_check_us.max(ASSIST_LOW_THROTTLE_US)),
             false => strict,
         };
-        // The calibration that this switch started is waited for; the switch need not be cycled after it.
+        // A calibration that this switch started does not latch, so the switch need not be cycled after it.
         let waits = self.first_calibration == FirstCalibration::Running;
         let latching = if waits { strict.without(ArmingFlag::Calibrating) } else { strict };
         let would_latch = switch && !latching.is_empty();
@@ -322,7 +320,7 @@ impl Arming {
         }
     }
 
-    /// The flags of this moment but for ARM_SWITCH.
+    /// Returns the current flags, except ARM_SWITCH.
     fn judge(&self, config: &ArmingConfig, facts: &ArmingFacts, low_throttle_us: f64) -> ArmingFlags {
         let on = |id| facts.boxes.has(id);
         let mut flags = self.latched.without(ArmingFlag::ArmSwitch);
@@ -359,7 +357,7 @@ impl Arming {
     }
 }
 
-/// Whether stick positions arm and disarm.
+/// Returns `true` if stick positions can arm and disarm.
 fn listens_to_sticks(config: &ArmingConfig, facts: &ArmingFacts) -> bool {
     config.stick_arming && !facts.boxes.has(boxes::STICK_COMMANDS_DISABLE)
 }

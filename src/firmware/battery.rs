@@ -1,24 +1,24 @@
-//! The battery as the firmware sees it: cells and charge state from the voltage.
+//! The battery as the firmware sees it: cell count and charge state from the voltage.
 
 use crate::signals::BatterySample;
 
-/// Below this a battery is not connected, V.
+/// The voltage below which no battery counts as connected, V.
 const PRESENT_V: f64 = 2.0;
-/// A warning ends this far above its threshold, V a cell.
+/// The margin above its threshold at which a warning ends, V per cell.
 const HYSTERESIS_V: f64 = 0.01;
-/// Time constant with which the voltage is smoothed before it is judged, s.
+/// The time constant of the smoothing before the voltage is judged, s.
 const SMOOTHING_S: f64 = 0.5;
-/// Interval of samples, s.
+/// The interval of samples, s.
 const SAMPLE_S: f64 = 0.02;
 
-/// Thresholds of the active battery profile, V a cell.
+/// The thresholds of the active battery profile, V per cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BatteryConfig {
-    /// Highest voltage of a full cell: decides the number of cells.
+    /// The highest voltage of a full cell. It decides the number of cells.
     pub max_cell_v: f64,
     pub warning_cell_v: f64,
     pub min_cell_v: f64,
-    /// Number of cells; 0 = found out.
+    /// The number of cells; 0 = detected.
     pub cells: u8,
 }
 
@@ -49,13 +49,13 @@ pub struct Battery {
 }
 
 impl Battery {
-    /// Takes a sample; returns the new state when it changed.
+    /// Takes a sample. Returns the new state if it changed.
     pub fn receive(&mut self, config: &BatteryConfig, sample: BatterySample) -> Option<BatteryState> {
         let first = self.sample.replace(sample).is_none();
         if first || self.state == BatteryState::NotPresent {
             self.smooth_v = sample.voltage_v;
             self.cells = match config.cells {
-                // One more than whole full cells, at most what a byte of cells can be in practice.
+                // One more than the whole full cells, limited to a count that exists in practice.
                 0 => ((sample.voltage_v / config.max_cell_v).floor().clamp(0.0, 23.0) as u8) + 1,
                 forced => forced,
             };
@@ -86,17 +86,17 @@ impl Battery {
         self.sample.as_ref()
     }
 
-    /// Cells in series; 0 while unknown.
+    /// Returns the number of cells in series; 0 while unknown.
     pub fn cells(&self) -> u8 {
         self.cells
     }
 
-    /// Smoothed voltage a cell, V.
+    /// Returns the smoothed voltage per cell, V.
     pub fn cell_v(&self) -> f64 {
         self.smooth_v / f64::from(self.cells.max(1))
     }
 
-    /// Whether it is at its warning voltage or below.
+    /// Returns `true` if the battery is at its warning voltage or below.
     pub fn is_low(&self) -> bool {
         matches!(self.state, BatteryState::Warning | BatteryState::Critical)
     }

@@ -1,7 +1,7 @@
 //! The command line.
 //!
-//! The [`Interpreter`] turns one line into text and a list of things to do. Where lines come from (a console, a file, a
-//! message, the bytes of a serial link) is not its concern.
+//! The [`Interpreter`] turns one line into text and a list of actions. It does not matter where the line comes from: a
+//! console, a file, a message, or the bytes of a serial link.
 //!
 //! ```text
 //! line ──▶ Interpreter::run(line, CliContext) ──▶ CliReply { text, actions }
@@ -43,10 +43,10 @@ pub use observation::{
 use super::config::Configuration;
 use crate::telemetry::FirmwareNotice;
 
-/// The most characters of a line; the rest is dropped.
+/// The most characters in a line; the rest is dropped.
 pub const MAX_LINE: usize = 255;
 
-/// What a command may see and change.
+/// The data that a command may see and change.
 #[derive(Debug)]
 pub struct CliContext<'a> {
     /// The configuration in memory.
@@ -58,19 +58,19 @@ pub struct CliContext<'a> {
 /// The answer to one line.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct CliReply {
-    /// Text as it goes over the link, without echo and prompt.
+    /// The text as it goes over the link, without echo and prompt.
     pub text: String,
-    /// What the owner of the firmware has to do, in order.
+    /// The actions for the owner of the firmware, in order.
     pub actions: Vec<CliAction>,
-    /// Whether the line was refused.
+    /// `true` if the line was refused.
     pub failed: bool,
-    /// What the pilot should read about it, beside the text.
+    /// Notices for the pilot, in addition to the text.
     pub notices: Vec<FirmwareNotice>,
 }
 
 impl CliReply {
-    /// Turns an answer that announced a save into a refusal: it could not be done, for this reason, and nothing
-    /// restarts, so that what is in memory stays.
+    /// Turns a reply that announced a save into a refusal with this reason. Nothing restarts, so the configuration in
+    /// memory stays.
     pub fn refuse_save(&mut self, why: &str) {
         self.text = format!("###ERROR IN save: {why}###\r\n");
         self.actions.retain(|action| !matches!(action, CliAction::Save | CliAction::Restart { .. }));
@@ -78,22 +78,22 @@ impl CliReply {
     }
 }
 
-/// Something a command asks the owner of the firmware to do.
+/// An action that a command requests from the owner of the firmware.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CliAction {
     Save,
-    /// Restart from the stored configuration; what is not stored is lost.
+    /// Restarts from the stored configuration; unsaved changes are lost.
     Restart {
-        /// Whether the serial clients are closed, as a real restart does.
+        /// `true` if the serial clients are closed, as in a real restart.
         close_links: bool,
     },
-    /// The session leaves the command line and speaks MSP again.
+    /// Leaves the command line; the session is back in MSP.
     Leave,
-    /// Run a motor on the bench until the session ends.
+    /// Runs a motor on the bench until the session ends.
     MotorTest {
-        /// Which motor, or all.
+        /// The index of the motor; `None` = all motors.
         motor: Option<u8>,
-        /// Output, µs, 1000…2000.
+        /// The output, µs, 1000…2000.
         output_us: u16,
     },
     /// The stored flight plan was changed.

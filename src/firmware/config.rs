@@ -1,8 +1,8 @@
-//! What the craft remembers: settings, modes, features, mixer, receiver set-up, flight plan, and the lines of other
-//! builds that it keeps.
+//! The stored configuration: settings, modes, features, mixer, receiver set-up, flight plan, and the lines of other
+//! builds that are kept.
 //!
-//! Plain data. The command line, MSP and the stored image read and write it; the running firmware takes what it needs
-//! from it at boot and again after every command line and every message that may have changed it.
+//! It is plain data. The command line, MSP and the stored image read and write it. The running firmware reads it at
+//! boot, and again after every command line and every message that may have changed it.
 
 use crate::plan::FlightPlan;
 
@@ -27,15 +27,15 @@ pub use serial::{BAUD_RATES, SerialRow};
 
 pub const MODE_CONDITIONS: usize = 20;
 pub const ADJUSTMENT_RANGES: usize = 30;
-/// Channels with a range: the four sticks.
+/// The number of channels with a range: the four sticks.
 pub const RX_RANGES: usize = 4;
-/// Channels with a loss rule.
+/// The number of channels with a loss rule.
 pub const RX_FAIL_CHANNELS: usize = 18;
-/// Serial ports of the vehicle.
+/// The number of serial ports.
 pub const SERIAL_PORTS: usize = 8;
-/// Most characters of the board name.
+/// The maximum length of the board name, characters.
 pub const BOARD_NAME_MAX: usize = 20;
-/// Most characters of the manufacturer id.
+/// The maximum length of the manufacturer id, characters.
 pub const MANUFACTURER_ID_MAX: usize = 4;
 
 /// Everything that `save` stores.
@@ -43,37 +43,37 @@ pub const MANUFACTURER_ID_MAX: usize = 4;
 pub struct Configuration {
     /// The settings, with the active profiles.
     pub settings: Settings,
-    /// Feature switches; they take effect at boot.
+    /// The feature switches. They take effect at boot.
     pub features: Features,
-    /// The airframe type; it takes effect at boot.
+    /// The airframe type. It takes effect at boot.
     pub mixer: MixerKind,
-    /// Rows of the custom mix, up to the first with zero throttle.
+    /// The rows of the custom mix, up to the first with zero throttle.
     pub custom_mix: [MixRow; MAX_MIX_ROWS],
-    /// Order of the stick channels on the wire.
+    /// The order of the stick channels on the wire.
     pub channel_map: ChannelMap,
-    /// Which switch turns which mode on.
+    /// The mode conditions: the switches that turn modes on.
     pub modes: [ModeCondition; MODE_CONDITIONS],
-    /// In-flight adjustments; kept, not executed.
+    /// The in-flight adjustments. They are kept, not executed.
     pub adjustments: [AdjustmentRange; ADJUSTMENT_RANGES],
-    /// Pulse ranges of the stick channels.
+    /// The pulse ranges of the stick channels.
     pub rx_ranges: [RxRange; RX_RANGES],
-    /// What a channel does after the link is lost.
+    /// The behaviour of each channel after the link is lost.
     pub rx_fail: RxFailTable,
-    /// Functions and speeds of the serial ports UART1 … UART8.
+    /// The functions and speeds of the serial ports UART1 … UART8.
     pub serial: SerialTable,
     /// The stored flight plan.
     pub plan: FlightPlan,
-    /// Name of the board, as a real craft's configuration carries it.
+    /// The name of the board, as in a real craft's configuration.
     pub board_name: String,
-    /// Manufacturer of the board.
+    /// The manufacturer of the board.
     pub manufacturer_id: String,
-    /// Lines of other builds, kept for the next dump.
+    /// The lines of other builds, kept for the next dump.
     pub kept: KeptLines,
-    /// Records of the stored image that this version does not know; they are stored again as they were.
+    /// The records of the stored image that this version does not know. They are stored again unchanged.
     pub unknown_records: Vec<String>,
 }
 
-/// Loss rules of all channels.
+/// The loss rules of all channels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RxFailTable(pub [RxFail; RX_FAIL_CHANNELS]);
 
@@ -83,7 +83,7 @@ impl Default for RxFailTable {
     }
 }
 
-/// Rows of all serial ports; the index is the number of the UART minus one.
+/// The rows of all serial ports; the index is the number of the UART minus one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct SerialTable(pub [SerialRow; SERIAL_PORTS]);
 
@@ -94,19 +94,19 @@ impl Default for SerialTable {
 }
 
 impl Configuration {
-    /// Returns everything to a fresh vehicle, so that readers of the settings notice.
+    /// Resets everything to a fresh vehicle, and lets readers of the settings notice it.
     pub fn reset(&mut self) {
         let mut settings = std::mem::take(&mut self.settings);
         settings.reset();
         *self = Self { settings, ..Self::default() };
     }
 
-    /// What the user is told of a craft that got the starter modes.
+    /// The notice for a craft that got the starter modes.
     pub const STARTER_MODES_NOTICE: &str = "The craft had no modes: ARM is on AUX1, AUTOPILOT on AUX2, ANGLE, ALTHOLD \
          and POS HOLD on AUX3, each above 1700 µs; the CLI command save keeps them.";
 
-    /// Gives a craft without any mode condition the modes a pilot of the simulator needs: ARM on AUX1, AUTOPILOT on
-    /// AUX2; ANGLE, ALTHOLD and POS HOLD on AUX3, each above 1700 µs. Says whether it changed anything.
+    /// Gives a craft without any mode condition the modes that a pilot of the simulator needs: ARM on AUX1; AUTOPILOT
+    /// on AUX2; ANGLE, ALTHOLD and POS HOLD on AUX3; each above 1700 µs. Returns `true` if it changed anything.
     pub fn starter_modes(&mut self) -> bool {
         if self.modes.iter().any(|condition| *condition != ModeCondition::default()) {
             return false;

@@ -8,9 +8,9 @@
 //! gyro ─► low-pass ─────────────────────────────────────────────▲
 //! ```
 //!
-//! Signs are those of [`crate::firmware::estimate`]: roll right, pitch nose down, yaw clockwise positive. Angles and
-//! rates between settings and PID are degrees and degrees per second, the units of the tuning; demands from outside
-//! are SI.
+//! Signs are those of [`crate::firmware::estimate`]: roll right, pitch nose down and yaw clockwise are positive. Angles
+//! and rates between settings and PID are in degrees and degrees per second, the units of the tuning. Demands from
+//! other modules are in SI units.
 
 use crate::firmware::estimate::DueTasks;
 use crate::signals::MotorCommand;
@@ -34,17 +34,17 @@ pub use tuning::{
     AxisGains, BoostTuning, DMax, ItermRelax, LevelTuning, MixerTuning, RateTuning, TiltThrottle, Tuning,
 };
 
-/// How the sticks are understood.
+/// The meaning of the sticks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum StickMode {
     #[default]
     Acro,
     Angle,
-    /// Angles about the centre, rates towards the ends.
+    /// Angles near the centre, rates towards the ends.
     Horizon,
 }
 
-/// An attitude demanded by the navigator or a hold mode; it takes the place of the pilot's angles.
+/// An attitude demanded by the navigator or a hold mode. It replaces the pilot's angles.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LeanDemand {
     /// Roll, rad, right positive.
@@ -53,13 +53,13 @@ pub struct LeanDemand {
     pub pitch_rad: f64,
 }
 
-/// What the controller is told in one step.
+/// The inputs of the controller in one step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ControlInput {
-    /// Which slower loops are due, as the estimator said.
+    /// The slower loops that are due, as reported by the estimator.
     pub due: DueTasks,
     pub armed: bool,
-    /// How the sticks are understood.
+    /// The meaning of the sticks.
     pub mode: StickMode,
     /// Roll stick, RC command units ±500, right positive.
     pub stick_roll: f64,
@@ -69,34 +69,34 @@ pub struct ControlInput {
     pub stick_yaw: f64,
     /// Throttle pulse, µs.
     pub throttle_us: f64,
-    /// A new RC frame arrived since the last step.
+    /// `true` if a new RC frame arrived since the last step.
     pub rc_frame: bool,
-    /// Lean demanded instead of the pilot's; implies levelling.
+    /// The lean demanded instead of the pilot's. It implies levelling.
     pub lean: Option<LeanDemand>,
-    /// Yaw rate demanded instead of the pilot's, rad/s, clockwise positive.
+    /// The yaw rate demanded instead of the pilot's, rad/s, clockwise positive.
     pub yaw_rate_rps: Option<f64>,
-    /// Throttle demanded instead of the pilot's, 0…1.
+    /// The throttle demanded instead of the pilot's, 0…1.
     pub throttle: Option<f64>,
-    /// The legs carry weight: what the integrals gather while the attitude is levelled is dropped.
+    /// `true` while the legs carry weight. The integrals are then cleared while the attitude is levelled.
     pub stands: bool,
-    /// Full stabilisation at zero throttle: the AIRMODE feature or its switch, once the throttle was raised.
+    /// Full stabilisation at zero throttle: the AIRMODE feature or its switch, once the throttle has been raised.
     pub airmode: bool,
-    /// Gains rise in quick throttle changes: the ANTI_GRAVITY feature or its switch.
+    /// Raises the gains in quick throttle changes: the ANTI_GRAVITY feature or its switch.
     pub anti_gravity: bool,
-    /// Motors stop at low throttle: the MOTOR_STOP feature.
+    /// Stops the motors at low throttle: the MOTOR_STOP feature.
     pub motor_stop: bool,
-    /// A failsafe procedure runs.
+    /// `true` while a failsafe procedure runs.
     pub failsafe: bool,
-    /// Heading (rad) that roll and pitch sticks refer to: HEADFREE.
+    /// The heading (rad) that roll and pitch sticks refer to: HEADFREE.
     pub headfree_reference_rad: Option<f64>,
-    /// Hold the heading while the yaw stick is centred: MAG.
+    /// Holds the heading while the yaw stick is centred: MAG.
     pub heading_hold: bool,
-    /// Outputs of the `motor` command while disarmed, µs.
+    /// The outputs of the `motor` command while disarmed, µs.
     pub motor_test_us: [f64; 4],
 }
 
 impl Default for ControlInput {
-    /// Disarmed, sticks centred.
+    /// Returns the input for a disarmed craft with centred sticks.
     fn default() -> Self {
         Self {
             due: DueTasks::default(),
@@ -122,21 +122,21 @@ impl Default for ControlInput {
     }
 }
 
-/// What the controller did in the last step.
+/// The results of the last step of the controller.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ControlState {
     pub motors: MotorCommand,
-    /// The same as pulses, µs.
+    /// The motor commands as pulses, µs.
     pub motors_us: [f64; 4],
-    /// Throttle that drove the mixer, RC µs.
+    /// The throttle that drove the mixer, RC µs.
     pub throttle_us: f64,
-    /// Filtered gyro, °/s: roll, pitch, yaw.
+    /// The filtered gyro rates, °/s: roll, pitch, yaw.
     pub gyro_dps: [f64; 3],
-    /// Rate setpoints, °/s.
+    /// The rate setpoints, °/s.
     pub setpoint_dps: [f64; 3],
-    /// PID sums before their limits, ±1000 = the full range of the mixer.
+    /// The PID sums before their limits; ±1000 = the full range of the mixer.
     pub pid_sum: [f64; 3],
-    /// Demanded roll and pitch while levelling, rad.
+    /// The demanded roll and pitch while levelling, rad.
     pub angle_demand_rad: Option<[f64; 2]>,
 }
 

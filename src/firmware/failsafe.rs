@@ -1,4 +1,4 @@
-//! The failsafe machine: what happens when the receiver link is lost, and how the pilot gets the craft back.
+//! The failsafe machine: the reaction to a lost receiver link, and the ways in which the pilot gets the craft back.
 //!
 //! ```text
 //!            link down                  procedure over            link up
@@ -6,10 +6,10 @@
 //!    ▲                    MISSION ├───────────────► MONITORING ─────────┐
 //!    │                    (drop)  ┘  disarm                             │
 //!    └──────────────────────── recovered ◄──────────────────────────────┘
-//!              link up (MISSION: and a stick moved, or made by the switch)
+//!              link up (MISSION: and a stick moved, or started by the switch)
 //! ```
 //!
-//! The link is debounced by [`LinkMonitor`]; the machine itself runs a hundred times a second.
+//! The link is debounced by [`LinkMonitor`]. The machine itself runs a hundred times a second.
 
 pub mod link;
 
@@ -18,10 +18,10 @@ pub use link::LinkMonitor;
 use crate::signals::SimTime;
 use crate::telemetry::FailsafeProcedure;
 
-/// A mission that the autopilot does not fly any more for this long is over, s.
+/// The time without the autopilot after which a mission is over, s.
 const MISSION_GONE_S: f64 = 1.0;
 
-/// What the FAILSAFE switch does.
+/// The action of the FAILSAFE switch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum SwitchMode {
     /// Counts as signal loss.
@@ -32,31 +32,31 @@ pub enum SwitchMode {
     Stage2,
 }
 
-/// What stage 2 does unless the autopilot's policy says otherwise.
+/// The action of stage 2, unless the autopilot's policy overrides it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Procedure {
     #[default]
     Drop,
-    /// Level, hold the place, descend.
+    /// Levels the craft, holds the position and descends.
     AutoLand,
-    /// Fly home and land.
+    /// Flies home and lands.
     GpsRescue,
 }
 
-/// What stage 2 does in the present situation.
+/// The action of stage 2 in the present situation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Response {
     Procedure(Procedure),
-    /// The mission goes on.
+    /// The mission continues.
     Continue,
-    /// The navigator lands where the craft is.
+    /// The navigator lands at the present position.
     EmergencyLand,
-    /// The navigator is landing already and goes on.
+    /// The navigator is already landing and continues.
     KeepLanding,
 }
 
 impl Response {
-    /// What logs and events tell of it.
+    /// Returns the name used for it in logs and events.
     pub fn procedure(self) -> FailsafeProcedure {
         match self {
             Self::Procedure(Procedure::Drop) => FailsafeProcedure::Drop,
@@ -68,18 +68,17 @@ impl Response {
     }
 }
 
-/// Settings of the failsafe.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FailsafeConfig {
-    /// The machine starts this long after boot, s.
+    /// The time after boot at which the machine starts, s.
     pub start_s: f64,
-    /// Longest AUTO-LAND descent, s.
+    /// The longest AUTO-LAND descent, s.
     pub landing_time_s: f64,
-    /// Throttle low for this long before the loss: just disarm, s.
+    /// The time at low throttle before the loss after which the craft is just disarmed, s.
     pub throttle_low_s: f64,
-    /// Stick deflection that takes control back, % of full stick.
+    /// The stick deflection that takes control back, % of full stick.
     pub stick_threshold_percent: f64,
-    /// What the FAILSAFE switch does.
+    /// The action of the FAILSAFE switch.
     pub switch_mode: SwitchMode,
     pub procedure: Procedure,
 }
@@ -97,57 +96,57 @@ impl Default for FailsafeConfig {
     }
 }
 
-/// How the navigator's mission stands.
+/// The status of the navigator's mission.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MissionStatus {
     /// It is being flown.
     Flying,
-    /// It is complete or was given up.
+    /// It is complete or was aborted.
     Over,
     /// The autopilot is not engaged.
     Absent,
 }
 
-/// What the machine looks at.
+/// The inputs of the machine.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FailsafeFacts {
     pub now: SimTime,
     pub armed: bool,
-    /// The FAILSAFE switch is on.
+    /// `true` while the FAILSAFE switch is on.
     pub switch: bool,
-    /// The debounced link is up.
+    /// `true` while the debounced link is up.
     pub link_up: bool,
-    /// The raw signal is there.
+    /// `true` while the raw signal is present.
     pub signal: bool,
-    /// The pilot's throttle is low.
+    /// `true` while the pilot's throttle is low.
     pub throttle_low: bool,
-    /// The craft is airborne in a mode in which the throttle stick means nothing.
+    /// `true` if the craft is airborne in a mode in which the throttle stick has no meaning.
     pub held: bool,
-    /// Farthest stick deflection as received, % of full stick.
+    /// The largest stick deflection as received, % of full stick.
     pub stick_percent: f64,
     pub fix: bool,
     pub home: bool,
-    /// How the mission stands.
+    /// The status of the mission.
     pub mission: MissionStatus,
-    /// What stage 2 would do now.
+    /// The action that stage 2 would take now.
     pub response: Response,
 }
 
-/// What is to be done.
+/// The action to take.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FailsafeAction {
-    /// The signal is gone: guard time runs.
+    /// The signal is lost and the guard time runs.
     Stage1,
     /// Stage 2 begins with this response.
     Stage2(Response),
-    /// The response in force is replaced by this one (its mission ended, or the fix went).
+    /// This response replaces the one in force, because its mission ended or the fix was lost.
     Switch(Response),
     Disarm,
-    /// The pilot has the craft back.
+    /// The pilot has control again.
     Recovered,
 }
 
-/// What the machine is doing.
+/// The phase of the machine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 enum Phase {
     #[default]
@@ -172,17 +171,17 @@ pub struct Failsafe {
 }
 
 impl Failsafe {
-    /// Whether a procedure (stage 2) owns the sticks.
+    /// Returns `true` from the start of stage 2 until recovery. The pilot's sticks have no effect then.
     pub fn active(&self) -> bool {
         self.phase != Phase::Idle
     }
 
-    /// Whether the FAILSAFE mode is to be shown.
+    /// Returns `true` if the FAILSAFE mode must be shown.
     pub fn shown(&self) -> bool {
         self.active() || self.shown
     }
 
-    /// 0: all well, 1: guard time, 2: procedure.
+    /// Returns the stage: 0 = normal, 1 = guard time, 2 = procedure.
     pub fn stage(&self) -> u8 {
         match (self.active(), self.guard_time) {
             (true, _) => 2,
@@ -191,17 +190,17 @@ impl Failsafe {
         }
     }
 
-    /// Whether a failsafe ended the flight and the link is not good again.
+    /// Returns `true` if a failsafe ended the flight and the link has not recovered yet.
     pub fn landed(&self) -> bool {
         self.phase == Phase::Monitoring
     }
 
-    /// Whether the craft descends by AUTO-LAND.
+    /// Returns `true` while the craft descends by AUTO-LAND.
     pub fn auto_landing(&self) -> bool {
         matches!(self.phase, Phase::Landing { .. })
     }
 
-    /// What the navigator flies for the failsafe, if it does.
+    /// Returns the response that the navigator flies for the failsafe, if any.
     pub fn mission(&self) -> Option<Response> {
         match self.phase {
             Phase::Mission { response, .. } => Some(response),
@@ -209,7 +208,7 @@ impl Failsafe {
         }
     }
 
-    /// Whether the failsafe was made by the switch, so that the link counts as up the moment it goes off.
+    /// Returns `true` if the switch started the failsafe. The link then counts as up as soon as the switch goes off.
     pub fn by_switch(&self) -> bool {
         self.by_switch
     }
@@ -276,7 +275,7 @@ impl Failsafe {
         Some(self.start(facts, response))
     }
 
-    /// Enters the phase of a response.
+    /// Starts the phase of a response.
     fn start(&mut self, facts: &FailsafeFacts, wanted: Response) -> FailsafeAction {
         self.by_switch = facts.switch;
         let response = feasible(facts, wanted);
@@ -320,7 +319,7 @@ impl Failsafe {
             self.phase = Phase::Mission { response, absent_since };
             return None;
         }
-        // Without a fix, or under a policy that overrides the procedure, only a descent is left.
+        // Without a fix, or under a policy that overrides the procedure, a descent is the only option.
         let next = match (response, config.procedure) {
             (Response::Continue, Procedure::Drop) if facts.fix => Procedure::Drop,
             _ => Procedure::AutoLand,
@@ -335,7 +334,7 @@ impl Failsafe {
     }
 }
 
-/// The response that can be carried out: a rescue without fix or home becomes a descent.
+/// Returns the response that is feasible: a rescue without fix or home becomes a descent.
 fn feasible(facts: &FailsafeFacts, wanted: Response) -> Response {
     match wanted {
         Response::Procedure(Procedure::GpsRescue) if !(facts.fix && facts.home) => {

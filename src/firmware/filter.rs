@@ -1,12 +1,12 @@
-//! Low-pass filters of the control loops. Coefficients are computed when a cutoff is set, not when a sample passes.
+//! Low-pass filters of the control loops. Coefficients are computed when a cutoff is set, not for each sample.
 
 use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
-/// The cutoff of each stage over the cutoff of the whole, so that n equal stages are 3 dB down together.
+/// The ratio of the cutoff of each stage to the cutoff of the whole, so that n equal stages together are 3 dB down.
 const PT2_STAGE: f64 = 1.553_773_974;
 const PT3_STAGE: f64 = 1.961_459_177;
 
-/// Gain of a first-order low-pass: ω·dt/(ω·dt + 1); 1, no filtering, for a cutoff of zero.
+/// Returns the gain of a first-order low-pass: ω·dt/(ω·dt + 1). For a cutoff of zero it is 1, which is no filtering.
 pub fn pt1_gain(cutoff_hz: f64, dt: f64) -> f64 {
     let turn = 2.0 * PI * cutoff_hz * dt;
     if turn > 0.0 { turn / (turn + 1.0) } else { 1.0 }
@@ -22,12 +22,12 @@ impl Pt1 {
         self.state
     }
 
-    /// Starts anew at `value`.
+    /// Starts again at `value`.
     pub fn reset(&mut self, value: f64) {
         self.state = value;
     }
 
-    /// One sample; `gain` is [`pt1_gain`].
+    /// Filters one sample; `gain` is [`pt1_gain`].
     pub fn apply(&mut self, input: f64, gain: f64) -> f64 {
         self.state += gain * (input - self.state);
         self.state
@@ -41,7 +41,7 @@ pub struct Pt3 {
 }
 
 impl Pt3 {
-    /// Gain for a cutoff of the whole.
+    /// Returns the gain for a cutoff of the whole filter.
     pub fn gain(cutoff_hz: f64, dt: f64) -> f64 {
         pt1_gain(cutoff_hz * PT3_STAGE, dt)
     }
@@ -50,12 +50,12 @@ impl Pt3 {
         self.stages[2]
     }
 
-    /// Starts anew at `value`.
+    /// Starts again at `value`.
     pub fn reset(&mut self, value: f64) {
         self.stages = [value; 3];
     }
 
-    /// One sample; `gain` is [`Pt3::gain`].
+    /// Filters one sample; `gain` is [`Pt3::gain`].
     pub fn apply(&mut self, input: f64, gain: f64) -> f64 {
         let [a, b, c] = &mut self.stages;
         *a += gain * (input - *a);
@@ -72,17 +72,17 @@ pub struct Pt2 {
 }
 
 impl Pt2 {
-    /// Gain for a cutoff of the whole.
+    /// Returns the gain for a cutoff of the whole filter.
     pub fn gain(cutoff_hz: f64, dt: f64) -> f64 {
         pt1_gain(cutoff_hz * PT2_STAGE, dt)
     }
 
-    /// Starts anew at `value`.
+    /// Starts again at `value`.
     pub fn reset(&mut self, value: f64) {
         self.stages = [value; 2];
     }
 
-    /// One sample; `gain` is [`Pt2::gain`].
+    /// Filters one sample; `gain` is [`Pt2::gain`].
     pub fn apply(&mut self, input: f64, gain: f64) -> f64 {
         let [a, b] = &mut self.stages;
         *a += gain * (input - *a);
@@ -91,7 +91,7 @@ impl Pt2 {
     }
 }
 
-/// Shape of a low-pass; the discriminant is the value of the settings.
+/// The shape of a low-pass. The discriminant is the value of the settings.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::FromRepr)]
 #[repr(u8)]
 pub enum LowPassKind {
@@ -103,11 +103,11 @@ pub enum LowPassKind {
     Pt3 = 3,
 }
 
-/// Coefficients of a low-pass of any shape.
+/// The coefficients of a low-pass of any shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LowPass {
     Off,
-    /// Equal first-order stages with this gain; 1…3 of them.
+    /// One to three equal first-order stages with this gain.
     Stages {
         count: u8,
         gain: f64,
@@ -117,7 +117,8 @@ pub enum LowPass {
 }
 
 impl LowPass {
-    /// A low-pass of this shape; off for a cutoff of zero. A biquad's cutoff is kept below the Nyquist frequency.
+    /// Creates a low-pass of this shape; off for a cutoff of zero. The cutoff of a biquad is kept below the Nyquist
+    /// frequency.
     pub fn new(kind: LowPassKind, cutoff_hz: f64, dt: f64) -> Self {
         if cutoff_hz <= 0.0 {
             return Self::Off;
@@ -130,7 +131,7 @@ impl LowPass {
         }
     }
 
-    /// Bilinear transform of a second-order low-pass with Q = 1/√2.
+    /// Computes the bilinear transform of a second-order low-pass with Q = 1/√2.
     fn butterworth(cutoff_hz: f64, dt: f64) -> Self {
         let (sin, cos) = (2.0 * PI * cutoff_hz * dt).sin_cos();
         let alpha = sin / (2.0 * FRAC_1_SQRT_2);
@@ -140,7 +141,7 @@ impl LowPass {
     }
 }
 
-/// Memory of a [`LowPass`].
+/// The state of a [`LowPass`].
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LowPassState {
     stages: [f64; 3],
@@ -158,7 +159,7 @@ impl LowPassState {
                 }
                 value
             }
-            // Transposed direct form II; the third slot is free.
+            // Transposed direct form II; the third slot is unused.
             LowPass::Biquad([b0, b1, b2, a1, a2]) => {
                 let output = b0 * input + self.stages[0];
                 self.stages[0] = b1 * input - a1 * output + self.stages[1];
@@ -173,7 +174,7 @@ impl LowPassState {
 mod tests {
     use super::*;
 
-    /// Amplitude of the answer to a sine of `hz` at 8 kHz.
+    /// Returns the amplitude of the output for a sine of `hz` at 8 kHz.
     fn amplitude(filter: &LowPass, hz: f64) -> f64 {
         let (dt, mut state) = (1.0 / 8000.0, LowPassState::default());
         let answers = (0..16_000).map(|n| state.apply((2.0 * PI * hz * f64::from(n) * dt).sin(), filter));

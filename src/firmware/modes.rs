@@ -1,4 +1,4 @@
-//! Modes: boxes, the conditions that switch them, and the rules for which flight mode is on when.
+//! Modes: boxes, the conditions that switch them, and the rules that decide the flight modes.
 
 pub mod boxes;
 pub mod conditions;

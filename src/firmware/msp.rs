@@ -1,16 +1,16 @@
-//! The MSP server: a request's code and payload in, the reply's payload and things to do out.
+//! The MSP server: takes the code and payload of a request, and returns the payload of the reply and an action.
 //!
-//! Pure: it reads and writes the [`Configuration`], is told about the running firmware by [`MspFacts`], and leaves
-//! what reaches beyond both (storing, restarting, RC, motors) to the caller as an [`MspAction`]. How requests and
-//! replies are framed on a link is the link's business.
+//! It has no side effects. It reads and writes the [`Configuration`] and gets the state of the running firmware from
+//! [`MspFacts`]. Anything beyond both (storing, restarting, RC, motors) goes to the caller as an [`MspAction`]. The
+//! link is responsible for the framing of requests and replies.
 //!
 //! ```text
 //! code ── TABLE ──▶ handler ──▶ Outcome { reply, action, notice }
 //!                     │ one of: a layout of settings, read or written field by field; or a function
 //! ```
 //!
-//! A payload that is longer than expected is read as far as needed. Where it is shorter, a setting of which no byte
-//! came keeps its value, and anything else reads as zero.
+//! A payload that is longer than expected is read as far as needed. If it is shorter, a setting without any byte keeps
+//! its value, and everything else reads as zero.
 
 mod commands;
 mod craft;
@@ -43,49 +43,49 @@ use wire::{Reader, Writer};
 /// The answer to a request.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outcome {
-    /// Payload of the reply; `None` when the request is unknown or refused.
+    /// The payload of the reply; `None` if the request is unknown or refused.
     pub reply: Option<Vec<u8>>,
-    /// What the owner of the firmware has to do, after the reply is out.
+    /// The action for the owner of the firmware, after the reply is sent.
     pub action: Option<MspAction>,
-    /// Something the user should know about the value that was written.
+    /// A notice for the user about the written value.
     pub notice: Option<FirmwareNotice>,
 }
 
-/// Something a message asks the owner of the firmware to do.
+/// An action that a message requests from the owner of the firmware.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum MspAction {
     Save,
-    /// Restart from the stored configuration and close the links.
+    /// Restarts from the stored configuration and closes the links.
     Reboot,
-    /// The configuration was reset: store it, restart, close the links.
+    /// Stores the configuration that was just reset, restarts and closes the links.
     SaveAndReboot,
-    /// An RC frame in the order of the receiver's wire; channels that were not sent are 0.
+    /// An RC frame in the order of the receiver's wire. Channels that were not sent are 0.
     RawRc(RcFrame),
     /// A position for the GPS provider MSP.
     RawGps {
-        /// Whether it is a fix.
+        /// `true` if it is a fix.
         fix: bool,
         sats: u8,
         position: LatLon,
-        /// Altitude above mean sea level, m.
+        /// The altitude above mean sea level, m.
         alt_amsl_m: u16,
-        /// Ground speed, cm/s.
+        /// The ground speed, cm/s.
         speed_cms: u16,
     },
-    /// Run the motors of the disarmed craft at these outputs, µs.
+    /// Runs the motors of the disarmed craft at these outputs, µs.
     MotorTest([u16; 4]),
     CalibrateAcc,
     CalibrateMag,
-    /// Hold this heading, degrees.
+    /// Holds this heading, degrees.
     HoldHeading(i16),
-    /// The time of day.
+    /// Sets the time of day.
     SetClock {
-        /// Seconds since 1970, UTC.
+        /// The seconds since 1970, UTC.
         unix_s: u32,
-        /// Milliseconds of the second.
+        /// The milliseconds of the second.
         millis: u16,
     },
-    /// Turn runaway take-off prevention on or off until the next restart.
+    /// Turns runaway take-off prevention on or off until the next restart.
     RunawayPrevention(bool),
 }
 
@@ -93,7 +93,7 @@ pub enum MspAction {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Refused;
 
-/// One request being answered.
+/// One request in progress.
 #[derive(Debug)]
 struct Call<'a> {
     configuration: &'a mut Configuration,
@@ -105,12 +105,12 @@ struct Call<'a> {
 }
 
 impl Call<'_> {
-    /// The number, word position or port of a setting of the active profile.
+    /// Returns the number, word position or port of a setting of the active profile.
     fn setting(&self, name: &str) -> i64 {
         self.configuration.settings.number(name)
     }
 
-    /// Sets a number of the active profile, brought into the setting's range.
+    /// Sets a number of the active profile, limited to the setting's range.
     fn set(&mut self, name: &str, number: i64) {
         layout::put(&mut self.configuration.settings, name, number);
     }

@@ -1,7 +1,7 @@
-//! Who gives the navigator its orders: the AUTOPILOT switch, the GPS RESCUE switch, commands, and the failsafe.
+//! The sources of the navigator's orders: the AUTOPILOT switch, the GPS RESCUE switch, commands, and the failsafe.
 //!
 //! Priority: failsafe procedure, then commands and rescue, then the switch. Orders by command and rescue stay until
-//! touchdown, disarming, the AUTOPILOT switch going off, or a cancel.
+//! touchdown, disarming, a cancel, or the AUTOPILOT switch going off.
 
 use crate::autopilot::io::NavInputs;
 use crate::autopilot::rx_loss::{RxLossAction, RxLossFacts, decide};
@@ -17,23 +17,23 @@ use crate::geo::local_offset;
 /// An order that does not come from the AUTOPILOT switch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Order {
-    /// Fly home and land, by command or (with its own altitude and speeds) by the rescue switch.
+    /// Flies home and lands, by command or (with its own altitude and speeds) by the rescue switch.
     ReturnHome(Option<Rescue>),
     Land,
 }
 
-/// What decides about the navigator's orders in this update.
+/// The inputs that decide the navigator's orders in one update.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OrderFacts {
-    /// The AUTOPILOT switch is on.
+    /// `true` while the AUTOPILOT switch is on.
     pub autopilot_switch: bool,
-    /// The GPS RESCUE switch is on and rescue is configured.
+    /// `true` while the GPS RESCUE switch is on and rescue is configured.
     pub rescue_switch: bool,
-    /// The RC signal is there, so that switches can be trusted.
+    /// `true` while the RC signal is present, so that switches can be trusted.
     pub signal: bool,
-    /// A failsafe procedure is running.
+    /// `true` while a failsafe procedure runs.
     pub failsafe_active: bool,
-    /// What the navigator flies for the failsafe, if it does.
+    /// The response that the navigator flies for the failsafe, if any.
     pub failsafe_mission: Option<Response>,
 }
 
@@ -43,7 +43,7 @@ pub struct Orders {
     order: Option<Order>,
     switch_was: bool,
     was_armed: bool,
-    /// The flight ended with the AUTOPILOT switch on: until it is released, it asks for nothing.
+    /// `true` if the flight ended with the AUTOPILOT switch on. The switch then has no effect until it is released.
     switch_spent: bool,
     rescue_was: bool,
     by_rescue_switch: bool,
@@ -51,11 +51,11 @@ pub struct Orders {
 }
 
 impl Orders {
-    /// What a given-up mission leaves behind while its order stays.
+    /// Returns the holds that stay on after an aborted mission, while its order remains.
     pub fn after_abort(&self, navigator: &Navigator) -> AfterAbort {
         match navigator.given_up() {
             None => AfterAbort::Nothing,
-            // The pilot of a rescue may not see the craft any more: it does not wait up there for a fix.
+            // The pilot of a rescue may no longer see the craft, so it does not wait in the air for a fix.
             Some(AbortReason::GpsLost) if navigator.has_landing_to_resume() || self.by_rescue_switch => {
                 AfterAbort::Descent
             }
@@ -64,7 +64,7 @@ impl Orders {
         }
     }
 
-    /// How the navigator's mission stands, for the failsafe.
+    /// Returns the status of the navigator's mission, for the failsafe.
     pub fn status(&self, navigator: &Navigator) -> MissionStatus {
         match (navigator.is_flying(), navigator.state()) {
             (true, NavState::Complete) => MissionStatus::Over,
@@ -74,10 +74,10 @@ impl Orders {
         }
     }
 
-    /// Fly home and land.
+    /// Flies home and lands.
     ///
     /// # Errors
-    /// When the craft is not armed or has no fix or no altitude.
+    /// Returns a refusal if the craft is not armed or has no fix or no altitude.
     pub fn return_to_home(
         &mut self,
         navigator: &mut Navigator,
@@ -91,10 +91,10 @@ impl Orders {
         Ok(())
     }
 
-    /// Land here.
+    /// Lands here.
     ///
     /// # Errors
-    /// When the craft is not armed or has no fix or no altitude.
+    /// Returns a refusal if the craft is not armed or has no fix or no altitude.
     pub fn emergency_land(&mut self, navigator: &mut Navigator, inputs: &NavInputs) -> Result<(), Refusal> {
         navigator.emergency_land(inputs)?;
         self.order = Some(Order::Land);
@@ -102,17 +102,17 @@ impl Orders {
         Ok(())
     }
 
-    /// Whether a command, not a switch, has the craft fly home or land.
+    /// Returns `true` while the craft flies home or lands by a command, not by a switch.
     pub fn is_commanded(&self) -> bool {
         self.order.is_some() && !self.by_rescue_switch
     }
 
-    /// Whether the rescue switch has the craft fly home.
+    /// Returns `true` while the craft flies home by the rescue switch.
     pub fn is_rescue_by_switch(&self) -> bool {
         self.by_rescue_switch
     }
 
-    /// Takes a command back: the switch decides again, and starts its mission again if it is on.
+    /// Cancels a command. The switch decides again, and starts its mission again if it is on.
     pub fn take_back(&mut self, navigator: &mut Navigator) {
         if self.is_commanded() {
             self.cancel();
@@ -125,7 +125,7 @@ impl Orders {
         self.by_rescue_switch = false;
     }
 
-    /// One update, before the navigator's own.
+    /// Runs one update, before the navigator's own.
     pub fn update(
         &mut self,
         navigator: &mut Navigator,
@@ -175,7 +175,7 @@ impl Orders {
                     navigator.refuse(refusal);
                 }
             }
-            // The navigator remembers a refusal and says so.
+            // The navigator remembers a refusal and reports it.
             Some(_) | None => _ = navigator.engage(inputs, params, stored),
         }
     }
@@ -195,13 +195,14 @@ impl Orders {
         } else if was && !facts.rescue_switch && self.by_rescue_switch {
             self.cancel();
             if facts.autopilot_switch {
-                // The mission under the rescue starts again.
+                // Restarts the mission that the rescue replaced.
                 navigator.disengage();
             }
         }
     }
 
-    /// How a rescue that starts now flies home. Next to home there is nothing to climb over on the way.
+    /// Returns the flight of a rescue that starts now. Near home it does not climb first, because there is nothing to
+    /// climb over on the way.
     pub fn rescue_flight(&self, config: &RescueConfig, inputs: &NavInputs, cause: RescueCause) -> Rescue {
         let distance_m = inputs.home.map(|home| (local_offset(inputs.origin, home) - inputs.pos_ne).norm());
         let is_near = distance_m.is_some_and(|distance| distance < config.min_start_dist_m);
@@ -225,7 +226,7 @@ impl Orders {
     }
 }
 
-/// Tries an order again that was given up: only for a lost fix, for a return home that makes no progress lands instead.
+/// Repeats an aborted order, but only after a lost fix. A return home that makes no progress lands instead.
 fn repeat(
     order: Order,
     navigator: &mut Navigator,
@@ -241,7 +242,7 @@ fn repeat(
     }
 }
 
-/// What stage 2 of the failsafe does now.
+/// Returns the response of stage 2 of the failsafe in the present situation.
 pub fn failsafe_response(
     navigator: &Navigator,
     params: &Params,

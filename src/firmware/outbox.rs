@@ -1,8 +1,8 @@
-//! Events on their way out of the firmware: a fixed room, and a count of what did not fit.
+//! Events on their way out of the firmware: a fixed number, and a count of those that did not fit.
 
 use crate::telemetry::FirmwareEvent;
 
-/// Most events between two drains.
+/// The most events between two drains.
 pub const CAPACITY: usize = 64;
 
 /// The events since the last drain, oldest first.
@@ -13,7 +13,7 @@ pub struct Outbox {
 }
 
 impl Outbox {
-    /// Adds an event; when there is no room it is counted as lost.
+    /// Adds an event. If there is no room, it is counted as lost.
     pub fn push(&mut self, event: FirmwareEvent) {
         if self.events.try_push(event).is_err() {
             self.lost = self.lost.saturating_add(1);
@@ -25,12 +25,12 @@ impl Outbox {
         self.events.pop_at(0)
     }
 
-    /// Whether nothing happened since the last drain.
+    /// Returns `true` if nothing happened since the last drain.
     pub fn is_empty(&self) -> bool {
         self.events.is_empty()
     }
 
-    /// How many events were lost since the last call because nobody drained in time.
+    /// Returns the number of events lost since the last call because the outbox was full.
     pub fn take_lost(&mut self) -> u32 {
         std::mem::take(&mut self.lost)
     }

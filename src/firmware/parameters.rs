@@ -1,7 +1,7 @@
 //! Typed parameters of the running firmware, made from the configuration outside the tick.
 //!
-//! Most follow the configuration at once. What the pages of the settings call "at boot" is taken once, in
-//! [`BootChoices`], and kept until the next restart.
+//! Most follow the configuration at once. Settings that take effect "at boot" are read once, into [`BootChoices`], and
+//! kept until the next restart.
 
 use crate::autopilot::Params;
 
@@ -22,33 +22,33 @@ use super::modes::boxes;
 use super::rx::{ChannelConfig, RxConfig, StickConfig};
 use super::settings::Settings;
 
-/// Deflection of the yaw stick that the stick commands need at least, RC units.
+/// The least deflection of the yaw stick for stick commands, RC units.
 const LEAST_FULL_YAW: f64 = 100.0;
 
-/// What changes only with a restart.
+/// The choices that change only with a restart.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BootChoices {
     pub features: Features,
     pub max_aux: u8,
-    /// A magnetometer is present.
+    /// `true` if a magnetometer is present.
     pub mag: bool,
     pub mixer: MixerKind,
-    /// Rows of the custom mix.
+    /// The rows of the custom mix.
     pub custom_mix: [MixRow; MAX_MIX_ROWS],
-    /// Gyro samples for each run of the rate loop.
+    /// The number of gyro samples per run of the rate loop.
     pub pid_denominator: u8,
     /// `motor_pwm_protocol`, as a number.
     pub motor_protocol: u8,
-    /// The motor protocol is DISABLED: the motors cannot turn.
+    /// `true` if the motor protocol is DISABLED, so that the motors cannot turn.
     pub motors_disabled: bool,
     /// `gps_provider`, as a number.
     pub gps_provider: u8,
-    /// Ports of `msp_uart_1` to `msp_uart_3`.
+    /// The ports of `msp_uart_1` to `msp_uart_3`.
     pub msp_ports: [u8; 3],
 }
 
 impl BootChoices {
-    /// The choices of a configuration.
+    /// Reads the choices from a configuration.
     pub fn new(configuration: &Configuration) -> Self {
         let settings = &configuration.settings;
         Self {
@@ -66,29 +66,29 @@ impl BootChoices {
     }
 }
 
-/// Altitude of a GPS rescue.
+/// The altitude of a GPS rescue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum RescueAltitude {
-    /// The highest of this flight and the initial climb on top.
+    /// The highest altitude of this flight plus the initial climb.
     #[default]
     HighestOfFlight,
     /// A fixed altitude above home.
     Fixed,
-    /// The present one and the initial climb on top.
+    /// The present altitude plus the initial climb.
     Present,
 }
 
-/// When a rescue that makes no progress is given up.
+/// The condition under which a rescue that makes no progress is aborted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum RescueSanity {
     Off,
     On,
-    /// When the failsafe flies it, not when the pilot's switch does.
+    /// Only if the failsafe started it, not the pilot's switch.
     #[default]
     FailsafeOnly,
 }
 
-/// Who asks for a rescue.
+/// The cause of a rescue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RescueCause {
     /// The GPS RESCUE switch.
@@ -99,51 +99,51 @@ pub enum RescueCause {
 /// Settings of GPS rescue.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RescueConfig {
-    /// How the return altitude is chosen.
+    /// The choice of the return altitude.
     pub altitude: RescueAltitude,
-    /// Climb on top, m.
+    /// The additional climb, m.
     pub initial_climb_m: f64,
-    /// Fixed return altitude above home, m.
+    /// The fixed return altitude above home, m.
     pub return_alt_m: f64,
-    /// Climb rate, m/s.
+    /// The climb rate, m/s.
     pub ascend_mps: f64,
-    /// Sink rate down to the last metres, m/s.
+    /// The sink rate down to the last metres, m/s.
     pub descend_mps: f64,
-    /// Speed on the way home, m/s.
+    /// The speed on the way home, m/s.
     pub ground_speed_mps: f64,
-    /// Nearer to home than this it does not climb first, m.
+    /// The distance from home below which it does not climb first, m.
     pub min_start_dist_m: f64,
-    /// When it is given up.
+    /// The condition under which it is aborted.
     pub sanity: RescueSanity,
-    /// Satellites that make home and rescue trustworthy.
+    /// The number of satellites that make home and rescue trustworthy.
     pub min_sats: u8,
-    /// Home stays where the craft was armed first.
+    /// Keeps home at the point of the first arming.
     pub home_once: bool,
 }
 
-/// Everything the firmware's own state machines need.
+/// The parameters of all state machines in the firmware.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parameters {
     pub rx: RxConfig,
-    /// Debouncing of the link.
+    /// The debouncing of the link.
     pub link: LinkConfig,
     pub failsafe: FailsafeConfig,
     pub arming: ArmingConfig,
     pub runaway: RunawayConfig,
     pub crash: CrashConfig,
-    /// Jerk that ends a landing, setting units; 0 = off.
+    /// The jerk that ends a landing, setting units; 0 = off.
     pub landing_disarm_threshold: f64,
     pub modes: [ModeCondition; MODE_CONDITIONS],
     pub rescue: RescueConfig,
     pub battery: BatteryConfig,
     pub gps: bool,
-    /// Airmode is always on.
+    /// `true` if airmode is always on.
     pub airmode: bool,
-    /// The gains always rise in quick throttle changes.
+    /// `true` if the gains always rise in quick throttle changes.
     pub anti_gravity: bool,
-    /// Motors stand still at low throttle.
+    /// `true` if the motors stop at low throttle.
     pub motor_stop: bool,
-    /// Altitude and position hold.
+    /// The tuning of altitude and position hold.
     pub hold: HoldTuning,
     /// The navigator's parameters.
     pub nav: Params,
@@ -154,7 +154,7 @@ pub struct Parameters {
 }
 
 impl Parameters {
-    /// The parameters of a configuration and the choices made at boot.
+    /// Computes the parameters from a configuration and the choices made at boot.
     pub fn new(configuration: &Configuration, boot: &BootChoices, options: &FirmwareOptions) -> Self {
         let settings = &configuration.settings;
         let number = |name| settings.number(name) as f64;
@@ -194,12 +194,12 @@ fn control(settings: &Settings, boot: &BootChoices) -> Tuning {
     tuning
 }
 
-/// A number that fits a byte; the settings keep to their ranges.
+/// Reads a number that fits a byte. The settings keep to their ranges.
 fn small(settings: &Settings, name: &str) -> u8 {
     settings.number(name).clamp(0, 255) as u8
 }
 
-/// A pulse, µs.
+/// Reads a pulse, µs.
 fn pulse(settings: &Settings, name: &str) -> u16 {
     settings.number(name).clamp(0, i64::from(u16::MAX)) as u16
 }
@@ -266,7 +266,7 @@ fn arming(configuration: &Configuration, boot: &BootChoices, options: &FirmwareO
         rescue_configured: has(boxes::GPS_RESCUE) || settings.text("failsafe_procedure") == "GPS-RESCUE",
         rescue_min_sats: small(settings, "gps_rescue_min_sats"),
         rescue_allow_without_fix: settings.flag("gps_rescue_allow_arming_without_fix"),
-        // A stick at rest is no command, whatever `max_check` says.
+        // A stick at rest is no command, whatever the value of `max_check`.
         full_yaw: (number("max_check") - number("mid_rc")).max(LEAST_FULL_YAW),
         stick_arming,
         auto_disarm_s: (motors_stop && stick_arming)
@@ -333,7 +333,7 @@ fn battery(settings: &Settings) -> BatteryConfig {
     }
 }
 
-/// The navigator's parameters by their names; the few that the settings allow a wider range are limited.
+/// Reads the navigator's parameters by name. Those with a wider range in the settings are limited.
 fn navigator(settings: &Settings) -> Params {
     let mut params = Params::default();
     for field in Params::FIELDS {

@@ -1,4 +1,4 @@
-//! What the owner of the firmware can ask of it: command line, plans, return home, restart.
+//! Requests that the owner of the firmware can make: command line, plans, return home, restart.
 
 use crate::signals::{RcFrame, RcSource};
 use crate::telemetry::{
@@ -10,23 +10,23 @@ use super::cli::{BuildInfo, CliAction, CliContext, CliFacts, CliReply, Interpret
 use super::config::{Configuration, Feature};
 
 impl Firmware {
-    /// Takes an RC frame for the next step, where its age begins; of one source only the newest counts.
+    /// Takes an RC frame for the next step, at which its age begins. Only the newest frame of each source counts.
     pub fn receive_rc(&mut self, frame: &RcFrame, source: RcSource) {
         self.rc.queue(frame, source);
     }
 
-    /// The frames that came since the last step never arrived: the receiver hears nothing.
+    /// Drops the frames that came since the last step. The receiver does not get them.
     pub fn lose_rc(&mut self) {
         self.rc.drop_queued();
     }
 
-    /// Lets the virtual sticks win over the other sources of RC, or ends that.
+    /// Gives the virtual sticks priority over the other sources of RC, or ends that.
     pub fn take_over_sticks(&mut self, sticks_first: bool) {
         self.rc.take_over(sticks_first);
     }
 
-    /// Runs one CLI line and carries out what it asks of the firmware itself. Storing and restarting are left to the
-    /// owner: the reply says so.
+    /// Runs one CLI line and carries out its requests to the firmware itself. Storing and restarting are left to the
+    /// owner, by the actions in the reply.
     pub fn run_cli(&mut self, session: &mut Interpreter, line: &str) -> CliReply {
         let facts = CliFacts::observe(self);
         let configuration = self.setup.configuration_mut();
@@ -47,42 +47,42 @@ impl Firmware {
         reply
     }
 
-    /// A command line session was opened on a serial link: no arming until reboot.
+    /// Blocks arming until reboot. Called when a command line session is opened on a serial link.
     pub fn cli_opened(&mut self) {
         self.safety.cli_opened();
     }
 
-    /// The session ended: motors that it turned stop.
+    /// Stops motors that the session started. Called when the session ends.
     pub fn cli_closed(&mut self) {
         self.control.end_motor_test();
     }
 
-    /// What the commands tell about the stored configuration.
+    /// Sets the facts about the stored configuration that commands print.
     pub fn set_storage_facts(&mut self, facts: StorageFacts) {
         self.setup.set_storage(facts);
     }
 
-    /// What the commands tell of useless packets from scripts and simulators.
+    /// Sets the counts of unusable packets from scripts and simulators that commands print.
     pub fn set_bad_packets(&mut self, bad_packets: BadPackets) {
         self.setup.set_bad_packets(bad_packets);
     }
 
-    /// What the commands tell of real time that the flight could not keep up with.
+    /// Sets the lost real time that commands print, which the flight could not keep up with.
     pub fn set_lost_time(&mut self, lost_time: LostTime) {
         self.setup.set_lost_time(lost_time);
     }
 
-    /// What the commands tell about whether an earlier instant is shown, during which clients change nothing.
+    /// Sets the flag that an earlier instant is shown. Clients cannot change anything then.
     pub fn set_rewound(&mut self, rewound: bool) {
         self.setup.set_rewound(rewound);
     }
 
-    /// Version and build that the firmware announces.
+    /// Sets the version and build that the firmware announces.
     pub fn set_build(&mut self, build: BuildInfo) {
         self.setup.set_build(build);
     }
 
-    /// Restarts with this configuration; the flight is over, the receiver's sources keep their order.
+    /// Restarts with this configuration. This ends the flight, but the receiver's sources keep their order.
     pub fn restart(&mut self, configuration: Configuration) {
         let was_armed = self.safety.armed();
         let mut outbox = std::mem::take(&mut self.outbox);
@@ -102,28 +102,28 @@ impl Firmware {
         self.restart(configuration);
     }
 
-    /// Flies home and lands, whatever the AUTOPILOT switch says.
+    /// Flies home and lands, regardless of the AUTOPILOT switch.
     ///
     /// # Errors
-    /// When the craft is not armed, its throttle was never raised, or it has no fix or no altitude.
+    /// Returns a refusal if the craft is not armed, its throttle was never raised, or it has no fix or no altitude.
     pub fn return_to_home(&mut self) -> Result<(), Refusal> {
         let done = self.navigation.return_to_home(self.setup.parameters());
         self.answer(done)
     }
 
-    /// Has the navigator that flies the stored plan do something else: go to a waypoint, hold here, go on.
+    /// Changes the flight of a stored plan: go to a waypoint, hold here, continue.
     ///
     /// # Errors
-    /// Why not; then nothing has changed.
+    /// Returns the reason if the command is refused. Nothing has changed then.
     pub fn command(&mut self, command: InFlightCommand) -> Result<(), InFlightRefusal> {
         let stored = &self.setup.configuration().plan;
         self.navigation.command(command, self.setup.parameters(), stored)
     }
 
-    /// Lands here, whatever the AUTOPILOT switch says.
+    /// Lands here, regardless of the AUTOPILOT switch.
     ///
     /// # Errors
-    /// As [`Firmware::return_to_home`].
+    /// As for [`Firmware::return_to_home`].
     pub fn emergency_land(&mut self) -> Result<(), Refusal> {
         let done = self.navigation.emergency_land();
         self.answer(done)
@@ -136,20 +136,20 @@ impl Firmware {
         done
     }
 
-    /// Takes [`Firmware::return_to_home`] or [`Firmware::emergency_land`] back: the switch decides again, and starts its
+    /// Cancels [`Firmware::return_to_home`] or [`Firmware::emergency_land`]. The switch decides again, and starts its
     /// mission again if it is on. Without such a command nothing happens.
     pub fn cancel_command(&mut self) {
         self.navigation.cancel_command();
     }
 
-    /// Calibrates the accelerometer; the craft must stand level. Ignored while armed.
+    /// Calibrates the accelerometer. The craft must be level and still. Ignored while armed.
     pub fn calibrate_accelerometer(&mut self) {
         if !self.safety.armed() {
             self.sensing.calibrate_accelerometer();
         }
     }
 
-    /// Calibrates the magnetometer: for 30 s the craft is to be turned about all its axes. Ignored while armed or
+    /// Calibrates the magnetometer. The pilot must turn the craft about all its axes for 30 s. Ignored while armed or
     /// without a magnetometer.
     pub fn calibrate_magnetometer(&mut self) {
         if !self.safety.armed() && self.setup.boot().mag {

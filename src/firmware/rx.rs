@@ -1,11 +1,11 @@
-//! The receiver: sources, channels, sticks, and whether the signal is there.
+//! The receiver: sources, channels, sticks, and the check of the signal.
 //!
 //! ```text
-//! frames ─► Sources (who drives) ─► Channels (map, range, hold, substitution) ─► Sticks
+//! frames ─► Sources (by rank)    ─► Channels (map, range, hold, substitution) ─► Sticks
 //!                                        └► Signal (lost after 150 ms)
 //! ```
 //!
-//! Ages count in the firmware's own time, given with each call.
+//! Ages count in the firmware's own time, which each call passes in.
 
 pub mod channels;
 pub mod source;
@@ -17,16 +17,16 @@ pub use sticks::{StickConfig, Sticks};
 
 use crate::signals::{RC_CHANNELS, RcFrame, RcSource, SimTime};
 
-/// Without a frame for longer than this the signal is lost, s.
+/// The age of the newest frame above which the signal is lost, s.
 const SIGNAL_LOSS_S: f64 = 0.15;
-/// Without frames the receiver looks this often, s.
+/// The interval of receiver passes without frames, s.
 const LOOK_EVERY_S: f64 = 0.05;
 
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RxConfig {
-    /// How pulses become channel values.
+    /// The conversion of pulses to channel values.
     pub channels: ChannelConfig,
-    /// How channel values become stick positions.
+    /// The conversion of channel values to stick positions.
     pub sticks: StickConfig,
 }
 
@@ -42,7 +42,7 @@ pub struct Receiver {
 }
 
 impl Receiver {
-    /// A receiver that has heard nothing yet.
+    /// Creates a receiver that has not received anything yet.
     pub fn new(config: &RxConfig) -> Self {
         let channels = Channels::new(&config.channels);
         Self {
@@ -64,14 +64,14 @@ impl Receiver {
         }
     }
 
-    /// Whether a pass is due: a new frame, or 50 ms without one.
+    /// Returns `true` if a pass is due: after a new frame, or 50 ms after the last pass.
     pub fn is_due(&self, now: SimTime) -> bool {
         self.pending || now.seconds_since(self.last_pass) >= LOOK_EVERY_S
     }
 
-    /// One pass: judges the signal and recomputes channels and sticks. `switched_off` counts as signal loss (the
-    /// FAILSAFE switch in its first mode); `procedure` says that a failsafe procedure owns the sticks. Says whether a new
-    /// frame was used.
+    /// Runs one pass: judges the signal and computes channels and sticks. `switched_off` counts as signal loss (the
+    /// FAILSAFE switch in its first mode). `procedure` means that a failsafe procedure controls the sticks. Returns
+    /// `true` if a new frame was used.
     pub fn update(&mut self, config: &RxConfig, now: SimTime, switched_off: bool, procedure: bool) -> bool {
         let fresh = self.last_frame.is_some_and(|last| now.seconds_since(last) <= SIGNAL_LOSS_S);
         self.signal = fresh && self.channels.flight_channels_valid(now) && !switched_off;
@@ -81,37 +81,37 @@ impl Receiver {
         std::mem::take(&mut self.pending)
     }
 
-    /// Whether the signal is there: a frame within 150 ms with valid flight channels.
+    /// Returns `true` while there is a signal: a frame within 150 ms with valid flight channels.
     pub fn signal(&self) -> bool {
         self.signal
     }
 
-    /// Whether any frame was ever used.
+    /// Returns `true` if any frame was ever used.
     pub fn has_heard(&self) -> bool {
         self.last_frame.is_some()
     }
 
-    /// When the newest frame that was used came.
+    /// Returns the time of the newest frame that was used.
     pub fn last_frame(&self) -> Option<SimTime> {
         self.last_frame
     }
 
-    /// The channel values in use, µs: roll, pitch, yaw, throttle, AUX1….
+    /// Returns the channel values in use, µs: roll, pitch, yaw, throttle, AUX1….
     pub fn channels(&self) -> &[u16; RC_CHANNELS] {
         self.channels.values()
     }
 
-    /// The live AUX channels in use, µs.
+    /// Returns the live AUX channels in use, µs.
     pub fn aux(&self, config: &RxConfig) -> &[u16] {
         self.channels.aux(&config.channels)
     }
 
-    /// The stick positions in use.
+    /// Returns the stick positions in use.
     pub fn sticks(&self) -> &Sticks {
         &self.sticks
     }
 
-    /// The stick positions as received, whatever a failsafe substitutes.
+    /// Returns the stick positions as received, before any failsafe substitution.
     pub fn received_sticks(&self, config: &RxConfig) -> Sticks {
         Sticks::from_channels(&config.sticks, self.channels.received())
     }
@@ -120,7 +120,7 @@ impl Receiver {
         &self.sources
     }
 
-    /// Lets the virtual sticks win over the other sources, or ends that.
+    /// Gives the virtual sticks priority over the other sources, or ends that.
     pub fn take_over(&mut self, sticks_first: bool) {
         self.sources.take_over(sticks_first);
     }
@@ -134,7 +134,7 @@ mod tests {
         SimTime(ms * 1000)
     }
 
-    /// Runs the passes of a receiver that gets frames every 20 ms up to `stop_ms`, and says when the signal was lost.
+    /// Runs the passes of a receiver that gets frames every 20 ms up to `stop_ms`. Returns the time of the signal loss.
     fn lost_after(stop_ms: u64) -> Option<u64> {
         let config = RxConfig::default();
         let mut rx = Receiver::new(&config);

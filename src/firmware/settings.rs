@@ -1,12 +1,12 @@
-//! The settings: one table from which get, set, dump, diff, help, completion, storage and the documentation follow.
+//! The settings: one table for get, set, dump, diff, help, completion, storage and the documentation.
 //!
 //! * [`SETTINGS`] describes every setting: name, type, range, default, meaning.
 //! * [`Settings`] holds the values, including those of the PID, rate and battery profiles.
-//! * [`judge`] says what is wrong with a setting before a craft gets it.
-//! * [`foreign_name`] knows the settings of other builds, which are kept but have no effect.
+//! * [`judge`] reports an invalid setting before a craft gets it.
+//! * [`foreign_name`] recognises the settings of other builds, which are kept but have no effect.
 //!
-//! The control code never reads settings in a step: [`parameters`](super::parameters) makes typed coefficients of
-//! them, at boot and again after every command line and every message that may have changed them.
+//! The control code never reads settings in a step. [`parameters`](super::parameters) turns them into typed
+//! coefficients, at boot and again after every command line and every message that may have changed them.
 
 mod current_firmware;
 mod foreign;
@@ -22,7 +22,7 @@ pub use parse::AssignError;
 pub use store::{Settings, Value};
 pub use table::{PORT_NAMES, SETTINGS, find, group_of, needs_restart};
 
-/// Where a setting lives: once for the craft, or once in each profile of a kind.
+/// The scope of a setting: one value for the craft, or one in each profile of a kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, strum::EnumIter)]
 pub enum Scope {
     /// One value for the craft.
@@ -36,7 +36,7 @@ pub enum Scope {
 }
 
 impl Scope {
-    /// How many instances of the scope exist.
+    /// Returns the number of instances of the scope.
     pub const fn instances(self) -> u8 {
         match self {
             Self::Master => 1,
@@ -45,7 +45,7 @@ impl Scope {
         }
     }
 
-    /// The command that selects an instance, and the word that heads it in a dump.
+    /// Returns the command that selects an instance, which is also its heading in a dump.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Master => "master",
@@ -56,11 +56,11 @@ impl Scope {
     }
 }
 
-/// Integer type that carries the value on the wire.
+/// The integer type that carries the value on the wire.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, strum::Display)]
 #[strum(serialize_all = "lowercase")]
 pub enum Width {
-    /// Unsigned, 8 bits; texts are strings of these.
+    /// Unsigned, 8 bits. Texts are strings of these.
     #[strum(to_string = "uint8")]
     U8,
     /// Signed, 8 bits.
@@ -78,7 +78,7 @@ pub enum Width {
 }
 
 impl Width {
-    /// Smallest and largest value the type carries.
+    /// Returns the smallest and largest value of the type.
     pub const fn bounds(self) -> (i64, i64) {
         match self {
             Self::U8 => (0, 255),
@@ -90,44 +90,44 @@ impl Width {
     }
 }
 
-/// What values a setting takes.
+/// The values that a setting accepts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
     /// An integer in a range.
     Number {
         min: i64,
         max: i64,
-        /// Value of a fresh vehicle.
+        /// The value of a fresh vehicle.
         default: i64,
     },
-    /// One word of a list; the value is the position in the list.
+    /// One word of a list. The value is the position in the list.
     Choice {
         /// The words in canonical case.
         words: &'static [&'static str],
-        /// Position of the word of a fresh vehicle.
+        /// The position of the word of a fresh vehicle.
         default: i64,
     },
     /// A fixed number of integers of the setting's width.
     Array {
-        /// Values of a fresh vehicle; their number is the length.
+        /// The values of a fresh vehicle; their number is the length.
         default: &'static [i64],
     },
     /// A text, empty on a fresh vehicle.
     Text { max: usize },
     /// A serial port: the value 0 is `NONE`, n is `UARTn`.
     Port {
-        /// Port of a fresh vehicle.
+        /// The port of a fresh vehicle.
         default: i64,
     },
 }
 
-/// What a setting does in this vehicle.
+/// The effect of a setting in this vehicle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, strum::Display)]
 #[strum(serialize_all = "lowercase")]
 pub enum Role {
-    /// It changes how the vehicle behaves.
+    /// The setting changes the behaviour of the vehicle.
     Live,
-    /// It is validated, stored and printed, and has no effect.
+    /// The setting is validated, stored and printed, but has no effect.
     #[strum(to_string = "carried")]
     Carry,
 }
@@ -138,22 +138,22 @@ pub struct Setting {
     /// The name used by get, set, dump, diff and the settings file.
     pub name: &'static str,
     pub scope: Scope,
-    /// Type on the wire.
+    /// The type on the wire.
     pub width: Width,
-    /// Allowed values and default.
+    /// The allowed values and the default.
     pub kind: Kind,
-    /// What it does here.
+    /// The effect of the setting here.
     pub role: Role,
-    /// Printed by the `hardware` scope of dump and diff.
+    /// `true` if the `hardware` scope of dump and diff prints it.
     pub hardware: bool,
-    /// One line for people.
+    /// A description in one line.
     pub help: &'static str,
-    /// Position among the settings of its scope.
+    /// The position among the settings of its scope.
     slot: usize,
 }
 
 impl Setting {
-    /// The value of a fresh vehicle.
+    /// Returns the value of a fresh vehicle.
     pub fn default_value(&self) -> Value {
         match self.kind {
             Kind::Number { default, .. } | Kind::Choice { default, .. } | Kind::Port { default } => {
@@ -164,7 +164,7 @@ impl Setting {
         }
     }
 
-    /// The line that tells the allowed values: `Allowed range: 10 - 70`; empty for ports, which have none.
+    /// Returns the line with the allowed values: `Allowed range: 10 - 70`. Empty for ports, which have no such line.
     pub fn range_line(&self) -> String {
         match self.kind {
             Kind::Number { min, max, .. } => format!("Allowed range: {min} - {max}"),
@@ -175,7 +175,7 @@ impl Setting {
         }
     }
 
-    /// A value in the spelling of the command line: `25`, `VELOCITY`, `0,0,0`, `-` for an empty text.
+    /// Formats a value as on the command line: `25`, `VELOCITY`, `0,0,0`, `-` for an empty text.
     pub fn display(&self, value: &Value) -> String {
         match (value, self.kind) {
             (Value::Number(at), Kind::Choice { words, .. }) => word_at(words, *at).to_owned(),

@@ -1,13 +1,13 @@
-//! The stages of one firmware step. Each owns its part of the state and is told all else as arguments; only
-//! [`Firmware`](super::Firmware) knows all of them and carries results from one to the next.
+//! The stages of one firmware step. Each owns its part of the state and gets everything else as arguments. Only
+//! [`Firmware`](super::Firmware) has access to all stages and passes results from one to the next.
 //!
-//! | stage | owns | gives |
+//! | stage | owns | returns |
 //! | --- | --- | --- |
-//! | [`Setup`] | configuration, boot choices, typed parameters, what is known of build and storage | parameters |
-//! | [`RcInput`] | queued frames, receiver, link monitor, boxes | sticks, switches, whether the link is up |
-//! | [`Safety`] | arming, runaway, crash and impact detection, home and heading at arming | armed or why not |
+//! | [`Setup`] | configuration, boot choices, typed parameters, facts about build and storage | parameters |
+//! | [`RcInput`] | queued frames, receiver, link monitor, boxes | sticks, switches, state of the link |
+//! | [`Safety`] | arming, runaway and crash detection, home and heading at arming | armed, or the flags that block arming |
 //! | [`Sensing`] | estimator, battery, fix | the estimate |
-//! | [`Navigation`] | failsafe, orders, navigator, holds | demands that take the place of the pilot's |
+//! | [`Navigation`] | failsafe, orders, navigator, holds, impact detection | demands that replace the pilot's |
 //! | [`FlightControl`] | the controller, the demands in force, the motor test | motor commands |
 
 mod flight_control;

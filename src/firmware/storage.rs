@@ -1,37 +1,37 @@
-//! The stored image of a configuration: bytes in, configuration out. No files here.
+//! The stored image of a configuration: conversion to and from bytes, without files.
 //!
 //! ```text
 //! magic "BDCF" | format u16 | reserved u16 | payload length u32 | payload | CRC-32 over all before it
 //! ```
 //!
-//! All numbers little-endian. The payload is text, one record a line, fields separated by tabs. Settings are stored by
-//! name with all their profiles, so that adding, removing or reordering settings loses nothing; records that this
-//! version does not know are stored again as they were.
+//! All numbers are little-endian. The payload is text, one record per line, with fields separated by tabs. Settings are
+//! stored by name with all their profiles, so that adding, removing or reordering settings loses nothing. Records that
+//! this version does not know are stored again unchanged.
 
 use super::config::Configuration;
 
 mod read;
 mod write;
 
-/// First bytes of an image.
+/// The first bytes of an image.
 const MAGIC: [u8; 4] = *b"BDCF";
-/// First bytes of an image of the reference simulator.
+/// The first bytes of an image of the reference simulator.
 const FOREIGN_MAGIC: [u8; 2] = [0xb2, 0xbe];
-/// Version of the frame and of the record grammar.
+/// The version of the frame and of the record grammar.
 const FORMAT: u16 = 1;
-/// Bytes before the payload.
+/// The number of bytes before the payload.
 const HEADER: usize = 12;
-/// Bytes after the payload.
+/// The number of bytes after the payload.
 const TRAILER: usize = 4;
-/// The largest image that is read.
+/// The size of the largest image that is read, bytes.
 pub const MAX_IMAGE: usize = 1 << 20;
 
 const CHECKSUM: crc::Crc<u32> = crc::Crc::<u32>::new(&crc::CRC_32_ISO_HDLC);
 
-/// Why bytes are not an image of this firmware.
+/// The reason why bytes are not an image of this firmware.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum ImageError {
-    /// It starts as the image of the reference simulator does.
+    /// It starts like an image of the reference simulator.
     #[error("it is the configuration of another Betaflight SITL")]
     Foreign,
     /// A later version of this program wrote it.
@@ -55,7 +55,8 @@ pub fn encode(configuration: &Configuration) -> Vec<u8> {
     image
 }
 
-/// Reads an image. The second part tells, in sentences, what was stored but cannot be used and was left at its default.
+/// Reads an image. The second part lists, in sentences, the stored values that cannot be used and were left at their
+/// default.
 pub fn decode(image: &[u8]) -> Result<(Configuration, Vec<String>), ImageError> {
     if image.starts_with(&FOREIGN_MAGIC) {
         return Err(ImageError::Foreign);

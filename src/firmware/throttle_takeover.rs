@@ -1,22 +1,22 @@
-//! The throttle stick under a hold that a given-up mission leaves behind.
+//! The throttle stick under a hold after an aborted mission.
 
 use crate::autopilot::Params;
 use crate::firmware::modes::AfterAbort;
 
-/// The stick stands where the mission needed it: it has no effect until the pilot moves it.
+/// The stick is at a position from before the abort, so it has no effect until the pilot moves it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) enum ThrottleTakeover {
-    /// The pilot's.
+    /// The pilot uses the stick.
     #[default]
     Flown,
-    /// Standing at this pulse since the mission was given up, µs.
+    /// The stick has been at this pulse since the mission was aborted, µs.
     Standing(f64),
     Moved,
 }
 
 impl ThrottleTakeover {
-    /// The pulse (µs) that counts in this update; `None` while the stick was not moved by more than
-    /// `ap_throttle_deadband` since the mission was given up.
+    /// Returns the pulse (µs) that counts in this update; `None` until the stick has moved by more than
+    /// `ap_throttle_deadband` since the mission was aborted.
     pub(super) fn update(&mut self, after_abort: AfterAbort, stick_us: f64, params: &Params) -> Option<f64> {
         *self = match *self {
             _ if after_abort == AfterAbort::Nothing => Self::Flown,

@@ -1,4 +1,4 @@
-//! What displays and links see of the firmware: plain data of the present instant.
+//! The views of displays and links on the firmware: plain data of the present instant.
 
 use crate::geo::LatLon;
 use crate::plan::FlightPlan;
@@ -14,31 +14,30 @@ use super::parameters::Parameters;
 use super::rx::{Receiver, channels};
 use super::{Firmware, battery};
 
-/// How far above the threshold a raised throttle stick is put, µs.
+/// The margin above the threshold at which a throttle stick is put as raised, µs.
 const RAISED_MARGIN_US: f64 = 12.5;
-/// A lean that makes way quickly, degrees.
+/// A lean that gains speed quickly, degrees.
 const AHEAD_LEAN_DEG: f64 = 15.0;
-/// A sink rate that no landing gear minds, m/s.
+/// A sink rate that every landing gear withstands, m/s.
 const GENTLE_SINK_MPS: f64 = 1.0;
 
 impl Firmware {
-    /// Takes the oldest event that was not taken yet.
+    /// Takes the oldest event that has not been taken yet.
     pub fn take_event(&mut self) -> Option<FirmwareEvent> {
         self.outbox.take()
     }
 
-    /// How many events were lost since the last call because nobody took them in time; 0 when they are taken after every
-    /// step.
+    /// Returns the number of events lost since the last call because they were not taken in time; 0 if they are taken
+    /// after every step.
     pub fn take_events_lost(&mut self) -> u32 {
         self.outbox.take_lost()
     }
 
-    /// Whether the craft is armed.
     pub fn is_armed(&self) -> bool {
         self.safety.armed()
     }
 
-    /// Why the craft was disarmed last.
+    /// Returns the reason of the last disarming.
     pub fn last_disarm(&self) -> Option<DisarmReason> {
         self.safety.last_disarm()
     }
@@ -47,7 +46,7 @@ impl Firmware {
         self.safety.flags()
     }
 
-    /// What blocks arming while disarmed; nothing while armed.
+    /// Returns the flags that block arming while disarmed; no flags while armed.
     pub fn arming_blocks(&self) -> ArmingFlags {
         if self.is_armed() { ArmingFlags::NONE } else { self.arming_flags() }
     }
@@ -56,7 +55,7 @@ impl Firmware {
         self.modes
     }
 
-    /// The boxes that are switched on.
+    /// Returns the boxes that are switched on.
     pub fn boxes(&self) -> BoxSet {
         self.rc.boxes()
     }
@@ -65,7 +64,7 @@ impl Firmware {
         self.rc.receiver()
     }
 
-    /// What the controller did in the last step.
+    /// Returns the results of the controller's last step.
     pub fn control(&self) -> &super::control::ControlState {
         self.control.state()
     }
@@ -74,48 +73,49 @@ impl Firmware {
         self.sensing.battery()
     }
 
-    /// What the estimator believes.
     pub fn estimate(&self) -> &Estimate {
         self.sensing.estimate()
     }
 
-    /// Altitude above home, m.
+    /// Returns the altitude above home, m.
     pub fn altitude_m(&self) -> f64 {
         self.estimate().alt_m
     }
 
-    /// Climb rate, m/s.
+    /// Returns the climb rate, m/s.
     pub fn climb_mps(&self) -> f64 {
         self.estimate().climb_mps
     }
 
-    /// The navigator's telemetry; its points count from [`Firmware::origin`].
+    /// Returns the navigator's telemetry. Its points count from [`Firmware::origin`].
     pub fn nav(&self) -> &NavTelemetry {
         self.navigation.telemetry()
     }
 
-    /// Where the local frame of estimate and navigator has its zero; `None` before the first fix.
+    /// Returns the origin of the local frame of estimate and navigator; `None` before the first fix.
     pub fn origin(&self) -> Option<LatLon> {
         self.estimate().origin
     }
 
-    /// Where the throttle stick rests in ALTHOLD, µs: the hover throttle in use, or the middle when it is to be learned.
+    /// Returns the neutral position of the throttle stick in ALTHOLD, µs: the hover throttle in use, or the middle
+    /// while it is not learned yet.
     pub fn hover_stick_us(&self) -> u16 {
         self.navigation.hover_stick_us(self.parameters()).round().clamp(1100.0, 1900.0) as u16
     }
 
-    /// The pitch stick that leans the craft forward by 15° in ANGLE, µs.
+    /// Returns the pitch stick that leans the craft forward by 15° in ANGLE, µs.
     pub fn forward_stick_us(&self) -> u16 {
         let share = AHEAD_LEAN_DEG / self.parameters().control.level.limit_deg.max(AHEAD_LEAN_DEG);
         (1500.0 + 500.0 * share).round() as u16
     }
 
-    /// The throttle stick from which the throttle counts as raised, with a margin for what the radio link rounds, µs.
+    /// Returns the throttle stick from which the throttle counts as raised, with a margin for rounding in the radio
+    /// link, µs.
     pub fn raised_stick_us(&self) -> u16 {
         (self.parameters().arming.raised_throttle_us + RAISED_MARGIN_US).min(2000.0) as u16
     }
 
-    /// The throttle stick that brings a craft down gently in ALTHOLD, µs; `None` when no stick does.
+    /// Returns the throttle stick that brings a craft down gently in ALTHOLD, µs; `None` if no stick does.
     pub fn sink_stick_us(&self) -> Option<u16> {
         let parameters = self.parameters();
         let hover_us = self.navigation.hover_stick_us(parameters);
@@ -123,42 +123,42 @@ impl Firmware {
         Some(stick.round() as u16)
     }
 
-    /// Home, when known.
+    /// Returns home, if known.
     pub fn home(&self) -> Option<LatLon> {
         self.safety.home()
     }
 
-    /// Whether the craft is to climb and has not left the ground although it has all the throttle there is.
+    /// Returns `true` if an armed craft should climb but has not left the ground at full throttle.
     pub fn is_too_heavy(&self) -> bool {
         self.safety.armed() && self.navigation.is_too_heavy()
     }
 
-    /// Whether there is a fix.
+    /// Returns `true` if there is a fix.
     pub fn gps_fix(&self) -> bool {
         self.sensing.fix()
     }
 
-    /// The configuration in memory.
+    /// Returns the configuration in memory.
     pub fn configuration(&self) -> &Configuration {
         self.setup.configuration()
     }
 
-    /// The typed parameters in force.
+    /// Returns the typed parameters in force.
     pub fn parameters(&self) -> &Parameters {
         self.setup.parameters()
     }
 
-    /// The plan in the craft's memory.
+    /// Returns the plan in the craft's memory.
     pub fn stored_plan(&self) -> &FlightPlan {
         &self.setup.configuration().plan
     }
 
-    /// The plan being flown, when one is.
+    /// Returns the plan being flown, if any.
     pub fn active_plan(&self) -> Option<&FlightPlan> {
         self.navigation.active_plan()
     }
 
-    /// What the GPS said last.
+    /// Returns the last solution of the GPS.
     pub(super) fn gps_view(&self) -> Option<GpsView> {
         let solution = self.estimate().gps.solution?;
         Some(GpsView {
@@ -168,7 +168,7 @@ impl Firmware {
         })
     }
 
-    /// Modes, arming, receiver, battery.
+    /// Returns modes, arming, receiver, battery.
     pub fn craft_view(&self) -> CraftView {
         let gps = &self.estimate().gps;
         let battery = self.battery().sample();
@@ -203,7 +203,7 @@ impl Firmware {
         }
     }
 
-    /// The failsafe that starts when the lost link does not come back in time.
+    /// Returns the failsafe that starts if the lost link does not come back in time.
     fn failsafe_ahead(&self) -> Option<FailsafeAhead> {
         let receiver = self.receiver();
         if !self.is_armed() || receiver.signal() || self.navigation.failsafe().active() {
@@ -215,7 +215,7 @@ impl Firmware {
         Some(FailsafeAhead { in_s, procedure })
     }
 
-    /// What the estimator believes; `n` and `e` count from [`Firmware::origin`].
+    /// Returns the view of the estimate. `n` and `e` count from [`Firmware::origin`].
     pub fn estimate_view(&self) -> EstimateView {
         let estimate = self.estimate();
         let known = estimate.origin.is_some();
@@ -234,7 +234,7 @@ impl Firmware {
         }
     }
 
-    /// The settings that shape what a map draws.
+    /// Returns the settings that affect the map.
     pub fn settings_view(&self) -> SettingsView {
         let nav = &self.parameters().nav;
         SettingsView {
@@ -263,12 +263,12 @@ impl Firmware {
         }
     }
 
-    /// Time of the newest step.
+    /// Returns the time of the newest step.
     pub fn time(&self) -> SimTime {
         self.now
     }
 
-    /// The mode conditions in force that look at a channel.
+    /// Returns the mode conditions in force that depend on a channel.
     pub fn mode_ranges(&self) -> Vec<ModeRange> {
         let live = (channels::AUX1 + usize::from(self.parameters().rx.channels.max_aux)).min(RC_CHANNELS);
         let by_channel = |condition: &&ModeCondition| condition.linked == 0 && condition.is_usable();

@@ -1,11 +1,11 @@
-//! Crash detection: a craft that hits something turns as nobody asked for, faster than its motors can stop.
+//! Crash detection: a craft that hits something turns against its setpoint, faster than its motors can stop.
 
 use crate::signals::SimTime;
 
-/// Share of the motors' range between the slowest and the fastest that means they have no more to give.
+/// The spread between the slowest and the fastest motor, as a share of their range, at which they have no reserve left.
 const SATURATED_SHARE: f64 = 0.95;
 
-/// What follows a crash.
+/// The reaction to a crash.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum CrashAction {
     #[default]
@@ -16,37 +16,36 @@ pub enum CrashAction {
     Disarm,
 }
 
-/// Settings of the detection.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct CrashConfig {
     pub action: CrashAction,
-    /// Angular acceleration beyond which it looks like a crash, °/s².
+    /// The angular acceleration above which it looks like a crash, °/s².
     pub slope_dps2: f64,
-    /// Rate error beyond which it does, °/s.
+    /// The rate error above which it looks like a crash, °/s.
     pub error_dps: f64,
-    /// Setpoint above which nothing does, °/s.
+    /// The setpoint from which nothing counts as a crash, °/s.
     pub setpoint_dps: f64,
-    /// How long the signs must last, s.
+    /// The time for which the signs must last, s.
     pub delay_s: f64,
-    /// Longest levelling, s.
+    /// The longest time of levelling, s.
     pub time_s: f64,
-    /// Levelling is over below this tilt, rad, …
+    /// The tilt below which levelling ends, rad, if the rates are below `done_rate_dps` too.
     pub done_tilt_rad: f64,
-    /// … and this rate, °/s.
+    /// The rate below which levelling ends, °/s, if the tilt is below `done_tilt_rad` too.
     pub done_rate_dps: f64,
 }
 
-/// What the detection looks at.
+/// The inputs of the detection.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CrashFacts {
     pub now: SimTime,
-    /// Filtered gyro, °/s.
+    /// The filtered gyro rates, °/s.
     pub gyro_dps: [f64; 3],
-    /// Rate setpoints, °/s.
+    /// The rate setpoints, °/s.
     pub setpoint_dps: [f64; 3],
-    /// Share of the motors' range between the slowest and the fastest.
+    /// The spread between the slowest and the fastest motor, as a share of their range.
     pub motor_spread: f64,
-    /// Tilt from level, rad.
+    /// The tilt from level, rad.
     pub tilt_rad: f64,
 }
 
@@ -58,17 +57,17 @@ pub struct CrashDetector {
 }
 
 impl CrashDetector {
-    /// Whether the craft is being levelled after a crash.
+    /// Returns `true` while the craft is being levelled after a crash.
     pub fn is_levelling(&self) -> bool {
         self.levelling_since.is_some()
     }
 
-    /// Nobody looks, or the craft does not fly: what was seen is forgotten.
+    /// Forgets what was seen so far. Called while the detection is off or the craft is not flying.
     pub fn reset(&mut self) {
         *self = Self::default();
     }
 
-    /// One step of a flying craft that is watched; `true` when a crash has just been recognised.
+    /// Runs one step while the craft is flying and watched. Returns `true` if it has just recognised a crash.
     pub fn update(&mut self, config: &CrashConfig, facts: &CrashFacts) -> bool {
         let last = self.last.replace((facts.now, facts.gyro_dps));
         if let Some(since) = self.levelling_since {
@@ -127,7 +126,7 @@ mod tests {
         }
     }
 
-    /// Whether a jump of the roll rate within a millisecond is taken for a crash.
+    /// Returns `true` if a jump of the roll rate within a millisecond counts as a crash.
     fn detects(config: &CrashConfig, facts: CrashFacts) -> bool {
         let mut detector = CrashDetector::default();
         detector.update(config, &at(0, 0.0));

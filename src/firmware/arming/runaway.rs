@@ -1,31 +1,30 @@
-//! Runaway take-off prevention: a craft whose motors or propellers are mixed up spins faster the harder the
-//! controller works against it; the motors are stopped before it hurts somebody.
+//! Runaway take-off prevention. A craft with swapped motors or propellers spins faster the harder the controller works
+//! against it. The motors are stopped before it hurts anyone.
 
 use nalgebra::Vector3;
 
 use crate::signals::SimTime;
 
-/// PID sum that means the controller is losing.
+/// The PID sum that means the controller is losing.
 const PID_SUM_ALARM: f64 = 600.0;
-/// Rates that confirm it, deg/s: roll and pitch, yaw.
+/// The rates that confirm it, deg/s: roll, pitch, yaw.
 const RATE_ALARM_DPS: [f64; 3] = [15.0, 15.0, 50.0];
-/// How long it must last, s.
+/// The time for which it must last, s.
 const ALARM_S: f64 = 0.075;
-/// PID sum below which the craft flies normally.
+/// The PID sum below which the craft flies normally.
 const PID_SUM_CALM: f64 = 100.0;
-/// Stick deflection that counts as steering, % of full stick.
+/// The stick deflection that counts as steering, % of full stick.
 const MOVING_STICK_PERCENT: f64 = 15.0;
-/// Throttle above which the craft is trusted in half the time, %.
+/// The throttle from which the craft is trusted in half the time, %.
 const HIGH_THROTTLE_PERCENT: f64 = 75.0;
 
-/// Settings of the prevention.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RunawayConfig {
-    /// Whether it works at all.
+    /// Enables the prevention.
     pub enabled: bool,
-    /// Flying normally for this long ends it for the rest of the power cycle, s.
+    /// The time of normal flight that ends it for the rest of the power cycle, s.
     pub deactivate_delay_s: f64,
-    /// Throttle that counts as flying, %.
+    /// The throttle that counts as flying, %.
     pub deactivate_throttle_percent: f64,
 }
 
@@ -35,17 +34,17 @@ impl Default for RunawayConfig {
     }
 }
 
-/// What the prevention looks at.
+/// The inputs of the prevention.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RunawayFacts {
     pub now: SimTime,
-    /// Largest PID sum of any axis, before its limit.
+    /// The PID sum of each axis, before its limit.
     pub pid_sum: Vector3<f64>,
-    /// Body rates, deg/s.
+    /// The body rates, deg/s.
     pub rate_dps: Vector3<f64>,
     /// Throttle, %.
     pub throttle_percent: f64,
-    /// Farthest stick deflection, % of full stick.
+    /// The largest stick deflection, % of full stick.
     pub stick_percent: f64,
 }
 
@@ -57,7 +56,7 @@ pub struct Runaway {
 }
 
 impl Runaway {
-    /// Looks at the armed craft; `true` = stop the motors.
+    /// Checks the armed craft. Returns `true` if the motors must be stopped.
     pub fn update(&mut self, config: &RunawayConfig, facts: &RunawayFacts) -> bool {
         if !config.enabled || self.given_up {
             return false;
@@ -85,7 +84,7 @@ impl Runaway {
         false
     }
 
-    /// Forgets a running alarm; for the moment of arming.
+    /// Forgets a running alarm. Called at the moment of arming.
     pub fn rearm(&mut self) {
         self.alarm_since = None;
         self.calm_since = None;
@@ -106,7 +105,7 @@ mod tests {
         }
     }
 
-    /// Feeds the same facts each millisecond; when the motors are stopped.
+    /// Feeds the same facts each millisecond. Returns the time at which the motors are stopped, ms.
     fn stopped_after(pid: f64, rate: f64) -> Option<u64> {
         let mut runaway = Runaway::default();
         (0..1000).find(|&ms| runaway.update(&RunawayConfig::default(), &facts(ms, pid, rate, 10.0)))

@@ -2,7 +2,7 @@ use strum::IntoEnumIterator as _;
 
 use super::*;
 
-/// A craft that may be armed: everything fine, ARM off.
+/// Returns the facts of a craft that may be armed: no flag set, ARM off.
 fn ready() -> ArmingFacts {
     ArmingFacts {
         now: SimTime(6_000_000),
@@ -28,7 +28,7 @@ fn names(flags: ArmingFlags) -> String {
     flags.iter().map(|flag| flag.to_string()).collect::<Vec<_>>().join(" ")
 }
 
-/// One row: what sets the flag, what clears it.
+/// One row: the cause that sets the flag, and the change that clears it.
 struct Row {
     name: &'static str,
     config: fn(&mut ArmingConfig),
@@ -39,7 +39,7 @@ struct Row {
 const SAME: fn(&mut ArmingConfig) = |_| {};
 const BACK_TO_READY: fn(&mut ArmingFacts) = |_| {};
 
-/// Every situation that sets a flag and passes with its cause.
+/// Returns every situation that sets a flag and clears it with its cause.
 fn situations() -> Vec<Row> {
     vec![
         Row { name: "FAILSAFE", config: SAME, set: |f| f.failsafe_landed = true, clear: BACK_TO_READY },
@@ -126,10 +126,10 @@ fn each_situation_sets_its_flag_and_its_end_clears_it() {
     }
 }
 
-/// A change of what the configuration says.
+/// A change of the configuration.
 type Change = fn(&mut ArmingConfig);
 
-/// Flags that come from the configuration; they end when it is taken back, or with a restart.
+/// The flags that come from the configuration. They end when the change is undone, or with a restart.
 const BY_CONFIGURATION: [(&str, Change); 2] =
     [("REBOOT_REQD", |c| c.reboot_required = true), ("MOTOR_PROTO", |c| c.motors_disabled = true)];
 
@@ -149,7 +149,7 @@ fn configuration_sets_its_flags_while_it_lasts() {
     }
 }
 
-/// Flags that remember: the tests below show what sets and what clears each.
+/// The flags that latch. The tests below show what sets and what clears each.
 const LATCHES: [&str; 6] = ["NOT_DISARMED", "RUNAWAY", "CRASH", "CLI", "PARALYZE", "ARM_SWITCH"];
 
 #[test]
@@ -356,7 +356,7 @@ fn low_throttle_disarms_a_stick_armed_craft() {
     );
 }
 
-/// A script that holds the switch on and the throttle at 1100 from its first packet.
+/// Returns the facts of a script that holds the switch on and the throttle at 1100 from its first packet.
 fn impatient(link_good: bool) -> ArmingFacts {
     let mut facts = with(ArmingFacts { link_good, ..ready() }, boxes::ARM);
     facts.sticks.throttle_us = 1100.0;

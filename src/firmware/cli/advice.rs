@@ -1,12 +1,12 @@
-//! A word after a line that was run: the way out of a refusal, or what is still to do. For people at the console panel;
-//! serial links never carry it.
+//! Advice after a line was run: the way out of a refusal, or the step that is still missing. It is for people at the
+//! console panel; serial links never carry it.
 
 use super::super::settings::{SETTINGS, find, needs_restart};
 use super::CliReply;
 use super::command_table::{COMMANDS, by_name};
 use crate::did_you_mean;
 
-/// What to tell the user after `line` was answered with `reply`, if anything.
+/// Returns the advice to show after `line` was answered with `reply`, if any.
 pub fn advice(line: &str, reply: &CliReply) -> Option<String> {
     let line = line.trim();
     let (word, rest) = line.split_once(' ').unwrap_or((line, ""));

@@ -1,7 +1,7 @@
 //! Running the lines of a file, a paste or a list of options, with a report of those that failed.
 //!
-//! Lines that save, leave or restart are not run: what becomes of the configuration is the caller's decision.
-//! `defaults` resets without saving.
+//! Lines that save, leave or restart are not run: the caller decides what happens to the configuration. `defaults`
+//! resets without saving.
 
 use super::super::config::correct;
 use super::interpreter::code_of;
@@ -10,29 +10,29 @@ use super::{CliContext, CliReply, Interpreter};
 /// One line that was refused.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FailedLine {
-    /// Its number, from 1.
+    /// The line number, from 1.
     pub number: usize,
-    /// The line without its comment and what exceeds the longest line.
+    /// The line without its comment, cut to the longest line.
     pub line: String,
     /// The first line of the refusal.
     pub reason: String,
 }
 
-/// What happened to the lines.
+/// The results of running the lines.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct ApplyReport {
     /// Lines that held a command.
     pub commands: usize,
     /// Lines that were refused.
     pub failed: Vec<FailedLine>,
-    /// A line was refused between `batch start` and `batch end`.
+    /// `true` if a line was refused between `batch start` and `batch end`.
     pub batch_failed: bool,
 }
 
-/// What a line of a file asks for.
+/// The request of one line in a file.
 enum Wish<'l> {
     Nothing,
-    /// It saves, leaves or restarts.
+    /// The line leaves or restarts.
     Leave,
     Save,
     Run(&'l str),
@@ -70,7 +70,7 @@ impl ApplyReport {
     }
 }
 
-/// Runs lines in order; each that is run is handed to `shown` with its reply.
+/// Runs the lines in order. Passes each line that is run to `shown` with its reply.
 pub fn apply_lines<'l>(
     lines: impl IntoIterator<Item = &'l str>,
     interpreter: &mut Interpreter,
@@ -88,8 +88,8 @@ pub fn apply_lines<'l>(
     report
 }
 
-/// Runs a provisioning file up to its `save`, or its end, handing the text of the session to `shown`. The configuration
-/// is then ready to be stored, unless a line in a batch was refused.
+/// Runs a provisioning file up to its `save` or its end, and passes the text of the session to `shown`. The
+/// configuration is then ready to be stored, unless a line in a batch was refused.
 pub fn provision(
     file: &str,
     interpreter: &mut Interpreter,

@@ -3,11 +3,11 @@
 use super::CliAction;
 use super::session::{Session, integer};
 
-/// Motors of the vehicle.
+/// The number of motors.
 const MOTORS: i64 = 4;
-/// Index that means all motors.
+/// The index that means all motors.
 const ALL: i64 = 255;
-/// Range of a motor output, µs.
+/// The range of a motor output, µs.
 const OUTPUT_US: (i64, i64) = (1000, 2000);
 
 /// `motor <index> [<value>]`.
@@ -48,7 +48,7 @@ pub(super) fn motor(session: &mut Session<'_>, rest: &str) {
     session.act(CliAction::MotorTest { motor, output_us: value as u16 });
 }
 
-/// Names of the sounds a real craft makes, in the order of their numbers.
+/// The names of the sounds that a real craft makes, in the order of their numbers.
 const SOUNDS: [&str; 10] = [
     "GYRO_CALIBRATED",
     "RX_LOST",
@@ -62,7 +62,7 @@ const SOUNDS: [&str; 10] = [
     "RX_SET",
 ];
 
-/// `play_sound [<index>]`: a simulator has no beeper, so it only says the name.
+/// `play_sound [<index>]`. A simulator has no beeper, so this only prints the name.
 pub(super) fn play_sound(session: &mut Session<'_>, rest: &str) {
     let index = if rest.is_empty() { Some(0) } else { integer(rest) };
     let Some(index) = index else {

@@ -5,13 +5,13 @@ use super::{bench, craft, dump, get_set, leave, modes, names, profiles, receiver
 
 #[derive(Debug, Clone, Copy)]
 pub struct Command {
-    /// Its name, in lower case.
+    /// The name, in lower case.
     pub name: &'static str,
-    /// What it does, in a few words.
+    /// The description, in a few words.
     pub description: Option<&'static str>,
-    /// Its arguments, one line an alternative.
+    /// The arguments, one alternative per line.
     pub arguments: &'static [&'static str],
-    /// What runs it, with the rest of the line.
+    /// The function that runs the command with the rest of the line.
     pub(super) run: fn(&mut Session<'_>, &str),
 }
 
@@ -71,12 +71,12 @@ pub const COMMANDS: &[Command] = &[
     command("waypoint", "show and edit the flight plan", &["list | status | insert <idx> <lat.ddddddd> <lon.ddddddd> <alt> <spd> <type> <dur> <pat> | update <idx> <lat.ddddddd> <lon.ddddddd> <alt> <spd> <type> <dur> <pat> | remove <idx> | clear"], waypoint::waypoint),
 ];
 
-/// The command of this name, in any case.
+/// Returns the command of this name, in any case.
 pub(super) fn by_name(word: &str) -> Option<&'static Command> {
     COMMANDS.iter().find(|command| command.name.eq_ignore_ascii_case(word))
 }
 
-/// `help [text]`: the commands whose name or description contains the text.
+/// `help [text]`: lists the commands whose name or description contains the text.
 fn help(session: &mut Session<'_>, text: &str) {
     let wanted = text.to_ascii_lowercase();
     let matches = |command: &&Command| {

@@ -7,25 +7,25 @@ use super::super::settings::{Kind, PORT_NAMES, Role, SETTINGS, Setting, Settings
 use super::command_table::{COMMANDS, by_name};
 use crate::plan::{HoldPattern, WaypointType};
 
-/// What the word at the end of a line may become.
+/// The possible completions of the word at the end of a line.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Completion {
-    /// Byte at which that word starts.
+    /// The byte offset at which that word starts.
     pub start: usize,
-    /// The words it may become, in table order.
+    /// The candidates, in table order.
     pub candidates: Vec<&'static str>,
-    /// The longest text with which all of them start.
+    /// The longest prefix common to all candidates.
     pub common: String,
 }
 
 impl Completion {
-    /// What is certain to follow the line.
+    /// Returns the text that is certain to follow the line.
     pub fn tail(&self, line: &str) -> &str {
         let typed = line.len().saturating_sub(self.start);
         self.common.get(typed..).unwrap_or("")
     }
 
-    /// The lines that a line may become.
+    /// Returns the completed lines, one for each candidate.
     pub fn lines(&self, line: &str) -> Vec<String> {
         let head = line.get(..self.start).unwrap_or(line);
         self.candidates.iter().map(|word| format!("{head}{word}")).collect()
@@ -64,7 +64,7 @@ pub fn complete(line: &str) -> Completion {
     }
 }
 
-/// The candidates that start with what is typed, in any case.
+/// Returns the candidates that start with the typed text, in any case.
 fn among(words: impl IntoIterator<Item = &'static str>, typed: &str, start: usize) -> Completion {
     let starts = |word: &&str| word.get(..typed.len()).is_some_and(|head| head.eq_ignore_ascii_case(typed));
     let candidates: Vec<&'static str> = words.into_iter().filter(starts).collect();
@@ -97,7 +97,7 @@ fn setting_value(name: &str, value: &str, start: usize) -> Completion {
     among(words.iter().copied(), typed, start + value.len() - typed.len())
 }
 
-/// Places of the type and the pattern among the words after `waypoint`.
+/// The position of the type among the words after `waypoint`.
 const TYPE_AT: usize = 6;
 const PATTERN_AT: usize = 8;
 
@@ -114,8 +114,8 @@ fn waypoint(rest: &str, start: usize) -> Completion {
     }
 }
 
-/// What to show beside a line being typed: the setting's range, meaning and present value, as far as it is known, or the
-/// command's arguments.
+/// Returns the hint to show beside a line while it is typed: the setting's range, meaning and present value, if known,
+/// or the command's arguments.
 pub fn hint(line: &str, settings: Option<&Settings>) -> Option<String> {
     let trimmed = line.trim_start();
     let (word, rest) = trimmed.split_once(' ').unwrap_or((trimmed, ""));

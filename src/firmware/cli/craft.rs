@@ -1,4 +1,4 @@
-//! `feature`, `mixer` and `mmix`: what the craft is made of.
+//! `feature`, `mixer` and `mmix`: the equipment of the craft.
 
 use strum::IntoEnumIterator;
 
@@ -66,7 +66,7 @@ pub(super) fn mixer(session: &mut Session<'_>, name: &str) {
     session.line(format_args!("Mixer: {kind}"));
 }
 
-/// One row of the custom mix.
+/// Formats one row of the custom mix.
 pub(super) fn mix_row(at: usize, row: &MixRow) -> String {
     format!("mmix {at} {:>6.3} {:>6.3} {:>6.3} {:>6.3}", row.throttle, row.roll, row.pitch, row.yaw)
 }
@@ -120,7 +120,7 @@ pub(super) fn mmix(session: &mut Session<'_>, rest: &str) {
     }
 }
 
-/// A share of a motor, in thousandths, so that what is printed is what is stored.
+/// Parses a share of a motor, rounded to thousandths, so that the stored value is exactly the printed one.
 fn share(word: &str) -> Option<f64> {
     const LARGEST: f64 = 10.0;
     let number: f64 = word.parse().ok()?;

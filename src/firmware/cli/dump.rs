@@ -1,4 +1,4 @@
-//! `dump` and `diff`: the configuration as commands, in the order in which they can be fed back.
+//! `dump` and `diff`: the configuration as commands, in an order in which they can be run again.
 
 use strum::IntoEnumIterator;
 
@@ -8,7 +8,7 @@ use super::session::Session;
 use super::{craft, modes, receiver, serial, status};
 use crate::plan::plan_lines;
 
-/// Which part is printed.
+/// The part to print.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Part {
     /// The craft and the active profiles.
@@ -17,21 +17,21 @@ enum Part {
     Profile,
     /// The active rate profile.
     Rates,
-    /// What describes the hardware.
+    /// The settings that describe the hardware.
     Hardware,
     /// Everything, with all profiles.
     All,
 }
 
-/// How a part is printed.
+/// The style in which a part is printed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Style {
     part: Part,
-    /// Only what differs from a fresh vehicle.
+    /// Prints only the differences from a fresh vehicle.
     changes_only: bool,
-    /// The default as a comment beside each changed line.
+    /// Prints the default as a comment before each changed line.
     show_defaults: bool,
-    /// Without batch and reset lines and the board's identity.
+    /// Omits batch and reset lines and the board's identity.
     bare: bool,
 }
 
@@ -111,7 +111,7 @@ fn craft_sections(session: &mut Session<'_>, style: Style, fresh: &Configuration
     }
 }
 
-/// A heading and its lines; nothing when there are none.
+/// Prints a heading and its lines, or nothing if there are no lines.
 fn section(session: &mut Session<'_>, title: &str, lines: &[String]) {
     if lines.is_empty() {
         return;
@@ -184,7 +184,7 @@ fn mixer(session: &mut Session<'_>, style: Style, fresh: &Configuration) {
     }
 }
 
-/// The lines of a section: those that differ from their default, or all of them.
+/// Returns the lines of a section: all of them, or only those that differ from their default.
 fn rows_of(style: Style, rows: impl IntoIterator<Item = (String, String)>) -> Vec<String> {
     let mut lines = Vec::new();
     for (line, default) in rows {
@@ -199,7 +199,7 @@ fn rows_of(style: Style, rows: impl IntoIterator<Item = (String, String)>) -> Ve
     lines
 }
 
-/// The rows of a table beside those of a fresh vehicle.
+/// Pairs each row of a table with the same row of a fresh vehicle.
 fn table<T: Copy>(now: &[T], fresh: &[T], row: impl Fn(usize, T) -> String) -> Vec<(String, String)> {
     now.iter().zip(fresh).enumerate().map(|(at, (now, fresh))| (row(at, *now), row(at, *fresh))).collect()
 }
@@ -233,7 +233,7 @@ fn receiver_and_modes(session: &mut Session<'_>, style: Style, fresh: &Configura
     }
 }
 
-/// Port rows that say more than the settings do; ports of a fresh vehicle are not printed even by `dump`.
+/// Returns the rows of the changed serial ports. Unchanged ports are not printed, even by `dump`.
 fn serial_lines(configuration: &Configuration, style: Style, fresh: &Configuration) -> Vec<String> {
     let rows = configuration.serial.0.iter().zip(&fresh.serial.0).enumerate();
     let changed = rows.filter(|(_, (now, fresh))| now != fresh).map(|(at, (now, default))| {
@@ -254,11 +254,11 @@ fn plan(session: &mut Session<'_>, style: Style) {
     }
 }
 
-/// The `set` lines of one section, then the kept lines that came in it.
+/// Returns the `set` lines of one section, followed by the lines that were kept for it.
 fn setting_lines(session: &Session<'_>, style: Style, scope: Scope, instance: u8) -> Vec<String> {
     let settings = &session.configuration.settings;
     let hardware = style.part == Part::Hardware;
-    // A port row may move the MSP ports about, so the settings that own them follow it explicitly.
+    // A port row may move the MSP ports, so the settings that own them are printed even if unchanged.
     let fresh_ports = super::super::config::SerialTable::default() == session.configuration.serial;
     let line = |setting: &Setting| {
         let now = setting.display(settings.value(setting, instance)?);

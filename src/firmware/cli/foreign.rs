@@ -1,4 +1,4 @@
-//! Commands of other builds: kept without effect when they come in a batch or a file, unknown when typed.
+//! Commands of other builds. They are kept without effect in a batch or a file, and unknown at the prompt.
 
 use super::super::config::KeptLine;
 use super::session::Session;
@@ -23,10 +23,10 @@ const NAMES: &[&str] = &[
     "vcd",
 ];
 
-/// Beginnings of families of names.
+/// The prefixes of families of names.
 const FAMILIES: &[&str] = &["flash_", "dshot", "vtx"];
 
-/// Whether some other build has this command.
+/// Returns `true` if another build has this command.
 pub(super) fn is_foreign_command(word: &str) -> bool {
     let word = word.to_ascii_lowercase();
     NAMES.contains(&word.as_str()) || FAMILIES.iter().any(|family| word.starts_with(family))

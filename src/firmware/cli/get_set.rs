@@ -8,7 +8,7 @@ use super::super::settings::{
 use super::foreign::keep_setting;
 use super::session::Session;
 
-/// `get [text]`: every setting whose name contains the text.
+/// `get [text]`: prints every setting whose name contains the text.
 pub(super) fn get(session: &mut Session<'_>, text: &str) {
     let wanted = text.to_ascii_lowercase();
     let mut found: Vec<&Setting> =
@@ -37,7 +37,8 @@ pub(super) fn get(session: &mut Session<'_>, text: &str) {
     }
 }
 
-/// Kept settings of other builds whose name contains the text, in the master section and the active profiles.
+/// Returns the kept settings of other builds whose name contains the text, in the master section and the active
+/// profiles.
 fn kept_values(session: &Session<'_>, wanted: &str) -> Vec<(String, String)> {
     let settings = &session.configuration.settings;
     session
@@ -66,7 +67,7 @@ fn block(session: &mut Session<'_>, setting: &Setting) {
     if changed {
         session.line(format_args!("Default value: {}", setting.display(&setting.default_value())));
     }
-    // Other groups, and `set` without a value, answer as the real firmware does.
+    // Settings of other groups, and `set` without a value, print the same lines as on the real firmware.
     if setting.role == Role::Carry && Params::field(setting.name).is_some() && session.command == "get" {
         session.line("No effect here");
     }

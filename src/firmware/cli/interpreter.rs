@@ -6,21 +6,21 @@ use super::foreign::{is_foreign_command, keep_command};
 use super::session::Session;
 use super::{CliContext, CliReply, MAX_LINE};
 
-/// Who talks to the interpreter, which changes a few answers.
+/// The kind of client that uses the interpreter. It changes a few answers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum CliMode {
     /// A person or a script at a prompt.
     #[default]
     Interactive,
-    /// One line between STX and ETX on a serial link: other words for unknown commands, no restart that closes links.
+    /// One line between STX and ETX on a serial link. Unknown commands get another error text, and a restart closes no
+    /// links.
     Framed,
-    /// One line in an MSP message: as framed, `save` never restarts, and lines that end the link are refused.
+    /// One line in an MSP message. Like `Framed`, but nothing restarts, and lines that end the link are refused.
     Message,
-    /// The lines of a file: words of other builds are kept.
+    /// The lines of a file. Commands of other builds are kept.
     File,
 }
 
-/// State of `batch start` … `batch end`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) enum Batch {
     #[default]
@@ -34,7 +34,7 @@ pub(super) enum Batch {
 pub struct Interpreter {
     pub(super) mode: CliMode,
     pub(super) batch: Batch,
-    /// Section to which kept lines belong: master, or the profile selected last.
+    /// The section of the lines that are kept: master, or the last selected profile.
     pub(super) section: (Scope, u8),
     lenient: bool,
 }
@@ -50,18 +50,18 @@ impl Interpreter {
         Self { mode, batch: Batch::Closed, section: (Scope::Master, 0), lenient: false }
     }
 
-    /// A session in which errors do not stop a batch from being saved.
+    /// With `true`, errors do not stop a batch from being saved.
     pub fn lenient(mut self, lenient: bool) -> Self {
         self.lenient = lenient;
         self
     }
 
-    /// Whether a batch is open in which a line was refused.
+    /// Returns `true` if a line was refused in the open batch.
     pub fn batch_failed(&self) -> bool {
         self.batch == Batch::Failed
     }
 
-    /// Runs one line. Comments and characters beyond [`MAX_LINE`] are dropped.
+    /// Runs one line. Drops comments and characters beyond [`MAX_LINE`].
     pub fn run(&mut self, line: &str, context: &mut CliContext<'_>) -> CliReply {
         let line = code_of(line);
         if line.is_empty() {
@@ -106,8 +106,8 @@ fn unknown(session: &mut Session<'_>, line: &str) {
     session.fail();
 }
 
-/// The part of a line before its comment, without surrounding blanks, cut to the longest line. As at a prompt, blanks
-/// before the first word do not count.
+/// Returns the part of a line before its comment, without surrounding blanks, cut to the longest line. As at a prompt,
+/// blanks before the first word do not count.
 pub(super) fn code_of(line: &str) -> &str {
     let line = line.trim_start();
     let end = line.char_indices().nth(MAX_LINE).map_or(line.len(), |(at, _)| at);
@@ -115,7 +115,7 @@ pub(super) fn code_of(line: &str) -> &str {
     line.split_once('#').map_or(line, |(code, _)| code).trim()
 }
 
-/// Whether a line (without comment) has no place in an MSP message: it would take the link down.
+/// Returns `true` for a line (without comment) that is refused in an MSP message because it would end the link.
 fn ends_the_link(line: &str) -> bool {
     let line = line.to_ascii_lowercase();
     let mut words = line.split_ascii_whitespace();

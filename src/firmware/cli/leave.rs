@@ -8,7 +8,7 @@ use crate::firmware::settings::Scope;
 
 const REVIEW: &str = "ERRORS WERE DETECTED - PLEASE REVIEW BEFORE CONTINUING";
 
-/// What a command's single optional word asks for; `None` after refusing another word.
+/// Returns `true` if the command's single optional word was given. Refuses any other word and returns `None`.
 fn flag(session: &mut Session<'_>, rest: &str, word: &str) -> Option<bool> {
     if rest.is_empty() || rest.eq_ignore_ascii_case(word) {
         return Some(!rest.is_empty());
@@ -17,7 +17,7 @@ fn flag(session: &mut Session<'_>, rest: &str, word: &str) -> Option<bool> {
     None
 }
 
-/// Ends the session by a restart, as far as the link allows it.
+/// Ends the session with a restart, as far as the link allows it.
 fn restart(session: &mut Session<'_>) {
     match session.interpreter.mode {
         CliMode::Interactive | CliMode::File => {
@@ -29,7 +29,7 @@ fn restart(session: &mut Session<'_>) {
     }
 }
 
-/// Asks for the configuration to be stored; `false` after refusing because it cannot be.
+/// Requests that the configuration is stored. Refuses and returns `false` if it cannot be stored.
 fn store(session: &mut Session<'_>) -> bool {
     if let Some(refusal) = session.facts.storage.save_refusal.clone() {
         session.error(refusal);
@@ -79,14 +79,14 @@ pub(super) fn exit(session: &mut Session<'_>, rest: &str) {
     }
 }
 
-/// `reboot`: what is not saved is lost.
+/// `reboot`: restarts; unsaved changes are lost.
 pub(super) fn reboot(session: &mut Session<'_>, _rest: &str) {
     if !session.refused_while_armed() {
         restart(session);
     }
 }
 
-/// `bl [rom]`: there is no boot loader to enter, so this is a restart.
+/// `bl [rom]`: restarts, because there is no boot loader to enter.
 pub(super) fn bl(session: &mut Session<'_>, rest: &str) {
     if session.refused_while_armed() || flag(session, rest, "rom").is_none() {
         return;

@@ -1,10 +1,10 @@
-//! `aux` and `adjrange`: which switch turns what on.
+//! `aux` and `adjrange`: the switches for modes and adjustments.
 
 use super::super::config::{ADJUSTMENT_RANGES, AdjustmentRange, MODE_CONDITIONS, ModeCondition, ModeLogic};
 use super::super::modes::boxes;
 use super::session::{Session, integer};
 
-/// The row of one mode condition.
+/// Formats the row of one mode condition.
 pub(super) fn aux_row(at: usize, condition: &ModeCondition) -> String {
     format!(
         "aux {at} {} {} {} {} {} {}",
@@ -79,7 +79,7 @@ fn channel_number(session: &mut Session<'_>, channel: i64) -> Option<u8> {
     known
 }
 
-/// The row of one adjustment.
+/// Formats the row of one adjustment.
 pub(super) fn adjustment_row(at: usize, range: &AdjustmentRange) -> String {
     format!(
         "adjrange {at} 0 {} {} {} {} {} {} {}",

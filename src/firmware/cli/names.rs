@@ -1,4 +1,4 @@
-//! The names of a real board, carried along.
+//! The names of a real board. They are stored but have no effect.
 
 use super::super::config::{BOARD_NAME_MAX, MANUFACTURER_ID_MAX};
 use super::session::Session;
@@ -19,14 +19,14 @@ pub(super) fn manufacturer_id(session: &mut Session<'_>, value: &str) {
     session.line(format_args!("manufacturer_id {id}"));
 }
 
-/// A new name, cut to the room there is for it.
+/// Returns a new name, cut to its maximum length.
 fn identity(value: &str, max: usize) -> Option<String> {
     let printable = value.chars().filter(|letter| (' '..='~').contains(letter));
     let name: String = printable.take(max).collect::<String>().trim().to_owned();
     (!name.is_empty()).then_some(name)
 }
 
-/// The signature of a real board means nothing here: it is never stored.
+/// Prints an empty signature. The signature of a real board has no meaning here and is never stored.
 pub(super) fn signature(session: &mut Session<'_>, _value: &str) {
     session.line("signature ");
 }

@@ -1,42 +1,41 @@
-//! What commands print of the running firmware, as plain data.
+//! Facts about the running firmware that commands print, as plain data.
 
 use crate::firmware::Firmware;
 use crate::geo::LatLon;
 use crate::plan::FlightPlan;
 use crate::telemetry::{ArmingFlags, BadPackets, LostTime, NavTelemetry, Refusal};
 
-/// Housekeeping rate, Hz.
+/// The housekeeping rate, Hz.
 const SYSTEM_HZ: u32 = 10;
-/// Rate of receiver passes without frames, Hz.
+/// The rate of receiver passes without frames, Hz.
 const RX_IDLE_HZ: u32 = 20;
 
-/// Everything `status`, `env`, `tasks`, `version` and `waypoint status` tell about the running firmware.
+/// The facts about the running firmware for `status`, `env`, `tasks`, `version` and `waypoint status`.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct CliFacts {
     pub build: BuildInfo,
-    /// Whether the craft is armed; many commands are refused then.
+    /// `true` while the craft is armed. Many commands are refused then.
     pub armed: bool,
     pub arming_blocks: ArmingFlags,
     pub uptime_s: u64,
     pub storage: StorageFacts,
     pub gps: GpsFacts,
     pub battery: BatteryFacts,
-    /// What scripts and simulators sent in vain.
+    /// The packets from scripts and simulators that could not be used.
     pub bad_packets: BadPackets,
-    /// Real time that the flight could not keep up with.
+    /// The real time that the flight could not keep up with.
     pub lost_time: LostTime,
-    /// An earlier instant is shown, during which clients change nothing.
+    /// `true` while an earlier instant is shown. Clients cannot change anything then.
     pub rewound: bool,
     pub loops: LoopFacts,
-    /// One row a task, in order of their numbers.
+    /// One row per task, in order of their numbers.
     pub tasks: Vec<TaskFacts>,
-    /// The RC smoothing filters.
     pub smoothing: SmoothingFacts,
     pub nav: NavFacts,
 }
 
 impl CliFacts {
-    /// The present instant of a firmware.
+    /// Returns the facts at the present instant.
     pub(in crate::firmware) fn observe(firmware: &Firmware) -> Self {
         let signal = firmware.receiver().signal();
         let rx_hz = if signal { firmware.receiver().sources().rate_hz().round() as u32 } else { 0 };
@@ -89,7 +88,7 @@ impl GpsFacts {
     }
 }
 
-/// The tasks with their nominal rates; a deterministic firmware has no run times to show.
+/// Returns the tasks with their nominal rates. A deterministic firmware has no run times to show.
 fn tasks(firmware: &Firmware, rx_hz: u32) -> Vec<TaskFacts> {
     let rate = firmware.setup.options().rate_hz;
     let attitude_hz = (1_000_000 / firmware.parameters().estimator.attitude_us.max(1)) as u32;
@@ -120,14 +119,14 @@ fn tasks(firmware: &Firmware, rx_hz: u32) -> Vec<TaskFacts> {
     .collect()
 }
 
-/// Version and build, as announced by `version`, `env` and MSP.
+/// The version and the build, as announced by `version`, `env` and MSP.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct BuildInfo {
     pub version: String,
     pub api: String,
-    /// Build date, `Mmm dd yyyy`.
+    /// The build date, `Mmm dd yyyy`.
     pub date: String,
-    /// Build time, `hh:mm:ss`.
+    /// The build time, `hh:mm:ss`.
     pub time: String,
     pub revision: String,
 }
@@ -147,13 +146,13 @@ impl Default for BuildInfo {
 /// The stored configuration as `status` shows it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct StorageFacts {
-    /// Bytes of the stored image.
+    /// The size of the stored image, bytes.
     pub used_bytes: usize,
-    /// Bytes a real vehicle has for it.
+    /// The space that a real vehicle has for it, bytes.
     pub capacity_bytes: usize,
-    /// What was found wrong at boot, for the `CONFIG:` line.
+    /// The problem found at boot, for the `CONFIG:` line.
     pub note: Option<String>,
-    /// Why `save` cannot work: the file belongs to another firmware, or another process holds it.
+    /// The reason why `save` cannot work: the file belongs to another firmware, or another process holds it.
     pub save_refusal: Option<String>,
 }
 
@@ -168,10 +167,10 @@ impl Default for StorageFacts {
 pub enum GpsFacts {
     /// The feature is off.
     NotEnabled,
-    /// Nothing was received yet.
+    /// No message was received yet.
     #[default]
     NotConnected,
-    /// Messages arrive; the solution is present once they are healthy.
+    /// Messages arrive. The solution is present once they are healthy.
     Connected(Option<GpsSolutionFacts>),
 }
 
@@ -203,15 +202,15 @@ impl Default for BatteryFacts {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct LoopFacts {
-    /// Processor load, percent.
+    /// The processor load, percent.
     pub cpu_load_percent: u32,
-    /// Period of the control loop, µs.
+    /// The period of the control loop, µs.
     pub cycle_time_us: u32,
-    /// Gyro loop, Hz.
+    /// The rate of the gyro loop, Hz.
     pub gyro_hz: u32,
-    /// RC frames, Hz.
+    /// The rate of RC frames, Hz.
     pub rx_hz: u32,
-    /// Housekeeping, Hz.
+    /// The rate of housekeeping, Hz.
     pub system_hz: u32,
 }
 
@@ -219,32 +218,32 @@ pub struct LoopFacts {
 pub struct TaskFacts {
     pub id: u8,
     pub name: &'static str,
-    /// How often it runs, Hz.
+    /// The rate of the task, Hz.
     pub rate_hz: u32,
-    /// Longest run, µs.
+    /// The longest run, µs.
     pub max_us: u32,
-    /// Average run, µs.
+    /// The average run, µs.
     pub avg_us: u32,
-    /// Time spent since boot, ms.
+    /// The time spent since boot, ms.
     pub total_ms: u32,
 }
 
 /// The RC smoothing filters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct SmoothingFacts {
-    /// Measured frame rate, Hz; `None` without a signal.
+    /// The measured frame rate, Hz; `None` without a signal.
     pub rx_hz: Option<u32>,
-    /// Cutoff of setpoint and feed-forward, Hz.
+    /// The cutoff of setpoint and feed-forward, Hz.
     pub setpoint_hz: u32,
-    /// Cutoff of the throttle, Hz.
+    /// The cutoff of the throttle, Hz.
     pub throttle_hz: u32,
 }
 
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct NavFacts {
     pub telemetry: NavTelemetry,
-    /// The plan being flown, while one is.
+    /// The plan being flown, if any.
     pub active_plan: Option<FlightPlan>,
-    /// Why the autopilot did not engage, until it does or the craft is armed again.
+    /// The reason why the autopilot did not engage. It remains until the autopilot engages or the craft is armed again.
     pub refusal: Option<Refusal>,
 }

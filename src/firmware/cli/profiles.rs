@@ -35,7 +35,7 @@ fn select(session: &mut Session<'_>, rest: &str, scope: Scope, title: &str) {
     session.line(format_args!("{} {active}", scope.word()));
 }
 
-/// `simplified_tuning apply | disable`: accepted; the sliders have no effect here.
+/// `simplified_tuning apply | disable`: accepted, but the sliders have no effect here.
 pub(super) fn simplified_tuning(session: &mut Session<'_>, word: &str) {
     let known = ["apply", "disable"].iter().any(|known| word.eq_ignore_ascii_case(known));
     if !known {

@@ -3,9 +3,9 @@
 use super::super::config::{ChannelMap, RX_FAIL_CHANNELS, RX_RANGES, RxFail, RxFailMode, RxRange};
 use super::session::{Session, integer};
 
-/// Limits of a receiver range, µs.
+/// The limits of a receiver range, µs.
 const PULSE_US: std::ops::RangeInclusive<i64> = 750..=2250;
-/// Channels that may fail automatically: the sticks.
+/// The number of channels that may use the automatic loss rule: the sticks.
 const STICKS: usize = 4;
 
 /// `map [<order>]`.
@@ -28,7 +28,7 @@ pub(super) fn map(session: &mut Session<'_>, order: &str) {
     session.line(format_args!("map {map}"));
 }
 
-/// The row of one receiver range.
+/// Formats the row of one receiver range.
 pub(super) fn range_row(channel: usize, range: RxRange) -> String {
     format!("rxrange {channel} {} {}", range.min_us, range.max_us)
 }
@@ -73,7 +73,7 @@ pub(super) fn rxrange(session: &mut Session<'_>, rest: &str) {
     }
 }
 
-/// The row of one loss rule.
+/// Formats the row of one loss rule.
 pub(super) fn fail_row(channel: usize, rule: RxFail) -> String {
     let letter = rule.mode.letter();
     match rule.mode {

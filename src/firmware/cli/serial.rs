@@ -1,15 +1,15 @@
-//! `serial`: functions and speeds of the ports. The MSP function belongs to the settings `msp_uart_*`.
+//! `serial`: functions and speeds of the ports. The settings `msp_uart_*` control the MSP function.
 
 use super::super::config::{BAUD_RATES, Configuration, SerialRow};
 use super::foreign::keep_command;
 use super::session::{Session, integer};
 
-/// Whether a port speaks MSP: one of the `msp_uart_*` settings names it.
+/// Returns `true` if one of the `msp_uart_*` settings assigns MSP to this port.
 fn speaks_msp(configuration: &Configuration, port: i64) -> bool {
     (1..=3).any(|slot| configuration.settings.number(&format!("msp_uart_{slot}")) == port)
 }
 
-/// The row of one port.
+/// Formats the row of one port.
 pub(super) fn serial_row(configuration: &Configuration, at: usize, row: &SerialRow) -> String {
     let port = at + 1;
     let functions = row.functions | u32::from(speaks_msp(configuration, port as i64));
@@ -65,7 +65,7 @@ pub(super) fn serial(session: &mut Session<'_>, rest: &str) {
     session.line(line);
 }
 
-/// Makes a port speak MSP, or stop, through the settings that own that function.
+/// Turns MSP on a port on or off through the settings that control it.
 fn assign_msp(configuration: &mut Configuration, port: i64, on: bool) {
     let already = speaks_msp(configuration, port);
     if on && already {

@@ -1,11 +1,11 @@
-//! What a command handler works with: the interpreter's state, the vehicle, and the reply it is writing.
+//! The context of a command handler: the interpreter's state, the vehicle, and the reply.
 
 use std::fmt::{Display, Write as _};
 
 use super::super::config::Configuration;
 use super::{CliAction, CliFacts, CliReply, Interpreter};
 
-/// One command being run.
+/// One command in progress.
 #[derive(Debug)]
 pub(super) struct Session<'a> {
     pub(super) interpreter: &'a mut Interpreter,
@@ -22,13 +22,13 @@ impl Session<'_> {
         self.raw("\r\n");
     }
 
-    /// Writes text as it is.
+    /// Writes text without adding a line end.
     pub(super) fn raw(&mut self, text: impl Display) {
         // Writing to a string cannot fail.
         let _infallible = write!(self.reply.text, "{text}");
     }
 
-    /// Writes a heading, which stands below an empty line.
+    /// Writes a heading after an empty line.
     pub(super) fn heading(&mut self, title: impl Display) {
         self.line(format_args!("\r\n# {title}"));
     }
@@ -39,23 +39,23 @@ impl Session<'_> {
         self.fail();
     }
 
-    /// Notes that the line was refused, which an open batch remembers.
+    /// Marks the line as refused. An open batch records this.
     pub(super) fn fail(&mut self) {
         self.reply.failed = true;
         self.interpreter.note_failure();
     }
 
-    /// Refuses the command for its number of arguments.
+    /// Refuses the command because of its number of arguments.
     pub(super) fn wrong_count(&mut self) {
         self.error("INVALID ARGUMENT COUNT");
     }
 
-    /// Refuses the command for an argument that was not understood.
+    /// Refuses the command because of an argument that cannot be parsed.
     pub(super) fn not_understood(&mut self) {
         self.error("PARSING FAILED");
     }
 
-    /// Refuses the command while the craft is armed; the caller returns when this says `true`.
+    /// Refuses the command while the craft is armed. The caller returns if this is `true`.
     pub(super) fn refused_while_armed(&mut self) -> bool {
         if self.facts.armed {
             self.error("NOT WHILE ARMED");
@@ -63,12 +63,12 @@ impl Session<'_> {
         self.facts.armed
     }
 
-    /// Asks the owner of the firmware for something.
+    /// Requests an action from the owner of the firmware.
     pub(super) fn act(&mut self, action: CliAction) {
         self.reply.actions.push(action);
     }
 
-    /// Reads an integer argument within bounds, or refuses the command with `<what> NOT BETWEEN <min> AND <max>`.
+    /// Parses an integer argument within bounds, or refuses the command with `<what> NOT BETWEEN <min> AND <max>`.
     pub(super) fn bounded(&mut self, word: &str, what: &str, min: i64, max: i64) -> Option<i64> {
         match integer(word) {
             None => self.not_understood(),
@@ -79,7 +79,7 @@ impl Session<'_> {
     }
 }
 
-/// An optional sign and digits, nothing else; numbers beyond the type saturate.
+/// Parses an optional sign followed by digits only. Numbers beyond the type saturate.
 pub(super) fn integer(word: &str) -> Option<i64> {
     let (negative, digits) = match word.strip_prefix('-') {
         Some(digits) => (true, digits),

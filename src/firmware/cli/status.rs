@@ -1,18 +1,18 @@
-//! What the vehicle tells about itself: `version`, `status`, `env`, `tasks` and the small identity commands.
+//! Reports about the vehicle: `version`, `status`, `env`, `tasks` and the small identity commands.
 
 use super::super::settings::find;
 use super::observation::{GpsFacts, TaskFacts};
 use super::session::Session;
 
 pub(super) const MCU: &str = "SIMULATOR";
-/// Its clock, MHz.
+/// The clock of the processor, MHz.
 const CLOCK_MHZ: u32 = 500;
-/// Its serial number, in the three words the reference simulator announces.
+/// The serial number of the processor, in the three words that the reference simulator announces.
 pub(super) const MCU_ID: &str = "000000000000000100000002";
-/// Build options as numbers, as announced by MSP.
+/// The build options as numbers, as announced by MSP.
 const BUILD_OPTIONS: [u16; 6] = [16422, 16427, 16412, 16415, 16425, 8235];
 
-/// The line of `version`.
+/// Returns the line of `version`.
 pub(super) fn version_line(session: &Session<'_>) -> String {
     let build = &session.facts.build;
     format!(
@@ -36,7 +36,7 @@ pub(super) fn options(session: &mut Session<'_>, _rest: &str) {
     }
 }
 
-/// The name of the magnetometer, `None` when it is switched off.
+/// Returns the name of the magnetometer; `None` if it is switched off.
 fn magnetometer(session: &Session<'_>) -> Option<String> {
     let name = session.configuration.settings.text("mag_hardware");
     (name != "NONE").then(|| name.to_owned())
@@ -121,7 +121,7 @@ fn gps(session: &mut Session<'_>) {
     }
 }
 
-/// `env [prefix]`: the same as `NAME=VALUE` lines.
+/// `env [prefix]`: prints the same facts as `NAME=VALUE` lines.
 pub(super) fn env(session: &mut Session<'_>, prefix: &str) {
     let facts = session.facts;
     let on = |on: bool| if on { "ON" } else { "OFF" }.to_owned();
@@ -171,7 +171,7 @@ pub(super) fn env(session: &mut Session<'_>, prefix: &str) {
     }
 }
 
-/// Tenths of a percent as `d.d`.
+/// Formats tenths of a percent as `d.d%`.
 fn percent(tenths: u64, width: usize) -> String {
     format!("{:>width$}.{}%", tenths / 10, tenths % 10)
 }
@@ -228,7 +228,7 @@ pub(super) fn rc_smoothing_info(session: &mut Session<'_>, _rest: &str) {
     }
 }
 
-/// Sensor kinds without a setting of their own; their names are positions in MSP messages.
+/// Sensor kinds without a setting of their own. The position of a name is its number in MSP messages.
 const GYROS: &str = "NONE,AUTO,MPU6050,L3GD20,MPU6000,MPU6500,MPU9250,ICM20601,ICM20602,ICM20608G,ICM20649,ICM20689,\
 ICM42605,ICM42688P,BMI160,BMI270,LSM6DSO,LSM6DSV16X,IIM42653,ICM45605,ICM45686,ICM40609D,IIM42652,LSM6DSK320X,ICM42622P,\
 ICM42686P,ICM56686,VIRTUAL";

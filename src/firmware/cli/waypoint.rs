@@ -36,7 +36,7 @@ fn list(session: &mut Session<'_>) {
     }
 }
 
-/// Centimetres as metres with two decimals.
+/// Formats centimetres as metres with two decimals.
 fn metres(cm: i32) -> String {
     let sign = if cm < 0 { "-" } else { "" };
     let size = cm.unsigned_abs();
@@ -99,7 +99,7 @@ fn edit(session: &mut Session<'_>, arguments: &[&str], edit: Edit) {
     session.act(CliAction::PlanChanged);
 }
 
-/// Reads the fields after the index; the order of the checks decides which text a line with several faults gets.
+/// Parses the fields after the index. The order of the checks decides the error text for a line with several faults.
 fn read(fields: [&str; 7]) -> Result<Waypoint, &'static str> {
     let [lat, lon, alt, speed, kind, duration, pattern] = fields;
     let lat_e7 = degrees(lat).ok_or("INVALID LATITUDE FORMAT. USE: -90.0000000 to 90.0000000")?;
@@ -122,7 +122,7 @@ fn read(fields: [&str; 7]) -> Result<Waypoint, &'static str> {
     Ok(Waypoint { position: LatLon::new(lat_e7, lon_e7), alt_cm, speed_cms, duration_ds, kind, pattern })
 }
 
-/// Decimal degrees as degrees × 10⁷; decimals beyond the seventh are cut, not rounded.
+/// Parses decimal degrees as degrees × 10⁷. Decimals beyond the seventh are cut, not rounded.
 fn degrees(text: &str) -> Option<i32> {
     const DECIMALS: usize = 7;
     let (negative, digits) = match text.strip_prefix('-') {
@@ -167,7 +167,7 @@ fn remove(session: &mut Session<'_>, arguments: &[&str]) {
     session.act(CliAction::PlanChanged);
 }
 
-/// Shows the plan being flown, or the stored one, and what the navigator does.
+/// Prints the plan being flown, or the stored one, and the state of the navigator.
 fn status(session: &mut Session<'_>) {
     let facts = session.facts;
     let plan = facts.nav.active_plan.as_ref().unwrap_or(&session.configuration.plan).clone();

@@ -24,7 +24,7 @@ pub enum Feature {
     RxUdp = 1,
     InflightAccCal = 2,
     RxSerial = 3,
-    /// Motors stand still at low throttle.
+    /// The motors stop at low throttle.
     MotorStop = 4,
     ServoTilt = 5,
     #[strum(to_string = "SOFTSERIAL")]
@@ -55,12 +55,12 @@ pub enum Feature {
 }
 
 impl Feature {
-    /// Its bit in the mask.
+    /// Returns the bit of the feature in the mask.
     pub const fn bit(self) -> u32 {
         1 << self as u32
     }
 
-    /// Whether this vehicle has it.
+    /// Returns `true` if this vehicle has the feature.
     pub fn is_available(self) -> bool {
         matches!(
             self,
@@ -75,7 +75,7 @@ impl Feature {
         )
     }
 
-    /// The feature of this name in any case, or the only one whose name starts with it.
+    /// Returns the feature of this name in any case, or the only feature whose name starts with it.
     pub fn by_name(name: &str) -> Option<Self> {
         let name = name.to_ascii_uppercase();
         let mut starting = Self::iter().filter(|feature| feature.to_string().starts_with(&name));
@@ -93,14 +93,14 @@ impl Feature {
 pub struct Features(pub u32);
 
 impl Default for Features {
-    /// Receiver on UDP, GPS, airmode, anti gravity.
+    /// Returns the default features: receiver on UDP, GPS, airmode, anti gravity.
     fn default() -> Self {
         Self(Feature::RxUdp.bit() | Feature::Gps.bit() | Feature::AirMode.bit() | Feature::AntiGravity.bit())
     }
 }
 
 impl Features {
-    /// Whether a feature is on.
+    /// Returns `true` if the feature is on.
     pub const fn has(self, feature: Feature) -> bool {
         self.0 & feature.bit() != 0
     }

@@ -1,26 +1,27 @@
-//! Lines of other builds: no effect here, printed again by dump and diff so that a real craft's file stays complete.
+//! Lines of other builds. They have no effect here, but dump and diff print them, so that a real craft's file stays
+//! complete.
 
 use super::super::settings::Scope;
 
-/// The most characters kept, far above what a whole `dump all` of any build contains.
+/// The most characters kept, far more than a whole `dump all` of any build contains.
 const MAX_CHARACTERS: usize = 1 << 17;
-/// What a line costs beside its own characters.
+/// The cost of a line in addition to its own characters.
 const LINE_COST: usize = 64;
 
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct KeptLine {
-    /// Section it came in.
+    /// The section that the line came in.
     pub scope: Scope,
-    /// Profile of that section.
+    /// The profile of that section.
     pub instance: u8,
-    /// Name of the foreign setting; empty for a foreign command.
+    /// The name of the foreign setting; empty for a foreign command.
     pub name: String,
-    /// Value of the setting, or the whole command line.
+    /// The value of the setting, or the whole command line.
     pub text: String,
 }
 
 impl KeptLine {
-    /// The line as it is typed.
+    /// Returns the line as it is typed.
     pub fn command(&self) -> String {
         if self.name.is_empty() { self.text.clone() } else { format!("set {} = {}", self.name, self.text) }
     }
@@ -34,17 +35,17 @@ impl KeptLine {
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct KeptLines {
     lines: Vec<KeptLine>,
-    /// What all of them cost.
+    /// The total cost of all lines.
     cost: usize,
 }
 
 impl KeptLines {
-    /// Keeps a line: a setting replaces its earlier value, or, without a value, takes it away; a command already kept is
-    /// not repeated. `false` when there is no room.
+    /// Keeps a line. A setting replaces its earlier value; without a value it removes it. A command that is already
+    /// kept is not repeated. Returns `false` if there is no room.
     pub fn keep(&mut self, mut line: KeptLine) -> bool {
-        // As it would be typed again.
+        // Stored in the form in which it would be typed again.
         line.text = line.text.replace(char::is_control, " ").trim().to_owned();
-        // From the end: lines of a family begin alike, and a file may have very many of them.
+        // Compares from the end, because lines of a family start alike and a file may have very many of them.
         let is_same = |a: &str, b: &str| a.len() == b.len() && a.bytes().rev().eq(b.bytes().rev());
         let same_place = |old: &KeptLine| {
             old.scope == line.scope
@@ -78,12 +79,12 @@ impl KeptLines {
         room
     }
 
-    /// All lines in order.
+    /// Iterates over all lines in order.
     pub fn iter(&self) -> impl Iterator<Item = &KeptLine> {
         self.lines.iter()
     }
 
-    /// The lines of one section.
+    /// Iterates over the lines of one section.
     pub fn of(&self, scope: Scope, instance: u8) -> impl Iterator<Item = &KeptLine> {
         self.lines.iter().filter(move |line| line.scope == scope && line.instance == instance)
     }

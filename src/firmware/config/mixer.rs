@@ -2,10 +2,10 @@
 
 use strum::IntoEnumIterator;
 
-/// Rows of the custom mix.
+/// The number of rows of the custom mix.
 pub const MAX_MIX_ROWS: usize = 8;
 
-/// The airframe types of the firmware; the discriminant is the code on the wire. Only QUADX, QUADP, QUADX1234 and
+/// The airframe types of the firmware. The discriminant is the code on the wire. Only QUADX, QUADP, QUADX1234, and
 /// CUSTOM with four rows fly here.
 #[derive(
     Debug,
@@ -71,7 +71,7 @@ pub enum MixerKind {
 }
 
 impl MixerKind {
-    /// The type of this name in any case, or the first whose name starts with it.
+    /// Returns the type of this name in any case, or the first type whose name starts with it.
     pub fn by_name(name: &str) -> Option<Self> {
         let name = name.to_ascii_uppercase();
         let starting = || Self::iter().find(|kind| kind.to_string().starts_with(&name));
@@ -80,7 +80,7 @@ impl MixerKind {
             .or_else(|| if name.is_empty() { None } else { starting() })
     }
 
-    /// The motor rows of the types that fly here.
+    /// Returns the motor rows of the types that fly here.
     pub fn rows(self) -> Option<[MixRow; 4]> {
         let row = |roll, pitch, yaw| MixRow { throttle: 1.0, roll, pitch, yaw };
         match self {
@@ -98,14 +98,14 @@ impl MixerKind {
     }
 }
 
-/// What one motor gets of throttle, roll, pitch and yaw.
+/// The shares of throttle, roll, pitch and yaw for one motor.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct MixRow {
-    /// Share of throttle; zero ends the custom mix.
+    /// The share of throttle; zero ends the custom mix.
     pub throttle: f64,
-    /// Share of roll, right positive.
+    /// The share of roll, right positive.
     pub roll: f64,
-    /// Share of pitch, nose down positive.
+    /// The share of pitch, nose down positive.
     pub pitch: f64,
     pub yaw: f64,
 }

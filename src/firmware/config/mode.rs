@@ -1,36 +1,36 @@
 //! Mode conditions and in-flight adjustments.
 
-/// Pulse step of mode ranges, µs.
+/// The pulse step of mode ranges, µs.
 const STEP_US: u16 = 25;
-/// Lowest pulse of a mode range, µs.
+/// The lowest pulse of a mode range, µs.
 const LOWEST_US: u16 = 900;
-/// Highest pulse of a mode range, µs.
+/// The highest pulse of a mode range, µs.
 const HIGHEST_US: u16 = 2100;
 
-/// How several conditions of one mode combine.
+/// The logic that combines several conditions of one mode.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, strum::FromRepr)]
 #[repr(u8)]
 pub enum ModeLogic {
     #[default]
     Or = 0,
-    /// All of these must hold.
+    /// All of these conditions must hold.
     And = 1,
 }
 
-/// One rule that binds a mode to a switch, or to another mode.
+/// One rule that binds a mode to a switch or to another mode.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct ModeCondition {
-    /// Permanent id of the mode.
+    /// The permanent id of the mode.
     pub box_id: u8,
-    /// Switch channel, 0 = AUX1 = fifth receiver channel, up to 13.
+    /// The switch channel: 0 = AUX1 = fifth receiver channel, up to 13.
     pub aux_channel: u8,
-    /// Lowest pulse, µs, 900…2100 in steps of 25.
+    /// The lowest pulse, µs, 900…2100 in steps of 25.
     pub start_us: u16,
-    /// First pulse above the range, µs.
+    /// The first pulse above the range, µs.
     pub end_us: u16,
-    /// How it combines with the other conditions of its mode.
+    /// The logic that combines it with the other conditions of its mode.
     pub logic: ModeLogic,
-    /// Permanent id of the mode whose state it follows instead of a channel; 0 = none.
+    /// The permanent id of the mode that it follows instead of a channel; 0 = none.
     pub linked: u8,
 }
 
@@ -43,40 +43,40 @@ impl Default for ModeCondition {
 impl ModeCondition {
     pub const MAX_AUX: u8 = 13;
 
-    /// A pulse brought to the range and step that conditions are stored in.
+    /// Limits a pulse to the range of conditions and rounds it down to their step.
     pub fn snap(pulse_us: i64) -> u16 {
         let clipped = pulse_us.clamp(i64::from(LOWEST_US), i64::from(HIGHEST_US)) as u16;
         clipped - (clipped - LOWEST_US) % STEP_US
     }
 
-    /// Whether it can ever turn its mode on.
+    /// Returns `true` if it can ever turn its mode on.
     pub fn is_usable(&self) -> bool {
         self.start_us < self.end_us || self.linked != 0
     }
 
-    /// Whether a pulse lies in the range; pulses beyond the ends count as the ends.
+    /// Returns `true` if a pulse is in the range. Pulses beyond the ends count as the ends.
     pub fn contains(&self, pulse_us: f64) -> bool {
         let pulse = pulse_us.max(f64::from(LOWEST_US)).min(f64::from(HIGHEST_US - 1));
         f64::from(self.start_us) <= pulse && pulse < f64::from(self.end_us)
     }
 }
 
-/// One in-flight adjustment; kept, not executed.
+/// One in-flight adjustment. It is kept, not executed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct AdjustmentRange {
-    /// Channel whose range enables it, 0 = AUX1.
+    /// The channel whose range enables it, 0 = AUX1.
     pub aux_channel: u8,
-    /// Lowest pulse, µs.
+    /// The lowest pulse, µs.
     pub start_us: u16,
-    /// First pulse above the range, µs.
+    /// The first pulse above the range, µs.
     pub end_us: u16,
-    /// Which value it adjusts.
+    /// The number of the value to adjust.
     pub function: u8,
-    /// Channel that adjusts, 0 = AUX1.
+    /// The channel that adjusts the value, 0 = AUX1.
     pub select_channel: u8,
-    /// Centre of an absolute adjustment.
+    /// The centre of an absolute adjustment.
     pub center: u16,
-    /// Scale of an absolute adjustment.
+    /// The scale of an absolute adjustment.
     pub scale: u16,
 }
 

@@ -1,29 +1,29 @@
-//! Channel order, ranges and what channels do after the link is lost.
+//! Channel order, pulse ranges, and the behaviour of channels after the link is lost.
 
-/// Letters of the map in the order of the inner channels.
+/// The letters of the map in the order of the internal channels.
 const LETTERS: [u8; 8] = *b"AERT1234";
 
-/// Lowest pulse a loss rule stores, µs.
+/// The lowest pulse of a loss rule, µs.
 const FAIL_LOWEST_US: i64 = 750;
-/// Highest pulse a loss rule stores, µs.
+/// The highest pulse of a loss rule, µs.
 const FAIL_HIGHEST_US: i64 = 2250;
-/// Step of the pulses a loss rule stores, µs.
+/// The pulse step of a loss rule, µs.
 const FAIL_STEP_US: i64 = 25;
 
-/// Order of the stick and first switch channels on the wire. Entry i is the wire channel that carries the i-th of
+/// The order of the stick and first switch channels on the wire. Entry i is the wire channel that carries the i-th of
 /// roll, pitch, yaw, throttle, AUX1, AUX2, AUX3, AUX4.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct ChannelMap(pub [u8; 8]);
 
 impl Default for ChannelMap {
-    /// AETR1234.
+    /// Returns AETR1234.
     fn default() -> Self {
         Self([0, 1, 3, 2, 4, 5, 6, 7])
     }
 }
 
 impl ChannelMap {
-    /// Reads a permutation of `AERT1234`, in any case.
+    /// Parses a permutation of `AERT1234`, in any case.
     pub fn parse(text: &str) -> Option<Self> {
         let text = text.to_ascii_uppercase();
         let place =
@@ -48,12 +48,12 @@ impl std::fmt::Display for ChannelMap {
     }
 }
 
-/// Pulse range of a stick channel, stretched to 1000…2000 µs.
+/// The pulse range of a stick channel. It is stretched to 1000…2000 µs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct RxRange {
-    /// Pulse that becomes 1000 µs.
+    /// The pulse that becomes 1000 µs.
     pub min_us: u16,
-    /// Pulse that becomes 2000 µs.
+    /// The pulse that becomes 2000 µs.
     pub max_us: u16,
 }
 
@@ -63,19 +63,19 @@ impl Default for RxRange {
     }
 }
 
-/// What a channel does after the link is lost; the discriminant is the code on the wire.
+/// The behaviour of a channel after the link is lost. The discriminant is the code on the wire.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::FromRepr)]
 #[repr(u8)]
 pub enum RxFailMode {
-    /// Sticks to the centre, throttle to the bottom; only for the four stick channels.
+    /// Sticks to the centre, throttle to the bottom. Only for the four stick channels.
     Auto = 0,
-    /// The last value for ever.
+    /// The last value, for ever.
     Hold = 1,
     Set = 2,
 }
 
 impl RxFailMode {
-    /// The letter of the command line.
+    /// Returns the letter used on the command line.
     pub const fn letter(self) -> char {
         match self {
             Self::Auto => 'a',
@@ -89,22 +89,22 @@ impl RxFailMode {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct RxFail {
     pub mode: RxFailMode,
-    /// Value of mode [`RxFailMode::Set`], µs; 1500 otherwise.
+    /// The value of mode [`RxFailMode::Set`], µs; 1500 otherwise.
     pub value_us: u16,
 }
 
 impl RxFail {
-    /// The rule of a fresh vehicle: the sticks automatic, the others held.
+    /// Returns the rule of a fresh vehicle: sticks automatic, other channels held.
     pub fn default_for(channel: usize) -> Self {
         Self::without_value(if channel < 4 { RxFailMode::Auto } else { RxFailMode::Hold })
     }
 
-    /// A rule that needs no value.
+    /// Creates a rule that needs no value.
     pub const fn without_value(mode: RxFailMode) -> Self {
         Self { mode, value_us: 1500 }
     }
 
-    /// A rule with a value, brought to the range and step in which values are stored.
+    /// Creates a rule with a value, limited and rounded down to the step in which values are stored.
     pub fn set_to(pulse_us: i64) -> Self {
         let clipped = pulse_us.clamp(FAIL_LOWEST_US, FAIL_HIGHEST_US);
         let snapped = clipped - (clipped - FAIL_LOWEST_US) % FAIL_STEP_US;
@@ -122,7 +122,7 @@ mod tests {
             assert_eq!(ChannelMap::parse(order).map(|map| map.to_string()), Some(order.to_owned()));
         }
         assert_eq!(ChannelMap::parse("aetr1234"), Some(ChannelMap::default()));
-        // Throttle first on the wire: inner roll is wire channel 1, inner throttle wire channel 0.
+        // Throttle is first on the wire: internal roll is wire channel 1, internal throttle is wire channel 0.
         assert_eq!(ChannelMap::parse("TAER1234"), Some(ChannelMap([1, 2, 3, 0, 4, 5, 6, 7])));
         for wrong in ["", "AETR", "AAAA1234", "AETR12345", "AETR123Ä"] {
             assert_eq!(ChannelMap::parse(wrong), None, "{wrong}");

@@ -1,4 +1,4 @@
-//! Corrections made at boot and before every save, so that a configuration cannot contradict itself. Each is silent:
+//! Corrections made at boot and before every save, so that a configuration cannot contradict itself. Each is silent;
 //! the next `diff` shows the corrected value.
 
 use strum::IntoEnumIterator;
@@ -7,7 +7,7 @@ use super::{Configuration, Feature, ModeCondition};
 use crate::firmware::modes::boxes;
 use crate::firmware::settings::{Scope, Value, find};
 
-/// Receiver features; the last one that is on wins.
+/// The receiver features. The last one that is on wins.
 const RECEIVERS: [Feature; 6] = [
     Feature::RxPpm,
     Feature::RxMsp,
@@ -17,7 +17,7 @@ const RECEIVERS: [Feature; 6] = [
     Feature::RxUdp,
 ];
 
-/// Value of `gps_provider` for the receivers on a serial port: NMEA, UBLOX.
+/// The values of `gps_provider` for the receivers on a serial port: NMEA, UBLOX.
 const SERIAL_GPS_PROVIDERS: std::ops::RangeInclusive<i64> = 0..=1;
 
 /// Makes a configuration consistent.
@@ -52,7 +52,7 @@ fn number(configuration: &Configuration, name: &str, instance: u8) -> i64 {
 
 fn put(configuration: &mut Configuration, name: &str, instance: u8, number: i64) {
     if let Some(setting) = find(name) {
-        // A correction that the range of a setting forbids changes nothing.
+        // A correction outside the range of a setting changes nothing.
         let _refused = configuration.settings.put(setting, instance, Value::Number(number));
     }
 }
@@ -89,7 +89,7 @@ fn rescue(configuration: &mut Configuration) {
     }
 }
 
-/// Links are one level deep, and ARM follows a switch only.
+/// Resets conditions with links deeper than one level, and links of ARM, which follows a switch only.
 fn modes(configuration: &mut Configuration) {
     let before = configuration.modes;
     let is_linked = |id: u8| before.iter().any(|condition| condition.box_id == id && condition.linked != 0);
@@ -100,7 +100,7 @@ fn modes(configuration: &mut Configuration) {
     }
 }
 
-/// Largest rc_rate, srate and expo of the rates type, in the order of its words.
+/// The largest rc_rate, srate and expo of each rates type, in the order of its words.
 const RATE_LIMITS: [[i64; 3]; 5] =
     [[255, 100, 100], [200, 255, 100], [255, 99, 100], [200, 200, 100], [255, 200, 100]];
 
@@ -117,14 +117,14 @@ fn rates(configuration: &mut Configuration, profile: u8) {
     }
 }
 
-/// A notch whose cutoff is not below its centre is off.
+/// Turns a notch off if its cutoff is not below its centre.
 fn notch(configuration: &mut Configuration, instance: u8, centre: &str, cutoff: &str) {
     if number(configuration, cutoff, instance) >= number(configuration, centre, instance) {
         put(configuration, centre, instance, 0);
     }
 }
 
-/// A dynamic low-pass whose minimum is above its maximum becomes static.
+/// Makes a dynamic low-pass static if its minimum is above its maximum.
 fn not_above(configuration: &mut Configuration, instance: u8, min: &str, max: &str) {
     if number(configuration, min, instance) > number(configuration, max, instance) {
         put(configuration, min, instance, 0);

@@ -1,23 +1,23 @@
 //! Serial ports.
 
-/// Speeds a port row accepts; 0 = automatic.
+/// The speeds that a port row accepts; 0 = automatic.
 pub const BAUD_RATES: &[u32] = &[
     0, 9600, 19200, 38400, 57600, 115_200, 230_400, 250_000, 400_000, 460_800, 500_000, 921_600, 1_000_000,
     1_500_000, 2_000_000, 2_470_000,
 ];
 
-/// Functions and speeds of one port. The MSP function is not here: it belongs to the settings `msp_uart_*`.
+/// The functions and speeds of one port. It does not include the MSP function, which the settings `msp_uart_*` control.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub struct SerialRow {
-    /// Bits of the functions other than MSP (bit 0).
+    /// The bits of the functions other than MSP (bit 0).
     pub functions: u32,
-    /// Speed of MSP, baud.
+    /// The speed of MSP, baud.
     pub msp_baud: u32,
-    /// Speed of GPS, baud.
+    /// The speed of GPS, baud.
     pub gps_baud: u32,
-    /// Speed of telemetry, baud; 0 = automatic.
+    /// The speed of telemetry, baud; 0 = automatic.
     pub telemetry_baud: u32,
-    /// Speed of the flight recorder, baud.
+    /// The speed of the flight recorder, baud.
     pub blackbox_baud: u32,
 }
 

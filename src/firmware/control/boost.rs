@@ -1,18 +1,19 @@
-//! What a quick throttle change does: the motors lead it, and the rate loop stiffens while it upsets the craft.
+//! Reactions to a quick throttle change: the motors lead it, and the rate-loop gains rise while it upsets the craft.
 //!
-//! A quick change is what a first-order low-pass of the throttle has not followed yet: throttle − slow throttle.
+//! A quick change is the part of the throttle that a first-order low-pass has not followed yet: throttle − slow
+//! throttle.
 
 use super::derived::Derived;
 use super::tuning::BoostTuning;
 use crate::firmware::filter::Pt1;
 
-/// Share of the gain that P gets of what I gets.
+/// The scale of the rise of P relative to that of I.
 const P_PER_I: f64 = 0.1;
 
-/// Factors of the rate loop's gains; 1 leaves them.
+/// Factors for the gains of the rate loop; 1 = unchanged.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct GainBoost {
-    /// Of P, roll and pitch.
+    /// The factor for P, roll and pitch.
     pub p: f64,
     pub i: f64,
 }
@@ -21,7 +22,7 @@ impl GainBoost {
     pub(super) const NONE: Self = Self { p: 1.0, i: 1.0 };
 }
 
-/// Memory of the throttle.
+/// The low-passed throttle.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct ThrottleBoost {
     slow_for_gains: Pt1,
@@ -29,8 +30,8 @@ pub(super) struct ThrottleBoost {
 }
 
 impl ThrottleBoost {
-    /// One step of the rate loop with the pilot's throttle (0…1): the throttle that leads it, and how much the gains
-    /// rise.
+    /// Runs one step of the rate loop with the pilot's throttle (0…1). Returns the throttle with its lead and the
+    /// factors for the gains.
     pub(super) fn step(
         &mut self,
         throttle: f64,
@@ -56,7 +57,7 @@ mod tests {
 
     const DT: f64 = 0.001;
 
-    /// The greatest throttle and gains of a step from 30 to 60 %, and the throttle half a second later.
+    /// Returns the greatest throttle and gains after a step from 30 to 60 %, and the throttle half a second later.
     fn punch(changes: &[(&str, i64)]) -> (f64, GainBoost, f64) {
         let mut settings = Settings::default();
         for (name, value) in changes {

@@ -12,36 +12,36 @@ use super::tuning::Tuning;
 use super::{ControlInput, ControlState, StickMode};
 use crate::firmware::estimate::Estimate;
 
-/// Full stick, RC command units.
+/// The full stick deflection, RC command units.
 const FULL_STICK: f64 = 500.0;
-/// Longest step that is believed, s.
+/// The longest plausible step, s.
 const LONGEST_STEP_S: f64 = 0.05;
-/// Change of the step that needs new filter coefficients.
+/// The relative change of the step length that needs new filter coefficients.
 const STEP_TOLERANCE: f64 = 0.01;
 
-/// Flies what it is told.
+/// Turns demands and the estimate into motor commands.
 #[derive(Debug, Clone)]
 pub struct Controller {
     tuning: Tuning,
-    /// Stick rates at full deflection, °/s, for the angle target.
+    /// The stick rates at full deflection, °/s, for the angle target.
     full_rates: [f64; 2],
     derived: Derived,
     gyro: GyroFilter,
     smoothing: Smoothing,
-    /// Setpoints (°/s) and throttle (0…1) of the sticks before smoothing, and the sticks they belong to.
+    /// The setpoints (°/s) and throttle (0…1) of the sticks before smoothing, and the sticks they belong to.
     raw: [f64; 4],
     raw_sticks: [f64; 4],
-    /// Setpoints of the sticks after their acceleration was limited, °/s.
+    /// The setpoints of the sticks after the limit on their acceleration, °/s.
     limited: [f64; 3],
     throttle_boost: ThrottleBoost,
-    /// Throttle added for the tilt.
+    /// The throttle added for the tilt.
     tilt_throttle: f64,
     heading_hold: HeadingHold,
     level: Level,
     horizon: Horizon,
     horizon_strength: f64,
     since_level_s: f64,
-    /// The attitude is fresh since the last step of the rate loop.
+    /// `true` if a new attitude arrived since the last step of the rate loop.
     is_level_due: bool,
     rate_loop: RateLoop,
     phase: u8,
@@ -51,7 +51,7 @@ pub struct Controller {
 }
 
 impl Controller {
-    /// A controller at boot for steps of `dt` seconds.
+    /// Creates a controller at boot for steps of `dt` seconds.
     pub fn new(tuning: Tuning, dt: f64) -> Self {
         let mut controller = Self {
             derived: Derived::new(&tuning, dt),
@@ -80,7 +80,7 @@ impl Controller {
         controller
     }
 
-    /// Changes the settings, outside of a step. Filters keep their state.
+    /// Changes the tuning. Not for use within a step. Filters keep their state.
     pub fn set_tuning(&mut self, tuning: Tuning) {
         self.tuning = tuning;
         self.derived = Derived::new(&tuning, self.derived.dt);
@@ -89,27 +89,27 @@ impl Controller {
         self.smoothing.invalidate();
     }
 
-    /// The tuning in use.
+    /// Returns the tuning in use.
     pub fn tuning(&self) -> &Tuning {
         &self.tuning
     }
 
-    /// Cutoffs of the smoothing of sticks and throttle in use, Hz; 0 while nothing is smoothed.
+    /// Returns the smoothing cutoffs of sticks and throttle in use, Hz; 0 while nothing is smoothed.
     pub fn smoothing_hz(&self) -> [f64; 2] {
         self.smoothing.cutoffs_hz()
     }
 
-    /// What the last step did.
+    /// Returns the results of the last step.
     pub fn state(&self) -> &ControlState {
         &self.state
     }
 
-    /// Turns the heading that is held to this one, rad clockwise from north; nothing while none is held.
+    /// Changes the held heading to this one, rad clockwise from north. Does nothing while no heading is held.
     pub fn hold_heading(&mut self, heading_rad: f64) {
         self.heading_hold.turn_to(heading_rad);
     }
 
-    /// The craft was armed: nothing of the flight before is remembered.
+    /// Forgets the previous flight. Called when the craft is armed.
     pub fn on_arm(&mut self) {
         self.rate_loop = RateLoop::default();
         self.was_raised = false;
@@ -118,7 +118,7 @@ impl Controller {
         self.level.release();
     }
 
-    /// One step of `dt` seconds.
+    /// Runs one step of `dt` seconds.
     pub fn step(&mut self, input: &ControlInput, estimate: &Estimate, dt: f64) -> &ControlState {
         let dt = if dt > 0.0 { dt.min(LONGEST_STEP_S) } else { self.derived.dt };
         if (dt - self.derived.dt).abs() > STEP_TOLERANCE * self.derived.dt {
@@ -150,7 +150,7 @@ impl Controller {
         &self.state
     }
 
-    /// Smoothed setpoints (°/s) and throttle (0…1) of the sticks.
+    /// Returns the smoothed setpoints (°/s) and throttle (0…1) of the sticks.
     fn sticks(&mut self, input: &ControlInput, estimate: &Estimate, dt: f64) -> [f64; 4] {
         let (mut roll, mut pitch) = (input.stick_roll, input.stick_pitch);
         if let Some(reference) = input.headfree_reference_rad {
@@ -180,7 +180,7 @@ impl Controller {
         smooth
     }
 
-    /// Disarmed: motors stand or follow the `motor` command.
+    /// Runs a step while disarmed: the motors are stopped or follow the `motor` command.
     fn rest(&mut self, input: &ControlInput) {
         self.rate_loop.clear_integrals();
         self.level.release();
@@ -201,7 +201,7 @@ impl Controller {
         held.unwrap_or(stick_dps)
     }
 
-    /// Lets the angle loop shape the setpoints; says which axes are fully its own.
+    /// Lets the angle loop change the setpoints. Returns `true` for each axis that it controls fully.
     fn levelling(&mut self, input: &ControlInput, estimate: &Estimate, setpoint: &mut [f64; 3]) -> [bool; 3] {
         if input.lean.is_none() && input.mode == StickMode::Acro {
             self.level.release();
@@ -242,7 +242,7 @@ impl Controller {
         [!is_horizon, !is_horizon && !by_rate, false]
     }
 
-    /// Demanded roll and pitch, °: the navigator's, or the sticks' within the angle limit.
+    /// Returns the demanded roll and pitch, °: those of the navigator, or of the sticks within the angle limit.
     fn target_deg(&self, input: &ControlInput, setpoint: &[f64; 3]) -> [f64; 2] {
         if let Some(lean) = input.lean {
             let sane =
@@ -269,7 +269,7 @@ impl Controller {
             levelled,
             deflection: [input.stick_roll, input.stick_pitch, input.stick_yaw].map(|s| s.abs() / FULL_STICK),
             tpa: self.tpa(lift),
-            // A throttle that somebody else holds does not jump with the stick.
+            // A throttle that the pilot does not control does not jump with the stick.
             boost: if input.anti_gravity && !is_held { gain_boost } else { GainBoost::NONE },
             integrate: (airmode || !is_low)
                 && !(input.stands && (input.lean.is_some() || is_held || input.mode == StickMode::Angle)),
@@ -292,7 +292,8 @@ impl Controller {
         (state.setpoint_dps, state.pid_sum) = (setpoint, sums);
     }
 
-    /// TPA, the gain factor for the stick throttle (0…1): less at high throttle, and less near the ground before take-off.
+    /// Returns TPA, the gain factor for the stick throttle (0…1). It falls at high throttle, and at low throttle before
+    /// take-off.
     fn tpa(&mut self, throttle: f64) -> f64 {
         let rate = &self.tuning.rate;
         if throttle >= rate.tpa_low_breakpoint {

@@ -1,6 +1,6 @@
 //! Stick curves: from stick positions to rates and throttle.
 
-/// Which formula turns sticks into rates; the discriminant is the value of the setting.
+/// The formula that turns sticks into rates. The discriminant is the value of the setting.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::FromRepr)]
 #[repr(u8)]
 pub enum RatesType {
@@ -17,7 +17,7 @@ pub enum RatesType {
     Quick = 4,
 }
 
-/// The curve of one axis; the fields are the settings' numbers.
+/// The curve of one axis. The fields are the numbers of the settings.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RateCurve {
     pub kind: RatesType,
@@ -34,7 +34,7 @@ pub struct RateCurve {
 }
 
 impl RateCurve {
-    /// Rate (°/s) for a stick position −1…1.
+    /// Returns the rate (°/s) for a stick position −1…1.
     pub fn rate_dps(&self, stick: f64) -> f64 {
         let x = stick.clamp(-1.0, 1.0);
         let a = x.abs();
@@ -75,7 +75,7 @@ impl RateCurve {
     }
 }
 
-/// What `throttle_limit_type` does; the discriminant is the value of the setting.
+/// The kind of throttle limit (`throttle_limit_type`). The discriminant is the value of the setting.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::FromRepr)]
 #[repr(u8)]
 pub enum ThrottleLimit {
@@ -87,22 +87,22 @@ pub enum ThrottleLimit {
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ThrottleCurve {
-    /// Pulse of zero throttle, µs (`min_check`).
+    /// The pulse of zero throttle, µs (`min_check`).
     pub zero_us: f64,
-    /// Stick position (0…1) of the middle point.
+    /// The stick position (0…1) of the middle point.
     pub mid: f64,
-    /// Throttle (0…1) of the middle point.
+    /// The throttle (0…1) of the middle point.
     pub hover: f64,
-    /// Bend about the middle point, 0…1.
+    /// The bend about the middle point, 0…1.
     pub expo: f64,
-    /// What the limit does.
+    /// The kind of limit.
     pub limit: ThrottleLimit,
     /// The limit, 0…1.
     pub limit_share: f64,
 }
 
 impl ThrottleCurve {
-    /// Throttle 0…1 for a pulse (µs).
+    /// Returns the throttle 0…1 for a pulse (µs).
     pub fn throttle(&self, pulse_us: f64) -> f64 {
         let stick = ((pulse_us - self.zero_us) / (2000.0 - self.zero_us).max(1.0)).clamp(0.0, 1.0);
         let curved = self.bend(stick);
@@ -113,22 +113,22 @@ impl ThrottleCurve {
         }
     }
 
-    /// Two quadratic Bézier curves through (0, 0), (`mid`, `hover`) and (1, 1); with full expo they are flat in the
-    /// middle point, without they are straight.
+    /// Evaluates two quadratic Bézier curves through (0, 0), (`mid`, `hover`) and (1, 1). With full expo they are flat
+    /// at the middle point; without expo they are straight.
     fn bend(&self, x: f64) -> f64 {
         let (mid, hover) = (self.mid, self.hover);
         if x <= mid {
             if mid <= 0.0 {
                 return hover;
             }
-            // Seen from the middle point outwards, both halves have the same form.
+            // Seen outwards from the middle point, both halves have the same form.
             hover * (1.0 - self.half(1.0 - x / mid))
         } else {
             hover + (1.0 - hover) * self.half((x - mid) / (1.0 - mid))
         }
     }
 
-    /// From the middle point (0) to the end (1): control point at half the way, lowered by expo.
+    /// Evaluates the curve from the middle point (0) to the end (1). The control point is halfway, lowered by expo.
     fn half(&self, t: f64) -> f64 {
         t * (t * self.expo + (1.0 - self.expo))
     }

@@ -1,20 +1,20 @@
-//! Filter coefficients for one step length, computed when tuning or step change.
+//! Filter coefficients for one step length, computed when the tuning or the step changes.
 
 use super::tuning::Tuning;
 use crate::firmware::filter::{LowPass, Pt3, pt1_gain};
 
-/// Cutoff of the demanded rates of the angle loop, Hz.
+/// The cutoff of the demanded rates of the angle loop, Hz.
 const LEVEL_RATE_HZ: f64 = 50.0;
 
-/// Cutoff of the boost of D, Hz.
+/// The cutoff of the D boost, Hz.
 const D_BOOST_HZ: f64 = 20.0;
 
-/// Coefficients of the fixed filters.
+/// The coefficients of the filters.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Derived {
-    /// Gyro step, s.
+    /// The gyro step, s.
     pub dt: f64,
-    /// Step of the rate loop, s.
+    /// The step of the rate loop, s.
     pub pid_dt: f64,
     pub gyro_lpf1: LowPass,
     pub gyro_lpf2: LowPass,
@@ -23,10 +23,10 @@ pub(super) struct Derived {
     pub yaw_lowpass: f64,
     pub relax: f64,
     pub level_rate: f64,
-    /// Low-passes of the throttle that tell its quick changes.
+    /// The low-passes of the throttle that detect its quick changes.
     pub anti_gravity: f64,
     pub throttle_boost: f64,
-    /// How fast D follows fast moves.
+    /// The low-pass gain of the D boost.
     pub d_boost: f64,
 }
 

@@ -2,12 +2,12 @@
 
 use crate::geo::wrap_pi;
 
-/// Yaw stick (RC units) that takes the heading over.
+/// The yaw stick deflection (RC units) at which the pilot takes over the heading.
 const STICK: f64 = 15.0;
-/// Rate per error, 1/s, and the greatest one, °/s.
+/// The rate per error, 1/s, and the largest rate, °/s.
 const GAIN: f64 = 2.0;
 const LIMIT_DPS: f64 = 90.0;
-/// The heading is taken when the craft turns slower than this, °/s.
+/// The yaw rate below which the heading is captured, °/s.
 const STILL_DPS: f64 = 15.0;
 
 /// Holds the heading while the yaw stick is centred.
@@ -17,7 +17,7 @@ pub(super) struct HeadingHold {
 }
 
 impl HeadingHold {
-    /// The yaw rate (°/s, clockwise) that holds the heading; `None` while the pilot turns or the mode is off.
+    /// Returns the yaw rate (°/s, clockwise) that holds the heading; `None` while the pilot turns or the mode is off.
     pub(super) fn rate_dps(
         &mut self,
         is_on: bool,
@@ -36,7 +36,7 @@ impl HeadingHold {
         Some((GAIN * error.to_degrees()).clamp(-LIMIT_DPS, LIMIT_DPS))
     }
 
-    /// Holds this heading instead of the one that is held; while none is, the pilot's stick decides which will be.
+    /// Changes the held heading. Does nothing while no heading is held, because the pilot's stick decides then.
     pub(super) fn turn_to(&mut self, heading_rad: f64) {
         if let Some(held) = &mut self.held_rad {
             *held = heading_rad;
@@ -44,7 +44,7 @@ impl HeadingHold {
     }
 }
 
-/// Roll and pitch sticks, given relative to `reference_rad`, as the craft heading `heading_rad` must take them.
+/// Converts roll and pitch sticks, given relative to `reference_rad`, for a craft that heads to `heading_rad`.
 pub(super) fn headless(roll: f64, pitch: f64, reference_rad: f64, heading_rad: f64) -> (f64, f64) {
     let (sin, cos) = (heading_rad - reference_rad).sin_cos();
     (roll * cos - pitch * sin, pitch * cos + roll * sin)

@@ -1,7 +1,7 @@
 //! ALTHOLD, POS HOLD and the failsafe descent, flown with the autopilot's controllers.
 //!
-//! Runs a hundred times a second while the navigator does not fly. A controller that no hold flies with tracks the
-//! flight, so that wind and hover throttle are known when a hold or the navigator takes over.
+//! Runs a hundred times a second while the navigator does not fly. A controller that no hold uses tracks the flight, so
+//! that wind and hover throttle are known when a hold or the navigator takes over.
 
 use crate::autopilot::Params;
 use crate::autopilot::control::FlightControllers;
@@ -18,14 +18,14 @@ use position::PositionHold;
 
 pub use altitude::DescentRate;
 
-/// Which holds are on.
+/// The holds that are on.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct HoldModes {
-    /// Hold the altitude; the throttle stick climbs and sinks.
+    /// Holds the altitude; the throttle stick climbs and sinks.
     pub altitude: bool,
-    /// Hold the position; roll and pitch sticks fly by angle.
+    /// Holds the position; roll and pitch sticks fly by angle.
     pub position: bool,
-    /// Descend and land: the throttle stick has no effect.
+    /// Descends and lands; the throttle stick has no effect.
     pub descend: Option<DescentRate>,
 }
 
@@ -33,18 +33,17 @@ impl HoldModes {
     pub const NONE: Self = Self { altitude: false, position: false, descend: None };
 }
 
-/// Settings of the holds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HoldTuning {
-    /// Throttle stick within this share of its way from hover to the end holds, 0…1.
+    /// The deadband of the throttle stick, as a share of its way from hover to the end, 0…1.
     pub throttle_deadband: f64,
-    /// Roll and pitch stick within this share holds, 0…1.
+    /// The deadband of the roll and pitch sticks, as a share of their way, 0…1.
     pub stick_deadband: f64,
-    /// Centre of the sticks, µs.
+    /// The centre of the sticks, µs.
     pub mid_us: f64,
-    /// Below this the throttle stick does nothing, µs.
+    /// The pulse below which the throttle stick has no effect, µs.
     pub low_us: f64,
-    /// The position may come from the GPS; there is nothing else here.
+    /// `true` if the position may come from the GPS. There is no other source here.
     pub uses_gps: bool,
 }
 
@@ -55,7 +54,7 @@ impl Default for HoldTuning {
 }
 
 impl HoldTuning {
-    /// The tuning in the settings.
+    /// Reads the tuning from the settings.
     pub fn from_settings(settings: &Settings) -> Self {
         let number = |name: &str| settings.number(name) as f64;
         Self {
@@ -69,22 +68,22 @@ impl HoldTuning {
 }
 
 impl HoldTuning {
-    /// The throttle stick that makes a craft with this hover throttle (µs) sink at a rate (m/s) in ALTHOLD, µs; `None` when
-    /// no stick does.
+    /// Returns the throttle stick (µs) that makes a craft with this hover throttle (µs) sink at a rate (m/s) in
+    /// ALTHOLD; `None` if no stick does.
     pub fn sink_stick_us(&self, rate_mps: f64, hover_us: f64, params: &Params) -> Option<f64> {
         altitude::sink_stick_us(rate_mps, hover_us, params, self)
     }
 }
 
-/// What the holds demand; `None` leaves it to the pilot.
+/// The demands of the holds; `None` leaves control to the pilot.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct HoldOutput {
     pub lean: Option<LeanDemand>,
-    /// Throttle, 0…1.
+    /// The throttle, 0…1.
     pub throttle: Option<f64>,
-    /// Position hold is asked for, but position or heading are unknown: the craft is only levelled.
+    /// `true` if position hold is requested but position or heading is unknown. The craft is only levelled then.
     pub no_position: bool,
-    /// The descent has reached the ground: stop the motors.
+    /// `true` once the descent has reached the ground. The motors must be stopped then.
     pub touchdown: bool,
 }
 
@@ -95,13 +94,13 @@ pub struct Holds {
 }
 
 impl Holds {
-    /// Holds nothing: the navigator flies, or the craft was armed or disarmed.
+    /// Releases all holds. Called when the navigator flies, or the craft was armed or disarmed.
     pub fn release(&mut self) {
         *self = Self::default();
     }
 
-    /// One update of a craft that the navigator does not fly. `throttle_stick_us` is the pilot's throttle,
-    /// `None` while it has no effect.
+    /// Runs one update while the navigator does not fly. `throttle_stick_us` is the pilot's throttle; `None` while it
+    /// has no effect.
     pub fn update(
         &mut self,
         modes: HoldModes,
@@ -127,7 +126,7 @@ impl Holds {
         };
         let keeps_place = modes.position && now.fix && tuning.uses_gps;
         let lean = if keeps_place && controllers.land.awaits_lift_off() {
-            // On the ground the noise of the GPS would wind the integral up, for a jump at the lift-off.
+            // On the ground, GPS noise would wind up the integral, and the craft would jump at lift-off.
             self.position.release();
             controllers.track_position(now);
             Some(LeanDemand { roll_rad: 0.0, pitch_rad: 0.0 })

@@ -1,38 +1,39 @@
-//! The angle loop: from demanded to flown angles, as rate setpoints.
+//! The angle loop: turns demanded and flown angles into rate setpoints.
 //!
-//! A demand first moves a *leading angle*: what a well-damped craft would fly. The rate of the leading angle is
-//! commanded outright and the gain corrects only what the craft misses of it, so a stick step is followed quickly
-//! without overshoot. With `angle_feedforward = 0` there is no lead and the gain alone pulls the craft to the demand.
+//! A demand first moves a *leading angle*, the angle that a well-damped craft would fly. The rate of the leading angle
+//! is commanded directly, and the gain corrects only the craft's error from it, so the craft follows a stick step
+//! quickly without overshoot. With `angle_feedforward = 0` there is no lead and the gain alone pulls the craft to the
+//! demand.
 
 use super::derived::Derived;
 use super::tuning::LevelTuning;
 use crate::firmware::filter::Pt3;
 
-/// Poles of the leading angle per smoothing time: it settles within 5 % after 2.4 smoothing times.
+/// The poles of the leading angle per smoothing time. It settles within 5 % after 2.4 smoothing times.
 const LEAD_POLES: f64 = 2.0;
-/// Greatest rate of the leading angle, °/s.
+/// The largest rate of the leading angle, °/s.
 const LEAD_LIMIT_DPS: f64 = 600.0;
-/// Slower yaw (°/s) is not coupled: it would cost trigonometry for nothing.
+/// The yaw rate (°/s) below which yaw is not coupled, to save the trigonometry.
 const COUPLED_YAW_DPS: f64 = 0.01;
-/// Farther rolled (°), a pitch rate is not made up for by yaw: near the vertical there is no heading.
+/// The largest roll (°) used to compensate a pitch rate with yaw. Near the vertical there is no heading.
 const COUPLED_ROLL_DEG: f64 = 75.0;
 
-/// What the angle loop is told.
+/// The inputs of the angle loop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct LevelDemand {
-    /// Demanded roll and pitch, °.
+    /// The demanded roll and pitch, °.
     pub target: [f64; 2],
-    /// Flown roll and pitch, °.
+    /// The flown roll and pitch, °.
     pub flown: [f64; 2],
-    /// Demanded yaw rate about the vertical, °/s.
+    /// The demanded yaw rate about the vertical, °/s.
     pub yaw_dps: f64,
-    /// Share of the yaw that turns about the vertical of the earth, 0…1.
+    /// The share of the yaw that turns about the vertical of the earth, 0…1.
     pub earth_reference: f64,
-    /// The yaw rate is that of the heading: changing the lean must not turn it.
+    /// `true` if the yaw rate is that of the heading. A change of the lean must not turn it then.
     pub keeps_heading: bool,
 }
 
-/// The leading angle: a critically damped second order.
+/// The leading angle: a critically damped second-order filter.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct Lead {
     angle: f64,
@@ -47,25 +48,25 @@ impl Lead {
     }
 }
 
-/// Memory of the angle loop.
+/// The state of the angle loop.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Level {
     lead: [Lead; 2],
     filters: [Pt3; 2],
     wanted: [f64; 2],
     yaw_share: f64,
-    /// Yaw rate that keeps the heading while the lean changes, °/s.
+    /// The yaw rate that keeps the heading while the lean changes, °/s.
     yaw_coupling_dps: f64,
     is_on: bool,
 }
 
 impl Level {
-    /// Nobody levels now; the next update starts from the craft's attitude.
+    /// Ends levelling. The next update starts from the craft's attitude.
     pub(super) fn release(&mut self) {
         self.is_on = false;
     }
 
-    /// One update of the demanded rates, `dt` seconds after the last.
+    /// Updates the demanded rates, `dt` seconds after the last update.
     pub(super) fn update(&mut self, demand: &LevelDemand, gyro: &[f64; 3], tuning: &LevelTuning, dt: f64) {
         if !self.is_on {
             self.is_on = true;
@@ -90,7 +91,7 @@ impl Level {
         }
     }
 
-    /// Turning about the vertical while leaning needs roll and pitch rates, too.
+    /// Adds the roll and pitch rates that a leaning craft needs to turn about the vertical.
     fn couple(&mut self, demand: &LevelDemand) {
         let g = demand.earth_reference;
         let [roll, pitch] = demand.target.map(f64::to_radians);
@@ -99,39 +100,39 @@ impl Level {
         self.yaw_share = (roll.abs().max(pitch.abs()) * g).cos();
     }
 
-    /// Rate setpoints of roll and pitch, °/s, once per step of the rate loop.
+    /// Returns the rate setpoints of roll and pitch, °/s. Called once per step of the rate loop.
     pub(super) fn rates(&mut self, derived: &Derived) -> [f64; 2] {
         let [roll, pitch] = &mut self.filters;
         [roll.apply(self.wanted[0], derived.level_rate), pitch.apply(self.wanted[1], derived.level_rate)]
     }
 
-    /// The craft's own yaw rate (°/s) for a demanded one about the vertical: a leaning craft yaws less, and against
-    /// what pitching turns its nose.
+    /// Returns the body yaw rate (°/s) for a demanded rate about the vertical. It is smaller while the craft leans, and
+    /// it compensates for the turn of the nose that pitching causes.
     pub(super) fn yaw_dps(&self, demanded_dps: f64) -> f64 {
         demanded_dps * self.yaw_share + self.yaw_coupling_dps
     }
 }
 
-/// Yaw rate (°/s) that keeps the heading of a rolled craft while it pitches at `pitch_dps`, beyond what the demanded turn
-/// about the vertical needs: pitching about a tilted wing axis turns the nose sideways.
+/// Returns the yaw rate (°/s) that keeps the heading of a rolled craft while it pitches at `pitch_dps`, in addition to
+/// the demanded turn about the vertical. Pitching about a tilted wing axis turns the nose sideways.
 fn keep_heading(demand: &LevelDemand, pitch_dps: f64) -> f64 {
     let roll = demand.flown[0].clamp(-COUPLED_ROLL_DEG, COUPLED_ROLL_DEG).to_radians();
     (pitch_dps + demand.yaw_dps * roll.sin()) * roll.tan()
 }
 
-/// An angle folded into ±180°.
+/// Wraps an angle to ±180°.
 fn wrap_deg(angle: f64) -> f64 {
     if angle.abs() <= 180.0 { angle } else { (angle + 180.0).rem_euclid(360.0) - 180.0 }
 }
 
-/// How much HORIZON levels, 0…1.
+/// The strength of levelling in HORIZON, 0…1.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Horizon {
     strength: f64,
 }
 
 impl Horizon {
-    /// One update for the farthest stick (0…1) and the tilt (°): weaker at once, stronger with delay.
+    /// Updates the strength for the farthest stick (0…1) and the tilt (°). It falls at once and rises with a delay.
     pub(super) fn update(&mut self, stick: f64, tilt_deg: f64, tuning: &LevelTuning, dt: f64) -> f64 {
         let by_tilt = (1.0 - tilt_deg / tuning.horizon_tilt_limit_deg.max(1.0)).max(0.0);
         let by_stick = if tuning.horizon_ignores_sticks {
@@ -189,7 +190,7 @@ mod tests {
     fn turning_while_leaning_couples_the_axes() {
         let tuning = LevelTuning { feedforward: 0.0, ..Tuning::default().level };
         let mut level = Level::default();
-        // Nose down 30° and turning clockwise at 90°/s: the craft must roll right at 45°/s to keep its angles.
+        // Nose down 30° and turning clockwise at 90°/s, the craft must roll right at 45°/s to keep its angles.
         let turning = LevelDemand {
             target: [0.0, 30.0],
             flown: [0.0, 30.0],

@@ -1,6 +1,6 @@
-//! From PID sums and throttle to motors.
+//! Turns PID sums and throttle into motor commands.
 //!
-//! Quad X seen from above, nose up the page; more of a motor turns the craft …
+//! Quad X seen from above, nose up the page. The table shows the turn that more thrust of a motor causes.
 //!
 //! ```text
 //!   4 clockwise          2 anticlockwise         motor    roll right  nose down  clockwise
@@ -16,24 +16,24 @@
 use super::tuning::MixerTuning;
 use crate::signals::MotorCommand;
 
-/// Zero of a motor command, µs, and its range.
+/// The zero of a motor command, µs, and its range.
 const COMMAND_ZERO_US: f64 = 1000.0;
 const COMMAND_RANGE_US: f64 = 1000.0;
 
-/// What the mixer is told in one step.
+/// The inputs of the mixer in one step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct MixDemand {
-    /// PID sums of roll, pitch, yaw (clockwise positive), thousandths.
+    /// The PID sums of roll, pitch, yaw (clockwise positive), thousandths.
     pub sums: [f64; 3],
-    /// Throttle, 0…1.
+    /// The throttle, 0…1.
     pub throttle: f64,
-    /// Keep full authority at any throttle.
+    /// Keeps full authority at any throttle.
     pub airmode: bool,
-    /// Motors may stop: the lowest pulse is that of a stopped motor.
+    /// Allows the motors to stop: the lowest pulse is that of a stopped motor.
     pub may_stop: bool,
 }
 
-/// Pulses of the running motors, µs.
+/// Returns the pulses of the running motors, µs.
 pub(super) fn mix(demand: &MixDemand, tuning: &MixerTuning) -> [f64; 4] {
     let [roll, pitch, yaw] = demand.sums.map(|sum| sum / 1000.0);
     let yaw = if tuning.yaw_reversed { -yaw } else { yaw };
@@ -48,7 +48,7 @@ pub(super) fn mix(demand: &MixDemand, tuning: &MixerTuning) -> [f64; 4] {
         *mix *= scale;
     }
     (low, high) = (low * scale, high * scale);
-    // −low ≤ 1 − high, because the scaled range is at most 1; `max` keeps rounding from turning them round.
+    // −low ≤ 1 − high, because the scaled range is at most 1. `max` guards against rounding errors.
     let throttle = before_boost(demand.throttle, tuning.thrust_linear).clamp(-low, (1.0 - high).max(-low));
     let ceiling = tuning.stop_us + (tuning.max_us - tuning.stop_us) * tuning.output_limit;
     let idle = tuning.idle_us.min(ceiling);
@@ -60,8 +60,8 @@ pub(super) fn mix(demand: &MixDemand, tuning: &MixerTuning) -> [f64; 4] {
     })
 }
 
-/// An output (0…1) for thrust that is more linear: propellers give little of it at low outputs, so these are raised, by
-/// k·x·(1 − x)².
+/// Returns the output (0…1) for a more linear thrust. Propellers give little thrust at low outputs, so these are raised
+/// by k·x·(1 − x)².
 fn boosted(output: f64, k: f64) -> f64 {
     if k <= 0.0 {
         return output;
@@ -70,8 +70,8 @@ fn boosted(output: f64, k: f64) -> f64 {
     output * (1.0 + k * (1.0 - output).powi(2))
 }
 
-/// The throttle whose boosted output is this one, so that the throttle stick feels as before. The fixed point is
-/// approached from above; a few rounds come within a hundredth.
+/// Returns the throttle whose boosted output is this one, so that the throttle stick feels unchanged. The iteration
+/// approaches the fixed point from above; a few rounds come within a hundredth.
 fn before_boost(throttle: f64, k: f64) -> f64 {
     const ROUNDS: usize = 12;
     if k <= 0.0 {
@@ -80,7 +80,7 @@ fn before_boost(throttle: f64, k: f64) -> f64 {
     (0..ROUNDS).fold(throttle, |before, _| 0.5 * (before + throttle / (1.0 + k * (1.0 - before).powi(2))))
 }
 
-/// The command for a pulse.
+/// Converts pulses to a motor command.
 pub(super) fn command(pulses_us: &[f64; 4]) -> MotorCommand {
     MotorCommand(pulses_us.map(|pulse| ((pulse - COMMAND_ZERO_US) / COMMAND_RANGE_US).clamp(0.0, 1.0)))
 }

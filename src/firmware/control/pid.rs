@@ -5,31 +5,32 @@ use super::derived::Derived;
 use super::tuning::{DMax, RateTuning};
 use crate::firmware::filter::{LowPassState, Pt1};
 
-/// Index of yaw among the axes.
+/// The index of yaw among the axes.
 const YAW: usize = 2;
-/// Setpoint change (°/s) at which the integral stops: sticks, and levelling, where the angle loop moves the setpoint.
+/// The setpoint change (°/s) at which the integral stops: for sticks, and for levelling, where the angle loop moves the
+/// setpoint.
 const RELAX_ACRO_DPS: f64 = 40.0;
 const RELAX_LEVEL_DPS: f64 = 8.0;
 
-/// What the rate loop is told in one step.
+/// The inputs of the rate loop in one step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct RateDemand {
-    /// Setpoints, °/s.
+    /// The setpoints, °/s.
     pub setpoint: [f64; 3],
-    /// Filtered gyro, °/s.
+    /// The filtered gyro rates, °/s.
     pub gyro: [f64; 3],
-    /// Axes that are levelled: their setpoints come from the angle loop.
+    /// `true` for each levelled axis, whose setpoint comes from the angle loop.
     pub levelled: [bool; 3],
-    /// Greatest deflection of the stick of each axis, 0…1.
+    /// The stick deflection of each axis, 0…1.
     pub deflection: [f64; 3],
-    /// Gains of D (and P) fall by this factor.
+    /// TPA, the factor that reduces D (and P).
     pub tpa: f64,
-    /// Rise of the gains in quick throttle changes.
+    /// The rise of the gains in quick throttle changes.
     pub boost: GainBoost,
     pub integrate: bool,
 }
 
-/// Memory of one axis.
+/// The state of one axis.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 struct Axis {
     integral: f64,
@@ -55,8 +56,8 @@ impl RateLoop {
         }
     }
 
-    /// Turns the integrals against the turn of the craft (°/s): as a vector they stay where they push in the world.
-    /// Yaw counts clockwise, the opposite of the axis that makes a right-handed system with roll and pitch.
+    /// Rotates the integrals against the turn of the craft (°/s), so that as a vector they keep their direction in the
+    /// world. Yaw counts clockwise, the opposite of the axis that makes a right-handed system with roll and pitch.
     fn rotate_iterms(&mut self, gyro: &[f64; 3], dt: f64) {
         let turn = gyro.map(|rate| rate.to_radians() * dt);
         let [roll, pitch, yaw] = [0, 1, 2].map(|axis| self.axes[axis].integral);
@@ -72,7 +73,7 @@ impl RateLoop {
         }
     }
 
-    /// One step; sums in thousandths of the mixer's range, before their limits.
+    /// Runs one step. Returns the sums in thousandths of the mixer's range, before their limits.
     pub(super) fn step(&mut self, demand: &RateDemand, tuning: &RateTuning, derived: &Derived) -> [f64; 3] {
         let mut sums = [0.0; 3];
         let rate_hz = 1.0 / derived.pid_dt;
@@ -127,7 +128,7 @@ impl RateLoop {
 }
 
 impl Axis {
-    /// Acceleration, filtered, °/s².
+    /// Returns the filtered acceleration, °/s².
     fn slope(&mut self, gyro: f64, rate_hz: f64, derived: &Derived) -> f64 {
         let first = self.d_filters[0].apply(gyro, &derived.d_lpf1);
         let filtered = self.d_filters[1].apply(first, &derived.d_lpf2);
@@ -136,7 +137,7 @@ impl Axis {
         slope
     }
 
-    /// D between its base and its greatest, by how fast the craft moves, °/s².
+    /// Returns the D gain between its base and its maximum, depending on the movement of the craft, °/s².
     fn d_gain(&mut self, base: f64, index: usize, moved: f64, d_max: &DMax, derived: &Derived) -> f64 {
         let most = d_max.most[index];
         if d_max.readiness <= 0.0 || most <= base {
@@ -146,7 +147,7 @@ impl Axis {
         base + (most - base) * share
     }
 
-    /// The error as the integral sees it: a setpoint that moves fast is no reason to wind up.
+    /// Returns the error that the integral uses. A fast-moving setpoint must not wind it up.
     fn relax(
         &mut self,
         index: usize,
@@ -166,7 +167,7 @@ impl Axis {
             return error;
         }
         if relax.by_gyro {
-            // Only what the slow gyro misses of the band about the moving setpoint counts.
+            // Only the part of the setpoint outside the band about the slow gyro counts.
             let slow = self.slow_gyro.apply(demand.gyro[index], derived.relax);
             let (low, high) = (slow - change, slow + change);
             return setpoint - setpoint.clamp(low, high);
@@ -176,7 +177,7 @@ impl Axis {
     }
 }
 
-/// Feed-forward fades in with the stick up to `transition`.
+/// Returns the feed-forward factor. It rises with the stick up to `transition`.
 fn fade(deflection: f64, transition: f64) -> f64 {
     if transition > 0.0 { (deflection / transition).min(1.0) } else { 1.0 }
 }
@@ -245,7 +246,7 @@ mod tests {
 
     #[test]
     fn d_rises_in_fast_moves_as_far_as_it_may() {
-        // The D part of a gyro that accelerates at 4000 °/s², and with it a setpoint.
+        // The D part for a gyro rate that accelerates at `slope` (°/s²).
         let d = |gain: i64, advance: i64, most: i64, slope: f64| {
             let mut settings = crate::firmware::settings::Settings::default();
             for (name, value) in [
@@ -311,7 +312,7 @@ mod tests {
             }
             rate_loop.axes.map(|axis| axis.integral.round())
         };
-        // A quarter turn clockwise: what rolled the craft to the right is now what pushes its nose down.
+        // A quarter turn clockwise: the integral that rolled the craft right now pushes its nose down.
         let quarter = [0.0, 0.0, 90.0];
         assert_eq!(turned(false, quarter, &mut tuning), [100.0, 0.0, 0.0]);
         let [roll, pitch, yaw] = turned(true, quarter, &mut tuning);

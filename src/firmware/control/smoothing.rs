@@ -1,28 +1,28 @@
-//! Smoothing of the sticks: an RC stream of 50 frames a second is a staircase to a loop of 1000.
+//! Smoothing of the sticks: to a loop of 1000 Hz, an RC stream of 50 frames a second is a staircase.
 
 use super::tuning::Tuning;
 use crate::firmware::filter::Pt3;
 
-/// Frame rate assumed before it is known, and the range that is believed, Hz.
+/// The frame rate assumed before it is measured, and the range of plausible rates, Hz.
 const ASSUMED_FRAME_HZ: f64 = 50.0;
 const FRAME_HZ: std::ops::RangeInclusive<f64> = 10.0..=1000.0;
-/// Lowest automatic cutoff, Hz.
+/// The lowest automatic cutoff, Hz.
 const LOWEST_CUTOFF_HZ: f64 = 15.0;
-/// Share of the newest interval in the mean one.
+/// The share of the newest interval in the mean interval.
 const INTERVAL_SHARE: f64 = 0.1;
-/// The cutoff follows when the mean interval moved by this share.
+/// The relative change of the mean interval that updates the cutoff.
 const INTERVAL_CHANGE: f64 = 0.1;
 
 /// Smooths roll, pitch, yaw and throttle.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Smoothing {
     filters: [Pt3; 4],
-    /// Gains and cutoffs of sticks and throttle.
+    /// The gains and cutoffs of sticks and throttle.
     gains: [f64; 2],
     cutoffs_hz: [f64; 2],
     since_frame_s: f64,
     interval_s: f64,
-    /// Interval the gains were computed for.
+    /// The interval that the gains were computed for.
     used_interval_s: f64,
 }
 
@@ -38,17 +38,17 @@ impl Smoothing {
         }
     }
 
-    /// Cutoffs of sticks and throttle in use, Hz; 0 while nothing is smoothed.
+    /// Returns the cutoffs of sticks and throttle in use, Hz; 0 while nothing is smoothed.
     pub(super) fn cutoffs_hz(&self) -> [f64; 2] {
         self.cutoffs_hz
     }
 
-    /// The gains are recomputed in the next step.
+    /// Makes the next step compute the gains again.
     pub(super) fn invalidate(&mut self) {
         self.used_interval_s = 0.0;
     }
 
-    /// One step; `values` are the setpoints of roll, pitch, yaw (°/s) and the throttle (0…1).
+    /// Runs one step. `values` are the setpoints of roll, pitch, yaw (°/s) and the throttle (0…1).
     pub(super) fn apply(&mut self, values: &[f64; 4], is_frame: bool, tuning: &Tuning, dt: f64) -> [f64; 4] {
         self.since_frame_s += dt;
         if is_frame {
@@ -88,7 +88,7 @@ impl Smoothing {
     }
 }
 
-/// Cutoff for a frame rate: the fixed one if set, else by the automatic factor.
+/// Returns the cutoff for a frame rate: the fixed one if set, otherwise by the automatic factor.
 fn cutoff_hz(frame_hz: f64, factor: f64, fixed_hz: f64) -> f64 {
     if fixed_hz > 0.0 {
         return fixed_hz;

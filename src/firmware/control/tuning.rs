@@ -1,11 +1,11 @@
-//! The settings of the control loops, in the units the loops work with.
+//! The settings of the control loops, in the units of the loops.
 
 use super::curve::{RateCurve, RatesType, ThrottleCurve, ThrottleLimit};
 use crate::firmware::config::{MixRow, MixerKind};
 use crate::firmware::filter::LowPassKind;
 use crate::firmware::settings::Settings;
 
-/// Gains of one axis; error in °/s, sum in thousandths of the mixer's range.
+/// The gains of one axis. The error is in °/s, the sum in thousandths of the mixer's range.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct AxisGains {
     /// Per °/s.
@@ -18,20 +18,20 @@ pub struct AxisGains {
     pub f: f64,
 }
 
-/// A low-pass as set: shape and cutoff, the cutoff moving with the throttle between two bounds.
+/// A low-pass with a cutoff that moves with the throttle between two bounds.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct DynamicLowPass {
     pub kind: LowPassKind,
-    /// Cutoff at zero throttle, Hz.
+    /// The cutoff at zero throttle, Hz.
     pub min_hz: f64,
-    /// Cutoff at full throttle, Hz; the same as `min_hz` for a static filter.
+    /// The cutoff at full throttle, Hz; equal to `min_hz` for a static filter.
     pub max_hz: f64,
-    /// Bend of the way between, 0…10.
+    /// The bend of the curve between them, 0…10.
     pub expo: f64,
 }
 
 impl DynamicLowPass {
-    /// Cutoff for a throttle 0…1, Hz.
+    /// Returns the cutoff for a throttle 0…1, Hz.
     pub fn cutoff_hz(&self, throttle: f64) -> f64 {
         let bent = throttle + throttle * (1.0 - throttle) * self.expo / 10.0;
         self.min_hz + (self.max_hz - self.min_hz) * bent
@@ -42,149 +42,147 @@ impl DynamicLowPass {
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct StaticLowPass {
     pub kind: LowPassKind,
-    /// Cutoff, Hz; 0 = off.
+    /// The cutoff, Hz; 0 = off.
     pub hz: f64,
 }
 
-/// When the integral is held back while the setpoint moves.
+/// Settings of i-term relax, which holds back the integral while the setpoint moves.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ItermRelax {
-    /// Axes it works on: roll and pitch, yaw.
+    /// The axes on which it works: roll, pitch, yaw.
     pub axes: [bool; 3],
-    /// Only while the integral grows.
+    /// Works only while the integral grows.
     pub increments_only: bool,
-    /// Judged by the gyro instead of the setpoint.
+    /// Uses the gyro instead of the setpoint.
     pub by_gyro: bool,
-    /// Cutoff of the slow setpoint, Hz.
+    /// The cutoff of the slow setpoint, Hz.
     pub cutoff_hz: f64,
 }
 
-/// Settings of what quick throttle changes do.
+/// Settings of the reactions to quick throttle changes.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BoostTuning {
-    /// Rise of I for a change over the whole throttle range, as a factor on top of 1.
+    /// The rise of I for a change over the whole throttle range, as a factor on top of 1.
     pub anti_gravity_i: f64,
-    /// The same of P, before its scale.
+    /// The same for P, before its scale.
     pub anti_gravity_p: f64,
-    /// Slower throttle changes than this do not count, Hz.
+    /// The cutoff below which throttle changes do not raise the gains, Hz.
     pub anti_gravity_cutoff_hz: f64,
-    /// Throttle on top per quick throttle change.
+    /// The throttle added per quick throttle change.
     pub throttle: f64,
-    /// Slower throttle changes than this do not count, Hz.
+    /// The cutoff below which throttle changes add no throttle, Hz.
     pub throttle_cutoff_hz: f64,
 }
 
-/// D-max: D that rises in fast moves.
+/// D-max: a D gain that rises in fast moves.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct DMax {
-    /// What D rises to on roll, pitch and yaw, per °/s²; not above the base: it stays.
+    /// The D gain in the fastest moves on roll, pitch and yaw, per °/s². It has no effect unless above the base.
     pub most: [f64; 3],
-    /// Share of the way for each °/s² of movement; 0: it stays at the base.
+    /// The share of the rise for each °/s² of movement; 0 = D stays at the base.
     pub readiness: f64,
-    /// How much a moving setpoint counts against a moving craft.
+    /// The weight of a moving setpoint relative to a moving craft.
     pub setpoint_share: f64,
 }
 
-/// Settings of the rate loop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RateTuning {
-    /// Gains of roll, pitch and yaw.
+    /// The gains of roll, pitch and yaw.
     pub gains: [AxisGains; 3],
     pub sum_limit: [f64; 3],
     pub integral_limit: [f64; 3],
     pub d_max: DMax,
-    /// I-term rotation: the integrals turn with the craft, so that they go on pushing into the same direction of the world.
+    /// I-term rotation: the integrals turn with the craft, so that they keep their direction in the world.
     pub iterm_rotation: bool,
-    /// First and second gyro filter.
+    /// The first gyro filter.
     pub gyro_lpf1: DynamicLowPass,
-    /// See [`RateTuning::gyro_lpf1`].
+    /// The second gyro filter.
     pub gyro_lpf2: StaticLowPass,
-    /// First and second filter of the derivative.
+    /// The first filter of the derivative.
     pub d_lpf1: DynamicLowPass,
-    /// See [`RateTuning::d_lpf1`].
+    /// The second filter of the derivative.
     pub d_lpf2: StaticLowPass,
-    /// Cutoff of the yaw P term, Hz; 0 = off.
+    /// The cutoff of the yaw P term, Hz; 0 = off.
     pub yaw_lowpass_hz: f64,
     pub relax: ItermRelax,
-    /// Reduction works on P, too.
+    /// Applies TPA to P, too.
     pub tpa_on_p: bool,
-    /// Throttle above which gains fall, 0…1, and by how much per unit.
+    /// The throttle above which TPA reduces the gains, 0…1.
     pub tpa_breakpoint: f64,
-    /// See [`RateTuning::tpa_breakpoint`].
+    /// The reduction per unit of throttle above [`RateTuning::tpa_breakpoint`].
     pub tpa_slope: f64,
-    /// Throttle below which gains fall, and by how much at zero.
+    /// The throttle below which the gains are reduced, 0…1.
     pub tpa_low_breakpoint: f64,
-    /// See [`RateTuning::tpa_low_breakpoint`].
+    /// The reduction at zero throttle; see [`RateTuning::tpa_low_breakpoint`].
     pub tpa_low_share: f64,
-    /// The low reduction stays on after the throttle was raised.
+    /// Keeps the low-throttle reduction on after the throttle was raised.
     pub tpa_low_always: bool,
-    /// Stick share within which feed-forward fades in, 0…1; 0 = everywhere full.
+    /// The share of the stick within which feed-forward fades in, 0…1; 0 = full everywhere.
     pub feedforward_transition: f64,
-    /// P, D and F work at zero throttle without airmode.
+    /// Lets P, D and F work at zero throttle without airmode.
     pub at_min_throttle: bool,
-    /// The loop runs every so many gyro samples.
+    /// The number of gyro samples per run of the loop.
     pub denominator: u8,
 }
 
 /// Settings of ANGLE and HORIZON.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LevelTuning {
-    /// Greatest angle of the sticks, °.
+    /// The largest angle of the sticks, °.
     pub limit_deg: f64,
-    /// Rate per angle error, 1/s.
+    /// The rate per angle error, 1/s.
     pub p: f64,
-    /// Share of the angle that is led instead of corrected, 1 = all of it.
+    /// The share of the angle that is led instead of corrected; 1 = all of it.
     pub feedforward: f64,
-    /// Time in which the leading angle follows a stick, s.
+    /// The time in which the leading angle follows a stick, s.
     pub smoothing_s: f64,
-    /// Share of yaw that turns about the vertical of the earth, 0…1.
+    /// The share of yaw that turns about the vertical of the earth, 0…1.
     pub earth_reference: f64,
-    /// Angles of a level craft, ° roll right and pitch nose down.
+    /// The angles of a level craft, °: roll right and pitch nose down.
     pub trim_deg: [f64; 2],
     /// ANGLE levels roll only; pitch is flown by rate.
     pub race_mode: bool,
-    /// HORIZON: share of levelling at the centre, 0…1.
+    /// HORIZON: the share of levelling at the stick centre, 0…1.
     pub horizon_strength: f64,
-    /// HORIZON: stick share where levelling ends.
+    /// HORIZON: the share of the stick at which levelling ends.
     pub horizon_stick_limit: f64,
-    /// HORIZON: tilt where levelling ends, °.
+    /// HORIZON: the tilt at which levelling ends, °.
     pub horizon_tilt_limit_deg: f64,
-    /// HORIZON: sticks do not reduce levelling.
+    /// HORIZON: the sticks do not reduce levelling.
     pub horizon_ignores_sticks: bool,
-    /// HORIZON: time in which levelling returns, s.
+    /// HORIZON: the time in which levelling returns, s.
     pub horizon_delay_s: f64,
 }
 
-/// Settings of mixer and motors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MixerTuning {
-    /// Shares of the four motors; yaw clockwise positive.
+    /// The shares of the four motors; yaw clockwise positive.
     pub rows: [MixRow; 4],
-    /// Propellers turn the other way round.
+    /// `true` if the propellers turn the other way round.
     pub yaw_reversed: bool,
-    /// Pulse of a stopped motor, µs.
+    /// The pulse of a stopped motor, µs.
     pub stop_us: f64,
-    /// Lowest pulse of a running motor, µs.
+    /// The lowest pulse of a running motor, µs.
     pub idle_us: f64,
-    /// Highest pulse, µs.
+    /// The highest pulse, µs.
     pub max_us: f64,
-    /// Share of the range that is used, 0…1.
+    /// The share of the range that is used, 0…1.
     pub output_limit: f64,
-    /// Slope that is added at zero output so that thrust is more linear in it, 0…1.5.
+    /// The slope added at zero output to make thrust more linear, 0…1.5.
     pub thrust_linear: f64,
 }
 
-/// Throttle added in level modes for what a tilted craft loses of its lift.
+/// The throttle added in level modes to make up for the lift that a tilted craft loses.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct TiltThrottle {
-    /// At the tilt below, share of the throttle range.
+    /// The share of the throttle range that is added at the tilt below.
     pub share: f64,
-    /// Tilt at which it is complete, rad.
+    /// The tilt at which the addition is complete, rad.
     pub complete_rad: f64,
 }
 
 impl TiltThrottle {
-    /// The throttle to add at a tilt.
+    /// Returns the throttle to add at a tilt.
     pub fn at(&self, cos_tilt: f64) -> f64 {
         if self.share <= 0.0 {
             return 0.0;
@@ -195,22 +193,22 @@ impl TiltThrottle {
     }
 }
 
-/// Everything the controller takes from the settings.
+/// Everything that the controller takes from the settings.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tuning {
-    /// Rate curves of roll, pitch and yaw.
+    /// The rate curves of roll, pitch and yaw.
     pub rates: [RateCurve; 3],
-    /// The yaw stick works the other way round.
+    /// `true` if the yaw stick works the other way round.
     pub yaw_stick_reversed: bool,
     pub throttle: ThrottleCurve,
     pub tilt_throttle: TiltThrottle,
     pub boost: BoostTuning,
-    /// Greatest change of the stick setpoints of roll, pitch and yaw, °/s²; 0 = any.
+    /// The largest change of the stick setpoints of roll, pitch and yaw, °/s²; 0 = no limit.
     pub accel_limit_dps2: [f64; 3],
     pub smoothing: bool,
     /// `rc_smoothing_auto_factor` for sticks and throttle.
     pub smoothing_factor: [f64; 2],
-    /// Fixed cutoffs of sticks and throttle, Hz; 0 = by the frame rate.
+    /// The fixed cutoffs of sticks and throttle, Hz; 0 = by the frame rate.
     pub smoothing_cutoff_hz: [f64; 2],
     pub rate: RateTuning,
     pub level: LevelTuning,
@@ -223,22 +221,22 @@ impl Default for Tuning {
     }
 }
 
-/// Units of the gain settings.
+/// The units of the gain settings.
 const P_SCALE: f64 = 0.032_029;
 const I_SCALE: f64 = 0.244_381;
 const D_SCALE: f64 = 0.000_529;
 const F_SCALE: f64 = 0.013_754 / 100.0;
 const YAW_I_FACTOR: f64 = 2.5;
-/// Unit of `acc_limit`, °/s².
+/// The unit of `acc_limit`, °/s².
 const ACCEL_LIMIT_UNIT_DPS2: f64 = 100.0;
-/// Acceleration of the craft or its setpoint (°/s²) at which D is at its greatest with a `d_max_gain` of 1.
+/// The acceleration of the craft or its setpoint (°/s²) at which D is at its maximum with a `d_max_gain` of 1.
 const FULL_D_DPS2: f64 = 200_000.0;
-/// The value of `angle_feedforward` that leads the whole angle. It is a little above the default, because the rate
-/// loop lags and the angle loop adds what is missing.
+/// The value of `angle_feedforward` that leads the whole angle. It is a little above the default, because the rate loop
+/// lags and the angle loop adds the rest.
 const FULL_ANGLE_FEEDFORWARD: f64 = 67.0;
 
 impl Tuning {
-    /// The tuning of the active profiles and of this airframe type. A type that cannot fly here flies as QUADX.
+    /// Reads the tuning of the active profiles for this airframe type. A type that cannot fly here flies as QUADX.
     pub fn from_settings(settings: &Settings, mixer: MixerKind, custom_mix: &[MixRow]) -> Self {
         let reader = Reader(settings);
         Self {
@@ -275,7 +273,7 @@ impl Reader<'_> {
         self.0.number(name) as f64
     }
 
-    /// The number of a setting whose name ends with an axis or begins with it.
+    /// Returns the number of a setting whose name contains an axis.
     fn of(&self, prefix: &str, axis: &str, suffix: &str) -> f64 {
         self.number(&format!("{prefix}{axis}{suffix}"))
     }

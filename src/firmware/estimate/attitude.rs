@@ -1,4 +1,4 @@
-//! Attitude: gyro integration, and the slow corrections that keep it true.
+//! Attitude: gyro integration, and slow corrections of its drift.
 //!
 //! Quaternion body FLU → world ENU. Corrections are rotations about world axes.
 
@@ -6,19 +6,19 @@ use nalgebra::{Quaternion, Rotation3, UnitQuaternion, Vector3};
 
 use crate::geo::GRAVITY;
 
-/// The accelerometer speaks about the vertical only while its size is within this part of gravity.
+/// The largest relative difference from gravity at which the accelerometer shows the vertical.
 const STEADY_PART: f64 = 0.1;
-/// Faster turns than this (rad/s) stop the integral of the correction.
+/// The turn rate (rad/s) above which the integral of the correction stops.
 const INTEGRAL_RATE_LIMIT: f64 = 20.0 * std::f64::consts::PI / 180.0;
-/// Greatest integral, rad/s.
+/// The largest integral, rad/s.
 const INTEGRAL_LIMIT: f64 = 0.1;
 
-/// Gains of the correction towards the measured vertical.
+/// The gains of the correction towards the measured vertical.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct VerticalGains {
-    /// Proportional, rad/s per unit of the sine of the error.
+    /// The proportional gain, rad/s per unit of the sine of the error.
     pub kp: f64,
-    /// Integral, rad/s² per unit.
+    /// The integral gain, rad/s² per unit.
     pub ki: f64,
 }
 
@@ -28,13 +28,13 @@ pub(super) struct Attitude {
     pub q: UnitQuaternion<f64>,
     /// The same as a matrix, as of the last [`Attitude::refresh`].
     pub matrix: Rotation3<f64>,
-    /// Rate correction found by the integral, body axes, rad/s.
+    /// The rate correction found by the integral, body axes, rad/s.
     rate_correction: Vector3<f64>,
     last_rate: Vector3<f64>,
 }
 
 impl Attitude {
-    /// Level, facing north.
+    /// Creates a level attitude facing north.
     pub(super) fn new() -> Self {
         Self::at(UnitQuaternion::from_axis_angle(&Vector3::z_axis(), std::f64::consts::FRAC_PI_2))
     }
@@ -48,7 +48,7 @@ impl Attitude {
         }
     }
 
-    /// Sets the tilt by what the accelerometer calls up; the heading stays.
+    /// Sets the tilt by the accelerometer. The heading stays.
     pub(super) fn align(&mut self, force: &Vector3<f64>) {
         let up = self.q * force;
         if let Some(turn) = UnitQuaternion::rotation_between(&up, &Vector3::z()) {
@@ -56,26 +56,26 @@ impl Attitude {
         }
     }
 
-    /// Takes over an attitude known from elsewhere.
+    /// Sets an attitude known from another source.
     pub(super) fn set(&mut self, q: UnitQuaternion<f64>) {
         self.q = q;
         self.refresh();
     }
 
-    /// Integrates one gyro sample (body rates, rad/s) by the mean of it and the one before.
+    /// Integrates one gyro sample (body rates, rad/s), averaged with the one before.
     pub(super) fn integrate(&mut self, rate: &Vector3<f64>, dt: f64) {
         let turn = (0.5 * (rate + self.last_rate) + self.rate_correction) * dt;
         self.last_rate = *rate;
-        // The exponential to third order: the turn of one step is far below a radian.
+        // The exponential to third order, because the turn of one step is far below a radian.
         let square = turn.norm_squared();
         let half = turn * (0.5 - square / 48.0);
         let step = Quaternion::new(1.0 - square * 0.125, half.x, half.y, half.z);
         let q = self.q.into_inner() * step;
-        // One Newton step keeps the length at one: the error of a single step is tiny.
+        // One Newton step keeps the length at one, because the error of a single step is tiny.
         self.q = UnitQuaternion::new_unchecked(q * (1.5 - 0.5 * q.norm_squared()));
     }
 
-    /// Brings the matrix up to date.
+    /// Normalises the quaternion and updates the matrix.
     pub(super) fn refresh(&mut self) {
         let q = UnitQuaternion::new_normalize(self.q.into_inner());
         self.q = if q.coords.iter().all(|c| c.is_finite()) { q } else { UnitQuaternion::identity() };
@@ -88,9 +88,9 @@ impl Attitude {
         self.refresh();
     }
 
-    /// Corrects the tilt towards the vertical that follows from a specific force `force` (world axes) whose craft
-    /// really accelerates by `force + missing − g`: gravity seen by an accelerometer whose motion is known. Returns
-    /// how much of `missing` the turn has explained, m/s².
+    /// Corrects the tilt towards the vertical. The specific force `force` (world axes) belongs to a craft whose real
+    /// acceleration is `force + missing − g`, so gravity can be found from a known motion. Returns the part of
+    /// `missing` that the turn has explained, m/s².
     pub(super) fn correct_tilt(
         &mut self,
         force: &Vector3<f64>,
@@ -109,32 +109,32 @@ impl Attitude {
         angle.cross(force)
     }
 
-    /// Rate correction found by the integral, body axes, rad/s.
+    /// Returns the rate correction found by the integral, body axes, rad/s.
     pub(super) fn rate_correction(&self) -> &Vector3<f64> {
         &self.rate_correction
     }
 
-    /// Roll, right positive, and pitch, nose down positive, rad.
+    /// Returns roll, right positive, and pitch, nose down positive, rad.
     pub(super) fn roll_pitch(&self) -> (f64, f64) {
         let m = self.matrix.matrix();
         (m[(2, 1)].atan2(m[(2, 2)]), (-m[(2, 0)]).clamp(-1.0, 1.0).asin())
     }
 
-    /// Heading, rad clockwise from north, 0…2π.
+    /// Returns the heading, rad clockwise from north, 0…2π.
     pub(super) fn heading(&self) -> f64 {
         let m = self.matrix.matrix();
         m[(0, 0)].atan2(m[(1, 0)]).rem_euclid(std::f64::consts::TAU)
     }
 
-    /// Cosine of the tilt from level.
+    /// Returns the cosine of the tilt from level.
     pub(super) fn cos_tilt(&self) -> f64 {
         self.matrix.matrix()[(2, 2)]
     }
 }
 
-/// What a specific force (world axes) lacks to be that of a craft in steady motion: what [`Attitude::correct_tilt`] is given
-/// when nothing better is known. `None` while the force is too far from gravity's size. The vertical part counts, too:
-/// it tells upright from upside down.
+/// Returns the difference between a specific force (world axes) and that of a craft in steady motion. It is the input
+/// of [`Attitude::correct_tilt`] if nothing better is known. `None` while the force is too far from the size of
+/// gravity. The vertical part counts, too: it distinguishes upright from upside down.
 pub(super) fn missing_in_steady_motion(force: &Vector3<f64>) -> Option<Vector3<f64>> {
     let size = force.norm() / GRAVITY;
     ((size - 1.0).abs() < STEADY_PART).then(|| Vector3::new(-force.x, -force.y, GRAVITY - force.z))
@@ -148,7 +148,7 @@ mod tests {
     fn angles_follow_the_conventions() {
         let mut attitude = Attitude::new();
         assert!(attitude.heading().abs() < 1e-12);
-        // Turning about the body axes: forward axis rolls right, left axis pitches the nose down.
+        // Turns about the body axes: the forward axis rolls right, the left axis pitches the nose down.
         for (rate, expected) in [
             (Vector3::new(0.5, 0.0, 0.0), (0.05, 0.0, 0.0)),
             (Vector3::new(0.0, 0.5, 0.0), (0.0, 0.05, 0.0)),

@@ -1,4 +1,4 @@
-//! Removing the constant errors of the inertial sensors while the craft stands still.
+//! Removal of the constant errors of the inertial sensors and the magnetometer.
 
 use nalgebra::{Matrix4, Vector3, Vector4};
 
@@ -6,11 +6,12 @@ use crate::geo::GRAVITY;
 
 /// Gyro units per rad/s: 16.4 per degree a second.
 const GYRO_UNITS: f64 = 16.4 * 180.0 / std::f64::consts::PI;
-/// Samples of an accelerometer calibration, one every 10 ms.
+/// The number of samples of an accelerometer calibration, one every 10 ms.
 const ACC_SAMPLES: u32 = 400;
-/// How long a magnetometer calibration lasts, s.
+/// The duration of a magnetometer calibration, s.
 const MAG_CALIBRATION_S: f64 = 30.0;
-/// The least span of an axis over the greatest, and the greatest over the farthest sample, of a craft that was turned.
+/// Signs that the craft was turned: the least ratio of the smallest span of an axis to the largest, and of the largest
+/// span to the farthest sample.
 const LEAST_ROUNDNESS: f64 = 0.5;
 const LEAST_SPAN: f64 = 0.5;
 /// A field in sensor units that keeps the numbers of the fit near one.
@@ -18,7 +19,7 @@ const MAG_UNIT: f64 = 1000.0;
 /// Accelerometer units of the stored calibration per g.
 const ACC_UNITS_PER_G: f64 = 2048.0;
 
-/// Averages the gyro until it was quiet for long enough.
+/// Averages the gyro until it has been quiet for long enough.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct GyroCalibration {
     first: Vector3<f64>,
@@ -26,9 +27,9 @@ pub(super) struct GyroCalibration {
     squares: Vector3<f64>,
     samples: u32,
     elapsed_s: f64,
-    /// Zero rate offset, rad/s.
+    /// The zero-rate offset, rad/s.
     pub bias: Vector3<f64>,
-    /// Whether the offset is known.
+    /// `true` once the offset is known.
     pub done: bool,
 }
 
@@ -37,14 +38,14 @@ impl GyroCalibration {
         Self::after(Vector3::zeros())
     }
 
-    /// Begins anew; the offset that was known (rad/s) is used until there is another.
+    /// Begins again. The known offset (rad/s) remains in use until there is a new one.
     pub(super) fn after(bias: Vector3<f64>) -> Self {
         let zero = Vector3::zeros();
         Self { first: zero, sum: zero, squares: zero, samples: 0, elapsed_s: 0.0, bias, done: false }
     }
 
-    /// One sample (rad/s). `duration_s` of samples whose standard deviation stays below `noise_limit` (gyro units; 0:
-    /// any) give the offset; otherwise it starts anew.
+    /// Takes one sample (rad/s). After `duration_s` the samples give the offset if their standard deviation is at most
+    /// `noise_limit` (gyro units; 0 = any); otherwise the calibration starts again.
     pub(super) fn feed(&mut self, rate: &Vector3<f64>, dt: f64, duration_s: f64, noise_limit: f64) {
         if self.samples == 0 {
             self.first = *rate;
@@ -70,7 +71,6 @@ impl GyroCalibration {
     }
 }
 
-/// A running accelerometer calibration.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct AccCalibration {
     sum: Vector3<f64>,
@@ -82,7 +82,7 @@ impl AccCalibration {
         Self { sum: Vector3::zeros(), left: ACC_SAMPLES }
     }
 
-    /// One sample (m/s², uncorrected); at the end the offset in units of the setting.
+    /// Takes one sample (m/s², uncorrected). At the end returns the offset in units of the setting.
     pub(super) fn feed(&mut self, force: &Vector3<f64>) -> Option<[i64; 3]> {
         self.sum += force;
         self.left = self.left.saturating_sub(1);
@@ -95,12 +95,12 @@ impl AccCalibration {
     }
 }
 
-/// A magnetometer calibration ended without the craft having been turned about all its axes.
+/// The result of a magnetometer calibration in which the craft was not turned about all its axes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NotTurned;
 
 /// A running magnetometer calibration. While the craft is turned about all axes, the field draws a part of a sphere
-/// about the offset of the sensor: |m − c|² = r², which is linear in c and r² − |c|². The least squares of that.
+/// about the offset of the sensor: |m − c|² = r², which is linear in c and r² − |c|². It is solved by least squares.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct MagCalibration {
     normal: Matrix4<f64>,
@@ -132,7 +132,7 @@ impl MagCalibration {
         self.right += row * scaled.norm_squared();
     }
 
-    /// Lets `dt` seconds pass; at the end the offset in units of the setting.
+    /// Counts down by `dt` seconds. At the end returns the offset in units of the setting.
     pub(super) fn wait(&mut self, dt: f64) -> Option<Result<[i64; 3], NotTurned>> {
         self.left_s -= dt;
         if self.left_s > 0.0 {
@@ -151,13 +151,13 @@ impl MagCalibration {
     }
 }
 
-/// The magnetometer offset (sensor units) that a stored calibration stands for.
+/// Converts a stored calibration to the magnetometer offset (sensor units).
 pub(super) fn mag_offset(units: &[i64]) -> Vector3<f64> {
     let axis = |at: usize| units.get(at).map_or(0.0, |&value| value as f64);
     Vector3::new(axis(0), axis(1), axis(2))
 }
 
-/// The accelerometer offset (m/s²) that a stored calibration stands for.
+/// Converts a stored calibration to the accelerometer offset (m/s²).
 pub(super) fn acc_offset(units: &[i64]) -> Vector3<f64> {
     let axis = |at: usize| units.get(at).map_or(0.0, |&value| value as f64 * GRAVITY / ACC_UNITS_PER_G);
     Vector3::new(axis(0), axis(1), axis(2))

@@ -1,37 +1,37 @@
-//! Whether the magnetometer and the GPS agree on the heading.
+//! The check that the magnetometer and the GPS agree on the heading.
 
-/// Disagreement beyond which the magnetometer is doubted, and within which it is believed again, rad.
+/// The disagreement above which the magnetometer is doubted, and below which it is trusted again, rad.
 const DOUBTED: f64 = 20.0 * std::f64::consts::PI / 180.0;
 const BELIEVED: f64 = 10.0 * std::f64::consts::PI / 180.0;
-/// How long either must last, s.
+/// The time for which either must last, s.
 const PATIENCE_S: f64 = 5.0;
 
-/// What one look at the disagreement leads to.
+/// The outcome of a check that changed the state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum CompassVerdict {
     /// The magnetometer is doubted from now on: the course is the heading.
     Doubted,
-    /// It is believed again.
+    /// The magnetometer is trusted again.
     Believed,
 }
 
-/// Watches the innovation of the magnetometer against the course that the GPS shows.
+/// Watches the difference between the magnetometer and the course of the GPS.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct CompassCheck {
-    /// Magnetic heading less the heading by the course, rad.
+    /// The magnetic heading minus the heading by the course, rad.
     innovation: f64,
     doubted: bool,
-    /// For how long the opposite of `doubted` has been the case, s.
+    /// The time for which the disagreement has contradicted `doubted`, s.
     contrary_s: f64,
 }
 
 impl CompassCheck {
-    /// A new flight: the magnetometer is believed.
+    /// Trusts the magnetometer again. Called at the start of a new flight.
     pub(super) fn reset(&mut self) {
         *self = Self::default();
     }
 
-    /// Takes in a disagreement that both witnesses are sure of, `dt` seconds after the one before.
+    /// Takes a reliable disagreement, `dt` seconds after the one before.
     pub(super) fn update(&mut self, innovation: f64, dt: f64) -> Option<CompassVerdict> {
         self.innovation = innovation;
         let is_contrary = if self.doubted { innovation.abs() < BELIEVED } else { innovation.abs() > DOUBTED };
@@ -44,17 +44,17 @@ impl CompassCheck {
         Some(if self.doubted { CompassVerdict::Doubted } else { CompassVerdict::Believed })
     }
 
-    /// Whether the magnetometer may correct the heading: neither doubted nor on the way there.
+    /// Returns `true` if the magnetometer may correct the heading: it is neither doubted nor suspected.
     pub(super) fn may_correct(&self) -> bool {
         !self.doubted && self.contrary_s == 0.0
     }
 
-    /// Whether it is on the way to be doubted.
+    /// Returns `true` if it is suspected but not yet doubted.
     pub(super) fn is_suspected(&self) -> bool {
         !self.doubted && self.contrary_s > 0.0
     }
 
-    /// By how much the magnetometer is off, rad, while it is doubted.
+    /// Returns the error of the magnetometer, rad, while it is doubted.
     pub(super) fn doubt(&self) -> Option<f64> {
         self.doubted.then_some(self.innovation)
     }

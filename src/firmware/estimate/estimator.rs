@@ -17,28 +17,30 @@ use crate::firmware::filter::{Pt1, Pt2, pt1_gain};
 use crate::geo::{GRAVITY, LatLon, wrap_pi};
 use crate::signals::{GpsSample, SensorFrame, SimTime};
 
-/// Nominal step of the slow part, s.
+/// The nominal step of the slow part, s.
 const SLOW_S: f64 = 0.01;
-/// Longest step that is integrated, s: after a stall the craft is where it was, not where it was heading.
+/// The longest step that is integrated, s. After a stall the craft is assumed to be at its last position, not further
+/// along its path.
 const LONGEST_STEP_S: f64 = 0.05;
-/// Greatest readings that a sensor can give, rad/s and m/s²; beyond, it is broken.
+/// The largest plausible sensor readings, rad/s and m/s². Beyond them the sensor is broken.
 const RATE_LIMIT: f64 = 60.0;
 const FORCE_LIMIT: f64 = 500.0;
-/// The tilt follows the accelerometer so much faster on the ground.
+/// The factor by which the tilt follows the accelerometer faster on the ground.
 const PARKED_FACTOR: f64 = 10.0;
-/// And so much slower in the air after the GPS was lost or before the heading is known: the tilt is true then, but a craft
-/// that coasts to a stop feels its drag as a tilt, and one that speeds up feels nothing.
+/// The same factor in the air after the GPS was lost or before the heading is known: slower. The tilt is correct then,
+/// but a craft that coasts to a stop feels its drag as a tilt, and one that speeds up feels nothing.
 const ORPHANED_FACTOR: f64 = 0.2;
-/// While the horizontal filter says how the craft moves the correction is better informed: it works so much faster,
-/// and an integral (critically damped: a quarter of the square of the gain) finds a gyro offset in flight.
+/// The same factor while the horizontal filter knows the motion of the craft. The correction is then better informed
+/// and works faster, and an integral (critically damped: a quarter of the square of the gain) finds a gyro offset in
+/// flight.
 const AIDED_FACTOR: f64 = 2.0;
 const AIDED_INTEGRAL: f64 = 0.25;
-/// The magnetometer counts as present for this long after a sample, s.
+/// The time after a sample for which the magnetometer counts as present, s.
 const MAG_VALID_S: f64 = 1.0;
-/// The same inertial sample for this long is a frozen sensor, s.
+/// The time with the same inertial sample after which the sensor counts as frozen, s.
 const FROZEN_S: f64 = 1.0;
 
-/// Estimates attitude, position and altitude from what the sensors deliver.
+/// Estimates attitude, position and altitude from sensor data.
 #[derive(Debug, Clone)]
 pub struct Estimator {
     options: EstimatorOptions,
@@ -47,7 +49,7 @@ pub struct Estimator {
     estimate: Estimate,
     time: Option<SimTime>,
     armed: bool,
-    /// The horizontal filter told the tilt correction how the craft moves, in this flight.
+    /// `true` if the horizontal filter has supported the tilt correction in this flight.
     was_aided: bool,
     last_rate: Vector3<f64>,
     last_force: Vector3<f64>,
@@ -58,10 +60,10 @@ pub struct Estimator {
     mag: Option<MagCalibration>,
     mag_result: Option<Result<[i64; 3], NotTurned>>,
     attitude: Attitude,
-    /// Sum of the specific force since the last attitude step, body axes, and how many samples.
+    /// The sum of the specific force since the last attitude step, body axes, and the number of samples.
     force_sum: Vector3<f64>,
     force_samples: f64,
-    /// Sum of their means, world axes, since the last slow step, and how many.
+    /// The sum of their means since the last slow step, world axes, and the number of means.
     world_sum: Vector3<f64>,
     world_samples: f64,
     force_filter: [Pt1; 3],
@@ -69,7 +71,7 @@ pub struct Estimator {
     pending_gps: Option<(GpsSample, SimTime)>,
     pending_pressure: Option<f64>,
     pending_mag: Option<Vector3<f64>>,
-    /// Since the magnetometer last corrected the heading, and since its newest sample, s.
+    /// The time since the magnetometer last corrected the heading, and since its newest sample, s.
     since_mag_s: f64,
     since_mag_sample_s: f64,
     gps: GpsMonitor,
@@ -78,7 +80,7 @@ pub struct Estimator {
     course: CourseComparison,
     compass: CompassCheck,
     straight: StraightFlight,
-    /// How far the estimated heading was clockwise of the magnetometer's newest sample, rad.
+    /// The angle of the estimated heading clockwise from that of the newest magnetometer sample, rad.
     mag_error: f64,
     solution_at: SimTime,
     shown_alt: Pt2,
@@ -86,7 +88,7 @@ pub struct Estimator {
 }
 
 impl Estimator {
-    /// An estimator at boot.
+    /// Creates an estimator at boot.
     pub fn new(options: EstimatorOptions, tuning: EstimatorTuning) -> Self {
         let mut horizontal = Horizontal::new();
         horizontal.set_accel_trust(tuning.accel_trust);
@@ -131,7 +133,7 @@ impl Estimator {
         }
     }
 
-    /// Changes the settings, outside of a step.
+    /// Changes the tuning. Not for use within a step.
     pub fn set_tuning(&mut self, tuning: EstimatorTuning) {
         self.horizontal.set_accel_trust(tuning.accel_trust);
         self.tuning = tuning;
@@ -141,8 +143,8 @@ impl Estimator {
         &self.estimate
     }
 
-    /// The craft was armed: altitude zero is here, the local frame counts from `home` (or from here, when no home
-    /// could be taken).
+    /// Sets altitude zero here and starts the local frame at `home`, or at the present position if no home could be
+    /// set. Called when the craft is armed.
     pub fn on_arm(&mut self, home: Option<LatLon>) {
         self.armed = true;
         self.was_aided = false;
@@ -155,7 +157,7 @@ impl Estimator {
         self.publish();
     }
 
-    /// The craft was disarmed. Altitude and position keep their zero, so that the way back to home stays known.
+    /// Notes that the craft was disarmed. Altitude and position keep their zero, so the way back to home stays known.
     pub fn on_disarm(&mut self) {
         self.armed = false;
     }
@@ -166,30 +168,31 @@ impl Estimator {
         self.estimate.calibrating = true;
     }
 
-    /// Starts a calibration of the accelerometer; the craft must stand level.
+    /// Starts a calibration of the accelerometer. The craft must be level and still.
     pub fn calibrate_accelerometer(&mut self) {
         self.acc = Some(AccCalibration::new());
         self.estimate.calibrating = true;
     }
 
-    /// Starts a calibration of the magnetometer: for half a minute the craft is to be turned about all its axes.
+    /// Starts a calibration of the magnetometer. The pilot must turn the craft about all its axes for half a minute.
     pub fn calibrate_magnetometer(&mut self) {
         self.mag = Some(MagCalibration::new());
         self.estimate.calibrating = true;
     }
 
-    /// The result of a magnetometer calibration that has just ended, for `mag_calibration`. Given once.
+    /// Returns the result of a magnetometer calibration that has just ended, for `mag_calibration`. Returns it only
+    /// once.
     pub fn take_mag_calibration(&mut self) -> Option<Result<[i64; 3], NotTurned>> {
         self.mag_result.take()
     }
 
-    /// The result of an accelerometer calibration that has just ended, for the first three elements of
-    /// `acc_calibration`. Given once.
+    /// Returns the result of an accelerometer calibration that has just ended, for the first three elements of
+    /// `acc_calibration`. Returns it only once.
     pub fn take_acc_calibration(&mut self) -> Option<[i64; 3]> {
         self.acc_result.take()
     }
 
-    /// Takes in one frame; says which slower loops run in this step.
+    /// Processes one frame. Returns the slower loops that run in this step.
     pub fn update(&mut self, frame: &SensorFrame) -> DueTasks {
         let now = frame.time;
         let dt = self.time.map_or(0.0, |last| now.seconds_since(last)).min(LONGEST_STEP_S);
@@ -220,11 +223,11 @@ impl Estimator {
         due
     }
 
-    /// Gyro and accelerometer of this step; a broken sample repeats the last good one.
+    /// Takes the gyro and accelerometer samples of this step. A broken sample repeats the last good one.
     fn take_inertial(&mut self, frame: &SensorFrame, dt: f64) {
         let (rate, force) = (frame.rate_flu, frame.specific_force_flu);
         let is_same = rate == self.last_rate && force == self.last_force + self.tuning.acc_offset_flu;
-        // Standing still the samples of an ideal sensor repeat, too.
+        // At rest, the samples of an ideal sensor repeat, too.
         self.same_s = if is_same && rate.norm() > 0.01 { self.same_s + dt } else { 0.0 };
         self.estimate.imu_frozen = self.same_s > FROZEN_S;
         if rate.norm() <= RATE_LIMIT {
@@ -244,7 +247,7 @@ impl Estimator {
         self.estimate.force_flu = self.last_force;
     }
 
-    /// What does not come with every frame waits for the next slow step.
+    /// Stores samples that do not come with every frame for the next slow step.
     fn take_slow(&mut self, frame: &SensorFrame) {
         if let Some(gps) = frame.gps {
             self.pending_gps = Some((gps, frame.time));
@@ -290,7 +293,7 @@ impl Estimator {
             }
         }
         let felt = Vector2::new(force.y, force.x);
-        // What is felt has no direction over ground while the heading is unknown.
+        // While the heading is unknown, the felt acceleration has no known direction over the ground.
         let known = if self.estimate.heading_valid { felt } else { Vector2::zeros() };
         self.horizontal.predict(known, dt);
         self.vertical.predict(force.z - GRAVITY, dt);
@@ -330,21 +333,21 @@ impl Estimator {
         }
     }
 
-    /// What a solution's velocity (north, east) says about the heading; `turn` is what the comparison of accelerations
-    /// corrects, anticlockwise, rad.
+    /// Updates the heading from a solution's velocity (north, east). `turn` is the correction from the comparison of
+    /// accelerations, anticlockwise, rad.
     fn fuse_course(&mut self, velocity: Vector2<f64>, turn: f64, arrived: SimTime) {
         let dt = arrived.seconds_since(std::mem::replace(&mut self.solution_at, arrived)).min(1.0);
         if !self.estimate.heading_valid {
             let course = self.straight.update(velocity, self.tuning.min_forward_mps, dt);
             if let Some(course) = course {
-                // Where accelerations tell nothing the craft is taken to fly nose first.
+                // If accelerations give no evidence, the craft is assumed to fly nose first.
                 let nose_first = || wrap_pi(self.attitude.heading() - course);
                 self.take_heading(self.course.heading_error().unwrap_or_else(nose_first));
                 self.estimate.heading_valid = true;
             }
             return;
         }
-        // A suspected magnetometer corrects nothing: the heading is that of the course by then.
+        // A suspected magnetometer corrects nothing, so the heading already follows the course.
         let held = || self.compass.is_suspected().then_some(0.0);
         if self.tuning.has_mag
             && self.since_mag_sample_s < MAG_VALID_S
@@ -359,7 +362,7 @@ impl Estimator {
         }
     }
 
-    /// The estimated heading is this far clockwise of the true one, rad: turns it there at once.
+    /// Corrects the heading at once. `error` is the angle of the estimated heading clockwise from the true one, rad.
     fn take_heading(&mut self, error: f64) {
         self.turn_heading(error);
         self.course.clear();
@@ -374,7 +377,7 @@ impl Estimator {
         }
     }
 
-    /// Whether the magnetometer leads the heading.
+    /// Returns `true` if the magnetometer corrects the heading.
     fn has_mag(&self) -> bool {
         self.tuning.has_mag && self.since_mag_s < MAG_VALID_S
     }

@@ -1,21 +1,21 @@
-//! What the flight controller knows about its GPS receiver.
+//! The state of the GPS receiver.
 
 use crate::signals::{GpsSample, SimTime};
 
-/// Identical solutions in a row that mean a frozen receiver.
+/// The number of repetitions of a solution that mean a frozen receiver.
 const FROZEN_SAMPLES: u8 = 3;
-/// Slower solutions (m/s) may repeat: the craft stands.
+/// The speed (m/s) up to which solutions may repeat, because the craft is at rest.
 const STANDING_MPS: f64 = 0.02;
 
-/// What a good solution reports: dilution of precision, accuracies of position (m) and speed (m/s).
+/// The values of a good solution: dilution of precision, accuracies of position (m) and speed (m/s).
 const GOOD_HDOP: f64 = 0.8;
 const GOOD_HORIZONTAL_M: f64 = 1.0;
 const GOOD_VERTICAL_M: f64 = 1.6;
 const GOOD_SPEED_MPS: f64 = 0.05;
-/// A solution counts as at most so many times worse than a good one.
+/// The largest factor by which a solution counts as worse than a good one.
 const WORST: f64 = 20.0;
 
-/// How many times larger than those of a good solution the errors are that a solution reports, 1…20.
+/// The errors that a solution reports, as multiples of those of a good solution, 1…20.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Dilution {
     pub horizontal: f64,
@@ -24,7 +24,7 @@ pub(super) struct Dilution {
 }
 
 impl Dilution {
-    /// By the worse of dilution of precision and accuracy; what is not reported (0) does not count.
+    /// Uses the worse of dilution of precision and accuracy. Values that are not reported (0) do not count.
     pub(super) fn of(sample: &GpsSample) -> Self {
         let geometry = (sample.hdop / GOOD_HDOP).max(1.0);
         let worse = |reported: f64, good: f64| geometry.max(reported / good).min(WORST);
@@ -36,21 +36,21 @@ impl Dilution {
     }
 }
 
-/// State of the GPS receiver.
+/// The state of the GPS receiver.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct GpsStatus {
-    /// A fresh 3-D fix.
+    /// `true` while there is a fresh 3-D fix.
     pub fix: bool,
-    /// Satellites of the newest message; 0 without messages.
+    /// The number of satellites in the newest message; 0 without messages.
     pub sats: u8,
-    /// Horizontal dilution of precision; 0 = not reported.
+    /// The horizontal dilution of precision; 0 = not reported.
     pub hdop: f64,
     /// The newest solution with a fix.
     pub solution: Option<GpsSample>,
     pub messages: u32,
-    /// Seconds since the newest message.
+    /// The time since the newest message, s.
     pub age_s: f64,
-    /// The receiver repeats the same solution although the craft moves.
+    /// `true` if the receiver repeats the same solution although the craft moves.
     pub frozen: bool,
 }
 
@@ -64,7 +64,7 @@ pub(super) struct GpsMonitor {
 }
 
 impl GpsMonitor {
-    /// Takes in a message; returns it when it is a usable solution.
+    /// Takes a message. Returns it if it is a usable solution.
     pub(super) fn receive(&mut self, sample: GpsSample, now: SimTime) -> Option<GpsSample> {
         let is_sane = sample.vel_enu.iter().all(|v| v.is_finite()) && sample.position.is_on_globe();
         let usable = sample.fix && is_sane;
@@ -81,11 +81,11 @@ impl GpsMonitor {
         status.frozen = self.repeats >= FROZEN_SAMPLES;
         status.solution = Some(sample);
         self.has_fix = !status.frozen;
-        // A repeated solution describes a past that was already taken in.
+        // A repeated solution describes a past that was already processed.
         (!is_repeated).then_some(sample)
     }
 
-    /// Brings age and fix up to date.
+    /// Updates age and fix.
     pub(super) fn update(&mut self, now: SimTime, timeout_s: f64) {
         let status = &mut self.status;
         status.age_s = now.seconds_since(self.arrived);

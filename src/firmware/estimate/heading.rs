@@ -1,33 +1,34 @@
-//! Keeping the heading true: by the magnetometer, and by comparing accelerations with the GPS.
+//! Correction of the heading: by the magnetometer, and by comparing accelerations with the GPS.
 
 use nalgebra::{Rotation3, Vector2, Vector3};
 
 use crate::geo::wrap_pi;
 
-/// Time constants of the correction by the magnetometer, s: on the ground, trusted in the air, and not.
+/// The time constants of the correction by the magnetometer, s: on the ground, trusted in the air, and not trusted in
+/// the air.
 const PARKED_S: f64 = 0.5;
 const TRUSTED_S: f64 = 5.0;
 const DOUBTED_S: f64 = 20.0;
-/// A doubted magnetometer is heard within this, rad.
+/// The largest error at which a doubted magnetometer is still used, rad.
 const DOUBT_LIMIT: f64 = 10.0 * std::f64::consts::PI / 180.0;
-/// Remembered steps of inertial velocity: 320 ms.
+/// The number of remembered steps of inertial velocity: 320 ms.
 const DEPTH: usize = 32;
-/// Solutions between the ends of a comparison: 1 s at 10 Hz.
+/// The number of solutions between the ends of a comparison: 1 s at 10 Hz.
 const WINDOW: usize = 10;
-/// Change of velocity over the window that says something about direction, m/s, and one that says all.
+/// The least change of velocity over the window that indicates a direction, m/s, and the change with full weight.
 const LEAST_CHANGE: f64 = 1.0;
 const FULL_CHANGE: f64 = 3.0;
-/// Share of the disagreement that one comparison corrects.
+/// The share of the disagreement that one comparison corrects.
 const SHARE: f64 = 0.05;
-/// Changes of velocity from which on comparisons are evidence, m/s, and what is left of it after the next one: 5 s.
+/// The least velocity change that counts as evidence, m/s, and the share of the evidence kept per comparison: 5 s.
 const EVIDENT_CHANGE: f64 = 0.5;
 const EVIDENCE_KEPT: f64 = 0.98;
-/// Evidence that is enough, (m/s)², and how much of it must speak for the same angle.
+/// The evidence that is enough, (m/s)², and the share of it that must agree on the same angle.
 const ENOUGH: f64 = 5.0;
 const COHERENT: f64 = 0.8;
 
-/// How far the estimated heading is clockwise of the true one by a magnetometer sample (body axes), rad; `None` when
-/// the field points straight up or down.
+/// Returns the angle of the estimated heading clockwise from the true one by a magnetometer sample (body axes), rad;
+/// `None` if the field points straight up or down.
 pub(super) fn magnetic_error(
     attitude: &Rotation3<f64>,
     mag_flu: &Vector3<f64>,
@@ -39,7 +40,7 @@ pub(super) fn magnetic_error(
     (horizontal > 0.05 * field.norm() && error.is_finite()).then_some(error)
 }
 
-/// How much the magnetometer is trusted now.
+/// The trust in the magnetometer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum MagTrust {
     Parked,
@@ -50,7 +51,7 @@ pub(super) enum MagTrust {
 }
 
 impl MagTrust {
-    /// The part of a heading error that one sample corrects after `dt` seconds, rad; zero when it is not believed.
+    /// Returns the part of a heading error that one sample corrects after `dt` seconds, rad; zero if it is not trusted.
     pub(super) fn correction(self, error: f64, dt: f64) -> f64 {
         let time_constant = match self {
             Self::Parked => PARKED_S,
@@ -62,8 +63,8 @@ impl MagTrust {
     }
 }
 
-/// Compares the velocity change that the accelerometer saw with the one that the GPS saw: the angle between them is
-/// the error of the heading. It speaks only while the craft accelerates.
+/// Compares the velocity change felt by the accelerometer with the one seen by the GPS. The angle between them is the
+/// error of the heading. It works only while the craft accelerates.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct CourseComparison {
     inertial: [Vector2<f64>; DEPTH],
@@ -71,7 +72,8 @@ pub(super) struct CourseComparison {
     window: [(Vector2<f64>, Vector2<f64>); WINDOW],
     filled: usize,
     next: usize,
-    /// Velocity changes felt, turned by those seen: a sum of (scalar product, felt to the right of seen), and of sizes.
+    /// The felt velocity changes relative to the seen ones: the sum of (scalar product, felt to the right of seen), and
+    /// the sum of sizes.
     evidence: Vector2<f64>,
     evidence_size: f64,
 }
@@ -90,34 +92,35 @@ impl CourseComparison {
         }
     }
 
-    /// One step of inertial acceleration (north, east), m/s².
+    /// Takes one step of inertial acceleration (north, east), m/s².
     pub(super) fn predict(&mut self, accel: Vector2<f64>, dt: f64) {
         let velocity = self.inertial[self.newest] + accel * dt;
         self.newest = (self.newest + 1) % DEPTH;
         self.inertial[self.newest] = velocity;
     }
 
-    /// A gap in the solutions: start over.
+    /// Starts again. Called after a gap in the solutions.
     pub(super) fn clear(&mut self) {
         self.filled = 0;
         (self.evidence, self.evidence_size) = (Vector2::zeros(), 0.0);
     }
 
-    /// The heading was turned anticlockwise by `angle`, rad: what was felt lies that much further left.
+    /// Adapts to a heading that was turned anticlockwise by `angle`, rad: the felt changes are that much further left.
     pub(super) fn turn(&mut self, angle: f64) {
         let (sin, cos) = angle.sin_cos();
         let (x, y) = (self.evidence.x, self.evidence.y);
         self.evidence = Vector2::new(x * cos + y * sin, y * cos - x * sin);
     }
 
-    /// How far the estimated heading is clockwise of the true one by the last seconds, rad, when they say enough.
+    /// Returns the angle of the estimated heading clockwise from the true one over the last seconds, rad, if there is
+    /// enough evidence.
     pub(super) fn heading_error(&self) -> Option<f64> {
         let size = self.evidence_size;
         let is_sure = size > ENOUGH && self.evidence.norm() > COHERENT * size;
         is_sure.then(|| self.evidence.y.atan2(self.evidence.x))
     }
 
-    /// A solution's velocity (north, east) of `age` steps ago; returns the correction of the heading,
+    /// Compares a solution's velocity (north, east) of `age` steps ago. Returns the correction of the heading,
     /// anticlockwise positive, rad.
     pub(super) fn compare(&mut self, velocity: Vector2<f64>, age: usize) -> f64 {
         let inertial = self.inertial[(self.newest + DEPTH - age.min(DEPTH - 1)) % DEPTH];
@@ -133,7 +136,7 @@ impl CourseComparison {
         self.evidence *= EVIDENCE_KEPT;
         self.evidence_size *= EVIDENCE_KEPT;
         if size >= EVIDENT_CHANGE {
-            // (North, east): positive when what was felt lies to the right.
+            // (North, east): positive if the felt change is to the right.
             self.evidence += Vector2::new(felt.dot(&seen), seen.perp(&felt));
             self.evidence_size += felt.norm() * seen.norm();
         }
@@ -152,7 +155,7 @@ mod tests {
 
     #[test]
     fn a_craft_that_believes_to_point_further_right_sees_north_further_right() {
-        // True heading north; the estimate says 0.1 rad clockwise of it.
+        // The true heading is north; the estimate is 0.1 rad clockwise of it.
         let truth = Rotation3::from_axis_angle(&Vector3::z_axis(), std::f64::consts::FRAC_PI_2);
         let believed = Rotation3::from_axis_angle(&Vector3::z_axis(), -0.1) * truth;
         let field = Vector3::new(0.0, 2046.8, -3547.2);

@@ -1,33 +1,33 @@
-//! The recent past of one axis, so that a late measurement is compared with what was believed at its own time.
+//! The recent past of one axis, so that a late measurement is compared with the estimate at its own time.
 
 use super::kalman::Gain;
 
-/// Steps remembered: 320 ms at 100 Hz.
+/// The number of steps remembered: 320 ms at 100 Hz.
 const DEPTH: usize = 32;
 
 /// Position and velocity of the last [`DEPTH`] steps, and the present state with its acceleration error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Axis {
-    /// Position now, m.
+    /// The position now, m.
     pub position: f64,
-    /// Velocity now, m/s.
+    /// The velocity now, m/s.
     pub velocity: f64,
-    /// Acceleration that is missing from the measured one, m/s².
+    /// The acceleration missing from the measured one, m/s².
     pub accel_error: f64,
     past: [(f64, f64); DEPTH],
     newest: usize,
 }
 
-/// Greatest acceleration error, m/s²: more than a tilt error of 17° or the worst accelerometer makes.
+/// The largest acceleration error, m/s²: more than a tilt error of 17° or the worst accelerometer causes.
 const ACCEL_ERROR_LIMIT: f64 = 3.0;
 
 impl Axis {
-    /// At rest at zero.
+    /// Creates an axis at rest at zero.
     pub(super) fn new() -> Self {
         Self { position: 0.0, velocity: 0.0, accel_error: 0.0, past: [(0.0, 0.0); DEPTH], newest: 0 }
     }
 
-    /// Starts anew at this position and velocity, as if it had always moved like that.
+    /// Starts again at this position and velocity, as if it had always moved like that.
     pub(super) fn reset(&mut self, position: f64, velocity: f64, dt: f64) {
         (self.position, self.velocity) = (position, velocity);
         for age in 0..DEPTH {
@@ -36,7 +36,7 @@ impl Axis {
         }
     }
 
-    /// One step with the measured acceleration (m/s²).
+    /// Takes one step with the measured acceleration (m/s²).
     pub(super) fn predict(&mut self, accel: f64, dt: f64) {
         let accel = accel + self.accel_error;
         self.position += dt * (self.velocity + 0.5 * dt * accel);
@@ -45,13 +45,12 @@ impl Axis {
         self.past[self.newest] = (self.position, self.velocity);
     }
 
-    /// Position and velocity `age` steps ago; the oldest known for more.
+    /// Returns position and velocity `age` steps ago, or the oldest known if `age` is larger.
     pub(super) fn past(&self, age: usize) -> (f64, f64) {
         self.past[self.slot(age)]
     }
 
-    /// Takes in an innovation of `age` steps ago: the correction belongs to that instant, what followed from it is
-    /// corrected with it.
+    /// Applies an innovation of `age` steps ago. It corrects that instant and everything that followed from it.
     pub(super) fn correct(&mut self, gain: &Gain, innovation: f64, age: usize, dt: f64) {
         let age = age.min(DEPTH - 1);
         let (p, v) = (gain.position * innovation, gain.velocity * innovation);

@@ -1,4 +1,4 @@
-//! Position and velocity over the ground: dead reckoning by the accelerometer, held by the GPS.
+//! Position and velocity over the ground: dead reckoning by the accelerometer, corrected by the GPS.
 
 use nalgebra::Vector2;
 
@@ -8,24 +8,24 @@ use super::kalman::{Gain, KalmanCovariance, ProcessNoise};
 use crate::geo::{LatLon, local_offset};
 use crate::signals::GpsSample;
 
-/// Nominal step, s.
+/// The nominal step, s.
 const STEP_S: f64 = 0.01;
-/// White error of the acceleration, (m/s²)²/Hz, with `ap_position_a` at its default.
+/// The white error of the acceleration, (m/s²)²/Hz, with `ap_position_a` at its default.
 const ACCEL_NOISE: f64 = 4e-4;
-/// Walk of its slow error, tilt and accelerometer together, (m/s³)²/Hz.
+/// The random walk of its slow error, tilt and accelerometer together, (m/s³)²/Hz.
 const DRIFT_NOISE: f64 = 2.5e-3;
-/// Standard deviations of a good solution, m and m/s.
+/// The standard deviations of a good solution, m and m/s.
 const POSITION_SIGMA: f64 = 0.3;
 const VELOCITY_SIGMA: f64 = 0.07;
-/// An innovation is suspicious beyond this many standard deviations and this size (m, m/s).
+/// An innovation is suspicious if it exceeds this many standard deviations plus this size (m, m/s).
 const GATE_SIGMAS: f64 = 5.0;
 const POSITION_GATE: f64 = 2.0;
 const VELOCITY_GATE: f64 = 3.0;
-/// Suspicious solutions in a row that are believed after all: 1 s.
+/// The number of suspicious solutions in a row that are accepted after all: 1 s.
 const PATIENCE: u8 = 10;
-/// Solutions after which the filter has settled.
+/// The number of solutions after which the filter has settled.
 const SETTLED: u8 = 20;
-/// Dead reckoning counts as valid for this long, s.
+/// The time for which dead reckoning counts as valid, s.
 const VALID_S: f64 = 2.0;
 
 /// The horizontal filter; vectors are (north, east) of the origin.
@@ -72,34 +72,34 @@ impl Horizontal {
         Vector2::new(self.north.velocity, self.east.velocity)
     }
 
-    /// Acceleration that the accelerometer does not see because the attitude or itself is wrong, m/s².
+    /// Returns the acceleration that the measured one lacks because the attitude or the accelerometer is wrong, m/s².
     pub(super) fn accel_error(&self) -> Vector2<f64> {
         Vector2::new(self.north.accel_error, self.east.accel_error)
     }
 
-    /// Says that a turn of the attitude explains this much of the acceleration error.
+    /// Subtracts the acceleration error that a turn of the attitude has explained.
     pub(super) fn explain(&mut self, accel: Vector2<f64>) {
         self.north.accel_error -= accel.x;
         self.east.accel_error -= accel.y;
     }
 
-    /// Says that the acceleration error so far was one of the heading, which is known now.
+    /// Clears the acceleration error, which came from a wrong heading that is now known.
     pub(super) fn forget_accel_error(&mut self) {
         (self.north.accel_error, self.east.accel_error) = (0.0, 0.0);
         self.covariance = KalmanCovariance::new(POSITION_SIGMA, VELOCITY_SIGMA, 0.3);
     }
 
-    /// Whether position and velocity mean something.
+    /// Returns `true` if position and velocity are valid.
     pub(super) fn is_valid(&self) -> bool {
         self.origin.is_some() && self.since_solution_s <= VALID_S
     }
 
-    /// Whether the filter has settled and is fed.
+    /// Returns `true` if the filter has settled and still gets solutions.
     pub(super) fn is_settled(&self) -> bool {
         self.solutions >= SETTLED && self.since_solution_s <= 0.5
     }
 
-    /// Moves the origin; the place on earth stays.
+    /// Moves the origin. The position on earth stays.
     pub(super) fn set_origin(&mut self, origin: LatLon) {
         if let Some(old) = self.origin {
             let offset = local_offset(origin, old);
@@ -109,7 +109,7 @@ impl Horizontal {
         self.origin = Some(origin);
     }
 
-    /// One step with the measured acceleration (north, east), m/s².
+    /// Takes one step with the measured acceleration (north, east), m/s².
     pub(super) fn predict(&mut self, accel: Vector2<f64>, dt: f64) {
         self.since_solution_s += dt;
         if !self.is_valid() {
@@ -121,7 +121,7 @@ impl Horizontal {
         self.east.predict(accel.y, dt);
     }
 
-    /// Takes in a solution that describes the craft `age_s` ago.
+    /// Applies a solution that describes the craft `age_s` ago.
     pub(super) fn fuse(&mut self, sample: &GpsSample, age_s: f64) {
         let velocity = Vector2::new(sample.vel_enu.y, sample.vel_enu.x);
         let origin = *self.origin.get_or_insert(sample.position);
@@ -149,7 +149,7 @@ impl Horizontal {
         let by_position = covariance.measure_position((POSITION_SIGMA * dilution.horizontal).powi(2));
         let position_error = position - p;
         if exceeds(position_error, &by_position, POSITION_GATE) {
-            // An honest velocity with a displaced position: after a while it is the place that has changed.
+            // A plausible velocity with a displaced position: after a while the new position is accepted.
             self.covariance = before;
             if self.lose_patience() {
                 let (p, _) = self.past(age);
@@ -159,7 +159,7 @@ impl Horizontal {
             return;
         }
         self.covariance = covariance;
-        // The correction by the velocity has moved the past position, too.
+        // The correction by the velocity has also moved the past position.
         let (p, _) = self.past(age);
         self.correct(&by_position, position - p, age);
         self.suspicious = 0;
@@ -194,7 +194,7 @@ impl Horizontal {
     }
 }
 
-/// Whether an innovation is too large to be noise.
+/// Returns `true` if an innovation is too large to be noise.
 fn exceeds(error: Vector2<f64>, gain: &Gain, size: f64) -> bool {
     error.norm() > size + GATE_SIGMAS * gain.innovation.sqrt()
 }
@@ -207,8 +207,8 @@ mod tests {
 
     const HOME: LatLon = LatLon::new(404_635_000, -795_182_000);
 
-    /// Flies accelerations along north with a solution each 100 ms that is `age_s` old, and returns the filter and
-    /// the true position and velocity.
+    /// Flies accelerations along north with a solution each 100 ms that is `age_s` old. Returns the filter and the true
+    /// position and velocity.
     fn fly(age_s: f64, accel_bias: f64, seconds: f64) -> (Horizontal, f64, f64) {
         let mut filter = Horizontal::new();
         let mut truth = vec![(0.0, 0.0)];

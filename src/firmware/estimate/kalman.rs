@@ -1,21 +1,21 @@
-//! Kalman covariance of one axis of dead reckoning: position, velocity, acceleration error.
+//! The Kalman covariance of one axis of dead reckoning: position, velocity, acceleration error.
 
-/// How much the model of one axis is trusted.
+/// The process noise of one axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct ProcessNoise {
-    /// Spectral density of the acceleration's white error, (m/s²)²/Hz.
+    /// The spectral density of the acceleration's white error, (m/s²)²/Hz.
     pub accel: f64,
-    /// Spectral density of the walk of its slow error, (m/s³)²/Hz.
+    /// The spectral density of the random walk of its slow error, (m/s³)²/Hz.
     pub drift: f64,
 }
 
-/// Corrections of position (m), velocity (m/s) and acceleration error (m/s²) per unit of innovation.
+/// The corrections of position (m), velocity (m/s) and acceleration error (m/s²) per unit of innovation.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Gain {
     pub position: f64,
     pub velocity: f64,
     pub accel: f64,
-    /// Variance of the innovation.
+    /// The variance of the innovation.
     pub innovation: f64,
 }
 
@@ -32,7 +32,7 @@ pub(super) struct KalmanCovariance {
 }
 
 impl KalmanCovariance {
-    /// Independent states with these standard deviations.
+    /// Creates independent states with these standard deviations.
     pub(super) fn new(position: f64, velocity: f64, accel: f64) -> Self {
         Self {
             pp: position * position,
@@ -44,7 +44,7 @@ impl KalmanCovariance {
         }
     }
 
-    /// `dt` seconds later: `F P Fᵀ + Q` with `F = [1 dt dt²/2; 0 1 dt; 0 0 1]`.
+    /// Predicts the covariance `dt` seconds later: `F P Fᵀ + Q` with `F = [1 dt dt²/2; 0 1 dt; 0 0 1]`.
     pub(super) fn predict(&mut self, dt: f64, noise: &ProcessNoise) {
         let Self { pv, pb, vv, vb, bb, .. } = *self;
         let half = 0.5 * dt * dt;
@@ -56,13 +56,13 @@ impl KalmanCovariance {
         self.bb += noise.drift * dt;
     }
 
-    /// Takes in a measurement of the position with this variance.
+    /// Applies a measurement of the position with this variance.
     pub(super) fn measure_position(&mut self, variance: f64) -> Gain {
         let (h, innovation) = ((self.pp, self.pv, self.pb), self.pp + variance);
         self.update(h, innovation)
     }
 
-    /// Takes in a measurement of the velocity with this variance.
+    /// Applies a measurement of the velocity with this variance.
     pub(super) fn measure_velocity(&mut self, variance: f64) -> Gain {
         let (h, innovation) = ((self.pv, self.vv, self.vb), self.vv + variance);
         self.update(h, innovation)
@@ -71,7 +71,7 @@ impl KalmanCovariance {
     fn update(&mut self, (p, v, b): (f64, f64, f64), innovation: f64) -> Gain {
         let gain =
             Gain { position: p / innovation, velocity: v / innovation, accel: b / innovation, innovation };
-        // The floors keep rounding from ever making a variance negative.
+        // The floors keep rounding errors from making a variance negative.
         self.pp = (self.pp - gain.position * p).max(1e-9);
         self.pv -= gain.position * v;
         self.pb -= gain.position * b;

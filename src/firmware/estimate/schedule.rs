@@ -2,15 +2,16 @@
 
 use crate::signals::SimTime;
 
-/// Period of estimation, navigator and holds, µs: 100 Hz.
+/// The period of estimation, navigator and holds, µs: 100 Hz.
 const NAVIGATION_US: u64 = 10_000;
 
-/// Which slower loops run in this step. Everybody follows these, so that they stay in phase.
+/// The slower loops that run in this step. All parts follow these flags, so they stay in phase.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct DueTasks {
-    /// Roll and pitch are fresh: the angle loop runs (500 Hz by default; each step where that does not divide the rate).
+    /// Roll and pitch are fresh, so the angle loop runs (500 Hz by default; each step if that does not divide the
+    /// rate).
     pub attitude: bool,
-    /// Position and altitude are fresh: navigator, holds and modes run (100 Hz).
+    /// Position and altitude are fresh, so navigator, holds and modes run (100 Hz).
     pub navigation: bool,
 }
 
@@ -22,7 +23,7 @@ pub(super) struct Schedule {
 }
 
 impl Schedule {
-    /// The loops due at `now`, the attitude's every `attitude_us`. Both are due in the first step.
+    /// Returns the loops due at `now`. The attitude is due every `attitude_us`. Both are due in the first step.
     pub(super) fn due(&mut self, now: SimTime, attitude_us: u64) -> DueTasks {
         let navigation = pass(&mut self.navigation, now, NAVIGATION_US);
         let attitude = pass(&mut self.attitude, now, attitude_us);
@@ -30,7 +31,7 @@ impl Schedule {
     }
 }
 
-/// Whether `next` has come; if so it moves on, skipping what was missed.
+/// Returns `true` if `next` has come. It then advances `next`, skipping missed periods.
 fn pass(next: &mut SimTime, now: SimTime, period_us: u64) -> bool {
     if now < *next {
         return false;
@@ -67,7 +68,7 @@ mod tests {
         for (period_us, per_second) in [(1000, 1000), (2000, 500), (4000, 300)] {
             let mut schedule = Schedule::default();
             let due = (0..1000).filter(|tick| schedule.due(SimTime(tick * 1000), period_us).attitude);
-            // With every navigation step comes a fresh attitude, too: half of those fall between two of 4 ms.
+            // Every navigation step also has a fresh attitude. Half of those are between two steps of 4 ms.
             assert_eq!(due.count(), per_second, "{period_us}");
         }
     }

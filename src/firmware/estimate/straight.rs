@@ -4,21 +4,21 @@ use nalgebra::Vector2;
 
 use crate::geo::wrap_pi;
 
-/// How long the flight must be straight, s.
+/// The time for which the flight must be straight, s.
 const LENGTH_S: f64 = 3.0;
-/// How far the course may turn meanwhile, rad.
+/// The largest change of the course meanwhile, rad.
 const WIDTH: f64 = 20.0 * std::f64::consts::PI / 180.0;
 
 /// A stretch of straight flight.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct StraightFlight {
-    /// Course at its begin, rad clockwise from north, and how long it is by now, s.
+    /// The course at its start, rad clockwise from north, and its length so far, s.
     stretch: Option<(f64, f64)>,
 }
 
 impl StraightFlight {
-    /// Takes in a velocity over ground (north, east), `dt` seconds after the one before. The course, rad clockwise from
-    /// north, once it was kept for three seconds at more than `min_mps`.
+    /// Takes a velocity over ground (north, east), `dt` seconds after the one before. Returns the course, rad clockwise
+    /// from north, once the craft has kept it for three seconds at more than `min_mps`.
     pub(super) fn update(&mut self, velocity: Vector2<f64>, min_mps: f64, dt: f64) -> Option<f64> {
         if velocity.norm() <= min_mps {
             self.stretch = None;

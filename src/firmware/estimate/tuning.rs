@@ -1,33 +1,33 @@
-//! What of the settings the estimator uses.
+//! The options and settings of the estimator.
 
 use super::calibration::{acc_offset, mag_offset};
 use super::vertical::AltitudeSource;
 use crate::firmware::settings::Settings;
 use nalgebra::Vector3;
 
-/// Where the attitude comes from.
+/// The source of the attitude.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash, strum::Display)]
 #[strum(serialize_all = "lowercase")]
 pub enum AttitudeSource {
-    /// From gyro, accelerometer, magnetometer and GPS.
+    /// Gyro, accelerometer, magnetometer and GPS.
     #[default]
     Estimated,
-    /// From the simulator, as far as it tells.
+    /// The simulator, if it reports the attitude.
     Truth,
 }
 
-/// What of the estimator is not a setting of the craft.
+/// The options of the estimator that are not settings of the craft.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EstimatorOptions {
-    /// Where the attitude comes from.
+    /// The source of the attitude.
     pub attitude: AttitudeSource,
-    /// Silence of the GPS receiver that ends the fix, s, at 10 solutions a second or more.
+    /// The GPS silence that ends the fix, s, at 10 solutions a second or more.
     pub gps_timeout_s: f64,
-    /// Declination of the field where the craft flies, degrees east, used while `mag_declination` is 0.
+    /// The declination of the field at the flying site, degrees east, used while `mag_declination` is 0.
     pub declination_deg: f64,
 }
 
-/// Declination of the field that SITL simulates, degrees east: (2046.8, −71.5) counts north and west.
+/// The declination of the field that SITL simulates, degrees east: (2046.8, −71.5) counts north and west.
 const SITL_DECLINATION_DEG: f64 = 2.000_675_735_167_871;
 
 impl Default for EstimatorOptions {
@@ -40,44 +40,44 @@ impl Default for EstimatorOptions {
     }
 }
 
-/// The settings of the estimator in the units it works with.
+/// The settings of the estimator in its own units.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EstimatorTuning {
-    /// Correction towards the vertical, rad/s per unit of the sine of the error.
+    /// The gain of the correction towards the vertical, rad/s per unit of the sine of the error.
     pub kp: f64,
-    /// Its integral, rad/s² per unit.
+    /// The integral gain of that correction, rad/s² per unit.
     pub ki: f64,
-    /// Cutoff of the accelerometer for the tilt correction, Hz; 0 = none.
+    /// The cutoff of the accelerometer for the tilt correction, Hz; 0 = no filter.
     pub acc_lpf_hz: f64,
-    /// Accelerometer zero, body forward-left-up, m/s².
+    /// The accelerometer zero, body forward-left-up, m/s².
     pub acc_offset_flu: Vector3<f64>,
-    /// Magnetometer zero, body forward-left-up, sensor units.
+    /// The magnetometer zero, body forward-left-up, sensor units.
     pub mag_offset_flu: Vector3<f64>,
-    /// Quiet time of a gyro calibration, s.
+    /// The quiet time of a gyro calibration, s.
     pub gyro_calibration_s: f64,
-    /// Standard deviation that restarts it, gyro units; 0 = any will do.
+    /// The standard deviation above which it restarts, gyro units; 0 = no limit.
     pub gyro_noise_limit: f64,
-    /// Period of the attitude loop, µs.
+    /// The period of the attitude loop, µs.
     pub attitude_us: u64,
-    /// Whether there is a magnetometer.
+    /// `true` if there is a magnetometer.
     pub has_mag: bool,
-    /// Whether it is trusted in flight.
+    /// `true` if the magnetometer is trusted in flight.
     pub trust_mag: bool,
-    /// Ground speed from which on a straight flight shows the heading, m/s.
+    /// The ground speed from which a straight flight shows the heading, m/s.
     pub min_forward_mps: f64,
-    /// Declination set by the user, degrees east; 0 = that of the place.
+    /// The declination set by the user, degrees east; 0 = that of the flying site.
     pub declination_deg: f64,
-    /// Solutions a second expected of the receiver.
+    /// The expected number of solutions a second from the receiver.
     pub gps_rate_hz: f64,
-    /// Witnesses of the altitude.
+    /// The sources of the altitude.
     pub altitude_source: AltitudeSource,
-    /// Weight of the barometer, 0…1.
+    /// The weight of the barometer, 0…1.
     pub baro_preference: f64,
-    /// Cutoff of the shown altitude and climb rate, Hz.
+    /// The cutoff of the shown altitude, Hz.
     pub shown_alt_hz: f64,
-    /// See [`EstimatorTuning::shown_alt_hz`].
+    /// The cutoff of the shown climb rate, Hz.
     pub shown_climb_hz: f64,
-    /// `ap_position_a`: trust in the accelerometer, 30 is neutral.
+    /// `ap_position_a`: the trust in the accelerometer; 30 is neutral.
     pub accel_trust: f64,
 }
 
@@ -88,7 +88,7 @@ impl Default for EstimatorTuning {
 }
 
 impl EstimatorTuning {
-    /// The tuning of the active profiles.
+    /// Reads the tuning of the active profiles.
     pub fn from_settings(settings: &Settings) -> Self {
         let number = |name: &str| settings.number(name) as f64;
         Self {

@@ -1,47 +1,47 @@
-//! Altitude and climb rate: dead reckoning by the accelerometer, held by barometer and GPS.
+//! Altitude and climb rate: dead reckoning by the accelerometer, corrected by barometer and GPS.
 
 use super::gps::Dilution;
 use super::history::Axis;
 use super::kalman::{KalmanCovariance, ProcessNoise};
 use crate::signals::GpsSample;
 
-/// Nominal step, s.
+/// The nominal step, s.
 const STEP_S: f64 = 0.01;
-/// White error of the acceleration, (m/s²)²/Hz, and walk of its slow error, (m/s³)²/Hz.
+/// The white error of the acceleration, (m/s²)²/Hz, and the random walk of its slow error, (m/s³)²/Hz.
 const NOISE: ProcessNoise = ProcessNoise { accel: 4e-4, drift: 4e-4 };
-/// Standard deviation of a barometer sample, m (1 Pa is 8 cm), fully preferred.
+/// The standard deviation of a barometer sample at full preference, m (1 Pa is 8 cm).
 const BARO_SIGMA: f64 = 0.1;
-/// Steps between the pressure and its sample: half way between an ideal sensor and a filtered one.
+/// The steps between the pressure and its sample: halfway between an ideal sensor and a filtered one.
 const BARO_AGE: usize = 1;
-/// Spikes beyond this (m) are left out …
+/// The error beyond five standard deviations at which a sample counts as a spike and is ignored, m.
 const BARO_GATE: f64 = 1.0;
-/// … unless so many samples agree.
+/// The number of spikes in a row after which a sample is accepted.
 const PATIENCE: u8 = 10;
-/// Standard deviations of the receiver's altitude (m; alone, and beside a barometer) and climb rate (m/s).
+/// The standard deviations of the receiver's altitude (m; alone, and with a barometer) and climb rate (m/s).
 const GPS_ALONE_SIGMA: f64 = 0.6;
 const GPS_BESIDE_SIGMA: f64 = 4.0;
 const CLIMB_SIGMA: f64 = 0.08;
-/// Share of a solution that the zero of the GPS altitude follows while the barometer is the better witness.
+/// The share of a solution that the zero of the GPS altitude follows while the barometer is the better source.
 const GPS_ZERO_SHARE: f64 = 0.02;
-/// A measurement counts for this long, s.
+/// The time for which a measurement counts, s.
 const VALID_S: f64 = 2.0;
 
-/// Which witnesses of the altitude are heard.
+/// The sources of the altitude.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum AltitudeSource {
-    /// Barometer, and GPS as far as it helps.
+    /// The barometer, and the GPS as far as it helps.
     #[default]
     Both,
     BaroOnly,
     GpsOnly,
 }
 
-/// The vertical filter. Zero is where it was set last.
+/// The vertical filter. Altitudes count from the last zero.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Vertical {
     covariance: KalmanCovariance,
     axis: Axis,
-    /// Barometric and GPS altitude (m) of the zero.
+    /// The barometric and GPS altitude (m) of the zero.
     baro_zero: Option<f64>,
     gps_zero: Option<f64>,
     spikes: u8,
@@ -49,7 +49,7 @@ pub(super) struct Vertical {
     since_gps_s: f64,
 }
 
-/// Altitude (m) in the standard atmosphere for a pressure (Pa).
+/// Returns the altitude (m) in the standard atmosphere for a pressure (Pa).
 pub(super) fn pressure_altitude_m(pressure_pa: f64) -> f64 {
     (1.0 - (pressure_pa / 101_325.0).powf(1.0 / 5.255_88)) / 2.255_77e-5
 }
@@ -67,22 +67,22 @@ impl Vertical {
         }
     }
 
-    /// Altitude above the zero, m.
+    /// Returns the altitude above the zero, m.
     pub(super) fn altitude(&self) -> f64 {
         self.axis.position
     }
 
-    /// Climb rate, m/s.
+    /// Returns the climb rate, m/s.
     pub(super) fn climb(&self) -> f64 {
         self.axis.velocity
     }
 
-    /// Whether the altitude means something.
+    /// Returns `true` if the altitude is valid.
     pub(super) fn is_valid(&self) -> bool {
         self.since_baro_s.min(self.since_gps_s) <= VALID_S
     }
 
-    /// Puts the zero here.
+    /// Sets the zero at the present altitude.
     pub(super) fn zero(&mut self) {
         let altitude = self.axis.position;
         self.axis.shift(-altitude);
@@ -90,12 +90,12 @@ impl Vertical {
         self.gps_zero = self.gps_zero.map(|zero| zero + altitude);
     }
 
-    /// One step with the measured upward acceleration without gravity, m/s².
+    /// Takes one step with the measured upward acceleration without gravity, m/s².
     pub(super) fn predict(&mut self, accel: f64, dt: f64) {
         self.since_baro_s += dt;
         self.since_gps_s += dt;
         if !self.is_valid() {
-            // Without any witness the craft is believed to stay: dead reckoning would run away.
+            // Without any measurement the craft is assumed not to climb, because dead reckoning would diverge.
             self.axis.velocity = 0.0;
             return;
         }
@@ -103,7 +103,7 @@ impl Vertical {
         self.axis.predict(accel, dt);
     }
 
-    /// Takes in a barometric altitude (m); `preference` is its weight, 0…1.
+    /// Applies a barometric altitude (m). `preference` is its weight, 0…1.
     pub(super) fn fuse_baro(&mut self, altitude: f64, preference: f64) {
         if preference <= 0.0 {
             return;
@@ -123,8 +123,8 @@ impl Vertical {
         self.axis.correct(&gain, error, BARO_AGE, STEP_S);
     }
 
-    /// Takes in altitude and climb rate of a solution that is `age_s` old. On the ground (`parked`) the zero of the
-    /// GPS altitude follows, in the air it stays.
+    /// Applies altitude and climb rate of a solution that is `age_s` old. The zero of the GPS altitude follows on the
+    /// ground (`parked`) and stays in the air.
     pub(super) fn fuse_gps(&mut self, sample: &GpsSample, age_s: f64, source: AltitudeSource, parked: bool) {
         let age = (age_s / STEP_S).round().max(0.0) as usize;
         let altitude = f64::from(sample.alt_amsl_cm) * 0.01;

@@ -2,15 +2,15 @@
 
 use crate::signals::SimTime;
 
-/// Shortest delay of either edge, s.
+/// The shortest delay of either edge, s.
 const SHORTEST_DELAY_S: f64 = 0.1;
 
-/// Delays of the link.
+/// The delays of the link.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LinkConfig {
-    /// The link is down when the last valid frame is older than this, s.
+    /// The age of the last valid frame above which the link is down, s.
     pub delay_s: f64,
-    /// The link is up when the signal has been there for this long, s.
+    /// The time with a signal after which the link is up, s.
     pub recovery_delay_s: f64,
 }
 
@@ -29,27 +29,28 @@ pub struct LinkMonitor {
     signal_since: Option<SimTime>,
 }
 
-/// An edge of the signal that people want to know about.
+/// An edge of the signal that is reported to the pilot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LinkChange {
     Lost,
-    /// The signal is back for the recovery delay.
+    /// The signal has been back for the recovery delay.
     Recovered,
 }
 
 impl LinkMonitor {
-    /// Whether the link is up: valid frames within the failsafe delay, once they had come for the recovery delay.
+    /// Returns `true` while the link is up. It comes up after the recovery delay with a signal, and goes down if the
+    /// last valid frame is older than the failsafe delay.
     pub fn up(&self) -> bool {
         self.up
     }
 
-    /// Whether the signal has been there for the recovery delay.
+    /// Returns `true` if the signal has been present for the recovery delay.
     pub fn good(&self) -> bool {
         self.good
     }
 
-    /// One receiver pass: `signal` as judged by the receiver, `last_frame` when its newest frame came. `at_once` lets
-    /// the link come up without the recovery delay (after a failsafe made by the switch).
+    /// Runs one receiver pass. `signal` is the receiver's verdict, `last_frame` the time of its newest frame. With
+    /// `at_once` the link comes up without the recovery delay (after a failsafe started by the switch).
     pub fn update(
         &mut self,
         config: &LinkConfig,

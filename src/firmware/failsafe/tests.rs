@@ -4,7 +4,7 @@ const DROP: Response = Response::Procedure(Procedure::Drop);
 const AUTO_LAND: Response = Response::Procedure(Procedure::AutoLand);
 const RESCUE: Response = Response::Procedure(Procedure::GpsRescue);
 
-/// An armed craft in the air, link up, mission flying, ten seconds after boot.
+/// Returns the facts of an armed craft in the air, with the link up and the mission flying, ten seconds after boot.
 fn flying() -> FailsafeFacts {
     FailsafeFacts {
         now: SimTime(10_000_000),
@@ -22,7 +22,7 @@ fn flying() -> FailsafeFacts {
     }
 }
 
-/// The facts `ms` later with the link down.
+/// Returns the facts `ms` later with the link down.
 fn lost(ms: u64, response: Response) -> FailsafeFacts {
     FailsafeFacts {
         now: SimTime(10_000_000 + ms * 1000),
@@ -37,7 +37,7 @@ fn config(procedure: Procedure) -> FailsafeConfig {
     FailsafeConfig { procedure, ..FailsafeConfig::default() }
 }
 
-/// A machine whose procedure has begun.
+/// Returns a machine whose procedure has begun, and its action.
 fn begun(procedure: Procedure, response: Response) -> (Failsafe, FailsafeAction) {
     let mut machine = Failsafe::default();
     assert_eq!(machine.update(&config(procedure), &flying()), None);
@@ -203,7 +203,7 @@ fn auto_land_ends_by_time_or_disarm() {
 
 #[test]
 fn mission_that_ends_is_replaced() {
-    // response flown, procedure, mission, fix, what replaces it
+    // response flown, procedure, mission, fix, replacement
     let rows = [
         (Response::Continue, Procedure::Drop, MissionStatus::Over, true, DROP),
         (Response::Continue, Procedure::AutoLand, MissionStatus::Over, true, AUTO_LAND),

@@ -1,54 +1,54 @@
-//! The boxes: modes a switch can be bound to, by permanent id.
+//! The boxes: modes that can be bound to a switch, by permanent id.
 //!
-//! The permanent id is what mode conditions, `aux` lines and protocols carry; the order of [`BOXES`] is the order in
-//! which protocols list them.
+//! Mode conditions, `aux` lines and protocols carry the permanent id. Protocols list the boxes in the order of
+//! [`BOXES`].
 
 use crate::telemetry::ModeBox;
 
-/// Permanent id of a box.
+/// The permanent id of a box.
 pub type BoxId = u8;
 
 pub const ARM: BoxId = ModeBox::Arm as BoxId;
 pub const ANGLE: BoxId = ModeBox::Angle as BoxId;
 pub const HORIZON: BoxId = ModeBox::Horizon as BoxId;
 pub const ALTHOLD: BoxId = ModeBox::AltHold as BoxId;
-/// ANTI GRAVITY: the gains rise in quick throttle changes.
+/// ANTI GRAVITY: raises the gains in quick throttle changes.
 pub const ANTI_GRAVITY: BoxId = ModeBox::AntiGravity as BoxId;
-/// MAG: hold the heading while the yaw stick is centred.
+/// MAG: holds the heading while the yaw stick is centred.
 pub const MAG: BoxId = ModeBox::Mag as BoxId;
 /// HEADFREE: sticks relative to the heading at arming.
 pub const HEADFREE: BoxId = ModeBox::HeadFree as BoxId;
-/// HEADADJ: take the present heading as the headfree reference.
+/// HEADADJ: takes the present heading as the headfree reference.
 pub const HEADADJ: BoxId = ModeBox::HeadAdjust as BoxId;
 pub const POS_HOLD: BoxId = ModeBox::PosHold as BoxId;
-/// FAILSAFE, the switch.
+/// The FAILSAFE switch.
 pub const FAILSAFE: BoxId = ModeBox::Failsafe as BoxId;
 pub const AIR_MODE: BoxId = ModeBox::AirMode as BoxId;
-/// FLIP OVER AFTER CRASH: blocks arming, since nothing here can be flipped.
+/// FLIP OVER AFTER CRASH: blocks arming, because nothing here can be flipped.
 pub const CRASH_FLIP: BoxId = ModeBox::CrashFlip as BoxId;
 pub const PREARM: BoxId = ModeBox::Prearm as BoxId;
 /// PARALYZE: no arming until reboot.
 pub const PARALYZE: BoxId = ModeBox::Paralyze as BoxId;
 pub const GPS_RESCUE: BoxId = ModeBox::GpsRescue as BoxId;
-/// STICK COMMANDS DISABLE: the sticks do not arm or disarm.
+/// STICK COMMANDS DISABLE: the sticks neither arm nor disarm.
 pub const STICK_COMMANDS_DISABLE: BoxId = ModeBox::StickCommandsDisable as BoxId;
 pub const AUTOPILOT: BoxId = ModeBox::Autopilot as BoxId;
 
-/// What happens when a box is switched on.
+/// The effect of a box that is switched on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum BoxLevel {
-    /// It does what its name says.
+    /// The box has its full function.
     Full,
-    /// The switch works and is reported, nothing else happens.
+    /// The switch works and is reported, but has no other effect.
     Flag,
-    /// Only accepted in mode conditions; listed by nobody.
+    /// The box is only accepted in mode conditions. No protocol lists it.
     Name,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct BoxInfo {
     pub kind: ModeBox,
-    /// What it does here.
+    /// The effect of the box here.
     pub level: BoxLevel,
 }
 
@@ -57,7 +57,7 @@ impl BoxInfo {
         self.kind as BoxId
     }
 
-    /// Its name as protocols and displays print it.
+    /// Returns the name as protocols and displays print it.
     pub fn name(&self) -> &'static str {
         self.kind.into()
     }
@@ -129,35 +129,35 @@ pub const BOXES: [BoxInfo; 50] = [
     flag(ModeBox::WpCapture),
 ];
 
-/// The box with this permanent id.
+/// Returns the box with this permanent id.
 pub fn by_id(id: BoxId) -> Option<&'static BoxInfo> {
     BOXES.iter().find(|entry| entry.id() == id)
 }
 
-/// Whether any build knows a box of this permanent id.
+/// Returns `true` if a box has this permanent id in any build.
 pub fn is_known(id: BoxId) -> bool {
     by_id(id).is_some()
 }
 
-/// What decides which boxes protocols list.
+/// The equipment that decides which boxes protocols list.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Equipment {
     pub gps: bool,
-    /// Feature AIRMODE: airmode is on by itself and needs no box.
+    /// The AIRMODE feature: airmode is always on and needs no box.
     pub airmode_feature: bool,
     pub anti_gravity_feature: bool,
-    /// A magnetometer is present.
+    /// `true` if a magnetometer is present.
     pub mag: bool,
 }
 
-/// The boxes that protocols list with this equipment, in order.
+/// Returns the boxes that protocols list with this equipment, in order.
 pub fn listed(equipment: Equipment) -> impl Iterator<Item = &'static BoxInfo> {
     BOXES.iter().filter(move |entry| match entry.id() {
         MAG => equipment.mag,
         POS_HOLD | GPS_RESCUE | AUTOPILOT | 37 => equipment.gps,
         AIR_MODE => !equipment.airmode_feature,
         ANTI_GRAVITY => !equipment.anti_gravity_feature,
-        // Need hardware that a simulated craft does not have.
+        // These need hardware that a simulated craft does not have.
         17 | 40..=43 => false,
         _ => entry.level != BoxLevel::Name,
     })
@@ -170,12 +170,12 @@ pub struct BoxSet(u64);
 impl BoxSet {
     pub const NONE: Self = Self(0);
 
-    /// Whether the box is in the set; ids above 63 never are.
+    /// Returns `true` if the box is in the set. Ids above 63 never are.
     pub fn has(self, id: BoxId) -> bool {
         id < 64 && self.0 & (1 << id) != 0
     }
 
-    /// Adds or removes a box; ids above 63 are ignored.
+    /// Adds or removes a box. Ids above 63 are ignored.
     pub fn set(&mut self, id: BoxId, on: bool) {
         if id < 64 {
             self.0 = if on { self.0 | (1 << id) } else { self.0 & !(1 << id) };

@@ -1,9 +1,9 @@
-//! Which boxes the AUX channels switch on.
+//! The boxes that the AUX channels switch on.
 
 use super::super::config::{ModeCondition, ModeLogic};
 use super::boxes::{BoxId, BoxSet};
 
-/// Boxes switched on by conditions that hold, while they are collected.
+/// The conditions of each box, collected while they are evaluated.
 #[derive(Clone, Copy, Default)]
 struct Votes {
     any_or: BoxSet,
@@ -30,9 +30,9 @@ impl Votes {
     }
 }
 
-/// The boxes that the conditions switch on; `aux` are the AUX channels in µs, absent channels never match.
+/// Returns the boxes that the conditions switch on. `aux` are the AUX channels in µs; absent channels never match.
 ///
-/// Links are one level deep: a link to a box sees what the ranges of that box say.
+/// Links are one level deep: a link to a box follows only the ranges of that box.
 pub fn evaluate(conditions: &[ModeCondition], aux: &[u16]) -> BoxSet {
     let usable = || conditions.iter().filter(|condition| condition.is_usable());
     let mut direct = Votes::default();

@@ -1,43 +1,43 @@
-//! Which flight modes are on: the switches, the autopilot and the failsafe, weighed by fixed rules.
+//! The active flight modes, from the switches, the autopilot and the failsafe by fixed rules.
 
 use super::boxes::{self, BoxSet};
 use crate::telemetry::{Mode, ModeFlags};
 
-/// What the rules look at.
+/// The inputs of the rules.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct ModeFacts {
     pub switches: BoxSet,
     pub armed: bool,
-    /// The throttle has passed the raised threshold since arming.
+    /// `true` once the throttle has passed the raised threshold since arming.
     pub raised: bool,
-    /// The altitude estimate is valid.
+    /// `true` if the altitude estimate is valid.
     pub altitude_valid: bool,
-    /// The FAILSAFE mode is to be shown.
+    /// `true` if the FAILSAFE mode must be shown.
     pub failsafe_shown: bool,
-    /// A failsafe procedure (stage 2) is running.
+    /// `true` while a failsafe procedure (stage 2) runs.
     pub failsafe_active: bool,
-    /// The navigator flies, and the failsafe does not own the flight.
+    /// `true` while the navigator flies and the failsafe does not control the flight.
     pub autopilot: bool,
-    /// What a given-up mission leaves behind.
+    /// The holds that an aborted mission leaves on.
     pub after_abort: AfterAbort,
 }
 
-/// Which holds stay on when a mission was given up while its switch stays on.
+/// The holds that stay on after a mission was aborted, while its switch stays on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum AfterAbort {
-    /// Nothing: the pilot's own switches decide.
+    /// Nothing. The pilot's own switches decide.
     #[default]
     Nothing,
-    /// Level and at the present altitude; the pilot steers (no position is known).
+    /// Level and at the present altitude. The pilot steers, because no position is known.
     Altitude,
-    /// Level and down to the ground: the fix was lost in a landing or a rescue.
+    /// Level and down to the ground, because the fix was lost in a landing or a rescue.
     Descent,
-    /// Level, at the present altitude and place.
+    /// Level, at the present altitude and position.
     Position,
 }
 
-/// The flight modes for these facts. AUTOPILOT and the failsafe bring ANGLE, ALTHOLD and POS HOLD with them in the
-/// same pass.
+/// Returns the flight modes for these facts. AUTOPILOT and the failsafe turn on ANGLE, ALTHOLD and POS HOLD in the same
+/// pass.
 pub fn flight_modes(facts: &ModeFacts) -> ModeFlags {
     let switch = |id| facts.switches.has(id);
     let flying = facts.armed && facts.raised;

@@ -1,20 +1,20 @@
-//! Messages that make something happen.
+//! Messages that trigger an action.
 
 use super::{Call, MspAction, Refused};
 use crate::firmware::settings::{SETTINGS, Scope};
 use crate::geo::LatLon;
 use crate::signals::{RC_CHANNELS, RcFrame};
 
-/// Most channels of an RC message.
+/// The most channels of an RC message.
 const RC_MAX: usize = 18;
-/// Motor pulses of the bench, µs.
+/// The range of motor pulses on the bench, µs.
 const MOTOR_RANGE_US: std::ops::RangeInclusive<u16> = 1000..=2000;
 /// Selects a rate profile instead of a PID profile.
 const SELECT_RATES: u8 = 0x80;
 /// Selects a battery profile.
 const SELECT_BATTERY: u8 = 0x40;
 
-/// What a reboot request asks to start.
+/// The kinds of start that a reboot request can name.
 const REBOOT_FIRMWARE: u8 = 0;
 const REBOOT_ROM_LOADER: u8 = 1;
 const REBOOT_FLASH_LOADER: u8 = 4;
@@ -25,7 +25,7 @@ pub(super) fn reboot(call: &mut Call<'_>) -> Result<(), Refused> {
     if call.facts.armed {
         return Err(Refused);
     }
-    // There is no mass storage. The boot loaders of a simulator start the firmware again.
+    // There is no mass storage. The boot loaders of a simulator restart the firmware.
     if !matches!(kind, REBOOT_FIRMWARE | REBOOT_ROM_LOADER | REBOOT_FLASH_LOADER) {
         return Err(Refused);
     }
@@ -34,7 +34,8 @@ pub(super) fn reboot(call: &mut Call<'_>) -> Result<(), Refused> {
     Ok(())
 }
 
-/// A simulator never lets a client block arming, so that the craft can fly with a configurator connected.
+/// Sets only runaway prevention. A simulator never lets a client block arming, so that the craft can fly with a
+/// configurator connected.
 pub(super) fn set_arming_disabled(call: &mut Call<'_>) -> Result<(), Refused> {
     call.request.u8();
     call.action = Some(MspAction::RunawayPrevention(call.request.u8() == 0));
@@ -68,13 +69,13 @@ pub(super) fn set_raw_gps(call: &mut Call<'_>) -> Result<(), Refused> {
     Ok(())
 }
 
-/// Acknowledged and ignored while armed.
+/// Starts an accelerometer calibration. While armed, it is acknowledged and ignored.
 pub(super) fn calibrate_acc(call: &mut Call<'_>) -> Result<(), Refused> {
     call.action = (!call.facts.armed).then_some(MspAction::CalibrateAcc);
     Ok(())
 }
 
-/// Acknowledged and ignored while armed.
+/// Starts a magnetometer calibration. While armed, it is acknowledged and ignored.
 pub(super) fn calibrate_mag(call: &mut Call<'_>) -> Result<(), Refused> {
     call.action = (!call.facts.armed).then_some(MspAction::CalibrateMag);
     Ok(())
@@ -125,7 +126,7 @@ pub(super) fn copy_profile(call: &mut Call<'_>) -> Result<(), Refused> {
     Ok(())
 }
 
-/// Returns the active PID profile to its defaults.
+/// Resets the active PID profile to its defaults.
 pub(super) fn reset_pid_profile(call: &mut Call<'_>) -> Result<(), Refused> {
     let settings = &mut call.configuration.settings;
     let profile = settings.active(Scope::Profile);
@@ -146,7 +147,7 @@ pub(super) fn set_motor(call: &mut Call<'_>) -> Result<(), Refused> {
         return Err(Refused);
     }
     motors.fill_with(|| call.request.u16().clamp(*MOTOR_RANGE_US.start(), *MOTOR_RANGE_US.end()));
-    // The mixer owns the motors of an armed craft.
+    // The mixer controls the motors of an armed craft.
     call.action = (!call.facts.armed).then_some(MspAction::MotorTest(motors));
     Ok(())
 }

@@ -5,9 +5,9 @@ use super::{Call, Refused};
 use crate::firmware::config::{BAUD_RATES, Features, MixerKind};
 use crate::firmware::settings::Value;
 
-/// Identifier of UART1 in the port messages.
+/// The identifier of UART1 in the port messages.
 const UART1: u8 = 51;
-/// Functions of a port.
+/// The functions of a port.
 const FUNCTION_MSP: u32 = 1 << 0;
 const FUNCTION_GPS: u32 = 1 << 1;
 const FUNCTION_RX: u32 = 1 << 6;
@@ -78,7 +78,7 @@ pub(super) const ALIGNMENT: &[Field] = &[
     i16("mag_align_yaw"),
 ];
 
-/// `SET_SENSOR_ALIGNMENT`, which does not say what was found.
+/// `SET_SENSOR_ALIGNMENT`, without the gyros found.
 pub(super) const SET_ALIGNMENT: &[Field] = &[
     byte(0),
     byte(0),
@@ -93,7 +93,7 @@ pub(super) const SET_ALIGNMENT: &[Field] = &[
 pub(super) const MOTOR: &[Field] =
     &[word(0), u16("max_throttle"), u16("min_command"), byte(4), u8("motor_poles"), byte(0), byte(0)];
 
-/// `SET_MOTOR_CONFIG`, without what only the craft knows.
+/// `SET_MOTOR_CONFIG`, without the values that only the craft can report.
 pub(super) const SET_MOTOR: &[Field] =
     &[word(0), u16("max_throttle"), u16("min_command"), u8("motor_poles"), byte(0)];
 
@@ -117,8 +117,8 @@ pub(super) fn set_motor_reordering(call: &mut Call<'_>) -> Result<(), Refused> {
     call.configuration.settings.set(REORDERING, Value::Array(order)).map_err(|_| Refused)
 }
 
-/// Identifier, functions, and the positions of MSP, GPS, telemetry and flight recorder speeds in the list of speeds,
-/// of every port.
+/// Returns for every port its identifier, its functions, and the indices of the MSP, GPS, telemetry and flight recorder
+/// speeds in the list of speeds.
 fn ports(call: &Call<'_>) -> Vec<(u8, u32, [u8; 4])> {
     let rows = &call.configuration.serial.0;
     let ports = (UART1..).zip(1_i64..).zip(rows);
@@ -156,7 +156,7 @@ pub(super) fn common_serial_config(call: &mut Call<'_>) -> Result<(), Refused> {
     Ok(())
 }
 
-/// The fields of the flight recorder that can be left out, by bit.
+/// The fields of the flight recorder that can be disabled, by bit.
 const BLACKBOX_FIELDS: [(u32, &str); 14] = [
     (0, "blackbox_disable_pids"),
     (1, "blackbox_disable_rc"),
@@ -174,7 +174,7 @@ const BLACKBOX_FIELDS: [(u32, &str); 14] = [
     (14, "blackbox_disable_gyrounfilt"),
 ];
 
-/// Control loops between two complete records at the slowest sample rate.
+/// The control loops between two complete records at the slowest sample rate.
 const P_INTERVAL: i64 = 32;
 
 pub(super) fn blackbox(call: &mut Call<'_>) -> Result<(), Refused> {
@@ -211,7 +211,7 @@ pub(super) fn set_blackbox(call: &mut Call<'_>) -> Result<(), Refused> {
     Ok(())
 }
 
-/// `OSD_CANVAS`: there is none.
+/// `OSD_CANVAS`: empty, because there is no OSD.
 pub(super) fn nothing(_call: &mut Call<'_>) -> Result<(), Refused> {
     Ok(())
 }

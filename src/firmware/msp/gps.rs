@@ -15,7 +15,7 @@ pub(super) const GPS: &[Field] = &[
 /// `COMPASS_CONFIG`.
 pub(super) const COMPASS: &[Field] = &[i16("mag_declination")];
 
-/// `GPS_RESCUE`; angle and throttles are the autopilot's.
+/// `GPS_RESCUE`. Angle and throttles are those of the autopilot.
 pub(super) const RESCUE: &[Field] = &[
     u16("ap_max_angle"),
     u16("gps_rescue_return_alt"),

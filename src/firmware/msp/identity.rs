@@ -1,23 +1,23 @@
-//! Who the controller says it is.
+//! The identity of the flight controller.
 
 use super::{Call, Refused};
 
-/// Version of the MSP protocol.
+/// The version of the MSP protocol.
 const PROTOCOL: u8 = 0;
-/// Major and minor API version.
+/// The major and minor API version.
 const API: (u8, u8) = (1, 49);
-/// Year since 2000, month and patch of the firmware version.
+/// The year since 2000, month and patch of the firmware version.
 const VERSION: [u8; 3] = [26, 12, 0];
-/// Target and board identifier.
+/// The target and board identifier.
 const TARGET: &str = "SITL";
-/// Code of a microcontroller that is named by a text.
+/// The code of a microcontroller that is named by a text.
 const MCU_NAMED: u8 = 0xfe;
-/// A board without OSD chip. Configurators stop polling when this is neither 0 nor 2.
+/// A board without OSD chip. Configurators stop polling if this is neither 0 nor 2.
 const WITHOUT_OSD_CHIP: u8 = 0;
-/// The board is configured.
+/// The code for a configured board.
 const CONFIGURED: u8 = 1;
 
-/// Numbers of the options that are built in; configurators show the tabs of these only.
+/// The numbers of the options that are built in. Configurators show only the tabs of these.
 pub(super) const BUILD_OPTIONS: [u16; 6] = [
     16_422, // ALTITUDE_HOLD
     16_427, // FLIGHT_PLAN

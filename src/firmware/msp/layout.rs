@@ -1,4 +1,4 @@
-//! Messages that are lists of settings: the same list reads and writes them.
+//! Messages that are lists of settings. The same list reads and writes them.
 
 use super::wire::{Reader, Writer};
 use crate::firmware::settings::{Kind, Settings, Value, Width, find};
@@ -8,15 +8,15 @@ use crate::firmware::settings::{Kind, Settings, Value, Width, find};
 pub(super) enum Field {
     /// A setting of the active profile.
     Setting(Width, &'static str),
-    /// A setting of which the message carries `factor` × value + `offset`.
+    /// A setting that the message carries as `factor` × value + `offset`.
     Scaled {
-        /// Type on the wire.
+        /// The type on the wire.
         width: Width,
         name: &'static str,
         factor: i64,
         offset: i64,
     },
-    /// Something this vehicle does not have: always this value, ignored when written.
+    /// A value that this vehicle does not have: always this number, ignored when written.
     Fixed(Width, i64),
 }
 
@@ -51,7 +51,7 @@ pub(super) const fn long(value: i64) -> Field {
     Field::Fixed(Width::U32, value)
 }
 
-/// Writes the fields of a message.
+/// Writes the fields of a message to the reply.
 pub(super) fn read(fields: &[Field], settings: &Settings, reply: &mut Writer) {
     for field in fields {
         match *field {
@@ -64,7 +64,7 @@ pub(super) fn read(fields: &[Field], settings: &Settings, reply: &mut Writer) {
     }
 }
 
-/// Takes the fields of a message; settings of which no byte came keep their value.
+/// Sets the fields of a message from the request. Settings without any byte keep their value.
 pub(super) fn write(fields: &[Field], settings: &mut Settings, request: &mut Reader<'_>) {
     for field in fields {
         if request.remaining() == 0 {
@@ -82,8 +82,8 @@ pub(super) fn write(fields: &[Field], settings: &mut Settings, request: &mut Rea
     }
 }
 
-/// Sets a number brought into the setting's range. A word position that does not exist changes nothing: there is no
-/// nearest word.
+/// Sets a number, limited to the setting's range. A word position that does not exist changes nothing, because there is
+/// no nearest word.
 pub(super) fn put(settings: &mut Settings, name: &str, number: i64) {
     let Some(setting) = find(name) else { return };
     let number = match setting.kind {

@@ -7,16 +7,16 @@ use crate::firmware::config::{
 use crate::firmware::modes::boxes::{self, BoxInfo, Equipment};
 use crate::telemetry::Mode;
 
-/// Boxes of one page of the lists.
+/// The number of boxes on one page of the lists.
 const PAGE: usize = 32;
-/// Pulse of step 0 of a range, µs.
+/// The pulse of step 0 of a range, µs.
 const RANGE_START_US: u16 = 900;
-/// Pulse step of a range, µs.
+/// The pulse step of a range, µs.
 const RANGE_STEP_US: u16 = 25;
-/// Highest step of a range.
+/// The highest step of a range.
 const RANGE_STEPS: u8 = 48;
 
-/// The boxes that this craft lists, in order. Names, ids and mode bits all come from this one list.
+/// Returns the boxes that this craft lists, in order. Names, ids and mode bits all use this list.
 fn listed(configuration: &Configuration, facts: &MspFacts) -> impl Iterator<Item = &'static BoxInfo> {
     boxes::listed(Equipment {
         gps: configuration.features.has(Feature::Gps),
@@ -43,7 +43,7 @@ pub(super) fn box_ids(call: &mut Call<'_>) -> Result<(), Refused> {
     Ok(())
 }
 
-/// The state of the listed boxes, bit i for the i-th.
+/// Returns the state of the listed boxes, bit i for the i-th box.
 pub(super) fn mode_bits(configuration: &Configuration, facts: &MspFacts) -> u64 {
     let mut bits = 0;
     for (index, entry) in listed(configuration, facts).enumerate().take(64) {
@@ -54,7 +54,7 @@ pub(super) fn mode_bits(configuration: &Configuration, facts: &MspFacts) -> u64 
     bits
 }
 
-/// Flight modes are on while they fly, other boxes while they are switched on.
+/// Returns `true` while a flight mode is active; for other boxes, while they are switched on.
 fn is_on(facts: &MspFacts, entry: &BoxInfo) -> bool {
     let mode = match entry.id() {
         boxes::ARM => return facts.armed,

@@ -1,13 +1,13 @@
-//! Several questions in one request.
+//! Several requests in one message.
 
 use super::table::{self, Access};
 use super::{Call, Refused};
 
-/// Room for the answers.
+/// The most bytes of all answers.
 const REPLY_MAX: usize = 512;
 
-/// Answers questions that need no payload of their own, each after its length. Answers that do not fit are left out;
-/// the client asks again for them.
+/// Answers requests that need no payload of their own, each answer after its length. Answers that do not fit are left
+/// out, and the client requests them again.
 pub(super) fn multiple(call: &mut Call<'_>) -> Result<(), Refused> {
     let codes = call.request.all();
     if codes.is_empty() {

@@ -1,4 +1,4 @@
-//! What messages tell of the running firmware, as plain data.
+//! Facts about the running firmware for messages, as plain data.
 
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -16,57 +16,56 @@ const RSSI_MAX: u16 = 1023;
 #[derive(Debug, Clone, PartialEq)]
 pub struct MspFacts {
     pub build: BuildInfo,
-    /// Whether the craft is armed.
     pub armed: bool,
     pub modes: ModeFlags,
-    /// Boxes that are switched on.
+    /// The boxes that are switched on.
     pub switches: BoxSet,
     pub arming_blocks: ArmingFlags,
-    /// Whether a change waits for a restart.
+    /// `true` if a change needs a restart.
     pub reboot_required: bool,
-    /// Period of the control loop, µs.
+    /// The period of the control loop, µs.
     pub cycle_time_us: u32,
-    /// Processor load, percent.
+    /// The processor load, percent.
     pub cpu_load_percent: u32,
-    /// Gyro loop, Hz.
+    /// The rate of the gyro loop, Hz.
     pub gyro_hz: u32,
-    /// Whether a magnetometer is present.
+    /// `true` if a magnetometer is present.
     pub has_mag: bool,
-    /// Specific force, FLU, m/s².
+    /// The specific force, FLU, m/s².
     pub specific_force_flu: Vector3<f64>,
-    /// Body rates, FLU, rad/s.
+    /// The body rates, FLU, rad/s.
     pub rate_flu: Vector3<f64>,
-    /// Magnetic field, FLU, sensor counts.
+    /// The magnetic field, FLU, sensor counts.
     pub mag_flu: Vector3<f64>,
-    /// Attitude, body FLU → world ENU.
+    /// The attitude, body FLU → world ENU.
     pub attitude: UnitQuaternion<f64>,
-    /// Roll, degrees, right positive.
+    /// The roll angle, degrees, right positive.
     pub roll_deg: f64,
-    /// Pitch, degrees, nose **up** positive.
+    /// The pitch angle, degrees, nose **up** positive.
     pub pitch_deg: f64,
-    /// Heading, degrees clockwise from north.
+    /// The heading, degrees clockwise from north.
     pub heading_deg: f64,
-    /// Estimated altitude above the arming point, m; before the first arming above mean sea level.
+    /// The estimated altitude above the arming point, m; before the first arming, the altitude above mean sea level.
     pub altitude_m: f64,
-    /// Climb rate, m/s.
+    /// The climb rate, m/s.
     pub climb_mps: f64,
-    /// The battery, when its voltage is measured.
+    /// The battery, if its voltage is measured.
     pub battery: Option<BatteryReading>,
-    /// Signal strength, 0…1023.
+    /// The signal strength, 0…1023.
     pub rssi: u16,
-    /// Channels in use, µs: roll, pitch, **yaw, throttle**, AUX1 ….
+    /// The channels in use, µs: roll, pitch, **yaw, throttle**, AUX1 ….
     pub channels: [u16; RC_CHANNELS],
-    /// Motor outputs M1…M4, µs.
+    /// The motor outputs M1…M4, µs.
     pub motors_us: [u16; 4],
     pub gps: GpsReading,
-    /// Where home is; `None` without one.
+    /// The distance and direction of home; `None` without a home.
     pub home: Option<HomeReading>,
-    /// The time of day, when somebody set it.
+    /// The time of day, if it was set.
     pub clock: Option<UtcTime>,
 }
 
 impl Default for MspFacts {
-    /// A disarmed craft at rest, level, facing north, that has heard nothing.
+    /// Returns a disarmed craft at rest, level, facing north, that has received nothing.
     fn default() -> Self {
         Self {
             build: BuildInfo::default(),
@@ -100,7 +99,7 @@ impl Default for MspFacts {
 }
 
 impl MspFacts {
-    /// The present instant of a firmware. `clock` is the time of day, when somebody set it.
+    /// Returns the facts at the present instant. `clock` is the time of day, if it was set.
     pub(super) fn observe(firmware: &Firmware, clock: Option<UtcTime>) -> Self {
         let estimate = firmware.estimate();
         let rates = estimate.rates;
@@ -139,7 +138,7 @@ impl MspFacts {
     }
 }
 
-/// Above home; before the first arming there is none, and the altitude of the GPS is shown.
+/// Returns the altitude above home. Before the first arming there is no home, so it returns the GPS altitude.
 fn altitude_m(firmware: &Firmware) -> f64 {
     let above_home = firmware.estimate().shown_alt_m;
     match firmware.gps_view() {
@@ -148,7 +147,7 @@ fn altitude_m(firmware: &Firmware) -> f64 {
     }
 }
 
-/// A channel's position when one is set aside for it, else whether there is a signal.
+/// Returns the position of the RSSI channel if one is set; otherwise full strength while there is a signal.
 fn rssi(firmware: &Firmware) -> u16 {
     let channel = usize::try_from(firmware.configuration().settings.number("rssi_channel")).unwrap_or(0);
     match channel.checked_sub(1).filter(|&channel| channel < RC_CHANNELS) {
@@ -161,7 +160,7 @@ fn rssi(firmware: &Firmware) -> u16 {
     }
 }
 
-/// State of the battery; the discriminant is the code on the wire.
+/// The state of the battery. The discriminant is the code on the wire.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[repr(u8)]
 pub enum BatteryState {
@@ -177,11 +176,11 @@ pub enum BatteryState {
 
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BatteryReading {
-    /// Voltage, V.
+    /// The voltage, V.
     pub voltage_v: f64,
-    /// Current, A.
+    /// The current, A.
     pub current_a: f64,
-    /// Charge drawn, mAh.
+    /// The charge drawn, mAh.
     pub drawn_mah: f64,
     pub cells: u8,
     pub state: BatteryState,
@@ -208,19 +207,19 @@ impl BatteryReading {
 
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct GpsReading {
-    /// A 3-D fix.
+    /// `true` while there is a 3-D fix.
     pub fix: bool,
     pub sats: u8,
     pub position: LatLon,
-    /// Altitude above mean sea level, m.
+    /// The altitude above mean sea level, m.
     pub alt_amsl_m: f64,
-    /// Ground speed, m/s.
+    /// The ground speed, m/s.
     pub ground_speed_mps: f64,
-    /// Course over ground, degrees clockwise from north.
+    /// The course over ground, degrees clockwise from north.
     pub course_deg: f64,
-    /// Dilution of precision; 0 = not reported.
+    /// The dilution of precision; 0 = not reported.
     pub dop: f64,
-    /// Changes with every solution.
+    /// A counter that changes with every message of the receiver.
     pub solution: u8,
 }
 
@@ -243,12 +242,12 @@ impl GpsReading {
     }
 }
 
-/// Where home is, seen from the craft.
+/// The distance and direction of home, seen from the craft.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct HomeReading {
-    /// Distance, m.
+    /// The distance, m.
     pub distance_m: f64,
-    /// Direction, degrees clockwise from north.
+    /// The direction, degrees clockwise from north.
     pub bearing_deg: f64,
 }
 
@@ -263,8 +262,8 @@ impl HomeReading {
 /// A time of day.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct UtcTime {
-    /// Seconds since 1970, UTC.
+    /// The seconds since 1970, UTC.
     pub unix_s: u32,
-    /// Milliseconds of the second.
+    /// The milliseconds of the second.
     pub millis: u16,
 }

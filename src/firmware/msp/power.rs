@@ -4,14 +4,14 @@ use super::layout::{Field, byte, i16, u8};
 use super::{Call, Refused};
 use crate::firmware::settings::{Scope, Value, find};
 
-/// Bytes of one voltage meter's subframe.
+/// The size of one voltage meter's subframe, bytes.
 const VOLTAGE_SUBFRAME: u8 = 5;
-/// Bytes of one current meter's subframe.
+/// The size of one current meter's subframe, bytes.
 const CURRENT_SUBFRAME: u8 = 6;
 const METER_MEASURED: u8 = 10;
 /// The current meter that computes from the throttle.
 const METER_VIRTUAL: u8 = 80;
-/// Type of a current meter with a converter.
+/// The type of a current meter with a converter.
 const CURRENT_ADC: u8 = 1;
 const MAX_CELLS: u8 = 24;
 
@@ -24,10 +24,10 @@ const MAX_CELL: &str = "vbat_max_cell_voltage";
 const WARNING_CELL: &str = "vbat_warning_cell_voltage";
 const FULL_CELL: &str = "vbat_full_cell_voltage";
 
-/// Voltage source of a converter, as `battery_meter` counts them.
+/// The voltage source of a converter, in the numbering of `battery_meter`.
 const VOLTAGE_ADC: i64 = 1;
 
-/// The source of the voltage: a simulated battery is measured although no meter is chosen.
+/// Returns the source of the voltage. A simulated battery is measured even if no meter is chosen.
 fn voltage_source(call: &Call<'_>) -> i64 {
     match call.setting("battery_meter") {
         0 if call.facts.battery.is_some() => VOLTAGE_ADC,
@@ -67,7 +67,7 @@ pub(super) fn set_battery_config(call: &mut Call<'_>) -> Result<(), Refused> {
     call.set(MAX_CELL, max);
     call.set(WARNING_CELL, warning);
     call.set("bat_capacity", i64::from(capacity));
-    // What was shown comes back with every save of the client and chooses nothing.
+    // A client sends the displayed source back with every save. That must not choose a meter.
     if i64::from(voltage) != voltage_source(call) {
         call.set("battery_meter", i64::from(voltage));
     }
@@ -107,7 +107,7 @@ pub(super) fn set_current_meter_config(call: &mut Call<'_>) -> Result<(), Refuse
     Ok(())
 }
 
-/// The numbers of a battery profile in wire order, without the profile's index: setting, bytes.
+/// The numbers of a battery profile in wire order, without the profile's index: setting, size in bytes.
 const PROFILE: [(&str, usize); 7] = [
     (MIN_CELL, 2),
     (MAX_CELL, 2),
@@ -158,7 +158,7 @@ pub(super) fn set_battery_profile(call: &mut Call<'_>) -> Result<(), Refused> {
         return Err(Refused);
     }
     let settings = &mut call.configuration.settings;
-    // All or nothing.
+    // All values are set, or no value is.
     let mut changed = settings.clone();
     for ((name, _), number) in PROFILE.into_iter().zip(numbers) {
         let setting = find(name).ok_or(Refused)?;
@@ -171,5 +171,5 @@ pub(super) fn set_battery_profile(call: &mut Call<'_>) -> Result<(), Refused> {
 /// `RSSI_CONFIG`.
 pub(super) const RSSI: &[Field] = &[u8("rssi_channel")];
 
-/// `TRANSPONDER_CONFIG`: there is none.
+/// `TRANSPONDER_CONFIG`: there is no transponder.
 pub(super) const NONE: &[Field] = &[byte(0)];

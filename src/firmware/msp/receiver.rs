@@ -6,9 +6,9 @@ use crate::firmware::config::{ChannelMap, RX_FAIL_CHANNELS, RxFail, RxFailMode};
 use crate::firmware::settings::Width;
 use crate::signals::RC_CHANNELS;
 
-/// The wire's channels in the order roll, pitch, yaw, throttle: the one of the throttle.
+/// The index of the throttle in the order roll, pitch, yaw, throttle.
 const THROTTLE: usize = 3;
-/// The stick channels, which alone may fail automatically.
+/// The number of stick channels. Only these may use the automatic loss rule.
 const STICKS: usize = 4;
 
 /// `RX_CONFIG`.
@@ -60,7 +60,7 @@ pub(super) fn rx_map(call: &mut Call<'_>) -> Result<(), Refused> {
     Ok(())
 }
 
-/// Refused while armed, as by the command line: the sticks would change places in flight.
+/// Sets the channel map. Refused while armed, as on the command line: the sticks would change places in flight.
 pub(super) fn set_rx_map(call: &mut Call<'_>) -> Result<(), Refused> {
     let mut map = [0; 8];
     map.fill_with(|| call.request.u8());

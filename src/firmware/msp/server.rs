@@ -1,4 +1,4 @@
-//! The running firmware behind the messages.
+//! Access of the messages to the running firmware.
 
 use super::{Access, MspAction, MspFacts, Outcome, UtcTime};
 use crate::firmware::Firmware;
@@ -7,8 +7,8 @@ use crate::signals::RcSource;
 use crate::telemetry::FirmwareEvent;
 
 impl Firmware {
-    /// Answers a message and carries out what it asks of the firmware itself. Storing, restarting and the time of day
-    /// are left to the owner: the outcome says so. `clock` is the time of day, when somebody set it.
+    /// Answers a message and carries out its requests to the firmware itself. Storing, restarting and setting the time
+    /// of day are left to the owner, by the action in the outcome. `clock` is the time of day, if it was set.
     pub fn run_msp(&mut self, code: u16, request: &[u8], clock: Option<UtcTime>) -> Outcome {
         let facts = self.msp_facts(clock);
         let configuration = self.setup.configuration_mut();
@@ -33,20 +33,20 @@ impl Firmware {
             Some(MspAction::CalibrateMag) => self.calibrate_magnetometer(),
             Some(MspAction::RunawayPrevention(on)) => self.setup.allow_runaway_prevention(on),
             Some(MspAction::HoldHeading(deg)) => self.control.hold_heading(f64::from(deg).to_radians()),
-            // Nothing here to feed: positions come from the simulator.
+            // Positions come from the simulator, so this one is not used.
             Some(MspAction::RawGps { .. }) => {}
             Some(MspAction::Reboot | MspAction::SaveAndReboot | MspAction::SetClock { .. }) | None => {}
         }
         outcome
     }
 
-    /// What messages tell of the present instant.
+    /// Returns the facts about the present instant for messages.
     pub fn msp_facts(&self, clock: Option<UtcTime>) -> MspFacts {
         MspFacts::observe(self, clock)
     }
 }
 
-/// Whether a message that was carried out may have changed a setting.
+/// Returns `true` if a message that was carried out may have changed a setting.
 fn changes_configuration(action: Option<MspAction>) -> bool {
     !matches!(
         action,

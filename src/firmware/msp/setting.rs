@@ -1,9 +1,9 @@
-//! Settings by name, for clients that do not want a command line.
+//! Settings by name, for clients that do not use the command line.
 
 use super::{Call, Refused};
 use crate::firmware::settings::{Kind, PORT_NAMES, Scope, Setting, beyond_current_firmware, find};
 
-/// Sets with `name = value`, reads with `name`; answers `name = value`.
+/// Sets with `name = value` or reads with `name`. Replies with `name = value`.
 pub(super) fn setting(call: &mut Call<'_>) -> Result<(), Refused> {
     let text = std::str::from_utf8(call.request.all()).map_err(|_| Refused)?.trim_matches(['\0', ' ']);
     let (name, value) = match text.split_once('=') {
@@ -24,7 +24,7 @@ pub(super) fn setting(call: &mut Call<'_>) -> Result<(), Refused> {
     Ok(())
 }
 
-/// Describes a setting in lines of text, from an offset on, after their total length.
+/// Describes a setting in lines of text, starting at an offset, after their total length.
 pub(super) fn setting_info(call: &mut Call<'_>) -> Result<(), Refused> {
     let request = call.request.all();
     let (name, offset) = match request.iter().position(|&byte| byte == 0) {

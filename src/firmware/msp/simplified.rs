@@ -1,7 +1,7 @@
-//! The tuning sliders: a few multipliers from which gains and filters follow.
+//! The tuning sliders: a few multipliers that set gains and filters.
 //!
-//! Each gain is its default times the master multiplier times the sliders of its term; the pitch sliders apply to
-//! pitch only. Each low-pass frequency is its default times the filter's multiplier. 100 means 1.0.
+//! Each gain is its default times the master multiplier times the sliders of its term. The pitch sliders apply to pitch
+//! only. Each low-pass frequency is its default times the filter's multiplier. 100 means 1.0.
 
 use super::layout::{self, Field, u8};
 use super::wire::{Reader, Writer};
@@ -21,15 +21,15 @@ const SLIDERS: [&str; 9] = [
     "simplified_pitch_pi_gain",
 ];
 
-/// Unused bytes at the end of each block.
+/// The number of unused bytes at the end of each block.
 const SPARE: usize = 8;
 
 const AXES: [&str; 3] = ["roll", "pitch", "yaw"];
 const PITCH: usize = 1;
 const YAW: usize = 2;
 
-/// The low-pass filters behind one slider: its switch, its multiplier, and first, second, dynamic minimum, dynamic
-/// maximum.
+/// The low-pass filters of one slider: its switch, its multiplier, and the cutoffs (first, second, dynamic minimum,
+/// dynamic maximum).
 struct Filter {
     switch: &'static str,
     multiplier: &'static str,
@@ -89,7 +89,7 @@ impl Sliders {
         Self::new(SLIDERS.map(|name| settings.number(name)))
     }
 
-    /// Whether the sliders set the gains of this axis: mode 1 leaves yaw alone, 2 sets all.
+    /// Returns `true` if the sliders set the gains of this axis. Mode 1 leaves yaw unchanged; mode 2 sets all axes.
     fn governs(&self, axis: usize) -> bool {
         self.mode >= 2 || (self.mode == 1 && axis != YAW)
     }
@@ -113,7 +113,7 @@ impl Sliders {
     }
 }
 
-/// The default of a numeric setting.
+/// Returns the default of a numeric setting.
 fn default(name: &str) -> f64 {
     match find(name).map(|setting| setting.kind) {
         Some(Kind::Number { default, .. }) => default as f64,
@@ -121,7 +121,7 @@ fn default(name: &str) -> f64 {
     }
 }
 
-/// A setting's default times a factor, within its range.
+/// Returns a setting's default times a factor, within its range.
 fn fit(name: &str, factor: f64) -> i64 {
     limit(name, default(name) * factor)
 }
@@ -141,7 +141,7 @@ fn stored_gains(settings: &Settings, axis: usize) -> Gains {
 }
 
 impl Filter {
-    /// The cutoffs that a multiplier gives; a low-pass that is off stays off.
+    /// Returns the cutoffs for a multiplier. A low-pass that is off stays off.
     fn computed(&self, multiplier: i64, present: [i64; 4]) -> [i64; 4] {
         let mut cutoffs = present;
         for (cutoff, name) in cutoffs.iter_mut().zip(self.cutoffs) {
@@ -196,7 +196,7 @@ impl Filter {
         }
     }
 
-    /// Whether the slider explains the stored cutoffs.
+    /// Returns `true` if the slider is off or the stored cutoffs match it.
     fn is_explained(&self, settings: &Settings) -> bool {
         let stored = self.stored(settings);
         settings.number(self.switch) == 0 || self.computed(settings.number(self.multiplier), stored) == stored

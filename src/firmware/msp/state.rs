@@ -1,4 +1,4 @@
-//! What the craft senses and does at the moment.
+//! The present measurements and state of the craft.
 
 use super::wire::steps;
 use super::{BatteryReading, BatteryState, Call, Refused, UtcTime, modes};
@@ -7,20 +7,20 @@ use crate::firmware::settings::Scope;
 use crate::geo::GRAVITY;
 use nalgebra::{UnitQuaternion, Vector3};
 
-/// Accelerometer counts of 1 g.
+/// The accelerometer counts of 1 g.
 const COUNTS_PER_G: f64 = 256.0;
-/// Number of arming-disable flags.
+/// The number of arming disable flags.
 const ARMING_FLAGS: u8 = 30;
-/// Boxes whose state the fixed part of a status carries.
+/// The number of boxes whose state is in the fixed part of a status.
 const FIXED_MODE_BITS: u32 = 32;
-/// Motors a message has room for.
+/// The number of motors that a message has room for.
 const MOTOR_SLOTS: usize = 8;
-/// Meters of the battery: the measured one, and the computed one.
+/// The meters of the battery: the measured one and the computed one.
 const METER_MEASURED: u8 = 10;
 const METER_VIRTUAL: u8 = 80;
-/// `RAW_GPS` calls a fix 2.
+/// The code for a fix in `RAW_GPS`.
 const FIX: u8 = 2;
-/// Dilution that is reported for a source that reports none.
+/// The dilution reported for a source that reports none.
 const UNREPORTED_DOP: f64 = 0.1;
 
 pub(super) fn status(call: &mut Call<'_>) -> Result<(), Refused> {
@@ -177,7 +177,7 @@ pub(super) fn motor(call: &mut Call<'_>) -> Result<(), Refused> {
 }
 
 pub(super) fn motor_telemetry(call: &mut Call<'_>) -> Result<(), Refused> {
-    // No ESC reports anything: rpm, errors, temperature, voltage, current and charge are 0.
+    // No ESC reports anything, so rpm, errors, temperature, voltage, current and charge are 0.
     let motors = call.facts.motors_us.len();
     call.reply.u8(motors as i64);
     call.reply.zeros(13 * motors);
@@ -211,7 +211,7 @@ pub(super) fn comp_gps(call: &mut Call<'_>) -> Result<(), Refused> {
     Ok(())
 }
 
-/// No satellites are listed one by one.
+/// Reports zero satellites, because single satellites are not simulated.
 pub(super) fn satellites(call: &mut Call<'_>) -> Result<(), Refused> {
     call.reply.u8(0);
     Ok(())
@@ -230,10 +230,10 @@ pub(super) fn rtc(call: &mut Call<'_>) -> Result<(), Refused> {
     Ok(())
 }
 
-/// Year, month and day in the Gregorian calendar, by years that begin in March (Hinnant, "chrono-compatible
+/// Returns year, month and day in the Gregorian calendar, by years that begin in March (Hinnant, "chrono-compatible
 /// low-level date algorithms").
 fn civil_date(clock: UtcTime) -> (u32, u32, u32) {
-    // Days since 0000-03-01.
+    // The days since 0000-03-01.
     let days = clock.unix_s / 86_400 + 719_468;
     let era = days / 146_097;
     let day_of_era = days % 146_097;
@@ -251,7 +251,7 @@ pub(super) fn tx_info(call: &mut Call<'_>) -> Result<(), Refused> {
     Ok(())
 }
 
-/// Neither flash nor card.
+/// Reports neither flash nor card.
 pub(super) fn dataflash_summary(call: &mut Call<'_>) -> Result<(), Refused> {
     call.reply.zeros(13);
     Ok(())
@@ -262,7 +262,7 @@ pub(super) fn sdcard_summary(call: &mut Call<'_>) -> Result<(), Refused> {
     Ok(())
 }
 
-/// Positions in the lines of the command line's `sensor_hardware`; 255 = not built in.
+/// Replies with the positions in the lines of the command line's `sensor_hardware`; 255 = not built in.
 pub(super) fn sensors_active(call: &mut Call<'_>) -> Result<(), Refused> {
     call.reply.bytes(&[0x1b, 0x1a, 0x0d, 0x00, 0xff, 0xff]);
     Ok(())

@@ -1,4 +1,4 @@
-//! Every message the server knows. A code that is not here gets the protocol's error.
+//! Every message that the server supports. Any other code gets the protocol's error.
 
 use super::layout::{self, Field};
 use super::{
@@ -6,25 +6,25 @@ use super::{
     state, text, tuning,
 };
 
-/// What a message does to the craft.
+/// The effect of a message on the craft.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, strum::Display)]
 #[strum(serialize_all = "lowercase")]
 pub enum Access {
-    /// Asked with an empty payload, changes nothing.
+    /// Requested with an empty payload; changes nothing.
     Read,
-    /// Asked with a payload that chooses the answer.
+    /// Requested with a payload that selects the answer.
     Ask,
-    /// Changes settings or makes something happen.
+    /// Changes settings or triggers an action.
     Write,
 }
 
-/// How a message is answered.
+/// The way in which a message is answered.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Handler {
     Code(fn(&mut Call<'_>) -> Result<(), Refused>),
-    /// By the values of settings.
+    /// Replies with the values of settings.
     Get(&'static [Field]),
-    /// By setting settings, unless the payload is shorter than this.
+    /// Sets settings, unless the payload is shorter than this.
     Set(&'static [Field], usize),
 }
 
@@ -45,7 +45,7 @@ impl Handler {
 #[derive(Debug, Clone, Copy)]
 pub struct Message {
     pub code: u16,
-    /// Its name, without the prefix.
+    /// The name, without the prefix.
     pub name: &'static str,
     pub access: Access,
     pub(super) handler: Handler,
@@ -77,7 +77,7 @@ const fn set_from(code: u16, name: &'static str, fields: &'static [Field], short
     Message { code, name, access: Access::Write, handler: Handler::Set(fields, shortest) }
 }
 
-/// The message with this code.
+/// Returns the message with this code.
 pub(super) fn find(code: u16) -> Option<&'static Message> {
     let index = MESSAGES.binary_search_by_key(&code, |message| message.code).ok()?;
     MESSAGES.get(index)

@@ -1,15 +1,15 @@
-//! Names: of the craft, the pilot, the profiles.
+//! The names of the craft, the pilot and the profiles.
 
 use super::{Call, Refused};
 use crate::firmware::config::KeptLine;
 use crate::firmware::settings::Scope;
 
-/// This vehicle has no setting for the pilot's name; it is kept like the settings of other builds.
+/// The pilot's name. This vehicle has no setting for it, so it is kept like the settings of other builds.
 const PILOT_NAME: &str = "pilot_name";
-/// Most characters of the pilot's name.
+/// The most characters of the pilot's name.
 const PILOT_NAME_MAX: usize = 16;
 
-/// The setting behind a text type that has one, and its most characters.
+/// Returns the setting for a text type, if any, and its maximum length.
 fn setting_of(kind: u8) -> Option<(&'static str, usize)> {
     match kind {
         2 => Some(("craft_name", 16)),
@@ -41,7 +41,7 @@ pub(super) fn get_text(call: &mut Call<'_>) -> Result<(), Refused> {
             let mut kept = call.configuration.kept.iter();
             kept.find(|line| line.name == PILOT_NAME).map_or("", |line| line.text.as_str())
         }
-        // Build key and release name do not exist.
+        // There is no build key and no release name.
         None => return Err(Refused),
     };
     call.reply.u8(kind);
@@ -61,7 +61,7 @@ pub(super) fn set_text(call: &mut Call<'_>) -> Result<(), Refused> {
     call.configuration.settings.set_text(name, &clean(text, max)).map_err(|_| Refused)
 }
 
-/// The characters of a name that can be stored and typed, at most `max`.
+/// Returns the characters of a name that can be stored and typed, at most `max`.
 fn clean(text: &[u8], max: usize) -> String {
     let printable = text.iter().filter(|&&byte| (b' '..=b'~').contains(&byte) && byte != b'#');
     let text: String = printable.take(max).map(|&byte| char::from(byte)).collect();

@@ -27,10 +27,10 @@ pub(super) fn pid_names(call: &mut Call<'_>) -> Result<(), Refused> {
     Ok(())
 }
 
-/// `PID_CONTROLLER`: there is one.
+/// `PID_CONTROLLER`: there is only one.
 pub(super) const PID_CONTROLLER: &[Field] = &[byte(1)];
 
-/// Where feed-forward averaging stands in [`PID_ADVANCED`], bytes.
+/// The offset of feed-forward averaging in [`PID_ADVANCED`], bytes.
 const AVERAGING_AT: usize = 50;
 const AVERAGING_MAX: u8 = 3;
 
@@ -148,7 +148,7 @@ pub(super) fn set_filters(call: &mut Call<'_>) -> Result<(), Refused> {
     Ok(())
 }
 
-/// Shortest `RC_TUNING`.
+/// The length of the shortest `RC_TUNING`, bytes.
 pub(super) const RATES_MIN: usize = 10;
 
 /// `RC_TUNING`.
@@ -175,10 +175,10 @@ pub(super) const RATES: &[Field] = &[
     u8("thr_hover"),
 ];
 
-/// Debug modes by the count of the firmware that configurators expect, which names one fewer.
+/// The number of debug modes in the firmware that configurators expect. It names one fewer.
 const DEBUG_MODES: u8 = 103;
 
-/// `ADVANCED_CONFIG`, save the number of debug modes at the end of the reply.
+/// `ADVANCED_CONFIG`, except the number of debug modes at the end of the reply.
 pub(super) const ADVANCED: &[Field] = &[
     byte(1),
     u8("pid_process_denom"),

@@ -2,7 +2,7 @@
 
 use crate::firmware::settings::Width;
 
-/// Reads fields; what lies beyond the end is zero.
+/// Reads fields. Bytes beyond the end are zero.
 #[derive(Debug, Clone)]
 pub(super) struct Reader<'a> {
     rest: &'a [u8],
@@ -13,7 +13,7 @@ impl<'a> Reader<'a> {
         Self { rest: payload }
     }
 
-    /// Bytes that were not read yet.
+    /// Returns the number of bytes not read yet.
     pub(super) fn remaining(&self) -> usize {
         self.rest.len()
     }
@@ -47,7 +47,7 @@ impl<'a> Reader<'a> {
         i32::from_le_bytes(self.take())
     }
 
-    /// A number of the given width.
+    /// Reads a number of the given width.
     pub(super) fn number(&mut self, width: Width) -> i64 {
         match width {
             Width::U8 => i64::from(self.u8()),
@@ -58,12 +58,12 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Everything that is left.
+    /// Returns everything that is left.
     pub(super) fn all(&mut self) -> &'a [u8] {
         std::mem::take(&mut self.rest)
     }
 
-    /// A text that its length precedes; cut where the payload ends.
+    /// Reads a text after its length, cut at the end of the payload.
     pub(super) fn prefixed(&mut self) -> &'a [u8] {
         let length = usize::from(self.u8()).min(self.rest.len());
         let (text, rest) = self.rest.split_at(length);
@@ -72,7 +72,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// Writes fields; a number that does not fit becomes the nearest that does.
+/// Writes fields. A number that does not fit becomes the nearest one that does.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Writer {
     bytes: Vec<u8>,
@@ -104,7 +104,7 @@ impl Writer {
         self.bytes.extend((number as i32).to_le_bytes());
     }
 
-    /// A number of the given width.
+    /// Writes a number of the given width.
     pub(super) fn number(&mut self, width: Width, number: i64) {
         let (min, max) = width.bounds();
         let size = match width {
@@ -124,7 +124,7 @@ impl Writer {
         self.bytes.extend(bytes);
     }
 
-    /// A text after its length, cut at 255 bytes.
+    /// Writes a text after its length, cut at 255 bytes.
     pub(super) fn prefixed(&mut self, text: &str) {
         let text = &text.as_bytes()[..text.len().min(255)];
         self.u8(text.len() as i64);
@@ -132,7 +132,7 @@ impl Writer {
     }
 }
 
-/// A quantity in wire steps; what is not a number is 0.
+/// Converts a quantity to wire steps. NaN becomes 0.
 pub(super) fn steps(value: f64, steps_per_unit: f64) -> i64 {
     (value * steps_per_unit).round() as i64
 }

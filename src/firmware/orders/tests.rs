@@ -176,7 +176,7 @@ fn an_order_that_waits_says_what_for() {
     assert_eq!(flight.navigator.telemetry().refusal, None);
 }
 
-/// A flight that lands by command.
+/// Returns a flight that lands by command.
 fn landing() -> Flight {
     let mut flight = Flight::new();
     flight.update(CALM);
@@ -208,7 +208,7 @@ fn a_landing_that_loses_its_fix_goes_on_down_and_lands_when_it_is_back() {
         assert_eq!(flight.navigator.source(), PlanSource::Emergency, "the plan is kept");
         assert_eq!(flight.navigator.active_plan().waypoints.len(), 1);
         let target = flight.navigator.telemetry().target_ne.unwrap();
-        // About the landing spiral.
+        // Near the landing spiral.
         assert!((target.x - place_m).abs() < 2.5, "{north_m} m away: {target}");
         assert!(flight.navigator.telemetry().target_alt_m.unwrap() <= 12.0);
     }
@@ -332,7 +332,7 @@ fn rescue_that_does_not_come_nearer_is_given_up_when_watched() {
     for (sanity, given_up) in [(RescueSanity::On, true), (RescueSanity::Off, false)] {
         let mut flight = Flight::new();
         flight.rescue.sanity = sanity;
-        // Held by a storm, 100 m from home, at the altitude of the way.
+        // A storm holds the craft 100 m from home, at the altitude of the return.
         flight.inputs.pos_ne = Vector2::new(100.0, 0.0);
         flight.inputs.alt_m = 40.0;
         let switch = OrderFacts { rescue_switch: true, ..CALM };
@@ -344,7 +344,7 @@ fn rescue_that_does_not_come_nearer_is_given_up_when_watched() {
         }
         let state = if given_up { NavState::Landing } else { NavState::Approaching };
         assert_eq!(flight.navigator.state(), state, "{sanity:?}");
-        // Asked for again it is tried again.
+        // Requested again, it is tried again.
         flight.update(CALM);
         flight.update(switch);
         assert!(flight.navigator.is_flying());

@@ -20,7 +20,7 @@ fn defaults_of_settings_and_modules_agree() {
     assert_eq!(parameters.arming, arming);
 }
 
-/// Live settings that are used elsewhere, and where.
+/// Live settings that are used in other places, with those places.
 const ELSEWHERE: [(&str, &str); 8] = [
     ("profile_name", "shown by MSP"),
     ("rateprofile_name", "shown by MSP"),
@@ -32,7 +32,7 @@ const ELSEWHERE: [(&str, &str); 8] = [
     ("gps_provider", "a real receiver without a port turns the feature GPS off at boot"),
 ];
 
-/// Every value of a setting worth trying.
+/// Returns the values of a setting that are worth a test.
 fn values(setting: &Setting) -> Vec<Value> {
     match setting.kind {
         Kind::Number { min, max, .. } => vec![Value::Number(min), Value::Number(max)],
@@ -43,7 +43,7 @@ fn values(setting: &Setting) -> Vec<Value> {
     }
 }
 
-/// Craft on which a setting may show: some matter only together with others.
+/// Returns configurations in which a setting may have an effect. Some settings matter only together with others.
 fn stages() -> Vec<Configuration> {
     let with = |changes: &[(&str, i64)], off: &[Feature], on: &[Feature]| {
         let mut configuration = Configuration::default();
@@ -83,7 +83,7 @@ fn live_settings_change_the_parameters_and_carried_ones_do_not() {
         });
         let elsewhere = ELSEWHERE.iter().any(|(name, _)| *name == setting.name);
         let acts = changes || elsewhere;
-        // The navigator's own table has rows that it stores for the other firmware only.
+        // The navigator's own table has rows that it stores only for the other firmware.
         let stored_only = setting.name.starts_with("ap_") && setting.role == Role::Carry;
         assert!(acts == (setting.role == Role::Live) || stored_only, "{}: {}", setting.name, setting.role);
         assert!(!(changes && elsewhere), "{} is not elsewhere", setting.name);

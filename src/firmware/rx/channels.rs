@@ -1,46 +1,46 @@
-//! From wire pulses to the channel values the firmware uses: map, ranges, validity, hold and substitution.
+//! Converts wire pulses to the channel values of the firmware: map, ranges, validity, hold and substitution.
 //!
 //! Inside the firmware the order is roll, pitch, yaw, throttle, AUX1 … AUX12.
 
 use super::super::config::{ChannelMap, RX_FAIL_CHANNELS, RX_RANGES, RxFail, RxFailMode, RxRange};
 use crate::signals::{RC_CHANNELS, RcFrame, SimTime};
 
-/// Index of the roll channel.
+/// The index of the roll channel.
 pub const ROLL: usize = 0;
-/// Index of the pitch channel.
+/// The index of the pitch channel.
 pub const PITCH: usize = 1;
-/// Index of the yaw channel.
+/// The index of the yaw channel.
 pub const YAW: usize = 2;
-/// Index of the throttle channel.
+/// The index of the throttle channel.
 pub const THROTTLE: usize = 3;
-/// Index of AUX1.
+/// The index of AUX1.
 pub const AUX1: usize = 4;
 
-/// A channel keeps its last valid pulse for this long, s.
+/// The time for which a channel keeps its last valid pulse, s.
 const HOLD_S: f64 = 0.3;
 
-/// Pulse limits after `rxrange`, µs.
+/// The pulse limits after `rxrange`, µs.
 const RANGED_MIN_US: f64 = 750.0;
 const RANGED_MAX_US: f64 = 2250.0;
 
-/// How pulses become channel values.
+/// The conversion of pulses to channel values.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ChannelConfig {
-    /// Wire position of each of the first eight inner channels (roll, pitch, yaw, throttle, AUX1…4).
+    /// The wire position of each of the first eight internal channels (roll, pitch, yaw, throttle, AUX1…4).
     pub map: ChannelMap,
-    /// AUX channels evaluated; the others read `mid_us`.
+    /// The number of AUX channels in use. The others read `mid_us`.
     pub max_aux: u8,
-    /// Lowest valid pulse, µs.
+    /// The lowest valid pulse, µs.
     pub min_us: u16,
-    /// Highest valid pulse, µs.
+    /// The highest valid pulse, µs.
     pub max_us: u16,
-    /// Stick centre, µs.
+    /// The stick centre, µs.
     pub mid_us: u16,
-    /// Range of each stick channel that is stretched to 1000…2000, µs.
+    /// The range of each stick channel that is stretched to 1000…2000, µs.
     pub ranges: [RxRange; RX_RANGES],
-    /// Fallback of each channel.
+    /// The fallback of each channel.
     pub fail: [RxFail; RX_FAIL_CHANNELS],
-    /// Throttle while a failsafe procedure runs, µs.
+    /// The throttle while a failsafe procedure runs, µs.
     pub failsafe_throttle_us: u16,
 }
 
@@ -64,7 +64,7 @@ impl ChannelConfig {
         (self.min_us..=self.max_us).contains(&pulse)
     }
 
-    /// The wire pulse of inner channel `index`, mapped and stretched.
+    /// Returns the wire pulse of internal channel `index`, mapped and stretched.
     fn pulse(&self, frame: &RcFrame, index: usize) -> u16 {
         let wire = self.map.0.get(index).map_or(index, |&position| usize::from(position));
         let raw = frame.channels.get(wire).copied().unwrap_or(0);
@@ -79,7 +79,7 @@ impl ChannelConfig {
     }
 }
 
-/// The channels: last valid pulses, and what the firmware uses.
+/// The channels: the last valid pulses and the values in use.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Channels {
     last_valid: [u16; RC_CHANNELS],
@@ -89,7 +89,7 @@ pub struct Channels {
 }
 
 impl Channels {
-    /// Channels before the first frame: sticks centred, throttle at the bottom, AUX centred.
+    /// Creates the channels before the first frame: sticks centred, throttle at the bottom, AUX centred.
     pub fn new(config: &ChannelConfig) -> Self {
         let mut values = [config.mid_us; RC_CHANNELS];
         values[THROTTLE] = config.min_us;
@@ -113,7 +113,7 @@ impl Channels {
         }
     }
 
-    /// Whether all four flight channels had a valid pulse within the hold time.
+    /// Returns `true` if all four flight channels had a valid pulse within the hold time.
     pub fn flight_channels_valid(&self, now: SimTime) -> bool {
         (0..AUX1).all(|index| self.is_held(index, now))
     }
@@ -122,7 +122,7 @@ impl Channels {
         self.seen[index] && now.seconds_since(self.valid_at[index]) <= HOLD_S
     }
 
-    /// Recomputes the values; `procedure` says that a failsafe procedure owns the sticks.
+    /// Computes the values again. `procedure` means that a failsafe procedure controls the sticks.
     pub fn update(&mut self, config: &ChannelConfig, now: SimTime, procedure: bool) {
         let live = AUX1 + usize::from(config.max_aux);
         for index in 0..RC_CHANNELS {
@@ -150,17 +150,17 @@ impl Channels {
         }
     }
 
-    /// The channel values in use, µs: roll, pitch, yaw, throttle, AUX1….
+    /// Returns the channel values in use, µs: roll, pitch, yaw, throttle, AUX1….
     pub fn values(&self) -> &[u16; RC_CHANNELS] {
         &self.values
     }
 
-    /// The last valid pulses as received, µs, whatever a failsafe substitutes.
+    /// Returns the last valid pulses as received, µs, before any failsafe substitution.
     pub fn received(&self) -> &[u16; RC_CHANNELS] {
         &self.last_valid
     }
 
-    /// The live AUX channels in use, µs.
+    /// Returns the live AUX channels in use, µs.
     pub fn aux(&self, config: &ChannelConfig) -> &[u16] {
         let live = (AUX1 + usize::from(config.max_aux)).min(RC_CHANNELS);
         &self.values[AUX1..live]

@@ -1,14 +1,14 @@
-//! Who drives: three sources of RC frames with a fixed priority, judged by age.
+//! The RC source in charge: three sources of RC frames with a fixed priority, judged by age.
 
 use crate::signals::{RcFrame, RcSource, SimTime};
 
-/// A source without a frame for this long gives way to the next, s.
+/// The time without a frame after which a source gives way to the next, s.
 pub const SOURCE_TIMEOUT_S: f64 = 0.3;
 
-/// Frames counted to measure a source's rate.
+/// The number of frames over which a source's rate is measured.
 const RATE_WINDOW_FRAMES: u32 = 25;
 
-/// One source's newest frame.
+/// The newest frame of one source.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Seat {
     frame: RcFrame,
@@ -44,7 +44,7 @@ impl Seat {
     }
 }
 
-/// Chooses the source in charge: UDP, then MSP, then the virtual sticks, each while it is fresh; an explicit take-over
+/// Selects the source in charge: UDP, then MSP, then the virtual sticks, each while it is fresh. An explicit take-over
 /// puts the virtual sticks first.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Sources {
@@ -56,7 +56,7 @@ pub struct Sources {
 }
 
 impl Sources {
-    /// Takes a frame; returns it when its source is the one in charge.
+    /// Takes a frame. Returns it if its source is the one in charge.
     pub fn receive(&mut self, frame: RcFrame, source: RcSource, now: SimTime) -> Option<RcFrame> {
         match self.seat_mut(source) {
             Some(seat) => seat.receive(frame, now),
@@ -72,27 +72,27 @@ impl Sources {
         (self.in_charge == Some(source)).then_some(frame)
     }
 
-    /// Lets the virtual sticks win over the other sources, or ends that.
+    /// Gives the virtual sticks priority over the other sources, or ends that.
     pub fn take_over(&mut self, sticks_first: bool) {
         self.sticks_first = sticks_first;
     }
 
-    /// Whether the virtual sticks win over the other sources.
+    /// Returns `true` while the virtual sticks have priority over the other sources.
     pub fn taken_over(&self) -> bool {
         self.sticks_first
     }
 
-    /// The source whose frames are used; `None` before the first frame.
+    /// Returns the source whose frames are used; `None` before the first frame.
     pub fn in_charge(&self) -> Option<RcSource> {
         self.in_charge
     }
 
-    /// Age of a source's newest frame, s.
+    /// Returns the age of a source's newest frame, s.
     pub fn age_s(&self, source: RcSource, now: SimTime) -> Option<f64> {
         self.seat(source).map(|seat| now.seconds_since(seat.received))
     }
 
-    /// Frames a second of the source in charge; 0 until it is measured.
+    /// Returns the frames a second of the source in charge; 0 until it is measured.
     pub fn rate_hz(&self) -> f64 {
         self.in_charge.and_then(|source| self.seat(source)).map_or(0.0, |seat| seat.rate_hz)
     }

@@ -3,14 +3,14 @@
 use super::channels::{PITCH, ROLL, THROTTLE, YAW};
 use crate::signals::RC_CHANNELS;
 
-/// How pulses become stick positions.
+/// The conversion of pulses to stick positions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StickConfig {
-    /// Stick centre, µs.
+    /// The stick centre, µs.
     pub mid_us: u16,
-    /// Dead band of roll and pitch, µs.
+    /// The dead band of roll and pitch, µs.
     pub deadband: u16,
-    /// Dead band of yaw, µs.
+    /// The dead band of yaw, µs.
     pub yaw_deadband: u16,
 }
 
@@ -29,12 +29,12 @@ pub struct Sticks {
     pub pitch: f64,
     /// Yaw, right (clockwise) positive.
     pub yaw: f64,
-    /// Throttle pulse, µs.
+    /// The throttle pulse, µs.
     pub throttle_us: f64,
 }
 
 impl Sticks {
-    /// Positions of the sticks for these channel values (roll, pitch, yaw, throttle, …; µs).
+    /// Computes the stick positions for these channel values (roll, pitch, yaw, throttle, …; µs).
     pub fn from_channels(config: &StickConfig, values: &[u16; RC_CHANNELS]) -> Self {
         let deflection = |index: usize, deadband: u16| {
             let raw = (f64::from(values[index]) - f64::from(config.mid_us)).clamp(-500.0, 500.0);
@@ -48,7 +48,7 @@ impl Sticks {
         }
     }
 
-    /// The farthest deflection of roll, pitch and yaw, % of full stick.
+    /// Returns the largest deflection of roll, pitch and yaw, % of full stick.
     pub fn deflection_percent(&self) -> f64 {
         self.roll.abs().max(self.pitch.abs()).max(self.yaw.abs()) / 5.0
     }

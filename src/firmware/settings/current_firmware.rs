@@ -1,13 +1,12 @@
-//! Settings that take more values here than in current Betaflight: a configuration with such a value works here and is
-//! refused there.
+//! Settings that accept more values here than in current Betaflight, which refuses a configuration with such a value.
 
 use super::Setting;
 use crate::telemetry::FirmwareNotice;
 
-/// Name, least and greatest value of current firmware.
+/// The name, and the least and greatest value in current firmware.
 const RANGES: [(&str, i64, i64); 2] = [("ap_position_cutoff", 10, 50), ("ap_velocity_drag_coeff", 0, 100)];
 
-/// The notice about a setting that took `value`, as it is displayed, when current firmware refuses that value.
+/// Returns the notice about a setting that was set to `value` (as displayed), if current firmware refuses that value.
 pub fn beyond_current_firmware(setting: &Setting, value: &str) -> Option<FirmwareNotice> {
     let &(name, min, max) = RANGES.iter().find(|(name, ..)| *name == setting.name)?;
     let value = value.parse().ok()?;

@@ -1,7 +1,7 @@
 //! Names of settings that exist in other builds and releases of the firmware, so that the configuration of a real quad
-//! loads: such a line is kept verbatim and has no effect.
+//! loads. Such a line is kept verbatim and has no effect.
 
-/// The canonical spelling of a setting of another build, or `None` when no build knows the name.
+/// Returns the canonical spelling of a setting of another build; `None` if no build has the name.
 pub fn foreign_name(name: &str) -> Option<&'static str> {
     let folded = name.to_ascii_lowercase();
     FOREIGN
@@ -10,7 +10,7 @@ pub fn foreign_name(name: &str) -> Option<&'static str> {
         .and_then(|at| FOREIGN.get(at).copied())
 }
 
-/// Sorted without regard to case.
+/// The names of settings of other builds, sorted without regard to case.
 #[rustfmt::skip]
 const FOREIGN: &[&str] = &[
     "abs_control_cutoff", "abs_control_error_limit", "abs_control_gain", "abs_control_limit",

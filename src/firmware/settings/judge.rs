@@ -1,14 +1,15 @@
-//! Judges a setting that somebody wrote into a plan or an option, before any craft gets it, in sentences for people.
+//! Judges a setting in a plan or an option, before any craft gets it, in sentences for people.
 
 use super::parse::parse;
 use super::{AssignError, Kind, PORT_NAMES, SETTINGS, Setting, find, foreign_name};
 use crate::did_you_mean;
 use crate::plan::format::{SettingFault, SettingPart};
 
-/// Whether the craft takes `value` for the setting `name`. Settings of other builds are kept, whatever their value.
+/// Checks that the craft accepts `value` for the setting `name`. Settings of other builds are kept, whatever their
+/// value.
 ///
 /// # Errors
-/// What is wrong and what is allowed.
+/// Returns the fault and the allowed values.
 pub fn judge(name: &str, value: &str) -> Result<(), SettingFault> {
     let Some(setting) = find(name) else {
         return if foreign_name(name).is_some() { Ok(()) } else { Err(unknown(name)) };
@@ -54,7 +55,7 @@ fn wrong_value(setting: &Setting, value: &str, error: AssignError) -> SettingFau
     SettingFault { part: SettingPart::Value, message, hint }
 }
 
-/// `did you mean ON? allowed: OFF, ON`.
+/// Returns the hint for a wrong word: `did you mean ON? allowed: OFF, ON`.
 fn one_of(value: &str, words: &[&str]) -> String {
     let guess = did_you_mean::closest(value, words.iter().copied());
     let guess = guess.map_or_else(String::new, |word| format!("did you mean {word}? "));
@@ -95,7 +96,7 @@ mod tests {
         assert!(say("acc_calibration", "1,2").contains("whole numbers from "));
     }
 
-    /// The same verdict as the command line's.
+    /// Compares the verdict with that of the command line.
     #[test]
     fn the_verdict_is_that_of_the_craft() {
         let mut craft = crate::firmware::settings::Settings::default();

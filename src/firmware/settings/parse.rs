@@ -1,14 +1,14 @@
-//! Reading a setting's value from text, strictly: what is not wholly understood is refused.
+//! Strict parsing of a setting's value: text that is not fully understood is refused.
 
 use super::{Kind, PORT_NAMES, Setting, Value};
 
-/// Why a value was refused.
+/// The reason why a value was refused.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum AssignError {
     /// No setting has this name.
     #[error("no such setting")]
     UnknownName,
-    /// The value is not one the setting takes.
+    /// The setting does not accept the value.
     #[error("not an allowed value")]
     InvalidValue,
     /// The text has more characters than the setting holds.
@@ -16,7 +16,7 @@ pub enum AssignError {
     TextTooLong { max: usize },
 }
 
-/// Reads `text` as a value of `setting`.
+/// Parses `text` as a value of `setting`.
 pub(super) fn parse(setting: &Setting, text: &str) -> Result<Value, AssignError> {
     let text = text.trim();
     match setting.kind {
@@ -66,7 +66,7 @@ fn word(words: &[&str], text: &str) -> Result<Value, AssignError> {
     Ok(Value::Number(at as i64))
 }
 
-/// An optional sign and digits, nothing else.
+/// Parses an optional sign followed by digits only.
 fn integer(text: &str) -> Option<i64> {
     let digits = text.strip_prefix(['+', '-']).unwrap_or(text);
     if digits.is_empty() || !digits.bytes().all(|byte| byte.is_ascii_digit()) {

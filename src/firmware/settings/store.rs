@@ -15,7 +15,7 @@ pub enum Value {
     Text(String),
 }
 
-/// The values of all settings, of all profiles.
+/// The values of all settings in all profiles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
     values: Vec<Value>,
@@ -34,13 +34,14 @@ impl Default for Settings {
     }
 }
 
-/// The settings of one scope in table order.
+/// Returns the settings of one scope in table order.
 fn of_scope(scope: Scope) -> impl Iterator<Item = &'static Setting> {
     SETTINGS.iter().filter(move |setting| setting.scope == scope)
 }
 
 impl Settings {
-    /// A number, the position of the chosen word, or a port number, in the active profile; 0 for any other name.
+    /// Returns a number, the position of the chosen word, or a port number, in the active profile; 0 for any other
+    /// name.
     pub fn number(&self, name: &str) -> i64 {
         match find(name).and_then(|setting| self.active_value(setting)) {
             Some(Value::Number(number)) => *number,
@@ -48,12 +49,12 @@ impl Settings {
         }
     }
 
-    /// Whether a switch of the active profile is ON; `false` for any other name.
+    /// Returns `true` if a switch of the active profile is ON; `false` for any other name.
     pub fn flag(&self, name: &str) -> bool {
         self.number(name) != 0
     }
 
-    /// A text, or the chosen word in canonical case; empty for any other name.
+    /// Returns a text, or the chosen word in canonical case; empty for any other name.
     pub fn text(&self, name: &str) -> &str {
         let Some(setting) = find(name) else { return "" };
         match (self.active_value(setting), setting.kind) {
@@ -64,7 +65,7 @@ impl Settings {
         }
     }
 
-    /// The elements of an array setting; empty for any other name.
+    /// Returns the elements of an array setting; empty for any other name.
     pub fn array(&self, name: &str) -> &[i64] {
         match find(name).and_then(|setting| self.active_value(setting)) {
             Some(Value::Array(numbers)) => numbers,
@@ -72,27 +73,27 @@ impl Settings {
         }
     }
 
-    /// The value of a setting in one profile; `None` when the profile does not exist.
+    /// Returns the value of a setting in one profile; `None` if the profile does not exist.
     pub fn value(&self, setting: &Setting, instance: u8) -> Option<&Value> {
         self.values.get(offset(setting, instance)?)
     }
 
-    /// The value of a setting in the active profile.
+    /// Returns the value of a setting in the active profile.
     pub fn active_value(&self, setting: &Setting) -> Option<&Value> {
         self.value(setting, self.active(setting.scope))
     }
 
-    /// Whether a setting differs from the default in one profile.
+    /// Returns `true` if a setting differs from its default in one profile.
     pub fn is_changed(&self, setting: &Setting, instance: u8) -> bool {
         self.value(setting, instance).is_some_and(|value| *value != setting.default_value())
     }
 
-    /// The active instance of a scope.
+    /// Returns the active instance of a scope.
     pub fn active(&self, scope: Scope) -> u8 {
         self.active[scope as usize]
     }
 
-    /// Makes another profile the active one; an instance that does not exist is refused with `false`.
+    /// Makes another profile the active one. Returns `false` if the instance does not exist.
     pub fn select(&mut self, scope: Scope, instance: u8) -> bool {
         let exists = instance < scope.instances();
         if exists {
@@ -101,12 +102,12 @@ impl Settings {
         exists
     }
 
-    /// Reads `text` as the value of a setting of the active profile.
+    /// Parses `text` as the value of a setting of the active profile.
     pub fn assign(&mut self, setting: &Setting, text: &str) -> Result<(), AssignError> {
         self.assign_in(setting, self.active(setting.scope), text)
     }
 
-    /// Reads `text` as the value of a setting of one profile.
+    /// Parses `text` as the value of a setting of one profile.
     pub fn assign_in(&mut self, setting: &Setting, instance: u8, text: &str) -> Result<(), AssignError> {
         self.put(setting, instance, parse(setting, text)?)
     }
@@ -116,7 +117,7 @@ impl Settings {
         self.set(name, Value::Number(number))
     }
 
-    /// Sets a text of the active profile; the empty text is allowed.
+    /// Sets a text of the active profile. The empty text is allowed.
     pub fn set_text(&mut self, name: &str, text: &str) -> Result<(), AssignError> {
         self.set(name, Value::Text(text.to_owned()))
     }
@@ -136,13 +137,13 @@ impl Settings {
         Ok(())
     }
 
-    /// Returns all values and the profile selection to those of a fresh vehicle.
+    /// Resets all values and the profile selection to those of a fresh vehicle.
     pub fn reset(&mut self) {
         *self = Self::default();
     }
 }
 
-/// Where the value of a setting lies in the store.
+/// Returns the position of a setting's value in the store.
 fn offset(setting: &Setting, instance: u8) -> Option<usize> {
     if instance >= setting.scope.instances() {
         return None;

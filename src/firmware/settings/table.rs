@@ -19,15 +19,15 @@ mod words;
 
 use words::{ACC_HARDWARE, BAUD, DEBUG_MODE, OFF_ON};
 
-/// Serial ports a port setting names; the position is the value.
+/// The serial ports that a port setting can name. The position is the value.
 pub const PORT_NAMES: [&str; 9] =
     ["NONE", "UART1", "UART2", "UART3", "UART4", "UART5", "UART6", "UART7", "UART8"];
 
-/// Settings that belong together in the documentation.
+/// Settings that are documented together.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Group {
     pub title: &'static str,
-    /// Where its settings live.
+    /// The scope of its settings.
     pub scope: Scope,
     /// The settings in order.
     pub settings: &'static [Setting],
@@ -83,10 +83,10 @@ const COUNT: usize = {
 /// Every setting, in the order of `set` and `dump`.
 pub static SETTINGS: [Setting; COUNT] = flatten();
 
-/// Positions in [`SETTINGS`] sorted by name.
+/// The positions in [`SETTINGS`], sorted by name.
 static BY_NAME: [u16; COUNT] = sort_by_name();
 
-/// Old names of settings that only moved.
+/// The old names of settings that were only renamed.
 const MOVED: [(&str, &str); 5] = [
     ("name", "craft_name"),
     ("position_alt_source", "altitude_source"),
@@ -95,7 +95,7 @@ const MOVED: [(&str, &str); 5] = [
     ("dshot_idle_value", "motor_idle"),
 ];
 
-/// The setting of this name, or of this old name, in any case.
+/// Returns the setting of this name, or of this old name, in any case.
 pub fn find(name: &str) -> Option<&'static Setting> {
     let moved = MOVED.iter().find(|(old, _)| old.eq_ignore_ascii_case(name)).map(|(_, new)| *new);
     let name = moved.unwrap_or(name);
@@ -105,20 +105,21 @@ pub fn find(name: &str) -> Option<&'static Setting> {
     SETTINGS.get(usize::from(*BY_NAME.get(at)?))
 }
 
-/// The heading under which a setting is documented.
+/// Returns the heading under which a setting is documented.
 pub fn group_of(setting: &Setting) -> &'static str {
     let holds = |group: &&&Group| group.settings.iter().any(|row| row.name == setting.name);
     GROUPS.iter().find(holds).map_or("", |group| group.title)
 }
 
-/// Whether a change works only after a restart of the firmware; all other settings are live from the next step.
+/// Returns `true` if a change takes effect only after a restart of the firmware. All other settings are live from the
+/// next step.
 pub fn needs_restart(name: &str) -> bool {
     const NAMES: [&str; 5] =
         ["gps_provider", "pid_process_denom", "motor_pwm_protocol", "mag_hardware", "max_aux_channels"];
     NAMES.contains(&name) || name.starts_with("msp_uart_")
 }
 
-/// How many settings one instance of a scope has.
+/// Returns the number of settings in one instance of a scope.
 pub(super) const fn slots(scope: Scope) -> usize {
     let mut count = 0;
     let mut at = 0;
@@ -152,7 +153,7 @@ const fn flatten() -> [Setting; COUNT] {
     all
 }
 
-/// A bottom-up merge sort, since the sorts of the standard library do not run at compile time.
+/// Sorts by a bottom-up merge sort, because the sorts of the standard library do not run at compile time.
 const fn sort_by_name() -> [u16; COUNT] {
     let mut order = [0; COUNT];
     let mut at = 0;

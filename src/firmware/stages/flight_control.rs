@@ -1,4 +1,4 @@
-//! The controller, told by the sticks or by the demands that take their place.
+//! The controller, driven by the sticks or by the demands that replace them.
 
 use crate::firmware::control::{ControlInput, ControlState, Controller, LeanDemand, StickMode, Tuning};
 use crate::firmware::estimate::{DueTasks, Estimate};
@@ -6,18 +6,18 @@ use crate::firmware::rx::Sticks;
 use crate::signals::MotorCommand;
 use crate::telemetry::{Mode, ModeFlags, NavOutput};
 
-/// A motor that stands still, µs.
+/// The pulse of a stopped motor, µs.
 const MOTOR_STOP_US: f64 = 1000.0;
 
-/// Demands that take the place of the pilot's, renewed a hundred times a second.
+/// Demands that replace the pilot's, updated a hundred times a second.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(in crate::firmware) struct Demand {
     pub lean: Option<LeanDemand>,
-    /// Yaw rate, rad/s, clockwise positive.
+    /// The yaw rate, rad/s, clockwise positive.
     pub yaw_rate_rps: Option<f64>,
-    /// Throttle into the mixer, 0…1.
+    /// The throttle into the mixer, 0…1.
     pub throttle: Option<f64>,
-    /// The craft stands on its legs.
+    /// `true` while the craft is on its legs.
     pub stands: bool,
 }
 
@@ -32,32 +32,32 @@ impl From<NavOutput> for Demand {
     }
 }
 
-/// What one step of the controller needs besides the estimate.
+/// The inputs of one controller step, other than the estimate.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::firmware) struct ControlStep<'a> {
-    /// Loops that are due.
+    /// The loops that are due.
     pub due: DueTasks,
     pub armed: bool,
     pub modes: ModeFlags,
-    /// Stick positions in use.
+    /// The stick positions in use.
     pub sticks: &'a Sticks,
-    /// A new RC frame came.
+    /// `true` if a new RC frame came.
     pub rc_frame: bool,
     /// Full stabilisation at zero throttle.
     pub airmode: bool,
-    /// Gains rise in quick throttle changes.
+    /// Raises the gains in quick throttle changes.
     pub anti_gravity: bool,
-    /// Motors stand still at low throttle.
+    /// Stops the motors at low throttle.
     pub motor_stop: bool,
-    /// A failsafe procedure runs.
+    /// `true` while a failsafe procedure runs.
     pub failsafe: bool,
-    /// The craft is levelled after a crash, whatever the sticks say.
+    /// Levels the craft after a crash, regardless of the sticks.
     pub levels_after_crash: bool,
-    /// Heading at arming, rad: what HEADFREE refers to.
+    /// The reference heading of HEADFREE, rad.
     pub headfree_rad: f64,
 }
 
-/// What a craft that is levelled after a crash leans to.
+/// The lean demand while the craft is levelled after a crash.
 const LEVEL: LeanDemand = LeanDemand { roll_rad: 0.0, pitch_rad: 0.0 };
 
 /// The controller and the demands in force.
@@ -70,7 +70,7 @@ pub(in crate::firmware) struct FlightControl {
 }
 
 impl FlightControl {
-    /// A controller at boot for so many steps a second.
+    /// Creates a controller at boot for `rate_hz` steps a second.
     pub(in crate::firmware) fn new(tuning: &Tuning, rate_hz: u32) -> Self {
         let step_s = 1.0 / f64::from(rate_hz.max(1));
         Self {
@@ -85,12 +85,12 @@ impl FlightControl {
         self.controller.set_tuning(*tuning);
     }
 
-    /// Sets the demands that take the place of the pilot's.
+    /// Sets the demands that replace the pilot's.
     pub(in crate::firmware) fn set_demand(&mut self, demand: Demand) {
         self.demand = demand;
     }
 
-    /// Turns motors on the bench; `motor` = all when absent. No effect while armed.
+    /// Runs motors on the bench; `None` = all motors. No effect while armed.
     pub(in crate::firmware) fn test_motor(&mut self, motor: Option<u8>, output_us: u16) {
         let pulse = f64::from(output_us);
         match motor {
@@ -103,12 +103,12 @@ impl FlightControl {
         }
     }
 
-    /// Stops the motors that were turned on the bench.
+    /// Stops the motors that run on the bench.
     pub(in crate::firmware) fn end_motor_test(&mut self) {
         self.motor_test_us = [MOTOR_STOP_US; 4];
     }
 
-    /// Turns the heading that MAG holds to this one, rad clockwise from north; nothing while it holds none.
+    /// Changes the heading that MAG holds to this one, rad clockwise from north. Does nothing while it holds none.
     pub(in crate::firmware) fn hold_heading(&mut self, heading_rad: f64) {
         self.controller.hold_heading(heading_rad);
     }
@@ -140,18 +140,18 @@ impl FlightControl {
         self.controller.step(&input, estimate, self.step_s).motors
     }
 
-    /// Cutoffs of the smoothing of sticks and throttle in use, Hz; 0 while nothing is smoothed.
+    /// Returns the smoothing cutoffs of sticks and throttle in use, Hz; 0 while nothing is smoothed.
     pub(in crate::firmware) fn smoothing_hz(&self) -> [f64; 2] {
         self.controller.smoothing_hz()
     }
 
-    /// What the controller did in the last step.
+    /// Returns the results of the controller's last step.
     pub(in crate::firmware) fn state(&self) -> &ControlState {
         self.controller.state()
     }
 }
 
-/// HEADFREE has no effect while the autopilot flies.
+/// Returns `true` if HEADFREE is active. It has no effect while the autopilot flies.
 fn headfree(step: &ControlStep<'_>) -> bool {
     step.modes.has(Mode::HeadFree) && !step.modes.has(Mode::Autopilot)
 }

@@ -1,4 +1,4 @@
-//! Who gives the demands that take the place of the pilot's: failsafe, navigator, holds. Runs a hundred times a second.
+//! The demands that replace the pilot's, from failsafe, navigator and holds. Runs a hundred times a second.
 
 use nalgebra::Vector3;
 
@@ -25,24 +25,24 @@ use crate::telemetry::{
 use super::flight_control::Demand;
 use super::{RcInput, Safety, Sensing};
 
-/// What the failsafe asks of arming.
+/// A request of the failsafe to arming.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::firmware) enum FailsafeRequest {
     Disarm,
-    /// No arming before the ARM switch was off.
+    /// Blocks arming until the ARM switch has been off.
     RequireSwitchOff,
 }
 
-/// What the holds and the navigator decided in one update.
+/// The results of the holds and the navigator in one update.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::firmware) struct Flown {
-    /// What takes the place of the pilot's demands.
+    /// The demands that replace the pilot's.
     pub demand: Demand,
-    /// The failsafe's descent has reached the ground: stop the motors.
+    /// `true` once the failsafe's descent has reached the ground. The motors must be stopped then.
     pub touchdown: bool,
 }
 
-/// Failsafe, orders, navigator and holds, and what they see of the craft.
+/// Failsafe, orders, navigator and holds, and their view of the craft.
 #[derive(Debug, Clone)]
 pub(in crate::firmware) struct Navigation {
     failsafe: Failsafe,
@@ -50,20 +50,20 @@ pub(in crate::firmware) struct Navigation {
     navigator: Navigator,
     holds: Holds,
     throttle_takeover: ThrottleTakeover,
-    /// Lent to the navigator or to the holds, whoever flies.
+    /// The controllers, used by the navigator or by the holds, whichever flies.
     controllers: FlightControllers,
     inputs: NavInputs,
-    /// The navigator's demands, while it flies.
+    /// The navigator's demands while it flies.
     output: Option<NavOutput>,
     updated_at: SimTime,
-    /// Why the autopilot did not engage, until it does or the craft is armed again.
+    /// The reason why the autopilot did not engage. It remains until the autopilot engages or the craft is armed again.
     last_refusal: Option<Refusal>,
-    /// Why position hold only levels the craft, as it was reported.
+    /// The reported reason why position hold only levels the craft.
     only_levelled: Option<FirmwareNotice>,
 }
 
 impl Navigation {
-    /// Nobody flies; the first update counts from `now`.
+    /// Creates the state in which nothing flies the craft. The first update counts from `now`.
     pub(in crate::firmware) fn new(now: SimTime) -> Self {
         Self {
             failsafe: Failsafe::default(),
@@ -80,7 +80,7 @@ impl Navigation {
         }
     }
 
-    /// Begins an update: notes the state of the craft.
+    /// Begins an update: records the state of the craft.
     pub(in crate::firmware) fn observe(
         &mut self,
         now: SimTime,
@@ -133,7 +133,7 @@ impl Navigation {
         altitude.set_on_ground(land.awaits_lift_off(), land.load());
     }
 
-    /// One update of the failsafe; `uptime` counts from boot.
+    /// Runs one update of the failsafe; `uptime` counts from boot.
     pub(in crate::firmware) fn update_failsafe(
         &mut self,
         parameters: &Parameters,
@@ -179,7 +179,7 @@ impl Navigation {
         }
     }
 
-    /// Carries out what stage 2 decided.
+    /// Carries out the response of stage 2.
     fn respond(
         &mut self,
         response: Response,
@@ -198,13 +198,13 @@ impl Navigation {
             Response::Procedure(Procedure::AutoLand) | Response::Continue | Response::KeepLanding => Ok(()),
         };
         if let Err(refusal) = started {
-            // The failsafe sees the absent mission and goes on to the descent.
+            // The failsafe notices the missing mission and starts the descent.
             outbox.push(FirmwareEvent::Nav(NavEvent::Refused(refusal)));
         }
         None
     }
 
-    /// One update of orders and navigator; tells whether the navigator has landed the craft.
+    /// Runs one update of orders and navigator. Returns `true` if the navigator has landed the craft.
     pub(in crate::firmware) fn navigate(
         &mut self,
         parameters: &Parameters,
@@ -239,7 +239,7 @@ impl Navigation {
         touched_down
     }
 
-    /// Whether the bump of the ground ends the flight of an armed craft.
+    /// Returns `true` if the impact of a landing ends the flight of an armed craft.
     pub(in crate::firmware) fn is_impact(
         &self,
         parameters: &Parameters,
@@ -257,7 +257,7 @@ impl Navigation {
         safety.armed() && self.controllers.land.is_impact(parameters.landing_disarm_threshold, &facts)
     }
 
-    /// What the flight modes depend on.
+    /// Returns the inputs of the flight mode rules.
     pub(in crate::firmware) fn mode_facts(
         &self,
         rc: &RcInput,
@@ -278,7 +278,7 @@ impl Navigation {
         }
     }
 
-    /// Ends an update: the demands of the navigator, of the holds, or none, so that the pilot's count.
+    /// Ends an update: returns the demands of the navigator or of the holds. Without demands, the pilot flies.
     pub(in crate::firmware) fn demand(
         &mut self,
         parameters: &Parameters,
@@ -334,8 +334,8 @@ impl Navigation {
         Flown { demand, touchdown: held.touchdown }
     }
 
-    /// The craft was armed or disarmed: nothing is held, and what the controllers tracked on the ground, which carries
-    /// the craft, is forgotten.
+    /// Releases the holds and forgets what the controllers tracked on the ground, which carries the craft. Called when
+    /// the craft was armed or disarmed.
     pub(in crate::firmware) fn reset_control(&mut self) {
         self.holds.release();
         if !self.navigator.is_flying() {
@@ -348,7 +348,7 @@ impl Navigation {
         self.orders.return_to_home(&mut self.navigator, &self.inputs, &parameters.nav, None)
     }
 
-    /// Carries out a command to the navigator that flies the stored plan.
+    /// Passes a command to the navigator that flies the stored plan.
     pub(in crate::firmware) fn command(
         &mut self,
         command: InFlightCommand,
@@ -363,22 +363,22 @@ impl Navigation {
         self.orders.emergency_land(&mut self.navigator, &self.inputs)
     }
 
-    /// Takes such a command back.
+    /// Cancels the command to fly home or land.
     pub(in crate::firmware) fn cancel_command(&mut self) {
         self.orders.take_back(&mut self.navigator);
     }
 
-    /// Whether such a command is in force.
+    /// Returns `true` while such a command is in force.
     pub(in crate::firmware) fn is_commanded(&self) -> bool {
         self.orders.is_commanded()
     }
 
-    /// Whether all the throttle there is does not lift the craft off the ground.
+    /// Returns `true` if full throttle does not lift the craft off the ground.
     pub(in crate::firmware) fn is_too_heavy(&self) -> bool {
         self.controllers.land.awaits_lift_off() && self.controllers.altitude.is_at_full_throttle()
     }
 
-    /// What stage 2 of the failsafe would do now.
+    /// Returns the response of stage 2 of the failsafe in the present situation.
     pub(in crate::firmware) fn failsafe_response(&self, parameters: &Parameters) -> Response {
         failsafe_response(&self.navigator, &parameters.nav, parameters.failsafe.procedure, self.inputs.fix)
     }
@@ -387,7 +387,7 @@ impl Navigation {
         &self.failsafe
     }
 
-    /// Why the autopilot did not engage, also when the switch is off again or the craft disarmed.
+    /// Returns the reason why the autopilot did not engage, even if the switch is off again or the craft is disarmed.
     pub(in crate::firmware) fn last_refusal(&self) -> Option<Refusal> {
         self.last_refusal
     }
@@ -401,17 +401,17 @@ impl Navigation {
         }
     }
 
-    /// Where the throttle stick rests in ALTHOLD, µs.
+    /// Returns the neutral position of the throttle stick in ALTHOLD, µs.
     pub(in crate::firmware) fn hover_stick_us(&self, parameters: &Parameters) -> f64 {
         self.controllers.altitude.hover_stick_us(&parameters.nav, parameters.hold.mid_us)
     }
 
-    /// The navigator's telemetry.
+    /// Returns the navigator's telemetry.
     pub(in crate::firmware) fn telemetry(&self) -> &NavTelemetry {
         self.navigator.telemetry()
     }
 
-    /// The plan being flown, when one is.
+    /// Returns the plan being flown, if any.
     pub(in crate::firmware) fn active_plan(&self) -> Option<&FlightPlan> {
         self.navigator.is_flying().then(|| self.navigator.active_plan())
     }

@@ -1,4 +1,4 @@
-//! From RC frames to sticks, switches and the state of the link.
+//! Converts RC frames to sticks, switches and the state of the link.
 
 use strum::{EnumCount as _, IntoEnumIterator as _};
 
@@ -11,22 +11,22 @@ use crate::firmware::rx::{Receiver, RxConfig};
 use crate::signals::{RcFrame, RcSource, SimTime};
 use crate::telemetry::FirmwareEvent;
 
-/// The receiver with the frames that wait for it, the link, and the boxes that its switches turn on.
+/// The receiver with its queued frames, the link, and the boxes that its switches turn on.
 #[derive(Debug, Clone)]
 pub(in crate::firmware) struct RcInput {
-    /// Frames that came since the last step; of one source only the newest counts.
+    /// The frames that came since the last step. Only the newest frame of each source counts.
     queued: [Option<RcFrame>; RcSource::COUNT],
     receiver: Receiver,
     link: LinkMonitor,
-    /// The loss of the link was reported, its return not yet.
+    /// `true` if the loss of the link was reported, but not its return yet.
     loss_reported: bool,
     boxes: BoxSet,
-    /// A frame came that the controller has not seen yet.
+    /// `true` if a frame came that the controller has not used yet.
     new_frame: bool,
 }
 
 impl RcInput {
-    /// A receiver that has heard nothing.
+    /// Creates a receiver that has not received anything yet.
     pub(in crate::firmware) fn new(config: &RxConfig) -> Self {
         Self {
             queued: [None; RcSource::COUNT],
@@ -38,29 +38,29 @@ impl RcInput {
         }
     }
 
-    /// The receiver after a restart: the frames that wait and the order of the sources stay.
+    /// Returns the receiver after a restart. The queued frames and the order of the sources stay.
     pub(in crate::firmware) fn restarted(&self, config: &RxConfig) -> Self {
         let mut fresh = Self { queued: self.queued, ..Self::new(config) };
         fresh.take_over(self.receiver.sources().taken_over());
         fresh
     }
 
-    /// Keeps a frame for the next step, where its age begins.
+    /// Keeps a frame for the next step, at which its age begins.
     pub(in crate::firmware) fn queue(&mut self, frame: &RcFrame, source: RcSource) {
         self.queued[source as usize] = Some(*frame);
     }
 
-    /// Drops the frames that came since the last step: they never arrived.
+    /// Drops the frames that came since the last step. The receiver does not get them.
     pub(in crate::firmware) fn drop_queued(&mut self) {
         self.queued.fill(None);
     }
 
-    /// Lets the virtual sticks win over the other sources, or ends that.
+    /// Gives the virtual sticks priority over the other sources, or ends that.
     pub(in crate::firmware) fn take_over(&mut self, sticks_first: bool) {
         self.receiver.take_over(sticks_first);
     }
 
-    /// Hands the frames that came since the last step to the receiver.
+    /// Passes the frames that came since the last step to the receiver.
     pub(in crate::firmware) fn receive_queued(&mut self, parameters: &Parameters, now: SimTime) {
         for source in RcSource::iter() {
             if let Some(frame) = self.queued[source as usize].take() {
@@ -69,12 +69,12 @@ impl RcInput {
         }
     }
 
-    /// Whether an update is due.
+    /// Returns `true` if an update is due.
     pub(in crate::firmware) fn is_due(&self, now: SimTime) -> bool {
         self.receiver.is_due(now)
     }
 
-    /// Judges channels, link and switches anew; tells whether a new frame came.
+    /// Judges channels, link and switches again. Returns `true` if a new frame came.
     pub(in crate::firmware) fn update(
         &mut self,
         parameters: &Parameters,
@@ -105,7 +105,7 @@ impl RcInput {
         new_frame
     }
 
-    /// Whether a frame came since the last call.
+    /// Returns `true` if a frame came since the last call.
     pub(in crate::firmware) fn take_new_frame(&mut self) -> bool {
         std::mem::take(&mut self.new_frame)
     }
@@ -114,7 +114,7 @@ impl RcInput {
         &self.receiver
     }
 
-    /// The boxes that are switched on.
+    /// Returns the boxes that are switched on.
     pub(in crate::firmware) fn boxes(&self) -> BoxSet {
         self.boxes
     }
@@ -123,7 +123,7 @@ impl RcInput {
         &self.link
     }
 
-    /// The throttle stick in use, %.
+    /// Returns the throttle stick in use, %.
     pub(in crate::firmware) fn throttle_percent(&self) -> f64 {
         (self.receiver.sticks().throttle_us - 1000.0) / 10.0
     }

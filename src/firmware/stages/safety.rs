@@ -12,7 +12,7 @@ use crate::telemetry::{ArmingFlags, DisarmReason};
 
 use super::RcInput;
 
-/// Arming with its watchdogs, and what was noted when the craft was armed.
+/// Arming with its watchdogs, and the values recorded at arming.
 #[derive(Debug, Clone, Default)]
 pub(in crate::firmware) struct Safety {
     arming: Arming,
@@ -24,17 +24,17 @@ pub(in crate::firmware) struct Safety {
 }
 
 impl Safety {
-    /// Whether the craft is armed.
+    /// Returns `true` if the craft is armed.
     pub(in crate::firmware) fn armed(&self) -> bool {
         self.arming.armed()
     }
 
-    /// Whether the throttle was raised since arming.
+    /// Returns `true` if the throttle has been raised since arming.
     pub(in crate::firmware) fn raised(&self) -> bool {
         self.arming.raised()
     }
 
-    /// Whether the craft was armed since boot.
+    /// Returns `true` if the craft has been armed since boot.
     pub(in crate::firmware) fn ever_armed(&self) -> bool {
         self.arming.ever_armed()
     }
@@ -43,43 +43,43 @@ impl Safety {
         self.arming.flags()
     }
 
-    /// Why the craft was disarmed last.
+    /// Returns the reason of the last disarming.
     pub(in crate::firmware) fn last_disarm(&self) -> Option<DisarmReason> {
         self.last_disarm
     }
 
-    /// Where the craft was armed, when that was known.
+    /// Returns the position of arming, if it was known.
     pub(in crate::firmware) fn home(&self) -> Option<LatLon> {
         self.home
     }
 
-    /// Heading that HEADFREE refers to, rad clockwise from north.
+    /// Returns the reference heading of HEADFREE, rad clockwise from north.
     pub(in crate::firmware) fn headfree_rad(&self) -> f64 {
         self.headfree_rad
     }
 
-    /// Makes HEADFREE refer to this heading, rad clockwise from north.
+    /// Sets the reference heading of HEADFREE, rad clockwise from north.
     pub(in crate::firmware) fn set_headfree(&mut self, heading_rad: f64) {
         self.headfree_rad = heading_rad;
     }
 
-    /// Whether the craft is being levelled after a crash, whatever the sticks say.
+    /// Returns `true` while the craft is being levelled after a crash, regardless of the sticks.
     pub(in crate::firmware) fn is_levelling(&self) -> bool {
         self.crash.is_levelling()
     }
 
-    /// A command line session was opened on a serial link: no arming until reboot.
+    /// Blocks arming until reboot. Called when a command line session is opened on a serial link.
     pub(in crate::firmware) fn cli_opened(&mut self) {
         self.arming.cli_opened();
     }
 
-    /// The failsafe ended with the ARM switch on: it must be switched off first.
+    /// Requires the ARM switch to be turned off first. Called when the failsafe ends with the switch on.
     pub(in crate::firmware) fn require_switch_off(&mut self) {
         self.arming.require_switch_off();
     }
 
-    /// One update of arming, with what the receiver just told. `uptime` counts from boot; `failsafe_landed`: a failsafe
-    /// ended the last flight and the link is not good again.
+    /// Runs one update of arming, with the newest state of the receiver. `uptime` counts from boot. `failsafe_landed`
+    /// is `true` if a failsafe ended the last flight and the link has not recovered yet.
     pub(in crate::firmware) fn update(
         &mut self,
         parameters: &Parameters,
@@ -117,7 +117,7 @@ impl Safety {
         change
     }
 
-    /// Stops the motors for a reason; `false` when they were stopped already.
+    /// Stops the motors for the given reason. Returns `false` if they were already stopped.
     pub(in crate::firmware) fn disarm(&mut self, reason: DisarmReason) -> bool {
         let was_armed = self.arming.disarm(reason);
         if was_armed {
@@ -126,13 +126,13 @@ impl Safety {
         was_armed
     }
 
-    /// The state after a restart, which ends a flight.
+    /// Returns the state after a restart, which ends a flight.
     pub(in crate::firmware) fn restarted(&self) -> Self {
         let last_disarm = self.armed().then_some(DisarmReason::System);
         Self { last_disarm, ..Self::default() }
     }
 
-    /// Whether the craft turns against its controller in the take-off, as with mixed-up motors.
+    /// Returns `true` if the craft turns against its controller at take-off, as with swapped motors.
     pub(in crate::firmware) fn is_runaway(
         &mut self,
         parameters: &Parameters,
@@ -150,7 +150,7 @@ impl Safety {
         self.armed() && self.runaway.update(&parameters.runaway, &facts)
     }
 
-    /// What to do about a crash that is noticed in this step, where the settings ask for it.
+    /// Returns the action for a crash noticed in this step, if the settings require one.
     pub(in crate::firmware) fn crash(
         &mut self,
         parameters: &Parameters,
@@ -160,7 +160,7 @@ impl Safety {
     ) -> Option<CrashAction> {
         let config = &parameters.crash;
         if config.action == CrashAction::Off || !self.arming.armed() || !self.arming.raised() {
-            // Also when it is switched off while it levels: the sticks are the pilot's again.
+            // This includes a detection switched off while it levels: the pilot gets the sticks back.
             self.crash.reset();
             return None;
         }
@@ -179,7 +179,7 @@ impl Safety {
     }
 }
 
-/// Where the craft is, when enough satellites say so to fly home by it.
+/// Returns the position of the craft, if there are enough satellites to fly home by it.
 pub(in crate::firmware) fn trusted_position(parameters: &Parameters, estimate: &Estimate) -> Option<LatLon> {
     let gps = &estimate.gps;
     let trusted = gps.fix && gps.sats >= parameters.rescue.min_sats;

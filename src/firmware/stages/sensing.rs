@@ -1,4 +1,4 @@
-//! The estimator, the battery, and what the sensors report of themselves: fix, hanging samples, calibrations.
+//! The estimator, the battery, and the health of the sensors: fix, frozen samples, calibrations.
 
 use nalgebra::Vector3;
 
@@ -11,21 +11,21 @@ use crate::geo::LatLon;
 use crate::signals::{BatterySample, SensorFrame};
 use crate::telemetry::{BatteryAlarm, FirmwareEvent, FirmwareNotice};
 
-/// What the sensors tell of the craft.
+/// The state of the craft from its sensors.
 #[derive(Debug, Clone)]
 pub(in crate::firmware) struct Sensing {
     estimator: Estimator,
     battery: Battery,
     imu_frozen: bool,
-    /// Newest magnetic field, body forward-left-up, as sensed.
+    /// The newest magnetic field, body forward-left-up, as measured.
     mag_flu: Vector3<f64>,
     fix: bool,
-    /// The magnetometer was reported as doubted.
+    /// `true` if the magnetometer was reported as doubted.
     heading_doubted: bool,
 }
 
 impl Sensing {
-    /// Nothing is known yet.
+    /// Creates the state at boot, in which nothing is known yet.
     pub(in crate::firmware) fn new(options: &FirmwareOptions, parameters: &Parameters) -> Self {
         let options = EstimatorOptions {
             attitude: options.attitude,
@@ -46,7 +46,7 @@ impl Sensing {
         self.estimator.set_tuning(parameters.estimator.clone());
     }
 
-    /// Takes the samples of one step; tells which slower loops are due.
+    /// Takes the samples of one step. Returns the slower loops that are due.
     pub(in crate::firmware) fn update(
         &mut self,
         frame: &SensorFrame,
@@ -70,7 +70,7 @@ impl Sensing {
         outbox.push(FirmwareEvent::Battery { state, cell_v: self.battery.cell_v() });
     }
 
-    /// Reports inertial sensors that begin to hang.
+    /// Reports inertial sensors that begin to repeat the same sample.
     pub(in crate::firmware) fn watch_imu(&mut self, outbox: &mut Outbox) {
         let frozen = self.estimate().imu_frozen;
         if frozen && !self.imu_frozen {
@@ -79,7 +79,7 @@ impl Sensing {
         self.imu_frozen = frozen;
     }
 
-    /// Reports a magnetometer that is doubted or believed again.
+    /// Reports a magnetometer that is doubted, or trusted again.
     pub(in crate::firmware) fn watch_heading(&mut self, outbox: &mut Outbox) {
         let doubt = self.estimate().heading_doubt_rad;
         if doubt.is_some() != self.heading_doubted {
@@ -103,42 +103,40 @@ impl Sensing {
         });
     }
 
-    /// The offsets of an accelerometer calibration that has just ended.
+    /// Returns the offsets of an accelerometer calibration that has just ended.
     pub(in crate::firmware) fn take_acc_calibration(&mut self) -> Option<[i64; 3]> {
         self.estimator.take_acc_calibration()
     }
 
-    /// The offsets of a magnetometer calibration that has just ended.
+    /// Returns the result of a magnetometer calibration that has just ended.
     pub(in crate::firmware) fn take_mag_calibration(&mut self) -> Option<Result<[i64; 3], NotTurned>> {
         self.estimator.take_mag_calibration()
     }
 
-    /// Begins to calibrate the gyro; the craft must rest.
+    /// Starts a calibration of the gyro. The craft must be at rest.
     pub(in crate::firmware) fn calibrate_gyro(&mut self) {
         self.estimator.calibrate_gyro();
     }
 
-    /// Begins to calibrate the accelerometer; the craft must stand level.
+    /// Starts a calibration of the accelerometer. The craft must be level and still.
     pub(in crate::firmware) fn calibrate_accelerometer(&mut self) {
         self.estimator.calibrate_accelerometer();
     }
 
-    /// Begins to calibrate the magnetometer; the craft is to be turned about all its axes.
+    /// Starts a calibration of the magnetometer. The pilot must turn the craft about all its axes.
     pub(in crate::firmware) fn calibrate_magnetometer(&mut self) {
         self.estimator.calibrate_magnetometer();
     }
 
-    /// The craft was armed at this place, when it is known.
+    /// Records that the craft was armed at this position, if it is known.
     pub(in crate::firmware) fn on_arm(&mut self, position: Option<LatLon>) {
         self.estimator.on_arm(position);
     }
 
-    /// The craft was disarmed.
     pub(in crate::firmware) fn on_disarm(&mut self) {
         self.estimator.on_disarm();
     }
 
-    /// What the estimator believes.
     pub(in crate::firmware) fn estimate(&self) -> &Estimate {
         self.estimator.estimate()
     }
@@ -147,12 +145,12 @@ impl Sensing {
         &self.battery
     }
 
-    /// Newest magnetic field, body forward-left-up, as sensed, sensor counts.
+    /// Returns the newest magnetic field, body forward-left-up, as measured, sensor counts.
     pub(in crate::firmware) fn mag_flu(&self) -> Vector3<f64> {
         self.mag_flu
     }
 
-    /// Whether there is a fix.
+    /// Returns `true` if there is a fix.
     pub(in crate::firmware) fn fix(&self) -> bool {
         self.fix
     }

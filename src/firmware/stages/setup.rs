@@ -1,4 +1,4 @@
-//! What the craft remembers, and the typed parameters made from it.
+//! The configuration of the craft and the typed parameters computed from it.
 
 use crate::firmware::FirmwareOptions;
 use crate::firmware::cli::{BuildInfo, StorageFacts};
@@ -9,7 +9,7 @@ use crate::firmware::parameters::{BootChoices, Parameters};
 use crate::firmware::settings::Value;
 use crate::telemetry::{BadPackets, FirmwareEvent, FirmwareNotice, LostTime};
 
-/// The configuration in memory, what was chosen from it at boot, and the parameters in force.
+/// The configuration in memory, the choices made from it at boot, and the parameters in force.
 #[derive(Debug, Clone)]
 pub(in crate::firmware) struct Setup {
     options: FirmwareOptions,
@@ -24,7 +24,7 @@ pub(in crate::firmware) struct Setup {
 }
 
 impl Setup {
-    /// Boots with this configuration, made consistent.
+    /// Boots with this configuration after making it consistent.
     pub(in crate::firmware) fn new(
         mut configuration: Configuration,
         options: FirmwareOptions,
@@ -55,7 +55,7 @@ impl Setup {
         setup
     }
 
-    /// What `configuration` boots into on this craft: build, storage and links stay.
+    /// Returns the state after a restart with `configuration`. Facts about build, storage and links stay.
     pub(in crate::firmware) fn restarted(&self, configuration: Configuration, outbox: &mut Outbox) -> Self {
         let fresh = Self::new(configuration, self.options, outbox);
         Self {
@@ -68,115 +68,111 @@ impl Setup {
         }
     }
 
-    /// How the firmware is built and helped.
+    /// Returns the options that the firmware was created with.
     pub(in crate::firmware) fn options(&self) -> &FirmwareOptions {
         &self.options
     }
 
-    /// Version and build that the firmware announces.
+    /// Returns the version and build that the firmware announces.
     pub(in crate::firmware) fn build(&self) -> &BuildInfo {
         &self.build
     }
 
-    /// Sets what [`Setup::build`] tells.
     pub(in crate::firmware) fn set_build(&mut self, build: BuildInfo) {
         self.build = build;
     }
 
-    /// What is known of the stored configuration.
+    /// Returns the facts about the stored configuration.
     pub(in crate::firmware) fn storage(&self) -> &StorageFacts {
         &self.storage
     }
 
-    /// Sets what [`Setup::storage`] tells.
     pub(in crate::firmware) fn set_storage(&mut self, storage: StorageFacts) {
         self.storage = storage;
     }
 
-    /// What scripts and simulators sent in vain.
+    /// Returns the packets from scripts and simulators that could not be used.
     pub(in crate::firmware) fn bad_packets(&self) -> BadPackets {
         self.bad_packets
     }
 
-    /// Sets what [`Setup::bad_packets`] tells.
     pub(in crate::firmware) fn set_bad_packets(&mut self, bad_packets: BadPackets) {
         self.bad_packets = bad_packets;
     }
 
-    /// Real time that the flight could not keep up with.
+    /// Returns the real time that the flight could not keep up with.
     pub(in crate::firmware) fn lost_time(&self) -> LostTime {
         self.lost_time
     }
 
-    /// Sets what [`Setup::lost_time`] tells.
     pub(in crate::firmware) fn set_lost_time(&mut self, lost_time: LostTime) {
         self.lost_time = lost_time;
     }
 
-    /// Whether an earlier instant is shown, during which clients change nothing.
+    /// Returns `true` while an earlier instant is shown. Clients cannot change anything then.
     pub(in crate::firmware) fn rewound(&self) -> bool {
         self.rewound
     }
 
-    /// Sets [`Setup::rewound`].
     pub(in crate::firmware) fn set_rewound(&mut self, rewound: bool) {
         self.rewound = rewound;
     }
 
-    /// The configuration in memory.
+    /// Returns the configuration in memory.
     pub(in crate::firmware) fn configuration(&self) -> &Configuration {
         &self.configuration
     }
 
-    /// The configuration in memory, to be changed; [`Setup::refresh`] makes the parameters follow.
+    /// Returns the configuration in memory for changes. Call [`Setup::refresh`] after them to update the parameters.
     pub(in crate::firmware) fn configuration_mut(&mut self) -> &mut Configuration {
         &mut self.configuration
     }
 
-    /// What changes only with a restart.
+    /// Returns the choices that change only with a restart.
     pub(in crate::firmware) fn boot(&self) -> &BootChoices {
         &self.boot
     }
 
-    /// The typed parameters in force.
+    /// Returns the typed parameters in force.
     pub(in crate::firmware) fn parameters(&self) -> &Parameters {
         &self.parameters
     }
 
-    /// Makes the parameters follow the configuration.
+    /// Updates the parameters from the configuration.
     pub(in crate::firmware) fn refresh(&mut self) {
         self.parameters = Parameters::new(&self.configuration, &self.boot, &self.options);
     }
 
-    /// Turns runaway take-off prevention off until the next refresh, when `allowed` is false; it cannot turn it on.
+    /// Turns runaway take-off prevention off until the next refresh if `allowed` is `false`. It cannot turn it on.
     pub(in crate::firmware) fn allow_runaway_prevention(&mut self, allowed: bool) {
         self.parameters.runaway.enabled &= allowed;
     }
 
-    /// Makes the configuration consistent before it is stored; `had_gps` is the GPS feature before it was changed.
+    /// Makes the configuration consistent before it is stored. `had_gps` is the state of the GPS feature before the
+    /// change.
     pub(in crate::firmware) fn make_consistent(&mut self, had_gps: bool, outbox: &mut Outbox) {
         correct(&mut self.configuration);
         self.report_lost_gps(had_gps, outbox);
     }
 
-    /// Says so when making the configuration consistent took the GPS away.
+    /// Reports that making the configuration consistent turned the GPS off.
     fn report_lost_gps(&self, had_gps: bool, outbox: &mut Outbox) {
         if had_gps && !self.configuration.features.has(Feature::Gps) {
             outbox.push(FirmwareEvent::Notice(FirmwareNotice::GpsSwitchedOff));
         }
     }
 
-    /// Keeps the result of an accelerometer calibration: it includes what the trims levelled.
+    /// Stores the result of an accelerometer calibration and clears the trims, because the calibration includes them.
     pub(in crate::firmware) fn keep_acc_calibration(&mut self, offsets: [i64; 3]) {
         const DONE: i64 = 1;
         let [x, y, z] = offsets;
         let settings = &mut self.configuration.settings;
-        // The estimator's offsets fit the setting's type, and 0 is in every trim's range.
+        // The estimator's offsets fit the setting's type, and 0 is in the range of every trim.
         let _kept = settings.set("acc_calibration", Value::Array(vec![x, y, z, DONE]));
         let _level = [settings.set_number("acc_trim_roll", 0), settings.set_number("acc_trim_pitch", 0)];
     }
 
-    /// Keeps the result of a magnetometer calibration, and says how it went.
+    /// Stores the result of a magnetometer calibration. Returns the notice about it.
     pub(in crate::firmware) fn keep_mag_calibration(
         &mut self,
         result: Result<[i64; 3], NotTurned>,

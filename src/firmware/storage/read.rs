@@ -1,4 +1,4 @@
-//! Reads the records of an image, taking what it can.
+//! Reads the records of an image, as far as they can be used.
 
 use super::super::config::{
     AdjustmentRange, BOARD_NAME_MAX, ChannelMap, Configuration, Features, KeptLine, MANUFACTURER_ID_MAX,
@@ -10,18 +10,18 @@ use crate::plan::{HoldPattern, Waypoint, WaypointType};
 use std::str::FromStr;
 use strum::IntoEnumIterator;
 
-/// Most fields of a record that are looked at; no record has as many.
+/// The most fields of a record that are read. No record has that many.
 const MOST_FIELDS: usize = 16;
-/// Most bytes of the records of other versions that are kept.
+/// The most bytes of records of other versions that are kept.
 const MOST_UNKNOWN: usize = 1 << 16;
-/// What such a record costs beside its own bytes.
+/// The cost of such a record in addition to its own bytes.
 const UNKNOWN_COST: usize = 32;
-/// Most records that are named in what could not be used; the others are counted.
+/// The most unusable records that are named. The others are only counted.
 const MOST_NAMED: usize = 20;
-/// Most characters of a name in what could not be used.
+/// The most characters of a name in a finding.
 const LONGEST_NAME: usize = 40;
 
-/// Builds a configuration from a payload; the sentences tell what could not be used.
+/// Builds a configuration from a payload. The sentences list the records that could not be used.
 pub(super) fn configuration(payload: &str) -> (Configuration, Vec<String>) {
     let mut configuration = Configuration::default();
     let mut findings = Vec::new();
@@ -69,7 +69,7 @@ enum Outcome {
     Taken,
     /// A record of another version.
     Unknown,
-    /// A record whose contents make no sense here.
+    /// A record with contents that are not allowed here.
     Refused,
     PlanFull,
 }
@@ -112,7 +112,7 @@ fn number<T: FromStr>(fields: &[&str], at: usize) -> Option<T> {
     fields.get(at)?.parse().ok()
 }
 
-/// The place in a table that the first field names.
+/// Returns the place in a table that the first field selects.
 fn slot<'t, T>(table: &'t mut [T], fields: &[&str]) -> Option<&'t mut T> {
     table.get_mut(number::<usize>(fields, 0)?)
 }
@@ -123,7 +123,7 @@ fn scope(word: &str) -> Option<Scope> {
 
 fn setting(configuration: &mut Configuration, fields: &[&str]) -> Outcome {
     let Some((name, values)) = fields.split_first() else { return Outcome::Refused };
-    // Old names are for people; an image says the name it means.
+    // Old names are for people. An image always contains the current name.
     let Some(setting) = find(name).filter(|setting| setting.name == *name) else { return Outcome::Unknown };
     let mut all_fit = true;
     for (instance, value) in (0..setting.scope.instances()).zip(values) {
@@ -137,7 +137,7 @@ fn active(configuration: &mut Configuration, fields: &[&str]) -> Option<()> {
     configuration.settings.select(scope, number(fields, 1)?).then_some(())
 }
 
-/// The name of a board, as the command line would take it.
+/// Returns the name of a board, as the command line would accept it.
 fn identity(fields: &[&str], max: usize) -> Option<String> {
     let name = fields.first()?;
     let is_typed = name.bytes().all(|byte| (b' '..=b'~').contains(&byte) && byte != b'#');

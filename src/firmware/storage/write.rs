@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use super::super::config::Configuration;
 use super::super::settings::{SETTINGS, Scope};
 
-/// The payload of an image.
+/// Returns the payload of an image.
 pub(super) fn payload(configuration: &Configuration) -> String {
     let mut out = String::new();
     let mut record = |fields: &[&dyn std::fmt::Display]| {

@@ -88,7 +88,7 @@ fn a_slower_rate_loop_hears_every_fresh_attitude() {
     }
 }
 
-/// A controller with these settings.
+/// Creates a controller with these settings.
 fn tuned(changes: &[(&str, i64)]) -> Controller {
     let mut settings = crate::firmware::settings::Settings::default();
     for (name, value) in changes {
@@ -195,7 +195,7 @@ fn a_new_flight_knows_nothing_of_the_throttle_of_the_last() {
         if flown {
             run(&mut controller, &ControlInput { throttle_us: 1900.0, ..landed }, 1000);
         }
-        // Long enough for the smoothed sticks, and nothing runs that could forget.
+        // Long enough for the smoothed sticks; nothing that could reset the state runs meanwhile.
         run(&mut controller, &ControlInput { armed: false, ..landed }, 1000);
         run(&mut controller, &landed, 1).pid_sum[0]
     };

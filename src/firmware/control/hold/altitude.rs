@@ -1,4 +1,4 @@
-//! Altitude hold with the throttle stick, and the descent without.
+//! Altitude hold with the throttle stick, and the descent without it.
 
 use super::HoldTuning;
 use crate::autopilot::Params;
@@ -10,45 +10,46 @@ use crate::autopilot::land_detector::{
     AT_REST_MPS, DescentFacts, GroundFacts, TouchdownFacts, TouchdownGuards,
 };
 
-/// A craft that climbs faster than this (m/s) when the hold begins is stopped first.
+/// The climb rate (m/s) above which the craft is stopped first when the hold begins.
 const STEADY_MPS: f64 = 0.5;
-/// Altitude that counts as airborne, m.
+/// The altitude that counts as airborne, m.
 const AIRBORNE_M: f64 = 1.0;
-/// A stick that moves by less stands still, µs.
+/// The largest movement at which a stick counts as still, µs.
 const STILL_STICK_US: f64 = 10.0;
-/// A climb below this share of the demanded rate is none.
+/// The share of the demanded climb rate below which the craft counts as not climbing.
 const STUCK_SHARE: f64 = 0.3;
-/// Deceleration that a released craft is led with, m/s².
+/// The deceleration after the stick is released, m/s².
 const STOP_MPS2: f64 = 1.25;
-/// It has stopped below this speed, m/s, and error, m.
+/// The speed, m/s, and the error, m, below which the craft has stopped.
 const STOPPED_MPS: f64 = 0.2;
 const STOPPED_M: f64 = 0.3;
-/// The descent: rate near the ground over the climb rate, and how it grows with height (1/m).
+/// The descent: the rate near the ground as a share of the climb rate, and its growth with height (1/m).
 const DESCENT_SHARE: f64 = 0.2;
 const DESCENT_GROWTH_PER_M: f64 = 0.05;
-/// Below this altitude the failsafe's descent is as slow as a landing, m.
+/// The altitude below which the failsafe descent is as slow as a landing, m.
 const LAST_METRES_M: f64 = 1.5;
-/// The setpoint of a descent runs at most this far below the craft, m. Above a craft that sinks at this share of its rate or
-/// faster the rest of the lag is given up, down to so many metres, at this speed, m/s.
+/// The setpoint of a descent is at most `DESCENT_LEASH_M` below the craft, m. Once the craft sinks at `SINKING_SHARE`
+/// of its rate or faster, the remaining lag is reduced to `SINKING_LEASH_M` (m) at `GIVE_UP_MPS` (m/s).
 const DESCENT_LEASH_M: f64 = 5.0;
 const SINKING_SHARE: f64 = 0.6;
 const SINKING_LEASH_M: f64 = 1.0;
 const GIVE_UP_MPS: f64 = 3.0;
-/// A craft on the ground moves vertically slower than this share of the sink rate, and drifts slower than this, m/s.
+/// The limits for a craft on the ground: vertical speed as a share of the sink rate, and drift, m/s.
 const GROUNDED_SHARE: f64 = 0.25;
 const GROUNDED_DRIFT_MPS: f64 = 0.5;
-/// How long the signs of the ground must last at least, 0.1 s: a sluggish craft needs time to begin to sink.
+/// The least time for which the signs of the ground must last, 0.1 s. A sluggish craft needs time to begin to sink.
 const GROUNDED_DS: u8 = 10;
-/// Below this altitude a rescue sinks no faster than a landing, m, and slows down to that by so much, m/s².
+/// Below this altitude, m, a rescue sinks no faster than a landing. It slows down to that rate at `RESCUE_BRAKE_MPS2`,
+/// m/s².
 const RESCUE_LAST_METRES_M: f64 = 4.0;
 const RESCUE_BRAKE_MPS2: f64 = 0.5;
 
-/// Who moves the altitude.
+/// The source of altitude changes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum AltitudeOrder {
     /// The throttle stick, µs.
     Stick(f64),
-    /// Nobody: the altitude is kept.
+    /// No change: the altitude is kept.
     Keep,
     /// A descent to the ground.
     Descend(DescentRate),
@@ -60,9 +61,9 @@ enum Phase {
     Off,
     /// The stick moves the altitude.
     Moving,
-    /// The stick was released: the craft is led to where it can stop. Setpoint, m, and its rate, m/s.
+    /// The stick was released, and the craft is led to a point at which it can stop. Setpoint, m, and its rate, m/s.
     Stopping(f64, f64),
-    /// This altitude, m.
+    /// Holding this altitude, m.
     Holding(f64),
     /// Descending to the ground; the setpoint, m.
     Descending(f64),
@@ -71,25 +72,26 @@ enum Phase {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct AltitudeHold {
     phase: Phase,
-    /// The hold began on the ground, where the hover throttle cannot be learned, and the craft has not hovered since.
+    /// `true` if the hold began on the ground, where the hover throttle cannot be learned, and the craft has not
+    /// hovered since.
     began_low: bool,
-    /// The stick, and the hover throttle it was judged by, µs.
+    /// The last judged stick and the hover throttle used for it, µs.
     judged: Option<(f64, f64)>,
     has_touched_down: bool,
 }
 
 impl AltitudeHold {
-    /// Holds nothing: the controller is engaged anew at the next update.
+    /// Releases the hold. The controller is engaged again at the next update.
     pub(super) fn release(&mut self) {
         *self = Self::default();
     }
 
-    /// Whether the descent has ended on the ground.
+    /// Returns `true` if the descent has ended on the ground.
     pub(super) fn has_touched_down(&self) -> bool {
         self.has_touched_down
     }
 
-    /// Throttle 0…1.
+    /// Runs one update. Returns the throttle 0…1.
     pub(super) fn update(
         &mut self,
         order: AltitudeOrder,
@@ -122,7 +124,8 @@ impl AltitudeHold {
         throttle_share(throttle_us, params)
     }
 
-    /// Takes over once more when the craft has hovered and climbs no more: now its hover throttle is known.
+    /// Engages the controller again once the craft has hovered and no longer climbs, because its hover throttle is
+    /// known then.
     fn learn_after_lift_off(
         &mut self,
         now: &NavInputs,
@@ -144,7 +147,8 @@ impl AltitudeHold {
         tuning: &HoldTuning,
         controller: &AltitudeController,
     ) -> AltitudeTarget {
-        // Only a moved stick is judged anew: that the hover throttle becomes known ends no climb, and lets no craft sink.
+        // Only a moved stick is judged again. A newly learned hover throttle must not end a climb or let the craft
+        // sink.
         let is_still = |(stick, _): &(f64, f64)| (stick_us - stick).abs() <= STILL_STICK_US;
         let judged = self.judged.filter(is_still);
         let (stick, hover_us) =
@@ -154,7 +158,7 @@ impl AltitudeHold {
         self.keep(now, share * params.climb_rate_mps())
     }
 
-    /// Moves at `rate` (m/s); at 0 comes to rest and stays.
+    /// Moves at `rate` (m/s). At 0, comes to rest and holds.
     fn keep(&mut self, now: &NavInputs, rate: f64) -> AltitudeTarget {
         self.has_touched_down = false;
         self.phase = match self.phase {
@@ -169,9 +173,10 @@ impl AltitudeHold {
         };
         match self.phase {
             Phase::Holding(altitude) => AltitudeTarget::Altitude(altitude),
-            // Led like a landing: the integral works at full gain, for climbing has its own hover throttle.
+            // Led like a landing. The integral works at full gain, because climbing needs its own hover throttle.
             Phase::Stopping(setpoint_m, rate_mps) => AltitudeTarget::Landing { setpoint_m, rate_mps },
-            // A craft that does not rise is heavier than its hover throttle says, or stands: the integral must work.
+            // A craft that does not rise is heavier than its hover throttle suggests, or is on the ground. The integral
+            // must work.
             _ if rate > 0.0 && now.climb_mps < STUCK_SHARE * rate => {
                 AltitudeTarget::Landing { setpoint_m: now.alt_m + rate, rate_mps: rate }
             }
@@ -203,17 +208,19 @@ impl AltitudeHold {
         let descent = DescentFacts::new(now, params, demand, rate);
         land.descend(&descent, now.time, now.dt);
         let ground = GroundFacts::new(now, params, controller, land);
-        // A craft that has not left the ground has nothing to come down from.
+        // A craft that has not left the ground has no descent to make.
         let descent_m = if land.awaits_lift_off() { f64::INFINITY } else { ground.descent_m };
         let ground = GroundFacts { descent_m, ..ground };
-        // By the hover throttle in use: the configured one may be far off, and waiting for it would tip the craft over.
+        // Uses the learned hover throttle. The configured one may be far off, and waiting for it would tip the craft
+        // over.
         let facts = TouchdownFacts {
-            // The ground may be higher or lower than home: no altitude speaks for it or against it.
+            // The ground may be higher or lower than home, so the altitude does not count.
             landing_altitude_m: f64::INFINITY,
-            // Without a fix the speed is unknown and left out.
+            // Without a fix the speed is unknown and does not count.
             max_speed_mps: if now.fix { GROUNDED_DRIFT_MPS } else { f64::INFINITY },
             ground_speed_mps: if now.fix { now.vel_ne.norm() } else { 0.0 },
-            // Neither sinks nor climbs: one that is stopped in a climb has little throttle, too, and has not landed.
+            // The craft must neither sink nor climb. A craft stopped in a climb has little throttle too, and has not
+            // landed.
             climb_mps: -now.climb_mps.abs(),
             min_climb_mps: -(GROUNDED_SHARE * rate.min(params.descent_rate_mps())).min(AT_REST_MPS),
             ..TouchdownFacts::new(
@@ -225,8 +232,8 @@ impl AltitudeHold {
                 now.climb_mps,
             )
         };
-        // The proof: at the least throttle every craft sinks, unless something carries it. Less throttle than the hover
-        // throttle is none, for that may have been learned in a climb.
+        // The proof: at the lowest throttle every craft sinks, unless something carries it. Throttle below the hover
+        // throttle is no proof, because that may have been learned in a climb.
         let is_down = descent.throttle_at_min && TouchdownGuards::new(&facts, &ground).all_hold();
         land.time_touchdown(is_down, now.time);
         self.has_touched_down = land.has_landed(params.landing_detection_time.max(GROUNDED_DS));
@@ -234,41 +241,42 @@ impl AltitudeHold {
     }
 }
 
-/// The setpoint of a descent at `rate` (m/s) after this cycle, from the one before it.
+/// Returns the next setpoint of a descent at `rate` (m/s), from the one before.
 fn descending_setpoint_m(before_m: f64, rate: f64, now: &NavInputs) -> f64 {
     let setpoint_m = (before_m - rate * now.dt).max(now.alt_m - DESCENT_LEASH_M.max(rate));
     let sinks = rate > 0.0 && -now.climb_mps > SINKING_SHARE * rate;
-    // To make up for a lag the craft would have to sink faster than it should.
+    // To make up for the lag, the craft would have to sink faster than it should.
     let lag_m = now.alt_m - SINKING_LEASH_M.max(rate) - setpoint_m;
     if sinks { setpoint_m + lag_m.clamp(0.0, GIVE_UP_MPS * now.dt) } else { setpoint_m }
 }
 
-/// Begins to stop here.
+/// Returns the phase that begins to stop here.
 fn stop(now: &NavInputs) -> Phase {
     Phase::Stopping(now.alt_m, now.climb_mps)
 }
 
-/// Whether a craft led to `setpoint` (m) at `rate` (m/s) has come to rest there.
+/// Returns `true` if a craft led to `setpoint` (m) at `rate` (m/s) has come to rest there.
 fn has_stopped(setpoint: f64, rate: f64, now: &NavInputs) -> bool {
     rate == 0.0 && now.climb_mps.abs() < STOPPED_MPS && (now.alt_m - setpoint).abs() < STOPPED_M
 }
 
-/// How fast a descent to the ground sinks.
+/// The sink rate of a descent to the ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum DescentRate {
-    /// The failsafe's: a fifth of the climb rate near the ground, faster from high up; the last metres as a landing.
+    /// The failsafe rate: a fifth of the climb rate near the ground, faster from high up, and a landing in the last
+    /// metres.
     Failsafe,
-    /// `ap_landing_descent_rate`, as the landing whose fix was lost.
+    /// `ap_landing_descent_rate`, for a landing whose fix was lost.
     Landing,
-    /// `gps_rescue_descend_rate` (m/s), as the rescue whose fix was lost; the last metres no faster than a landing.
+    /// `gps_rescue_descend_rate` (m/s), for a rescue whose fix was lost. In the last metres no faster than a landing.
     Rescue(f64),
 }
 
 impl DescentRate {
-    /// Sink rate at an altitude, m/s.
+    /// Returns the sink rate at an altitude, m/s.
     fn at(self, altitude_m: f64, params: &Params) -> f64 {
         match self {
-            // The ground is felt for at the rate of a landing.
+            // The craft searches for the ground at the rate of a landing.
             Self::Failsafe if altitude_m < LAST_METRES_M => params.descent_rate_mps(),
             Self::Failsafe => {
                 let factor = 0.9 + (altitude_m * DESCENT_GROWTH_PER_M).clamp(0.1, 9.0);
@@ -284,7 +292,7 @@ impl DescentRate {
     }
 }
 
-/// Share of the climb rate that the throttle stick demands, −1…1; zero about the hover throttle.
+/// Returns the share of the climb rate that the throttle stick demands, −1…1; zero about the hover throttle.
 fn climb_share(stick_us: f64, hover_us: f64, tuning: &HoldTuning) -> f64 {
     if stick_us < tuning.low_us {
         return 0.0;
@@ -300,13 +308,13 @@ fn climb_share(stick_us: f64, hover_us: f64, tuning: &HoldTuning) -> f64 {
     }
 }
 
-/// Below this the throttle stick makes the craft sink, µs.
+/// Returns the throttle stick below which the craft sinks, µs.
 fn sink_edge_us(hover_us: f64, tuning: &HoldTuning) -> f64 {
     hover_us - tuning.throttle_deadband * (hover_us - tuning.low_us).max(0.0)
 }
 
-/// The throttle stick that makes a craft with this hover throttle sink at a rate (m/s), or as fast as it can; `None` when
-/// it cannot.
+/// Returns the throttle stick (µs) that makes a craft with this hover throttle sink at a rate (m/s), or as fast as it
+/// can; `None` if it cannot.
 pub(super) fn sink_stick_us(
     rate_mps: f64,
     hover_us: f64,
@@ -346,7 +354,8 @@ mod tests {
         assert_eq!(sink_stick_us(1.0, 1050.0, &params, &tuning), None);
     }
 
-    /// Seconds until a craft that neither sinks nor carries its weight is called landed, while it drifts; 10 s at most.
+    /// Returns the time (s) until a drifting craft that neither sinks nor carries its weight counts as landed. It is
+    /// 10 s at most.
     fn seconds_to_touchdown(drift_mps: f64, fix: bool) -> f64 {
         let (params, tuning) = (Params::default(), HoldTuning::default());
         let mut now = NavInputs {
@@ -381,7 +390,7 @@ mod tests {
         for drift_mps in [0.51, 2.0] {
             assert!(seconds_to_touchdown(drift_mps, true) >= 10.0, "{drift_mps} m/s");
         }
-        // Without a fix the drift is not known.
+        // Without a fix the drift is unknown.
         assert!(seconds_to_touchdown(2.0, false) < 5.0);
     }
 

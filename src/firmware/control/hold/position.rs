@@ -8,25 +8,25 @@ use crate::autopilot::control::{PositionController, PositionMeasurement, Positio
 use crate::autopilot::io::NavInputs;
 use crate::firmware::control::LeanDemand;
 
-/// Full stick, RC command units.
+/// The full stick deflection, RC command units.
 const FULL_STICK: f64 = 500.0;
-/// Share of the greatest lean that the stop at a release is planned with.
+/// The share of the greatest lean that is used to plan the stop when the sticks are released.
 const STOP_SHARE: f64 = 0.4;
 
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct PositionHold {
-    /// The point held, north and east, m; none while the pilot flies.
+    /// The held point, north and east, m; `None` while the pilot flies.
     point: Option<Vector2<f64>>,
     is_on: bool,
 }
 
 impl PositionHold {
-    /// Holds nothing: the controller is engaged anew at the next update.
+    /// Releases the hold. The controller is engaged again at the next update.
     pub(super) fn release(&mut self) {
         *self = Self::default();
     }
 
-    /// The lean that keeps the place, or the one the pilot asks for.
+    /// Returns the lean that holds the position, or the lean that the pilot demands.
     pub(super) fn update(
         &mut self,
         now: &NavInputs,
@@ -58,13 +58,13 @@ impl PositionHold {
     }
 }
 
-/// Where the craft can stand without coming back: here, when it is slow.
+/// Returns the point at which the craft can stop without coming back; its own position if it is slow.
 fn stopping_point(now: &NavInputs, params: &Params) -> Vector2<f64> {
     let brake = STOP_SHARE * params.max_accel_mps2();
     now.pos_ne + now.vel_ne * (now.vel_ne.norm() / (2.0 * brake.max(0.5)))
 }
 
-/// Stick deflection beyond the deadband as a share of the rest, −1…1.
+/// Returns the stick deflection beyond the deadband as a share of the rest, −1…1.
 fn share(stick: f64, deadband: f64) -> f64 {
     let deflection = stick.abs() / FULL_STICK;
     if deflection <= deadband {

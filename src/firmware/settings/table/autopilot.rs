@@ -1,11 +1,11 @@
-//! The waypoint autopilot: the rows follow from its own table of parameters.
+//! The waypoint autopilot. The rows come from its own table of parameters.
 
 use super::super::{Kind, Role, Scope, Setting, Width};
 use super::{Group, row};
 use crate::autopilot::Params;
 use crate::autopilot::params::{Effect, Field};
 
-/// Settings of this group; the parameters after them belong to other groups.
+/// The number of settings in this group. The parameters after them belong to other groups.
 const COUNT: usize = Params::FIELDS.len() - Params::SHARED;
 
 pub(super) const AUTOPILOT: Group =
@@ -21,7 +21,7 @@ const fn settings_of_parameters() -> [Setting; COUNT] {
     all
 }
 
-/// The setting of a parameter of the autopilot that is listed in another group.
+/// Returns the setting of an autopilot parameter that is listed in another group.
 pub(super) const fn setting(name: &str) -> Setting {
     let mut at = COUNT;
     while !is_same(Params::FIELDS[at].name, name) {

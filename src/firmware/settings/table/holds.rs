@@ -5,7 +5,6 @@ use super::super::Scope;
 use super::super::Width::{I8, U8, U16};
 use super::{Group, choice, number};
 
-/// Altitude and position hold.
 #[rustfmt::skip]
 pub(super) const HOLD: Group = Group {
     title: "Altitude and position hold",

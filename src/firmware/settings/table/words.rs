@@ -2,7 +2,7 @@
 
 pub(super) const OFF_ON: &[&str] = &["OFF", "ON"];
 
-/// Values of `acc_hardware`.
+/// The values of `acc_hardware`.
 #[rustfmt::skip]
 pub(super) const ACC_HARDWARE: &[&str] = &[
     "AUTO", "NONE", "MPU6050", "MPU6000", "MPU6500", "MPU9250", "ICM20601", "ICM20602", "ICM20608G",
@@ -11,14 +11,14 @@ pub(super) const ACC_HARDWARE: &[&str] = &[
     "ICM56686", "VIRTUAL",
 ];
 
-/// Values of the `*_baud` settings.
+/// The values of the `*_baud` settings.
 #[rustfmt::skip]
 pub(super) const BAUD: &[&str] = &[
     "AUTO", "9600", "19200", "38400", "57600", "115200", "230400", "250000", "400000", "460800", "500000",
     "921600", "1000000", "1500000", "2000000", "2470000",
 ];
 
-/// Values of `debug_mode`.
+/// The values of `debug_mode`.
 #[rustfmt::skip]
 pub(super) const DEBUG_MODE: &[&str] = &[
     "NONE", "CYCLETIME", "BATTERY", "GYRO_FILTERED", "ACCELEROMETER", "PIDLOOP", "RC_INTERPOLATION",
