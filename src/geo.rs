@@ -2,7 +2,7 @@
 //!
 //! * [`LatLon`] is the exchange format of CLI, MSP and plans: degrees × 10⁷ as integers.
 //! * The autopilot computes on a *flat earth* with one constant ([`METRES_PER_E7`]), like the firmware that it
-//! re-implements: [`distance_bearing`], [`local_offset`], [`offset_to_latlon`].
+//!   re-implements: [`distance_bearing`], [`local_offset`], [`offset_to_latlon`].
 //! * The simulator places its world on WGS-84 by the radii of curvature at home: [`LocalFrame`].
 //!
 //! The two differ by up to 0.3 %. Compare truth with truth, never a truth distance with a firmware distance.
