@@ -134,7 +134,7 @@ parameters! {
     /// Maximum lean, deg.
     "ap_max_angle" max_angle: u8 = 50, 10..=70, Live,
         "Greatest lean of the autopilot, deg; also sets the turn radius.";
-    /// Use of the speed law in holds; else the direct law.
+    /// `true` if holds use the speed law too, else the direct law.
     "ap_velocity_control_enable" velocity_control_enable: bool = true, 0..=1, Live,
         "Control the speed over ground, not only the position.";
     /// Speed error gain, 0.1 deg per m/s.
@@ -218,7 +218,7 @@ parameters! {
     /// Time the touchdown conditions must hold, ds.
     "ap_landing_detection_time" landing_detection_time: u8 = 10, 5..=50, Live,
         "How long the signs of a touchdown must last, 0.1 s.";
-    /// Use of a spiral for the descent of a landing.
+    /// `true` if a landing descends on a spiral.
     "ap_landing_spiral_enable" landing_spiral_enable: bool = true, 0..=1, Live,
         "Descend in a spiral.";
     /// Radius of the spiral, cm.
@@ -233,7 +233,7 @@ parameters! {
     /// Required distance of the throttle below the hover throttle for a touchdown, µs.
     "ap_landing_throttle_threshold" landing_throttle_threshold: u16 = 100, 10..=500, Live,
         "Throttle this far below hover is a sign of a touchdown, µs.";
-    /// Following of legs as lines.
+    /// `true` if legs are followed as lines.
     "ap_l1_enable" l1_enable: bool = true, 0..=1, Live,
         "Follow the line between waypoints instead of pointing at the next one.";
     /// Period of the path following, ds.

@@ -33,11 +33,11 @@ pub enum AirDensity {
 pub struct Switches {
     /// Mean wind over height.
     pub wind_profile: WindProfile,
-    /// Limit of the rotor speed by battery voltage.
+    /// `true` if battery voltage limits rotor speed.
     pub battery_sag: bool,
     /// Battery capacity instead of the airframe's, A·h.
     pub battery_capacity_ah: Option<f64>,
-    /// Gain of thrust near the ground.
+    /// `true` if rotors gain thrust near the ground.
     pub ground_effect: bool,
     /// The shape of the ground.
     pub ground: Surface,
@@ -49,7 +49,7 @@ pub struct Switches {
     pub air_density: AirDensity,
     /// Vibration that the accelerometer measures at hover speed, m/s² rms per axis.
     pub vibration_mps2: f64,
-    /// Turn-on bias and drift of the inertial sensors, and drift of the barometer.
+    /// `true` if the inertial sensors have turn-on bias and drift, and the barometer drifts.
     pub sensor_bias: bool,
     /// Declination of the magnetic field, degrees east.
     pub declination_deg: f64,

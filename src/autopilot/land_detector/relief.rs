@@ -11,7 +11,7 @@ const STILL_SHARE: f64 = 0.25;
 const JOLT_S: f64 = 0.3;
 /// The distance that the setpoint must be below a craft that does not sink, m.
 const SETPOINT_BELOW_M: f64 = 0.3;
-/// The time that a craft that is not known to be low must have rested, s, since the altitude may be wrong: after it
+/// The minimum rest of a craft that is not known to be low, s, since the altitude may be wrong: after it
 /// sank at this share of the wanted rate, and before.
 const REST_AFTER_SINKING_S: f64 = 0.4;
 const REST_S: f64 = 1.5;
@@ -39,7 +39,7 @@ pub struct DescentFacts {
     pub sink_mps: f64,
     /// `ap_landing_descent_rate`, or the wanted rate if that is slower, m/s.
     pub landing_rate_mps: f64,
-    /// `true` if the altitude says that the ground is near.
+    /// `true` if the ground is near according to the altitude.
     pub is_low: bool,
     /// `true` if the throttle is at its minimum.
     pub throttle_at_min: bool,

@@ -165,7 +165,7 @@ fn sticks_that_stay_have_an_end_too() {
     flying.transmitter_mut().stop_pilot();
     flying.transmitter_mut().sticks_mut().channels[5] = 1000;
     let forecast = end(ForecastRun::look_ahead(flying).unwrap());
-    // The switched-off autopilot counts from here: only the sticks hold the craft.
+    // The autopilot is off from here on: only the sticks hold the craft.
     assert_eq!(forecast.end, ForecastEnd::Endless, "{}", forecast.reason);
     assert!(forecast.time_s < 120.0);
 }
