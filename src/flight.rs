@@ -1,7 +1,7 @@
 //! A headless flight: a vehicle, the scripted pilot and a judge.
 //!
-//! Boot, wait for the fix, arm, climb, engage, fly to the end. As the core it is: no clock, no files. The caller gets
-//! events and samples and decides what to do with them.
+//! The flight boots, waits for the fix, arms, climbs, engages and flies to the end. Like the core, it has no clock
+//! and no files. The caller gets events and samples and decides about their use.
 
 pub mod forecast;
 mod judge;
@@ -26,27 +26,27 @@ use crate::telemetry::{
 };
 use crate::vehicle::Vehicle;
 
-/// How a flight is flown.
+/// The options of a flight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FlightOptions {
     /// Altitude of the pilot's climb before engaging, m; 0 = engage on the ground.
     pub takeoff_m: f64,
-    /// When to give up, counted from boot.
+    /// Time of the timeout, counted from boot.
     pub timeout: SimTime,
-    /// Samples a simulated second; 0 = none.
+    /// Samples per simulated second; 0 = none.
     pub samples_hz: f64,
-    /// How far beyond a waypoint's own radius, and beside its altitude, truth may be, m.
+    /// Permitted distance of the truth beyond a waypoint's own radius, and from its altitude, m.
     pub tolerance_m: f64,
 }
 
 impl Default for FlightOptions {
-    /// What `fly` does unless told otherwise.
+    /// Returns the defaults of `fly`.
     fn default() -> Self {
         Self { takeoff_m: 10.0, timeout: SimTime::from_secs_f64(1800.0), samples_hz: 0.0, tolerance_m: 10.0 }
     }
 }
 
-/// A flight under way.
+/// A flight in progress.
 #[derive(Debug)]
 pub struct Flight {
     vehicle: Vehicle,
@@ -56,25 +56,24 @@ pub struct Flight {
     ends_in_land: bool,
     takeoff_m: f64,
     truth_check: TruthCheck,
-    /// What the navigator said in this tick.
+    /// Events of the navigator in this tick.
     nav_events: Vec<NavEvent>,
-    /// True altitude where the craft was armed, m.
+    /// True altitude at which the craft was armed, m.
     armed_alt_m: f64,
     battery_empty_at: Option<SimTime>,
 }
 
-/// What a flight reports.
+/// A report of a flight.
 #[derive(Debug)]
 pub enum Report<'a> {
     Event(Event),
-    /// Time for a sample.
+    /// A sample is due.
     Sample(&'a Vehicle),
 }
 
 /// The end of a flight.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FlightEnd {
-    /// What became of it.
     pub verdict: Verdict,
     pub truth: FlightTruth,
     /// Simulated seconds from the engagement (or boot, if there was none) to the end.
@@ -83,23 +82,23 @@ pub struct FlightEnd {
 }
 
 impl Flight {
-    /// A flight of the plan that `vehicle` has stored.
+    /// Returns a flight of the plan that `vehicle` has stored.
     ///
     /// # Errors
-    /// The mode that no channel switches.
+    /// Fails with the mode that no channel switches.
     pub fn new(mut vehicle: Vehicle, options: &FlightOptions) -> Result<Self, Mode> {
         vehicle.start_pilot(options.takeoff_m)?;
         Ok(Self::go_on(vehicle, options))
     }
 
-    /// The flight that `vehicle` is on, as things stand: whoever moves the sticks goes on.
+    /// Continues the present flight of `vehicle`. The source of its sticks does not change.
     pub fn go_on(vehicle: Vehicle, options: &FlightOptions) -> Self {
         let controller = vehicle.controller();
         let flown = vehicle.embedded().and_then(Firmware::active_plan).or(controller.stored_plan());
         let ends_in_land = flown.is_some_and(ends_in_land);
         let sample_every_us =
             (options.samples_hz > 0.0).then(|| ((1e6 / options.samples_hz).round() as u64).max(1));
-        // Of a craft in the air the place of arming is where its own altitude counts from.
+        // The altitude of a craft in the air counts from the place of arming.
         let armed_alt_m = match (vehicle.embedded(), vehicle.world()) {
             (Some(firmware), Some(world)) if firmware.is_armed() => {
                 world.truth().pos_enu.z - firmware.altitude_m()
@@ -124,22 +123,22 @@ impl Flight {
         &self.vehicle
     }
 
-    /// The vehicle, to act on it between two ticks.
+    /// Returns the vehicle, to act on it between two ticks.
     pub fn vehicle_mut(&mut self) -> &mut Vehicle {
         &mut self.vehicle
     }
 
-    /// The vehicle as the flight left it.
+    /// Returns the vehicle in its state at the end of the flight.
     pub fn into_vehicle(self) -> Vehicle {
         self.vehicle
     }
 
-    /// When the autopilot engaged for the first time.
+    /// Returns the time at which the autopilot first engaged.
     pub fn engaged_at(&self) -> Option<SimTime> {
         self.judge.engaged_at()
     }
 
-    /// Flies one tick; a value ends the flight.
+    /// Flies one tick. Returns the end when the flight is over.
     pub fn tick(&mut self, mut report: impl FnMut(Report)) -> Option<FlightEnd> {
         self.vehicle.tick();
         let (touched_down, nav_events) = (&mut self.touched_down, &mut self.nav_events);
@@ -177,12 +176,12 @@ impl Flight {
         Some(self.end(verdict))
     }
 
-    /// Ends the flight here and now, as its user asks.
+    /// Ends the flight here and now, on request of the user.
     pub fn interrupt(&self, reason: &str) -> FlightEnd {
         self.end(Verdict::new(FlightResult::Interrupted, reason))
     }
 
-    /// The end of the flight by the verdict on what the firmware says, compared with the truth.
+    /// Returns the end of the flight: the verdict on the reports of the firmware, compared with the truth.
     fn end(&self, mut verdict: Verdict) -> FlightEnd {
         let truth = match self.craft_truth() {
             Some(craft) => self.truth_check.truth(&craft, self.battery_used_pct()),
@@ -213,7 +212,7 @@ impl Flight {
         FlightEnd { verdict, truth, flown_s, time }
     }
 
-    /// Follows the waypoints with the truth, where a simulated world tells it.
+    /// Compares the waypoints with the truth, if there is a simulated world.
     fn check_truth(&mut self) {
         let Some(craft) = self.craft_truth() else { return };
         if !self.nav_events.is_empty() {
@@ -239,7 +238,7 @@ impl Flight {
         })
     }
 
-    /// True altitude of the centre of mass above the ground at the boot place, m.
+    /// Returns the true altitude of the centre of mass above the ground at the boot place, m.
     fn true_alt_m(&self) -> f64 {
         self.vehicle.world().map_or(0.0, |world| world.truth().pos_enu.z)
     }
@@ -249,7 +248,7 @@ impl Flight {
         Some(100.0 * battery.drawn_mah / battery.capacity_mah)
     }
 
-    /// What the verdict adds when the flight took more charge than the battery has.
+    /// Returns the remark of the verdict if the flight took more charge than the battery has.
     fn battery_remark(&self) -> Option<String> {
         let at = self.battery_empty_at?.as_secs_f64();
         let acts = self.vehicle.world().is_some_and(|world| world.status().switches.battery_sag);
@@ -283,7 +282,7 @@ impl Flight {
     }
 }
 
-/// Whether the last positional waypoint that is flown is a LAND (nothing behind a LAND is flown).
+/// Returns `true` if the last positional waypoint that is flown is a LAND (nothing after a LAND is flown).
 fn ends_in_land(plan: &FlightPlan) -> bool {
     plan.waypoints.iter().any(|waypoint| waypoint.kind == WaypointType::Land)
 }
@@ -293,7 +292,7 @@ mod tests {
     use super::*;
     use crate::plan::builtin::BuiltinPlan;
 
-    /// The end of a flight of the built-in `land` with a battery that lasts for half a minute.
+    /// Returns the end of a flight of the built-in `land` with a battery that lasts for half a minute.
     fn with_a_small_battery(battery_sag: bool) -> FlightEnd {
         let plan = BuiltinPlan::find("land").unwrap().read().unwrap();
         let mut setup = FlightSetup { plan: plan.clone(), ..FlightSetup::default() };

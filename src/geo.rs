@@ -1,11 +1,11 @@
-//! Positions on the earth, and the two local frames the program knows.
+//! Positions on the earth, and the two local frames of the program.
 //!
-//! * [`LatLon`] is the border format of CLI, MSP and plans: degrees × 10⁷ as integers.
-//! * The autopilot computes on a *flat earth* with one constant ([`METRES_PER_E7`]), as the
-//!   firmware it re-implements does: [`distance_bearing`], [`local_offset`], [`offset_to_latlon`].
+//! * [`LatLon`] is the exchange format of CLI, MSP and plans: degrees × 10⁷ as integers.
+//! * The autopilot computes on a *flat earth* with one constant ([`METRES_PER_E7`]), like the firmware that it
+//!   re-implements: [`distance_bearing`], [`local_offset`], [`offset_to_latlon`].
 //! * The simulator places its world on WGS-84 by the radii of curvature at home: [`LocalFrame`].
 //!
-//! The two disagree by up to 0.3 %: compare truth with truth, never a truth distance with a firmware distance.
+//! The two differ by up to 0.3 %. Compare truth with truth, never a truth distance with a firmware distance.
 
 use nalgebra::Vector2;
 
@@ -15,7 +15,7 @@ mod local;
 pub use ground_plane::GroundPlane;
 pub use local::LocalFrame;
 
-/// Metres on the firmware's flat earth per 1e-7 degree of latitude.
+/// Metres per 1e-7 degree of latitude on the firmware's flat earth.
 pub const METRES_PER_E7: f64 = 0.011_131_95;
 
 /// Standard gravity, m/s².
@@ -31,12 +31,12 @@ pub struct LatLon {
 }
 
 impl LatLon {
-    /// A position from degrees × 10⁷.
+    /// Returns a position from degrees × 10⁷.
     pub const fn new(lat_e7: i32, lon_e7: i32) -> Self {
         Self { lat_e7, lon_e7 }
     }
 
-    /// A position from degrees, rounded to the nearest 1e-7; out-of-range values saturate.
+    /// Returns a position from degrees, rounded to the nearest 1e-7. Out-of-range values saturate.
     pub fn from_degrees(lat_deg: f64, lon_deg: f64) -> Self {
         Self { lat_e7: (lat_deg * 1e7).round() as i32, lon_e7: (lon_deg * 1e7).round() as i32 }
     }
@@ -49,13 +49,13 @@ impl LatLon {
         f64::from(self.lon_e7) * 1e-7
     }
 
-    /// Whether latitude and longitude are on the globe.
+    /// Returns `true` if latitude and longitude are on the globe.
     pub fn is_on_globe(self) -> bool {
         self.lat_e7.unsigned_abs() <= 900_000_000 && self.lon_e7.unsigned_abs() <= 1_800_000_000
     }
 }
 
-/// Decimal degrees with exactly seven decimals, computed on the integers: `40.4640000,-79.5175000`.
+/// Writes decimal degrees with exactly seven decimals, computed on the integers: `40.4640000,-79.5175000`.
 impl std::fmt::Display for LatLon {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{},{}", Degrees7(self.lat_e7), Degrees7(self.lon_e7))
@@ -74,16 +74,16 @@ impl std::fmt::Display for Degrees7 {
     }
 }
 
-/// `lon` folded into (−180°, +180°], degrees × 10⁷.
+/// Returns `lon` wrapped to (−180°, +180°], degrees × 10⁷.
 fn wrap_lon_e7(lon: i64) -> i32 {
     let turn = 3_600_000_000_i64;
     let folded = lon.rem_euclid(turn);
-    // In range by construction: (−1.8e9, 1.8e9] fits i32.
+    // In range by construction: (−1.8e9, 1.8e9] fits `i32`.
     (if folded > turn / 2 { folded - turn } else { folded }) as i32
 }
 
-/// Horizontal distance (m) and bearing (rad, 0…2π clockwise from north) from `a` to `b`; the reference latitude is
-/// their mean, so the distance is symmetric. Coincident points give (0, 0).
+/// Returns the horizontal distance (m) and bearing (rad, 0…2π clockwise from north) from `a` to `b`. The reference
+/// latitude is their mean, so the distance is symmetric. Coincident points give (0, 0).
 pub fn distance_bearing(a: LatLon, b: LatLon) -> (f64, f64) {
     let mean_lat = (f64::from(a.lat_e7) + f64::from(b.lat_e7)) * 0.5e-7;
     let ne = offset_with_reference(a, b, mean_lat);
@@ -93,7 +93,7 @@ pub fn distance_bearing(a: LatLon, b: LatLon) -> (f64, f64) {
     (ne.norm(), ne.y.atan2(ne.x).rem_euclid(std::f64::consts::TAU))
 }
 
-/// Offset (north, east) in metres from `origin` to `point`; the reference latitude is the origin's.
+/// Returns the offset (north, east) in metres from `origin` to `point`. The reference latitude is that of the origin.
 pub fn local_offset(origin: LatLon, point: LatLon) -> Vector2<f64> {
     offset_with_reference(origin, point, origin.lat_deg())
 }
@@ -107,8 +107,8 @@ fn offset_with_reference(from: LatLon, to: LatLon, reference_lat_deg: f64) -> Ve
     )
 }
 
-/// The position `offset` (north, east; metres) from `origin`, the inverse of [`local_offset`]. Latitude is clamped to
-/// ±90°, longitude wrapped; within 1e-6 of a pole (cosine) the longitude stays that of the origin.
+/// Returns the position at `offset_ne` (north, east; metres) from `origin`, the inverse of [`local_offset`]. Latitude
+/// is clamped to ±90°, longitude wrapped. Within 1e-6 of a pole (cosine) the longitude stays that of the origin.
 pub fn offset_to_latlon(origin: LatLon, offset_ne: Vector2<f64>) -> LatLon {
     let cos_lat = origin.lat_deg().to_radians().cos();
     let lat = f64::from(origin.lat_e7) + offset_ne.x / METRES_PER_E7;
@@ -120,14 +120,15 @@ pub fn offset_to_latlon(origin: LatLon, offset_ne: Vector2<f64>) -> LatLon {
     LatLon::new(lat_e7, wrap_lon_e7(lon.round() as i64))
 }
 
-/// As [`offset_to_latlon`], in degrees and without rounding to 1e-7, for displays that compare with the truth.
+/// Does the same as [`offset_to_latlon`] in degrees and without rounding to 1e-7, for displays that compare with the
+/// truth.
 pub fn offset_to_degrees(origin: LatLon, offset_ne: Vector2<f64>) -> (f64, f64) {
     let cos_lat = origin.lat_deg().to_radians().cos().max(1e-6);
     let per_degree = METRES_PER_E7 * 1e7;
     (origin.lat_deg() + offset_ne.x / per_degree, origin.lon_deg() + offset_ne.y / (per_degree * cos_lat))
 }
 
-/// An angle folded into (−π, π].
+/// Returns an angle wrapped to (−π, π].
 pub fn wrap_pi(angle_rad: f64) -> f64 {
     use std::f64::consts::{PI, TAU};
     let folded = angle_rad.rem_euclid(TAU);

@@ -1,11 +1,11 @@
-//! The scripted pilot: flies a whole mission by RC alone, fifty frames a simulated second.
+//! The scripted pilot: flies a whole mission by RC alone, fifty frames per simulated second.
 //!
-//! Wait for the fix and for no arming-disable flag, arm with the throttle low, raise it, switch ANGLE, ALTHOLD and
-//! POS HOLD on, climb, hover, switch the AUTOPILOT on, and from then on hold the sticks still. Its own switches stay
-//! on, so that a craft whose autopilot refuses hovers on. When the heading is unknown the pitch stick is held forward for
-//! five seconds, so that the GPS shows it.
+//! The pilot waits for the fix and until no arming disable flag is set, arms with the throttle low, raises it,
+//! switches ANGLE, ALTHOLD and POS HOLD on, climbs, hovers, switches AUTOPILOT on, and then holds the sticks still.
+//! Its mode switches stay on, so that a craft whose autopilot refuses continues to hover. If the heading is unknown,
+//! the pilot holds the pitch stick forward for five seconds, so that the GPS shows the heading.
 //!
-//! It sees what a pilot sees (the OSD), and touches nothing but the sixteen channels.
+//! The pilot sees only the OSD, as a real pilot does, and moves nothing but the sixteen channels.
 
 mod stick_input;
 mod transmitter;
@@ -18,71 +18,71 @@ use crate::telemetry::Mode;
 use crate::telemetry::snapshot::ModeRange;
 use crate::telemetry::switch::Switch;
 
-/// Seconds of hover between the climb and the engagement.
+/// The time of hover between the climb and the engagement, s.
 const HOVER_S: f64 = 5.0;
-/// Rate of climb the pilot aims at, m/s.
+/// The climb rate that the pilot aims at, m/s.
 const CLIMB_MPS: f64 = 2.0;
-/// Time for the throttle stick to go from low to hover, s.
+/// The time for the throttle stick to go from low to hover, s.
 const RAISE_S: f64 = 0.8;
-/// Interval of RC frames, s.
+/// The interval of RC frames, s.
 const FRAME_S: f64 = 0.02;
-/// Channel index of the throttle.
+/// The channel index of the throttle.
 const THROTTLE: usize = 2;
-/// Throttle stick at the bottom, µs.
+/// The throttle stick at the bottom, µs.
 const LOW_US: f64 = 1000.0;
-/// How long the pitch stick is held forward to find an unknown heading, s.
+/// The time for which the pitch stick is held forward to find an unknown heading, s.
 const AHEAD_S: f64 = 5.0;
-/// Least height above home for that, m.
+/// The minimum height above home for that, m.
 const AHEAD_ALT_M: f64 = 5.0;
-/// Channel index of pitch, and its stick in the middle, µs.
+/// The channel index of pitch, and its stick in the middle, µs.
 const PITCH: usize = 1;
 const MID_US: u16 = 1500;
-/// How far below the takeoff altitude the climb ends, m, and the response time, s, and deceleration, m/s², of ALTHOLD that the
-/// pilot counts on.
+/// The height below the takeoff altitude at which the climb ends, m, and the response time, s, and deceleration,
+/// m/s², of ALTHOLD that the pilot expects.
 const TOP_M: f64 = 0.1;
 const RESPONSE_S: f64 = 0.3;
 const STOP_MPS2: f64 = 1.25;
 /// A craft that is higher (m) or climbs faster (m/s) has left the ground.
 const AIRBORNE_M: f64 = 0.3;
 const AIRBORNE_MPS: f64 = 0.3;
-/// On the ground the stick goes quickly up this share of its way, and then further at this rate, µs/s.
+/// On the ground the stick quickly goes up by this share of its travel, and then further at this rate, µs/s.
 const GROUND_STICK_SHARE: f64 = 0.4;
 const GROUND_STICK_US_PER_S: f64 = 20.0;
-/// The highest stick the pilot uses to climb, µs.
+/// The highest stick position of the pilot in a climb, µs.
 const CLIMB_STICK_MAX_US: f64 = 2000.0;
 
-/// What the pilot sees.
+/// The facts that the pilot sees.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PilotFacts {
     pub time: SimTime,
-    /// A 3-D fix.
+    /// `true` if there is a 3-D fix.
     pub fix: bool,
-    /// Some arming-disable flag is set.
+    /// `true` if an arming disable flag is set.
     pub arming_blocked: bool,
     pub armed: bool,
     pub engaged: bool,
-    /// The heading is known.
+    /// `true` if the heading is known.
     pub heading_known: bool,
-    /// The pitch stick that leans the craft forward by 15° in ANGLE, µs.
+    /// Pitch stick that leans the craft forward by 15° in ANGLE, µs.
     pub forward_stick_us: u16,
     /// Altitude above home, m.
     pub alt_m: f64,
     /// Climb rate, m/s.
     pub climb_mps: f64,
-    /// Where the throttle stick rests in ALTHOLD, µs.
+    /// Throttle stick that holds the altitude in ALTHOLD, µs.
     pub hover_stick_us: u16,
-    /// The throttle stick from which the throttle counts as raised, µs.
+    /// Throttle stick from which the throttle counts as raised, µs.
     pub raised_stick_us: u16,
 }
 
 impl PilotFacts {
-    /// Whether the craft has left the ground as far as the pilot sees.
+    /// Returns `true` if the craft has left the ground as far as the pilot sees.
     fn is_airborne(&self) -> bool {
         self.alt_m > AIRBORNE_M || self.climb_mps > AIRBORNE_MPS
     }
 }
 
-/// What the pilot is doing.
+/// The phase of the scripted flight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Phase {
     Waiting,
@@ -96,7 +96,7 @@ enum Phase {
     Done,
 }
 
-/// The switches of the pilot's modes.
+/// The mode switches of the pilot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct ModeSwitches {
     arm: Switch,
@@ -110,16 +110,16 @@ pub struct Pilot {
     takeoff_m: f64,
     switches: ModeSwitches,
     frame: RcFrame,
-    /// The throttle stick at rest in ALTHOLD, as seen last, µs.
+    /// Throttle stick that holds the altitude in ALTHOLD, as last seen, µs.
     hover_stick_us: u16,
 }
 
 impl Pilot {
-    /// A pilot that climbs to `takeoff_m` metres before engaging (0: engages at once, on the ground), using the
-    /// channels that the craft's mode conditions name.
+    /// Returns a pilot that climbs to `takeoff_m` metres before engaging (0: engages at once, on the ground). It uses
+    /// the channels that the mode conditions of the craft name.
     ///
     /// # Errors
-    /// The name of the mode that no channel switches: without ARM and AUTOPILOT there is no flight.
+    /// Fails with the mode that no channel switches. Without ARM and AUTOPILOT there is no flight.
     pub fn new(takeoff_m: f64, ranges: &[ModeRange]) -> Result<Self, Mode> {
         let find = |mode| Switch::of(mode, ranges);
         let switches = ModeSwitches {
@@ -130,12 +130,12 @@ impl Pilot {
         Ok(Self { phase: Phase::Waiting, takeoff_m, switches, frame: RcFrame::SAFE, hover_stick_us: MID_US })
     }
 
-    /// Altitude to which the pilot climbs before engaging, m.
+    /// Returns the altitude to which the pilot climbs before engaging, m.
     pub fn takeoff_m(&self) -> f64 {
         self.takeoff_m
     }
 
-    /// What the pilot is doing, in a word or two.
+    /// Returns the present action of the pilot in a word or two.
     pub fn doing(&self) -> &'static str {
         match self.phase {
             Phase::Waiting => "waiting to arm",
@@ -150,12 +150,12 @@ impl Pilot {
         }
     }
 
-    /// Whether the flight is over as far as the pilot is concerned.
+    /// Returns `true` if the flight is over for the pilot.
     pub fn is_done(&self) -> bool {
         self.phase == Phase::Done
     }
 
-    /// The next frame; to be called every 20 ms of simulated time.
+    /// Returns the next frame. Call it every 20 ms of simulated time.
     pub fn fly(&mut self, facts: &PilotFacts) -> RcFrame {
         self.hover_stick_us = facts.hover_stick_us;
         self.advance(facts);
@@ -177,8 +177,8 @@ impl Pilot {
         self.frame
     }
 
-    /// Returns the sticks as the pilot leaves them: a climbing craft holds its altitude, one that is still on the ground
-    /// stays there.
+    /// Returns the sticks as the pilot leaves them. A climbing craft holds its altitude, a craft that is still on the
+    /// ground stays there.
     pub(super) fn released(&self) -> RcFrame {
         let mut frame = self.frame;
         match self.phase {
@@ -213,7 +213,7 @@ impl Pilot {
                 if facts.armed {
                     self.phase = Phase::Raising { since: facts.time };
                 } else if facts.arming_blocked {
-                    // Refused after all: release the switch and wait for the cause to go away.
+                    // The firmware refused to arm after all: release the switch and wait until the cause is gone.
                     self.frame = RcFrame::SAFE;
                     self.phase = Phase::Waiting;
                 }
@@ -224,7 +224,7 @@ impl Pilot {
                         self.switch_on(switch);
                     }
                     if !facts.heading_known {
-                        // It will have to fly ahead before the autopilot engages.
+                        // The craft must fly forward before the autopilot engages.
                         self.takeoff_m = self.takeoff_m.max(AHEAD_ALT_M);
                     }
                     self.phase = if self.takeoff_m > 0.0 {
@@ -237,7 +237,7 @@ impl Pilot {
             }
             Phase::Climbing { stick_us } => {
                 let left = self.takeoff_m - facts.alt_m;
-                // ALTHOLD comes to rest on the way that is left.
+                // ALTHOLD comes to rest within the remaining height.
                 let climb = facts.climb_mps.max(0.0);
                 if left <= TOP_M + climb * RESPONSE_S + climb * climb / (2.0 * STOP_MPS2) {
                     self.phase = Phase::Hovering { since: facts.time };
@@ -274,8 +274,9 @@ impl Pilot {
     }
 }
 
-/// Feels for the stick position that gives the wanted climb, slowing down near the top as a person would. On the ground
-/// the stick goes up a good part of its way, and further slowly: the craft needs a moment to come up.
+/// Returns the stick position that approaches the wanted climb, slower near the top as a person would do. On the
+/// ground the stick goes up quickly by a large part of its travel and then slowly, since the craft needs a moment to
+/// lift off.
 fn climb_stick(stick_us: f64, left_m: f64, facts: &PilotFacts) -> f64 {
     let hover_us = f64::from(facts.hover_stick_us);
     let wanted = CLIMB_MPS.min(0.3 + 0.8 * left_m);

@@ -1,7 +1,7 @@
-//! The plant: one quadcopter, the air, the ground, its sensors and what goes wrong with them.
+//! The plant: one quadcopter, the air, the ground, the sensors and their faults.
 //!
-//! A function of its configuration, a seed and the motor commands: no I/O, no clock, no threads. One step of
-//! [`World::step`] takes the motor commands of the present instant and makes the next one:
+//! The plant depends only on its configuration, a seed and the motor commands: no I/O, no clock, no threads. Each
+//! call of [`World::step`] takes the motor commands of the present instant and computes the next one:
 //!
 //! ```text
 //!  MotorCommand ─► motors ─► forces and torques ─► RK4 ─► ground ─► sensors ─► SensorFrame
@@ -9,7 +9,8 @@
 //!                              wind, battery                  events     latency, faults
 //! ```
 //!
-//! | what | how often |
+//! part
+//! interval
 //! | --- | --- |
 //! | rotors, body, ground, inertial sensors | every step (125 µs … 2.5 ms) |
 //! | air (mean wind, gusts, turbulence, density), battery, magnetometer | 10 ms |
@@ -17,8 +18,9 @@
 //! | GPS | 100 ms (1 to 20 Hz) |
 //!
 //! World axes are ENU (x east, y north, z up) with the origin on the ground at home; body axes are FLU (x forward,
-//! y left, z up); attitudes turn body into world. [`Truth`] and [`SensorFrame`](crate::signals::SensorFrame) are
-//! different types: what is so and what is measured cannot be mixed up. `docs/physics.md` has the equations.
+//! World axes are ENU (x east, y north, z up) with the origin on the ground at home; body axes are FLU (x forward, y
+//! left, z up); attitudes turn body into world. [`Truth`] and [`SensorFrame`](crate::signals::SensorFrame) are
+//! different types, so that true and measured values cannot be mixed up. `docs/physics.md` has the equations.
 
 mod air;
 mod airframe;

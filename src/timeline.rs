@@ -1,9 +1,9 @@
-//! The flight as it was: recording, rewind and branches.
+//! The recorded flight: recording, rewind and branches.
 //!
-//! `recording` keeps frozen vehicles and the inputs between them, `replay` flies from one of them to an earlier instant,
-//! `marks` knows when something happened. While an earlier instant is shown, the vehicle that flies waits where it is.
+//! `recording` keeps frozen vehicles and the inputs between them, `replay` flies from one of them to an earlier
+//! instant, `marks` keeps the times of events. While an earlier instant is shown, the flying vehicle waits.
 //!
-//! Nothing here reads a clock: whoever owns the vehicle says when to record and what to show.
+//! Nothing here reads a clock. The owner of the vehicle decides when to record and which instant to show.
 
 mod idle;
 mod marks;
@@ -24,7 +24,7 @@ pub use marks::{Mark, MarkKind, Marks};
 pub use recorded_flight::RecordedFlight;
 pub use view::TimelineView;
 
-/// The recording of a flight, and the earlier instant of it that is shown.
+/// The recording of a flight, and the earlier instant that is shown.
 #[derive(Debug)]
 pub struct Timeline {
     recording: Recording,
@@ -33,18 +33,18 @@ pub struct Timeline {
     branched_at: SimTime,
 }
 
-/// What replaying led to.
+/// The result of a replay.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shown {
     /// An earlier instant is shown.
     Earlier,
-    /// It has come to where the vehicle that flies waits.
+    /// The replay has reached the flying vehicle.
     Newest,
 }
 
 impl Timeline {
-    /// Records `vehicle` from now on; `None` when it cannot be flown again, because its time or its flight controller
-    /// is not ours.
+    /// Records `vehicle` from now on. Returns `None` if it cannot be flown again, because its time or its flight
+    /// controller is not under the control of this program.
     pub fn new(vehicle: &mut Vehicle) -> Option<Self> {
         Self::within(Bounds::default(), vehicle)
     }
@@ -56,44 +56,45 @@ impl Timeline {
         Some(Self { recording: Recording::new(bounds), replay: None, branch: 0, branched_at: SimTime::ZERO })
     }
 
-    /// Records what came from outside since the tick before; to be called right before each tick, and when much has
-    /// come while time stands still.
+    /// Records the inputs since the previous tick. Call it right before each tick, and when there were many inputs
+    /// while time is stopped.
     pub fn record(&mut self, vehicle: &mut Vehicle) {
         self.recording.record(vehicle);
     }
 
-    /// The vehicle at the earlier instant that is shown, if one is.
+    /// Returns the vehicle at the earlier instant that is shown, if there is one.
     pub fn shown(&self) -> Option<&Vehicle> {
         self.replay.as_ref().map(Replay::vehicle)
     }
 
-    /// The earliest instant that can be shown.
+    /// Returns the earliest instant that can be shown.
     pub fn first(&self) -> Option<SimTime> {
         self.recording.first()
     }
 
-    /// The parts in which nothing happens that a display folds beside a flight with these marks, the oldest first.
+    /// Returns the parts without events that a display folds for a flight with these marks, oldest first.
     pub fn folds(&self, marks: &[Mark]) -> Vec<IdleSpan> {
         self.first().map_or_else(Vec::new, |first| self.recording.idle().folds(marks, first))
     }
 
-    /// How often the flight was flown on from an earlier instant.
+    /// Returns the number of times that the flight was continued from an earlier instant.
     pub fn branch(&self) -> u32 {
         self.branch
     }
 
-    /// The instant from which it was last flown on.
+    /// Returns the instant from which it was last continued.
     pub fn branched_at(&self) -> SimTime {
         self.branched_at
     }
 
-    /// Shows the vehicle as it was at `time`, or at the earliest instant; `head` is where the vehicle that flies waits.
+    /// Shows the vehicle at `time`, or at the earliest instant. `head` is the instant at which the flying vehicle
+    /// waits.
     pub fn show(&mut self, time: SimTime, head: SimTime) -> Shown {
         if time >= head {
             self.replay = None;
             return Shown::Newest;
         }
-        // Forwards by a little from where it is, else from a frozen vehicle.
+        // A short step forwards continues from the shown instant. Anything else starts from a frozen vehicle.
         let oldest = self.recording.first_input();
         let shown =
             self.replay.take().filter(|replay| replay.time() <= time && replay.next_input() >= oldest);
@@ -107,20 +108,20 @@ impl Timeline {
         if self.replay.is_some() { Shown::Earlier } else { Shown::Newest }
     }
 
-    /// Flies the replay on by some ticks, at most to `head`.
+    /// Advances the replay by some ticks, at most to `head`.
     pub fn play(&mut self, ticks: u64, head: SimTime) -> Shown {
         let Some(replay) = &self.replay else { return Shown::Newest };
         let to = SimTime(replay.time().0 + ticks * replay.vehicle().step_us());
         self.show(to, head)
     }
 
-    /// Back to the vehicle that flies.
+    /// Returns to the flying vehicle.
     pub fn leave(&mut self) {
         self.replay = None;
     }
 
-    /// Makes the shown vehicle the one that flies, on a new branch: what was recorded after it is forgotten. `None` when
-    /// no earlier instant is shown.
+    /// Makes the shown vehicle the flying one, on a new branch. Forgets the recording after it. Returns `None` if no
+    /// earlier instant is shown.
     pub fn fly_on(&mut self) -> Option<Vehicle> {
         let replay = self.replay.take()?;
         self.recording.forget_after(&replay);
@@ -128,7 +129,7 @@ impl Timeline {
         self.branched_at = replay.time();
         let mut vehicle = replay.into_vehicle();
         vehicle.keep_inputs(true);
-        // They were told when they happened.
+        // The events were reported when they happened.
         vehicle.drain_events(drop);
         Some(vehicle)
     }

@@ -1,17 +1,17 @@
 //! Flight controller and physics in lockstep, and the RC transmitter.
 //!
-//! One [`Vehicle::tick`] takes the physics from one instant to the next, always in this order:
+//! Each [`Vehicle::tick`] takes the physics from one instant to the next, always in this order:
 //!
-//! 1. RC frames due now (every 20 ms) go to the receiver;
-//! 2. the flight controller steps on the sensor frame of this instant and gives motor commands;
-//! 3. the physics steps with them, which makes the sensor frame of the next instant.
+//! 1. RC frames that are due (every 20 ms) go to the receiver;
+//! 2. the flight controller steps on the sensor frame of this instant and returns motor commands;
+//! 3. the physics steps with them, which gives the sensor frame of the next instant.
 //!
-//! A clone is a frozen vehicle: going on from it gives the same trajectory to the last bit. What came from outside meanwhile
-//! is an [`Input`].
+//! A clone is a frozen vehicle. If it continues, it gives the same trajectory to the last bit. Everything that
+//! reaches the vehicle from other programs or people in the meantime is an [`Input`].
 //!
-//! The flight controller is embedded or remote ([`FlightController`]), the physics is the simulated world or an external
-//! simulator: then each [`Vehicle::tick_on`] steps the flight controller on what that simulator measured, and
-//! [`Vehicle::see`] tells where it has put the craft.
+//! The flight controller is embedded or remote ([`FlightController`]). The physics is the simulated world or an
+//! external simulator. With the latter, each [`Vehicle::tick_on`] steps the flight controller on the measurements of
+//! that simulator, and [`Vehicle::see`] reports the place of the craft.
 
 mod controller;
 mod input;
@@ -39,19 +39,19 @@ use crate::sim::{
 use crate::telemetry::{Event, EventKind, FirmwareEvent, Mode, NavEvent, NavState, VehicleNotice};
 use physics::{ExternalPhysics, Physics};
 
-/// A craft that moves more slowly is at rest, m/s.
+/// A craft slower than this is at rest, m/s.
 const AT_REST_MPS: f64 = 0.2;
 
-/// What a vehicle is made of.
+/// The configuration of a vehicle.
 #[derive(Debug, Clone)]
 pub struct VehicleConfig {
     /// The craft, the place and the air.
     pub world: WorldConfig,
-    /// How the firmware is built.
+    /// Options of the firmware.
     pub firmware: FirmwareOptions,
-    /// What the craft remembers.
+    /// Configuration in the memory of the craft.
     pub configuration: Configuration,
-    /// Outside doors can influence the flight, so that it is not repeatable.
+    /// `true` if other programs can influence the flight, so that it is not repeatable.
     pub live: bool,
 }
 
@@ -65,25 +65,26 @@ pub struct Vehicle {
     engaged_at: Option<SimTime>,
     active_plan: Option<Box<FlightPlan>>,
     events: Vec<Event>,
-    /// The transmitter was touched since the inputs were taken last.
+    /// `true` if the transmitter was changed since the inputs were last taken.
     transmitter_set: bool,
 }
 
 impl Vehicle {
-    /// A vehicle at boot: the craft stands at home, the firmware starts.
+    /// Returns a vehicle at boot: the craft is at home, the firmware starts.
     ///
     /// # Errors
-    /// When the world cannot be built.
+    /// Fails if the world cannot be built.
     pub fn new(config: VehicleConfig) -> Result<Self, WorldError> {
         let controller = embedded(config.configuration, config.firmware);
         let physics = Physics::World(Box::new(World::new(config.world)?));
         Ok(Self::build(controller, physics, config.live))
     }
 
-    /// A vehicle at boot that an external simulator moves: of the world, only step rate, seed and faults count.
+    /// Returns a vehicle at boot that an external simulator moves. Only step rate, seed and faults of the world
+    /// configuration are used.
     ///
     /// # Errors
-    /// When the step rate is not allowed, or a fault.
+    /// Fails if the step rate or a fault is not allowed.
     pub fn with_external_physics(config: VehicleConfig) -> Result<Self, WorldError> {
         let controller = embedded(config.configuration, config.firmware);
         let links = World::new(WorldConfig { link: FaultLink::External, ..config.world })?;
@@ -91,20 +92,21 @@ impl Vehicle {
         Ok(Self::build(controller, physics, config.live))
     }
 
-    /// A vehicle at boot in the simulated world whose flight controller is remote, so that its flight is not repeatable.
+    /// Returns a vehicle at boot in the simulated world with a remote flight controller. Its flight is not
+    /// repeatable.
     ///
     /// # Errors
-    /// When the world cannot be built.
+    /// Fails if the world cannot be built.
     pub fn with_remote_controller(world: WorldConfig) -> Result<Self, WorldError> {
         let physics = Physics::World(Box::new(World::new(world)?));
         Ok(Self::build(FlightController::Remote(Box::default()), physics, true))
     }
 
-    /// A vehicle of which nothing is here: flight controller and craft are elsewhere, and only the flight controller tells of
-    /// them. Nothing boots.
+    /// Returns a vehicle whose flight controller and craft are both remote. Only the flight controller reports their
+    /// state. Nothing boots.
     ///
     /// # Errors
-    /// None with the usual step rate.
+    /// Never fails with the default step rate.
     pub fn elsewhere() -> Result<Self, WorldError> {
         let clock = World::new(WorldConfig { link: FaultLink::External, ..WorldConfig::default() })?;
         let physics = Physics::External(Box::new(ExternalPhysics::new(clock)));
@@ -134,12 +136,12 @@ impl Vehicle {
         }
     }
 
-    /// Simulated time since boot.
+    /// Returns the simulated time since boot.
     pub fn time(&self) -> SimTime {
         self.physics.time()
     }
 
-    /// Length of a tick, µs.
+    /// Returns the length of a tick, µs.
     pub fn step_us(&self) -> u64 {
         self.physics.step_us()
     }
@@ -148,17 +150,17 @@ impl Vehicle {
         &self.controller
     }
 
-    /// The flight controller, to talk to it.
+    /// Returns the flight controller, to send it requests and data.
     pub fn controller_mut(&mut self) -> &mut FlightController {
         &mut self.controller
     }
 
-    /// The embedded firmware, if that is what flies.
+    /// Returns the embedded firmware, if it flies the craft.
     pub fn embedded(&self) -> Option<&Firmware> {
         self.controller.embedded()
     }
 
-    /// As [`Self::embedded`].
+    /// Does the same as [`Self::embedded`], for changes.
     pub fn embedded_mut(&mut self) -> Option<&mut Firmware> {
         self.controller.embedded_mut()
     }
@@ -167,50 +169,50 @@ impl Vehicle {
         &self.transmitter
     }
 
-    /// The RC transmitter, to move its sticks.
+    /// Returns the RC transmitter, to move its sticks.
     pub fn transmitter_mut(&mut self) -> &mut RcTransmitter {
         self.transmitter_set = true;
         &mut self.transmitter
     }
 
-    /// The simulated world, if that is what moves the craft.
+    /// Returns the simulated world, if it moves the craft.
     pub fn world(&self) -> Option<&World> {
         self.physics.world()
     }
 
-    /// The seed of all randomness.
+    /// Returns the seed of all randomness.
     pub fn seed(&self) -> u64 {
         self.physics.seed()
     }
 
-    /// The frame whose origin is the boot place; `None` before an external simulator has told where that is, or before
-    /// [`Self::set_origin`].
+    /// Returns the frame with its origin at the boot place. `None` before an external simulator has reported that
+    /// place, or before [`Self::set_origin`].
     pub fn local_frame(&self) -> Option<&LocalFrame> {
         self.physics.local_frame()
     }
 
-    /// What active faults do to the packets of an external simulator.
+    /// Returns the effects of active faults on the packets of an external simulator.
     pub fn link_faults(&self) -> LinkFaults {
         self.physics.link_faults()
     }
 
-    /// Whether the craft is lost, as far as is known.
+    /// Returns `true` if the craft is known to have crashed.
     pub fn crashed(&self) -> bool {
         self.physics.crashed()
     }
 
-    /// Whether the simulation left the range where its numbers mean something.
+    /// Returns `true` if the simulation has left the range in which its numbers are meaningful.
     pub fn diverged(&self) -> bool {
         self.physics.diverged()
     }
 
-    /// Whether the craft is disarmed and at rest, and no scripted pilot is about to fly it.
+    /// Returns `true` if the craft is disarmed and at rest, and no scripted pilot is about to fly it.
     pub fn is_idle(&self) -> bool {
         let is_at_rest = self.world().is_none_or(|world| world.truth().vel_enu.norm() < AT_REST_MPS);
         !self.controller.is_armed() && self.transmitter.pilot().is_none() && is_at_rest
     }
 
-    /// When the autopilot engaged for the first time since boot or reset.
+    /// Returns the time at which the autopilot first engaged since boot or reset.
     pub fn engaged_at(&self) -> Option<SimTime> {
         self.engaged_at
     }
@@ -218,7 +220,7 @@ impl Vehicle {
     /// Changes air, noise or faults.
     ///
     /// # Errors
-    /// When a value is not allowed; then nothing has changed.
+    /// Fails if a value is not allowed. Nothing has changed then.
     pub fn change_world(&mut self, command: WorldCommand) -> Result<(), WorldError> {
         let input = command.clone();
         self.physics.apply(command)?;
@@ -226,19 +228,19 @@ impl Vehicle {
         Ok(())
     }
 
-    /// Lets the scripted pilot fly the mission from here: climb to `takeoff_m`, engage.
+    /// Starts the scripted pilot, which flies the mission from here: climb to `takeoff_m`, engage.
     ///
     /// # Errors
-    /// The mode that no channel switches.
+    /// Fails with the mode that no channel switches.
     pub fn start_pilot(&mut self, takeoff_m: f64) -> Result<(), Mode> {
         self.transmitter_set = true;
         self.transmitter.start_pilot(Pilot::new(takeoff_m, &self.controller.mode_ranges())?);
         Ok(())
     }
 
-    /// Puts the craft back home, undamaged and disarmed; plan, settings, air and faults stay, and what counts from the
-    /// engagement waits for the next one. A craft that an external simulator moves is disarmed only, and starts
-    /// where it is seen next.
+    /// Puts the craft back home, undamaged and disarmed. Plan, settings, air and faults stay. Faults and inputs that
+    /// count from the engagement wait for the next one. A craft that an external simulator moves is only disarmed,
+    /// and starts where it is seen next.
     pub fn reset_craft(&mut self) {
         self.note_input(|| Input::ResetCraft);
         self.engaged_at = None;
@@ -249,32 +251,35 @@ impl Vehicle {
             external.reset();
             return;
         }
-        // Returning home is always allowed.
+        // A return home is always allowed.
         let _ = self.physics.apply(WorldCommand::ResetToHome);
         self.notice(VehicleNotice::BackHome);
     }
 
-    /// A remote flight controller started anew by itself: the craft of the simulated world stands at home again, disarmed.
+    /// Handles the restart of a remote flight controller by itself: the craft of the simulated world is at home
+    /// again, disarmed.
     pub fn remote_restarted(&mut self) {
         let Some(remote) = self.controller.remote_mut() else { return };
         remote.restarted();
         self.engaged_at = None;
         self.active_plan = None;
         *self.transmitter.sticks_mut() = RcFrame::SAFE;
-        // Returning home is always allowed; physics of others are not ours to reset.
+        // A return home is always allowed. An external simulator is not reset from here.
         if self.physics.world().is_some() {
             let _ = self.physics.apply(WorldCommand::ResetToHome);
         }
     }
 
-    /// One step of simulated time. With an external simulator: a step in which nothing is sensed.
+    /// Makes one step of simulated time. With an external simulator, the step has no measurements.
     pub fn tick(&mut self) {
         self.step(None);
     }
 
-    /// One step on what an external simulator measured; the motors' answer is the simulator's to carry out.
+    /// Makes one step on the measurements of an external simulator. The simulator carries out the returned motor
+    /// command.
     ///
-    /// Only for a vehicle of [`Vehicle::with_external_physics`]; the world of another would not follow.
+    /// Only for a vehicle from [`Vehicle::with_external_physics`]. The simulated world of any other vehicle would not
+    /// follow.
     pub fn tick_on(&mut self, sensors: &SensorFrame) -> MotorCommand {
         match self.physics {
             Physics::World(_) => MotorCommand::default(),
@@ -284,7 +289,7 @@ impl Vehicle {
 
     fn step(&mut self, measured: Option<&SensorFrame>) -> MotorCommand {
         self.send_due_rc();
-        // With the `rx-loss` fault no frame reaches the receiver, whoever sent it.
+        // With the `rx-loss` fault no frame from any source reaches the receiver.
         if self.physics.rx_lost() {
             self.controller.lose_rc();
         }
@@ -297,8 +302,8 @@ impl Vehicle {
         motors
     }
 
-    /// Ends faults of the link whose time is over after a silence of this length, µs: meanwhile the vehicle's time stands
-    /// still. Says whether there were any.
+    /// Ends faults of the link whose time is over after a silence of this length, µs. The time of the vehicle stops
+    /// during the silence. Returns `true` if there were any.
     pub fn end_link_faults(&mut self, silence_us: u64) -> bool {
         let before = self.events.len();
         if let Some(external) = self.physics.external_mut() {
@@ -308,14 +313,15 @@ impl Vehicle {
         self.events.len() != before
     }
 
-    /// Takes in where an external simulator says the craft is.
+    /// Takes the place of the craft as reported by an external simulator.
     pub fn see(&mut self, pose: Pose) {
         if let Some(external) = self.physics.external_mut() {
             external.see(pose);
         }
     }
 
-    /// Positions of a vehicle of [`Vehicle::elsewhere`] count from here on; anybody else's keep their boot place.
+    /// Sets the origin of the positions of a vehicle from [`Vehicle::elsewhere`]. Any other vehicle keeps its boot
+    /// place.
     pub fn set_origin(&mut self, origin: LocalFrame) {
         if let Some(external) = self.physics.external_mut() {
             external.set_frame(origin);

@@ -1,4 +1,4 @@
-//! How to get there: altitude, position and yaw control, shared by the autopilot and the firmware's hold modes.
+//! Altitude, position and yaw control, shared by the autopilot and the firmware's hold modes.
 
 mod altitude;
 mod bumpless;

@@ -1,4 +1,4 @@
-//! Why the autopilot engages, or not: the preconditions in their order, with words for people.
+//! The preconditions of an engagement in their order, with messages for people.
 
 use super::fence;
 use super::params::Params;
@@ -7,33 +7,33 @@ use crate::plan::FlightPlan;
 use crate::plan::validate::{PlanFault, check_plan};
 use crate::telemetry::{AbortReason, Refusal};
 
-/// Facts for the decision, each line of the list one field.
+/// The facts for the decision. Each line of the displayed list is one field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct EngageFacts {
-    /// Whether the craft is armed.
+    /// `true` if the craft is armed.
     pub armed: bool,
-    /// Whether the throttle has been above 25 % since arming.
+    /// `true` if the throttle has been above 25 % since arming.
     pub throttle_raised: bool,
-    /// Whether a 3-D fix is present.
+    /// `true` if a 3-D fix is present.
     pub fix: bool,
-    /// Whether the altitude estimate is valid.
+    /// `true` if the altitude estimate is valid.
     pub altitude_valid: bool,
-    /// Whether the heading is known.
+    /// `true` if the heading is known.
     pub heading_valid: bool,
-    /// Whether the plan can be flown.
+    /// The check that the plan can be flown.
     pub plan: Result<(), PlanFault>,
-    /// Whether the fence allows the plan; only looked at when the plan can be flown.
+    /// The check of the plan against the fence; only used if the plan can be flown.
     pub fence: Result<(), Refusal>,
-    /// Whether the craft can come down with its least throttle.
+    /// The check that the craft can descend with its minimum throttle.
     pub floor: Result<(), Refusal>,
-    /// Whether stage 2 of the failsafe is active.
+    /// `true` while stage 2 of the failsafe is active.
     pub failsafe: bool,
-    /// Why the last mission was given up since the switch went on, if it was.
+    /// The reason why the last mission since the switch went on was given up, if it was.
     pub aborted: Option<AbortReason>,
 }
 
 impl EngageFacts {
-    /// The facts about the plan: whether it can be flown, and whether the fence allows it.
+    /// Returns the facts about the plan: the check that it can be flown, and the check against the fence.
     pub fn plan_facts(
         stored: &FlightPlan,
         home: Option<LatLon>,
@@ -43,14 +43,14 @@ impl EngageFacts {
     }
 }
 
-/// Checks the least throttle against the hover throttle that the flight has shown, µs; before it has shown one there is
-/// nothing to compare.
+/// Checks the minimum throttle against the hover throttle learned in flight, µs. Without a learned value the check
+/// passes.
 ///
 /// # Errors
-/// When the craft would climb with the least throttle.
+/// Fails if the craft would climb with the minimum throttle.
 pub fn check_floor(throttle_min_us: u16, hover_us: Option<f64>) -> Result<(), Refusal> {
     match hover_us {
-        // Saturates; hover throttles lie below 2000 µs.
+        // Saturates. Hover throttles are below 2000 µs.
         Some(hover_us) if f64::from(throttle_min_us) > hover_us => {
             Err(Refusal::ThrottleMin { throttle_min_us, hover_us: hover_us.round() as u16 })
         }
@@ -58,10 +58,10 @@ pub fn check_floor(throttle_min_us: u16, hover_us: Option<f64>) -> Result<(), Re
     }
 }
 
-/// The first precondition that fails.
+/// Checks the preconditions in their order.
 ///
 /// # Errors
-/// With the reason to show.
+/// Fails with the first precondition that does not hold.
 pub fn check(facts: &EngageFacts) -> Result<(), Refusal> {
     check_craft(facts)?;
     facts.plan.map_err(|fault| match fault {
@@ -77,10 +77,10 @@ pub fn check(facts: &EngageFacts) -> Result<(), Refusal> {
     facts.aborted.map_or(Ok(()), |why| Err(Refusal::Aborted(why)))
 }
 
-/// The preconditions that also hold for commands that bring their own plan.
+/// Checks the preconditions that also hold for commands that bring their own plan.
 ///
 /// # Errors
-/// With the reason to show.
+/// Fails with the first precondition that does not hold.
 pub fn check_craft(facts: &EngageFacts) -> Result<(), Refusal> {
     if !facts.armed {
         return Err(Refusal::NotArmed);

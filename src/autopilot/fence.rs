@@ -1,4 +1,4 @@
-//! The fence: a greatest horizontal distance from home. Exactly on it is inside.
+//! The fence: a maximum horizontal distance from home. A craft exactly on it is inside.
 
 use crate::geo::{LatLon, distance_bearing};
 use crate::plan::{FlightPlan, WaypointType};
@@ -7,19 +7,19 @@ use crate::telemetry::{FenceAction, Guard, GuardName, GuardOp, NavState, PlanSou
 /// Facts for the check in flight.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FenceFacts {
-    /// The fence, m; `None` = off.
+    /// The fence, m; `None` if it is off.
     pub limit_m: Option<f64>,
-    /// Distance from home, m; `None` = home unknown.
+    /// Distance from home, m; `None` if home is unknown.
     pub distance_m: Option<f64>,
     /// State of the machine.
     pub state: NavState,
-    /// What is flown: an injected plan *is* the answer to a fence, so it is not checked.
+    /// Source of the plan that is flown. An injected plan *is* the reaction to a fence, so it is not checked.
     pub source: PlanSource,
     /// `ap_geofence_action`.
     pub action: FenceAction,
 }
 
-/// The guard of the fence, where the fence counts in this state; it holds when the craft is outside.
+/// Returns the guard of the fence if the fence counts in this state. The guard holds when the craft is outside.
 pub fn guard(facts: &FenceFacts) -> Option<Guard> {
     let live = match facts.state {
         NavState::Approaching
@@ -37,7 +37,7 @@ pub fn guard(facts: &FenceFacts) -> Option<Guard> {
 /// Checks waypoints, given by type and distance from home (m), before a flight.
 ///
 /// # Errors
-/// When a fence is set and home is unknown, or a waypoint lies outside.
+/// Fails if a fence is set and home is unknown, or if a waypoint is outside.
 pub fn pre_flight(
     limit_m: u16,
     home_known: bool,
@@ -51,7 +51,7 @@ pub fn pre_flight(
     }
     for (wp, (kind, distance_m)) in (0_u8..).zip(waypoints) {
         if kind.uses_position() && distance_m > f64::from(limit_m) {
-            // Saturates; the fence itself is at most 10 km.
+            // Saturates. The fence itself is at most 10 km.
             let distance_cm = (distance_m * 100.0).round() as u32;
             return Err(Refusal::Geofence { wp, distance_cm, limit_m });
         }
@@ -62,7 +62,7 @@ pub fn pre_flight(
 /// Checks a whole plan before a flight.
 ///
 /// # Errors
-/// As [`pre_flight`].
+/// Fails as [`pre_flight`] does.
 pub fn check_plan(limit_m: u16, home: Option<LatLon>, plan: &FlightPlan) -> Result<(), Refusal> {
     let distances = plan.waypoints.iter().map(|waypoint| {
         (waypoint.kind, home.map_or(0.0, |home| distance_bearing(home, waypoint.position).0))

@@ -1,5 +1,5 @@
-//! Where to fly: pure geometry of legs, corners, hold patterns and landings. Metres and radians in the local frame
-//! (north, east), altitudes above home.
+//! Pure geometry of legs, corners, hold patterns and landings. Metres and radians in the local frame (north, east),
+//! altitudes above home.
 
 mod corner;
 mod l1;

@@ -1,35 +1,35 @@
-//! What goes into the navigator: the seam between the firmware and the autopilot.
+//! The inputs of the navigator: the interface between the firmware and the autopilot.
 //!
-//! Local frame: north, east (m) relative to `origin`, fixed while armed; altitude in metres above home (the arming
-//! point). Angles in radians, heading clockwise from north.
+//! Local frame: north, east (m) relative to `origin`, which is fixed while armed; altitude in metres above home (the
+//! arming point). Angles in radians, heading clockwise from north.
 
 use nalgebra::Vector2;
 
 use crate::geo::LatLon;
 use crate::signals::SimTime;
 
-/// Facts for one update.
+/// The facts for one update.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NavInputs {
     /// Time of this update.
     pub time: SimTime,
     /// Seconds since the previous update (nominally 0.01).
     pub dt: f64,
-    /// Whether the craft is armed.
+    /// `true` if the craft is armed.
     pub armed: bool,
-    /// Whether a 3-D GPS fix is present.
+    /// `true` if a 3-D GPS fix is present.
     pub fix: bool,
-    /// Whether the altitude estimate is valid.
+    /// `true` if the altitude estimate is valid.
     pub altitude_valid: bool,
-    /// Whether the heading is known.
+    /// `true` if the heading is known.
     pub heading_valid: bool,
-    /// Whether the throttle has been above 25 % since arming.
+    /// `true` if the throttle has been above 25 % since arming.
     pub throttle_raised: bool,
-    /// Whether stage 2 of the receiver failsafe is active.
+    /// `true` while stage 2 of the receiver failsafe is active.
     pub failsafe: bool,
-    /// Whether the battery is at its warning voltage or below.
+    /// `true` if the battery is at its warning voltage or below.
     pub battery_low: bool,
-    /// Home (GPS position at arming), when known.
+    /// Home (GPS position at arming), if known.
     pub home: Option<LatLon>,
     /// Origin of the local frame of this flight.
     pub origin: LatLon,
@@ -53,9 +53,9 @@ pub struct NavInputs {
     pub cos_tilt: f64,
     /// Earth-frame acceleration without gravity, north and east, m/s².
     pub accel_ne: Vector2<f64>,
-    /// Throttle that drove the mixer in the previous cycle, as RC µs (1000…2000).
+    /// Throttle that the mixer used in the previous cycle, as RC µs (1000…2000).
     pub throttle_us: f64,
-    /// Hover throttle that this flight has shown, as RC µs, when it has.
+    /// Hover throttle learned in this flight, as RC µs, if known.
     pub hover_us: Option<f64>,
     /// Roll stick, RC command units ±500, right positive; 0 while the link is lost.
     pub stick_roll: f64,
@@ -66,7 +66,7 @@ pub struct NavInputs {
 }
 
 impl NavInputs {
-    /// A disarmed craft of which nothing is known yet.
+    /// Returns the inputs of a disarmed craft with nothing known yet.
     pub fn unknown() -> Self {
         Self {
             time: SimTime::ZERO,
@@ -98,7 +98,7 @@ impl NavInputs {
         }
     }
 
-    /// An armed craft that hovers 20 m above home.
+    /// Returns the inputs of an armed craft that hovers 20 m above home.
     #[cfg(test)]
     pub(crate) fn hovering() -> Self {
         let home = LatLon::new(404_635_000, -795_182_000);

@@ -1,12 +1,13 @@
-//! The land detector: tells the ground from the air for whoever flies the craft.
+//! The land detector: distinguishes ground and air, whatever flies the craft.
 //!
-//! - [`GroundContact`]: the legs carry weight, by what the accelerometer feels beyond the thrust. Leans and attitude
-//!   integrals work against the ground then.
-//! - [`ThrottleRelief`]: feels for the ground in a descent. A craft that does not sink although it should gets less and
-//!   less throttle: on the ground until it stands firmly, in the air until it sinks again.
-//! - [`TouchdownGuards`] and [`TouchdownTimer`]: the conditions of a touchdown and the time they have held.
-//! - [`StationaryTimer`]: a second way to a touchdown, for a craft that stands while one of those cannot become true.
-//! - [`Impact`]: the bump of the ground, where `landing_disarm_threshold` asks for it.
+//! - [`GroundContact`]: the legs carry weight, according to the force that the accelerometer measures beyond the
+//!   thrust. Leans and attitude integrals then work against the ground.
+//! - [`ThrottleRelief`]: probes for the ground in a descent. A craft that does not sink although it should gets less
+//!   and less throttle: on the ground until its weight is on the legs, in the air until it sinks again.
+//! - [`TouchdownGuards`] and [`TouchdownTimer`]: the conditions of a touchdown and the time that they have held.
+//! - [`StationaryTimer`]: a second way to a touchdown, for a craft on the ground for which one of those conditions
+//!   cannot become true.
+//! - [`Impact`]: the bump of the ground, if `landing_disarm_threshold` enables it.
 
 mod contact;
 mod impact;
@@ -28,31 +29,31 @@ pub use relief::DescentFacts;
 pub use stationary::STATIONARY_S;
 pub use touchdown::{AT_REST_MPS, GroundFacts, TouchdownFacts, TouchdownGuards, TouchdownTimer};
 
-/// Below this altitude a descent waits while the craft is faster over ground than the speed, m and m/s; not longer than
-/// the time, s.
+/// Below this altitude, m, a descent waits while the ground speed is above this, m/s, but no longer than this time,
+/// s.
 const LAST_METRES_M: f64 = 5.0;
 const TOUCHDOWN_MPS: f64 = 2.0;
 const FAST_PATIENCE_S: f64 = 30.0;
 
-/// What the detector sees of the craft, a hundred times a second.
+/// The measurements of the craft for the detector, a hundred times a second.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GroundMeasurement {
     /// Specific force, body forward-left-up, m/s².
     pub force_flu: Vector3<f64>,
-    /// Size of the turn rate, rad/s.
+    /// Magnitude of the turn rate, rad/s.
     pub rate_rps: f64,
-    /// Mean square of the motor commands (0…1) in force.
+    /// Mean square of the current motor commands (0…1).
     pub motor_square: f64,
-    /// Altitude above home, m; `None` while it is not known.
+    /// Altitude above home, m; `None` if it is not known.
     pub altitude_m: Option<f64>,
     /// Climb rate, m/s.
     pub climb_mps: f64,
-    /// Ground speed, m/s; `None` while it is not known.
+    /// Ground speed, m/s; `None` if it is not known.
     pub ground_speed_mps: Option<f64>,
 }
 
 impl GroundMeasurement {
-    /// The measurement of a craft in the state `now`.
+    /// Returns the measurement of a craft in the state `now`.
     pub fn new(now: &NavInputs, force_flu: Vector3<f64>, rate_rps: f64, motors: &[f64; 4]) -> Self {
         Self {
             force_flu,
@@ -77,9 +78,9 @@ pub struct LandDetector {
     contact: GroundContact,
     impact: Impact,
     relief: ThrottleRelief,
-    /// Highest altitude of the descent under way, m.
+    /// Highest altitude of the current descent, m.
     highest_m: Option<f64>,
-    /// When it was first too fast over ground for the last metres.
+    /// Time at which the craft was first too fast over ground for the last metres.
     fast_since: Option<SimTime>,
     timer: TouchdownTimer,
     held_us: Option<u64>,
@@ -87,8 +88,8 @@ pub struct LandDetector {
 }
 
 impl LandDetector {
-    /// Takes one cycle of an armed or disarmed craft, `dt` seconds after the last; a measurement that is not finite is left
-    /// out, for it would stay in the averages.
+    /// Takes one cycle of an armed or disarmed craft, `dt` seconds after the last. Ignores a measurement that is not
+    /// finite, since it would stay in the averages.
     pub fn observe(&mut self, now: &GroundMeasurement, armed: bool, dt: f64) {
         if now.is_finite() {
             self.impact.observe(now.force_flu, dt);
@@ -101,29 +102,29 @@ impl LandDetector {
         }
     }
 
-    /// Whether the legs carry weight: before the lift-off, and after a touchdown.
+    /// Returns `true` if the legs carry weight: before the lift-off and after a touchdown.
     pub fn on_ground(&self) -> bool {
         self.contact.on_ground()
     }
 
-    /// Whether the craft has not left the ground since arming.
+    /// Returns `true` if the craft has not left the ground since arming.
     pub fn awaits_lift_off(&self) -> bool {
         !self.contact.has_lifted_off()
     }
 
-    /// Specific force along the thrust, averaged over 50 ms, in multiples of gravity.
+    /// Returns the specific force along the thrust, averaged over 50 ms, in multiples of gravity.
     pub fn load(&self) -> f64 {
         self.contact.load()
     }
 
-    /// A descent to the ground begins at this altitude, m.
+    /// Begins a descent to the ground at this altitude, m, and climb rate, m/s.
     pub fn begin_descent(&mut self, altitude_m: f64, climb_mps: f64) {
         self.end_descent();
         self.highest_m = Some(altitude_m);
         self.relief.begin(climb_mps);
     }
 
-    /// Nobody descends to the ground in this cycle.
+    /// Reports a cycle without a descent to the ground.
     pub fn end_descent(&mut self) {
         if self.highest_m.take().is_some() {
             self.relief = ThrottleRelief::default();
@@ -134,8 +135,9 @@ impl LandDetector {
         }
     }
 
-    /// Whether a descent should wait in its last metres: a craft that still flies fast over ground does not sink into it on
-    /// the way. It waits once for a while, for one that the wind carries off must come down, too.
+    /// Returns `true` if a descent should wait in its last metres, since a craft that still flies fast over ground
+    /// must not sink into it on the way. It waits only once and for a limited time, so that a craft that the wind
+    /// carries off still comes down.
     pub fn is_too_fast(&mut self, now: &NavInputs) -> bool {
         let is_low = (1.0..LAST_METRES_M).contains(&now.alt_m);
         if !now.fix || !is_low || now.vel_ne.norm() <= TOUCHDOWN_MPS {
@@ -145,7 +147,7 @@ impl LandDetector {
         now.time.seconds_since(since) < FAST_PATIENCE_S
     }
 
-    /// One cycle of the descent, `dt` seconds after the last.
+    /// Takes one cycle of the descent, `dt` seconds after the last.
     pub fn descend(&mut self, facts: &DescentFacts, time: SimTime, dt: f64) {
         self.relief.update(facts, dt);
         let lowers_throttle = facts.sink_mps > 0.0 && (self.relief.is_rising() || facts.throttle_at_min);
@@ -157,13 +159,13 @@ impl LandDetector {
         self.highest_m = self.highest_m.map(|highest| highest.max(altitude_m));
     }
 
-    /// How far the craft has come down from the highest point of the descent, m.
+    /// Returns the height that the craft has lost since the highest point of the descent, m.
     pub fn descended_m(&self, altitude_m: f64) -> f64 {
         self.highest_m.map_or(0.0, |highest| highest - altitude_m)
     }
 
-    /// Runs the timer while a descent is under way, by whether all conditions hold in this cycle; returns the time they have
-    /// held, µs.
+    /// Runs the timer during a descent. `all_hold` is `true` if all conditions hold in this cycle. Returns the time
+    /// that they have held, µs.
     pub fn time_touchdown(&mut self, all_hold: bool, time: SimTime) -> Option<u64> {
         if self.highest_m.is_some() {
             self.held_us = self.timer.update(time, all_hold);
@@ -171,46 +173,46 @@ impl LandDetector {
         self.held_us
     }
 
-    /// Time the conditions of the touchdown have held, µs.
+    /// Returns the time that the conditions of the touchdown have held, µs.
     pub fn held_us(&self) -> Option<u64> {
         self.held_us
     }
 
-    /// Whether a descent has ended on the ground: the conditions have held for `detection_time_ds` (0.1 s), or nothing has
-    /// moved for [`STATIONARY_S`].
+    /// Returns `true` if a descent has ended on the ground: the conditions have held for `detection_time_ds` (0.1 s),
+    /// or nothing has moved for [`STATIONARY_S`].
     pub fn has_landed(&self, detection_time_ds: u8) -> bool {
         let needed_us = u64::from(detection_time_ds) * 100_000;
         self.held_us.is_some_and(|held| held >= needed_us) || self.stationary_s() >= STATIONARY_S
     }
 
-    /// How long the craft has not moved although it is commanded to descend, s.
+    /// Returns the time that the craft has not moved although it is commanded to descend, s.
     pub fn stationary_s(&self) -> f64 {
         self.stationary.held_s()
     }
 
-    /// Climb rate in the descent without the jolts of the legs, m/s.
+    /// Returns the climb rate in the descent without the jolts of the legs, m/s.
     pub fn climb_mps(&self) -> f64 {
         self.relief.climb_mps()
     }
 
-    /// Throttle to take off, µs.
+    /// Returns the throttle to subtract, µs.
     pub fn relief_us(&self) -> f64 {
         self.relief.relief_us()
     }
 
-    /// Share of the lean demand that is flown: a craft that stands is not tilted on its legs.
+    /// Returns the share of the lean demand that is flown. A craft on the ground is not tilted on its legs.
     pub fn lean_share(&self) -> f64 {
         if self.on_ground() { 0.0 } else { self.relief.lean_share() }
     }
 
-    /// Whether attitude integrals would gather what the ground does: the legs carry weight, or a descent has ended on
-    /// them.
+    /// Returns `true` if attitude integrals would accumulate the forces of the ground: the legs carry weight, or a
+    /// descent has ended on them.
     pub fn stands(&self) -> bool {
         self.on_ground() || self.relief.stands()
     }
 
-    /// Returns whether a bump above `threshold` (setting units, 0 = never) ended the flight. Only a push that the motors do not
-    /// make is one: a throttle that is stepped in the air jolts a light craft, too.
+    /// Returns `true` if a bump above `threshold` (setting units, 0 = never) ended the flight. Only a push that the
+    /// motors cannot make counts, since a step of the throttle in the air also jolts a light craft.
     pub fn is_impact(&self, threshold: f64, facts: &ImpactFacts) -> bool {
         self.contact.is_pushed() && self.impact.is_touchdown(threshold, facts)
     }

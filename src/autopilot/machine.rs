@@ -1,4 +1,4 @@
-//! The waypoint state machine: facts → guards → one outcome. Pure; the navigator carries the outcome out.
+//! The waypoint state machine: facts → guards → one outcome. It is pure; the navigator carries the outcome out.
 //!
 //! ```text
 //!  engage ──► APPROACHING ──arrival──► ARRIVED ─┬─ FLYOVER, FLYBY, TAKEOFF ──► next APPROACHING, or COMPLETE
@@ -22,13 +22,13 @@ use crate::telemetry::{AbortReason, FenceAction, Guard, GuardName, NavState, Pla
 pub use rules::rules;
 pub use table::transition_table;
 
-/// Time without progress after which a mission is given up, s.
+/// The time without progress after which a mission is given up, s.
 pub const STALL_S: f64 = 30.0;
 
-/// Time at the place of a HOLD without getting nearer to its altitude after which the hold begins all the same, s.
+/// The time at the place of a HOLD without getting nearer to its altitude after which the hold begins anyway, s.
 pub const HELD_OFF_S: f64 = 10.0;
 
-/// Least altitude error at which a HOLD begins at once, m; the hold radius where that is greater.
+/// The largest altitude error at which a HOLD begins at once, m, unless the hold radius is greater.
 const HOLD_ALTITUDE_M: f64 = 2.0;
 
 /// The current waypoint and its place in the plan.
@@ -38,15 +38,15 @@ pub struct WaypointFacts {
     pub pattern: HoldPattern,
     /// Hold time, ds.
     pub duration_ds: u16,
-    /// No positional waypoint follows.
+    /// `true` if no positional waypoint follows.
     pub last: bool,
-    /// The next positional waypoint lies less than 10 cm away.
+    /// `true` if the next positional waypoint is less than 10 cm away.
     pub co_located: bool,
-    /// The craft passed its plane too far beside; it must come back to the point.
+    /// `true` if the craft passed the plane of the waypoint too far beside. It must come back to the point.
     pub missed: bool,
 }
 
-/// How the craft lies to the waypoint.
+/// The position of the craft relative to the waypoint.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ApproachFacts {
     /// Horizontal distance, m.
@@ -65,7 +65,7 @@ pub struct ApproachFacts {
     pub held_off_s: f64,
 }
 
-/// What the progress monitors know; `None` in [`Facts`] while they are paused.
+/// The facts of the progress monitors; `None` in [`Facts`] while they are paused.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ProgressFacts {
     /// Time since the distance last shrank, s.
@@ -76,37 +76,36 @@ pub struct ProgressFacts {
     pub flyaway_m: f64,
 }
 
-/// Everything a transition depends on, as plain numbers and flags.
+/// Everything that a transition depends on, as plain numbers and flags.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Facts {
-    /// Whether a 3-D fix is present.
+    /// `true` if a 3-D fix is present.
     pub fix: bool,
-    /// Waypoints in the active plan.
+    /// Number of waypoints in the active plan.
     pub count: u8,
     pub waypoint: WaypointFacts,
     pub fence: FenceFacts,
-    /// The approach to the waypoint.
     pub approach: ApproachFacts,
-    /// While CLIMBING: altitude and the altitude to reach, m.
+    /// Altitude and the altitude to reach, m, while CLIMBING.
     pub climb: Option<(f64, f64)>,
     /// The progress monitors, unless paused.
     pub progress: Option<ProgressFacts>,
-    /// The hold was commanded: only a command ends it.
+    /// `true` if the hold was commanded. Only a command ends it.
     pub held_by_command: bool,
     /// Time since HOLDING was entered, µs.
     pub hold_elapsed_us: u64,
     /// The conditions of a touchdown.
     pub touchdown: TouchdownGuards,
-    /// Time all of them have held, µs.
+    /// Time that all of them have held, µs.
     pub touchdown_held_us: Option<u64>,
-    /// Time they must hold, ds.
+    /// Time that they must hold, ds.
     pub detection_time_ds: u8,
     /// Time without any motion although the craft is commanded to descend, s.
     pub stationary_s: f64,
 }
 
 impl Default for Facts {
-    /// A fix, one FLYOVER, nothing near.
+    /// Returns facts with a fix, one FLYOVER, and nothing near.
     fn default() -> Self {
         Self {
             fix: true,
@@ -147,37 +146,37 @@ impl Default for Facts {
     }
 }
 
-/// What an update decides.
+/// The decision of an update.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Outcome {
     /// The mission is over: IDLE.
     Abort(AbortReason),
-    /// A return home is given up: land here, on an injected plan.
+    /// A return home is given up: land here, with an injected plan.
     LandHere,
-    /// Outside the fence: land here or return home, on an injected plan.
+    /// Outside the fence: land here or return home, with an injected plan.
     Fence(FenceAction),
-    /// The climb before the first leg is done; stays APPROACHING.
+    /// The climb before the first leg is done. The state stays APPROACHING.
     Climbed,
-    /// The plane was passed too far beside; stays APPROACHING, the waypoint becomes a stop.
+    /// The craft passed the plane too far beside. The state stays APPROACHING, the waypoint becomes a stop.
     Missed,
-    /// The waypoint is reached.
+    /// The craft has reached the waypoint.
     Arrive,
-    /// Keep station; the clock of the hold starts.
+    /// Hold the position. The clock of the hold starts.
     Hold,
     Orbit,
     /// Start the figure of eight.
     Figure8,
     Land,
-    /// On to the next positional waypoint.
+    /// Go on to the next positional waypoint.
     Next,
-    /// The plan is flown.
+    /// The plan is complete.
     Complete,
     /// On the ground: COMPLETE and disarm.
     Touchdown,
 }
 
 impl Outcome {
-    /// The state it leads to.
+    /// Returns the state that the outcome leads to.
     pub fn state(self) -> NavState {
         match self {
             Self::Abort(_) => NavState::Idle,
@@ -193,7 +192,7 @@ impl Outcome {
         }
     }
 
-    /// What happens besides, in a few words; empty when nothing does.
+    /// Describes the side effects in a few words. Empty if there are none.
     pub fn effect(self) -> &'static str {
         match self {
             Self::Abort(AbortReason::GpsLost) => "mission off, reason GPS_LOST",
@@ -215,19 +214,19 @@ impl Outcome {
     }
 }
 
-/// A way out of a state: fires when all its guards hold (at once when it has none).
+/// A way out of a state. It fires when all its guards hold, or at once if it has no guards.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rule {
     /// The conditions, in the order they are shown.
     pub guards: ArrayVec<Guard, 7>,
     pub outcome: Outcome,
-    /// The cause, for events.
+    /// The cause that events report.
     pub reason: TransitionReason,
 }
 
 impl Rule {
-    /// The guard to report when the rule fires: of an arrival the one with the least room, which became true last; else
-    /// the last one.
+    /// Returns the guard to report when the rule fires: for an arrival the one with the least margin, which became
+    /// true last; otherwise the last one.
     fn fired(&self) -> Option<Guard> {
         let room = |guard: &&Guard| guard.margin() / guard.limit.abs().max(f64::MIN_POSITIVE);
         match self.reason {
@@ -239,7 +238,7 @@ impl Rule {
     }
 }
 
-/// The rules of a state for given facts, in the order they are tried.
+/// The rules of a state for given facts, in the order in which they are tried.
 pub type Rules = ArrayVec<Rule, 8>;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -250,7 +249,7 @@ pub struct Transition {
     pub reason: TransitionReason,
 }
 
-/// Decides what an update in `state` leads to; `None` = nothing happens.
+/// Returns the transition of an update in `state`, or `None` if nothing happens.
 pub fn transition(state: NavState, facts: &Facts) -> Option<Transition> {
     rules(state, facts).iter().find(|rule| rule.guards.iter().all(Guard::holds)).map(|rule| Transition {
         outcome: rule.outcome,
@@ -259,7 +258,7 @@ pub fn transition(state: NavState, facts: &Facts) -> Option<Transition> {
     })
 }
 
-/// The guards to show for `state`: what it waits for, without those that only say that fix and plan are there.
+/// Returns the guards to show for `state`: the conditions that it waits for, without the guards for fix and plan.
 pub fn waiting_for(state: NavState, facts: &Facts) -> ArrayVec<Guard, 9> {
     rules(state, facts)
         .iter()

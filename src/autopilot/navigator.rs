@@ -1,8 +1,8 @@
-//! The navigator: keeps the active plan and the state, asks the machine what to do, and flies it.
+//! The navigator: keeps the active plan and the state, lets the machine decide, and flies the result.
 //!
 //! One update, in this order: facts (fix, plan, fence, distances, progress, hold and touchdown clocks) → at most one
 //! transition → target and aim of the state → position, altitude and yaw control → demands. The altitude and position
-//! controllers are lent to it: it engages them when it takes over, and does not touch them while it flies nothing.
+//! controllers are lent to it. It engages them when it takes over, and does not touch them while it flies nothing.
 
 mod altitude_wait;
 mod climb;
@@ -44,14 +44,14 @@ use station::StationMonitor;
 
 pub use entry::Rescue;
 
-/// Most events between two drains; more are dropped, the state itself never is.
+/// The maximum number of events between two drains. Further events are dropped; the state itself is never lost.
 pub const EVENT_CAPACITY: usize = 16;
 
 /// The navigator; see the module's description.
 #[derive(Debug, Clone, Default)]
 pub struct Navigator {
     state: NavState,
-    /// The cause of the last transition.
+    /// Cause of the last transition.
     reason: Option<TransitionReason>,
     inputs: InputFilter,
     engagement: Engagement,
@@ -66,11 +66,11 @@ pub struct Navigator {
     rescue: Option<Rescue>,
     /// Yaw rate cap of a YAW_RATE waypoint, deg/s.
     yaw_cap_dps: Option<f64>,
-    /// Position at the update before, north and east, m.
+    /// Position at the previous update, north and east, m.
     previous: Option<Vector2<f64>>,
     target_ne: Vector2<f64>,
     target_alt_m: f64,
-    /// The craft was taken over since the last update: the controllers are still to be engaged.
+    /// `true` if the craft was taken over since the last update and the controllers are not engaged yet.
     takes_over: bool,
     yaw: YawController,
     telemetry: NavTelemetry,
@@ -78,37 +78,37 @@ pub struct Navigator {
 }
 
 impl Navigator {
-    /// A navigator that flies nothing.
+    /// Returns a navigator that flies nothing.
     pub fn new() -> Self {
         Self { telemetry: NavTelemetry::idle(), ..Self::default() }
     }
 
-    /// State of the machine.
+    /// Returns the state of the machine.
     pub fn state(&self) -> NavState {
         self.state
     }
 
-    /// Whether a mission, a return home or a landing is being flown (COMPLETE in the air counts).
+    /// Returns `true` while a mission, a return home or a landing is flown (COMPLETE in the air counts).
     pub fn is_flying(&self) -> bool {
         self.state != NavState::Idle && !self.engagement.has_landed()
     }
 
-    /// The plan being flown; empty while nothing is flown.
+    /// Returns the plan that is flown, empty while nothing is flown.
     pub fn active_plan(&self) -> &FlightPlan {
         self.cursor.plan()
     }
 
-    /// Where the active plan came from.
+    /// Returns the source of the active plan.
     pub fn source(&self) -> PlanSource {
         self.cursor.source()
     }
 
-    /// Index of the current waypoint in the active plan.
+    /// Returns the index of the current waypoint in the active plan.
     pub fn index(&self) -> u8 {
         self.cursor.index()
     }
 
-    /// State of the last update for displays, logs and samples.
+    /// Returns the state of the last update for displays, logs and samples.
     pub fn telemetry(&self) -> &NavTelemetry {
         &self.telemetry
     }
@@ -118,8 +118,8 @@ impl Navigator {
         self.events.drain(..)
     }
 
-    /// One update (100 Hz): at most one transition, then the demands. `stored` is the plan in the craft's memory; only
-    /// its clearing matters here. While nothing is flown, the `controllers` are somebody else's.
+    /// Runs one update (100 Hz): at most one transition, then the demands. `stored` is the plan in the craft's
+    /// memory; only its clearing matters here. While nothing is flown, something else uses the `controllers`.
     pub fn update(
         &mut self,
         inputs: &NavInputs,
@@ -149,7 +149,7 @@ impl Navigator {
             self.report(&now, params, &seen, controllers, None);
             return NavOutput::default();
         }
-        // A transition leads to another leg, and after an abort it takes over the craft.
+        // A transition leads to another leg. After an abort it takes over the craft.
         self.engage_controllers(&now, params, controllers);
         self.end_old_descent(controllers);
         let (facts, seen) = undecided.unwrap_or_else(|| {
@@ -162,7 +162,7 @@ impl Navigator {
         flown.output
     }
 
-    /// Makes the land detector forget a descent that is not flown any more.
+    /// Makes the land detector forget a descent that is no longer flown.
     fn end_old_descent(&self, controllers: &mut FlightControllers) {
         if self.state != NavState::Landing || !self.descent.has_begun() {
             controllers.land.end_descent();

@@ -1,7 +1,7 @@
-//! The autopilot's parameters: one list from which the struct, its defaults, ranges and names follow, and the settings
+//! The parameters of the autopilot: one list that gives the struct, its defaults, ranges and names, and the settings
 //! that users see.
 //!
-//! Fields keep the units of the settings (documented on each); the methods of [`Params`] give SI values.
+//! Fields keep the units of the settings (documented on each). The methods of [`Params`] return SI values.
 
 mod value;
 
@@ -10,7 +10,7 @@ use crate::telemetry::FenceAction;
 use value::Value;
 pub use value::{RxLossPolicy, YawMode};
 
-/// One parameter of the list: all that is known of it, and the way to its field.
+/// One parameter of the list, with the access to its field.
 #[derive(Debug, Clone, Copy)]
 pub struct Field {
     /// The name of the setting, such as `ap_max_angle`.
@@ -19,35 +19,35 @@ pub struct Field {
     pub max: i64,
     /// Reads the field as a number (enumerations and switches by their code).
     pub get: fn(&Params) -> i64,
-    /// Writes the field; the caller keeps to `min` and `max`.
+    /// Writes the field. The caller keeps to `min` and `max`.
     pub set: fn(&mut Params, i64),
     /// Value of a fresh vehicle.
     pub default: i64,
     /// Size on the wire, bytes.
     pub bytes: usize,
-    /// The words of an enumeration or switch in the order of their codes; empty for plain numbers.
+    /// The names of the values of an enumeration or switch in the order of their codes; empty for plain numbers.
     pub words: &'static [&'static str],
-    /// Whether it has an effect here.
+    /// Effect of the parameter in this firmware.
     pub effect: Effect,
     /// One line for people, with the unit.
     pub help: &'static str,
 }
 
-/// Whether a parameter has an effect.
+/// The effect of a parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Effect {
-    /// The autopilot flies by it.
+    /// The autopilot uses it.
     Live,
-    /// It is kept for other firmware versions.
+    /// It is stored only, for other firmware versions.
     Stored,
 }
 
-/// Struct, defaults and table from one list: the only way to write each name, range and default once.
+/// Generates struct, defaults and table from one list, so that each name, range and default is written only once.
 macro_rules! parameters {
     ($($(#[$doc:meta])* $name:literal $field:ident : $ty:ty = $default:expr, $min:literal ..= $max:literal,
         $effect:ident, $help:literal;)*) => {
-        /// Every parameter of the autopilot, in the units of the settings; two settings of other groups that it
-        /// needs, `alt_hold_climb_rate` and `min_check`, come last.
+        /// Every parameter of the autopilot, in the units of the settings. The last two, `alt_hold_climb_rate` and
+        /// `min_check`, are settings of other groups that the autopilot needs.
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         pub struct Params {
             $($(#[$doc])* pub $field: $ty,)*
@@ -60,7 +60,7 @@ macro_rules! parameters {
         }
 
         impl Params {
-            /// How many parameters at the end of the list are settings of other groups.
+            /// The number of parameters at the end of the list that are settings of other groups.
             pub const SHARED: usize = 2;
 
             /// All parameters in the order of the settings list.
@@ -86,10 +86,10 @@ macro_rules! parameters {
 }
 
 parameters! {
-    /// Below this altitude (m) a touchdown may be declared.
+    /// Altitude (m) below which a touchdown may be declared.
     "ap_landing_altitude_m" landing_altitude_m: u8 = 4, 0..=200, Live,
         "Height below which a touchdown may be declared, m.";
-    /// Throttle at hover, µs; 0 = what held the craft when the autopilot engaged.
+    /// Throttle at hover, µs; 0 = the throttle that held the craft when the autopilot engaged.
     "ap_hover_throttle" hover_throttle: u16 = 1275, 0..=1700, Live,
         "Throttle at hover, µs; 0 takes it over when the autopilot engages.";
     /// Throttle floor in flight, µs.
@@ -131,10 +131,10 @@ parameters! {
     /// Stored, without effect, cm/s.
     "ap_stop_threshold" stop_threshold: u8 = 10, 0..=100, Stored,
         "Speed below which a hold counts as stopped, cm/s.";
-    /// Greatest lean, deg.
+    /// Maximum lean, deg.
     "ap_max_angle" max_angle: u8 = 50, 10..=70, Live,
         "Greatest lean of the autopilot, deg; also sets the turn radius.";
-    /// Whether holds fly the speed law too (else the direct law).
+    /// `true` if holds use the speed law too, else the direct law.
     "ap_velocity_control_enable" velocity_control_enable: bool = true, 0..=1, Live,
         "Control the speed over ground, not only the position.";
     /// Speed error gain, 0.1 deg per m/s.
@@ -149,7 +149,7 @@ parameters! {
     /// Drag feed-forward, 1e-4 deg per (m/s)².
     "ap_velocity_drag_coeff" velocity_drag_coeff: u16 = 50, 0..=1000, Live,
         "Lean that makes up for air drag, 0.0001 deg per (m/s)2.";
-    /// Default and greatest leg speed, cm/s.
+    /// Default and maximum leg speed, cm/s.
     "ap_max_velocity" max_velocity: u16 = 500, 100..=5000, Live,
         "Greatest speed, and that of legs without their own, cm/s.";
     /// Arrival radius of FLYOVER and FLYBY, cm.
@@ -161,10 +161,10 @@ parameters! {
     /// Stick deflection (full stick = 500) beyond which the pilot overrides.
     "ap_stick_deadband" stick_deadband: u16 = 50, 0..=500, Live,
         "Stick movement beyond which the pilot steers, µs.";
-    /// Throttle stick movement that takes over a hold left behind by a mission that was given up, µs.
+    /// Throttle stick movement that takes over a hold after a mission was given up, µs.
     "ap_throttle_deadband" throttle_deadband: u16 = 50, 0..=500, Live,
         "Throttle movement that takes over after a mission was given up, µs.";
-    /// Where the nose points.
+    /// Direction of the nose.
     "ap_yaw_mode" yaw_mode: YawMode = YawMode::Velocity, 0..=4, Live,
         "Where the nose points: along the path, at the waypoint, both, or as at engagement (FIXED, DAMPENER).";
     /// Heading error gain, 0.01 per s.
@@ -173,7 +173,7 @@ parameters! {
     /// Yaw rate damping, 0.01.
     "ap_yaw_d" yaw_d: u16 = 10, 0..=200, Live,
         "Damping of the yaw rate, 0.01.";
-    /// Greatest yaw rate, deg/s.
+    /// Maximum yaw rate, deg/s.
     "ap_max_yaw_rate" max_yaw_rate: u16 = 30, 10..=360, Live,
         "Greatest yaw rate of the autopilot, deg/s.";
     /// Ground speed from which the course is trusted, cm/s.
@@ -200,7 +200,7 @@ parameters! {
     /// Stored, without effect, cm.
     "ap_nav_preturn_dist" nav_preturn_dist: u16 = 1500, 500..=5000, Stored,
         "Distance before a corner at which the turn begins, cm.";
-    /// Lean that sets how fast speed builds up, deg; 0 = half of the greatest lean.
+    /// Lean that sets the acceleration when speed builds up, deg; 0 = half of the maximum lean.
     "ap_velocity_buildup_max_pitch" velocity_buildup_max_pitch: u8 = 8, 0..=20, Live,
         "Nose-down lean that helps a slow craft to gain speed, deg.";
     /// Angular rate along hold patterns, deg/s.
@@ -218,7 +218,7 @@ parameters! {
     /// Time the touchdown conditions must hold, ds.
     "ap_landing_detection_time" landing_detection_time: u8 = 10, 5..=50, Live,
         "How long the signs of a touchdown must last, 0.1 s.";
-    /// Whether a landing descends on a spiral.
+    /// `true` if a landing descends on a spiral.
     "ap_landing_spiral_enable" landing_spiral_enable: bool = true, 0..=1, Live,
         "Descend in a spiral.";
     /// Radius of the spiral, cm.
@@ -230,19 +230,19 @@ parameters! {
     /// Ground speed below which a touchdown may be declared, cm/s.
     "ap_landing_velocity_threshold" landing_velocity_threshold: u8 = 50, 10..=200, Live,
         "Ground speed below which a touchdown is possible, cm/s.";
-    /// How far below hover the throttle must be for a touchdown, µs.
+    /// Required distance of the throttle below the hover throttle for a touchdown, µs.
     "ap_landing_throttle_threshold" landing_throttle_threshold: u16 = 100, 10..=500, Live,
         "Throttle this far below hover is a sign of a touchdown, µs.";
-    /// Whether legs are followed as lines.
+    /// `true` if legs are followed as lines.
     "ap_l1_enable" l1_enable: bool = true, 0..=1, Live,
         "Follow the line between waypoints instead of pointing at the next one.";
     /// Period of the path following, ds.
     "ap_l1_period" l1_period: u16 = 20, 5..=100, Live,
         "Period of the path following; shorter is sharper, 0.1 s.";
-    /// Least lookahead, cm.
+    /// Minimum lookahead, cm.
     "ap_l1_min_lookahead" l1_min_lookahead: u16 = 1000, 100..=5000, Live,
         "Least distance of the aim point on the path, cm.";
-    /// Greatest lookahead, cm; wins over the least.
+    /// Maximum lookahead, cm; takes precedence over the minimum.
     "ap_l1_max_lookahead" l1_max_lookahead: u16 = 10000, 1000..=50000, Live,
         "Greatest distance of the aim point on the path, cm.";
     /// Cross-track error beyond which the leg starts again at the craft, cm.
@@ -254,16 +254,16 @@ parameters! {
     /// Altitude (m) to climb to on the spot before the first leg; 0 = none.
     "ap_min_nav_altitude_m" min_nav_altitude_m: u8 = 5, 0..=50, Live,
         "Below this height the craft climbs before it flies off, m.";
-    /// What a lost receiver does.
+    /// Reaction to a lost receiver.
     "ap_rx_loss_policy" rx_loss_policy: RxLossPolicy = RxLossPolicy::Disable, 0..=2, Live,
         "What a mission does when the link is lost.";
-    /// The fence: greatest distance from home, m; 0 = no fence.
+    /// The fence: maximum distance from home, m; 0 = no fence.
     "ap_max_distance_from_home" max_distance_from_home: u16 = 0, 0..=10000, Live,
         "Radius of the fence around home, m; 0 for no fence.";
-    /// What leaving the fence does.
+    /// Reaction to leaving the fence.
     "ap_geofence_action" geofence_action: FenceAction = FenceAction::Land, 0..=1, Live,
         "What happens outside the fence.";
-    /// Greatest climb and sink rate, 10 cm/s; 0 counts as 50.
+    /// Maximum climb and sink rate, 10 cm/s; 0 counts as 50.
     "alt_hold_climb_rate" alt_hold_climb_rate: u8 = 50, 0..=200, Live,
         "Climb rate at full stick in altitude hold, 0.1 m/s.";
     /// Throttle pulse that counts as zero, µs.
@@ -272,22 +272,22 @@ parameters! {
 }
 
 impl Params {
-    /// The parameter called `name`.
+    /// Returns the parameter with this name.
     pub fn field(name: &str) -> Option<&'static Field> {
         Self::FIELDS.iter().find(|field| field.name == name)
     }
 
-    /// Greatest lean, rad.
+    /// Returns the maximum lean, rad.
     pub fn max_lean_rad(&self) -> f64 {
         f64::from(self.max_angle).to_radians()
     }
 
-    /// Acceleration the greatest lean allows for braking and turning, m/s²: g·sin of it.
+    /// Returns the acceleration that the maximum lean allows for braking and turning, m/s²: g·sin(maximum lean).
     pub fn max_accel_mps2(&self) -> f64 {
         GRAVITY * self.max_lean_rad().sin()
     }
 
-    /// Acceleration when speed builds up, m/s².
+    /// Returns the acceleration when speed builds up, m/s².
     pub fn build_up_accel_mps2(&self) -> f64 {
         match self.velocity_buildup_max_pitch {
             0 => 0.5 * self.max_accel_mps2(),
@@ -295,22 +295,22 @@ impl Params {
         }
     }
 
-    /// Default and greatest leg speed, m/s.
+    /// Returns the default and maximum leg speed, m/s.
     pub fn max_velocity_mps(&self) -> f64 {
         f64::from(self.max_velocity) / 100.0
     }
 
-    /// Arrival radius of FLYOVER and FLYBY, m.
+    /// Returns the arrival radius of FLYOVER and FLYBY, m.
     pub fn arrival_radius_m(&self) -> f64 {
         f64::from(self.waypoint_arrival_radius) / 100.0
     }
 
-    /// Arrival radius of HOLD, LAND and TAKEOFF, m.
+    /// Returns the arrival radius of HOLD, LAND and TAKEOFF, m.
     pub fn hold_radius_m(&self) -> f64 {
         f64::from(self.waypoint_hold_radius) / 100.0
     }
 
-    /// Greatest climb and sink rate, m/s.
+    /// Returns the maximum climb and sink rate, m/s.
     pub fn climb_rate_mps(&self) -> f64 {
         match self.alt_hold_climb_rate {
             0 => 5.0,
@@ -318,17 +318,17 @@ impl Params {
         }
     }
 
-    /// Sink rate of a landing, m/s.
+    /// Returns the sink rate of a landing, m/s.
     pub fn descent_rate_mps(&self) -> f64 {
         f64::from(self.landing_descent_rate) / 100.0
     }
 
-    /// The fence, m, when one is set.
+    /// Returns the fence, m, if one is set.
     pub fn fence_m(&self) -> Option<f64> {
         (self.max_distance_from_home > 0).then(|| f64::from(self.max_distance_from_home))
     }
 
-    /// Throttle pulse that is zero for the mixer, µs.
+    /// Returns the throttle pulse that is zero for the mixer, µs.
     pub fn throttle_zero_us(&self) -> f64 {
         f64::from(self.min_check.clamp(1000, 1900))
     }

@@ -1,4 +1,4 @@
-//! What a lost receiver means for a mission, decided when stage 2 of the failsafe begins.
+//! Decides on the reaction of a mission to a lost receiver, when stage 2 of the failsafe begins.
 
 use super::params::RxLossPolicy;
 use crate::telemetry::NavState;
@@ -8,20 +8,20 @@ use crate::telemetry::NavState;
 pub struct RxLossFacts {
     /// `ap_rx_loss_policy`.
     pub policy: RxLossPolicy,
-    /// Whether the autopilot flies.
+    /// `true` if the autopilot flies.
     pub engaged: bool,
     /// State of the machine.
     pub state: NavState,
-    /// Whether a 3-D fix is present.
+    /// `true` if a 3-D fix is present.
     pub fix: bool,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, strum::Display)]
 #[strum(serialize_all = "SCREAMING_SNAKE_CASE")]
 pub enum RxLossAction {
-    /// Nothing: what is flown goes on.
+    /// No action. The present flight continues.
     None,
-    /// Land where the link was lost; the navigator flies it underneath the failsafe.
+    /// Land where the link was lost. The navigator flies the landing under the failsafe.
     EmergencyLand,
     /// End the mission and run the configured failsafe procedure.
     Procedure,
@@ -30,7 +30,7 @@ pub enum RxLossAction {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RxLossDecision {
     pub action: RxLossAction,
-    /// Whether the AUTOPILOT mode flag stays on.
+    /// `true` if the AUTOPILOT mode flag stays on.
     pub autopilot_flag: bool,
 }
 

@@ -1,7 +1,7 @@
-//! Flights flown ahead of time, on a copy of the vehicle: how long, how far beside, with what end.
+//! Flights flown in advance on a copy of the vehicle: time, distance from the line, and end.
 //!
-//! A forecast knows no thread and no clock: its owner advances it tick by tick, and drops it when it is not wanted any more.
-//! What it tells follows from the vehicle alone, so the same vehicle gives the same forecast.
+//! A forecast uses no thread and no clock. Its owner advances it tick by tick and drops it when it is no longer
+//! needed. Its result depends on the vehicle alone, so the same vehicle gives the same forecast.
 
 mod endless;
 mod observer;
@@ -27,12 +27,12 @@ use endless::EndlessWatch;
 use observer::Observer;
 use report::Ended;
 
-/// From this altitude on a craft that touches nothing is in the air, m: a bounce is not.
+/// The altitude from which a craft without ground contact counts as in the air, m. A bounce stays below it.
 const IN_THE_AIR_M: f64 = 1.0;
-/// Longest flight that a forecast follows, simulated s.
+/// The longest flight that a forecast follows, simulated s.
 pub const LIMIT_S: f64 = 1800.0;
 
-/// A forecast under way.
+/// A forecast in progress.
 #[derive(Debug)]
 pub struct ForecastRun {
     kind: ForecastKind,
@@ -44,11 +44,11 @@ pub struct ForecastRun {
 }
 
 impl ForecastRun {
-    /// How `plan` with its `settings` would be flown from home by the scripted pilot, who climbs to `takeoff_m` first: in
-    /// the present air, with the present craft, undamaged and without faults.
+    /// Forecasts a flight of `plan` with its `settings` from home by the scripted pilot, who first climbs to
+    /// `takeoff_m`: in the present air, with the present craft, undamaged and without faults.
     ///
     /// # Errors
-    /// Why nothing can be flown, as a sentence.
+    /// Fails with the reason why nothing can be flown, as a sentence.
     pub fn plan_estimate(
         mut vehicle: Vehicle,
         plan: &FlightPlan,
@@ -76,19 +76,19 @@ impl ForecastRun {
         Self::begin(ForecastKind::PlanEstimate, vehicle, takeoff_m)
     }
 
-    /// What becomes of the flight of `vehicle` as things stand: the sticks stay where they are, the scripted pilot goes on.
+    /// Forecasts the present flight of `vehicle`: the sticks stay as they are, the scripted pilot continues.
     ///
     /// # Errors
-    /// Why there is nothing to look ahead to, as a sentence.
+    /// Fails with the reason why no forecast is possible, as a sentence.
     pub fn look_ahead(vehicle: Vehicle) -> Result<Self, String> {
         check_flies(&vehicle)?;
         Self::begin(ForecastKind::LookAhead, vehicle, FlightOptions::default().takeoff_m)
     }
 
-    /// As [`Self::look_ahead`], with something going wrong at this instant.
+    /// Does the same as [`Self::look_ahead`], with a failure at this instant.
     ///
     /// # Errors
-    /// Why there is nothing to look ahead to, as a sentence.
+    /// Fails with the reason why no forecast is possible, as a sentence.
     pub fn what_if(mut vehicle: Vehicle, what_if: &WhatIf) -> Result<Self, String> {
         check_flies(&vehicle)?;
         let wind = vehicle.world().map(|world| world.status().wind).unwrap_or_default();
@@ -102,7 +102,7 @@ impl ForecastRun {
         let plan = vehicle.embedded().and_then(Firmware::active_plan).or(vehicle.controller().stored_plan());
         let observer = Observer::new(&vehicle, plan).ok_or(PHYSICS_IS_EXTERNAL)?;
         let started = vehicle.time();
-        // It is this forecast that ends a flight which takes too long, by its own clock.
+        // This forecast ends a flight that takes too long, by its own clock.
         let timeout = SimTime(u64::MAX);
         let options = FlightOptions { takeoff_m, timeout, ..FlightOptions::default() };
         Ok(Self {
@@ -115,7 +115,7 @@ impl ForecastRun {
         })
     }
 
-    /// Flies on by at most `ticks`; the forecast when the flight is over.
+    /// Advances the flight by at most `ticks`. Returns the forecast when the flight is over.
     pub fn advance(&mut self, ticks: u32) -> Option<Forecast> {
         (0..ticks).find_map(|_| self.tick())
     }
@@ -164,18 +164,18 @@ impl ForecastRun {
     }
 }
 
-/// Why there are no forecasts with a flight controller outside.
+/// The reason why there are no forecasts with a remote flight controller.
 pub const CONTROLLER_IS_REMOTE: &str =
     "The flight controller is another program, which cannot be copied: there is no forecast of its flight.";
 
-/// Why there are no forecasts with an external simulator.
+/// The reason why there are no forecasts with an external simulator.
 pub const PHYSICS_IS_EXTERNAL: &str =
     "The simulator moves the craft and cannot be copied: there is no forecast of its flight.";
 
-/// Whether there can be forecasts of this vehicle's flights at all.
+/// Checks that forecasts of this vehicle's flights are possible.
 ///
 /// # Errors
-/// Why not, as a sentence.
+/// Fails with the reason, as a sentence.
 pub fn check_possible(vehicle: &Vehicle) -> Result<(), String> {
     if vehicle.embedded().is_none() {
         return Err(CONTROLLER_IS_REMOTE.to_owned());

@@ -1,48 +1,48 @@
-//! Decides when a headless flight is over and what became of it.
+//! Decides when a headless flight is over, and judges its result.
 
 use super::verdict::{FlightResult, Verdict};
 use crate::signals::SimTime;
 use crate::telemetry::{AbortReason, DisarmReason, NavState, PlanSource, Refusal, TransitionReason};
 
-/// Seconds a completed mission without a LAND is watched, still parked.
+/// The time that a completed mission without a LAND is watched while it is parked, s.
 const PARKED_S: f64 = 5.0;
-/// Seconds after a disarm or a crash, so that the last events are seen.
+/// The time after a disarm or a crash in which the last events are still collected, s.
 const AFTERMATH_S: f64 = 1.0;
-/// Seconds a refusal with the same reason may stay.
+/// The time that a refusal with the same reason may last, s.
 const REFUSED_S: f64 = 10.0;
-/// Seconds the machine may stay IDLE after an engagement.
+/// The time that the machine may stay IDLE after an engagement, s.
 const IDLE_S: f64 = 30.0;
-/// Seconds at full throttle after which a craft that has not lifted off is too heavy.
+/// The time at full throttle after which a craft that has not lifted off is too heavy, s.
 const HEAVY_S: f64 = 5.0;
-/// What a landing without a fix must come down in that time to be one that goes on, m.
+/// The minimum descent in that time that shows that a landing without a fix continues, m.
 const COMING_DOWN_M: f64 = 1.0;
 
-/// What the judge looks at, once a tick.
+/// The facts for the judge, once per tick.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct JudgeFacts {
     pub time: SimTime,
     pub engaged: bool,
     pub armed: bool,
-    /// The last reason of a disarm since boot.
+    /// Last reason of a disarm since boot.
     pub last_disarm: Option<DisarmReason>,
     /// State of the machine.
     pub state: NavState,
-    /// Why it was entered.
+    /// Cause of the last transition.
     pub entered_for: Option<TransitionReason>,
     /// True altitude above the boot place, m.
     pub alt_m: f64,
     pub wp: u8,
     /// Origin of the active plan.
     pub source: PlanSource,
-    /// Why the switch has no effect.
+    /// Reason why the switch has no effect.
     pub refusal: Option<Refusal>,
-    /// A failsafe procedure flies.
+    /// `true` while a failsafe procedure flies.
     pub failsafe: bool,
-    /// The mission's last positional waypoint is a LAND.
+    /// `true` if the mission's last positional waypoint is a LAND.
     pub ends_in_land: bool,
-    /// Thrust over weight of a craft that stands on the ground although it is to climb and has all the throttle there is.
+    /// Thrust over weight of a craft that stays on the ground although it should climb and is at full throttle.
     pub lift_share: Option<f64>,
-    /// At rest on the ground.
+    /// `true` if the craft is at rest on the ground.
     pub touched_down: bool,
     pub crashed: bool,
     pub diverged: bool,
@@ -57,19 +57,19 @@ pub struct Judge {
     completed_source: PlanSource,
     over_at: Option<SimTime>,
     refused: Option<(Refusal, SimTime)>,
-    /// Since when all throttle does not lift the craft.
+    /// Time since which full throttle has not lifted the craft.
     heavy_since: Option<SimTime>,
-    /// Since when the machine is IDLE, and the altitude then, m.
+    /// Time since which the machine has been IDLE, and the altitude then, m.
     idle_since: Option<(SimTime, f64)>,
     state: NavState,
-    /// Which plan was flown last.
+    /// Source of the last plan that was flown.
     source: PlanSource,
-    /// The fix was lost in a landing, or on the way home, which goes on without it as a descent.
+    /// `true` if the fix was lost in a landing, or on the way home, which continues without it as a descent.
     lands_without_fix: bool,
 }
 
 impl Judge {
-    /// A judge that gives up `timeout` after boot.
+    /// Returns a judge with a timeout of `timeout` after boot.
     pub fn new(timeout: SimTime) -> Self {
         Self {
             timeout,
@@ -87,12 +87,12 @@ impl Judge {
         }
     }
 
-    /// When the autopilot engaged for the first time.
+    /// Returns the time at which the autopilot first engaged.
     pub fn engaged_at(&self) -> Option<SimTime> {
         self.engaged_at
     }
 
-    /// Looks once; a verdict ends the flight.
+    /// Takes the facts of a tick. A verdict ends the flight.
     pub fn look(&mut self, facts: &JudgeFacts) -> Option<Verdict> {
         let now = facts.time;
         if facts.diverged {
@@ -130,7 +130,7 @@ impl Judge {
                     let may_land = self.state == NavState::Landing || self.source == PlanSource::Rth;
                     self.lands_without_fix = may_land && fix_lost;
                 }
-                // What the firmware says of a touchdown without a fix.
+                // The firmware reports this state after a touchdown without a fix.
                 NavState::Complete => {}
                 _ => self.lands_without_fix = false,
             }
@@ -180,7 +180,7 @@ impl Judge {
         })
     }
 
-    /// Parked in the air after the last waypoint.
+    /// Judges a craft that is parked in the air after the last waypoint.
     fn judge_complete(&self, facts: &JudgeFacts) -> Option<Verdict> {
         let since = self.complete_at?;
         if facts.ends_in_land && facts.source == PlanSource::Stored {
@@ -194,7 +194,7 @@ impl Judge {
 
     fn judge_refusal(&mut self, facts: &JudgeFacts) -> Option<Verdict> {
         let Some(refusal) = facts.refusal.filter(|refusal| {
-            // Given up after an engagement is a matter of the IDLE rule.
+            // The IDLE rule handles a mission that is given up after an engagement.
             !facts.engaged && !matches!(refusal, Refusal::Aborted(_))
         }) else {
             self.refused = None;
@@ -214,7 +214,7 @@ impl Judge {
         }
     }
 
-    /// A craft that is too heavy to take off.
+    /// Judges a craft that is too heavy to take off.
     fn judge_lift(&mut self, facts: &JudgeFacts) -> Option<Verdict> {
         let Some(share) = facts.lift_share else {
             self.heavy_since = None;

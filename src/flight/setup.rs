@@ -1,8 +1,8 @@
-//! What a flight starts from, as plain data, and the vehicle at boot that it makes.
+//! The initial conditions of a flight, as plain data, and the vehicle at boot that they give.
 //!
-//! Arguments, configuration files and tests produce a [`FlightSetup`]; files were read before. What follows from it is
-//! decided here: where the craft stands, in which order settings are applied, whether the craft needs starter modes, and
-//! what an external physics changes in the firmware.
+//! Arguments, configuration files and tests produce a [`FlightSetup`]; files have been read before. This module
+//! decides the consequences: the place of the craft, the order of the settings, the need for starter modes, and the
+//! changes of the firmware for an external physics.
 
 mod boot_lines;
 mod home;
@@ -19,14 +19,14 @@ use crate::plan::format::{self, HomePosition, PlanError, PlanFile, SettingFault}
 use crate::sim::{WorldConfig, WorldError};
 use crate::vehicle::{Vehicle, VehicleConfig};
 
-/// Silence of the GPS that ends the fix while an external simulator moves the craft, s: its packets may stall.
+/// The silence of the GPS that ends the fix while an external simulator moves the craft, s. Its packets may stall.
 const EXTERNAL_GPS_TIMEOUT_S: f64 = 2.5;
 
-/// Declination of the field that the virtual magnetometer senses while an external simulator moves the craft, degrees
+/// The declination of the field for the virtual magnetometer while an external simulator moves the craft, degrees
 /// east.
 const EXTERNAL_DECLINATION_DEG: f64 = 2.0;
 
-/// Whose physics moves the craft.
+/// The physics that moves the craft.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum PhysicsSource {
     /// The world of this program.
@@ -36,40 +36,41 @@ pub enum PhysicsSource {
     External,
 }
 
-/// What a flight starts from.
+/// The initial conditions of a flight.
 #[derive(Debug, Clone, Default)]
 pub struct FlightSetup {
-    /// Whose physics moves the craft.
+    /// Physics that moves the craft.
     pub physics: PhysicsSource,
-    /// The craft, the air, step rate, seed and faults; its home is the default home and gives the heading at boot. With
-    /// an external physics only step rate, seed and faults count.
+    /// The craft, the air, step rate, seed and faults. Its home is the default home and gives the heading at boot.
+    /// With an external physics only step rate, seed and faults are used.
     pub world: WorldConfig,
-    /// Where the craft stands, whatever the plan says.
+    /// Place of the craft, whatever the plan says.
     pub home: Option<HomePosition>,
-    /// The plan: its home is where the craft stands unless `home` says otherwise, its settings are applied at boot.
+    /// Plan. Its home is the place of the craft unless `home` is set. Its settings are applied at boot.
     pub plan: PlanFile,
-    /// The flight controller runs outside, with a configuration of its own.
+    /// `true` if the flight controller is remote, with a configuration of its own.
     pub remote_controller: bool,
-    /// Where the attitude comes from; `None` = the estimator, or with an external physics the simulator's truth.
+    /// Source of the attitude; `None` = the estimator, or the truth of the simulator with an external physics.
     pub attitude: Option<AttitudeSource>,
-    /// Arming rules are softened for RC from UDP.
+    /// `true` to relax the arming rules for RC from UDP.
     pub arm_assist: bool,
-    /// What the craft has stored.
+    /// Configuration that the craft has stored.
     pub stored: Configuration,
-    /// Command lines that are applied at boot, after what is stored and the plan's settings; later ones win.
+    /// Command lines that are applied at boot, after the stored configuration and the plan's settings. Later ones
+    /// take precedence.
     pub boot_lines: Vec<BootLines>,
-    /// Channels that are moved for a while, whoever flies.
+    /// Channels that are forced to values for a while, whatever flies.
     pub stick_inputs: Vec<StickInput>,
-    /// Other programs can influence the flight, so that it is not repeatable.
+    /// `true` if other programs can influence the flight, so that it is not repeatable.
     pub live: bool,
-    /// What `version` and MSP tell about this executable.
+    /// Version and build that `version` and MSP report.
     pub build: BuildInfo,
 }
 
-/// Why no vehicle can be made.
+/// The reason why a vehicle cannot be built.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SetupError {
-    /// Command lines that the firmware refuses, each with its place; `Display` is the whole report.
+    /// Command lines that the firmware refuses, each with its place. `Display` is the whole report.
     #[error("{}", format::report(.0))]
     BootLines(Vec<PlanError>),
     /// The world cannot be built.
@@ -78,7 +79,7 @@ pub enum SetupError {
 }
 
 impl FlightSetup {
-    /// How the firmware is built.
+    /// Returns the options of the firmware.
     pub fn firmware_options(&self) -> FirmwareOptions {
         let usual = FirmwareOptions {
             rate_hz: self.world.rate_hz,
@@ -98,17 +99,18 @@ impl FlightSetup {
         }
     }
 
-    /// The craft's configuration at boot: what is stored, the plan's settings, the boot lines, and the starter modes when
-    /// none of these has a mode condition. Says whether the craft got the starter modes.
+    /// Returns the configuration of the craft at boot: the stored one, the plan's settings, the boot lines, and the
+    /// starter modes if none of these has a mode condition. The second value is `true` if the craft got the starter
+    /// modes.
     ///
     /// # Errors
-    /// All lines that the firmware refuses, of the first source that has any.
+    /// Fails with all lines that the firmware refuses, of the first source that has any.
     pub fn configuration(&self) -> Result<(Configuration, bool), SetupError> {
         let (configuration, notices) = self.configure()?;
         Ok((configuration, notices.contains(&SetupNotice::StarterModes)))
     }
 
-    /// The craft's configuration at boot, and what its user should know of it.
+    /// Returns the configuration of the craft at boot, and the notices for its user.
     fn configure(&self) -> Result<(Configuration, Vec<SetupNotice>), SetupError> {
         let mut notices = Vec::new();
         let mut configuration = self.stored.clone();
@@ -122,10 +124,10 @@ impl FlightSetup {
         Ok((configuration, notices))
     }
 
-    /// The vehicle at boot, and what its user should know.
+    /// Returns the vehicle at boot, and the notices for its user.
     ///
     /// # Errors
-    /// When the firmware refuses a line, or the world cannot be built.
+    /// Fails if the firmware refuses a line, or if the world cannot be built.
     pub fn build(self) -> Result<(Vehicle, Vec<SetupNotice>), SetupError> {
         if self.remote_controller {
             return self.build_remote();
@@ -147,7 +149,7 @@ impl FlightSetup {
         Ok((vehicle, home_notice.into_iter().chain(notices).collect()))
     }
 
-    /// The vehicle at boot whose flight controller runs outside.
+    /// Returns the vehicle at boot with a remote flight controller.
     fn build_remote(self) -> Result<(Vehicle, Vec<SetupNotice>), SetupError> {
         let (home, notice) = self.boot_home();
         let WorldConfig { faults, switches, .. } = &self.world;
@@ -164,10 +166,10 @@ impl FlightSetup {
     }
 }
 
-/// Whether the firmware takes a setting's value.
+/// Checks that the firmware accepts the value of a setting.
 ///
 /// # Errors
-/// What is wrong and what is allowed.
+/// Fails with the problem and the permitted values.
 pub fn check_setting(name: &str, value: &str) -> Result<(), SettingFault> {
     settings::judge(name, value)
 }
@@ -182,7 +184,8 @@ mod tests {
         FlightSetup { boot_lines: vec![lines], ..FlightSetup::default() }
     }
 
-    /// The modes with a condition, in their order, and whether the user is told that they are the starter modes.
+    /// Returns the modes with a condition, in their order. The second value is `true` if a notice says that they are
+    /// the starter modes.
     fn modes(setup: FlightSetup) -> (Vec<&'static str>, bool) {
         let (vehicle, notices) = setup.build().unwrap();
         let names =

@@ -1,8 +1,8 @@
-//! Compares what the firmware believes with the truth: each waypoint by its own rule.
+//! Compares the reports of the firmware with the truth, each waypoint by its own rule.
 //!
-//! It follows the active plan by the navigator's events and measures the craft's true place against the waypoint's in the
-//! world's projection. What the pilot flies, and waypoints left by a command or a return home, do not count; of a waypoint
-//! that is flown again the last run counts.
+//! The check follows the active plan by the navigator's events and measures the true place of the craft against that
+//! of the waypoint in the world's projection. Manual flight does not count, and neither do waypoints that were left
+//! by a command or a return home. For a waypoint that is flown again the last run counts.
 
 mod approach;
 mod craft;
@@ -23,7 +23,7 @@ use crate::plan::{FlightPlan, MAX_WAYPOINTS};
 use crate::telemetry::snapshot::SettingsView;
 use crate::telemetry::{FlightTruth, Guard, NavEvent, NavState, PlanSource, TransitionReason, WaypointTruth};
 
-/// Slowest leg speed that a waypoint can ask for, m/s.
+/// The slowest leg speed that a waypoint can set, m/s.
 const SLOWEST_MPS: f64 = 1.0;
 
 /// The comparison, tick by tick.
@@ -38,7 +38,7 @@ pub(super) struct TruthCheck {
 }
 
 impl TruthCheck {
-    /// A check that allows `tolerance_m` beyond a waypoint's own radius.
+    /// Returns a check that allows `tolerance_m` beyond a waypoint's own radius.
     pub(super) fn new(tolerance_m: f64) -> Self {
         Self {
             tolerance_m,
@@ -50,7 +50,7 @@ impl TruthCheck {
         }
     }
 
-    /// Measures, each tick.
+    /// Takes the measurements of a tick.
     pub(super) fn look(&mut self, craft: &CraftTruth) {
         if let Some(run) = &mut self.run {
             run.look(craft);
@@ -91,7 +91,7 @@ impl TruthCheck {
         }
     }
 
-    /// What truth says, of a hold under way so far.
+    /// Returns the truth of the flight, including a hold in progress.
     pub(super) fn truth(&self, craft: &CraftTruth, battery_used_pct: Option<f64>) -> FlightTruth {
         let under_way = self.run.as_ref().and_then(Run::hold_truth);
         FlightTruth {
@@ -101,7 +101,7 @@ impl TruthCheck {
         }
     }
 
-    /// The worst miss beyond what is allowed, as half a sentence.
+    /// Returns the worst miss beyond the permitted distance, as half a sentence.
     pub(super) fn worst_miss(&self, truth: &FlightTruth) -> Option<String> {
         verdict::worst_miss(truth, self.tolerance_m)
     }
@@ -109,7 +109,7 @@ impl TruthCheck {
     fn begin_plan(&mut self, source: PlanSource, plan: &FlightPlan) {
         let goes_on = source == PlanSource::Stored && *plan == self.stored;
         if !goes_on {
-            // Of injected plans the last counts, of stored ones the present.
+            // Of injected plans the last one counts, of stored ones the present one.
             let same_kind = |of: PlanSource| (of == PlanSource::Stored) == (source == PlanSource::Stored);
             self.ended.retain(|ended| !same_kind(ended.source));
         }
@@ -120,7 +120,7 @@ impl TruthCheck {
         self.active.clone_from(plan);
     }
 
-    /// A state is entered; `leg` is the waypoint that is flown from now on, on its way.
+    /// Enters a state. `leg` is the waypoint that is flown from now on, on its way.
     fn enter(
         &mut self,
         to: NavState,
@@ -146,7 +146,7 @@ impl TruthCheck {
                     self.keep(truth);
                 }
             }
-            // A waypoint left by a command does not count.
+            // A waypoint that was left by a command does not count.
             NavState::Holding if reason == TransitionReason::HoldHere => self.run = None,
             NavState::Holding => self.hold(Pattern::Point, craft),
             NavState::Orbiting => self.hold(Pattern::Orbit(settings.orbit_radius_m), craft),
@@ -185,8 +185,8 @@ impl TruthCheck {
         self.ended.retain(|ended| (ended.source, ended.wp) != (source, wp));
     }
 
-    /// The place of a waypoint in the stored plan, while that is flown. The navigator's own target differs from it after an
-    /// outage of the fix in a landing.
+    /// Returns the place of a waypoint in the stored plan while that is flown. The navigator's own target differs
+    /// from it after a loss of the fix in a landing.
     fn planned_place(&self, wp: u8) -> Option<LatLon> {
         let waypoint = self.active.waypoints.get(usize::from(wp))?;
         (self.source == PlanSource::Stored).then_some(waypoint.position)
@@ -199,12 +199,12 @@ impl TruthCheck {
     }
 }
 
-/// What is said of a mission that truth agrees with.
+/// Returns the text for a mission that agrees with the truth.
 pub(super) fn agreement(truth: &FlightTruth) -> Option<String> {
     verdict::agreement(truth)
 }
 
-/// A place north and east of the boot place in the world's projection, m.
+/// Returns a place north and east of the boot place in the world's projection, m.
 fn place(frame: &LocalFrame, position: LatLon) -> Vector2<f64> {
     let enu = frame.to_enu(position.lat_deg(), position.lon_deg(), frame.alt_amsl_m);
     Vector2::new(enu.y, enu.x)

@@ -1,12 +1,12 @@
-//! How a flight ended.
+//! The result of a flight.
 
-/// How a flight ended; `Display` gives the word of the `end` event.
+/// The result of a flight. `Display` gives the word of the `end` event.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display)]
 #[strum(serialize_all = "lowercase")]
 pub enum FlightResult {
-    /// The mission reached COMPLETE, landed and disarmed where the plan ends in LAND, and the truth agrees.
+    /// The mission reached COMPLETE, landed and disarmed if the plan ends in LAND, and the truth agrees.
     Complete,
-    /// The firmware says complete, the truth does not.
+    /// The firmware reports COMPLETE, but the truth does not agree.
     Missed,
     /// Landed by an emergency landing or a return home, not by the plan.
     Landed,
@@ -14,12 +14,12 @@ pub enum FlightResult {
     Refused,
     /// The mission was given up and stayed IDLE.
     Aborted,
-    /// Disarmed by something else.
+    /// Disarmed for another reason.
     Disarmed,
     Crashed,
-    /// Not over in time.
+    /// Not over before the timeout.
     Timeout,
-    /// The simulation left the range where its numbers mean something.
+    /// The simulation left the range in which its numbers are meaningful.
     Diverged,
     /// Stopped by the user.
     Interrupted,
@@ -27,14 +27,12 @@ pub enum FlightResult {
 
 #[derive(Debug, Clone, PartialEq)]
 pub struct Verdict {
-    /// How the flight ended.
     pub result: FlightResult,
-    /// Why, as a sentence.
+    /// Reason, as a sentence.
     pub reason: String,
 }
 
 impl Verdict {
-    /// A verdict with its reason.
     pub fn new(result: FlightResult, reason: impl Into<String>) -> Self {
         Self { result, reason: reason.into() }
     }

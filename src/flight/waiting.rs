@@ -1,12 +1,13 @@
-//! What a craft that never engaged was waiting for.
+//! The missing condition of a craft that never engaged.
 
 use crate::telemetry::NavTelemetry;
 use crate::vehicle::Vehicle;
 
-/// Mean motor output from which the motors give all they have.
+/// The mean motor output from which the motors are at full power.
 const FULL_OUTPUT: f64 = 0.95;
 
-/// What the craft waits for before its mission, as half a sentence; `None` when nothing is known to be missing.
+/// Returns the condition that the craft waits for before its mission, as half a sentence, or `None` if nothing is
+/// known to be missing.
 pub(super) fn sentence(vehicle: &Vehicle, takeoff_m: f64) -> Option<String> {
     let controller = vehicle.controller();
     if !controller.is_armed() {
@@ -20,7 +21,7 @@ pub(super) fn sentence(vehicle: &Vehicle, takeoff_m: f64) -> Option<String> {
     Some(refusal.sentence().trim_end_matches('.').to_owned())
 }
 
-/// Thrust over weight of a craft that does not leave the ground with all the throttle there is.
+/// Returns the thrust over weight of a craft that does not leave the ground at full throttle.
 pub(super) fn lift_share(vehicle: &Vehicle) -> Option<f64> {
     let world = vehicle.world()?;
     if !vehicle.embedded()?.is_too_heavy() {
@@ -30,7 +31,7 @@ pub(super) fn lift_share(vehicle: &Vehicle) -> Option<f64> {
     Some(world.thrust_to_weight() * square)
 }
 
-/// What keeps it from arming.
+/// Returns the reason why the craft does not arm.
 fn arming(vehicle: &Vehicle) -> Option<String> {
     let firmware = vehicle.embedded()?;
     if !firmware.gps_fix() {
@@ -42,9 +43,9 @@ fn arming(vehicle: &Vehicle) -> Option<String> {
     (!told.is_empty()).then(|| format!("arming is blocked by {}", told.join(", ")))
 }
 
-/// A climb that does not reach its altitude.
+/// Describes a climb that does not reach its altitude.
 fn climb(alt_m: f64, takeoff_m: f64, motors: &[f64; 4]) -> String {
-    // Never `-0.0` of a craft that stands.
+    // Avoids `-0.0` for a craft on the ground.
     let alt_m = alt_m.max(0.0) + 0.0;
     let mean = motors.iter().sum::<f64>() / 4.0;
     let why = if mean >= FULL_OUTPUT { ", the thrust does not suffice" } else { "" };

@@ -4,10 +4,10 @@ use nalgebra::{Vector2, Vector3};
 
 use super::{LatLon, METRES_PER_E7};
 
-/// Radius of the sphere on which [`super::distance_bearing`] measures, m.
+/// The radius of the sphere on which [`super::distance_bearing`] measures, m.
 const RADIUS_M: f64 = METRES_PER_E7 * 1e7 * 180.0 / std::f64::consts::PI;
 
-/// The azimuthal equidistant projection about a place: distance and bearing from it are true.
+/// The azimuthal equidistant projection around a place: distance and bearing from the place are true.
 ///
 /// Source: Snyder, Map Projections (USGS 1395), §25.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,7 +18,7 @@ pub struct GroundPlane {
 }
 
 impl GroundPlane {
-    /// The plane that touches the sphere at `origin`.
+    /// Returns the plane that touches the sphere at `origin`.
     pub fn new(origin: LatLon) -> Self {
         let (lat, lon) = (origin.lat_deg().to_radians(), origin.lon_deg().to_radians());
         Self {
@@ -28,7 +28,7 @@ impl GroundPlane {
         }
     }
 
-    /// Metres north (x) and east (y) of the origin.
+    /// Returns metres north (x) and east (y) of the origin.
     pub fn to_ne(&self, position: LatLon) -> Vector2<f64> {
         let point = direction(position);
         let across = Vector2::new(point.dot(&self.north), point.dot(&self.east));
@@ -37,7 +37,7 @@ impl GroundPlane {
         if sine < 1e-15 { Vector2::zeros() } else { across * (angle * RADIUS_M / sine) }
     }
 
-    /// The position that is `ne` metres north and east of the origin, rounded to 1e-7 degrees.
+    /// Returns the position `ne` metres north and east of the origin, rounded to 1e-7 degrees.
     pub fn to_position(&self, ne: Vector2<f64>) -> LatLon {
         let distance = ne.norm();
         if !(distance.is_finite() && distance > 0.0) {

@@ -2,14 +2,14 @@
 
 use nalgebra::Vector3;
 
-/// WGS-84 semi-major axis, m.
+/// The WGS-84 semi-major axis, m.
 const SEMI_MAJOR: f64 = 6_378_137.0;
-/// WGS-84 flattening.
+/// The WGS-84 flattening.
 const FLATTENING: f64 = 1.0 / 298.257_223_563;
 
-/// An ENU frame (metres) anchored at a home position, by the radii of curvature of the ellipsoid there, raised by the
-/// altitude of home: meridian `a(1−e²)/(1−e²sin²φ)^1.5`, prime vertical `a/√(1−e²sin²φ)`. Within 3 mm of the exact tangent
-/// plane at 250 m.
+/// An ENU frame (metres) anchored at a home position. It uses the radii of curvature of the ellipsoid there, raised
+/// by the altitude of home: meridian `a(1−e²)/(1−e²sin²φ)^1.5`, prime vertical `a/√(1−e²sin²φ)`. It is within 3 mm of
+/// the exact tangent plane at 250 m.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LocalFrame {
     /// Latitude of the origin, degrees.
@@ -23,7 +23,8 @@ pub struct LocalFrame {
 }
 
 impl LocalFrame {
-    /// The frame with its origin at the given latitude and longitude (degrees) and altitude (m above sea level).
+    /// Returns the frame with its origin at the given latitude and longitude (degrees) and altitude (m above sea
+    /// level).
     pub fn new(lat_deg: f64, lon_deg: f64, alt_amsl_m: f64) -> Self {
         let e2 = FLATTENING * (2.0 - FLATTENING);
         let (sin, cos) = lat_deg.to_radians().sin_cos();
@@ -40,7 +41,8 @@ impl LocalFrame {
         }
     }
 
-    /// Latitude (deg, ±90), longitude (deg, −180…180), altitude (m AMSL) of a point given in metres east, north, up.
+    /// Returns latitude (deg, ±90), longitude (deg, −180…180) and altitude (m AMSL) of a point given in metres east,
+    /// north, up.
     pub fn to_geodetic(&self, enu: Vector3<f64>) -> (f64, f64, f64) {
         let lat = (self.lat_deg + enu.y / self.metres_per_deg_lat).clamp(-90.0, 90.0);
         let mut lon = self.lon_deg + enu.x / self.metres_per_deg_lon;
@@ -50,7 +52,7 @@ impl LocalFrame {
         (lat, lon, self.alt_amsl_m + enu.z)
     }
 
-    /// Metres east, north, up of a point given by latitude (deg), longitude (deg), altitude (m AMSL).
+    /// Returns metres east, north, up of a point given by latitude (deg), longitude (deg) and altitude (m AMSL).
     pub fn to_enu(&self, lat_deg: f64, lon_deg: f64, alt_amsl_m: f64) -> Vector3<f64> {
         let mut dlon = lon_deg - self.lon_deg;
         if dlon > 180.0 {

@@ -1,4 +1,4 @@
-//! A channel that is forced to a value for a while, and how it is written.
+//! A channel that is forced to a value for a while, and its text form.
 
 use std::fmt;
 use std::str::FromStr;
@@ -6,18 +6,18 @@ use std::str::FromStr;
 use crate::did_you_mean;
 use crate::signals::{RC_CHANNELS, SimTime};
 
-/// A channel forced to a value for a while.
+/// A channel that is forced to a value for a while.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StickInput {
     /// Channel index, 0…15.
     pub channel: u8,
     /// Value, µs.
     pub value_us: u16,
-    /// When it begins, counted from `from_boot` or from the engagement.
+    /// Begin in seconds, counted from boot or from the engagement; see `from_boot`.
     pub at_s: f64,
-    /// How long it lasts, s; `None` = to the end.
+    /// Duration, s; `None` lasts to the end.
     pub for_s: Option<f64>,
-    /// `at_s` counts from boot instead of from the engagement.
+    /// `true` if `at_s` counts from boot instead of from the engagement.
     pub from_boot: bool,
 }
 
@@ -31,13 +31,13 @@ impl StickInput {
     }
 }
 
-/// The names of the first channels, in wire order.
+/// The names of the first channels in wire order.
 const STICKS: [&str; 4] = ["roll", "pitch", "throttle", "yaw"];
 
 impl FromStr for StickInput {
     type Err = String;
 
-    /// `CH=VALUE@T[,FOR]`: CH a name or a number from 1, VALUE in µs, T and FOR in seconds.
+    /// Reads `CH=VALUE@T[,FOR]`: CH is a name or a number from 1, VALUE in µs, T and FOR in seconds.
     fn from_str(text: &str) -> Result<Self, String> {
         let usage = "write CH=VALUE@T[,FOR], such as pitch=2000@30,2 or aux2=1000@boot+60";
         let (channel, rest) = text.split_once('=').ok_or(usage)?;
@@ -65,10 +65,10 @@ impl fmt::Display for StickInput {
     }
 }
 
-/// A channel by name (`roll`, `aux2`) or number from 1, as an index from 0.
+/// Reads a channel by name (`roll`, `aux2`) or number from 1. Returns its index from 0.
 ///
 /// # Errors
-/// What is allowed.
+/// Fails with the permitted values.
 pub fn channel_index(text: &str) -> Result<u8, String> {
     let name = text.to_ascii_lowercase();
     let number = |digits: &str, first: usize| {
@@ -84,16 +84,16 @@ pub fn channel_index(text: &str) -> Result<u8, String> {
     })
 }
 
-/// The name of a channel from its index: `roll`, `aux2`.
+/// Returns the name of a channel from its index: `roll`, `aux2`.
 pub fn channel_name(index: u8) -> String {
     let index = usize::from(index);
     STICKS.get(index).map_or_else(|| format!("aux{}", index + 1 - STICKS.len()), |&name| name.to_owned())
 }
 
-/// The length of a channel's pulse, µs.
+/// Reads the pulse length of a channel, µs.
 ///
 /// # Errors
-/// What is allowed.
+/// Fails with the permitted values.
 pub fn pulse_us(text: &str) -> Result<u16, String> {
     text.parse()
         .ok()
@@ -101,7 +101,7 @@ pub fn pulse_us(text: &str) -> Result<u16, String> {
         .ok_or_else(|| format!("value {text} is not a pulse length; allowed are 750 to 2250 µs"))
 }
 
-/// A number of seconds from zero up.
+/// Reads a number of seconds, at least zero.
 fn seconds(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if (0.0..=1e9).contains(&value) => Ok(value),

@@ -1,35 +1,35 @@
-//! The RC transmitter: fifty frames a simulated second from the virtual sticks or the scripted pilot.
+//! The RC transmitter: fifty frames per simulated second from the virtual sticks or the scripted pilot.
 
 use super::{Pilot, PilotFacts, StickInput};
 use crate::signals::{RC_CHANNELS, RcFrame, SimTime};
 
-/// Interval of RC frames, µs.
+/// The interval of RC frames, µs.
 pub const FRAME_US: u64 = 20_000;
 
-/// The transmitter: who moves its sticks, and what is done to its link.
+/// The transmitter, with the source of its sticks and the state of its link.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RcTransmitter {
-    /// The virtual sticks; also what the pilot sent last.
+    /// The virtual sticks. They also keep the last frame of the pilot.
     sticks: RcFrame,
-    /// The link is cut: no frames are sent.
+    /// `true` if the link is cut and no frames are sent.
     cut: bool,
-    /// The scripted pilot, while it flies.
+    /// Scripted pilot while it flies.
     pilot: Option<Pilot>,
     inputs: Vec<StickInput>,
 }
 
 impl RcTransmitter {
-    /// The frame of the virtual sticks.
+    /// Returns the frame of the virtual sticks.
     pub fn sticks(&self) -> RcFrame {
         self.sticks
     }
 
-    /// The virtual sticks, to move them.
+    /// Returns the virtual sticks, to move them.
     pub fn sticks_mut(&mut self) -> &mut RcFrame {
         &mut self.sticks
     }
 
-    /// Whether the link is cut.
+    /// Returns `true` if the link is cut.
     pub fn is_cut(&self) -> bool {
         self.cut
     }
@@ -39,17 +39,17 @@ impl RcTransmitter {
         self.cut = cut;
     }
 
-    /// The channels that are forced to values.
+    /// Returns the channels that are forced to values, to change them.
     pub fn inputs_mut(&mut self) -> &mut Vec<StickInput> {
         &mut self.inputs
     }
 
-    /// Gives the sticks to the scripted pilot.
+    /// Passes the sticks to the scripted pilot.
     pub fn start_pilot(&mut self, pilot: Pilot) {
         self.pilot = Some(pilot);
     }
 
-    /// The scripted pilot lets go; says whether it was flying.
+    /// Stops the scripted pilot. Returns `true` if it was flying.
     pub fn stop_pilot(&mut self) -> bool {
         let pilot = self.pilot.take();
         if let Some(pilot) = &pilot {
@@ -58,22 +58,22 @@ impl RcTransmitter {
         pilot.is_some()
     }
 
-    /// The scripted pilot, while it flies.
+    /// Returns the scripted pilot while it flies.
     pub fn pilot(&self) -> Option<&Pilot> {
         self.pilot.as_ref()
     }
 
-    /// The channels that are forced to values.
+    /// Returns the channels that are forced to values.
     pub fn inputs(&self) -> &[StickInput] {
         &self.inputs
     }
 
-    /// What the scripted pilot is doing, in a word or two, while it flies.
+    /// Returns the present action of the scripted pilot in a word or two, while it flies.
     pub fn pilot_doing(&self) -> Option<&'static str> {
         self.pilot.as_ref().map(Pilot::doing)
     }
 
-    /// The frame to send now, `None` while the link is cut. To be called every [`FRAME_US`].
+    /// Returns the frame to send now, or `None` while the link is cut. Call it every [`FRAME_US`].
     pub fn frame(&mut self, facts: &PilotFacts, engaged_at: Option<SimTime>) -> Option<RcFrame> {
         if let Some(pilot) = &mut self.pilot {
             self.sticks = pilot.fly(facts);

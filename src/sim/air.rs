@@ -1,7 +1,7 @@
 //! The air at the craft: mean wind with its height profile, gusts, turbulence, density.
 //!
 //! Everything is computed on air ticks of 10 ms, one tick ahead, and interpolated linearly between them, so that the
-//! air is the same for every step rate. A change of setting therefore acts from the next tick on.
+//! air is the same for every step rate. A change of a setting therefore takes effect from the next tick on.
 
 use nalgebra::Vector3;
 
@@ -21,22 +21,22 @@ pub(super) use gust::usual_length_s;
 pub use turbulence::DrydenScales;
 use turbulence::TurbulenceFilter;
 
-/// Length of an air tick, µs.
+/// The length of an air tick, µs.
 pub const AIR_TICK_US: u64 = 10_000;
-/// Length of an air tick, s.
+/// The length of an air tick, s.
 const AIR_TICK_S: f64 = 0.01;
-/// How long the mean wind takes to change, s.
+/// The time that the mean wind takes to change, s.
 const WIND_RAMP_S: f64 = 2.0;
-/// Height from which on the stated wind holds, m.
+/// The height from which the stated wind applies, m.
 const PROFILE_TOP_M: f64 = 10.0;
-/// Least height of the profile and roughness length of short grass, m.
+/// The lowest height of the profile and the roughness length of short grass, m.
 const PROFILE_BOTTOM_M: f64 = 0.3;
 const ROUGHNESS_M: f64 = 0.03;
 
 /// The air of a world.
 #[derive(Debug, Clone)]
 pub(super) struct Air {
-    /// The wind that was set, and a fault's wind in its place.
+    /// The wind that was set, and the wind of a fault that replaces it.
     wind: Wind,
     wind_fault: Option<Wind>,
     ramp: Ramp,
@@ -64,7 +64,7 @@ impl Ramp {
 }
 
 impl Air {
-    /// The air at boot around a craft at the given height above ground, m.
+    /// Returns the air at boot around a craft at the given height above ground, m.
     pub(super) fn new(config: &WorldConfig, height_m: f64) -> Self {
         let velocity = config.wind.velocity_enu();
         let mut air = Self {
@@ -85,14 +85,14 @@ impl Air {
         air
     }
 
-    /// The air at a time from the last tick on.
+    /// Returns the air at a time after the last tick.
     pub(super) fn sample(&self, time: SimTime) -> AirSample {
         let part = (time.0 % AIR_TICK_US) as f64 * (1.0 / AIR_TICK_US as f64);
         AirSample { wind_enu: self.from + (self.to - self.from) * part, density_ratio: self.density_ratio }
     }
 
-    /// Advances to the air tick at `now`, for a craft at an altitude above home (m) with a velocity (ENU, m/s) over ground
-    /// of this elevation above home, m.
+    /// Advances to the air tick at `now`, for a craft at an altitude above home (m) with a velocity (ENU, m/s), over
+    /// ground with this elevation above home, m.
     pub(super) fn tick(
         &mut self,
         now: SimTime,
@@ -102,7 +102,7 @@ impl Air {
         switches: &Switches,
     ) {
         let height_m = altitude_m - ground_m;
-        // Through the mean air: turbulence does not carry itself along.
+        // The airspeed is relative to the mean air, since turbulence does not carry itself along.
         let mean = self.ramp.at(now) * profile(switches.wind_profile, height_m);
         let airspeed = (vel_enu - mean).norm();
         self.from = self.to;
@@ -116,7 +116,7 @@ impl Air {
         };
     }
 
-    /// Wind at a time and height above ground.
+    /// Returns the wind at a time and height above ground.
     fn wind_at(&self, time: SimTime, height_m: f64, switches: &Switches) -> Vector3<f64> {
         let wind = self.settled_wind();
         let axis_from_deg = if wind.speed_mps > 0.0 { wind.from_deg } else { self.calm_axis_from_deg };
@@ -125,18 +125,18 @@ impl Air {
             + self.turbulence.velocity_enu(axis_from_deg) * switches.turbulence_scale
     }
 
-    /// The wind that blows once all ramps are over: a fault's, or the one that was set.
+    /// Returns the wind after the end of all ramps: that of a fault, or the one that was set.
     pub(super) fn settled_wind(&self) -> Wind {
         self.wind_fault.unwrap_or(self.wind)
     }
 
-    /// Sets the mean wind; it changes over two seconds.
+    /// Sets the mean wind, which changes over two seconds.
     pub(super) fn change_wind(&mut self, wind: Wind, now: SimTime) {
         self.wind = wind;
         self.start_ramp(now);
     }
 
-    /// Puts a fault's wind in place of the set one, or takes it away.
+    /// Replaces the set wind with the wind of a fault, or restores it.
     pub(super) fn change_wind_fault(&mut self, wind: Option<Wind>, now: SimTime) {
         if wind != self.wind_fault {
             self.wind_fault = wind;
@@ -148,13 +148,12 @@ impl Air {
         self.ramp = Ramp { from: self.ramp.at(now), to: self.settled_wind().velocity_enu(), start: now };
     }
 
-    /// Sets the level of turbulence.
     pub(super) fn set_turbulence(&mut self, level: Turbulence) {
         self.turbulence.level = level;
     }
 }
 
-/// Share of the stated wind that blows at a height above ground.
+/// Returns the share of the stated wind at a height above ground.
 fn profile(profile: WindProfile, height_m: f64) -> f64 {
     match profile {
         WindProfile::Log if height_m < PROFILE_TOP_M => {
@@ -208,7 +207,7 @@ mod tests {
             }
             air.sample(SimTime(2000 * AIR_TICK_US)).wind_enu
         };
-        // Flown through at the same speed, air four times as rough is the same air, four times.
+        // At the same airspeed, air four times as rough gives four times the gust.
         assert!((gust_of_a_hover(4.0) - 4.0 * gust_of_a_hover(1.0)).norm() < 1e-9);
     }
 

@@ -1,4 +1,4 @@
-//! What flies: mass, geometry, rotors, drag, legs and battery of one quadcopter.
+//! Airframes: mass, geometry, rotors, drag, legs and battery of one quadcopter.
 //!
 //! Body axes are FLU (x forward, y left, z up) with the origin in the centre of mass. Motors are numbered as the
 //! flight controller numbers them, seen from above with the nose up the page:
@@ -10,7 +10,7 @@
 //!   M3 ccw   M1 cw
 //! ```
 //!
-//! The built-in airframes can fly; files are checked when they are read, and every airframe when a world is built.
+//! The built-in airframes can fly. Files are checked when they are read, and every airframe when a world is built.
 
 use std::str::FromStr;
 
@@ -29,10 +29,10 @@ pub use file::{AirframeFileError, AirframeProblem};
 
 pub const ROTORS: usize = 4;
 
-/// The most legs an airframe may have.
+/// The maximum number of legs of an airframe.
 pub const MAX_LEGS: usize = 8;
 
-/// Air density at which the rotor and drag coefficients are stated, kg/m³.
+/// The air density for which the rotor and drag coefficients are given, kg/m³.
 pub const REFERENCE_DENSITY: f64 = 1.225;
 
 /// The names of the built-in airframes.
@@ -83,17 +83,17 @@ pub struct Airframe {
     pub friction: f64,
     /// Sliding speed below which friction falls linearly with speed, m/s.
     pub friction_full_mps: f64,
-    /// Where the inertial sensor sits, m.
+    /// Position of the inertial sensor, m.
     pub imu_position_m: Vector3<f64>,
     pub battery: BatterySpec,
 }
 
 impl Airframe {
-    /// The 3DR Iris of the public Gazebo world: 0.53 kg, hover at half command.
+    /// Returns the 3DR Iris of the public Gazebo world: 0.53 kg, hover at half command.
     ///
-    /// Mass, geometry, inertia, thrust constant and motor lag follow the Gazebo model; torque, rotor inertia and
-    /// drag are the PX4 x500's (the model's blades give almost no yaw authority); the top rotor speed puts hover
-    /// at 1500 µs.
+    /// Mass, geometry, inertia, thrust constant and motor lag follow the Gazebo model. Torque, rotor inertia and drag
+    /// are those of the PX4 x500, since the blades of the model give almost no yaw authority. The top rotor speed
+    /// puts hover at 1500 µs.
     pub fn iris() -> Self {
         Self {
             name: "iris".to_owned(),
@@ -127,7 +127,7 @@ impl Airframe {
         }
     }
 
-    /// A five-inch racing quadcopter: 0.70 kg, ten times its weight in thrust, from published bench figures.
+    /// Returns a five-inch racing quadcopter: 0.70 kg, ten times its weight in thrust, from published bench figures.
     pub fn five_inch() -> Self {
         Self {
             name: "five-inch".to_owned(),
@@ -161,22 +161,22 @@ impl Airframe {
         }
     }
 
-    /// The first rule that this airframe breaks, as a sentence that names the key; `None` when it can fly.
+    /// Returns the first rule that this airframe breaks, as a sentence that names the key, or `None` if it can fly.
     pub fn fault(&self) -> Option<String> {
         check::findings(self).into_iter().next().map(|finding| format!("{} {}", finding.key, finding.text))
     }
 
-    /// Rotor speed at which four rotors carry the weight at the reference density, rad/s.
+    /// Returns the rotor speed at which four rotors carry the weight at the reference density, rad/s.
     pub fn hover_rotor_speed(&self) -> f64 {
         (self.mass_kg * GRAVITY / (ROTORS as f64 * self.thrust_coeff)).sqrt()
     }
 
-    /// Greatest thrust over weight at the reference density.
+    /// Returns the maximum thrust over weight at the reference density.
     pub fn thrust_to_weight(&self) -> f64 {
         ROTORS as f64 * self.thrust_coeff * self.rotor_speed_max.powi(2) / (self.mass_kg * GRAVITY)
     }
 
-    /// Height of the centre of mass above the ground when the craft stands on its legs, m.
+    /// Returns the height of the centre of mass above the ground when the craft is on its legs, m.
     pub fn standing_height_m(&self) -> f64 {
         let lowest = self.legs_m.iter().map(|leg| leg.z).fold(0.0, f64::min);
         let touching = self.legs_m.iter().filter(|leg| leg.z < lowest + 1e-3).count().max(1);
@@ -184,7 +184,7 @@ impl Airframe {
     }
 }
 
-/// Four legs at (±xy, ±xy, z).
+/// Returns four legs at (±xy, ±xy, z).
 fn square_legs(xy: f64, z: f64) -> ArrayVec<Vector3<f64>, MAX_LEGS> {
     [(xy, xy), (xy, -xy), (-xy, xy), (-xy, -xy)].into_iter().map(|(x, y)| Vector3::new(x, y, z)).collect()
 }
@@ -202,7 +202,7 @@ pub struct UnknownAirframe {
 impl FromStr for Airframe {
     type Err = UnknownAirframe;
 
-    /// A built-in airframe by name.
+    /// Returns a built-in airframe by name.
     fn from_str(name: &str) -> Result<Self, Self::Err> {
         match name {
             "iris" => Ok(Self::iris()),

@@ -1,32 +1,32 @@
-//! The battery: open-circuit voltage over charge, inner resistance, load of the motors.
+//! The battery: open-circuit voltage over charge, internal resistance, load of the motors.
 
 use super::airframe::{Airframe, ROTORS};
 
-/// Share of the electrical power that reaches the propeller shafts.
+/// The share of the electrical power that reaches the propeller shafts.
 const DRIVE_EFFICIENCY: f64 = 0.75;
-/// What the electronics draw, W.
+/// The power of the electronics, W.
 pub(super) const BASE_LOAD_W: f64 = 5.0;
-/// Open-circuit voltage of a full cell, of one with 10 % left, and of an empty one, V.
+/// The open-circuit voltage of a full cell, of one with 10 % left, and of an empty one, V.
 const CELL_V: [f64; 3] = [4.2, 3.5, 3.0];
-/// Charge left where the steep end of the discharge curve begins.
+/// The remaining charge at which the steep end of the discharge curve begins.
 const KNEE: f64 = 0.1;
-/// How fast the voltage of an empty cell falls with the charge that is drawn beyond its capacity, V per capacity.
+/// The rate at which the voltage of an empty cell falls with the charge drawn beyond its capacity, V per capacity.
 const BEYOND_EMPTY_V: f64 = 50.0;
 
 /// The battery of an airframe.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct BatterySpec {
     pub cells: u8,
-    /// Voltage at which the motors reach their stated top speed, V.
+    /// Voltage at which the motors reach their specified top speed, V.
     pub nominal_v: f64,
-    /// Inner resistance of the pack, Ω.
+    /// Internal resistance of the pack, Ω.
     pub resistance_ohm: f64,
     /// Capacity, A·h.
     pub capacity_ah: f64,
 }
 
 impl BatterySpec {
-    /// Open-circuit voltage with `left` of the charge left (1 full, 0 empty, negative beyond), V.
+    /// Returns the open-circuit voltage with `left` of the charge left (1 full, 0 empty, negative beyond), V.
     pub fn open_circuit_v(&self, left: f64) -> f64 {
         let [full, knee, empty] = CELL_V;
         let left = left.min(1.0);
@@ -40,8 +40,8 @@ impl BatterySpec {
         cell * f64::from(self.cells)
     }
 
-    /// Terminal voltage (V) and current (A) under a constant-power load; a load beyond the greatest power the pack
-    /// can give is cut to that. A dead pack gives nothing.
+    /// Returns the terminal voltage (V) and current (A) under a constant-power load. A load beyond the maximum power
+    /// of the pack is limited to that. A dead pack gives nothing.
     pub fn under_load(&self, open_circuit_v: f64, load_w: f64) -> (f64, f64) {
         if open_circuit_v <= 0.0 {
             return (0.0, 0.0);
@@ -53,23 +53,23 @@ impl BatterySpec {
     }
 }
 
-/// Electrical power the four motors take at the given rotor speeds (rad/s), W. `load_factor` is what density and
-/// efficiency make of each rotor's torque.
+/// Returns the electrical power of the four motors at the given rotor speeds (rad/s), W. `load_factor` is the factor
+/// of density and efficiency on the torque of each rotor.
 pub fn motor_power_w(airframe: &Airframe, rotor_speeds: &[f64; ROTORS], load_factor: &[f64; ROTORS]) -> f64 {
     let cubes: f64 = rotor_speeds.iter().zip(load_factor).map(|(speed, load)| speed.powi(3) * load).sum();
     airframe.torque_per_thrust_m * airframe.thrust_coeff * cubes / DRIVE_EFFICIENCY
 }
 
-/// What makes a pack worse than its specification.
+/// The faults that make a pack worse than its specification.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct BatteryFaults {
-    /// Added to the open-circuit voltage, V.
+    /// Offset of the open-circuit voltage, V.
     pub offset_v: f64,
-    /// Cells that failed short.
+    /// Number of cells that failed short.
     pub dead_cells: u8,
 }
 
-/// State of the battery in the air.
+/// The state of the battery in the air.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Battery {
     spec: BatterySpec,
@@ -84,34 +84,34 @@ pub(super) struct Battery {
 }
 
 impl Battery {
-    /// A full battery under the base load.
+    /// Returns a full battery under the base load.
     pub(super) fn full(spec: BatterySpec) -> Self {
         let (voltage_v, current_a) = spec.under_load(spec.open_circuit_v(1.0), BASE_LOAD_W);
         Self { spec, voltage_v, current_a, drawn_mah: 0.0, drawn_wh: 0.0 }
     }
 
-    /// What the full pack held, mA·h.
+    /// Returns the capacity of the full pack, mA·h.
     pub(super) fn capacity_mah(&self) -> f64 {
         self.spec.capacity_ah * 1000.0
     }
 
-    /// Charge left: 1 full, 0 empty, negative when more than the capacity was drawn.
+    /// Returns the remaining charge: 1 full, 0 empty, negative if more than the capacity was drawn.
     pub(super) fn charge_left(&self) -> f64 {
         1.0 - self.drawn_mah / self.capacity_mah()
     }
 
-    /// Terminal voltage a cell, V.
+    /// Returns the terminal voltage per cell, V.
     pub(super) fn cell_v(&self) -> f64 {
         self.voltage_v / f64::from(self.spec.cells)
     }
 
-    /// Terminal over nominal voltage: the scale of the rotor speeds where sag acts on them.
+    /// Returns the terminal voltage over the nominal voltage: the scale of the rotor speeds if sag affects them.
     pub(super) fn speed_scale(&self) -> f64 {
         self.voltage_v / self.spec.nominal_v
     }
 
-    /// Draws `motor_w` and the base load for `dt` seconds. A pack that `runs_out` dies when it is empty, another one keeps
-    /// the voltage of an empty one.
+    /// Draws `motor_w` and the base load for `dt` seconds. A pack that `runs_out` dies when it is empty; any other
+    /// keeps the voltage of an empty pack.
     pub(super) fn draw(&mut self, motor_w: f64, faults: BatteryFaults, runs_out: bool, dt: f64) {
         let left = if runs_out { self.charge_left() } else { self.charge_left().max(0.0) };
         let alive = f64::from(self.spec.cells.saturating_sub(faults.dead_cells)) / f64::from(self.spec.cells);

@@ -1,4 +1,4 @@
-//! The state of the rigid body and what acts on it, with the stages of the integrator.
+//! The state of the rigid body and its loads, with the stages of the integrator.
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
@@ -16,14 +16,14 @@ pub struct BodyState {
 }
 
 impl BodyState {
-    /// Whether every number is finite.
+    /// Returns `true` if every number is finite.
     pub fn is_finite(&self) -> bool {
         let sum = self.pos_enu.sum() + self.vel_enu.sum() + self.rate_flu.sum() + self.attitude.coords.sum();
         sum.is_finite()
     }
 }
 
-/// The air around the craft, held over a step.
+/// The air around the craft, constant over a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AirSample {
     /// Wind, ENU (the direction it blows to), m/s.
@@ -32,7 +32,7 @@ pub struct AirSample {
     pub density_ratio: f64,
 }
 
-/// Force (N) and torque (N·m) on the craft in body axes, gravity and the reaction to rotor acceleration excluded.
+/// Force (N) and torque (N·m) on the craft in body axes, without gravity and the reaction to rotor acceleration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Loads {
     /// Force, FLU, N.
@@ -41,7 +41,7 @@ pub struct Loads {
     pub torque_flu: Vector3<f64>,
 }
 
-/// Numbers of a stage of the integrator; the quaternion need not have norm one there.
+/// The numbers of a stage of the integrator. The quaternion need not have norm one there.
 #[derive(Clone, Copy)]
 pub(super) struct Stage {
     pub(super) pos: Vector3<f64>,
@@ -56,7 +56,7 @@ impl From<&BodyState> for Stage {
     }
 }
 
-/// Time derivative of a [`Stage`].
+/// The time derivative of a [`Stage`].
 #[derive(Clone, Copy)]
 pub(super) struct Slope {
     pub(super) vel: Vector3<f64>,
@@ -66,7 +66,7 @@ pub(super) struct Slope {
 }
 
 impl Stage {
-    /// This stage moved along a slope for `dt` seconds.
+    /// Returns this stage moved along a slope for `dt` seconds.
     pub(super) fn along(&self, slope: &Slope, dt: f64) -> Self {
         Self {
             pos: self.pos + slope.vel * dt,
@@ -77,7 +77,7 @@ impl Stage {
     }
 }
 
-/// What an accelerometer away from the centre of mass shows on top: `α × r + ω × (ω × r)`, m/s².
+/// Returns the additional acceleration at an accelerometer away from the centre of mass: `α × r + ω × (ω × r)`, m/s².
 pub fn lever_arm_acceleration(
     rate_flu: Vector3<f64>,
     rate_dot_flu: Vector3<f64>,
@@ -86,7 +86,7 @@ pub fn lever_arm_acceleration(
     rate_dot_flu.cross(&position_m) + rate_flu.cross(&rate_flu.cross(&position_m))
 }
 
-/// Body → world matrix of a quaternion of norm near one.
+/// Returns the body → world matrix of a quaternion with a norm near one.
 pub(super) fn rotation(q: &Quaternion<f64>) -> Matrix3<f64> {
     let (w, x, y, z) = (q.w, q.i, q.j, q.k);
     let (ww, xx, yy, zz) = (w * w, x * x, y * y, z * z);

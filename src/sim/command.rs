@@ -1,4 +1,4 @@
-//! What can be changed in a world while it runs.
+//! The changes of a world while it runs.
 
 use super::config::{Noise, Turbulence, Wind, WorldError};
 use super::fault::{Fault, FaultKey, MAX_TIME_S, ScheduledFault};
@@ -7,7 +7,7 @@ mod text;
 
 pub use crate::sim::command::text::{COMMAND_WORDS, CommandWord};
 
-/// A change of the world by a user, a scenario or a script; it acts from the next step on.
+/// A change of the world by a user, a scenario or a script. It takes effect from the next step on.
 #[derive(Debug, Clone, PartialEq)]
 pub enum WorldCommand {
     /// The mean wind changes to this over two seconds.
@@ -15,28 +15,27 @@ pub enum WorldCommand {
     /// Random gusts of this strength from now on, m/s; 0 for none.
     SetGust(f64),
     GustNow(Wind),
-    /// Another level of turbulence.
     SetTurbulence(Turbulence),
-    /// Sensors err or not.
+    /// Sensor errors on or off.
     SetNoise(Noise),
-    /// A rare switch as `NAME=VALUE`; the battery's capacity acts from the next reset on.
+    /// A rare switch as `NAME=VALUE`. The capacity of the battery takes effect from the next reset on.
     SetSwitch(String),
-    /// GPS solutions a second, 1…20.
+    /// GPS solutions per second, 1…20.
     SetGpsRate(u8),
-    /// A fault now, for so many seconds or to the end.
+    /// A fault now, for this many seconds or to the end.
     FaultOn(Fault, Option<f64>),
     /// Ends the active faults of this kind.
     FaultOff(FaultKey),
     /// Ends all active faults and forgets all waiting ones.
     ClearFaults,
-    /// A fault at its time.
+    /// A fault at a given time.
     Schedule(ScheduledFault),
-    /// The craft stands at home again, undamaged, with a full battery; air, noise and faults stay as they are.
+    /// Puts the craft back at home, undamaged, with a full battery. Air, noise and faults stay as they are.
     ResetToHome,
 }
 
 impl WorldCommand {
-    /// The fault that it begins, now or later.
+    /// Returns the fault that the command begins, now or later.
     pub fn fault(&self) -> Option<&Fault> {
         match self {
             Self::FaultOn(fault, _) => Some(fault),
@@ -45,12 +44,12 @@ impl WorldCommand {
         }
     }
 
-    /// Whether the command is about faults and nothing else.
+    /// Returns `true` if the command is about faults and nothing else.
     pub(super) fn is_about_faults(&self) -> bool {
         matches!(self, Self::FaultOn(..) | Self::FaultOff(_) | Self::ClearFaults | Self::Schedule(_))
     }
 
-    /// Whether the numbers of the command are in range.
+    /// Checks that the numbers of the command are in range.
     pub(super) fn check(&self) -> Result<(), WorldError> {
         match *self {
             Self::SetWind(wind) | Self::GustNow(wind) => check_wind(wind),

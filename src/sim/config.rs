@@ -1,4 +1,4 @@
-//! What a world is made of at boot, with the parsers of the command-line values.
+//! The configuration of a world at boot, with the parsers of the command-line values.
 
 use strum::VariantNames;
 
@@ -17,10 +17,10 @@ pub use error::WorldError;
 pub use home::Home;
 pub use wind::Wind;
 
-/// Step rates that a world accepts, Hz. Each divides a hundredth of a second into whole steps.
+/// The step rates that a world accepts, Hz. Each divides a hundredth of a second into whole steps.
 pub const STEP_RATES_HZ: [u32; 6] = [400, 500, 1000, 2000, 4000, 8000];
 
-/// Everything a [`World`](super::World) needs to know at boot.
+/// Everything that a [`World`](super::World) needs to know at boot.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WorldConfig {
     pub airframe: Airframe,
@@ -29,21 +29,21 @@ pub struct WorldConfig {
     pub rate_hz: u32,
     /// Seed of all randomness.
     pub seed: u64,
-    /// Whether the sensors err.
+    /// Sensor errors on or off.
     pub noise: Noise,
     pub wind: Wind,
-    /// Size of random gusts, m/s; 0 for none.
+    /// Strength of random gusts, m/s; 0 for none.
     pub gust_mps: f64,
     pub turbulence: Turbulence,
     pub switches: Switches,
-    /// Faults that will happen.
+    /// Scheduled faults.
     pub faults: Vec<ScheduledFault>,
-    /// Whether there is an external link that link faults can act on.
+    /// The external link, if there is one for link faults to act on.
     pub link: FaultLink,
 }
 
 impl Default for WorldConfig {
-    /// An `iris` in calm air at the default home, 1 kHz, seed 1, real noise.
+    /// Returns an `iris` in calm air at the default home, 1 kHz, seed 1, real noise.
     fn default() -> Self {
         Self {
             airframe: Airframe::iris(),
@@ -61,10 +61,10 @@ impl Default for WorldConfig {
     }
 }
 
-/// Length of a step in microseconds at a rate.
+/// Returns the length of a step at a rate, µs.
 ///
 /// # Errors
-/// When the rate is not one of [`STEP_RATES_HZ`].
+/// Fails if the rate is not one of [`STEP_RATES_HZ`].
 pub fn step_us(rate_hz: u32) -> Result<u64, WorldError> {
     if STEP_RATES_HZ.contains(&rate_hz) {
         Ok(1_000_000 / u64::from(rate_hz))
@@ -80,7 +80,7 @@ pub fn step_us(rate_hz: u32) -> Result<u64, WorldError> {
 )]
 #[strum(serialize_all = "lowercase")]
 pub enum Noise {
-    /// Noise, bias, drift, latency and acquisition as in ordinary parts.
+    /// Noise, bias, drift, latency and acquisition of ordinary parts.
     #[default]
     Real,
     /// Exact values without delay.
@@ -88,25 +88,25 @@ pub enum Noise {
 }
 
 impl Noise {
-    /// The level with this name.
+    /// Returns the level with this name.
     ///
     /// # Errors
-    /// When there is none.
+    /// Fails if there is none.
     pub fn parse(text: &str) -> Result<Self, ParseError> {
         text.parse().map_err(|_| one_of("noise", text, Self::VARIANTS))
     }
 }
 
 impl Turbulence {
-    /// The level with this name.
+    /// Returns the level with this name.
     ///
     /// # Errors
-    /// When there is none.
+    /// Fails if there is none.
     pub fn parse(text: &str) -> Result<Self, ParseError> {
         text.parse().map_err(|_| one_of("turbulence", text, Self::VARIANTS))
     }
 
-    /// Wind at 20 ft that stands for the level, kt: MIL-F-8785C gives 15, 30 and 45 kt.
+    /// Returns the wind at 20 ft for the level, kt: 15, 30 and 45 kt as in MIL-F-8785C.
     pub fn wind_at_20ft_kt(self) -> f64 {
         match self {
             Self::None => 0.0,

@@ -1,15 +1,16 @@
-//! How long a full battery keeps an airframe hovering.
+//! The hover time of an airframe with a full battery.
 
 use super::airframe::{Airframe, ROTORS};
 use super::battery::{BASE_LOAD_W, motor_power_w};
 use crate::geo::GRAVITY;
 
-/// Steps of charge over which the current is taken as constant.
+/// The number of charge steps. The current is constant within each.
 const STEPS: u32 = 200;
 
 impl Airframe {
-    /// Seconds of hover in still air from a full battery to an empty one, at an air density over the reference density.
-    /// The power is that of the hover: a slow flight takes about as much, climbs and wind take more.
+    /// Returns the seconds of hover in still air from a full battery to an empty one, at an air density over the
+    /// reference density. The power is that of the hover: a slow flight takes about as much, climbs and wind take
+    /// more.
     pub fn hover_endurance_s(&self, density_ratio: f64) -> f64 {
         let thrust = self.mass_kg * GRAVITY / ROTORS as f64;
         let speed = (thrust / (self.thrust_coeff * density_ratio)).sqrt();
@@ -31,7 +32,7 @@ mod tests {
 
     #[test]
     fn an_iris_hovers_for_fifty_minutes_and_less_in_thin_air() {
-        // 38.78 W for the motors and 5 W for the electronics at 11 V: 4 A from 3.3 A·h.
+        // 38.78 W for the motors and 5 W for the electronics at 11 V give 4 A from 3.3 A·h.
         let iris = Airframe::iris();
         let minutes = iris.hover_endurance_s(1.0) / 60.0;
         assert!((47.0..53.0).contains(&minutes), "{minutes}");

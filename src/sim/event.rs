@@ -1,11 +1,11 @@
-//! What happened in the world, as typed facts.
+//! The events of a world, as typed facts.
 
 use crate::signals::SimTime;
 use crate::telemetry::{CrashCause, DivergeCause};
 
 use super::fault::Fault;
 
-/// Something that happened at an instant.
+/// An event at an instant.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WorldEvent {
     pub time: SimTime,
@@ -14,7 +14,7 @@ pub struct WorldEvent {
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum WorldEventKind {
-    /// First touch after a flight.
+    /// The first touch after a flight.
     Contact {
         /// Sink rate, m/s.
         impact_mps: f64,
@@ -23,22 +23,22 @@ pub enum WorldEventKind {
     Touchdown {
         /// Sink rate of the contact, m/s.
         impact_mps: f64,
-        /// Greatest specific force since the contact, m/s².
+        /// Maximum specific force since the contact, m/s².
         peak_mps2: f64,
     },
     /// The craft is lost.
     Crash { cause: CrashCause },
-    /// A fault began or ended. Impulses and displacements have no end, so only their beginning is told.
+    /// A fault began or ended. Impulses and displacements have no end, so only their beginning is reported.
     Fault {
-        /// Which; its `Display` is the value.
+        /// The fault; its `Display` is the value.
         fault: Fault,
         on: bool,
     },
-    /// All of the battery's charge is drawn.
+    /// The full charge of the battery has been drawn.
     BatteryEmpty {
-        /// Voltage a cell under load, V.
+        /// Voltage per cell under load, V.
         cell_v: f64,
     },
-    /// The integration failed; the world stands still from here on.
+    /// The integration failed. The world no longer changes.
     Diverged { cause: DivergeCause },
 }

@@ -1,6 +1,6 @@
-//! Faults: what can go wrong, when, and for how long.
+//! Faults, with their times and durations.
 //!
-//! `NAME@T[,FOR][,VALUE]`: T and FOR in simulated seconds, T from engagement or, as `boot+T`, from boot; without FOR
+//! `NAME@T[,FOR][,VALUE]`: T and FOR in simulated seconds, T from engagement or, as `boot+T`, from boot. Without FOR
 //! the fault lasts to the end. The name ends at the first `@`; VALUE may contain more of them, and commas.
 
 use std::fmt;
@@ -30,12 +30,12 @@ pub(super) use schedule::{FaultChange, FaultSchedule};
 pub struct MotorNumber(u8);
 
 impl MotorNumber {
-    /// The motor with this number; `None` unless 1…4.
+    /// Returns the motor with this number, or `None` unless it is 1…4.
     pub fn new(number: u8) -> Option<Self> {
         (1..=ROTORS as u8).contains(&number).then_some(Self(number))
     }
 
-    /// Place in arrays of motors, 0…3.
+    /// Returns the index in arrays of motors, 0…3.
     pub fn index(self) -> usize {
         usize::from(self.0 - 1)
     }
@@ -71,7 +71,7 @@ pub enum Direction {
 }
 
 impl Direction {
-    /// Unit vector, ENU.
+    /// Returns the unit vector, ENU.
     pub fn enu(self) -> Vector3<f64> {
         match self {
             Self::North => Vector3::y(),
@@ -84,7 +84,7 @@ impl Direction {
     }
 }
 
-/// What a battery fault does.
+/// The effect of a battery fault.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum BatteryFault {
     /// Changes the open-circuit voltage by this much, V.
@@ -99,17 +99,17 @@ pub enum Fault {
     RxLoss,
     /// This fraction of RC frames is lost at random.
     RxJitter(f64),
-    /// No solution, no satellites.
+    /// No solution and no satellites.
     GpsLoss,
-    /// The position is shifted by metres along a bearing (degrees from north); the velocity stays honest.
+    /// The position is shifted by metres along a bearing (degrees from north). The velocity stays true.
     GpsGlitch(f64, f64),
-    /// The same solution again and again.
+    /// The same solution is repeated.
     GpsFreeze,
-    /// All GPS errors times this factor.
+    /// All GPS errors are multiplied by this factor.
     GpsNoise(f64),
-    /// Pressure ramps by this many Pa/s.
+    /// The pressure drifts by this many Pa/s.
     BaroDrift(f64),
-    /// One sample a second is off by this many Pa.
+    /// One sample per second is off by this many Pa.
     BaroSpike(f64),
     MagOff,
     /// The measured heading is off by this many degrees, clockwise positive.
@@ -120,7 +120,7 @@ pub enum Fault {
     AccBias(f64),
     /// The last inertial sample is repeated.
     ImuFreeze,
-    /// A motor's thrust and torque times an efficiency, 0…1.
+    /// Thrust and torque of a motor are multiplied by an efficiency, 0…1.
     Motor(MotorNumber, f64),
     /// A motor's command is frozen, 0…1.
     MotorStuck(MotorNumber, f64),
@@ -129,7 +129,7 @@ pub enum Fault {
     /// Accelerometer vibration at hover speed, m/s² rms per axis.
     Vibration(f64),
     Battery(BatteryFault),
-    /// One gust; lasts four seconds unless a time is given.
+    /// One gust. It lasts four seconds unless a time is given.
     Gust(Wind),
     Wind(Wind),
     /// An impulse, N·s.
@@ -151,7 +151,7 @@ pub enum Fault {
 }
 
 impl Fault {
-    /// Which kind it is.
+    /// Returns the kind of the fault.
     pub fn kind(&self) -> FaultKind {
         match self {
             Self::RxLoss => FaultKind::RxLoss,
@@ -185,12 +185,12 @@ impl Fault {
         }
     }
 
-    /// The name on the command line.
+    /// Returns the name on the command line.
     pub fn name(&self) -> &'static str {
         self.kind().into()
     }
 
-    /// The value, for those who show it.
+    /// Returns the value for display.
     pub fn value(&self) -> FaultValue {
         match *self {
             Self::RxLoss | Self::GpsLoss | Self::GpsFreeze | Self::MagOff | Self::ImuFreeze | Self::Stall => {
@@ -223,12 +223,12 @@ impl Fault {
         }
     }
 
-    /// Whether the fault acts at once and has no end.
+    /// Returns `true` if the fault acts at once and has no end.
     pub fn is_instant(&self) -> bool {
         matches!(self, Self::Push(..) | Self::Teleport(_))
     }
 
-    /// Whether the fault acts on the link to an external simulator.
+    /// Returns `true` if the fault acts on the link to an external simulator.
     pub fn needs_link(&self) -> bool {
         matches!(
             self,
@@ -236,13 +236,15 @@ impl Fault {
         )
     }
 
-    /// Whether the fault can act when a simulator outside moves the craft: it is on the way into the firmware.
+    /// Returns `true` if the fault can act while an external simulator moves the craft. Such a fault acts on the way
+    /// into the firmware.
     pub fn is_on_the_way_in(&self) -> bool {
         self.needs_link() || matches!(self, Self::RxLoss | Self::GpsLoss)
     }
 
-    /// Whether the fault does something when the flight controller runs outside: it is told of motion, position, pressure and
-    /// RC, but neither of the magnetic field nor of the battery, which can act by weak motors only.
+    /// Returns `true` if the fault has an effect on a remote flight controller. That controller gets motion,
+    /// position, pressure and RC, but neither the magnetic field nor the battery. The battery can act only by weak
+    /// motors.
     pub fn acts_on_controller_outside(&self, switches: &Switches) -> bool {
         match self {
             Self::MagOff | Self::MagBias(_) => false,
@@ -251,8 +253,8 @@ impl Fault {
         }
     }
 
-    /// What distinguishes faults that can be on together; of faults with the same key the later takes the place of the
-    /// earlier.
+    /// Returns the key that distinguishes faults that can be active together. A later fault replaces an earlier one
+    /// with the same key.
     pub fn key(&self) -> FaultKey {
         FaultKey { kind: self.kind(), motor: self.motor() }
     }
@@ -265,7 +267,7 @@ impl Fault {
     }
 }
 
-/// A kind of fault, for motor faults perhaps of one motor only.
+/// A kind of fault, for motor faults optionally of one motor only.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FaultKey {
     kind: FaultKind,
@@ -273,7 +275,7 @@ pub struct FaultKey {
 }
 
 impl FaultKey {
-    /// Whether a fault is of this kind: without a motor, those of all motors are.
+    /// Returns `true` if a fault is of this kind. A key without a motor covers the faults of all motors.
     pub fn covers(&self, fault: &Fault) -> bool {
         self.kind == fault.kind() && (self.motor.is_none() || self.motor == fault.motor())
     }
@@ -292,10 +294,10 @@ impl fmt::Display for Fault {
     }
 }
 
-/// When a fault begins.
+/// The beginning of a fault.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum FaultStart {
-    /// Seconds after the autopilot engaged for the first time since boot or reset.
+    /// Seconds after the first engagement of the autopilot since boot or reset.
     Engagement(f64),
     Boot(f64),
 }
@@ -305,7 +307,7 @@ pub enum FaultStart {
 pub struct ScheduledFault {
     pub fault: Fault,
     pub start: FaultStart,
-    /// For how many seconds; to the end when `None`.
+    /// Duration in seconds; `None` lasts to the end.
     pub for_s: Option<f64>,
 }
 
@@ -328,18 +330,19 @@ impl fmt::Display for ScheduledFault {
     }
 }
 
-/// Whether a simulator outside moves the craft, over a link for faults to act on.
+/// The link to an external simulator that moves the craft, if there is one for faults to act on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum FaultLink {
-    /// Everything is embedded: link faults are refused.
+    /// Everything is embedded, so link faults are refused.
     #[default]
     Embedded,
-    /// One does: only faults on the way into the firmware are allowed, the rest of the world is its.
+    /// An external simulator moves the craft. Only faults on the way into the firmware are allowed; the rest of the
+    /// world belongs to the simulator.
     External,
 }
 
 impl FaultLink {
-    /// Whether a fault has something to act on.
+    /// Checks that a fault has something to act on.
     pub(super) fn allows(self, fault: &Fault) -> Result<(), WorldError> {
         match self {
             Self::Embedded if fault.needs_link() => Err(WorldError::NeedsLink(fault.kind())),

@@ -1,11 +1,11 @@
-//! The ground: the plane that touches its surface below the craft, legs as springs and dampers, friction that holds.
+//! The ground: its tangent plane below the craft, legs as springs and dampers, static friction.
 //!
-//! A point at a distance d below the plane is pushed along its normal by `max(0, k·d − c·v)`, v its speed out of the
-//! ground. Along the plane it slides with Coulomb friction,
-//! regularised below a small speed; a point that has become slow is latched where it stands and held there by the same
-//! spring and damper until the pull exceeds the friction, so that a craft at rest does not creep in the wind.
+//! A point at a distance d below the plane is pushed along its normal by `max(0, k·d − c·v)`, where v is its speed
+//! out of the ground. Along the plane it slides with Coulomb friction, regularised below a small speed. A point that
+//! has become slow is latched at its place. The same spring and damper hold it there until the pull exceeds the
+//! friction, so that a craft at rest does not creep in the wind.
 //!
-//! The hull is the four rotor hubs: it carries load like the legs, and touching with it is a crash.
+//! The hull is the four rotor hubs. It carries load like the legs, and ground contact of the hull is a crash.
 
 use arrayvec::ArrayVec;
 use nalgebra::{Matrix3, Vector2, Vector3};
@@ -14,15 +14,16 @@ use super::airframe::{Airframe, MAX_LEGS, ROTORS};
 use super::body::{BodyState, Loads};
 use super::surface::{Surface, TangentPlane};
 
-/// Most points that can touch the ground: legs first, then the hull.
+/// The maximum number of contact points: legs first, then the hull.
 const MAX_POINTS: usize = MAX_LEGS + ROTORS;
-/// An upside-down craft with its centre of mass below this height lies on its hull, m.
+/// An upside-down craft with its centre of mass below this height is on its hull, m.
 const INVERTED_HULL_M: f64 = 0.05;
 
-/// Where each contact point is latched to the ground, metres east and north; `None` while it slides or is in the air.
+/// The places at which the contact points are latched to the ground, metres east and north; `None` while a point
+/// slides or is in the air.
 pub type ContactAnchors = [Option<Vector2<f64>>; MAX_POINTS];
 
-/// No contact point is held by friction.
+/// The anchors of a craft that friction does not hold at any point.
 pub const NO_ANCHORS: ContactAnchors = [None; MAX_POINTS];
 
 /// The contact model of one airframe.
@@ -38,15 +39,15 @@ pub struct Ground {
     surface: Surface,
 }
 
-/// Which points are on the ground.
+/// The points that are on the ground.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GroundContact {
-    /// At least one leg carries load.
+    /// `true` if at least one leg carries load.
     pub any_leg: bool,
-    /// Every leg carries load.
+    /// `true` if every leg carries load.
     pub all_legs: bool,
     pub hull: bool,
-    /// Distance of the lowest point from the ground, m; high up, a lower bound of it.
+    /// Distance of the lowest point from the ground, m; high up, a lower bound.
     pub clearance_m: f64,
     /// The ground below the craft.
     pub plane: TangentPlane,
@@ -60,7 +61,7 @@ struct Point {
 }
 
 impl Ground {
-    /// The contact model of an airframe.
+    /// Returns the contact model of an airframe.
     pub fn new(airframe: &Airframe) -> Self {
         let points: ArrayVec<_, MAX_POINTS> =
             airframe.legs_m.iter().chain(&airframe.rotor_positions_m).copied().collect();
@@ -77,22 +78,22 @@ impl Ground {
         }
     }
 
-    /// Gives the ground this shape.
+    /// Sets the shape of the ground.
     pub(super) fn set_surface(&mut self, surface: Surface) {
         self.surface = surface;
     }
 
-    /// The shape of the ground.
+    /// Returns the shape of the ground.
     pub fn surface(&self) -> &Surface {
         &self.surface
     }
 
-    /// Distance of the centre of mass from the ground above which nothing can contact, m.
+    /// Returns the distance of the centre of mass from the ground above which no contact is possible, m.
     pub fn reach_m(&self) -> f64 {
         self.reach
     }
 
-    /// Contact force and torque on the body.
+    /// Returns the contact force and torque on the body.
     pub(super) fn loads(
         &self,
         pos: &Vector3<f64>,
@@ -122,7 +123,7 @@ impl Ground {
         Loads { force_flu: r.tr_mul(&force), torque_flu: r.tr_mul(&torque) }
     }
 
-    /// Latches points that have come to rest and frees those that are pulled too hard or have left the ground.
+    /// Latches points that have come to rest, and frees those that are pulled too hard or have left the ground.
     pub(super) fn update_anchors(&self, state: &BodyState, anchors: &mut ContactAnchors) {
         let plane = self.surface.tangent_at(&state.pos_enu);
         if plane.distance_m(&state.pos_enu) >= self.reach {
@@ -145,7 +146,7 @@ impl Ground {
         }
     }
 
-    /// What touches the ground in a state.
+    /// Returns the ground contact in a state.
     pub fn contact(&self, state: &BodyState) -> GroundContact {
         let plane = self.surface.tangent_at(&state.pos_enu);
         let centre_m = plane.distance_m(&state.pos_enu);
@@ -197,7 +198,7 @@ impl Ground {
             return self.holding_force(plane, point, anchor).cap_magnitude(limit);
         }
         let vel = plane.along(&point.vel);
-        // min(1, v/v_full) / v, without dividing by zero.
+        // This is min(1, v/v_full) / v, without a division by zero.
         vel * (-limit / vel.norm().max(self.full_friction_mps))
     }
 

@@ -8,7 +8,7 @@ use super::airframe::{Airframe, ROTORS};
 /// Number of stages of the integrator.
 pub(super) const STAGES: usize = 4;
 
-/// The lag over one step: how much of the gap to the target is closed at each stage and at the end.
+/// The lag over one step: the share of the gap to the target that is closed at each stage and at the end.
 #[derive(Debug, Clone, Copy)]
 struct Lag {
     closed: [f64; STAGES],
@@ -45,12 +45,12 @@ pub(super) struct RotorSweep {
 }
 
 impl Motors {
-    /// Motors stepped by `h` seconds.
+    /// Returns the motors for steps of `h` seconds.
     pub(super) fn new(airframe: &Airframe, h: f64) -> Self {
         Self { up: Lag::new(airframe.motor_tau_up_s, h), down: Lag::new(airframe.motor_tau_down_s, h) }
     }
 
-    /// One step from the given rotor speeds towards the target speeds, rad/s.
+    /// Computes one step from the given rotor speeds towards the target speeds, rad/s.
     pub(super) fn sweep(&self, speed: &[f64; ROTORS], target: &[f64; ROTORS]) -> RotorSweep {
         let mut sweep =
             RotorSweep { speed: [*speed; STAGES], acceleration: [[0.0; ROTORS]; STAGES], end: *speed };

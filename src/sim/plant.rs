@@ -1,4 +1,4 @@
-//! The rigid body and what pushes it: rotors, drag, ground, gravity.
+//! The rigid body and its loads: rotors, drag, ground, gravity.
 //!
 //! With the air-relative velocity `va = Rᵀ(v − w)` in body axes, rotor speeds Ω, spin signs s, efficiencies e and the
 //! density ratio ρ (thrust after momentum theory's first-order inflow loss, in-plane drag linear in Ω and airspeed,
@@ -22,7 +22,7 @@ use super::ground::{ContactAnchors, Ground};
 use super::motors::{Motors, RotorSweep};
 use super::surface::Surface;
 
-/// The constants of the equations of motion, prepared for one step size.
+/// The constants of the equations of motion, computed for one step size.
 #[derive(Debug, Clone)]
 pub struct Plant {
     h: f64,
@@ -41,14 +41,14 @@ pub struct Plant {
     body_drag: Vector3<f64>,
     angular_damping: Vector3<f64>,
     efficiency: [f64; ROTORS],
-    /// Rotor radius where ground effect acts, m.
+    /// Rotor radius if ground effect is on, m.
     ground_effect_radius: Option<f64>,
     motors: Motors,
     ground: Ground,
 }
 
 impl Plant {
-    /// The plant of an airframe stepped by `h` seconds, undamaged and without payload.
+    /// Returns the plant of an airframe with steps of `h` seconds, undamaged and without payload.
     pub fn new(airframe: &Airframe, h: f64) -> Self {
         let rotors = &airframe.rotor_positions_m;
         Self {
@@ -79,23 +79,23 @@ impl Plant {
         self.efficiency = efficiency;
     }
 
-    /// Thrust efficiency of each rotor, 0…1.
+    /// Returns the thrust efficiency of each rotor, 0…1.
     pub fn efficiency(&self) -> &[f64; ROTORS] {
         &self.efficiency
     }
 
-    /// Switches the thrust gain near the ground on (for rotors of the given radius, m) or off.
+    /// Switches the thrust gain near the ground on, for rotors with the given radius (m), or off.
     pub fn set_ground_effect(&mut self, rotor_radius_m: Option<f64>) {
         self.ground_effect_radius = rotor_radius_m;
     }
 
-    /// Gives the ground this shape.
+    /// Sets the shape of the ground.
     pub(super) fn set_surface(&mut self, surface: Surface) {
         self.ground.set_surface(surface);
     }
 
-    /// Hangs a point mass (kg) `depth_m` below the centre of mass, in place of any earlier one. The centre of mass is
-    /// taken to stay where it is.
+    /// Hangs a point mass (kg) `depth_m` below the centre of mass. It replaces any earlier one. The model keeps the
+    /// centre of mass at its place.
     pub fn set_payload(&mut self, airframe: &Airframe, payload_kg: f64, depth_m: f64) {
         let swing = payload_kg * depth_m * depth_m;
         self.mass = airframe.mass_kg + payload_kg;
@@ -103,17 +103,17 @@ impl Plant {
         self.inertia_inv = self.inertia.map(f64::recip);
     }
 
-    /// Mass with payload, kg.
+    /// Returns the mass with payload, kg.
     pub fn mass_kg(&self) -> f64 {
         self.mass
     }
 
-    /// The legs' and hull's part of the model.
+    /// Returns the model of the legs and the hull.
     pub fn ground(&self) -> &Ground {
         &self.ground
     }
 
-    /// Loads in a state of the craft, for the accelerometer and as the first stage of the next step.
+    /// Returns the loads in a state of the craft, for the accelerometer and as the first stage of the next step.
     pub fn loads(
         &self,
         state: &BodyState,
@@ -125,8 +125,8 @@ impl Plant {
         self.stage_loads(&stage, &rotation(&stage.q), rotors, air, anchors)
     }
 
-    /// One step of classical Runge–Kutta with motor targets (rad/s) and air held; `first` are the loads in the
-    /// present state. ContactAnchors are latched or freed after the step.
+    /// Makes one step of classical Runge–Kutta with constant motor targets (rad/s) and air. `first` are the loads in
+    /// the present state. The contact anchors are latched or freed after the step.
     pub fn step(
         &self,
         state: &mut BodyState,
@@ -208,7 +208,7 @@ impl Plant {
         let plane = self.ground.surface().tangent_at(&stage.pos);
         let height_m = plane.distance_m(&stage.pos);
         let boost = self.ground_effect(height_m, &r.tr_mul(plane.normal()));
-        // Sums over the rotors of thrust, speed and their moments.
+        // The sums over the rotors of thrust, speed and their moments.
         let (mut thrust, mut thrust_x, mut thrust_y, mut drag_torque) = (0.0, 0.0, 0.0, 0.0);
         let (mut speed, mut speed_x, mut speed_y, mut speed_z) = (0.0, 0.0, 0.0, 0.0);
         for i in 0..ROTORS {
@@ -242,8 +242,8 @@ impl Plant {
         Loads { force_flu: force, torque_flu: torque }
     }
 
-    /// Thrust gain of each rotor from the ground below it: the centre of mass is `height_m` above the ground, whose normal
-    /// in body axes is `up`.
+    /// Returns the thrust gain of each rotor from the ground below it. The centre of mass is `height_m` above the
+    /// ground, whose normal in body axes is `up`.
     fn ground_effect(&self, height_m: f64, up: &Vector3<f64>) -> [f64; ROTORS] {
         let Some(radius) = self.ground_effect_radius else { return [1.0; ROTORS] };
         std::array::from_fn(|i| {
@@ -253,8 +253,8 @@ impl Plant {
     }
 }
 
-/// Thrust near the ground over thrust far from it, after Cheeseman and Bennett: 1/(1 − (R/4z)²), for a rotor of
-/// radius R at height z (m), z not below R/2.
+/// Returns the thrust near the ground over the thrust far from it, after Cheeseman and Bennett: 1/(1 − (R/4z)²), for
+/// a rotor of radius R at height z (m), where z is at least R/2.
 pub fn ground_effect_factor(rotor_radius_m: f64, height_m: f64) -> f64 {
     let ratio = rotor_radius_m / (4.0 * height_m.max(0.5 * rotor_radius_m));
     1.0 / (1.0 - ratio * ratio)

@@ -1,12 +1,13 @@
 //! Randomness: one independent ChaCha8 stream per consumer, all from one seed.
 //!
-//! A consumer that draws more, less or not at all leaves the numbers of every other consumer as they are.
+//! A consumer that draws more, fewer or no numbers does not change the numbers of any other consumer.
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
-/// Who draws. The discriminant is the stream number of the generator: changing one changes every flight.
+/// The consumer of random numbers. The discriminant is the stream number of the generator. Changing one changes every
+/// flight.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u64)]
 pub enum Stream {
@@ -40,7 +41,7 @@ pub enum Stream {
 }
 
 impl Stream {
-    /// The generator of this consumer for a seed.
+    /// Returns the generator of this consumer for a seed.
     pub fn rng(self, seed: u64) -> ChaCha8Rng {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         rng.set_stream(self as u64);
@@ -57,7 +58,7 @@ impl Normals {
         Self(stream.rng(seed))
     }
 
-    /// One deviate of mean 0 and standard deviation 1.
+    /// Returns one deviate with mean 0 and standard deviation 1.
     pub(super) fn next(&mut self) -> f64 {
         StandardNormal.sample(&mut self.0)
     }
@@ -69,7 +70,7 @@ impl Normals {
     }
 }
 
-/// A first-order Gauss–Markov process: an error that wanders with a time constant and keeps a standard deviation.
+/// A first-order Gauss–Markov process: an error that wanders with a time constant and a constant standard deviation.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct GaussMarkov {
     keep: f64,
@@ -77,18 +78,19 @@ pub(super) struct GaussMarkov {
 }
 
 impl GaussMarkov {
-    /// The process of stationary standard deviation `sigma` and time constant `tau_s`, updated every `dt` seconds.
+    /// Returns the process with stationary standard deviation `sigma` and time constant `tau_s`, updated every `dt`
+    /// seconds.
     pub(super) fn stationary(sigma: f64, tau_s: f64, dt: f64) -> Self {
         let keep = (-dt / tau_s).exp();
         Self { keep, drive: sigma * (1.0 - keep * keep).sqrt() }
     }
 
-    /// The process driven by white noise of density `walk` (unit per √s), time constant `tau_s`.
+    /// Returns the process with time constant `tau_s`, driven by white noise of density `walk` (unit per √s).
     pub(super) fn random_walk(walk: f64, tau_s: f64, dt: f64) -> Self {
         Self::stationary(walk * (0.5 * tau_s).sqrt(), tau_s, dt)
     }
 
-    /// The next value after `value`, with a unit normal deviate.
+    /// Returns the next value after `value`, with a unit normal deviate.
     pub(super) fn next(&self, value: f64, normal: f64) -> f64 {
         self.keep * value + self.drive * normal
     }

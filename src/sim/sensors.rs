@@ -1,8 +1,8 @@
-//! The sensors: from the true state to what the flight controller is given.
+//! The sensors: they turn the true state into the inputs of the flight controller.
 //!
-//! Inertial samples come with every step; everything else on slow ticks of 10 ms: magnetometer each, barometer and
-//! battery every second, GPS at its own rate. With [`Noise::None`] all values are exact and without latency, and no
-//! random number is drawn.
+//! Inertial samples come with every step, everything else on slow ticks of 10 ms: the magnetometer on each tick,
+//! barometer and battery on every second one, GPS at its own rate. With [`Noise::None`] all values are exact and
+//! without latency, and no random number is drawn.
 
 use nalgebra::Vector3;
 
@@ -28,9 +28,9 @@ use imu::Imu;
 use magnetometer::Magnetometer;
 pub use magnetometer::{SITL_DECLINATION_DEG, magnetic_field_enu};
 
-/// Barometer and battery are sampled every so many slow ticks: 50 Hz.
+/// The number of slow ticks between two samples of barometer and battery: 50 Hz.
 const FIFTY_HZ_TICKS: u64 = 2;
-/// Noise of voltage (V) and current (A) readings, standard deviation.
+/// The noise of voltage (V) and current (A) readings, standard deviation.
 const VOLTAGE_SIGMA_V: f64 = 0.02;
 const CURRENT_SIGMA_A: f64 = 0.1;
 
@@ -46,12 +46,12 @@ pub(super) struct Sensors {
     local: LocalFrame,
 }
 
-/// What a sensor may look at.
+/// The inputs of a sensor.
 pub(super) struct SensorInputs<'a> {
     pub truth: &'a Truth,
     pub effects: &'a Effects,
     pub switches: &'a Switches,
-    /// Number of the slow tick, when the present instant is one.
+    /// Number of the slow tick, if the present instant is one.
     pub slow_tick: Option<u64>,
     /// Angular acceleration, FLU, rad/s².
     pub rate_dot_flu: Vector3<f64>,
@@ -71,18 +71,18 @@ impl Sensors {
         }
     }
 
-    /// The local frame the positions are measured in.
+    /// Returns the local frame in which the positions are measured.
     pub(super) fn local(&self) -> &LocalFrame {
         &self.local
     }
 
-    /// Forgets the past of what comes late: the craft has always been here.
+    /// Forgets the history of delayed sensors, as if the craft had always been here.
     pub(super) fn settle(&mut self, pos_enu: Vector3<f64>, vel_enu: Vector3<f64>) {
         self.gps.settle(pos_enu, vel_enu);
         self.barometer.settle();
     }
 
-    /// Reads everything that is due at the present instant.
+    /// Reads every sensor that is due at the present instant.
     pub(super) fn read(&mut self, inputs: &SensorInputs<'_>, frame: &mut SensorFrame) {
         let truth = inputs.truth;
         frame.time = truth.time;
@@ -126,7 +126,8 @@ impl Sensors {
     }
 }
 
-/// Rounds to a multiple of `1/per_unit`, as a converter does; a cheap exact rounding for sizes below 2⁵¹.
+/// Rounds to a multiple of `1/per_unit`, as a converter does. This is a cheap exact rounding for magnitudes below
+/// 2⁵¹.
 fn quantise(value: f64, per_unit: f64) -> f64 {
     const SHIFT: f64 = 6_755_399_441_055_744.0; // 1.5·2⁵²: adding it leaves no bits below the unit.
     ((value * per_unit + SHIFT) - SHIFT) / per_unit

@@ -1,13 +1,13 @@
-//! The shape of the ground: how high it lies at a place, and the plane that touches it there.
+//! The shape of the ground: its height at a place, and its tangent plane there.
 
 use nalgebra::{Vector2, Vector3};
 
 use super::value_text::number;
 
-/// Steepest ground, m in 100 m: a craft still stands on it and may arm.
+/// The steepest ground, m in 100 m. A craft does not slide on it and may arm.
 pub(super) const MAX_RISE_M: f64 = 40.0;
 
-/// The shape of the ground. Home lies on it, at height zero.
+/// The shape of the ground. Home is on it, at height zero.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Surface {
     #[default]
@@ -20,22 +20,22 @@ pub enum Surface {
 pub struct Slope {
     rise_m: f64,
     bearing_deg: f64,
-    /// Metres up in a metre east and north.
+    /// Rise in metres per metre east and north.
     gradient: Vector2<f64>,
     normal: Vector3<f64>,
 }
 
-/// The plane that touches the ground at a place.
+/// The tangent plane of the ground at a place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TangentPlane {
     /// A point of the plane, ENU, m.
     point: Vector3<f64>,
-    /// The unit vector that points up from it.
+    /// Unit vector that points up from it.
     normal: Vector3<f64>,
 }
 
 impl Slope {
-    /// A plane that rises by `rise_m` in 100 m towards `bearing_deg`, degrees from north.
+    /// Returns a plane that rises by `rise_m` in 100 m towards `bearing_deg`, degrees from north.
     pub fn new(rise_m: f64, bearing_deg: f64) -> Self {
         let (sin, cos) = bearing_deg.to_radians().sin_cos();
         let gradient = Vector2::new(sin, cos) * (rise_m / 100.0);
@@ -65,7 +65,7 @@ impl Surface {
         }
     }
 
-    /// Height of the ground at a place east and north of home, m.
+    /// Returns the height of the ground at a place east and north of home, m.
     pub fn elevation_m(&self, place: &Vector2<f64>) -> f64 {
         match self {
             Self::Flat => 0.0,
@@ -73,7 +73,8 @@ impl Surface {
         }
     }
 
-    /// The plane that touches the ground below or above a point. Exact for every point where the ground is a plane.
+    /// Returns the tangent plane of the ground below or above a point. It is exact for every point where the ground
+    /// is a plane.
     pub fn tangent_at(&self, _point: &Vector3<f64>) -> TangentPlane {
         let normal = match self {
             Self::Flat => Vector3::z(),
@@ -82,7 +83,7 @@ impl Surface {
         TangentPlane { point: Vector3::zeros(), normal }
     }
 
-    /// Whether every number is one that [`Self::parse`] takes.
+    /// Returns rise and bearing, for a check that [`Self::parse`] would take them.
     pub(super) fn numbers(&self) -> (f64, f64) {
         match self {
             Self::Flat => (0.0, 0.0),
@@ -92,7 +93,7 @@ impl Surface {
 }
 
 impl std::fmt::Display for Surface {
-    /// As [`Surface::parse`] reads it.
+    /// Writes the form that [`Surface::parse`] reads.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Flat => f.write_str("flat"),
@@ -105,22 +106,22 @@ impl TangentPlane {
     /// Level ground at height zero.
     pub const LEVEL: Self = Self { point: Vector3::new(0.0, 0.0, 0.0), normal: Vector3::new(0.0, 0.0, 1.0) };
 
-    /// Unit vector that points up from the plane.
+    /// Returns the unit vector that points up from the plane.
     pub fn normal(&self) -> &Vector3<f64> {
         &self.normal
     }
 
-    /// Distance of a point from the plane, negative below it, m.
+    /// Returns the distance of a point from the plane, negative below it, m.
     pub fn distance_m(&self, point: &Vector3<f64>) -> f64 {
         (point - self.point).dot(&self.normal)
     }
 
-    /// The part of a vector that lies in the plane.
+    /// Returns the part of a vector that is in the plane.
     pub fn along(&self, vector: &Vector3<f64>) -> Vector3<f64> {
         vector - self.normal * vector.dot(&self.normal)
     }
 
-    /// The point of the plane at a place east and north of home.
+    /// Returns the point of the plane at a place east and north of home.
     pub fn point_at(&self, place: &Vector2<f64>) -> Vector3<f64> {
         let from = place - self.point.xy();
         let up = self.point.z - self.normal.xy().dot(&from) / self.normal.z;

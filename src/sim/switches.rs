@@ -7,24 +7,24 @@ use super::surface::{MAX_RISE_M, Surface};
 use crate::did_you_mean;
 use crate::sim::value_text::{ParseError, number, on_off};
 
-/// How the mean wind changes with height.
+/// The change of the mean wind with height.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::Display)]
 #[strum(serialize_all = "lowercase")]
 pub enum WindProfile {
-    /// The stated speed from 10 m up, less below (logarithmic law over short grass).
+    /// The stated speed from 10 m up, less below it (logarithmic law over short grass).
     #[default]
     Log,
     /// The stated speed at every height.
     Flat,
 }
 
-/// How air density changes with height.
+/// The change of air density with height.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::Display)]
 #[strum(serialize_all = "lowercase")]
 pub enum AirDensity {
     #[default]
     Isa,
-    /// The density at which the airframe's coefficients are stated, everywhere.
+    /// The density for which the airframe's coefficients are given, everywhere.
     Reference,
 }
 
@@ -33,27 +33,27 @@ pub enum AirDensity {
 pub struct Switches {
     /// Mean wind over height.
     pub wind_profile: WindProfile,
-    /// Whether battery voltage limits rotor speed.
+    /// `true` if battery voltage limits rotor speed.
     pub battery_sag: bool,
-    /// Battery capacity in place of the airframe's, A·h.
+    /// Battery capacity instead of the airframe's, A·h.
     pub battery_capacity_ah: Option<f64>,
-    /// Whether rotors gain thrust near the ground.
+    /// `true` if rotors gain thrust near the ground.
     pub ground_effect: bool,
     /// The shape of the ground.
     pub ground: Surface,
-    /// Multiplies the turbulence velocities.
+    /// Factor on the turbulence velocities.
     pub turbulence_scale: f64,
     /// Rise and fall time of a gust, s.
     pub gust_rise_s: f64,
     /// Air density over height.
     pub air_density: AirDensity,
-    /// Vibration that the accelerometer shows at hover speed, m/s² rms per axis.
+    /// Vibration that the accelerometer measures at hover speed, m/s² rms per axis.
     pub vibration_mps2: f64,
-    /// Whether inertial sensors have turn-on bias and drift, and the barometer drifts.
+    /// `true` if the inertial sensors have turn-on bias and drift, and the barometer drifts.
     pub sensor_bias: bool,
     /// Declination of the magnetic field, degrees east.
     pub declination_deg: f64,
-    /// How well the GPS measures, with real noise.
+    /// Quality of the GPS, with real noise.
     pub gps: GpsGrade,
 }
 
@@ -133,7 +133,7 @@ impl Switches {
     /// Sets one switch from `NAME=VALUE`.
     ///
     /// # Errors
-    /// When the name is unknown or the value is not allowed.
+    /// Fails if the name is unknown or the value is not allowed.
     pub fn set(&mut self, text: &str) -> Result<(), ParseError> {
         let error = |problem: String| ParseError::new("world switch", text, problem);
         let Some((name, value)) = text.split_once('=') else {
@@ -153,7 +153,7 @@ impl Switches {
         self.assign(name, value).map_err(|problem| error(format!("{problem}; allowed are {}", info.values)))
     }
 
-    /// The switches that differ from the default, as [`Self::set`] takes them.
+    /// Returns the switches that differ from the default, in the form that [`Self::set`] takes.
     pub fn changed(&self) -> Vec<String> {
         let usual = Self::default();
         let on_off = |on: bool| if on { "on" } else { "off" };
@@ -191,7 +191,7 @@ impl Switches {
         all.into_iter().filter(|(differs, _)| *differs).map(|(_, text)| text).collect()
     }
 
-    /// Whether all numbers are in the ranges of [`SWITCHES`].
+    /// Checks that all numbers are in the ranges of [`SWITCHES`].
     pub(super) fn check(&self) -> Result<(), WorldError> {
         let (rise_m, bearing_deg) = self.ground.numbers();
         in_range("rise of the ground", rise_m, 0.0, MAX_RISE_M)?;

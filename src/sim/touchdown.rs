@@ -1,4 +1,4 @@
-//! Touchdown detector: first contact, settled touchdown, crash.
+//! The touchdown detector: first contact, settled touchdown, crash.
 
 use crate::signals::SimTime;
 
@@ -7,38 +7,38 @@ use super::event::WorldEventKind;
 use super::ground::GroundContact;
 use crate::telemetry::CrashCause;
 
-/// A touch counts as the end of a flight after this long in the air, s, or this much clearance, m.
+/// A touch ends a flight after this time in the air, s, or this much clearance, m.
 const FLIGHT_S: f64 = 0.5;
 const FLIGHT_CLEARANCE_M: f64 = 0.05;
-/// Load on all legs for this long at less than this speed is a touchdown.
+/// Load on all legs for this time, s, below this speed, m/s, is a touchdown.
 const SETTLED_S: f64 = 0.2;
 const SETTLED_MPS: f64 = 0.2;
 /// A contact faster than this, into the ground or along it, is a crash, m/s.
 const CRASH_MPS: f64 = 3.0;
 
-/// What the detector has seen so far.
+/// The state of the detector.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Phase {
     /// On the ground since the start or the last touchdown.
     Standing,
-    /// No leg touches since `since`.
+    /// No leg has touched since `since`.
     Airborne { since: SimTime, cleared: bool },
-    /// Touched, not settled; `loaded` is when all legs began to carry load.
+    /// Touched, not settled. `loaded` is the time at which all legs began to carry load.
     Settling { impact_mps: f64, peak_mps2: f64, loaded: Option<SimTime> },
 }
 
-/// Finds contact and touchdown from the load on the legs.
+/// Detects contact and touchdown from the load on the legs.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct TouchdownDetector {
     phase: Phase,
 }
 
 impl TouchdownDetector {
-    /// A craft that stands.
+    /// The detector of a craft on the ground.
     pub(super) const STANDING: Self = Self { phase: Phase::Standing };
 
-    /// One step: what touches now, the state before the step (whose velocity the ground has not yet changed) and after
-    /// it, and the size of the specific force now, m/s².
+    /// Takes one step: the present contact, the state before the step (whose velocity the ground has not changed yet)
+    /// and after it, and the magnitude of the present specific force, m/s².
     pub(super) fn update(
         &mut self,
         now: SimTime,
@@ -88,13 +88,14 @@ impl TouchdownDetector {
         }
     }
 
-    /// Forgets the flight: the craft was put somewhere else.
+    /// Forgets the flight, since the craft was moved to another place.
     pub(super) fn set_airborne(&mut self, now: SimTime) {
         self.phase = Phase::Airborne { since: now, cleared: true };
     }
 }
 
-/// Whether touching the ground like this is a crash: `new_contact` tells that this step is the first contact.
+/// Returns the cause of a crash if this ground contact is one. `new_contact` is `true` if this step is the first
+/// contact.
 pub(super) fn crash_cause(
     contact: GroundContact,
     new_contact: bool,

@@ -1,4 +1,4 @@
-//! What is really so: the state of the craft as no sensor shows it.
+//! The true state of the craft, which no sensor measures exactly.
 
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -6,7 +6,7 @@ use crate::signals::SimTime;
 
 use super::airframe::ROTORS;
 
-/// The true state of the craft at one instant. World ENU with home on the ground as origin, body FLU.
+/// The true state of the craft at one instant: world ENU with home on the ground as origin, body FLU.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Truth {
     pub time: SimTime,
@@ -20,20 +20,20 @@ pub struct Truth {
     pub rate_flu: Vector3<f64>,
     /// Rotor speeds M1…M4, rad/s.
     pub rotor_speeds: [f64; ROTORS],
-    /// Motor commands M1…M4 that were accepted last, 0…1.
+    /// Last accepted motor commands M1…M4, 0…1.
     pub motor_command: [f64; ROTORS],
     /// Specific force at the centre of mass, m/s².
     pub specific_force_flu: Vector3<f64>,
     /// Wind at the craft (the direction it blows to), m/s.
     pub wind_enu: Vector3<f64>,
     pub battery: BatteryTruth,
-    /// Height of the ground below the craft above that at home, m.
+    /// Height of the ground below the craft relative to the ground at home, m.
     pub ground_m: f64,
-    /// At least one leg carries load.
+    /// `true` if at least one leg carries load.
     pub on_ground: bool,
-    /// The craft has crashed: its rotors have stopped for good, until a reset.
+    /// `true` after a crash. The rotors have stopped until a reset.
     pub crashed: bool,
-    /// The integration has failed; the state is the last sane one and no longer changes.
+    /// `true` if the integration has failed. The state is then the last sane one and no longer changes.
     pub diverged: bool,
 }
 
@@ -48,37 +48,37 @@ pub struct BatteryTruth {
     pub drawn_mah: f64,
     /// Energy drawn since the start, W·h.
     pub drawn_wh: f64,
-    /// What a full pack holds, mA·h.
+    /// Capacity of a full pack, mA·h.
     pub capacity_mah: f64,
 }
 
 impl Truth {
-    /// Heading of the nose, degrees clockwise from north, 0…360.
+    /// Returns the heading of the nose, degrees clockwise from north, 0…360.
     pub fn heading_deg(&self) -> f64 {
         let nose = self.attitude * Vector3::x();
         nose.x.atan2(nose.y).to_degrees().rem_euclid(360.0)
     }
 
-    /// Roll, right wing down positive, degrees.
+    /// Returns the roll, right wing down positive, degrees.
     pub fn roll_deg(&self) -> f64 {
         let up = self.attitude.inverse_transform_vector(&Vector3::z());
         up.y.atan2(up.z).to_degrees()
     }
 
-    /// Pitch, nose up positive, degrees.
+    /// Returns the pitch, nose up positive, degrees.
     pub fn pitch_deg(&self) -> f64 {
         let nose = self.attitude * Vector3::x();
         nose.z.clamp(-1.0, 1.0).asin().to_degrees()
     }
 }
 
-/// The attitude of a level craft with the given heading (degrees clockwise from north), body FLU → ENU.
+/// Returns the attitude of a level craft with the given heading (degrees clockwise from north), body FLU → ENU.
 pub fn level_attitude(heading_deg: f64) -> UnitQuaternion<f64> {
     UnitQuaternion::from_axis_angle(&Vector3::z_axis(), (90.0 - heading_deg).to_radians())
 }
 
-/// The attitude from heading (clockwise from north), pitch (nose up positive) and roll (right positive), degrees,
-/// applied in this order; body FLU → ENU.
+/// Returns the attitude from heading (clockwise from north), pitch (nose up positive) and roll (right positive),
+/// degrees, applied in this order; body FLU → ENU.
 pub fn attitude(heading_deg: f64, pitch_up_deg: f64, roll_right_deg: f64) -> UnitQuaternion<f64> {
     // In FLU a positive turn about y puts the nose down and one about x puts the right side down.
     level_attitude(heading_deg)

@@ -1,6 +1,6 @@
-//! What the parsers of the world's command-line values share: the error and the reading of numbers.
+//! The common parts of the parsers of the world's command-line values: the error and the reading of numbers.
 
-/// A value that cannot be read: what it is, the text, and what would be right.
+/// A value that cannot be read: its meaning, the text, and the problem.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{what} {text:?}: {problem}")]
 pub struct ParseError {
@@ -14,13 +14,13 @@ impl ParseError {
         Self { what, text: text.to_owned(), problem: problem.into() }
     }
 
-    /// What is wrong, for a message that shows the text already.
+    /// Returns the problem, for a message that already shows the text.
     pub fn problem(&self) -> &str {
         &self.problem
     }
 }
 
-/// A finite number, or what is wrong with it.
+/// Reads a finite number. The error describes the problem.
 pub(super) fn number(name: &str, text: &str) -> Result<f64, String> {
     let text = text.trim();
     if text.is_empty() {
@@ -29,7 +29,7 @@ pub(super) fn number(name: &str, text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|v: &f64| v.is_finite()).ok_or_else(|| format!("{name} {text} is not a number"))
 }
 
-/// A finite number within limits, or what is wrong with it.
+/// Reads a finite number within limits. The error describes the problem.
 pub(super) fn number_in(name: &str, text: &str, min: f64, max: f64) -> Result<f64, String> {
     let value = number(name, text)?;
     if (min..=max).contains(&value) {
@@ -39,7 +39,7 @@ pub(super) fn number_in(name: &str, text: &str, min: f64, max: f64) -> Result<f6
     }
 }
 
-/// `on` or `off`.
+/// Reads `on` or `off`.
 pub(super) fn on_off(text: &str) -> Result<bool, String> {
     match text.trim() {
         "on" => Ok(true),

@@ -1,4 +1,4 @@
-//! The world: one craft, the air, the ground, the sensors and what goes wrong, stepped together.
+//! The world: one craft, the air, the ground, the sensors and their faults, stepped together.
 
 use arrayvec::ArrayVec;
 use nalgebra::Vector3;
@@ -19,9 +19,9 @@ use super::touchdown::{TouchdownDetector, crash_cause};
 use super::truth::{BatteryTruth, Truth};
 use crate::telemetry::{CrashCause, DivergeCause};
 
-/// Most events that can wait to be taken; when nobody takes them, later ones are lost.
+/// The maximum number of events that can wait. If nothing takes them, later ones are lost.
 const MAX_EVENTS: usize = 64;
-/// Beyond these the integration has failed: distance from home, m, and body rate, rad/s.
+/// The limits beyond which the integration has failed: distance from home, m, and body rate, rad/s.
 const MAX_DISTANCE_M: f64 = 100_000.0;
 const MAX_RATE: f64 = 300.0;
 
@@ -33,7 +33,7 @@ mod status;
 use boot::full_battery;
 pub use status::WorldStatus;
 
-/// The plant: truth, sensors and everything that acts on them. A clone is a frozen copy that goes on identically.
+/// The plant: truth, sensors and everything that acts on them. A clone is a frozen copy that continues identically.
 #[derive(Debug, Clone)]
 pub struct World {
     airframe: Airframe,
@@ -57,11 +57,11 @@ pub struct World {
     touchdown: TouchdownDetector,
     crashed: bool,
     diverged: bool,
-    // What acts on it.
+    // Influences on the craft.
     air: Air,
     faults: FaultSchedule,
     effects: Effects,
-    // What is known of the present instant.
+    // The present instant.
     air_now: AirSample,
     loads: Loads,
     rate_before: Vector3<f64>,
@@ -72,8 +72,8 @@ pub struct World {
 }
 
 impl World {
-    /// Advances by exactly one step with the given motor commands, 0…1. A command that is not a number is refused: that
-    /// motor keeps its previous one.
+    /// Advances by exactly one step with the given motor commands, 0…1. A command that is not a number is refused,
+    /// and that motor keeps its previous one.
     pub fn step(&mut self, command: &MotorCommand) {
         self.accept(command);
         let before = self.body;
@@ -92,7 +92,8 @@ impl World {
         self.detect_touchdown(&before);
     }
 
-    /// Lets one step pass in which nothing moves, for a craft that a simulator outside moves: faults begin and end.
+    /// Advances by one step in which nothing moves, for a craft that an external simulator moves. Faults begin and
+    /// end.
     pub fn pass(&mut self) {
         self.time.0 += self.step_us;
         if self.faults.is_due(self.time) {
@@ -100,7 +101,7 @@ impl World {
         }
     }
 
-    /// Takes commands at the border: finite ones, limited to 0…1.
+    /// Takes finite commands, limited to 0…1.
     fn accept(&mut self, command: &MotorCommand) {
         for (kept, given) in self.command.iter_mut().zip(command.0) {
             if given.is_finite() {
@@ -111,7 +112,7 @@ impl World {
         }
     }
 
-    /// Motors, forces, integration and contact over one step.
+    /// Computes motors, forces, integration and contact over one step.
     fn move_body(&mut self) {
         let scale = if self.switches.battery_sag { self.battery.speed_scale() } else { 1.0 };
         let full_speed = self.airframe.rotor_speed_max * scale;
@@ -134,7 +135,7 @@ impl World {
         }
     }
 
-    /// What happens each 10 ms: air and battery.
+    /// Advances air and battery, every 10 ms.
     fn slow_tick(&mut self) {
         let ground_m = self.switches.ground.elevation_m(&self.body.pos_enu.xy());
         self.air.tick(self.time, self.body.pos_enu.z, ground_m, self.body.vel_enu, &self.switches);
@@ -152,13 +153,14 @@ impl World {
         self.loads = self.plant.loads(&self.body, &self.rotors, &self.air_now, &self.anchors);
     }
 
-    /// Truth and sensor readings of the present instant.
+    /// Updates truth and sensor readings of the present instant.
     fn update_outputs(&mut self) {
         let slow_tick = self.time.0.is_multiple_of(AIR_TICK_US).then_some(self.time.0 / AIR_TICK_US);
         self.update_outputs_on(slow_tick);
     }
 
-    /// As [`World::update_outputs`]; the slower sensors are read when this is the number of a slow tick.
+    /// Does the same as [`World::update_outputs`]. The slower sensors are read if `slow_tick` is the number of a slow
+    /// tick.
     fn update_outputs_on(&mut self, slow_tick: Option<u64>) {
         self.air_now = self.air.sample(self.time);
         self.refresh_loads();
@@ -194,12 +196,12 @@ impl World {
         self.sensors.read(&inputs, &mut self.frame);
     }
 
-    /// Contact, touchdown and crash after a step that began in the state `before`.
+    /// Detects contact, touchdown and crash after a step that began in the state `before`.
     fn detect_touchdown(&mut self, before: &BodyState) {
         let contact = self.contact;
         let force = self.truth.specific_force_flu.norm();
         let event = self.touchdown.update(self.time, contact, before, &self.body, force);
-        // A wreck that bounces and settles has nothing more to tell.
+        // A wreck that bounces and settles has nothing more to report.
         if let Some(kind) = event
             && !self.crashed
         {
@@ -221,7 +223,7 @@ impl World {
     }
 
     fn emit(&mut self, kind: WorldEventKind) {
-        // A full queue means that nobody listens.
+        // A full queue means that nothing takes the events.
         let _ = self.events.try_push(WorldEvent { time: self.time, kind });
     }
 }

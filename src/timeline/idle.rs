@@ -1,23 +1,23 @@
-//! The time in which nothing happens: the craft is disarmed and at rest, and there is no input.
+//! The time without events: the craft is disarmed and at rest, and there is no input.
 
 use std::collections::VecDeque;
 
 use super::{Mark, MarkKind};
 use crate::signals::SimTime;
 
-/// Shortest part that a display folds, µs.
+/// The shortest part that a display folds, µs.
 const FOLD_US: u64 = 30_000_000;
 
-/// A part of the recording in which nothing happens.
+/// A part of the recording without events.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct IdleSpan {
     pub from: SimTime,
-    /// Where it ends; not part of it.
+    /// End of the part, exclusive.
     pub to: SimTime,
 }
 
 impl IdleSpan {
-    /// How long it lasts, µs.
+    /// Returns the length of the part, µs.
     pub fn length_us(&self) -> u64 {
         self.to.0.saturating_sub(self.from.0)
     }
@@ -27,15 +27,15 @@ impl IdleSpan {
 #[derive(Debug, Default)]
 pub(super) struct IdleTime {
     spans: VecDeque<IdleSpan>,
-    /// How long all idle parts lasted since the recording began, µs.
+    /// Length of all idle parts since the recording began, µs.
     total_us: u64,
-    /// The newest instant that was not idle.
+    /// Newest instant that was not idle.
     active_at: Option<SimTime>,
 }
 
 impl IdleTime {
-    /// Notes whether the instant `at` is idle. A part becomes idle `settle_us` after the last activity, so that inputs that come
-    /// one by one count as activity for a while.
+    /// Records the state of the instant `at`, idle or not. A part becomes idle `settle_us` after the last activity,
+    /// so that separate inputs count as activity for a while.
     pub(super) fn note(&mut self, at: SimTime, is_idle: bool, settle_us: u64) {
         let active_at = *self.active_at.get_or_insert(at);
         if !is_idle {
@@ -58,7 +58,7 @@ impl IdleTime {
         }
     }
 
-    /// The time up to the newest instant `at` without the idle parts, µs.
+    /// Returns the time up to the newest instant `at` without the idle parts, µs.
     pub(super) fn active_us(&self, at: SimTime) -> u64 {
         at.0.saturating_sub(self.total_us)
     }
@@ -70,7 +70,7 @@ impl IdleTime {
         }
     }
 
-    /// Forgets what came after `time`, which is the newest instant from now on.
+    /// Forgets everything after `time`, which is the newest instant from now on.
     pub(super) fn forget_after(&mut self, time: SimTime) {
         while let Some(span) = self.spans.pop_back_if(|span| span.to > time) {
             self.total_us -= span.length_us();
@@ -83,8 +83,8 @@ impl IdleTime {
         self.active_at = Some(time);
     }
 
-    /// The parts that a display folds, the oldest first: they are long, without a mark inside, and there is a flight from
-    /// `first` on beside which they count for little.
+    /// Returns the parts that a display folds, oldest first. They are long and have no mark inside. There are none
+    /// unless the craft was armed since `first`.
     pub(super) fn folds(&self, marks: &[Mark], first: SimTime) -> Vec<IdleSpan> {
         if !marks.iter().any(|mark| mark.time >= first && mark.kind == MarkKind::Armed) {
             return Vec::new();
@@ -116,7 +116,7 @@ mod tests {
         IdleSpan { from: at(from), to: at(to) }
     }
 
-    /// Seconds of a flight: whether each is idle. It settles in ten seconds.
+    /// Returns the idle time of a flight. `is_idle` gives the state of each second. It settles in ten seconds.
     fn noted(seconds: std::ops::Range<u64>, is_idle: impl Fn(u64) -> bool) -> IdleTime {
         let mut idle = IdleTime::default();
         seconds.for_each(|second| idle.note(at(second), is_idle(second), at(10).0));

@@ -1,13 +1,13 @@
-//! When something happened that one may want to go back to.
+//! The times of events that a user may want to go back to.
 
 use std::sync::Arc;
 
 use crate::signals::SimTime;
 use crate::telemetry::{BatteryAlarm, DisarmReason, Event, EventKind, FirmwareEvent, NavEvent, NavState};
 
-/// Marks kept; a flight of an hour has some hundred.
+/// The maximum number of marks. A flight of an hour has some hundred.
 const MOST: usize = 4096;
-/// Marks of one mishap follow each other within this time, in seconds.
+/// The longest time between two marks of the same mishap, s.
 const MISHAP_GAP_S: f64 = 30.0;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,25 +16,25 @@ pub struct Mark {
     pub kind: MarkKind,
 }
 
-/// What happened, as far as a timeline shows it.
+/// The kinds of events that a timeline shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum MarkKind {
-    /// The autopilot came to this state.
+    /// The autopilot entered this state.
     State(NavState),
     /// The craft was armed.
     Armed,
-    /// The craft was disarmed as it should be.
+    /// The craft was disarmed normally.
     Disarmed,
     /// Something was lost, refused, broken or exceeded.
     Alarm,
-    /// What was lost is back.
+    /// A loss has ended.
     Recovery,
     /// The craft came down on the ground.
     Touchdown,
 }
 
 impl MarkKind {
-    /// The mark of an event; `None` for those that nobody goes back to.
+    /// Returns the mark of an event, or `None` for events that are of no interest for going back.
     fn of(event: &EventKind) -> Option<Self> {
         match event {
             EventKind::Firmware(event) => Self::of_firmware(event),
@@ -80,18 +80,18 @@ impl MarkKind {
         })
     }
 
-    /// Whether the autopilot changed its state.
+    /// Returns `true` if the autopilot changed its state.
     pub fn is_state(self) -> bool {
         matches!(self, Self::State(_))
     }
 }
 
-/// The marks of the flight, the oldest first. Views share them.
+/// The marks of the flight, oldest first. Views share them.
 #[derive(Debug, Default)]
 pub struct Marks(Arc<Vec<Mark>>);
 
 impl Marks {
-    /// Notes an event that has happened.
+    /// Adds the mark of an event.
     pub fn note(&mut self, event: &Event) {
         let Some(kind) = MarkKind::of(&event.kind) else { return };
         let marks = Arc::make_mut(&mut self.0);
@@ -101,7 +101,7 @@ impl Marks {
         marks.push(Mark { time: event.time, kind });
     }
 
-    /// Forgets what happened after `time`.
+    /// Forgets the marks after `time`.
     pub fn forget_after(&mut self, time: SimTime) {
         Arc::make_mut(&mut self.0).retain(|mark| mark.time <= time);
     }
@@ -110,8 +110,8 @@ impl Marks {
         Arc::clone(&self.0)
     }
 
-    /// Returns the first mark of the mishap that ends at `time`: of the alarms, and of the disarming, the touchdown and the end
-    /// of the mission among them, that follow each other closely.
+    /// Returns the first mark of the mishap that ends at `time`. A mishap is a sequence of alarms, disarming,
+    /// touchdown and end of the mission with short times between them.
     pub fn mishap_before(&self, time: SimTime) -> Option<Mark> {
         let is_part = |mark: &Mark| {
             use MarkKind::{Alarm, Disarmed, State, Touchdown};
@@ -128,12 +128,12 @@ impl Marks {
         first
     }
 
-    /// The latest before `time`, of all or of the states alone.
+    /// Returns the latest mark before `time`, of all marks or only of the states.
     pub fn before(&self, time: SimTime, states_only: bool) -> Option<Mark> {
         self.0.iter().rfind(|mark| mark.time < time && (!states_only || mark.kind.is_state())).copied()
     }
 
-    /// The earliest after `time`, of all or of the states alone.
+    /// Returns the earliest mark after `time`, of all marks or only of the states.
     pub fn after(&self, time: SimTime, states_only: bool) -> Option<Mark> {
         self.0.iter().find(|mark| mark.time > time && (!states_only || mark.kind.is_state())).copied()
     }

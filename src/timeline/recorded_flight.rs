@@ -1,4 +1,4 @@
-//! The flight that was flown since the craft stood at home the last time, as data.
+//! The flight since the craft was last at home, as data.
 
 use super::Timeline;
 use super::replay::Replay;
@@ -10,29 +10,29 @@ use crate::vehicle::{Input, Vehicle};
 pub struct RecordedFlight {
     /// The vehicle at the start: at boot, or after the craft was put back home or restarted.
     pub start: Vehicle,
-    /// What came from outside since, with the instants since boot.
+    /// Inputs since then, with their times since boot.
     pub inputs: Vec<(SimTime, Input)>,
-    /// The instant at which it ends.
+    /// Instant at which the flight ends.
     pub until: SimTime,
 }
 
-/// Returns `true` if the craft is put back home or restarts: a flight ends and another begins.
+/// Returns `true` if the input puts the craft back home or restarts it, so that a flight ends and another begins.
 fn begins(input: &Input) -> bool {
     matches!(input, Input::ResetCraft | Input::Restart(_))
 }
 
 impl Timeline {
-    /// Returns the end of the flight that an instant belongs to; `None` for the last flight.
+    /// Returns the end of the flight that an instant belongs to, or `None` for the last flight.
     pub fn flight_ends(&self, instant: SimTime) -> Option<SimTime> {
         self.recording.inputs().find(|(at, input)| *at > instant && begins(input)).map(|(at, _)| at)
     }
 
-    /// The flight since its start, up to `until`; `None` when the recording does not reach back so far.
+    /// Returns the flight from its start to `until`, or `None` if the recording does not reach back so far.
     pub fn recorded_flight(&self, until: SimTime) -> Option<RecordedFlight> {
         let recorded = || self.recording.inputs().filter(|(at, _)| *at < until);
         let last = recorded().enumerate().filter(|(_, (_, input))| begins(input)).last();
         let (skipped, start_at) = match last {
-            // What came at the same instant before it belongs to the flight before.
+            // Earlier inputs at the same instant belong to the previous flight.
             Some((index, (at, _))) => (index + 1, SimTime(at.0 + 1)),
             None => (0, SimTime::ZERO),
         };

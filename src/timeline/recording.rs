@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   key frames   ■───────■───────■───────■─┄        a clone of the vehicle, inputs of its instant included
-//!   inputs        ╵ ╵╵    ╵       ╵╵╵      ╵        by the tick in front of which they came
+//!   inputs        ╵ ╵╵    ╵       ╵╵╵      ╵        by the tick before which they came
 //! ```
 
 use std::collections::VecDeque;
@@ -12,29 +12,31 @@ use super::replay::Replay;
 use crate::signals::SimTime;
 use crate::vehicle::{Input, Vehicle};
 
-/// How much is kept.
+/// The limits of a recording.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Bounds {
-    /// Between two key frames, µs: what a replay flies at most.
+    /// Time between two key frames, µs: the maximum that a replay flies.
     pub(super) interval_us: u64,
-    /// For how long every key frame is kept, µs without idle time.
+    /// Time for which every key frame is kept, µs without idle time.
     pub(super) dense_us: u64,
-    /// Between two key frames that are older, µs.
+    /// Time between two older key frames, µs.
     pub(super) sparse_interval_us: u64,
-    /// How far the recording reaches back, µs without idle time: waiting on the ground takes no flight away.
+    /// Reach of the recording, µs without idle time, so that waiting on the ground does not shorten the recorded
+    /// flight.
     pub(super) reach_us: u64,
-    /// What the inputs may take, bytes; an eighth more until the next key frame.
+    /// Maximum size of the inputs, bytes; an eighth more until the next key frame.
     pub(super) input_bytes: usize,
-    /// How many key frames there are at most.
+    /// Maximum number of key frames.
     pub(super) key_frames: usize,
 }
 
-/// In idle time a key frame that is so old may be this many times nearer to the one before it, or nearer still: it goes.
+/// In idle time a key frame is dropped if its distance to the previous one is less than its age divided by this.
 const IDLE_SHARE: u64 = 16;
 
 impl Default for Bounds {
-    /// An hour of flight, of which half an hour can be sought at once: some 14 MB of key frames. A script at 50 Hz takes three
-    /// quarters of what inputs may take; at 100 Hz the recording still reaches back 40 minutes.
+    /// Returns bounds for an hour of flight with fast access to half an hour: some 14 MB of key frames. A script at
+    /// 50 Hz takes three quarters of the maximum size of the inputs. At 100 Hz the recording still reaches back 40
+    /// minutes.
     fn default() -> Self {
         const MINUTE_US: u64 = 60_000_000;
         Self {
@@ -52,7 +54,7 @@ impl Default for Bounds {
 pub(super) struct KeyFrame {
     vehicle: Box<Vehicle>,
     next_input: u64,
-    /// The time up to it without idle time, µs.
+    /// Time up to the frame without idle time, µs.
     active_us: u64,
 }
 
@@ -65,13 +67,13 @@ impl KeyFrame {
         &self.vehicle
     }
 
-    /// The number of the first input that came after it.
+    /// Returns the number of the first input after the frame.
     pub(super) fn next_input(&self) -> u64 {
         self.next_input
     }
 }
 
-/// An input and the instant at which it came.
+/// An input with its time.
 #[derive(Debug)]
 struct TimedInput {
     at: SimTime,
@@ -84,13 +86,13 @@ impl TimedInput {
     }
 }
 
-/// Key frames and inputs, the oldest first.
+/// Key frames and inputs, oldest first.
 #[derive(Debug, Default)]
 pub(super) struct Recording {
     bounds: Bounds,
     key_frames: VecDeque<KeyFrame>,
     inputs: VecDeque<TimedInput>,
-    /// The number of the oldest input.
+    /// Number of the oldest input.
     first_input: u64,
     input_bytes: usize,
     bytes_since_key_frame: usize,
@@ -102,7 +104,7 @@ impl Recording {
         Self { bounds, ..Self::default() }
     }
 
-    /// Records the inputs since the tick before, and freezes the vehicle when it is time.
+    /// Records the inputs since the previous tick, and freezes the vehicle when that is due.
     pub(super) fn record(&mut self, vehicle: &mut Vehicle) {
         let at = vehicle.time();
         let is_idle = !vehicle.has_inputs() && vehicle.is_idle();
@@ -116,7 +118,7 @@ impl Recording {
             });
         }
         let is_due = |newest: &KeyFrame| at.0 >= newest.time().0 + self.bounds.interval_us;
-        // From a new key frame on none of the inputs so far is needed.
+        // With a new key frame, replays from it need no earlier inputs.
         let is_flooded = self.bytes_since_key_frame > self.bounds.input_bytes / 8;
         if self.key_frames.back().is_none_or(is_due) || is_flooded {
             let mut frozen = Box::new(vehicle.clone());
@@ -130,39 +132,40 @@ impl Recording {
         }
     }
 
-    /// The time in which nothing happened.
+    /// Returns the idle time.
     pub(super) fn idle(&self) -> &IdleTime {
         &self.idle
     }
 
-    /// The earliest instant that can be flown to again.
+    /// Returns the earliest instant that can be flown to again.
     pub(super) fn first(&self) -> Option<SimTime> {
         self.key_frames.front().map(KeyFrame::time)
     }
 
-    /// The newest key frame before `time`, else the oldest. One of that very instant has its inputs already.
+    /// Returns the newest key frame before `time`, else the oldest. A key frame at exactly `time` already contains
+    /// the inputs of that instant.
     pub(super) fn latest_before(&self, time: SimTime) -> Option<&KeyFrame> {
         let after = self.key_frames.partition_point(|frame| frame.time() < time);
         self.key_frames.get(after.saturating_sub(1))
     }
 
-    /// The input with this number, if it came at `time` or before.
+    /// Returns the input with this number, if it came at `time` or before.
     pub(super) fn input(&self, number: u64, time: SimTime) -> Option<&Input> {
         let index = usize::try_from(number.checked_sub(self.first_input)?).ok()?;
         self.inputs.get(index).filter(|input| input.at <= time).map(|input| &input.input)
     }
 
-    /// The inputs that are kept with their instants, oldest first.
+    /// Returns the kept inputs with their times, oldest first.
     pub(super) fn inputs(&self) -> impl DoubleEndedIterator<Item = (SimTime, &Input)> {
         self.inputs.iter().map(|input| (input.at, &input.input))
     }
 
-    /// The number of the oldest input that is kept.
+    /// Returns the number of the oldest kept input.
     pub(super) fn first_input(&self) -> u64 {
         self.first_input
     }
 
-    /// Forgets what came after the instant of a replay.
+    /// Forgets everything after the instant of a replay.
     pub(super) fn forget_after(&mut self, replay: &Replay) {
         let stays =
             |frame: &KeyFrame| frame.time() <= replay.time() && frame.next_input <= replay.next_input();
@@ -177,7 +180,7 @@ impl Recording {
         self.idle.forget_after(replay.time());
     }
 
-    /// Thins the older key frames out and drops the oldest.
+    /// Thins out the older key frames and drops the oldest.
     fn stay_within_bounds(&mut self, now: SimTime) {
         self.thin_out(now);
         self.drop_oldest(now);
@@ -186,8 +189,8 @@ impl Recording {
         }
     }
 
-    /// Drops key frames that are too near to the one before them: old ones, and those in the middle of idle time, of which
-    /// there would be more and more.
+    /// Drops key frames that are too near to the previous one: old ones, and those in the middle of idle time, whose
+    /// number would otherwise grow without limit.
     fn thin_out(&mut self, now: SimTime) {
         let Bounds { dense_us, sparse_interval_us, .. } = self.bounds;
         let dense_from = self.idle.active_us(now).saturating_sub(dense_us);
@@ -206,7 +209,7 @@ impl Recording {
         }
     }
 
-    /// Drops the oldest key frames that are beyond the reach or too many, or whose inputs take too much.
+    /// Drops the oldest key frames that are beyond the reach or too many, or whose inputs are too large.
     fn drop_oldest(&mut self, now: SimTime) {
         let Bounds { reach_us, input_bytes, key_frames, .. } = self.bounds;
         let reached_from = self.idle.active_us(now).saturating_sub(reach_us);
@@ -221,7 +224,7 @@ impl Recording {
         }
     }
 
-    /// Drops the inputs in front of the oldest key frame.
+    /// Drops the inputs before the oldest key frame.
     fn drop_unreachable_inputs(&mut self) {
         let Some(needed) = self.key_frames.front().map(KeyFrame::next_input) else { return };
         while self.first_input < needed
@@ -292,21 +295,21 @@ mod tests {
     #[test]
     fn waiting_on_the_ground_takes_no_flight_away_and_little_memory() {
         let bounds = Bounds { input_bytes: usize::MAX, ..BOUNDS };
-        // A flight of 0.2 s in the middle of much waiting; the recording reaches back 0.3 s.
+        // A flight of 0.2 s in a long wait; the recording reaches back 0.3 s.
         let flies = 3000..3200;
         let recording = recorded_while(bounds, 30_000, |tick| u16::from(flies.contains(&tick)));
         let times: Vec<u64> = recording.key_frames.iter().map(|frame| frame.time().0 / 1000).collect();
         assert_eq!(times.first(), Some(&0));
         assert!(times.len() < 120, "{}", times.len());
-        // Each instant of the flight and of the newest waiting is near a key frame.
+        // Each instant of the flight and of the newest wait is near a key frame.
         let is_near =
             |time: &u64| times.iter().any(|frame| (time.saturating_sub(40)..=*time).contains(frame));
         assert!((3000..3200).step_by(10).all(|time| is_near(&time)), "{times:?}");
         assert!((29_900..30_000).step_by(10).all(|time| is_near(&time)), "{times:?}");
-        // The rest is as far from one as it is old.
+        // The gaps between the others are at most in proportion to their age.
         let apart = times.windows(2).all(|pair| pair[1] - pair[0] <= 10 + (30_000 - pair[0]) / 4);
         assert!(apart, "{times:?}");
-        // Another flight takes the place of the first.
+        // A longer second flight replaces the first.
         let flies_on = 3000..3500;
         let recording = recorded_while(bounds, 30_000, |tick| u16::from(flies_on.contains(&tick)));
         assert!(recording.first() > Some(SimTime(3_000_000)), "{:?}", recording.first());
@@ -341,7 +344,7 @@ mod tests {
             let _told = vehicle.controller_mut().run_cli(&mut session, &line);
             assert!(vehicle.input_bytes() > line.len());
             recording.record(&mut vehicle);
-            // Until the next key frame.
+            // The limit until the next key frame.
             let most = BOUNDS.input_bytes + BOUNDS.input_bytes / 8 + 2 * line.len();
             assert!(recording.input_bytes <= most, "{}", recording.input_bytes);
         }

@@ -4,16 +4,16 @@ use super::recording::{KeyFrame, Recording};
 use crate::signals::SimTime;
 use crate::vehicle::Vehicle;
 
-/// A vehicle on its way through the recording.
+/// A vehicle that replays the recording.
 #[derive(Debug)]
 pub(super) struct Replay {
     vehicle: Vehicle,
-    /// The number of the first input that it has not taken.
+    /// Number of the first input that it has not taken.
     next_input: u64,
 }
 
 impl Replay {
-    /// A replay from a frozen vehicle.
+    /// Returns a replay from a frozen vehicle.
     pub(super) fn new(start: &KeyFrame) -> Self {
         Self { vehicle: start.vehicle().clone(), next_input: start.next_input() }
     }
@@ -30,12 +30,12 @@ impl Replay {
         self.vehicle
     }
 
-    /// The number of the first input that it has not taken.
+    /// Returns the number of the first input that it has not taken.
     pub(super) fn next_input(&self) -> u64 {
         self.next_input
     }
 
-    /// Flies to `time` as it was flown; the inputs that came at that instant are still to come.
+    /// Flies to `time` as recorded. The inputs of that instant are not applied yet.
     pub(super) fn fly_to(&mut self, time: SimTime, recording: &Recording) {
         while self.vehicle.time() < time {
             while let Some(input) = recording.input(self.next_input, self.vehicle.time()) {

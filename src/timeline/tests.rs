@@ -1,4 +1,4 @@
-//! A flight and its replay are the same to the last bit, whatever came from outside.
+//! A flight and its replay are the same to the last bit, whatever the inputs.
 
 use super::*;
 use crate::firmware::cli::Interpreter;
@@ -21,7 +21,7 @@ const BOUNDS: Bounds = Bounds {
     key_frames: usize::MAX,
 };
 
-/// The whole vehicle as text, to the last bit of every number that is printed.
+/// Returns the whole vehicle as text, to the last bit of every number that is printed.
 fn picture(vehicle: &Vehicle) -> String {
     let mut vehicle = vehicle.clone();
     vehicle.keep_inputs(false);
@@ -41,7 +41,7 @@ fn line(vehicle: &mut Vehicle, session: &mut Interpreter, line: &str) {
     let _told = vehicle.controller_mut().run_cli(session, line);
 }
 
-/// What comes from outside in front of a tick of the flight.
+/// Applies the inputs before a tick of the flight.
 fn happen(tick: u64, vehicle: &mut Vehicle, session: &mut Interpreter) {
     let world = |vehicle: &mut Vehicle, line: &str| {
         vehicle.change_world(WorldCommand::parse(line).unwrap()).unwrap();
@@ -62,7 +62,7 @@ fn happen(tick: u64, vehicle: &mut Vehicle, session: &mut Interpreter) {
             vehicle.controller_mut().restart(|| kept);
         }
         1300 => world(vehicle, "wind=4@270"),
-        // Until the fix.
+        // The pilot waits for the fix first.
         1500 => vehicle.start_pilot(3.0).unwrap(),
         15_300 => vehicle.controller_mut().command(InFlightCommand::HoldHere).unwrap(),
         15_800 => vehicle.controller_mut().command(InFlightCommand::GoTo(2)).unwrap(),
@@ -93,21 +93,21 @@ fn happen(tick: u64, vehicle: &mut Vehicle, session: &mut Interpreter) {
         22_000..23_000 if tick.is_multiple_of(10) => {
             let frame: Vec<u8> = (0..8).flat_map(|n| (1400 + n + (tick % 50) as u16).to_le_bytes()).collect();
             let _told = vehicle.controller_mut().run_msp(200, &frame, None);
-            // Only asks.
+            // This message only asks.
             let _told = vehicle.controller_mut().run_msp(101, &[], None);
         }
         _ => {}
     }
 }
 
-/// A flight with everything, its recording, and its pictures at some instants.
+/// Returns a flight with inputs of all kinds, its recording, and its pictures at some instants.
 fn flight() -> (Timeline, Vehicle, Vec<(SimTime, String)>) {
     let mut vehicle = vehicle();
     let mut timeline = Timeline::within(BOUNDS, &mut vehicle).unwrap();
     let mut session = Interpreter::default();
     let mut pictures = Vec::new();
     for tick in 0..24_000 {
-        // In front of the inputs of this instant.
+        // Before the inputs of this instant.
         if tick % 1487 == 3 || matches!(tick, 1 | 1001 | 1201 | 2000 | 17_001 | 20_000 | 20_001) {
             pictures.push((vehicle.time(), picture(&vehicle)));
         }
@@ -136,7 +136,7 @@ fn replayed_instants_are_the_flight_to_the_last_bit() {
     assert_eq!(timeline.show(head.time(), head.time()), Shown::Newest);
 }
 
-/// Where two pictures differ first.
+/// Returns the first difference of two pictures.
 fn first_difference(a: &str, b: &str) -> String {
     let at = a.bytes().zip(b.bytes()).take_while(|(a, b)| a == b).count().saturating_sub(60);
     let part = |text: &str| text.chars().skip(at).take(160).collect::<String>();
@@ -164,7 +164,7 @@ fn a_branch_forgets_what_came_after_it_and_can_itself_be_replayed() {
     assert_eq!((timeline.branch(), timeline.shown().is_none()), (1, true));
     assert!(timeline.fly_on().is_none(), "nothing earlier is shown");
 
-    // Another flight from here on: the sticks go elsewhere.
+    // Another flight from here on with other sticks.
     let mut later = None;
     for tick in 0..5000 {
         if tick == 1700 {

@@ -1,27 +1,27 @@
-//! What a display needs to draw the timeline.
+//! The data that a display needs to draw the timeline.
 
 use std::sync::Arc;
 
 use super::{IdleSpan, Mark};
 use crate::signals::SimTime;
 
-/// How far the recording reaches, what happened in it, and where in it the shown instant is: the time of the vehicle.
+/// The reach of the recording, its marks, and the shown instant, which is the time of the vehicle.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct TimelineView {
     /// The earliest instant that can be shown.
     pub first: SimTime,
-    /// The newest instant, from where the flight goes on.
+    /// Newest instant, from which the flight continues.
     pub head: SimTime,
-    /// The craft is armed at the newest instant.
+    /// `true` if the craft is armed at the newest instant.
     pub head_is_armed: bool,
-    /// An earlier instant is shown, while the flight waits.
+    /// `true` while an earlier instant is shown and the flight waits.
     pub rewound: bool,
-    /// How often the flight was flown on from an earlier instant.
+    /// Number of times that the flight was continued from an earlier instant.
     pub branch: u32,
-    /// The instant from which it was last flown on.
+    /// Instant from which it was last continued.
     pub branched_at: SimTime,
-    /// What happened, the oldest first.
+    /// Events, oldest first.
     pub marks: Arc<Vec<Mark>>,
-    /// Long parts in which nothing happens, the oldest first: they are drawn folded.
+    /// Long parts without events, oldest first. A display draws them folded.
     pub folds: Vec<IdleSpan>,
 }

@@ -20,33 +20,33 @@ use crate::telemetry::{
     NavTelemetry, Refusal,
 };
 
-/// Identifies a request to a remote flight controller until its answer comes.
+/// The identity of a request to a remote flight controller until its answer comes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Ticket(u64);
 
-/// An answer of the flight controller.
+/// The answer of the flight controller.
 #[derive(Debug)]
 pub enum Answer<T> {
     Now(T),
-    /// It comes with this ticket from [`FlightController::take_answer`].
+    /// The answer comes later with this ticket from [`FlightController::take_answer`].
     Later(Ticket),
 }
 
 /// An answer that came later.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LateAnswer {
-    /// To a CLI line; the reply's actions have been carried out where it runs.
+    /// Answer to a CLI line. The remote flight controller has carried out its actions.
     Cli(CliReply),
-    /// To an MSP message: the payload of the reply; `None` when the message is unknown or refused.
+    /// Payload of the reply to an MSP message; `None` if the message is unknown or refused.
     Msp(Option<Vec<u8>>),
 }
 
-/// What flies the craft. A clone goes on identically.
+/// The flight controller of the craft. A clone continues identically.
 #[derive(Debug, Clone)]
 pub enum FlightController {
-    /// In this program: answers at once and tells everything.
+    /// In this program: answers at once and reports everything.
     Embedded(Box<EmbeddedController>),
-    /// Somewhere else: answers later and tells what it tells.
+    /// Remote: answers later and reports only part of its state.
     Remote(Box<RemoteController>),
 }
 
@@ -57,7 +57,7 @@ impl From<Firmware> for FlightController {
 }
 
 impl FlightController {
-    /// One step: one frame of the sensors in, the motor command in force out.
+    /// Makes one step: takes one frame of the sensors and returns the motor command in force.
     pub(super) fn step(&mut self, frame: &SensorFrame) -> MotorCommand {
         match self {
             Self::Embedded(embedded) => embedded.firmware.step(frame),
@@ -65,7 +65,7 @@ impl FlightController {
         }
     }
 
-    /// Takes an RC frame for the next step; of one source only the newest counts.
+    /// Takes an RC frame for the next step. Only the newest frame of each source counts.
     pub fn receive_rc(&mut self, frame: &RcFrame, source: RcSource) {
         match self {
             Self::Embedded(embedded) => embedded.receive_rc(frame, source),
@@ -73,7 +73,7 @@ impl FlightController {
         }
     }
 
-    /// The RC frames that came since the last step never arrived.
+    /// Drops the RC frames since the last step, as if they had never arrived.
     pub fn lose_rc(&mut self) {
         match self {
             Self::Embedded(embedded) => embedded.firmware.lose_rc(),
@@ -81,19 +81,20 @@ impl FlightController {
         }
     }
 
-    /// Lets the virtual sticks win over the other sources of RC, or ends that. A remote one has its own rule.
+    /// Gives the virtual sticks precedence over the other sources of RC, or ends that. A remote flight controller has
+    /// its own rule.
     pub fn take_over_sticks(&mut self, sticks_first: bool) {
         if let Self::Embedded(embedded) = self {
             embedded.take_over_sticks(sticks_first);
         }
     }
 
-    /// Whether the virtual sticks win over the other sources of RC.
+    /// Returns `true` if the virtual sticks take precedence over the other sources of RC.
     pub fn sticks_taken_over(&self) -> bool {
         self.embedded().is_some_and(|firmware| firmware.receiver().sources().taken_over())
     }
 
-    /// The source of RC that is flown; `None` before the first frame.
+    /// Returns the source of RC that is in use, or `None` before the first frame.
     pub fn rc_source(&self) -> Option<RcSource> {
         match self {
             Self::Embedded(embedded) => embedded.firmware.receiver().sources().in_charge(),
@@ -101,8 +102,8 @@ impl FlightController {
         }
     }
 
-    /// Runs a CLI line; `session` is the state of an embedded one's command line. Storing and restarting an embedded one
-    /// are left to its owner: the reply says so.
+    /// Runs a CLI line. `session` is the state of an embedded controller's command line. The reply says if the owner
+    /// of an embedded controller must store the configuration or restart.
     pub fn run_cli(&mut self, session: &mut Interpreter, line: &str) -> Answer<CliReply> {
         match self {
             Self::Embedded(embedded) => Answer::Now(embedded.run_cli(session, line)),
@@ -110,8 +111,8 @@ impl FlightController {
         }
     }
 
-    /// Answers an MSP message. `clock` is the time of day, when somebody set it. Storing and restarting an embedded one are
-    /// left to its owner: the outcome says so.
+    /// Answers an MSP message. `clock` is the time of day, if it was set. The outcome says if the owner of an
+    /// embedded controller must store the configuration or restart.
     pub fn run_msp(&mut self, code: u16, payload: &[u8], clock: Option<UtcTime>) -> Answer<Outcome> {
         match self {
             Self::Embedded(embedded) => Answer::Now(embedded.run_msp(code, payload, clock)),
@@ -121,7 +122,7 @@ impl FlightController {
         }
     }
 
-    /// Takes the oldest answer that came later and was not taken yet.
+    /// Takes the oldest late answer that was not taken yet.
     pub fn take_answer(&mut self) -> Option<(Ticket, LateAnswer)> {
         match self {
             Self::Embedded(_) => None,
@@ -129,26 +130,29 @@ impl FlightController {
         }
     }
 
-    /// A person opened the command line: an embedded one does not arm until it restarts. A remote one has its own rule.
+    /// Reports that a person opened the command line. An embedded controller does not arm until it restarts; a remote
+    /// one has its own rule.
     pub fn cli_opened(&mut self) {
         if let Self::Embedded(embedded) = self {
             embedded.cli_opened();
         }
     }
 
-    /// The command line was left: motors that it turned stop. A remote one has its own rule.
+    /// Reports that the command line was left. Motors that it turned stop. A remote controller has its own rule.
     pub fn cli_closed(&mut self) {
         if let Self::Embedded(embedded) = self {
             embedded.cli_closed();
         }
     }
 
-    /// The configuration in the memory of an embedded one, for its owner to store; a remote one stores its own.
+    /// Returns the configuration in the memory of an embedded controller, for its owner to store. A remote one stores
+    /// its own.
     pub fn configuration(&self) -> Option<&Configuration> {
         self.embedded().map(Firmware::configuration)
     }
 
-    /// Restarts: an embedded one on the configuration that `stored` gives, a remote one on what it has stored itself.
+    /// Restarts an embedded controller on the configuration from `stored`, a remote one on its own stored
+    /// configuration.
     pub fn restart(&mut self, stored: impl FnOnce() -> Configuration) {
         match self {
             Self::Embedded(embedded) => embedded.restart(stored()),
@@ -156,35 +160,38 @@ impl FlightController {
         }
     }
 
-    /// What the commands of an embedded one tell about the stored configuration.
+    /// Sets the facts about the stored configuration that the commands of an embedded controller report.
     pub fn set_storage_facts(&mut self, facts: StorageFacts) {
         if let Self::Embedded(embedded) = self {
             embedded.firmware.set_storage_facts(facts);
         }
     }
 
-    /// What the commands of an embedded one tell of useless packets from scripts and simulators.
+    /// Sets the number of useless packets from scripts and simulators that the commands of an embedded controller
+    /// report.
     pub fn set_bad_packets(&mut self, bad_packets: BadPackets) {
         if let Self::Embedded(embedded) = self {
             embedded.firmware.set_bad_packets(bad_packets);
         }
     }
 
-    /// What the commands of an embedded one tell of real time that the flight could not keep up with.
+    /// Sets the lost real time that the commands of an embedded controller report. The flight could not keep up with
+    /// it.
     pub fn set_lost_time(&mut self, lost_time: LostTime) {
         if let Self::Embedded(embedded) = self {
             embedded.firmware.set_lost_time(lost_time);
         }
     }
 
-    /// What the commands of an embedded one tell about whether an earlier instant is shown in place of the present one.
+    /// Sets the flag that an earlier instant is shown instead of the present one, for the commands of an embedded
+    /// controller.
     pub fn set_rewound(&mut self, rewound: bool) {
         if let Self::Embedded(embedded) = self {
             embedded.firmware.set_rewound(rewound);
         }
     }
 
-    /// Version and build that an embedded one announces.
+    /// Sets version and build that an embedded controller announces.
     pub fn set_build(&mut self, build: BuildInfo) {
         if let Self::Embedded(embedded) = self {
             embedded.firmware.set_build(build);
@@ -199,10 +206,10 @@ impl FlightController {
         }
     }
 
-    /// Flies home and lands, whatever the AUTOPILOT switch says; a remote one is asked to.
+    /// Flies home and lands, whatever the AUTOPILOT switch says. A remote controller gets a request.
     ///
     /// # Errors
-    /// Why an embedded one does not.
+    /// Fails with the reason why an embedded controller does not.
     pub fn return_to_home(&mut self) -> Result<(), Refusal> {
         match self {
             Self::Embedded(embedded) => embedded.return_to_home(),
@@ -213,10 +220,10 @@ impl FlightController {
         }
     }
 
-    /// Has the navigator that flies the stored plan do something else; a remote one has no such commands.
+    /// Gives a command to the navigator that flies the stored plan. A remote controller has no such commands.
     ///
     /// # Errors
-    /// Why not; then nothing has changed.
+    /// Fails with the reason. Nothing has changed then.
     pub fn command(&mut self, command: InFlightCommand) -> Result<(), InFlightRefusal> {
         match self {
             Self::Embedded(embedded) => embedded.command(command),
@@ -224,7 +231,7 @@ impl FlightController {
         }
     }
 
-    /// Takes [`Self::return_to_home`] back.
+    /// Cancels [`Self::return_to_home`].
     pub fn cancel_command(&mut self) {
         match self {
             Self::Embedded(embedded) => embedded.cancel_command(),
@@ -248,7 +255,7 @@ impl FlightController {
         }
     }
 
-    /// The embedded firmware, if that is what flies.
+    /// Returns the embedded firmware, if it flies the craft.
     pub fn embedded(&self) -> Option<&Firmware> {
         match self {
             Self::Embedded(embedded) => Some(&embedded.firmware),
@@ -256,7 +263,7 @@ impl FlightController {
         }
     }
 
-    /// As [`Self::embedded`]; what is done to it here is not among the inputs of the vehicle.
+    /// Does the same as [`Self::embedded`], for changes. The changes are not among the inputs of the vehicle.
     pub fn embedded_mut(&mut self) -> Option<&mut Firmware> {
         match self {
             Self::Embedded(embedded) => Some(&mut embedded.firmware),
@@ -278,7 +285,7 @@ impl FlightController {
         }
     }
 
-    /// The mailbox of a remote one, for whoever speaks with it.
+    /// Returns the mailbox of a remote controller, for the code that communicates with it.
     pub fn remote_mut(&mut self) -> Option<&mut RemoteController> {
         match self {
             Self::Embedded(_) => None,
@@ -286,7 +293,7 @@ impl FlightController {
         }
     }
 
-    /// Whether the craft is armed; `None` when a remote one does not tell.
+    /// Returns `true` if the craft is armed, or `None` if a remote controller does not report it.
     pub fn armed(&self) -> Option<bool> {
         match self {
             Self::Embedded(embedded) => Some(embedded.firmware.is_armed()),
@@ -294,12 +301,12 @@ impl FlightController {
         }
     }
 
-    /// Whether the craft is known to be armed.
+    /// Returns `true` if the craft is known to be armed.
     pub fn is_armed(&self) -> bool {
         self.armed() == Some(true)
     }
 
-    /// The modes that are known to be active.
+    /// Returns the modes that are known to be active.
     pub fn modes(&self) -> ModeFlags {
         match self {
             Self::Embedded(embedded) => embedded.firmware.modes(),
@@ -307,7 +314,7 @@ impl FlightController {
         }
     }
 
-    /// Why the craft was disarmed last.
+    /// Returns the reason of the last disarm.
     pub fn last_disarm(&self) -> Option<DisarmReason> {
         match self {
             Self::Embedded(embedded) => embedded.firmware.last_disarm(),
@@ -315,7 +322,7 @@ impl FlightController {
         }
     }
 
-    /// The navigator's telemetry.
+    /// Returns the telemetry of the navigator.
     pub fn nav(&self) -> Option<&NavTelemetry> {
         match self {
             Self::Embedded(embedded) => Some(embedded.firmware.nav()),
@@ -323,7 +330,7 @@ impl FlightController {
         }
     }
 
-    /// The plan in the craft's memory.
+    /// Returns the plan in the memory of the craft.
     pub fn stored_plan(&self) -> Option<&FlightPlan> {
         match self {
             Self::Embedded(embedded) => Some(embedded.firmware.stored_plan()),
@@ -331,7 +338,7 @@ impl FlightController {
         }
     }
 
-    /// From where the altitudes of its waypoints count.
+    /// Returns the reference of the waypoint altitudes in that plan.
     pub fn altitude_reference(&self) -> AltitudeReference {
         match self {
             Self::Embedded(_) => AltitudeReference::Home,
@@ -339,7 +346,7 @@ impl FlightController {
         }
     }
 
-    /// The motor command in force.
+    /// Returns the motor command in force.
     pub fn motors(&self) -> MotorCommand {
         match self {
             Self::Embedded(embedded) => embedded.firmware.control().motors,
@@ -347,7 +354,7 @@ impl FlightController {
         }
     }
 
-    /// Modes, arming, receiver, battery.
+    /// Returns modes, arming, receiver and battery.
     pub fn craft_view(&self) -> CraftView {
         match self {
             Self::Embedded(embedded) => embedded.firmware.craft_view(),
@@ -366,7 +373,7 @@ impl FlightController {
         }
     }
 
-    /// The settings that displays and checks need, as far as they are known.
+    /// Returns the settings that displays and checks need, as far as they are known.
     pub fn settings_view(&self) -> Option<SettingsView> {
         match self {
             Self::Embedded(embedded) => Some(embedded.firmware.settings_view()),
@@ -374,7 +381,7 @@ impl FlightController {
         }
     }
 
-    /// The mode conditions in force.
+    /// Returns the mode conditions in force.
     pub fn mode_ranges(&self) -> Vec<ModeRange> {
         match self {
             Self::Embedded(embedded) => embedded.firmware.mode_ranges(),
@@ -382,7 +389,7 @@ impl FlightController {
         }
     }
 
-    /// What a pilot sees.
+    /// Returns the facts that a pilot sees.
     pub(super) fn pilot_facts(&self, time: SimTime) -> PilotFacts {
         match self {
             Self::Embedded(embedded) => PilotFacts {

@@ -1,8 +1,8 @@
-//! What reaches a vehicle from outside between two ticks, as data: with its inputs a flight can be flown again to the
-//! last bit.
+//! The inputs of a vehicle between two ticks, as data. With its inputs a flight can be flown again to the last bit.
 //!
-//! Frames of the virtual sticks and losses by faults are no inputs, for they follow from the transmitter and the world.
-//! What commands tell of the program around the craft (storage, links) is none either: it flies nothing.
+//! Frames of the virtual sticks and losses by faults are not inputs, since they follow from the transmitter and the
+//! world. Reports of commands about the rest of the program (storage, links) are not inputs either, since they do not
+//! affect the flight.
 
 use super::Vehicle;
 use crate::firmware::cli::Interpreter;
@@ -13,14 +13,14 @@ use crate::signals::{RcFrame, RcSource};
 use crate::sim::WorldCommand;
 use crate::telemetry::InFlightCommand;
 
-/// Something that came from outside between two ticks.
+/// An input between two ticks.
 #[derive(Debug, Clone)]
 pub enum Input {
-    /// An RC frame that came over a link.
+    /// An RC frame from a link.
     Rc(RcFrame, RcSource),
-    /// The virtual sticks win over the other sources of RC, or no longer.
+    /// `true` gives the virtual sticks precedence over the other sources of RC, `false` ends that.
     SticksFirst(bool),
-    /// A CLI line and the session that ran it, as it was before.
+    /// A CLI line, with the session that ran it in its state before.
     Line(Box<(Interpreter, String)>),
     /// An MSP message that changes something.
     Message(Box<Message>),
@@ -34,9 +34,9 @@ pub enum Input {
     ReturnHome,
     /// A command to the navigator that flies the stored plan.
     InFlight(InFlightCommand),
-    /// That command taken back.
+    /// The cancellation of the command to fly home.
     CancelReturn,
-    /// The transmitter as it was set: sticks, link, pilot.
+    /// The transmitter after a change: sticks, link, pilot.
     Transmitter(Box<RcTransmitter>),
     /// A change of air, noise or faults.
     World(Box<WorldCommand>),
@@ -44,7 +44,7 @@ pub enum Input {
     ResetCraft,
 }
 
-/// An MSP message with what answering it takes.
+/// An MSP message with the data for its answer.
 #[derive(Debug, Clone)]
 pub struct Message {
     pub(super) code: u16,
@@ -53,12 +53,12 @@ pub struct Message {
 }
 
 impl Input {
-    /// About how much memory it takes, bytes.
+    /// Returns the approximate memory of the input, bytes.
     pub fn bytes(&self) -> usize {
         let heap = match self {
             Self::Line(line) => size_of_val(&**line) + line.1.len(),
             Self::Message(message) => size_of::<Message>() + message.payload.len(),
-            // Its tables lie on the heap.
+            // Its tables are on the heap.
             Self::Restart(configuration) => 4 * size_of_val(&**configuration),
             Self::Transmitter(transmitter) => size_of_val(&**transmitter),
             Self::World(command) => size_of_val(&**command),
@@ -75,7 +75,7 @@ impl Input {
     }
 }
 
-/// The inputs since the last tick, if they are wanted.
+/// The inputs since the last tick, if they are recorded.
 #[derive(Debug, Clone, Default)]
 pub(super) struct InputLog {
     inputs: Option<Vec<Input>>,
@@ -95,11 +95,11 @@ impl InputLog {
         self.inputs.as_ref().is_none_or(Vec::is_empty)
     }
 
-    /// Notes an input that has been carried out.
+    /// Records an input that has been carried out.
     pub(super) fn note(&mut self, input: impl FnOnce() -> Input) {
         let Some(inputs) = &mut self.inputs else { return };
         let input = input();
-        // Of one source only the newest frame counts; while time stands still a script goes on sending.
+        // Only the newest frame of a source counts. A script continues to send while time is stopped.
         if let Input::Rc(frame, source) = input
             && let Some(Input::Rc(earlier, _)) =
                 inputs.iter_mut().find(|earlier| matches!(earlier, Input::Rc(_, of) if *of == source))
@@ -118,8 +118,8 @@ impl InputLog {
 }
 
 impl Vehicle {
-    /// Keeps the inputs from now on for [`Self::take_inputs`], or ends that. Only an embedded flight controller in the
-    /// simulated world can be flown again, so others keep none. Says whether inputs are kept.
+    /// Records the inputs from now on for [`Self::take_inputs`], or ends that. Only an embedded flight controller in
+    /// the simulated world can be flown again, so other vehicles record none. Returns `true` if inputs are recorded.
     pub fn keep_inputs(&mut self, wanted: bool) -> bool {
         let wanted = wanted && self.world().is_some();
         self.transmitter_set = false;
@@ -129,18 +129,18 @@ impl Vehicle {
         })
     }
 
-    /// Whether there were inputs since the last call of [`Self::take_inputs`].
+    /// Returns `true` if there were inputs since the last call of [`Self::take_inputs`].
     pub fn has_inputs(&self) -> bool {
         self.transmitter_set || self.controller.input_log().is_some_and(|log| !log.is_empty())
     }
 
-    /// About how much memory the inputs since the last call of [`Self::take_inputs`] take, bytes.
+    /// Returns the approximate memory of the inputs since the last call of [`Self::take_inputs`], bytes.
     pub fn input_bytes(&self) -> usize {
         self.controller.input_log().map_or(0, |log| log.bytes)
     }
 
-    /// Moves the inputs since the last call into `sink`, oldest first. Carrying them out again in front of the same tick
-    /// gives the same vehicle.
+    /// Moves the inputs since the last call into `sink`, oldest first. Applying them again before the same tick gives
+    /// the same vehicle.
     pub fn take_inputs(&mut self, mut sink: impl FnMut(Input)) {
         let set = std::mem::take(&mut self.transmitter_set);
         let Some(log) = self.controller.input_log_mut().filter(|log| log.is_wanted()) else { return };
@@ -152,7 +152,7 @@ impl Vehicle {
 
     /// Carries out an input of an earlier flight.
     pub fn apply(&mut self, input: &Input) {
-        // What they answer was told when they came.
+        // The answers were reported when the inputs came.
         match input {
             Input::Rc(frame, source) => self.controller.receive_rc(frame, *source),
             Input::SticksFirst(first) => self.controller.take_over_sticks(*first),

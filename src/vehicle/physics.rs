@@ -11,10 +11,10 @@ use crate::signals::{MotorCommand, SensorFrame, SimTime};
 use crate::sim::{Fault, LinkFaults, Noise, World, WorldCommand, WorldError, WorldEvent};
 use crate::telemetry::snapshot::{FaultView, TruthView, WindView, WorldView};
 
-/// What stands for the airframe when an external simulator has it.
+/// The name of the airframe if an external simulator has it.
 const EXTERNAL: &str = "external";
 
-/// What moves the craft. A clone goes on identically.
+/// The physics that moves the craft. A clone continues identically.
 #[derive(Debug, Clone)]
 pub(super) enum Physics {
     World(Box<World>),
@@ -22,7 +22,7 @@ pub(super) enum Physics {
 }
 
 impl Physics {
-    /// The sensor frame of the present instant; of an external simulator, the one it was given last.
+    /// Returns the sensor frame of the present instant; of an external simulator, the last one received.
     pub(super) fn sensors(&self) -> &SensorFrame {
         match self {
             Self::World(world) => world.sensors(),
@@ -30,14 +30,14 @@ impl Physics {
         }
     }
 
-    /// Carries out a motor command over one step; an external simulator gets it through the link.
+    /// Carries out a motor command over one step. An external simulator gets it through the link.
     pub(super) fn step(&mut self, motors: &MotorCommand) {
         if let Self::World(world) = self {
             world.step(motors);
         }
     }
 
-    /// The part that has time and faults.
+    /// Returns the part with the time and the faults.
     fn clockwork(&self) -> &World {
         match self {
             Self::World(world) => world,
@@ -52,7 +52,7 @@ impl Physics {
         }
     }
 
-    /// The simulated world, if that is what moves the craft.
+    /// Returns the simulated world, if it moves the craft.
     pub(super) fn world(&self) -> Option<&World> {
         match self {
             Self::World(world) => Some(world),
@@ -60,7 +60,7 @@ impl Physics {
         }
     }
 
-    /// The external simulator, if that is what moves the craft.
+    /// Returns the external simulator, if it moves the craft.
     pub(super) fn external_mut(&mut self) -> Option<&mut ExternalPhysics> {
         match self {
             Self::World(_) => None,
@@ -96,22 +96,23 @@ impl Physics {
         self.clockwork_mut().take_event()
     }
 
-    /// Whether no RC frame reaches the receiver.
+    /// Returns `true` if no RC frame reaches the receiver.
     pub(super) fn rx_lost(&self) -> bool {
         self.clockwork().rx_lost()
     }
 
-    /// Fraction of RC frames that are dropped at random, 0…1.
+    /// Returns the fraction of RC frames that are dropped at random, 0…1.
     pub(super) fn rx_drop_fraction(&self) -> f64 {
         self.clockwork().rx_drop_fraction()
     }
 
-    /// What active faults do to the packets of an external simulator.
+    /// Returns the effects of active faults on the packets of an external simulator.
     pub(super) fn link_faults(&self) -> LinkFaults {
         self.clockwork().link_faults()
     }
 
-    /// The frame whose origin is the boot place; `None` before an external simulator has told where that is.
+    /// Returns the frame with its origin at the boot place, or `None` before an external simulator has reported that
+    /// place.
     pub(super) fn local_frame(&self) -> Option<&LocalFrame> {
         match self {
             Self::World(world) => Some(world.local_frame()),
@@ -119,17 +120,17 @@ impl Physics {
         }
     }
 
-    /// The craft is lost.
+    /// Returns `true` if the craft has crashed.
     pub(super) fn crashed(&self) -> bool {
         self.world().is_some_and(|world| world.truth().crashed)
     }
 
-    /// The simulation left the range where its numbers mean something.
+    /// Returns `true` if the simulation has left the range in which its numbers are meaningful.
     pub(super) fn diverged(&self) -> bool {
         self.world().is_some_and(|world| world.truth().diverged)
     }
 
-    /// The craft's true motion, as far as it is known, under these motor commands.
+    /// Returns the true motion of the craft under these motor commands, as far as it is known.
     pub(super) fn truth_view(&self, motors: MotorCommand) -> Option<TruthView> {
         match self {
             Self::World(world) => Some(world_truth_view(world)),
@@ -137,7 +138,7 @@ impl Physics {
         }
     }
 
-    /// Air, noise and faults.
+    /// Returns air, noise and faults.
     pub(super) fn world_view(&self) -> WorldView {
         let status = self.clockwork().status();
         let view =

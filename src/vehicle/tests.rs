@@ -29,7 +29,7 @@ fn run(vehicle: &mut Vehicle, until_s: f64) {
 fn lost_events_are_told() {
     let mut vehicle = vehicle();
     for _ in 0..100 {
-        // Refused, for the craft is not armed.
+        // Refused because the craft is not armed.
         assert!(vehicle.controller_mut().return_to_home().is_err());
     }
     vehicle.tick();
@@ -88,7 +88,7 @@ fn a_craft_put_back_home_knows_nothing_of_the_fall() {
     let mut vehicle = vehicle();
     run(&mut vehicle, 4.0);
     vehicle.change_world(WorldCommand::FaultOn(Fault::Teleport([0.0, 0.0, 30.0]), None)).unwrap();
-    // A slow tick, so that barometer and GPS have just spoken.
+    // A slow tick, so that barometer and GPS have just reported.
     run(&mut vehicle, 5.0);
     vehicle.reset_craft();
     run(&mut vehicle, 15.0);

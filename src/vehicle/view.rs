@@ -9,7 +9,7 @@ use crate::telemetry::NavTelemetry;
 use crate::telemetry::snapshot::{EstimateView, Snapshot};
 
 impl Vehicle {
-    /// A picture of the whole vehicle at this instant.
+    /// Returns a snapshot of the whole vehicle at this instant.
     pub fn snapshot(&self) -> Snapshot {
         let nav = self.nav_view();
         let engaged = nav.as_ref().is_some_and(|nav| nav.engaged);
@@ -27,8 +27,8 @@ impl Vehicle {
         }
     }
 
-    /// A point that the firmware counts from its own origin and on its own scale, counted north and east from the boot
-    /// place on the world's scale, m. Without an origin (no fix yet) the two are the same.
+    /// Converts a point from the firmware's own origin and scale to north and east of the boot place on the world's
+    /// scale, m. Without an origin (no fix yet) the two are the same.
     fn count_from_boot_place(&self, ne: Vector2<f64>) -> Vector2<f64> {
         let Some(origin) = self.embedded().and_then(Firmware::origin) else { return ne };
         let (lat_deg, lon_deg) = offset_to_degrees(origin, ne);
@@ -37,7 +37,8 @@ impl Vehicle {
         Vector2::new(enu.y, enu.x)
     }
 
-    /// The navigator with its points counted from the boot place; `None` when a remote one does not tell.
+    /// Returns the telemetry of the navigator with its points relative to the boot place, or `None` if a remote
+    /// controller does not report it.
     pub fn nav_view(&self) -> Option<NavTelemetry> {
         let mut nav = self.controller.nav()?.clone();
         for point in [&mut nav.aim_ne, &mut nav.target_ne].into_iter().flatten() {
@@ -46,7 +47,7 @@ impl Vehicle {
         Some(nav)
     }
 
-    /// What the estimator believes, counted from the boot place.
+    /// Returns the state of the estimator relative to the boot place.
     pub fn estimate_view(&self) -> EstimateView {
         let mut view = self.controller.estimate_view();
         if let (Some(n), Some(e)) = (view.n, view.e) {

@@ -1,4 +1,4 @@
-//! Altitude control: a setpoint that moves as the craft can, and the throttle that follows it.
+//! Altitude control: a setpoint that moves as fast as the craft can, and the throttle that follows it.
 
 use super::bumpless::BumplessTransfer;
 use super::hover_throttle::{HoverMeasurement, HoverThrottleEstimator};
@@ -7,44 +7,46 @@ use crate::autopilot::io::NavInputs;
 use crate::autopilot::params::Params;
 use crate::geo::GRAVITY;
 
-/// How fast the setpoint's speed may change, m/s².
+/// The maximum acceleration of the setpoint, m/s².
 const SETPOINT_ACCEL: f64 = 2.0;
-/// Deceleration with which the setpoint approaches its target, m/s².
+/// The deceleration with which the setpoint approaches its target, m/s².
 const SETPOINT_BRAKE: f64 = 1.0;
-/// Targets this near to home's altitude lie close above the ground that home stands on, m.
+/// Targets this close to the altitude of home are near the ground around home, m.
 const LOW_TARGET_M: f64 = 3.0;
-/// Share of the height above home that a descent to a low target takes in a second, 1/s.
+/// The share of the height above home that a descent to a low target covers in a second, 1/s.
 const FLARE: f64 = 0.25;
-/// Slowest descent to a low target, m/s.
+/// The slowest descent to a low target, m/s.
 const SLOWEST_FLARE_MPS: f64 = 0.3;
-/// Limit of the integral, µs.
+/// The limit of the integral, µs.
 const INTEGRAL_LIMIT_US: f64 = 200.0;
-/// Vertical speed, of the setpoint or the craft, at which the integral works at half its gain, m/s.
+/// The vertical speed, of the setpoint or the craft, at which the integral works at half its gain, m/s.
 const HALF_INTEGRAL_MPS: f64 = 0.8;
-/// Time constant with which the throttle for an acceleration of the setpoint comes and goes, s.
+/// The time constant of the throttle for an acceleration of the setpoint, s.
 const ACCEL_FILTER_S: f64 = 0.1;
-/// Fastest change of the throttle, µs/s.
+/// The fastest change of the throttle, µs/s.
 pub const THROTTLE_SLEW_US_PER_S: f64 = 5000.0;
-/// A target this far above a craft on the ground asks it to take off, m.
+/// A target this far above a craft on the ground is a request to take off, m.
 const CLIMB_M: f64 = 0.3;
 /// Below its setpoint by this (m) and sinking faster than this (m/s) at full throttle, the craft has too little thrust.
 const BELOW_M: f64 = 0.2;
 const SINKING_MPS: f64 = 0.1;
-/// Throttle below its limit that is one to spare, µs.
+/// The throttle is one to spare when it is this far below its limit, µs.
 const SPARE_US: f64 = 20.0;
-/// A craft is carried by its least throttle when it climbs this much faster than asked, m/s, and slows down no more than
-/// this, m/s², for so long, s.
+/// The minimum throttle carries a craft that climbs this much faster than commanded, m/s, and decelerates no more
+/// than this, m/s², for this time, s.
 const CARRIED_MPS: f64 = 0.5;
 const CARRIED_MPS2: f64 = 1.0;
 const CARRIED_S: f64 = 1.0;
-/// A craft higher than this, m, slower than this, m/s, and with a greater cosine of its tilt is held by its throttle.
+/// The throttle holds a craft that is higher than this, m, slower than this, m/s, and has a greater cosine of its
+/// tilt.
 const HELD_M: f64 = 1.0;
 const HELD_MPS: f64 = 0.3;
 const HELD_COS_TILT: f64 = 0.966;
-/// Room below the hover throttle that a craft needs to come down, µs, and the least floor of the parameters, µs.
+/// The throttle range below the hover throttle that a craft needs to descend, µs, and the lowest floor that the
+/// parameters allow, µs.
 const DESCENT_RESERVE_US: f64 = 100.0;
 const LEAST_FLOOR_US: f64 = 1050.0;
-/// Fastest change of the throttle limits in use, µs/s.
+/// The fastest change of the throttle limits in use, µs/s.
 const LIMIT_SLEW_US_PER_S: f64 = 500.0;
 
 /// The vertical state of the craft.
@@ -56,7 +58,7 @@ pub struct AltitudeMeasurement {
     pub climb_mps: f64,
     /// Cosine of the tilt from level.
     pub cos_tilt: f64,
-    /// Throttle that drove the mixer in the previous cycle, µs.
+    /// Throttle that the mixer used in the previous cycle, µs.
     pub throttle_us: f64,
 }
 
@@ -71,23 +73,23 @@ impl From<&NavInputs> for AltitudeMeasurement {
     }
 }
 
-/// What the altitude controller is asked for.
+/// The target of the altitude controller.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum AltitudeTarget {
     /// Go to this altitude (m) and stay, within the climb rate of the parameters.
     Altitude(f64),
-    /// Climb (or, negative, sink) at this rate, m/s; the setpoint never runs more than a second ahead of the craft.
+    /// Climb (or, negative, sink) at this rate, m/s. The setpoint never runs more than a second ahead of the craft.
     Rate(f64),
-    /// Follow a setpoint that somebody else moves: a landing. The integral works at full gain.
+    /// Follow a setpoint that a landing moves. The integral works at full gain.
     Landing {
-        /// Altitude now, m.
+        /// Current altitude, m.
         setpoint_m: f64,
-        /// Its rate, m/s.
+        /// Rate of the setpoint, m/s.
         rate_mps: f64,
     },
 }
 
-/// Everything the throttle depends on in one update.
+/// Everything that the throttle depends on in one update.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ThrottleTerms {
     /// Setpoint minus altitude, cm.
@@ -105,7 +107,7 @@ pub struct ThrottleTerms {
 }
 
 impl ThrottleTerms {
-    /// Throttle before its limits, µs: P, I, D and F about the hover throttle, compensated for the tilt.
+    /// Returns the throttle before its limits, µs: P, I, D and F around the hover throttle, compensated for the tilt.
     pub fn throttle_us(&self, params: &Params) -> f64 {
         let p = 0.01 * f64::from(params.altitude_p) * self.error_cm;
         let q = self.climb_rate_cms.abs() / 500.0;
@@ -117,7 +119,7 @@ impl ThrottleTerms {
     }
 }
 
-/// A throttle pulse as a share of the mixer's range, 0…1.
+/// Returns a throttle pulse as a share of the mixer's range, 0…1.
 pub fn throttle_share(throttle_us: f64, params: &Params) -> f64 {
     let zero = params.throttle_zero_us();
     ((throttle_us - zero) / (2000.0 - zero)).clamp(0.0, 1.0)
@@ -136,7 +138,7 @@ pub struct AltitudeController {
     setpoint_accel: f64,
     /// Throttle of the last update, µs.
     throttle_us: f64,
-    /// Throttle taken off the law's, µs.
+    /// Throttle subtracted from the output of the control law, µs.
     relief_us: f64,
     limits_us: Option<(f64, f64)>,
     params: Option<Params>,
@@ -144,13 +146,13 @@ pub struct AltitudeController {
     on_ground: bool,
     load: f64,
     spool_up: SpoolUp,
-    /// How long the least throttle has carried the craft up, s, and the least throttle that did, µs.
+    /// The time that the minimum throttle has carried the craft up, s, and the minimum throttle that did so, µs.
     carried_s: f64,
     lifting_floor_us: Option<u16>,
 }
 
 impl AltitudeTarget {
-    /// Whether it asks a craft at this altitude (m) to climb.
+    /// Returns `true` if the target makes a craft at this altitude (m) climb.
     fn climbs(self, altitude_m: f64) -> bool {
         match self {
             Self::Altitude(target_m) => target_m > altitude_m + CLIMB_M,
@@ -160,19 +162,19 @@ impl AltitudeTarget {
 }
 
 impl AltitudeController {
-    /// Tracks a cycle that somebody else flies, so that the hover throttle is known when this controller takes over.
+    /// Tracks a cycle that something else flies, so that the hover throttle is known when this controller takes over.
     pub fn track(&mut self, now: &AltitudeMeasurement, params: &Params, dt: f64) {
         self.hover.update(&hover_measurement(now, params), dt);
         self.spool_up = SpoolUp::default();
     }
 
-    /// Takes over: the setpoint starts at the craft, the throttle where it was.
+    /// Takes over. The setpoint starts at the craft and the throttle where it was.
     pub fn engage(&mut self, now: &AltitudeMeasurement, params: &Params) {
         let is_held =
             now.altitude_m > HELD_M && now.climb_mps.abs() < HELD_MPS && now.cos_tilt > HELD_COS_TILT;
         let configured = match params.hover_throttle {
             0 => now.throttle_us.clamp(1100.0, 1700.0),
-            // A craft that is held in the air, level and steady, shows its hover throttle at once.
+            // The throttle of a craft that holds its altitude, level and steady, is its hover throttle.
             _ if is_held => now.throttle_us,
             us => f64::from(us),
         };
@@ -194,23 +196,23 @@ impl AltitudeController {
         self.transfer.start(now.throttle_us, law);
     }
 
-    /// Altitude setpoint now, m above home.
+    /// Returns the altitude setpoint, m above home.
     pub fn setpoint_m(&self) -> f64 {
         self.setpoint_m
     }
 
-    /// Hover throttle in use, µs.
+    /// Returns the hover throttle in use, µs.
     pub fn hover_us(&self) -> f64 {
         self.hover.hover_us()
     }
 
-    /// Returns whether the craft has hovered in this flight, so that its hover throttle is known.
+    /// Returns `true` if the craft has hovered in this flight, so that its hover throttle is known.
     pub fn has_hovered(&self) -> bool {
         self.hover.held_us().is_some()
     }
 
-    /// The hover throttle that this flight has shown, µs; `None` before. Of a craft that its least throttle carried up it is
-    /// less than that, even before it hovered.
+    /// Returns the hover throttle learned in this flight, µs, or `None` before. If the minimum throttle carried the
+    /// craft up, the hover throttle is lower than that, even before the craft has hovered.
     pub fn learned_hover_us(&self) -> Option<f64> {
         self.hover.learned_us().or_else(|| {
             let lifting_us = f64::from(self.lifting_floor_us?) - 1.0;
@@ -218,8 +220,8 @@ impl AltitudeController {
         })
     }
 
-    /// Where a throttle stick means no climb, µs: the hover throttle that this flight has shown, before that the parameter,
-    /// and without one `centre_us`.
+    /// Returns the position of the throttle stick that means no climb, µs: the hover throttle learned in this flight,
+    /// else the parameter, else `centre_us`.
     pub fn hover_stick_us(&self, params: &Params, centre_us: f64) -> f64 {
         let configured_us = match params.hover_throttle {
             0 => centre_us,
@@ -228,8 +230,8 @@ impl AltitudeController {
         self.hover.learned_us().unwrap_or(configured_us)
     }
 
-    /// The hover throttle that a touchdown is measured against, µs: the parameter, or what held the craft when this
-    /// controller took over if there is none.
+    /// Returns the hover throttle that a touchdown is measured against, µs: the parameter or, if there is none, the
+    /// throttle that held the craft when this controller took over.
     pub fn reference_hover_us(&self, params: &Params) -> f64 {
         match params.hover_throttle {
             0 => self.captured_us,
@@ -237,38 +239,39 @@ impl AltitudeController {
         }
     }
 
-    /// Takes this much (µs) off the throttle of the law from now on: a landing that does not sink any more.
+    /// Subtracts this much (µs) from the throttle of the control law from now on, in a landing that does not sink any
+    /// more.
     pub fn set_relief_us(&mut self, relief_us: f64) {
         self.relief_us = relief_us;
     }
 
-    /// Throttle of the last update, µs.
+    /// Returns the throttle of the last update, µs.
     pub fn throttle_us(&self) -> f64 {
         self.throttle_us
     }
 
-    /// Says whether the craft stands on the ground and has not lifted off yet, and the specific force along its thrust in
-    /// multiples of gravity.
+    /// Sets `on_ground`, `true` while the craft is on the ground and has not lifted off yet, and `load`, the specific
+    /// force along its thrust in multiples of gravity.
     pub fn set_on_ground(&mut self, on_ground: bool, load: f64) {
         (self.on_ground, self.load) = (on_ground, load);
     }
 
-    /// Whether the throttle is all there is.
+    /// Returns `true` if the throttle is at its upper limit.
     pub fn is_at_full_throttle(&self) -> bool {
         self.limits_us.is_some_and(|(_, max)| self.throttle_us >= max)
     }
 
-    /// Whether the craft loses altitude although it has all the throttle there is.
+    /// Returns `true` if the craft loses altitude at full throttle.
     pub(super) fn sinks_at_full_throttle(&self, now: &NavInputs) -> bool {
         self.is_at_full_throttle() && self.setpoint_m > now.alt_m + BELOW_M && now.climb_mps < -SINKING_MPS
     }
 
-    /// Whether there is throttle left.
+    /// Returns `true` if there is throttle left.
     pub(super) fn has_throttle_to_spare(&self) -> bool {
         self.limits_us.is_none_or(|(_, max)| self.throttle_us < max - SPARE_US)
     }
 
-    /// Throttle (µs) towards `target` after `dt` seconds; inside the limits of the parameters.
+    /// Returns the throttle (µs) towards `target` after `dt` seconds, inside the limits of the parameters.
     pub fn update(
         &mut self,
         now: &AltitudeMeasurement,
@@ -292,12 +295,12 @@ impl AltitudeController {
         let rate_before = self.setpoint_rate;
         let landing = self.move_setpoint(now, target, params, dt);
         let change = self.setpoint_rate - rate_before;
-        // A step of the throttle would jolt a light craft.
+        // The filter avoids a step of the throttle, which would jolt a light craft.
         let accel = if dt > 0.0 { change / dt } else { 0.0 };
         self.setpoint_accel += (accel - self.setpoint_accel) * (dt / (ACCEL_FILTER_S + dt));
         self.integrate(now, landing, params, dt);
         if let Some(old) = self.params.filter(|old| old != params) {
-            // A changed parameter must not step the throttle.
+            // A changed parameter must not cause a step of the throttle.
             let terms = self.terms(now);
             let before = terms.throttle_us(&old) + self.transfer.remaining();
             self.transfer.start(before, terms.throttle_us(params));
@@ -312,7 +315,7 @@ impl AltitudeController {
         self.throttle_us
     }
 
-    /// On the ground nothing is controlled: the throttle rises until the craft leaves it.
+    /// Raises the throttle until the craft leaves the ground. Nothing else is controlled on the ground.
     fn wait_for_lift_off(
         &mut self,
         now: &AltitudeMeasurement,
@@ -327,7 +330,8 @@ impl AltitudeController {
         self.throttle_us
     }
 
-    /// Throttle for the acceleration of the setpoint, µs: thrust grows with the square of the throttle above its zero.
+    /// Returns the throttle for the acceleration of the setpoint, µs. Thrust grows with the square of the throttle
+    /// above its zero.
     fn accel_throttle_us(&self, params: &Params) -> f64 {
         let load = 1.0 + (self.setpoint_accel / GRAVITY).clamp(-0.5, 0.5);
         (self.hover.hover_us() - params.throttle_zero_us()) * (load.sqrt() - 1.0)
@@ -344,7 +348,7 @@ impl AltitudeController {
         }
     }
 
-    /// Moves the setpoint; returns whether this is a landing.
+    /// Moves the setpoint. Returns `true` if this is a landing.
     fn move_setpoint(
         &mut self,
         now: &AltitudeMeasurement,
@@ -363,7 +367,7 @@ impl AltitudeController {
                 let wanted = speed.copysign(left);
                 self.setpoint_rate += (wanted - self.setpoint_rate).clamp(-change, change);
                 let step = self.setpoint_rate * dt;
-                // The last step lands on the target instead of swinging about it.
+                // The last step ends on the target instead of oscillating around it.
                 if left.abs() < 0.02 && step.abs() >= left.abs() {
                     self.setpoint_m = altitude_m;
                     self.setpoint_rate = 0.0;
@@ -390,7 +394,7 @@ impl AltitudeController {
 
     fn integrate(&mut self, now: &AltitudeMeasurement, landing: bool, params: &Params, dt: f64) {
         let error_cm = (self.setpoint_m - now.altitude_m) * 100.0;
-        // The lag of a climb is not an error to remember: it would carry the craft past its altitude.
+        // The integral must not learn the lag of a climb. It would carry the craft past its altitude.
         let speed = self.setpoint_rate.abs().max(now.climb_mps.abs());
         let steady = 1.0 / (1.0 + (speed / HALF_INTEGRAL_MPS).powi(2));
         let share = match (landing, error_cm.abs() > 200.0) {
@@ -399,14 +403,15 @@ impl AltitudeController {
             (false, false) => steady,
         };
         self.integral_us += 0.003 * f64::from(params.altitude_i) * error_cm * share * dt;
-        // What holds a craft that stands is no throttle to hover with.
+        // The throttle of a craft that is on the ground is not its hover throttle.
         let stands = self.relief_us > 0.0;
         let taken = if stands { 0.0 } else { self.hover.learn(self.integral_us, error_cm / 100.0, dt) };
         self.integral_us = (self.integral_us - taken).clamp(-INTEGRAL_LIMIT_US, INTEGRAL_LIMIT_US);
     }
 
-    /// Least throttle, µs. A floor above the hover throttle that this flight has shown would carry the craft away; it is
-    /// refused at the engagement, but engaging on the ground comes before anything is known.
+    /// Returns the minimum throttle, µs. A floor above the hover throttle learned in this flight would carry the
+    /// craft away. The check at engagement refuses it, but a craft that engages on the ground has not learned
+    /// anything yet.
     fn floor_us(&self, params: &Params) -> f64 {
         let floor_us = f64::from(params.throttle_min);
         match self.hover.learned_us() {
@@ -416,12 +421,12 @@ impl AltitudeController {
         }
     }
 
-    /// Notices a craft that goes on climbing, faster than it is asked to, with the least throttle: it never comes to the
-    /// hover in which its hover throttle would be learned.
+    /// Detects a craft that keeps climbing faster than commanded at the minimum throttle. It never reaches the hover
+    /// in which its hover throttle would be learned.
     fn watch_floor(&mut self, now: &AltitudeMeasurement, params: &Params, dt: f64) {
         let is_least = now.throttle_us <= f64::from(params.throttle_min) + 1.0;
         let is_carried = now.climb_mps > self.setpoint_rate + CARRIED_MPS && now.climb_mps > CARRIED_MPS;
-        // One that was thrown up slows down.
+        // A craft that was thrown up slows down.
         let goes_on = self.hover.accel_mps2() > -CARRIED_MPS2;
         self.carried_s = if is_least && is_carried && goes_on { self.carried_s + dt } else { 0.0 };
         if self.carried_s >= CARRIED_S {
@@ -429,7 +434,7 @@ impl AltitudeController {
         }
     }
 
-    /// The throttle limits, led to the parameters' at a limited rate.
+    /// Returns the throttle limits, which follow those of the parameters at a limited rate.
     fn slew_limits(&mut self, params: &Params, dt: f64) -> (f64, f64) {
         let wanted = (self.floor_us(params), f64::from(params.throttle_max));
         let step = LIMIT_SLEW_US_PER_S * dt;
@@ -443,8 +448,9 @@ impl AltitudeController {
     }
 }
 
-/// Greatest speed of the setpoint towards a target, m/s. A craft lags behind its setpoint and swings below it by a metre
-/// or two after a quick descent, which close above the ground is too much: there it comes down the slower the lower it is.
+/// Returns the maximum speed of the setpoint towards a target, m/s. After a quick descent, a craft lags its setpoint
+/// and overshoots it downwards by a metre or two. That is too much close above the ground, so the craft descends more
+/// slowly the lower it is.
 fn flare_mps(setpoint_m: f64, target_m: f64) -> f64 {
     let flares = target_m.abs() < LOW_TARGET_M && (0.0..).contains(&setpoint_m) && target_m < setpoint_m;
     if flares { (FLARE * setpoint_m).max(SLOWEST_FLARE_MPS) } else { f64::INFINITY }
@@ -467,7 +473,7 @@ mod tests {
     #[test]
     fn only_a_descent_to_a_low_target_is_slowed() {
         let rows = [
-            // setpoint, target, greatest speed
+            // setpoint, target, maximum speed
             (20.0, 1.0, 5.0),
             (4.0, 1.0, 1.0),
             (1.0, 0.5, 0.3),

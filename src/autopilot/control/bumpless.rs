@@ -1,6 +1,6 @@
 //! Bumpless transfer: the difference between the old and the new demand fades out.
 
-/// Time in which a difference fades out, s.
+/// The time in which a difference fades out, s.
 const FADE_S: f64 = 1.0;
 
 /// A difference that fades out linearly.
@@ -11,7 +11,7 @@ pub struct BumplessTransfer {
 }
 
 impl BumplessTransfer {
-    /// From now on [`BumplessTransfer::apply`] leads from `old` to `new`, the demands of the same instant.
+    /// Starts the fade: [`BumplessTransfer::apply`] then leads from `old` to `new`, the demands of the same instant.
     pub fn start(&mut self, old: f64, new: f64) {
         let offset = old - new;
         *self = if offset.is_finite() { Self { offset, left_s: FADE_S } } else { Self::default() };
@@ -21,14 +21,14 @@ impl BumplessTransfer {
         *self = Self::default();
     }
 
-    /// The demand `new` with what is left of the difference after `dt` more seconds.
+    /// Returns the demand `new` plus the rest of the difference, and fades the difference by `dt` seconds.
     pub fn apply(&mut self, new: f64, dt: f64) -> f64 {
         let out = new + self.offset * (self.left_s / FADE_S);
         self.left_s = (self.left_s - dt).max(0.0);
         out
     }
 
-    /// The part of the difference that is still added.
+    /// Returns the part of the difference that is still added.
     pub fn remaining(&self) -> f64 {
         self.offset * (self.left_s / FADE_S)
     }

@@ -1,14 +1,15 @@
-//! Estimating the acceleration that the lean does not explain: wind and drag.
+//! Estimates the acceleration that the lean does not explain: wind and drag.
 
 use nalgebra::Vector2;
 
-/// Bandwidth of the estimate, rad/s (a critically damped second order, about 1 s).
+/// The bandwidth of the estimate, rad/s (critically damped second order, about 1 s).
 const BANDWIDTH_RPS: f64 = 2.0;
-/// Greatest estimate, m/s²: more than the wind of a storm.
+/// The maximum estimate, m/s²: more than the wind of a storm.
 const LIMIT_MPS2: f64 = 10.0;
 
-/// A velocity observer with the disturbance as its second state: `v̂' = a + d̂ + 2ω(v − v̂)`, `d̂' = ω²(v − v̂)`, with
-/// `a` the acceleration of the lean that is really flown. It needs no accelerometer, so its bias does not enter.
+/// A velocity observer with the disturbance as its second state: `v̂' = a + d̂ + 2ω(v − v̂)`, `d̂' = ω²(v − v̂)`,
+/// where `a` is the acceleration of the actual lean. It needs no accelerometer, so accelerometer bias does not affect
+/// it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct DisturbanceObserver {
     velocity: Option<Vector2<f64>>,
@@ -16,20 +17,20 @@ pub struct DisturbanceObserver {
 }
 
 impl DisturbanceObserver {
-    /// Estimated disturbance (north, east), m/s².
+    /// Returns the estimated disturbance (north, east), m/s².
     pub fn accel(&self) -> Vector2<f64> {
         self.accel
     }
 
-    /// Takes the measured ground `velocity` (m/s) and the acceleration of the lean flown (m/s²); what is not finite is
-    /// left out.
+    /// Takes the measured ground `velocity` (m/s) and the acceleration of the actual lean (m/s²). Ignores values that
+    /// are not finite.
     pub fn update(&mut self, velocity: Vector2<f64>, lean_accel: Vector2<f64>, dt: f64) {
         if !(velocity.sum() + lean_accel.sum() + dt).is_finite() {
             return;
         }
         let predicted = self.velocity.unwrap_or(velocity);
         let error = velocity - predicted;
-        // A velocity that jumps is a new estimate, not a gust.
+        // A jump of the velocity is a new estimate, not a gust.
         if error.norm() > 5.0 {
             self.velocity = Some(velocity);
             return;

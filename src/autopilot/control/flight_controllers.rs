@@ -1,4 +1,4 @@
-//! The controllers of a flight, lent to whoever flies.
+//! The controllers of a flight, lent to the code that flies the craft.
 
 use super::altitude::{AltitudeController, AltitudeMeasurement};
 use super::lean_limit::LeanLimiter;
@@ -7,11 +7,12 @@ use crate::autopilot::io::NavInputs;
 use crate::autopilot::land_detector::LandDetector;
 use crate::autopilot::params::Params;
 
-/// The one altitude controller, the one position controller, the one lean limiter and the one land detector of a craft.
+/// The altitude controller, the position controller, the lean limiter and the land detector of a craft. There is one
+/// of each.
 ///
-/// They are lent to the navigator or to the hold modes. Whoever takes one over engages it, so that the demand does not
-/// step, and updates it in every cycle; a controller that nobody flies with tracks the flight, so that wind and hover
-/// throttle are known at the next takeover.
+/// They are lent to the navigator or to the hold modes. The borrower engages a controller when it takes over, so that
+/// the demand does not step, and updates it in every cycle. A controller that is not in use tracks the flight, so
+/// that wind and hover throttle are known at the next takeover.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct FlightControllers {
     pub altitude: AltitudeController,
@@ -21,31 +22,32 @@ pub struct FlightControllers {
 }
 
 impl FlightControllers {
-    /// Takes both over: setpoints start at the craft, demands where they were.
+    /// Takes over both controllers. Setpoints start at the craft and demands where they were.
     pub fn engage(&mut self, now: &NavInputs, params: &Params) {
         self.altitude.engage(&AltitudeMeasurement::from(now), params);
         self.position.engage(&PositionMeasurement::from(now));
     }
 
-    /// Lets the lean be no greater than the thrust allows, after the altitude controller was updated.
+    /// Limits the lean to what the thrust allows. Call it after the altitude controller was updated.
     pub fn limit_lean(&mut self, now: &NavInputs, params: &Params) {
         let limit_rad = self.lean.update(now, &self.altitude, params);
         self.position.limit_lean(Some(limit_rad));
     }
 
-    /// Whether the thrust does not suffice for the lean that is asked for.
+    /// Returns `true` if the thrust is too low for the commanded lean.
     pub fn thrust_limits_lean(&self) -> bool {
         self.lean.is_reduced() && self.position.is_saturated()
     }
 
-    /// Tracks a cycle whose throttle is not this altitude controller's: the pilot weighs lean against altitude.
+    /// Tracks a cycle whose throttle does not come from this altitude controller. The pilot balances lean against
+    /// altitude.
     pub fn track_altitude(&mut self, now: &NavInputs, params: &Params) {
         self.lean = LeanLimiter::default();
         self.position.limit_lean(None);
         self.altitude.track(&AltitudeMeasurement::from(now), params, now.dt);
     }
 
-    /// Tracks a cycle whose lean is not this position controller's; without a fix there is nothing to track.
+    /// Tracks a cycle whose lean does not come from this position controller. Does nothing without a fix.
     pub fn track_position(&mut self, now: &NavInputs) {
         if now.fix {
             self.position.track(&PositionMeasurement::from(now), now.dt);
@@ -59,7 +61,8 @@ mod tests {
     use crate::autopilot::control::{AltitudeTarget, PositionTarget};
     use nalgebra::Vector2;
 
-    /// Controllers of a craft that hovers at 1900 µs, asked for full speed for a second, with at most 60° of lean.
+    /// Returns the controllers of a craft that hovers at 1900 µs and flies at full speed for a second, with at most
+    /// 60° of lean.
     fn weak_craft() -> (FlightControllers, NavInputs, Params) {
         let params = Params { max_angle: 60, hover_throttle: 1900, ..Params::default() };
         let now = NavInputs { throttle_us: 1900.0, ..NavInputs::hovering() };

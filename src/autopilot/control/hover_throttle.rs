@@ -1,43 +1,46 @@
-//! Estimate of the throttle that holds the craft, whatever the parameter says.
+//! Estimates the throttle that holds the craft, independently of the parameter.
 
 use crate::geo::GRAVITY;
 
-/// Limits of the estimated hover throttle, µs.
+/// The lower limit of the estimated hover throttle, µs.
 pub const HOVER_MIN_US: f64 = 1050.0;
-/// See [`HOVER_MIN_US`].
+/// The upper limit of the estimated hover throttle, µs.
 pub const HOVER_MAX_US: f64 = 1900.0;
-/// Time constant of the filters on throttle and climb rate, s.
+/// The time constant of the filters on throttle and climb rate, s.
 const FILTER_S: f64 = 0.15;
-/// Time constant of the estimate while somebody else flies and right after engaging, s.
+/// The time constant of the estimate while something else flies and right after engaging, s.
 const FAST_S: f64 = 0.8;
-/// How long the estimate is followed after engaging, s of quiet flight.
+/// The time of quiet flight after engaging in which the estimate is followed, s.
 const FAST_FOR_S: f64 = 5.0;
-/// Time constant with which the altitude integral becomes hover throttle, s.
+/// The time constant with which the altitude integral becomes hover throttle, s.
 const SLOW_S: f64 = 10.0;
-/// Altitude error beyond which the integral of the altitude nearly rests, m.
+/// The altitude error beyond which the altitude integral almost stops, m.
 const FAR_M: f64 = 2.0;
-/// Time constant, beside the fast one, with which it is followed there, s: something has changed.
+/// The time constant, besides the fast one, with which the estimate is followed beyond that error, s: something has
+/// changed.
 const FAR_S: f64 = 1.0;
-/// Throttle is hover throttle while the craft is slower than this, m/s, accelerates less than this, m/s², and leans less
-/// than this, for so long, s. A steady climb has no acceleration either, but needs throttle against inflow and drag.
+/// The throttle is the hover throttle while the craft is slower than this, m/s, accelerates less than this, m/s², and
+/// leans less than this, for this time, s. A steady climb has no acceleration either, but needs throttle against
+/// inflow and drag.
 const STILL_CLIMB_MPS: f64 = 0.3;
 const STILL_ACCEL_MPS2: f64 = 0.5;
 const STILL_LEAN_RAD: f64 = 15.0 * std::f64::consts::PI / 180.0;
 const STILL_S: f64 = 0.5;
-/// Most throttle that a climb is assumed to take from drag and inflow, and that a descent gives back, µs per m/s.
+/// The maximum throttle that drag and inflow are assumed to cost in a climb, and to give back in a descent, µs per
+/// m/s.
 const CLIMB_LOSS_US: f64 = 300.0;
-/// How long the craft must have been airborne before an estimate counts at engaging, s.
+/// The time that the craft must have been airborne before an estimate counts at engagement, s.
 const SETTLED_S: f64 = 2.0;
-/// Altitude above home from which the craft counts as airborne, m.
+/// The altitude above home from which the craft counts as airborne, m.
 const AIRBORNE_M: f64 = 1.0;
 
-/// Estimates the hover throttle from the vertical balance: thrust grows about with the square of the throttle above its
-/// zero, so a craft that accelerates upwards by `a` hovers at `zero + (throttle − zero)·√(cos tilt/(1 + a/g))`.
+/// Estimates the hover throttle from the vertical balance. Thrust grows about with the square of the throttle above
+/// its zero, so a craft that accelerates upwards by `a` hovers at `zero + (throttle − zero)·√(cos tilt/(1 + a/g))`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HoverThrottleEstimator {
     /// Hover throttle in use, µs.
     hover_us: f64,
-    /// Estimate from the balance while the craft hovers, µs, when there is one.
+    /// Estimate from the balance while the craft hovers, µs, if there is one.
     estimate_us: Option<f64>,
     /// Balance at any speed, µs: more than the hover throttle in a climb, less in a descent.
     balance_us: Option<f64>,
@@ -46,7 +49,7 @@ pub struct HoverThrottleEstimator {
     /// Vertical acceleration, m/s².
     accel: f64,
     airborne_s: f64,
-    /// How long the throttle has been hover throttle, s.
+    /// The time that the throttle has been the hover throttle, s.
     still_s: f64,
     /// Hover throttle found at a lift-off, µs.
     found_us: Option<f64>,
@@ -71,12 +74,12 @@ impl Default for HoverThrottleEstimator {
     }
 }
 
-/// What the estimate is made from.
+/// The input of the estimate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HoverMeasurement {
-    /// Throttle that drove the mixer in the previous cycle, µs.
+    /// Throttle that the mixer used in the previous cycle, µs.
     pub throttle_us: f64,
-    /// Throttle that is zero thrust, µs.
+    /// Throttle that gives zero thrust, µs.
     pub zero_us: f64,
     /// Climb rate, m/s.
     pub climb_mps: f64,
@@ -87,32 +90,33 @@ pub struct HoverMeasurement {
 }
 
 impl HoverThrottleEstimator {
-    /// Hover throttle in use, µs.
+    /// Returns the hover throttle in use, µs.
     pub fn hover_us(&self) -> f64 {
         self.hover_us
     }
 
-    /// Throttle that balances the weight, at any speed, µs; in a climb it holds what inflow and drag take, too.
+    /// Returns the throttle that balances the weight, at any speed, µs. In a climb it also contains the share of
+    /// inflow and drag.
     pub fn balance_us(&self) -> Option<f64> {
         self.balance_us
     }
 
-    /// Vertical acceleration of the last cycle, m/s².
+    /// Returns the vertical acceleration of the last cycle, m/s².
     pub fn accel_mps2(&self) -> f64 {
         self.accel
     }
 
-    /// The hover throttle that this flight has shown, µs; `None` before.
+    /// Returns the hover throttle learned in this flight, µs, or `None` before.
     pub fn learned_us(&self) -> Option<f64> {
         self.held_us().or(self.found_us)
     }
 
-    /// The throttle that held the craft in a hover of this flight, µs; `None` before.
+    /// Returns the throttle that held the craft in a hover of this flight, µs, or `None` before.
     pub fn held_us(&self) -> Option<f64> {
         self.estimate_us.filter(|_| self.airborne_s >= SETTLED_S)
     }
 
-    /// Takes one cycle, flown by anyone; one that is not finite is left out.
+    /// Takes one cycle, whatever flew it. Ignores a cycle with a value that is not finite.
     pub fn update(&mut self, now: &HoverMeasurement, dt: f64) {
         if !(now.throttle_us + now.climb_mps + now.altitude_m + now.cos_tilt + dt).is_finite() {
             return;
@@ -145,14 +149,15 @@ impl HoverThrottleEstimator {
         }
     }
 
-    /// Returns whether the throttle is hover throttle.
+    /// Returns `true` if the throttle is the hover throttle.
     fn hovers(&self) -> bool {
         self.still_s >= STILL_S
     }
 
-    /// The craft has just been lifted off the ground by the throttle above `zero_us` (µs), feeling `load` times gravity.
+    /// Reports that the throttle above `zero_us` (µs) has just lifted the craft off the ground, at a load of `load`
+    /// times gravity.
     pub fn lift_off(&mut self, load: f64, zero_us: f64) {
-        // The filtered throttle lags behind as the thrust and what is felt of it do.
+        // The filtered throttle lags just as the thrust and its measurement do.
         let hover_us = zero_us + (self.throttle_filter - zero_us) / load.clamp(1.0, 4.0).sqrt();
         self.hover_us =
             if hover_us.is_finite() { hover_us.clamp(HOVER_MIN_US, HOVER_MAX_US) } else { self.hover_us };
@@ -161,24 +166,27 @@ impl HoverThrottleEstimator {
         self.found_us = Some(self.hover_us);
     }
 
-    /// Chooses the hover throttle at engaging: what held the craft in a hover, else what was found at the lift-off or
-    /// `configured_us`, as far as the balance allows it.
+    /// Chooses the hover throttle at engagement: the throttle that held the craft in a hover, else the one found at
+    /// the lift-off or `configured_us`, within the limits of the balance.
     pub fn engage(&mut self, configured_us: f64) {
         let hover_us = self.held_us().unwrap_or_else(|| {
-            // Near the ground a craft lifts off with less than it hovers with.
+            // Near the ground a craft lifts off with less throttle than it hovers with.
             let guess_us = self.found_us.unwrap_or(configured_us);
             let balance_us = self.balance_us.filter(|_| self.airborne_s >= SETTLED_S);
             balance_us.map_or(guess_us, |balance_us| self.bounded(guess_us, balance_us))
         });
         self.hover_us = hover_us.clamp(HOVER_MIN_US, HOVER_MAX_US);
-        // What held the craft needs no quick correction: a climb right after engaging would only mislead it.
+        // A throttle that held the craft needs no quick correction. A climb right after engaging would only mislead
+        // it.
         self.followed_s = if self.learned_us().is_some() { FAST_FOR_S } else { 0.0 };
     }
 
-    /// Follows the estimate in the first quiet seconds in the air, and whenever the altitude error is so large that the
-    /// integral rests; otherwise takes over the altitude `integral_us` bit by bit. Returns what the integral has to give
-    /// up. Learns only while the craft hovers; before its first hover it keeps within the limit of the balance, since waiting
-    /// could take the craft down.
+    /// Follows the estimate in the first quiet seconds in the air, and whenever the altitude error is so large that
+    /// the integral rests. Otherwise takes over the altitude `integral_us` bit by bit. Returns the amount that the
+    /// integral must give up.
+    ///
+    /// Learns only while the craft hovers. Before its first hover, the estimate stays within the limits of the
+    /// balance, since waiting could let the craft sink.
     pub fn learn(&mut self, integral_us: f64, error_m: f64, dt: f64) -> f64 {
         let is_new = self.followed_s < FAST_FOR_S;
         let before = self.hover_us;
@@ -186,7 +194,8 @@ impl HoverThrottleEstimator {
             if self.learned_us().is_some() {
                 return 0.0;
             }
-            // The integral may hold a part of it already: the sum of both changes only as far as the limit asks.
+            // The integral may already contain a part of it, so the sum of both changes only as far as the limit
+            // requires.
             let share = dt / (FAST_S + self.followed_s);
             let bounded = |us: f64| self.balance_us.map_or(us, |balance_us| self.bounded(us, balance_us));
             let sum_us = before + integral_us;
@@ -207,9 +216,10 @@ impl HoverThrottleEstimator {
         self.hover_us - before
     }
 
-    /// Returns the hover throttle nearest to a guess that the balance allows, µs. Drag and inflow take throttle in a climb and
-    /// give some in a descent: a climbing craft hovers with at most its balance, a sinking one with at least that. What is
-    /// learned in a climb must not carry it on, so the guess is kept as far as the climb can explain it.
+    /// Returns the hover throttle nearest to a guess that the balance allows, µs. Drag and inflow cost throttle in a
+    /// climb and give some back in a descent: a climbing craft hovers with at most its balance, a sinking one with at
+    /// least that. A value learned in a climb must not prolong the climb, so the guess is kept as far as the climb
+    /// can explain it.
     fn bounded(&self, guess_us: f64, balance_us: f64) -> f64 {
         let loss_us = CLIMB_LOSS_US * self.climb_filter;
         guess_us.max(balance_us - loss_us.max(0.0)).min(balance_us - loss_us.min(0.0))
@@ -218,7 +228,7 @@ impl HoverThrottleEstimator {
     fn follow(&mut self, estimate_us: Option<f64>, share: f64) {
         let before = self.hover_us;
         let estimate = estimate_us.unwrap_or(before);
-        // A craft that stands on the ground needs at least the throttle that did not lift it.
+        // A craft on the ground needs at least the throttle that did not lift it.
         let estimate = if self.airborne_s > 0.0 { estimate } else { estimate.max(before) };
         self.hover_us = (before + (estimate - before) * share).clamp(HOVER_MIN_US, HOVER_MAX_US);
     }

@@ -1,34 +1,34 @@
-//! Altitude before lean: how far the craft may lean without losing its altitude.
+//! Altitude before lean: limits the lean so that the craft keeps its altitude.
 
 use super::altitude::AltitudeController;
 use crate::autopilot::io::NavInputs;
 use crate::autopilot::params::Params;
 
 const DEG: f64 = std::f64::consts::PI / 180.0;
-/// How fast the limit falls while the craft sinks at full throttle, and rises when there is throttle to spare, rad/s.
+/// The rates at which the limit falls while the craft sinks at full throttle, and rises while there is throttle to
+/// spare, rad/s.
 const FALL_RPS: f64 = 10.0 * DEG;
 const RISE_RPS: f64 = 5.0 * DEG;
 /// The limit never falls below this, rad.
 const LEAST_RAD: f64 = 5.0 * DEG;
-/// Reserve of the thrust over the weight that a lean must leave.
+/// The reserve of thrust over weight that a lean must leave.
 const RESERVE: f64 = 1.05;
-/// Reduction that is worth telling, rad.
+/// The smallest reduction worth reporting, rad.
 const TOLD_RAD: f64 = 1.0 * DEG;
 
 /// The lean that the thrust allows.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct LeanLimiter {
-    /// Limit found in flight, rad; none while the greatest lean of the parameters can be flown.
+    /// Limit found in flight, rad, or `None` while the maximum lean of the parameters can be flown.
     found_rad: Option<f64>,
     is_reduced: bool,
 }
 
 impl LeanLimiter {
-    /// The limit after a cycle in which the altitude controller asked for its throttle, rad.
+    /// Returns the limit after a cycle in which the altitude controller computed its throttle, rad.
     ///
-    /// Thrust grows with the square of the throttle above its zero, so a tilt needs
-    /// `cos tilt ≥ ((hover − zero)/(maximum − zero))²`; drag and air may need more, which shows when the craft sinks
-    /// at full throttle.
+    /// Thrust grows with the square of the throttle above its zero, so a tilt needs `cos tilt ≥ ((hover −
+    /// zero)/(maximum − zero))²`. Drag and moving air may need more. The craft then sinks at full throttle.
     pub(super) fn update(&mut self, now: &NavInputs, altitude: &AltitudeController, params: &Params) -> f64 {
         let max_rad = params.max_lean_rad();
         let zero_us = params.throttle_zero_us();
@@ -51,7 +51,7 @@ impl LeanLimiter {
         limit_rad
     }
 
-    /// Whether the limit is lower than the parameters' by an amount that is worth telling.
+    /// Returns `true` if the limit is lower than that of the parameters by an amount worth reporting.
     pub(super) fn is_reduced(&self) -> bool {
         self.is_reduced
     }

@@ -1,4 +1,4 @@
-//! Position control: from a place to fly to, to a lean towards north and east.
+//! Position control: turns a target place into a lean towards north and east.
 
 use nalgebra::Vector2;
 
@@ -9,46 +9,46 @@ use crate::autopilot::io::NavInputs;
 use crate::autopilot::params::Params;
 use crate::geo::GRAVITY;
 
-/// Limit of the speed law's integral, rad.
+/// The limit of the speed law's integral, rad.
 const SPEED_INTEGRAL_LIMIT: f64 = 35.0 * DEG;
-/// Limit of the direct law's integral, m·s.
+/// The limit of the direct law's integral, m·s.
 const DIRECT_INTEGRAL_LIMIT: f64 = 20.0;
-/// Limit of the position error of the direct law, m.
+/// The limit of the position error of the direct law, m.
 const DIRECT_ERROR_LIMIT: f64 = 5.0;
-/// Half-life of the integrals while the pilot flies, s.
+/// The half-life of the integrals while the pilot flies, s.
 const BLEED_HALF_LIFE_S: f64 = 2.5;
-/// Setpoint acceleration (m/s²) at which the speed integral works at half its gain: the lag of speeding up and braking
-/// is not an error to remember.
+/// The setpoint acceleration (m/s²) at which the speed integral works at half its gain. The integral must not learn
+/// the lag of acceleration and braking.
 const HALF_INTEGRAL_ACCEL: f64 = 0.3;
-/// Rate at which the velocity setpoint closes small differences, rad/s: without it a turn of the direction at walking
-/// pace would kick the lean.
+/// The rate at which the velocity setpoint closes small differences, rad/s. Without it, a turn of the direction at
+/// walking pace would kick the lean.
 const SETPOINT_RPS: f64 = 5.0;
-/// How much faster than its target the craft may follow a pattern.
+/// The factor by which the craft may be faster than its target when it follows a pattern.
 const CHASE: f64 = 1.1;
-/// Distance from the target, in radii of the pattern, within which the trim is learned, and the most of it, in speeds of
-/// the target.
+/// The distance from the target, in radii of the pattern, within which the trim is learned, and the maximum trim, in
+/// speeds of the target.
 const ON_PATTERN: f64 = 0.5;
 const MOST_TRIM: f64 = 0.5;
-/// How far the speed setpoint may lead the speed while the thrust limits the lean, m/s.
+/// The maximum lead of the speed setpoint over the speed while the thrust limits the lean, m/s.
 const SPEED_LEAD_MPS: f64 = 1.0;
-/// Fastest change of the lean limit in use, rad/s.
+/// The fastest change of the lean limit in use, rad/s.
 const LIMIT_SLEW: f64 = 30.0 * DEG;
-/// Fastest change of the lean demand, rad/s.
+/// The fastest change of the lean demand, rad/s.
 pub const LEAN_SLEW_RPS: f64 = 200.0 * DEG;
 const DEG: f64 = std::f64::consts::PI / 180.0;
 
-/// A lean towards (north, east) as (forward, right) of a craft heading `heading_rad`.
+/// Converts a lean towards (north, east) to (forward, right) of a craft that heads `heading_rad`.
 pub fn earth_to_body(ne: Vector2<f64>, heading_rad: f64) -> Vector2<f64> {
     let (sin, cos) = heading_rad.sin_cos();
     Vector2::new(ne.x * cos + ne.y * sin, -ne.x * sin + ne.y * cos)
 }
 
-/// The inverse of [`earth_to_body`].
+/// Returns the inverse of [`earth_to_body`].
 fn body_to_earth(body: Vector2<f64>, heading_rad: f64) -> Vector2<f64> {
     earth_to_body(body, -heading_rad)
 }
 
-/// The horizontal state of the craft; north, east.
+/// The horizontal state of the craft in north and east.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PositionMeasurement {
     /// Position, m.
@@ -57,7 +57,7 @@ pub struct PositionMeasurement {
     pub velocity: Vector2<f64>,
     /// Acceleration, m/s².
     pub accel: Vector2<f64>,
-    /// Lean flown now (forward, right), rad.
+    /// Current lean (forward, right), rad.
     pub lean_body: Vector2<f64>,
     /// Heading, rad clockwise from north.
     pub heading_rad: f64,
@@ -83,26 +83,26 @@ pub enum PositionLaw {
     Direct,
 }
 
-/// What the position controller is asked for; north, east.
+/// The target of the position controller in north and east.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PositionTarget {
     /// The point to steer for, m.
     pub aim: Vector2<f64>,
     /// The point to reach, m.
     pub target: Vector2<f64>,
-    /// Velocity of the target, m/s; zero unless it moves along a pattern.
+    /// Velocity of the target, m/s. Zero unless the target moves along a pattern.
     pub target_velocity: Vector2<f64>,
     /// Acceleration of the target, m/s².
     pub target_accel: Vector2<f64>,
-    /// Fly on at full speed instead of stopping at the target.
+    /// `true` to fly on at full speed instead of stopping at the target.
     pub pass_through: bool,
-    /// Greatest speed, m/s.
+    /// Maximum speed, m/s.
     pub speed_mps: f64,
     pub law: PositionLaw,
 }
 
 impl PositionTarget {
-    /// Stop at `point` and stay.
+    /// Returns the target to stop at `point` and stay there.
     pub fn stay(point: Vector2<f64>, params: &Params) -> Self {
         Self {
             aim: point,
@@ -133,19 +133,19 @@ pub struct PositionController {
     direct_integral: Vector2<f64>,
     saturated: bool,
     limit_rad: Option<f64>,
-    /// Lean that the thrust allows, rad; none: the thrust is not watched.
+    /// Lean that the thrust allows, rad, or `None` while the thrust is not monitored.
     thrust_limit_rad: Option<f64>,
     params: Option<Params>,
     transfer: [BumplessTransfer; 2],
-    /// Lean flown by somebody else until now, to lead on from.
+    /// Lean from which to continue, flown by something else until now.
     flown: Option<Vector2<f64>>,
     /// Demand of the last update, rad.
     demand: Option<Vector2<f64>>,
 }
 
 impl PositionController {
-    /// Tracks a cycle that somebody else flies: wind and drag stay known, integrals bleed, the setpoints follow the
-    /// craft.
+    /// Tracks a cycle that something else flies. Wind and drag stay known, integrals decay, and the setpoints follow
+    /// the craft.
     pub fn track(&mut self, now: &PositionMeasurement, dt: f64) {
         self.observe(now, dt);
         let keep = 0.5_f64.powf(dt / BLEED_HALF_LIFE_S);
@@ -162,34 +162,34 @@ impl PositionController {
         self.demand = Some(flown);
     }
 
-    /// Takes over: integrals empty, setpoints at the craft, lean where it was.
+    /// Takes over with empty integrals, setpoints at the craft, and the lean where it was.
     pub fn engage(&mut self, now: &PositionMeasurement) {
         *self = Self { observer: self.observer, thrust_limit_rad: self.thrust_limit_rad, ..Self::default() };
         self.track(now, 0.0);
     }
 
-    /// Whether the demand is cut at the greatest lean.
+    /// Returns `true` if the demand is limited to the maximum lean.
     pub fn is_saturated(&self) -> bool {
         self.saturated
     }
 
-    /// Limits the lean to what the thrust allows, rad; `None` when nobody keeps the altitude.
+    /// Limits the lean to what the thrust allows, rad. `None` if no controller keeps the altitude.
     pub(super) fn limit_lean(&mut self, limit_rad: Option<f64>) {
         self.thrust_limit_rad = limit_rad;
     }
 
-    /// The greatest lean that may be flown, rad.
+    /// Returns the maximum lean that may be flown, rad.
     pub fn max_lean_rad(&self, params: &Params) -> f64 {
         self.thrust_limit_rad.unwrap_or(f64::INFINITY).min(params.max_lean_rad())
     }
 
-    /// Speed setpoint, m/s.
+    /// Returns the speed setpoint, m/s.
     pub fn speed_setpoint_mps(&self) -> f64 {
         self.speed
     }
 
-    /// Lean towards (north, east) in rad that leads to `target`, `dt` seconds after the last; inside the greatest
-    /// lean.
+    /// Returns the lean towards (north, east) in rad that leads to `target`, `dt` seconds after the last update,
+    /// inside the maximum lean.
     pub fn update(
         &mut self,
         now: &PositionMeasurement,
@@ -248,22 +248,22 @@ impl PositionController {
         let brake = params.max_accel_mps2();
         self.speed += (demand - self.speed).clamp(-brake * dt, params.build_up_accel_mps2() * dt);
         if self.max_lean_rad(params) < params.max_lean_rad() {
-            // A speed that the lean cannot hold is not asked for.
+            // The setpoint must not exceed a speed that the lean can hold.
             self.speed = self.speed.min(now.velocity.norm() + SPEED_LEAD_MPS);
         }
         let direction = chase.try_normalize(1e-6).unwrap_or(direction);
         let left = direction * self.speed - self.velocity_setpoint;
         let mut step = (left * (SETPOINT_RPS * dt).min(1.0)).cap_magnitude(brake * dt);
         if frame.is_some() && demand > 0.0 {
-            // The turn of the pattern itself needs no error to be flown.
+            // The turn of the pattern itself is flown without an error.
             step += target.target_accel * (dt * (self.speed / demand).min(1.0));
         }
         self.velocity_setpoint += step;
         self.accel_setpoint = if dt > 0.0 { step / dt } else { Vector2::zeros() };
     }
 
-    /// Learns what the craft lacks on a pattern. Seen from a craft that circles, drag and lags stay where they are, so that
-    /// their sum can be found slowly, which the estimate of the wind cannot.
+    /// Learns the correction that the craft needs on a pattern. For a craft that circles, drag and lags keep their
+    /// direction relative to the pattern, so their sum can be found slowly. The wind estimate cannot do that.
     fn trim_pattern(&mut self, now: &PositionMeasurement, target: &PositionTarget, params: &Params, dt: f64) {
         let Some([along, inward]) = pattern_frame(target) else {
             self.pattern_trim = Vector2::zeros();
@@ -352,7 +352,7 @@ impl PositionController {
         Vector2::new(self.transfer[0].remaining(), self.transfer[1].remaining())
     }
 
-    /// The greatest lean, led to the parameter's at a limited rate.
+    /// Returns the maximum lean, which follows that of the parameter at a limited rate.
     fn slew_limit(&mut self, params: &Params, dt: f64) -> f64 {
         let wanted = self.max_lean_rad(params);
         let limit = match self.limit_rad {
@@ -364,7 +364,7 @@ impl PositionController {
     }
 }
 
-/// The directions along a pattern and towards its centre; `None` while the target stands.
+/// Returns the directions along a pattern and towards its centre, or `None` while the target does not move.
 fn pattern_frame(target: &PositionTarget) -> Option<[Vector2<f64>; 2]> {
     Some([target.target_velocity.try_normalize(1e-3)?, target.target_accel.try_normalize(1e-6)?])
 }

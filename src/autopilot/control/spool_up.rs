@@ -1,18 +1,19 @@
 //! The throttle until the craft leaves the ground.
 
-/// Share of the hover throttle that the rise begins at: no airframe that flies with the parameter's half lifts off there.
+/// The share of the hover throttle at which the rise begins. No airframe that flies with half the parameter lifts off
+/// there.
 const START_SHARE: f64 = 0.4;
 /// Growth of the throttle above its zero, 1/s.
 const GROWTH_PER_S: f64 = 0.5;
 
-/// Raises the throttle from well below the hover throttle until the craft lifts off, so that what lifts it is known and a
-/// wrong hover throttle does not throw it into the air, nor keep it on the ground.
+/// Raises the throttle from well below the hover throttle until the craft lifts off, so that the lifting throttle is
+/// known. A wrong hover throttle then neither throws the craft into the air nor keeps it on the ground.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct SpoolUp(Option<f64>);
 
 impl SpoolUp {
-    /// Throttle of a cycle on the ground, µs: `hover_us` is the hover throttle as far as it is known, `zero_us` the
-    /// throttle without thrust. Without a wish to climb it rests at the least.
+    /// Returns the throttle of a cycle on the ground, µs. `hover_us` is the hover throttle as far as it is known,
+    /// `zero_us` the throttle without thrust. Without a command to climb it stays at the minimum.
     pub(super) fn update(
         &mut self,
         wants_climb: bool,
@@ -30,7 +31,7 @@ impl SpoolUp {
         now
     }
 
-    /// The craft has left the ground; returns whether it was this throttle that lifted it.
+    /// Reports that the craft has left the ground. Returns `true` if this throttle lifted it.
     pub(super) fn lift_off(&mut self) -> bool {
         self.0.take().is_some()
     }

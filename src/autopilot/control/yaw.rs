@@ -1,27 +1,27 @@
-//! Where the nose points while the autopilot flies.
+//! Yaw control while the autopilot flies.
 
 use super::bumpless::BumplessTransfer;
 use crate::autopilot::params::{Params, YawMode};
 use crate::geo::wrap_pi;
 
-/// Time in which yaw control fades in, s.
+/// The time in which yaw control fades in, s.
 const RAMP_S: f64 = 2.0;
-/// Distance over which HYBRID goes over from bearing to course, m.
+/// The distance over which HYBRID changes from bearing to course, m.
 const HYBRID_M: f64 = 10.0;
-/// Fastest change of the demand, deg/s².
+/// The fastest change of the demand, deg/s².
 pub const YAW_SLEW_DPS2: f64 = 180.0;
-/// Fastest growth of the demand: a share of the greatest rate a second, and this much more, deg/s². The rate loop overshoots
-/// a quicker change, and the greatest rate is a limit of the true one.
+/// The fastest growth of the demand: a share of the maximum rate per second, plus this, deg/s². The rate loop
+/// overshoots a quicker change, and the maximum rate is a limit of the true rate.
 const GROWTH_PER_S: f64 = 0.7;
 const GROWTH_DPS2: f64 = 6.0;
-/// Share of the minimum speed below which the course is given up.
+/// The share of the minimum speed below which the course is no longer used.
 const RELEASE: f64 = 0.75;
 
-/// What the heading can be steered by; rad clockwise from north, SI.
+/// The inputs that can steer the heading. Angles in rad clockwise from north, SI.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct YawFacts {
     pub heading_rad: f64,
-    /// Yaw rate now, rad/s, clockwise positive.
+    /// Current yaw rate, rad/s, clockwise positive.
     pub yaw_rate_rps: f64,
     pub course_rad: f64,
     /// Ground speed, m/s.
@@ -30,12 +30,13 @@ pub struct YawFacts {
     pub bearing_rad: f64,
     /// Distance to the waypoint, m.
     pub distance_m: f64,
-    /// Acceptance radius of the waypoint, m: nearer, the bearing says nothing.
+    /// Acceptance radius of the waypoint, m. Within it, the bearing is meaningless.
     pub acceptance_radius_m: f64,
 }
 
-/// Heading to steer for, rad, or `None` for no turning; `course_trusted` = the craft is fast enough for a course,
-/// `captured_rad` = the heading that FIXED holds. DAMPENER is for wings; a multirotor flies it as FIXED.
+/// Returns the heading to steer for, rad, or `None` for no turn. `course_trusted` is `true` if the craft is fast
+/// enough for a course. `captured_rad` is the heading that FIXED holds. DAMPENER is for wings; a multirotor flies it
+/// as FIXED.
 pub fn desired_heading(
     mode: YawMode,
     facts: &YawFacts,
@@ -50,7 +51,7 @@ pub fn desired_heading(
     }
 }
 
-/// Bearing and course mixed on the circle.
+/// Returns bearing and course mixed on the circle.
 fn hybrid(facts: &YawFacts) -> f64 {
     let share = (facts.distance_m / HYBRID_M).clamp(0.0, 1.0);
     let (bearing, course) = (facts.bearing_rad, facts.course_rad);
@@ -59,7 +60,8 @@ fn hybrid(facts: &YawFacts) -> f64 {
     east.atan2(north)
 }
 
-/// Yaw rate (deg/s, clockwise positive) towards `desired_rad`, faded by `ramp` (0…1) and limited by `max_dps`.
+/// Returns the yaw rate (deg/s, clockwise positive) towards `desired_rad`, scaled by `ramp` (0…1) and limited to
+/// `max_dps`.
 pub fn yaw_rate_dps(desired_rad: f64, facts: &YawFacts, ramp: f64, max_dps: f64, params: &Params) -> f64 {
     let error = wrap_pi(desired_rad - facts.heading_rad).to_degrees();
     let p = 0.01 * f64::from(params.yaw_p) * error;
@@ -67,7 +69,7 @@ pub fn yaw_rate_dps(desired_rad: f64, facts: &YawFacts, ramp: f64, max_dps: f64,
     ((p - d) * ramp).clamp(-max_dps, max_dps)
 }
 
-/// Yaw control with its memory: whether the course is trusted, the captured heading, and the fade-in.
+/// Yaw control with its state: trust in the course, the captured heading, and the fade-in.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct YawController {
     course_trusted: bool,
@@ -80,12 +82,12 @@ pub struct YawController {
 }
 
 impl YawController {
-    /// Starts anew, at engagement and while the pilot turns: the next control captures the heading and fades in.
+    /// Starts again, at engagement and while the pilot turns. The next update captures the heading and fades in.
     pub fn reset(&mut self) {
         *self = Self::default();
     }
 
-    /// Yaw rate demand, rad/s clockwise; `cap_dps` limits it below `ap_max_yaw_rate` when present.
+    /// Returns the yaw rate demand, rad/s clockwise. `cap_dps`, if present, limits it below `ap_max_yaw_rate`.
     pub fn update(&mut self, facts: &YawFacts, cap_dps: Option<f64>, params: &Params, dt: f64) -> f64 {
         let minimum = f64::from(params.min_forward_velocity) / 100.0;
         let threshold = if self.course_trusted { RELEASE * minimum } else { minimum };
@@ -105,7 +107,7 @@ impl YawController {
         }
         self.params = Some(*params);
         let faded = self.transfer.apply(rate, dt);
-        // A craft that turns too fast already is asked for less.
+        // A craft that already turns too fast gets a lower demand.
         let excess_dps = (facts.yaw_rate_rps.to_degrees().abs() - max_dps).max(0.0);
         let allowed_dps = if excess_dps > 0.0 { (max_dps - excess_dps).max(0.0) } else { f64::INFINITY };
         let wanted = if faded.is_finite() { faded.clamp(-allowed_dps, allowed_dps) } else { 0.0 };
@@ -114,7 +116,8 @@ impl YawController {
     }
 }
 
-/// The demand after `dt` seconds on its way from `last` to `wanted`, deg/s: it falls quickly and grows at `growth_dps2` only.
+/// Returns the demand after `dt` seconds on its way from `last` to `wanted`, deg/s. It falls quickly and grows at
+/// `growth_dps2` only.
 fn slewed(last: f64, wanted: f64, growth_dps2: f64, dt: f64) -> f64 {
     let fall = YAW_SLEW_DPS2 * dt;
     let grow = growth_dps2.min(YAW_SLEW_DPS2) * dt;

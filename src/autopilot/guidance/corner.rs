@@ -1,12 +1,12 @@
-//! When a waypoint that is flown past counts as reached.
+//! The arrival at a waypoint that is flown past.
 
 use nalgebra::Vector2;
 
-/// Gravity of the turn radius, m/s²; the value the radius has always been computed with.
+/// Gravity of the turn radius, m/s²; the value that the radius has always been computed with.
 const TURN_GRAVITY: f64 = 9.8;
 
-/// Distance before a FLYBY waypoint at which the turn begins, m: `R = V²/(g·tan θ)` for the ground speed (m/s, at
-/// least 1) and the greatest lean (rad), within 0.5…1000 m. It is the exact tangent distance of a 90° corner.
+/// Returns the distance before a FLYBY waypoint at which the turn begins, m: `R = V²/(g·tan θ)` for the ground speed
+/// (m/s, at least 1) and the maximum lean (rad), within 0.5…1000 m. It is the exact tangent distance of a 90° corner.
 pub fn turn_radius_m(ground_speed_mps: f64, max_lean_rad: f64) -> f64 {
     let tan = max_lean_rad.tan();
     if tan < 0.1 {
@@ -16,13 +16,14 @@ pub fn turn_radius_m(ground_speed_mps: f64, max_lean_rad: f64) -> f64 {
     (speed * speed / (TURN_GRAVITY * tan)).clamp(0.5, 1000.0)
 }
 
-/// Shortest leg (m) that has a direction.
+/// The shortest leg (m) that has a direction.
 pub(crate) const SHORTEST_LEG_M: f64 = 0.1;
 
-/// How a step of the craft lies to the vertical plane through a waypoint, perpendicular to the inbound leg.
+/// The position of a step of the craft relative to the vertical plane through a waypoint, perpendicular to the
+/// inbound leg.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PlaneCrossing {
-    /// The leg is too short to have a direction: only the distance decides.
+    /// The leg is too short to have a direction. Only the distance decides.
     NoLeg,
     /// The craft is before the plane.
     Before {
@@ -31,15 +32,15 @@ pub enum PlaneCrossing {
     },
     /// This step crossed the plane.
     Crossed {
-        /// Distance from the waypoint to the place of the crossing, m.
+        /// Distance from the waypoint to the point of the crossing, m.
         lateral_m: f64,
     },
-    /// The craft was behind the plane already.
+    /// The craft was already behind the plane.
     Behind,
 }
 
-/// Where the step from `previous` to `position` lies to the plane of `waypoint` for a leg from `leg_start` (all north,
-/// east, m).
+/// Returns the position of the step from `previous` to `position` relative to the plane of `waypoint`, for a leg from
+/// `leg_start` (all north, east, m).
 pub fn plane_crossing(
     leg_start: Vector2<f64>,
     waypoint: Vector2<f64>,

@@ -1,5 +1,5 @@
-//! Following a leg as a line: the carrot of the L1 law (S. Park, J. Deyst, J. How: "A new nonlinear guidance logic for
-//! trajectory tracking", AIAA 2004-4900), with a floor on the lookahead and a ceiling on the angle of cutting in.
+//! Follows a leg as a line with the carrot of the L1 law (S. Park, J. Deyst, J. How: "A new nonlinear guidance logic
+//! for trajectory tracking", AIAA 2004-4900), with a minimum lookahead and a maximum cut-in angle.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_6, TAU};
 
@@ -10,24 +10,24 @@ use crate::autopilot::params::Params;
 use crate::geo::wrap_pi;
 use crate::telemetry::L1Mode;
 
-/// Steepest angle at which a line is met, rad.
+/// The steepest angle at which the craft cuts in to a line, rad.
 const STEEPEST_CUT_IN: f64 = FRAC_PI_6;
 
 /// Settings of the law.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct L1Limits {
-    /// Period, s: the lookahead is the way flown in period/2π.
+    /// Period, s. The lookahead is the distance flown in period/2π.
     pub period_s: f64,
-    /// Least lookahead, m.
+    /// Minimum lookahead, m.
     pub min_lookahead_m: f64,
-    /// Greatest lookahead, m; wins over the least.
+    /// Maximum lookahead, m. It takes precedence over the minimum.
     pub max_lookahead_m: f64,
     /// Cross-track error beyond which the leg is given up and starts again at the craft, m.
     pub max_cross_track_m: f64,
 }
 
 impl L1Limits {
-    /// The limits the parameters ask for.
+    /// Returns the limits given by the parameters.
     pub fn from_params(params: &Params) -> Self {
         Self {
             period_s: f64::from(params.l1_period) / 10.0,
@@ -42,26 +42,26 @@ impl L1Limits {
     }
 }
 
-/// The craft on its leg, and where to steer.
+/// The craft on its leg, and the point to steer for.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct L1Result {
     /// Length of the leg, m.
     pub length_m: f64,
-    /// Way along the leg, m.
+    /// Distance along the leg, m.
     pub along_m: f64,
     /// Cross-track error, m, positive right of the leg.
     pub xte_m: f64,
-    /// Lookahead from speed and limits, m.
+    /// Lookahead given by speed and limits, m.
     pub lookahead_m: f64,
-    /// Lookahead after the limit of 30° on cutting in, m.
+    /// Lookahead after the limit of 30° on the cut-in angle, m.
     pub effective_lookahead_m: f64,
     /// The point to steer for (north, east, m).
     pub aim: Vector2<f64>,
-    /// Whether the aim runs on the leg or is pinned at its end.
+    /// State of the aim: it moves along the leg or is pinned at its end.
     pub mode: L1Mode,
-    /// Too far beside: the leg must start anew at the craft.
+    /// `true` if the craft is too far beside the leg. The leg must start again at the craft.
     pub reanchor: bool,
-    /// Angle from the ground course to the aim, rad, positive right; `None` while either has no direction.
+    /// Angle from the ground course to the aim, rad, positive right; `None` if either has no direction.
     pub eta_rad: Option<f64>,
     /// Lateral acceleration of the law, m/s², positive right.
     pub a_lat_mps2: f64,
@@ -117,14 +117,14 @@ pub fn l1(
     }
 }
 
-/// The angle η from course to aim, and `2·V²·sin η / distance` with η within ±90°.
+/// Returns the angle η from course to aim, and `2·V²·sin η / distance` with η within ±90°.
 fn steering(to_aim: Vector2<f64>, velocity: Vector2<f64>) -> (Option<f64>, f64) {
     let distance = to_aim.norm();
     let speed = velocity.norm();
     if distance < 1e-6 || speed < 1e-6 {
         return (None, 0.0);
     }
-    // Straight away from the aim turns left: one of the two, always the same.
+    // An aim directly behind the craft gives a left turn, always the same one of the two.
     let eta = -wrap_pi(bearing(velocity) - bearing(to_aim));
     (Some(eta), 2.0 * speed * speed * eta.clamp(-FRAC_PI_2, FRAC_PI_2).sin() / distance)
 }
@@ -133,23 +133,23 @@ fn bearing(vector: Vector2<f64>) -> f64 {
     vector.y.atan2(vector.x)
 }
 
-/// An arc at the start of a leg: the aim turns from the course of the corner to the line at a fixed rate.
+/// An arc at the start of a leg. The aim turns from the course of the corner to the line at a fixed rate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CornerArc {
     /// Bearing of the aim, rad.
     pub bearing_rad: f64,
-    /// Turn rate with its sense, rad/s, clockwise positive.
+    /// Turn rate with its sign, rad/s, clockwise positive.
     rate_rps: f64,
-    /// What may still be turned, rad.
+    /// The angle that may still be turned, rad.
     left_rad: f64,
 }
 
 impl CornerArc {
-    /// The arc from `course_rad` to a leg on `leg_bearing_rad`; none when `turn_rate_rps` is zero or the corner is no
-    /// more than 20°.
+    /// Returns the arc from `course_rad` to a leg on `leg_bearing_rad`, or `None` if `turn_rate_rps` is zero or the
+    /// corner is no more than 20°.
     pub fn begin(course_rad: f64, leg_bearing_rad: f64, turn_rate_rps: f64) -> Option<Self> {
         let change = wrap_pi(leg_bearing_rad - course_rad);
-        // A hair above 20°, so that a corner of exactly 20° does not arc by rounding.
+        // Slightly above 20°, so that rounding does not start an arc at a corner of exactly 20°.
         let wanted = turn_rate_rps > 0.0 && change.abs() > 20_f64.to_radians() + 1e-9;
         wanted.then(|| Self {
             bearing_rad: course_rad,
@@ -158,14 +158,15 @@ impl CornerArc {
         })
     }
 
-    /// Turn rate, rad/s.
+    /// Returns the turn rate without its sign, rad/s.
     pub fn turn_rate_rps(&self) -> f64 {
         self.rate_rps.abs()
     }
 
-    /// Turns for `dt` seconds towards `normal_bearing_rad`, the bearing of the aim on the line; `false` when the arc
-    /// is over: within 5° of it or past it, or turned by the corner and the steepest cut-in to the line. A waypoint inside
-    /// the circle would otherwise be circled for ever.
+    /// Turns for `dt` seconds towards `normal_bearing_rad`, the bearing of the aim on the line. Returns `false` when
+    /// the arc is over: within 5° of that bearing or past it, or when the arc has turned by the corner plus the
+    /// steepest cut-in to the line. Without the last limit, the craft would circle a waypoint inside the circle for
+    /// ever.
     pub fn advance(&mut self, dt: f64, normal_bearing_rad: f64) -> bool {
         let left_before = wrap_pi(normal_bearing_rad - self.bearing_rad);
         self.bearing_rad = (self.bearing_rad + self.rate_rps * dt).rem_euclid(TAU);

@@ -1,11 +1,12 @@
-//! The way down: the altitude setpoint and the spiral of a landing.
+//! The altitude setpoint and the spiral of a landing.
 
 use nalgebra::Vector2;
 
 use crate::autopilot::params::Params;
 
-/// Altitude setpoint of a landing, m: from `start_m` down at `rate_mps` for `elapsed_s`, on below zero until the
-/// touchdown; above the landing altitude never more than 5 m below the craft, so that it cannot wind up.
+/// Returns the altitude setpoint of a landing, m: from `start_m` down at `rate_mps` for `elapsed_s`, and on below
+/// zero until the touchdown. Above the landing altitude it is never more than 5 m below the craft, so that it cannot
+/// wind up.
 pub fn landing_setpoint_m(
     start_m: f64,
     rate_mps: f64,
@@ -17,19 +18,19 @@ pub fn landing_setpoint_m(
     if altitude_m > landing_altitude_m { setpoint.max(altitude_m - 5.0) } else { setpoint }
 }
 
-/// Shape of the landing spiral.
+/// The shape of the landing spiral.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spiral {
-    /// Radius high up, m.
+    /// Radius above the landing altitude, m.
     pub radius_m: f64,
     /// Angular rate, rad/s.
     pub rate_rps: f64,
-    /// Landing altitude, m: the spiral closes between it and its half.
+    /// Landing altitude, m. The spiral closes between it and half of it.
     pub landing_altitude_m: f64,
 }
 
 impl Spiral {
-    /// The spiral the parameters ask for, if any.
+    /// Returns the spiral given by the parameters, if it is enabled.
     pub fn from_params(params: &Params) -> Option<Self> {
         params.landing_spiral_enable.then(|| Self {
             radius_m: f64::from(params.landing_spiral_radius) / 100.0,
@@ -39,8 +40,8 @@ impl Spiral {
     }
 }
 
-/// Offset of the horizontal target from the centre of the landing (north, east), m. With a landing altitude of zero
-/// the spiral closes below 1 m.
+/// Returns the offset of the horizontal target from the centre of the landing (north, east), m. With a landing
+/// altitude of zero the spiral closes below 1 m.
 pub fn spiral_offset(spiral: &Spiral, elapsed_s: f64, altitude_m: f64) -> Vector2<f64> {
     let half = spiral.landing_altitude_m / 2.0;
     let open =

@@ -1,4 +1,4 @@
-//! Hold patterns: a target that moves at a constant angular rate, and the time left of a hold.
+//! Hold patterns: a target that moves at a constant angular rate, and the remaining time of a hold.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -14,13 +14,14 @@ pub struct PatternPoint {
     pub offset: Vector2<f64>,
     /// Direction of motion, rad clockwise from north.
     pub heading_rad: f64,
-    /// Change of position per radian of phase (north, east), m: times the phase rate it is the target's velocity.
+    /// Change of position per radian of phase (north, east), m. Multiplied by the phase rate it is the target's
+    /// velocity.
     pub tangent: Vector2<f64>,
-    /// Second derivative by the phase, m: times the phase rate squared it is the target's acceleration.
+    /// Second derivative by phase, m. Multiplied by the square of the phase rate it is the target's acceleration.
     pub curvature: Vector2<f64>,
 }
 
-/// A circle clockwise from north: phase 0 is north of the waypoint.
+/// Returns a point on a circle that runs clockwise. Phase 0 is north of the waypoint.
 pub fn orbit(radius_m: f64, phase_rad: f64) -> PatternPoint {
     let (sin, cos) = phase_rad.sin_cos();
     PatternPoint {
@@ -31,8 +32,9 @@ pub fn orbit(radius_m: f64, phase_rad: f64) -> PatternPoint {
     }
 }
 
-/// Two circles that touch at the waypoint: first the western one clockwise, then the eastern one counter-clockwise;
-/// `width_m` is the distance between their centres and the phase runs over 4π. It passes the waypoint heading south.
+/// Returns a point on two circles that touch at the waypoint: first the western one clockwise, then the eastern one
+/// counter-clockwise. `width_m` is the distance between their centres and the phase runs over 4π. The pattern passes
+/// the waypoint heading south.
 pub fn figure8(width_m: f64, phase_rad: f64) -> PatternPoint {
     let radius = width_m / 2.0;
     let phase = phase_rad.rem_euclid(2.0 * TAU);
@@ -47,21 +49,21 @@ pub fn figure8(width_m: f64, phase_rad: f64) -> PatternPoint {
     }
 }
 
-/// Angular rate along a circle of `radius_m`, rad/s: `ap_max_turn_rate`, limited by the leg's speed and by half the
-/// acceleration of the greatest lean, so that it can be flown.
+/// Returns the angular rate along a circle of `radius_m`, rad/s: `ap_max_turn_rate`, limited by the speed of the leg
+/// and by half the acceleration of the maximum lean, so that the circle can be flown.
 pub fn pattern_rate_rps(radius_m: f64, leg_speed_mps: f64, params: &Params) -> f64 {
     let radius = radius_m.max(0.1);
     let by_lean = (0.5 * GRAVITY * params.max_lean_rad().tan() / radius).sqrt();
     f64::from(params.max_turn_rate).to_radians().min(leg_speed_mps / radius).min(by_lean)
 }
 
-/// Deciseconds left of a hold; 65535 when it is endless.
+/// Returns the remaining time of a hold in deciseconds, 65535 if the hold is endless.
 pub fn hold_remaining_ds(duration_ds: u16, elapsed_us: u64) -> u16 {
     if duration_ds == 0 {
         return u16::MAX;
     }
     let left_us = (u64::from(duration_ds) * 100_000).saturating_sub(elapsed_us);
-    // At most the duration, which is a u16.
+    // At most the duration, which is a `u16`.
     (left_us / 100_000) as u16
 }
 

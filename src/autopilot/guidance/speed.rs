@@ -1,8 +1,9 @@
-//! How fast to fly.
+//! The speed of a leg and of a stop.
 
 use crate::autopilot::params::Params;
 
-/// Speed of a leg, m/s: the waypoint's own speed (cm/s) within 1 m/s and `ap_max_velocity`, which also stands for 0.
+/// Returns the speed of a leg, m/s: the waypoint's own speed (cm/s) between 1 m/s and `ap_max_velocity`. A speed of 0
+/// means `ap_max_velocity`.
 pub fn leg_speed_mps(waypoint_speed_cms: u16, params: &Params) -> f64 {
     match waypoint_speed_cms {
         0 => params.max_velocity_mps(),
@@ -10,8 +11,9 @@ pub fn leg_speed_mps(waypoint_speed_cms: u16, params: &Params) -> f64 {
     }
 }
 
-/// Speed (m/s) at `distance_m` from a point to stop at: proportional near it (0.025·`ap_position_p` per second), on
-/// the parabola of 0.35·g·sin(greatest lean) farther out, never above the leg's speed.
+/// Returns the speed (m/s) at `distance_m` from a point to stop at. Near the point it is proportional to the distance
+/// (0.025·`ap_position_p` per second), farther out it is on the parabola of 0.35·g·sin(maximum lean). It is never
+/// above the speed of the leg.
 pub fn stop_speed_mps(distance_m: f64, leg_speed_mps: f64, params: &Params) -> f64 {
     let gain = 0.025 * f64::from(params.position_p);
     let decel = 0.35 * params.max_accel_mps2();

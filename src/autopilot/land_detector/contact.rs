@@ -1,40 +1,41 @@
-//! Whether the legs carry the craft.
+//! Detects weight on the legs of the craft.
 //!
-//! In the air the accelerometer feels the thrust; on the ground it feels gravity whatever the motors do. How much
-//! thrust a motor command makes is learned in flight, so what the accelerometer feels beyond it is weight on the legs.
-//! A craft that is kept in place by its autopilot there would lean against the ground until it falls over.
+//! In the air the accelerometer measures the thrust; on the ground it measures gravity whatever the motors do. The
+//! thrust of a motor command is learned in flight, so the force beyond it is weight on the legs. There, a craft that
+//! its autopilot keeps in place would lean against the ground until it falls over.
 
 use super::GroundMeasurement;
 use crate::geo::GRAVITY;
 
-/// Altitude above home from which the thrust is learned, m.
+/// The altitude above home from which the thrust is learned, m.
 const AIRBORNE_M: f64 = 1.0;
-/// A craft has lifted off when it feels more than this multiple of gravity, above this altitude, m, or at this speed, m/s.
+/// A craft has lifted off when it measures more than this multiple of gravity, is above this altitude, m, or moves
+/// vertically at this speed, m/s.
 const LIFTING_LOAD: f64 = 1.06;
 const LIFTED_M: f64 = 0.5;
 const LIFTED_MPS: f64 = 0.3;
-/// Time constants of learning and of the averages that are compared, s.
+/// The time constants of learning and of the averages that are compared, s.
 const LEARN_S: f64 = 2.0;
 const AVERAGE_S: f64 = 0.05;
-/// Share of the weight on the legs that begins and that ends contact.
+/// The shares of the weight on the legs at which contact begins and ends.
 const LOADED_SHARE: f64 = 0.3;
 const FREE_SHARE: f64 = 0.1;
-/// How long the load must last, s.
+/// The time that the load must last, s.
 const LOADED_S: f64 = 0.3;
-/// Standing is feeling gravity, within this share, and not moving, m/s: in the air the flow through the rotors changes
-/// the thrust, too. Faster than the second speed the craft does not stand any more.
+/// A craft is on the ground if it measures gravity, within this share, and does not move, m/s. In the air the flow
+/// through the rotors changes the thrust, too. Above the second speed the craft is no longer on the ground.
 const STEADY_SHARE: f64 = 0.2;
 const STILL_MPS: f64 = 0.5;
 const MOVING_MPS: f64 = 1.0;
-/// The ground pushes a craft by at least this much beyond what its motors do, m/s².
+/// The minimum push of the ground beyond the force of the motors, m/s².
 const PUSH_MPS2: f64 = 0.5 * GRAVITY;
-/// A craft reaches the ground from above: its legs take load only this far below its greatest height, m.
+/// A craft reaches the ground from above. Its legs take load only this far below its greatest height, m.
 const SUNK_M: f64 = 0.1;
 
 /// Watches for weight on the legs.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct GroundContact {
-    /// The craft has left the ground since arming.
+    /// `true` once the craft has left the ground since arming.
     has_lifted_off: bool,
     /// Specific force per mean square of the motor commands, m/s².
     thrust: Option<f64>,
@@ -49,49 +50,50 @@ pub(super) struct GroundContact {
 }
 
 impl GroundContact {
-    /// Whether the legs carry weight.
+    /// Returns `true` if the legs carry weight.
     pub(super) fn on_ground(&self) -> bool {
         !self.has_lifted_off || self.is_loaded
     }
 
-    /// Whether the craft has left the ground since arming.
+    /// Returns `true` if the craft has left the ground since arming.
     pub(super) fn has_lifted_off(&self) -> bool {
         self.has_lifted_off
     }
 
-    /// Returns whether something other than the motors pushes the craft: the ground, before the lift-off and at a bump.
+    /// Returns `true` if something other than the motors pushes the craft: the ground, before the lift-off and at a
+    /// bump.
     pub(super) fn is_pushed(&self) -> bool {
         !self.has_lifted_off || self.push_mps2 > PUSH_MPS2
     }
 
-    /// Specific force along the thrust in multiples of gravity.
+    /// Returns the specific force along the thrust in multiples of gravity.
     pub(super) fn load(&self) -> f64 {
         self.force / GRAVITY
     }
 
-    /// The craft is disarmed.
+    /// Resets the detector when the craft is disarmed.
     pub(super) fn rest(&mut self) {
         self.has_lifted_off = false;
         (self.loaded_s, self.is_loaded) = (0.0, false);
         self.peak_m = None;
     }
 
-    /// Returns the part of the specific force that the motors cannot make, m/s². Between none and all of their thrust is what
-    /// they make while they are throttled.
+    /// Returns the part of the specific force that the motors cannot make, m/s². A force between zero and their full
+    /// thrust can come from the motors while they are throttled.
     fn push(&self, now: &GroundMeasurement) -> f64 {
         let thrust = self.thrust.unwrap_or(0.0) * self.square;
         let up = now.force_flu.z;
         now.force_flu.xy().norm().hypot((up - thrust).max(0.0) + up.min(0.0))
     }
 
-    /// One cycle of an armed craft, `dt` seconds after the last.
+    /// Takes one cycle of an armed craft, `dt` seconds after the last.
     pub(super) fn update(&mut self, now: &GroundMeasurement, dt: f64) {
         let share = dt / (AVERAGE_S + dt);
         self.square += share * (now.motor_square - self.square);
         self.force += share * (now.force_flu.z - self.force);
         self.push_mps2 = self.push(now);
         let altitude_m = now.altitude_m.unwrap_or(f64::NEG_INFINITY);
-        // Without an altitude nothing shows the lift-off.
+        // Without an altitude nothing shows the lift-off, so the craft counts as lifted off.
         self.has_lifted_off |= now.altitude_m.is_none()
             || altitude_m.abs() > LIFTED_M
             || now.climb_mps.abs() > LIFTED_MPS
@@ -106,7 +108,7 @@ impl GroundContact {
         }
         let peak_m = self.peak_m.get_or_insert(altitude_m);
         *peak_m = peak_m.max(altitude_m);
-        // After a climb against drag the thrust that hovers looks like too little.
+        // After a climb against drag, the hover thrust looks like too little.
         let has_sunk = now.altitude_m.is_none() || altitude_m < *peak_m - SUNK_M;
         let felt = self.force / self.square;
         let thrust = self.thrust.get_or_insert(felt);
@@ -115,7 +117,7 @@ impl GroundContact {
         }
         let on_legs = 1.0 - *thrust * self.square / GRAVITY;
         let is_steady = (self.force / GRAVITY - 1.0).abs() < STEADY_SHARE;
-        // A speed that is not known does not show that the craft stands.
+        // An unknown speed is no evidence that the craft is on the ground.
         let speed = now.climb_mps.hypot(now.ground_speed_mps.unwrap_or(0.0));
         let is_still = now.ground_speed_mps.is_some() && speed < STILL_MPS;
         let is_pressed = on_legs > LOADED_SHARE && is_steady && is_still && has_sunk;

@@ -1,32 +1,32 @@
-//! Touchdown by jerk: the bump of the ground on a craft that is being landed.
+//! Touchdown by jerk: the bump of the ground on a landing craft.
 
 use nalgebra::Vector3;
 
-/// Cut-off of the filter on the jerk, Hz.
+/// The cut-off of the filter on the jerk, Hz.
 const FILTER_HZ: f64 = 10.0;
-/// The bump counts more near the ground in altitude hold.
+/// The factor on a bump near the ground in altitude hold.
 const NEAR_GROUND_FACTOR: f64 = 1.5;
-/// Setting unit: threshold × this = m/s³.
+/// The unit of the setting: threshold × this = m/s³.
 const THRESHOLD_UNIT: f64 = 10.0;
 /// Sticks and throttle within this many % of rest count as hands off.
 const HANDS_OFF_PERCENT: f64 = 5.0;
 
-/// What decides whether a bump is a touchdown.
+/// The facts that decide if a bump is a touchdown.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ImpactFacts {
-    /// The throttle was raised since arming.
+    /// `true` if the throttle was raised since arming.
     pub raised: bool,
-    /// Farthest stick deflection, % of full stick.
+    /// Largest stick deflection, % of full stick.
     pub stick_percent: f64,
     /// Throttle, %.
     pub throttle_percent: f64,
-    /// Altitude hold is on.
+    /// `true` if altitude hold is on.
     pub alt_hold: bool,
-    /// Below the altitude under which a touchdown may be declared.
+    /// `true` below the altitude under which a touchdown may be declared.
     pub near_ground: bool,
 }
 
-/// Low-passed size of the jerk, updated a hundred times a second.
+/// The low-passed magnitude of the jerk, updated a hundred times a second.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Impact {
     previous: Option<Vector3<f64>>,
@@ -43,7 +43,7 @@ impl Impact {
         }
     }
 
-    /// Whether a bump above `threshold` (setting units, 0 = never) ended the flight.
+    /// Returns `true` if a bump above `threshold` (setting units, 0 = never) ended the flight.
     pub(super) fn is_touchdown(&self, threshold: f64, facts: &ImpactFacts) -> bool {
         let hands_off = facts.stick_percent < HANDS_OFF_PERCENT && facts.throttle_percent < HANDS_OFF_PERCENT;
         if threshold <= 0.0 || !facts.raised || !(hands_off || facts.alt_hold) {

@@ -1,29 +1,29 @@
-//! Feeling for the ground: less throttle for a craft that does not sink although it should.
+//! Probing for the ground: less throttle for a craft that does not sink although it should.
 
 use crate::autopilot::io::NavInputs;
 use crate::autopilot::params::Params;
 
-/// The landing altitude that counts when the parameter is lower, m.
+/// The landing altitude that is used if the parameter is lower, m.
 const LOWEST_LANDING_M: f64 = 1.0;
-/// Share of the landing rate below which a descent neither sinks nor climbs.
+/// The share of the landing rate below which a craft neither sinks nor climbs.
 const STILL_SHARE: f64 = 0.25;
-/// Time over which the climb rate of a craft that bounces is averaged, s.
+/// The time over which the climb rate of a bouncing craft is averaged, s.
 const JOLT_S: f64 = 0.3;
-/// How far the setpoint must be below a craft that does not sink, m.
+/// The distance that the setpoint must be below a craft that does not sink, m.
 const SETPOINT_BELOW_M: f64 = 0.3;
-/// How long a craft that is not known to be low must have rested, s, for the altitude may be wrong: after it sank at this
-/// share of the wanted rate, and before.
+/// The minimum rest of a craft that is not known to be low, s, since the altitude may be wrong: after it
+/// sank at this share of the wanted rate, and before.
 const REST_AFTER_SINKING_S: f64 = 0.4;
 const REST_S: f64 = 1.5;
 const SANK_SHARE: f64 = 0.6;
-/// Rates at which the throttle is taken off while a craft does not sink, and given back, µs/s.
+/// The rates at which the throttle is reduced while a craft does not sink, and restored, µs/s.
 const RELIEF_US_PER_S: f64 = 120.0;
 const GIVE_BACK_US_PER_S: f64 = 300.0;
-/// Most throttle taken off, µs: the floor of the parameters is reached in any case.
+/// The maximum reduction of the throttle, µs. The floor of the parameters is reached in any case.
 const RELIEF_LIMIT_US: f64 = 600.0;
-/// Throttle taken off at which the craft is flown level, µs.
+/// The reduction of the throttle at which the craft is flown level, µs.
 const LEVEL_US: f64 = 80.0;
-/// Throttle taken off at which a craft that does not sink is sure to stand, µs.
+/// The reduction of the throttle at which a craft that does not sink is certainly on the ground, µs.
 const STANDS_US: f64 = 120.0;
 
 /// One cycle of a descent to the ground.
@@ -35,21 +35,21 @@ pub struct DescentFacts {
     pub climb_mps: f64,
     /// Altitude setpoint of the controller, m.
     pub setpoint_m: f64,
-    /// Sink rate that is wanted now, m/s.
+    /// Wanted sink rate now, m/s.
     pub sink_mps: f64,
-    /// `ap_landing_descent_rate`, or the wanted rate where that is slower, m/s.
+    /// `ap_landing_descent_rate`, or the wanted rate if that is slower, m/s.
     pub landing_rate_mps: f64,
-    /// The altitude says that the ground is near.
+    /// `true` if the ground is near according to the altitude.
     pub is_low: bool,
-    /// The throttle is at its least.
+    /// `true` if the throttle is at its minimum.
     pub throttle_at_min: bool,
-    /// Ground speed from which the craft moves, m/s.
+    /// Ground speed from which the craft counts as moving, m/s.
     pub max_speed_mps: f64,
 }
 
 impl DescentFacts {
-    /// A descent at `sink_mps` (m/s), by a controller whose setpoint is `setpoint_m` (m) and whose throttle is
-    /// `throttle_us` (µs).
+    /// Returns the facts of a descent at `sink_mps` (m/s), flown by a controller with the setpoint `setpoint_m` (m)
+    /// and the throttle `throttle_us` (µs).
     pub fn new(
         now: &NavInputs,
         params: &Params,
@@ -71,13 +71,13 @@ impl DescentFacts {
         }
     }
 
-    /// Vertical speed below which the descent neither sinks nor climbs, m/s.
+    /// Returns the vertical speed below which the craft neither sinks nor climbs, m/s.
     pub fn still_mps(&self) -> f64 {
         STILL_SHARE * self.landing_rate_mps
     }
 }
 
-/// The throttle taken off.
+/// The reduction of the throttle.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct ThrottleRelief {
     climb_mps: f64,
@@ -93,7 +93,7 @@ impl ThrottleRelief {
         *self = Self { climb_mps, ..Self::default() };
     }
 
-    /// One cycle. Low and still although it should sink, the craft stands, or the air carries it.
+    /// Takes one cycle. A low craft that does not sink although it should is on the ground, or the air carries it.
     pub(super) fn update(&mut self, facts: &DescentFacts, dt: f64) {
         self.climb_mps += (facts.climb_mps - self.climb_mps) * (dt / (JOLT_S + dt));
         self.has_sunk |= facts.sink_mps > 0.0 && self.climb_mps < -SANK_SHARE * facts.sink_mps;
@@ -107,27 +107,27 @@ impl ThrottleRelief {
         self.relief_us = (self.relief_us + rate * dt).clamp(0.0, RELIEF_LIMIT_US);
     }
 
-    /// Climb rate without the jolts of the legs, m/s.
+    /// Returns the climb rate without the jolts of the legs, m/s.
     pub(super) fn climb_mps(&self) -> f64 {
         self.climb_mps
     }
 
-    /// Whether throttle is being taken off.
+    /// Returns `true` while the throttle is being reduced.
     pub(super) fn is_rising(&self) -> bool {
         self.is_rising
     }
 
-    /// Throttle to take off, µs.
+    /// Returns the throttle to subtract, µs.
     pub(super) fn relief_us(&self) -> f64 {
         self.relief_us
     }
 
-    /// Share of the lean demand that is flown.
+    /// Returns the share of the lean demand that is flown.
     pub(super) fn lean_share(&self) -> f64 {
         1.0 - (self.relief_us / LEVEL_US).min(1.0)
     }
 
-    /// Whether the craft is sure to stand on its legs.
+    /// Returns `true` if the craft is certainly on its legs.
     pub(super) fn stands(&self) -> bool {
         self.relief_us >= STANDS_US
     }

@@ -1,19 +1,20 @@
-//! A craft that does not move although it is commanded to descend.
+//! Detects a craft that does not move although it is commanded to descend.
 
 use super::GroundMeasurement;
 use crate::geo::GRAVITY;
 use crate::signals::SimTime;
 
-/// How long nothing may move before the craft is landed, s.
+/// The time without motion after which the craft counts as landed, s.
 pub const STATIONARY_S: f64 = 5.0;
-/// Slower than this vertically, m/s, turning slower than this, rad/s, and feeling gravity within this share.
+/// The limits of a craft without motion: vertical speed, m/s, turn rate, rad/s, and the deviation of the specific
+/// force from gravity as a share.
 const CLIMB_MPS: f64 = 0.1;
 const RATE_RPS: f64 = 5.0 * std::f64::consts::PI / 180.0;
 const FORCE_SHARE: f64 = 0.05;
-/// Time constant of the averages, s: sensor noise is no motion.
+/// The time constant of the averages, s. Sensor noise is no motion.
 const AVERAGE_S: f64 = 0.5;
 
-/// Averages of the motion, and the time without any.
+/// Averages of the motion, and the time without motion.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct StationaryTimer {
     force_mps2: f64,
@@ -36,11 +37,12 @@ impl StationaryTimer {
         average(&mut self.force_mps2, now.force_flu.norm());
         average(&mut self.rate_rps, now.rate_rps);
         average(&mut self.climb_mps, now.climb_mps);
-        // Where it is not known it is left out: nothing else moves a craft that stays in the air at less and less throttle.
+        // An unknown ground speed counts as zero: nothing else moves a craft that stays in the air at less and less
+        // throttle.
         average(&mut self.speed_mps, now.ground_speed_mps.unwrap_or(0.0));
     }
 
-    /// Runs while the throttle is lowered for a descent and no sensor shows motion; ground speed counts from
+    /// Runs while the throttle is reduced for a descent and no sensor shows motion. Ground speed counts from
     /// `max_speed_mps`.
     pub(super) fn update(&mut self, lowers_throttle: bool, max_speed_mps: f64, time: SimTime) {
         let is_still = (self.force_mps2 / GRAVITY - 1.0).abs() < FORCE_SHARE
@@ -58,7 +60,7 @@ impl StationaryTimer {
         (self.since, self.held_s) = (None, 0.0);
     }
 
-    /// Time without motion, s.
+    /// Returns the time without motion, s.
     pub(super) fn held_s(&self) -> f64 {
         self.held_s
     }
@@ -78,7 +80,7 @@ mod tests {
         ground_speed_mps: Some(0.0),
     };
 
-    /// Time without motion after `seconds` of it, s.
+    /// Returns the time without motion after `seconds` of this measurement, s.
     fn held(now: &GroundMeasurement, lowers_throttle: bool, seconds: u64) -> f64 {
         let mut timer = StationaryTimer::default();
         for cycle in 0..seconds * 100 {

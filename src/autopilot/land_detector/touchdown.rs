@@ -1,4 +1,4 @@
-//! The conditions of a touchdown and the time they have held.
+//! The conditions of a touchdown and the time that they have held.
 
 use super::LandDetector;
 use crate::autopilot::control::AltitudeController;
@@ -7,41 +7,41 @@ use crate::autopilot::params::Params;
 use crate::signals::SimTime;
 use crate::telemetry::{Guard, GuardName, GuardOp};
 
-/// Descent that makes a touchdown credible, m.
+/// The descent that makes a touchdown credible, m.
 const DESCENT_M: f64 = 0.5;
-/// How far the setpoint may be under the craft without counting as pressing on the ground, m.
+/// The distance that the setpoint may be below the craft without counting as pressing on the ground, m.
 const PRESSING_M: f64 = 1.5;
-/// Most that the throttle must be below the learned hover throttle for a touchdown, µs.
+/// The upper limit of the required distance of the throttle below the learned hover throttle, µs.
 const BELOW_HOVER_US: f64 = 50.0;
 
-/// A craft on the ground moves vertically slower than this, m/s. A fast landing alone would call a craft landed that cannot sink
-/// at a quarter of its rate.
+/// A craft on the ground moves vertically slower than this, m/s. With a fast landing rate, a quarter of that rate
+/// alone would accept a craft that cannot sink as landed.
 pub const AT_REST_MPS: f64 = 0.125;
 
-/// What decides a touchdown: four measured values and their limits, SI and µs.
+/// The inputs of a touchdown decision: four measured values and their limits, SI and µs.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct TouchdownFacts {
     /// Altitude above home, m.
     pub altitude_m: f64,
-    /// Below this altitude, m.
+    /// Upper limit of the altitude, m.
     pub landing_altitude_m: f64,
     /// Ground speed, m/s.
     pub ground_speed_mps: f64,
-    /// Below this speed, m/s.
+    /// Upper limit of the ground speed, m/s.
     pub max_speed_mps: f64,
     /// Commanded throttle, µs.
     pub throttle_us: f64,
-    /// Below this throttle, µs.
+    /// Upper limit of the throttle, µs.
     pub max_throttle_us: f64,
     /// Climb rate, m/s.
     pub climb_mps: f64,
-    /// Above this (negative) climb rate, m/s: the craft does not descend any more.
+    /// Lower limit of the climb rate (negative), m/s: above it the craft does not descend any more.
     pub min_climb_mps: f64,
 }
 
 impl TouchdownFacts {
-    /// The limits of the parameters around measured values; `hover_us` is the configured hover throttle, or the
-    /// captured one where none is configured.
+    /// Combines measured values with the limits of the parameters. `hover_us` is the configured hover throttle, or
+    /// the captured one if none is configured.
     pub fn new(
         params: &Params,
         hover_us: f64,
@@ -63,19 +63,20 @@ impl TouchdownFacts {
     }
 }
 
-/// What tells the ground from a craft that hovers low with a wrongly configured hover throttle.
+/// The facts that distinguish the ground from a low hover with a wrongly configured hover throttle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct GroundFacts {
-    /// How far the landing has come down, or how far the setpoint is under the craft beyond 1.5 m: m.
+    /// Height lost in the landing, or the distance of the setpoint below the craft beyond 1.5 m, whichever is
+    /// greater, m.
     pub descent_m: f64,
-    /// Commanded throttle below the hover throttle learned in flight, µs.
+    /// Distance of the commanded throttle below the hover throttle learned in flight, µs.
     pub below_hover_us: f64,
-    /// How far below it must be, µs.
+    /// Required distance below the hover throttle, µs.
     pub needed_us: f64,
 }
 
 impl GroundFacts {
-    /// What tells the ground from a craft that hovers low, whoever descends.
+    /// Returns the facts for a craft in descent, whatever flies it.
     pub fn new(now: &NavInputs, params: &Params, altitude: &AltitudeController, land: &LandDetector) -> Self {
         let pressing = now.alt_m - altitude.setpoint_m() - PRESSING_M;
         Self {
@@ -85,18 +86,19 @@ impl GroundFacts {
         }
     }
 
-    /// Evidence that needs no more.
+    /// Facts that need no further evidence.
     pub const CERTAIN: Self =
         Self { descent_m: f64::INFINITY, below_hover_us: f64::INFINITY, needed_us: 0.0 };
 }
 
-/// The conditions of a touchdown, evaluated once in an update: the timer runs while they hold, and the rule of LANDING
-/// decides by them and shows them.
+/// The conditions of a touchdown, evaluated once per update. The timer runs while they hold, and the rule of LANDING
+/// uses and displays them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TouchdownGuards([Guard; 6]);
 
 impl TouchdownGuards {
-    /// Low, slow, throttle low, not descending, come down, throttle below the learned hover throttle.
+    /// Returns the guards: low, slow, throttle low, not descending, height lost, throttle below the learned hover
+    /// throttle.
     pub fn new(touch: &TouchdownFacts, ground: &GroundFacts) -> Self {
         Self([
             Guard::new(
@@ -123,25 +125,26 @@ impl TouchdownGuards {
         ])
     }
 
-    /// The guards in the order they are shown.
+    /// Returns the guards in the order in which they are shown.
     pub fn iter(&self) -> impl Iterator<Item = Guard> {
         self.0.into_iter()
     }
 
-    /// Whether the craft is on the ground as far as one update can tell.
+    /// Returns `true` if the craft is on the ground as far as one update can tell.
     pub fn all_hold(&self) -> bool {
         self.0.iter().all(Guard::holds)
     }
 }
 
-/// How long the touchdown conditions have held without a break.
+/// The time that the touchdown conditions have held without a break.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct TouchdownTimer {
     since: Option<SimTime>,
 }
 
 impl TouchdownTimer {
-    /// Takes whether all conditions hold in this update; returns the time they have held, µs, or `None` when they do not.
+    /// Takes the result of this update, `true` if all conditions hold. Returns the time that they have held, µs, or
+    /// `None` if they do not hold.
     pub fn update(&mut self, now: SimTime, all_hold: bool) -> Option<u64> {
         if !all_hold {
             self.since = None;

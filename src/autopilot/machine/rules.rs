@@ -9,7 +9,7 @@ use crate::autopilot::land_detector::STATIONARY_S;
 use crate::plan::{HoldPattern, WaypointType};
 use crate::telemetry::{AbortReason, Guard, GuardName, GuardOp, NavState, PlanSource, TransitionReason};
 
-/// The rules of `state`, in the order they are tried; the first whose guards all hold fires.
+/// Returns the rules of `state` in the order in which they are tried. The first rule whose guards all hold fires.
 pub fn rules(state: NavState, facts: &Facts) -> Rules {
     let mut list = Rules::new();
     if state != NavState::Idle {
@@ -19,7 +19,7 @@ pub fn rules(state: NavState, facts: &Facts) -> Rules {
     list
 }
 
-/// The rules that only this state has.
+/// Adds the rules that only this state has.
 pub(super) fn own(state: NavState, facts: &Facts, list: &mut Rules) {
     match state {
         NavState::Idle | NavState::Complete => {}
@@ -35,7 +35,7 @@ fn rule(guards: impl IntoIterator<Item = Guard>, outcome: Outcome, reason: Trans
     Rule { guards: ArrayVec::from_iter(guards), outcome, reason }
 }
 
-/// What ends a mission from any state.
+/// Adds the rules that end a mission from any state.
 pub(super) fn common(state: NavState, facts: &Facts, list: &mut Rules) {
     let fix = Guard::new(GuardName::Fix, f64::from(u8::from(facts.fix)), GuardOp::Below, 1.0);
     list.push(rule(
@@ -77,14 +77,15 @@ fn approaching(facts: &Facts, list: &mut Rules) {
             list.push(rule([held_off], Outcome::Arrive, TransitionReason::HeldOffAltitude));
         }
         WaypointType::Takeoff => list.push(level_arrival(facts, facts.approach.hold_radius_m)),
-        // Never current: the plan moves on to positional waypoints only.
+        // Never current, since the plan moves on to positional waypoints only.
         WaypointType::AltChange | WaypointType::Delay | WaypointType::YawRate => {
             list.push(rule([], Outcome::Next, TransitionReason::Advance));
         }
     }
 }
 
-/// The progress monitors, unless they are paused. A return home that cannot be made is not left hanging in the air.
+/// Adds the rules of the progress monitors unless they are paused. A return home that fails ends in a landing, so
+/// that the craft is not left in the air.
 pub(super) fn monitors(facts: &Facts, list: &mut Rules) {
     let give_up = |why| match facts.fence.source {
         PlanSource::Stored => Outcome::Abort(why),
@@ -111,7 +112,7 @@ fn arrival(facts: &Facts, radius: f64) -> Rule {
     rule([near], Outcome::Arrive, TransitionReason::Arrival)
 }
 
-/// Within the hold radius, and the altitude error at most `altitude_m`.
+/// Returns the rule for an arrival within the hold radius and with an altitude error of at most `altitude_m`.
 fn level_arrival(facts: &Facts, altitude_m: f64) -> Rule {
     let error_m = facts.approach.altitude_error_m.abs();
     let level = Guard::new(GuardName::Altitude, error_m, GuardOp::AtMost, altitude_m);
@@ -120,7 +121,8 @@ fn level_arrival(facts: &Facts, altitude_m: f64) -> Rule {
     reached
 }
 
-/// FLYOVER and FLYBY: by radius when last, co-located or missed, else by the plane, FLYBY also by the turn radius.
+/// Adds the rules of FLYOVER and FLYBY: by radius if last, co-located or missed, else by the plane; FLYBY also by the
+/// turn radius.
 fn pass(facts: &Facts, flyby: bool, list: &mut Rules) {
     let radius = facts.approach.arrival_radius_m;
     let waypoint = facts.waypoint;
@@ -143,7 +145,7 @@ fn pass(facts: &Facts, flyby: bool, list: &mut Rules) {
         PlaneCrossing::Before { to_go_m } => (to_go_m, None),
         PlaneCrossing::Crossed { lateral_m } => (0.0, Some(lateral_m)),
         PlaneCrossing::Behind => {
-            // It stood on the plane before: only when it runs away from the point does it have to come back.
+            // The craft was exactly on the plane before. It only has to come back if it moves away from the point.
             let overrun = Guard::new(GuardName::Overrun, facts.approach.distance_m, GuardOp::Above, radius);
             list.push(rule([overrun], Outcome::Missed, TransitionReason::Missed));
             return;
@@ -202,7 +204,8 @@ fn holding(facts: &Facts, list: &mut Rules) {
     }
 }
 
-/// A duration of zero is endless: the guard is shown, with a limit that is never reached.
+/// Adds the rule for the hold time. A duration of zero is endless: the guard is shown with a limit that is never
+/// reached.
 fn hold_time(facts: &Facts, list: &mut Rules) {
     let limit = if facts.waypoint.duration_ds > 0 { duration_s(facts) } else { f64::INFINITY };
     let over = Guard::new(GuardName::HoldTime, hold_s(facts), GuardOp::AtLeast, limit);

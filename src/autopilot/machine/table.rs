@@ -12,7 +12,7 @@ use crate::autopilot::params::Params;
 use crate::plan::{HoldPattern, WaypointType};
 use crate::telemetry::{FenceAction, Guard, NavState, PlanSource};
 
-/// A place in the machine, in words, and the rules that hold there.
+/// A situation of the machine, in words, and the rules that apply to it.
 struct Situation {
     state: String,
     waypoint: &'static str,
@@ -26,7 +26,7 @@ fn facts(kind: WaypointType, last: bool) -> Facts {
     facts
 }
 
-/// A hold of 2 s.
+/// Returns the facts of a hold of 2 s.
 fn timed(kind: WaypointType, last: bool) -> Facts {
     let mut facts = facts(kind, last);
     facts.waypoint.duration_ds = 20;
@@ -39,7 +39,7 @@ fn own_rules(state: NavState, waypoint: &'static str, facts: &Facts) -> Situatio
     Situation { state: state.to_string(), waypoint, rules }
 }
 
-/// What ends a mission from any state, the fence with both actions.
+/// Returns the rules that end a mission from any state, with the fence for both actions.
 fn everywhere() -> Vec<Situation> {
     let mut list = Vec::new();
     for (state, from) in [
@@ -58,7 +58,7 @@ fn everywhere() -> Vec<Situation> {
             list.push(Situation { state: from.to_owned(), waypoint: "any", rules });
         }
     }
-    // Both actions print the same rows where the fence is not live.
+    // Both actions print the same rows if the fence does not apply.
     list.remove(1);
     list
 }
@@ -144,8 +144,8 @@ fn condition(guards: &[Guard]) -> String {
     words.join(" and ")
 }
 
-/// Every transition as a Markdown table, with the default parameters as limits, in the order in which the rules of a
-/// state are tried.
+/// Returns every transition as a Markdown table, with the default parameters as limits, in the order in which the
+/// rules of a state are tried.
 pub fn transition_table() -> String {
     let mut table =
         "| from | waypoint | condition | to | effect |\n| --- | --- | --- | --- | --- |\n".to_owned();

@@ -1,28 +1,28 @@
-//! The wait of a HOLD for its altitude: how long the craft has been at its place without getting nearer to the altitude.
+//! The wait of a HOLD for its altitude: measures the time at its place without getting nearer to the altitude.
 
 use crate::signals::SimTime;
 
-/// How much the altitude error must shrink within [`HELD_OFF_S`](crate::autopilot::machine::HELD_OFF_S) for the wait to go
-/// on, m: 0.2 m/s.
+/// The decrease of the altitude error within [`HELD_OFF_S`](crate::autopilot::machine::HELD_OFF_S) that lets the wait
+/// go on, m: 0.2 m/s.
 const PROGRESS_M: f64 = 2.0;
 
-/// The wait with its memory of a leg.
+/// The wait, with its state for one leg.
 #[derive(Debug, Clone, Default)]
 pub(super) struct AltitudeWait {
     /// Altitude error at which progress was last seen, m.
     mark_m: Option<f64>,
-    /// When, or since when the craft is at the place.
+    /// Time of that progress, or since when the craft has been at the place.
     since: Option<SimTime>,
 }
 
 impl AltitudeWait {
-    /// Takes the altitude error of an update, m. Returns whether the craft has come nearer to its altitude.
+    /// Takes the altitude error of an update, m. Returns `true` if the craft has come nearer to its altitude.
     pub(super) fn update(&mut self, error_m: f64, is_at_place: bool, now: SimTime) -> bool {
         if !is_at_place {
             self.since = None;
             return false;
         }
-        // A climb while the craft was blown off its place counts, too.
+        // A climb while the wind carried the craft off its place counts, too.
         let entered = self.since.is_none();
         let mark_m = self.mark_m.get_or_insert(error_m);
         if entered {
@@ -37,7 +37,7 @@ impl AltitudeWait {
         has_progress
     }
 
-    /// Time at the place without progress, s; 0 elsewhere.
+    /// Returns the time at the place without progress, s; 0 elsewhere.
     pub(super) fn held_off_s(&self, now: SimTime) -> f64 {
         self.since.map_or(0.0, |since| now.seconds_since(since))
     }
@@ -47,7 +47,7 @@ impl AltitudeWait {
 mod tests {
     use super::*;
 
-    /// The time held off after flying this altitude error, a value a second.
+    /// Returns the time held off after these altitude errors, one value per second.
     fn held_off_s(errors_m: impl IntoIterator<Item = (f64, bool)>) -> f64 {
         let mut wait = AltitudeWait::default();
         let mut now = SimTime::ZERO;

@@ -2,26 +2,26 @@
 
 use nalgebra::Vector2;
 
-/// The climb; at most one in an engagement.
+/// The climb. There is at most one per engagement.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Climb {
     done: bool,
-    /// Where it holds while it climbs (north, east, m).
+    /// Place where the craft holds while it climbs (north, east, m).
     at: Option<Vector2<f64>>,
 }
 
 impl Climb {
-    /// Whether it may still begin.
+    /// Returns `true` if the climb may still begin.
     pub(super) fn is_pending(&self) -> bool {
         !self.done && self.at.is_none()
     }
 
-    /// Whether the craft climbs.
+    /// Returns `true` while the craft climbs.
     pub(super) fn is_on(&self) -> bool {
         self.at.is_some()
     }
 
-    /// The place it is held at while it climbs.
+    /// Returns the place where the craft holds while it climbs.
     pub(super) fn place(&self) -> Option<Vector2<f64>> {
         self.at
     }
@@ -30,13 +30,14 @@ impl Climb {
         self.at = Some(at);
     }
 
-    /// Not needed, or high enough: never again in this engagement. Returns whether it was on.
+    /// Ends the climb for the rest of the engagement, since it is not needed or the craft is high enough. Returns
+    /// `true` if it was active.
     pub(super) fn finish(&mut self) -> bool {
         self.done = true;
         self.break_off()
     }
 
-    /// Something else is flown. Returns whether it was on.
+    /// Ends the climb because something else is flown. Returns `true` if it was active.
     pub(super) fn break_off(&mut self) -> bool {
         self.at.take().is_some()
     }

@@ -1,12 +1,12 @@
-//! The active plan, the place in it, and the mission to resume.
+//! The active plan, the current place in it, and the mission to resume.
 
 use crate::plan::{FlightPlan, MAX_WAYPOINTS, Waypoint, WaypointType};
 use crate::telemetry::PlanSource;
 
-/// A mission that was begun since arming and may be resumed.
+/// A mission that began since arming and may be resumed.
 #[derive(Debug, Clone, PartialEq)]
 struct Mission {
-    /// The stored plan as it was.
+    /// The stored plan at the time.
     plan: FlightPlan,
     /// The waypoint to resume at.
     index: u8,
@@ -20,38 +20,38 @@ pub(super) struct PlanCursor {
     index: u8,
     next_index: u8,
     mission: Option<Mission>,
-    /// Waypoint the next mission begins at.
+    /// Waypoint at which the next mission begins.
     start_at: Option<u8>,
 }
 
 impl PlanCursor {
-    /// The active plan; empty while nothing is flown.
+    /// Returns the active plan, empty while nothing is flown.
     pub(super) fn plan(&self) -> &FlightPlan {
         &self.plan
     }
 
-    /// Where the active plan came from.
+    /// Returns the source of the active plan.
     pub(super) fn source(&self) -> PlanSource {
         self.source
     }
 
-    /// Index of the current waypoint.
+    /// Returns the index of the current waypoint.
     pub(super) fn index(&self) -> u8 {
         self.index
     }
 
-    /// Index of the positional waypoint after it; the same when it is the last.
+    /// Returns the index of the next positional waypoint, or of the current one if it is the last.
     pub(super) fn next_index(&self) -> u8 {
         self.next_index
     }
 
-    /// Waypoints in the active plan.
+    /// Returns the number of waypoints in the active plan.
     pub(super) fn count(&self) -> u8 {
-        // A plan holds at most 30.
+        // A plan has at most 30 waypoints.
         self.plan.waypoints.len() as u8
     }
 
-    /// A waypoint of the active plan.
+    /// Returns a waypoint of the active plan.
     pub(super) fn waypoint(&self, index: u8) -> Option<Waypoint> {
         self.plan.waypoints.get(usize::from(index)).copied()
     }
@@ -60,12 +60,12 @@ impl PlanCursor {
         self.waypoint(self.index)
     }
 
-    /// Type of the current waypoint; a FLYOVER when there is none.
+    /// Returns the type of the current waypoint, FLYOVER if there is none.
     pub(super) fn kind(&self) -> WaypointType {
         self.current().unwrap_or_default().kind
     }
 
-    /// The first positional waypoint at or after `index`.
+    /// Returns the first positional waypoint at or after `index`.
     pub(super) fn positional_from(&self, index: u8) -> Option<u8> {
         (index..)
             .zip(self.plan.waypoints.iter().skip(usize::from(index)))
@@ -73,17 +73,17 @@ impl PlanCursor {
             .map(|(index, _)| index)
     }
 
-    /// The positional waypoint after the current one.
+    /// Returns the positional waypoint after the current one.
     pub(super) fn following(&self) -> Option<u8> {
         self.positional_from(self.index.saturating_add(1))
     }
 
-    /// Number of positional waypoints.
+    /// Returns the number of positional waypoints.
     pub(super) fn positional_count(&self) -> usize {
         self.plan.waypoints.iter().filter(|waypoint| waypoint.kind.is_positional()).count()
     }
 
-    /// The last YAW_RATE before `index`.
+    /// Returns the last YAW_RATE before `index`.
     pub(super) fn yaw_rate_before(&self, index: u8) -> Option<&Waypoint> {
         let before = self.plan.waypoints.iter().take(usize::from(index));
         before.rev().find(|waypoint| waypoint.kind == WaypointType::YawRate)
@@ -95,7 +95,7 @@ impl PlanCursor {
         self.source = PlanSource::Stored;
     }
 
-    /// Replaces the active plan; the mission under it is forgotten.
+    /// Replaces the active plan and forgets the mission.
     pub(super) fn inject(&mut self, source: PlanSource, waypoints: &[Waypoint]) {
         self.mission = None;
         self.source = source;
@@ -116,7 +116,7 @@ impl PlanCursor {
         self.source = PlanSource::default();
     }
 
-    /// Makes `index` the current waypoint; a mission on the stored plan remembers it.
+    /// Makes `index` the current waypoint. A mission on the stored plan remembers it.
     pub(super) fn move_to(&mut self, index: u8) {
         self.index = index;
         self.next_index = self.following().unwrap_or(index);
@@ -127,30 +127,31 @@ impl PlanCursor {
         }
     }
 
-    /// Back to the first record: there is no positional waypoint to fly to.
+    /// Goes back to the first record, since there is no positional waypoint to fly to.
     pub(super) fn rewind(&mut self) {
         self.index = 0;
     }
 
-    /// Nothing follows any more; the mission is forgotten.
+    /// Ends the plan and forgets the mission. Nothing follows any more.
     pub(super) fn finish(&mut self) {
         self.mission = None;
         self.next_index = self.index;
     }
 
-    /// Begins a mission on the stored plan; returns the record it begins at.
+    /// Begins a mission on the stored plan. Returns the record at which it begins.
     pub(super) fn begin_mission(&mut self, stored: &FlightPlan) -> u8 {
         let index = self.start_at.take().unwrap_or(0);
         self.mission = Some(Mission { plan: stored.clone(), index });
         index
     }
 
-    /// Where the mission goes on, when the stored plan is still the same.
+    /// Returns the waypoint at which the mission goes on, if the stored plan is still the same.
     pub(super) fn resume_index(&self, stored: &FlightPlan) -> Option<u8> {
         self.mission.as_ref().filter(|mission| mission.plan == *stored).map(|mission| mission.index)
     }
 
-    /// Makes `index` of the stored plan the waypoint that the next mission begins at; `false` when there is none.
+    /// Makes `index` of the stored plan the waypoint at which the next mission begins. Returns `false` if it does not
+    /// exist.
     pub(super) fn start_next_at(&mut self, index: u8, stored: &FlightPlan) -> bool {
         let accepted = usize::from(index) < stored.waypoints.len().min(MAX_WAYPOINTS);
         if accepted {
@@ -160,12 +161,12 @@ impl PlanCursor {
         accepted
     }
 
-    /// The mission cannot be resumed.
+    /// Forgets the mission, so that it cannot be resumed.
     pub(super) fn forget_mission(&mut self) {
         self.mission = None;
     }
 
-    /// The flight is over: neither mission nor start are remembered.
+    /// Ends the flight. Forgets the mission and the start of the next one.
     pub(super) fn forget_flight(&mut self) {
         self.mission = None;
         self.start_at = None;

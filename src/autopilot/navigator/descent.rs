@@ -1,4 +1,4 @@
-//! A landing under way: its path down.
+//! The path down of a landing.
 
 use super::entry::Rescue;
 use crate::autopilot::control::AltitudeTarget;
@@ -8,20 +8,21 @@ use crate::autopilot::land_detector::{DescentFacts, LandDetector};
 use crate::autopilot::params::Params;
 use crate::signals::SimTime;
 
-/// Below this altitude a rescue sinks at the landing rate, m.
+/// The altitude below which a rescue sinks at the landing rate, m.
 const SLOW_LANDING_M: f64 = 4.0;
-/// Rate at which the setpoint of a landing comes down to a craft that stopped below it, m/s.
+/// The rate at which the setpoint of a landing comes down to a craft that stopped below it, m/s.
 const CATCH_UP_MPS: f64 = 2.0;
-/// A LAND reached this far above its altitude is approached vertically first, m; the approach ends this near to it, m.
+/// A LAND is approached vertically first if the craft reaches it this far above its altitude, m. The approach ends
+/// this near to it, m.
 const FAR_ABOVE_M: f64 = 2.0;
 const NEAR_M: f64 = 0.5;
-/// The vertical approach ends this far above `ap_landing_altitude_m` at the least, m.
+/// The minimum height above `ap_landing_altitude_m` at which the vertical approach ends, m.
 const CLEARANCE_M: f64 = 5.0;
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Path {
     began: SimTime,
-    /// Start of the part at the present rate.
+    /// Start of the part at the current rate.
     rate_since: SimTime,
     rate_start_m: f64,
     rate_mps: f64,
@@ -44,7 +45,7 @@ impl Path {
 enum Phase {
     #[default]
     Pending,
-    /// Vertically to this altitude (m), at the altitude controller's limit.
+    /// Vertical descent to this altitude (m), at the limit of the altitude controller.
     Approach(f64),
     Profile(Path),
 }
@@ -54,13 +55,13 @@ enum Phase {
 pub(super) struct Descent(Phase);
 
 impl Descent {
-    /// Whether the profile is being flown.
+    /// Returns `true` if the profile is being flown.
     pub(super) fn has_begun(&self) -> bool {
         matches!(self.0, Phase::Profile(_))
     }
 
-    /// Moves the landing on; returns the time since its profile began, s. `waypoint_alt_m` is the altitude of the LAND. A
-    /// rescue sinks at its own rate down to the last metres, and there no faster than a landing.
+    /// Advances the landing. Returns the time since its profile began, s. `waypoint_alt_m` is the altitude of the
+    /// LAND. A rescue sinks at its own rate down to the last metres, and there no faster than a landing.
     pub(super) fn advance(
         &mut self,
         now: &NavInputs,
@@ -96,11 +97,11 @@ impl Descent {
         now.time.seconds_since(path.began)
     }
 
-    /// The altitude target of this update, for a controller whose setpoint is `setpoint_m` and whose throttle is
-    /// `throttle_us` now.
+    /// Returns the altitude target of this update, for a controller with the setpoint `setpoint_m` and the throttle
+    /// `throttle_us`.
     ///
-    /// Low and still although it should sink, the craft stands, or the air carries it. Below the landing altitude it
-    /// does not climb back to a setpoint above it but goes on down from where it is.
+    /// A low craft that does not sink although it should is on the ground, or the air carries it. Below the landing
+    /// altitude it does not climb back to a setpoint above it but continues down from its present altitude.
     pub(super) fn target(
         &mut self,
         now: &NavInputs,

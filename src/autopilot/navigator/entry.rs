@@ -10,13 +10,13 @@ use crate::geo::{LatLon, local_offset, offset_to_latlon};
 use crate::plan::{FlightPlan, HoldPattern, Waypoint, WaypointType};
 use crate::telemetry::{AbortReason, Guard, NavEvent, NavState, PlanSource, Refusal, TransitionReason};
 
-/// A landing whose fix comes back this near to its place ends there, m.
+/// A landing ends at its planned place if the fix comes back this near to it, m.
 const SAME_LANDING_M: f64 = 20.0;
 
-/// How a rescue flies home, beyond a plain return: the altitude is climbed to on the spot first.
+/// The settings of a rescue, beyond a plain return. A rescue first climbs to its altitude on the spot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Rescue {
-    /// Altitude to return at, m above home, when it is higher than the craft.
+    /// Altitude of the return, m above home, if it is higher than the craft.
     pub altitude_m: f64,
     /// Climb rate, m/s.
     pub climb_mps: f64,
@@ -24,16 +24,16 @@ pub struct Rescue {
     pub speed_mps: f64,
     /// Sink rate down to the last 4 m, m/s.
     pub descend_mps: f64,
-    /// It is given up when it makes no progress or flies away from home.
+    /// `true` if the rescue is given up when it makes no progress or flies away from home.
     pub is_watched: bool,
 }
 
 impl Navigator {
-    /// Engages, as the mode switch asks while it is on: checks the preconditions and resumes the mission, or starts it.
-    /// Call it in each cycle while nothing is flown; a refusal is reported once per cause.
+    /// Engages while the mode switch is on: checks the preconditions and resumes the mission, or starts it. Call it
+    /// in each cycle while nothing is flown. It reports a refusal once per cause.
     ///
     /// # Errors
-    /// With the first precondition that fails.
+    /// Fails with the first precondition that does not hold.
     pub fn engage(
         &mut self,
         inputs: &NavInputs,
@@ -65,22 +65,22 @@ impl Navigator {
         Ok(())
     }
 
-    /// Whether a landing that lost its fix waits for it.
+    /// Returns `true` if a landing that lost its fix waits for it.
     pub fn has_landing_to_resume(&self) -> bool {
         self.engagement.landing_at().is_some()
     }
 
-    /// Why the last mission was given up, while nothing has taken its place.
+    /// Returns the reason why the last mission was given up, until something takes its place.
     pub fn given_up(&self) -> Option<AbortReason> {
         self.engagement.given_up()
     }
 
-    /// Whether there has been a fix for long enough to fly by it again.
+    /// Returns `true` if there has been a fix for long enough to fly by it again.
     pub fn has_fix_back(&self, inputs: &NavInputs) -> bool {
         self.engagement.has_fix_back(inputs)
     }
 
-    /// The mission that was given up is not waited for any more.
+    /// Forgets the mission that was given up, so that nothing waits for it.
     pub fn forget_given_up(&mut self) {
         self.engagement.forget_mission();
         if !self.is_flying() {
@@ -88,7 +88,8 @@ impl Navigator {
         }
     }
 
-    /// Goes on landing where the fix was lost, from the present altitude: at its place when that is near, else here.
+    /// Continues the landing that lost its fix, from the present altitude: at its planned place if that is near, else
+    /// here.
     fn resume_landing(&mut self, land_at: LatLon, inputs: &NavInputs) {
         self.take_over(inputs);
         let here = here(inputs);
@@ -114,7 +115,7 @@ impl Navigator {
         }
     }
 
-    /// Says why nothing is flown although it is asked for; an event tells each cause once.
+    /// Reports why nothing is flown although it was requested. Each cause gives one event.
     pub fn refuse(&mut self, refusal: Refusal) {
         if self.engagement.refuse(refusal) {
             self.push(NavEvent::Refused(refusal));
@@ -122,8 +123,8 @@ impl Navigator {
         self.report_status();
     }
 
-    /// Goes on with the mission that was begun since arming, when the stored plan is still the same; otherwise starts
-    /// it from its first waypoint.
+    /// Resumes the mission that began since arming if the stored plan is still the same. Otherwise starts the mission
+    /// from its first waypoint.
     fn resume(&mut self, inputs: &NavInputs, params: &Params, stored: &FlightPlan) {
         match self.cursor.resume_index(stored) {
             Some(index) => {
@@ -137,7 +138,7 @@ impl Navigator {
     /// Starts the mission from its first waypoint, whatever was flown before.
     ///
     /// # Errors
-    /// When the plan cannot be flown, the fence forbids it or there is no fix; the navigator is IDLE then.
+    /// Fails if the plan cannot be flown, the fence forbids it or there is no fix. The navigator is IDLE then.
     pub fn reset(&mut self, inputs: &NavInputs, params: &Params, stored: &FlightPlan) -> Result<(), Refusal> {
         let inputs = &self.inputs.apply(inputs);
         let facts = EngageFacts {
@@ -150,7 +151,7 @@ impl Navigator {
             aborted: None,
             ..self.engage_facts(inputs, params, stored)
         };
-        // The plan is looked at before the fix here, so that a missing plan is said first.
+        // The plan is checked before the fix here, so that a missing plan is reported first.
         let plan = engage::check(&EngageFacts { fix: true, fence: Ok(()), ..facts });
         if let Err(refusal) = plan.and_then(|()| engage::check(&facts)) {
             if self.state != NavState::Idle {
@@ -183,7 +184,8 @@ impl Navigator {
         self.announce_plan();
     }
 
-    /// Resets what belongs to one engagement; the next update engages the controllers, unless they fly already.
+    /// Resets the state that belongs to one engagement. The next update engages the controllers, unless they already
+    /// fly.
     fn take_over(&mut self, inputs: &NavInputs) {
         if self.state == NavState::Idle {
             self.takes_over = true;
@@ -200,8 +202,8 @@ impl Navigator {
         self.target_alt_m = inputs.alt_m;
     }
 
-    /// Ends the flight, as the mode switch asks when it goes off: IDLE, the active plan dropped. The mission can be
-    /// resumed until disarming, and a mission that was given up may start again.
+    /// Ends the flight when the mode switch goes off: IDLE, the active plan dropped. The mission can be resumed until
+    /// disarming, and a mission that was given up may start again.
     pub fn disengage(&mut self) {
         self.engagement.clear();
         if self.is_flying() {
@@ -226,10 +228,10 @@ impl Navigator {
         }
     }
 
-    /// Jumps to waypoint `index` of the stored plan; before a mission, makes it the one to begin with. Returns whether
-    /// it was accepted: not out of range, not while an injected plan flies.
+    /// Jumps to waypoint `index` of the stored plan. Before a mission, makes it the first one. Returns `true` if the
+    /// command was accepted: `index` is in range and no injected plan is flown.
     ///
-    /// Neither the command line nor MSP has a message for it; it is for programs that drive a navigator themselves.
+    /// Neither the command line nor MSP has a message for this. It is for programs that drive a navigator themselves.
     pub fn set_current(
         &mut self,
         index: u8,
@@ -252,10 +254,10 @@ impl Navigator {
         true
     }
 
-    /// Lands here, now: the active plan becomes one LAND at the craft. Called again it starts over at the new place.
+    /// Lands here, now: the active plan becomes one LAND at the craft. A repeated call starts again at the new place.
     ///
     /// # Errors
-    /// When the craft is not armed or has no fix or no altitude.
+    /// Fails if the craft is not armed or has no fix or no altitude.
     pub fn emergency_land(&mut self, inputs: &NavInputs) -> Result<(), Refusal> {
         let inputs = &self.inputs.apply(inputs);
         self.check_command(inputs)?;
@@ -263,11 +265,11 @@ impl Navigator {
         Ok(())
     }
 
-    /// Returns home: the active plan becomes FLYOVER and LAND at home at the altitude of the craft, or that of
-    /// `rescue` where it is higher. Without a known home it lands here.
+    /// Returns home: the active plan becomes FLYOVER and LAND at home, at the altitude of the craft or that of
+    /// `rescue`, whichever is higher. Without a known home it lands here.
     ///
     /// # Errors
-    /// When the craft is not armed or has no fix or no altitude.
+    /// Fails if the craft is not armed or has no fix or no altitude.
     pub fn return_to_home(
         &mut self,
         inputs: &NavInputs,
@@ -341,7 +343,7 @@ impl Navigator {
     }
 }
 
-/// Position of the craft.
+/// Returns the position of the craft.
 pub(super) fn here(inputs: &NavInputs) -> LatLon {
     offset_to_latlon(inputs.origin, inputs.pos_ne)
 }
@@ -349,7 +351,7 @@ pub(super) fn here(inputs: &NavInputs) -> LatLon {
 fn injected(kind: WaypointType, position: LatLon, altitude_m: f64, speed_mps: f64) -> Waypoint {
     Waypoint {
         position,
-        // Both saturate: an altitude in cm and a speed in cm/s that fit their fields.
+        // Both saturate: altitude in cm and speed in cm/s fit their fields.
         alt_cm: (altitude_m * 100.0).round() as i32,
         speed_cms: (speed_mps * 100.0).round() as u16,
         duration_ds: 0,

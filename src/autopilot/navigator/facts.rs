@@ -1,4 +1,4 @@
-//! What the machine decides on: facts of one update.
+//! Collects the facts of one update for the machine.
 
 use super::Navigator;
 use super::observed::Observed;
@@ -14,7 +14,7 @@ use crate::plan::WaypointType;
 use crate::telemetry::{NavEvent, NavState};
 
 impl Navigator {
-    /// Clocks and overlays that run before the decision.
+    /// Runs clocks and overlays before the decision.
     pub(super) fn prepare(
         &mut self,
         now: &NavInputs,
@@ -84,7 +84,7 @@ impl Navigator {
         }
     }
 
-    /// Altitude at which the climb before the first leg is done, m.
+    /// Returns the altitude at which the climb before the first leg is done, m.
     pub(super) fn climb_goal_m(&self, params: &Params) -> f64 {
         let rescue = self.rescue.map_or(f64::NEG_INFINITY, |rescue| rescue.altitude_m - 1.0);
         f64::from(params.min_nav_altitude_m).max(rescue)
@@ -123,7 +123,7 @@ impl Navigator {
         }
     }
 
-    /// Watches a HOLD wait for its altitude. A climb or descent on the spot is progress, too.
+    /// Watches a HOLD that waits for its altitude. A climb or descent on the spot is progress, too.
     fn wait_for_altitude(&mut self, now: &NavInputs, params: &Params, seen: &Observed) {
         let approaches = self.state == NavState::Approaching && self.cursor.kind() == WaypointType::Hold;
         let is_free = !seen.stick_override && !self.climb.is_on();
@@ -134,7 +134,7 @@ impl Navigator {
         }
     }
 
-    /// The monitors run on a leg, and begin anew whenever the craft was not free to make progress.
+    /// Runs the monitors on a leg. They start again whenever the craft was not free to make progress.
     fn watch_progress(&mut self, now: &NavInputs, params: &Params, seen: &Observed, speed_setpoint_mps: f64) {
         let unwatched = self.rescue.is_some_and(|rescue| !rescue.is_watched);
         let free = self.state == NavState::Approaching && !seen.stick_override && !self.climb.is_on();

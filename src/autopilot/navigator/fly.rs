@@ -1,4 +1,4 @@
-//! Flying a state: the demands of the controllers.
+//! Flies a state: the demands of the controllers.
 
 use nalgebra::Vector2;
 
@@ -14,23 +14,23 @@ use crate::autopilot::params::Params;
 use crate::plan::WaypointType;
 use crate::telemetry::{NavEvent, NavOutput, NavState};
 
-/// Deflection of a stick at its end.
+/// The deflection of a stick at its end.
 const FULL_STICK: f64 = 500.0;
 
-/// What an update flew.
+/// The result of flying an update.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Flown {
     pub output: NavOutput,
-    /// How the aim was chosen.
     pub path: PathView,
 }
 
-/// No setpoint outside a landing goes below this altitude, m, unless the waypoint lies well below home.
+/// No setpoint outside a landing goes below this altitude, m, unless the waypoint is well below home.
 const LOWEST_M: f64 = 1.0;
 const BELOW_HOME_M: f64 = -2.0;
 
-/// The altitude target (m) that keeps off the ground: not below 1 m above home, or, when the setpoint is lower already,
-/// no lower. To a waypoint well below home, where the ground must be, too, it sinks as slowly as a landing.
+/// Returns the altitude target (m) that keeps the craft off the ground: not below 1 m above home or, if the setpoint
+/// is already lower, not below the setpoint. To a waypoint well below home, where the ground must be lower, too, the
+/// craft sinks as slowly as in a landing.
 fn above_ground_m(target_m: f64, now: &NavInputs, params: &Params, setpoint_m: f64) -> f64 {
     if target_m >= BELOW_HOME_M {
         return target_m.max(LOWEST_M.min(setpoint_m));
@@ -38,11 +38,12 @@ fn above_ground_m(target_m: f64, now: &NavInputs, params: &Params, setpoint_m: f
     if now.alt_m >= f64::from(params.landing_altitude_m) {
         return target_m;
     }
-    // The setpoint moves at √(2·1 m/s²·way left).
+    // The setpoint moves at √(2·1 m/s²·remaining distance).
     target_m.max(setpoint_m - 0.5 * params.descent_rate_mps().powi(2))
 }
 
-/// Share of the full deflection beyond the deadband, −1…1, so that crossing it is no step.
+/// Returns the share of the full deflection beyond the deadband, −1…1. The share begins at zero, so that there is no
+/// step at the deadband.
 fn stick_share(stick: f64, params: &Params) -> f64 {
     let deadband = f64::from(params.stick_deadband);
     let beyond = (stick.abs() - deadband).max(0.0) / (FULL_STICK - deadband).max(1.0);
@@ -50,7 +51,7 @@ fn stick_share(stick: f64, params: &Params) -> f64 {
 }
 
 impl Navigator {
-    /// The demands of this update.
+    /// Returns the demands of this update.
     pub(super) fn fly(
         &mut self,
         now: &NavInputs,
@@ -93,7 +94,7 @@ impl Navigator {
         Flown { output, path }
     }
 
-    /// Tells once a leg that the thrust does not suffice for the lean.
+    /// Reports once per leg that the thrust is too low for the lean.
     fn tell_limited_lean(&mut self, controllers: &FlightControllers, params: &Params) {
         if controllers.thrust_limits_lean() && !std::mem::replace(&mut self.leg.told_limited, true) {
             self.push(NavEvent::Limited { lean_rad: controllers.position.max_lean_rad(params) });

@@ -15,18 +15,18 @@ impl Hold {
         self.began = time;
     }
 
-    /// HOLDING is entered by a command: its time does not end.
+    /// Enters HOLDING by a command. Its time does not end.
     pub(super) fn begin_by_command(&mut self, time: SimTime) {
         self.begin(time);
         self.by_command = true;
     }
 
-    /// Whether the hold was commanded.
+    /// Returns `true` if the hold was commanded.
     pub(super) fn is_by_command(&self) -> bool {
         self.by_command
     }
 
-    /// Time since HOLDING was entered, µs.
+    /// Returns the time since HOLDING was entered, µs.
     pub(super) fn elapsed_us(&self, time: SimTime) -> u64 {
         time.0.saturating_sub(self.began.0)
     }
@@ -35,12 +35,12 @@ impl Hold {
         self.phase_rad = 0.0;
     }
 
-    /// Moves on by `step_rad` on a pattern that repeats after `period_rad`.
+    /// Advances by `step_rad` on a pattern that repeats after `period_rad`.
     pub(super) fn advance_pattern(&mut self, step_rad: f64, period_rad: f64) {
         self.phase_rad = (self.phase_rad + step_rad).rem_euclid(period_rad);
     }
 
-    /// Phase of the pattern, rad.
+    /// Returns the phase of the pattern, rad.
     pub(super) fn phase_rad(&self) -> f64 {
         self.phase_rad
     }

@@ -1,4 +1,4 @@
-//! Commands while the stored plan is flown: to a waypoint, hold here, go on.
+//! Commands while the stored plan is flown: go to a waypoint, hold here, continue.
 
 use super::Navigator;
 use super::entry::here;
@@ -13,7 +13,7 @@ impl Navigator {
     /// Carries out a command between two updates.
     ///
     /// # Errors
-    /// Why not; then nothing has changed.
+    /// Fails with the reason. Nothing has changed then.
     pub fn command(
         &mut self,
         command: InFlightCommand,
@@ -38,7 +38,7 @@ impl Navigator {
         }
     }
 
-    /// A leg from here to waypoint `index`, with the modifiers before it; a delay is not repeated.
+    /// Begins a leg from here to waypoint `index`, with the modifiers before it. A delay is not repeated.
     fn go_to(
         &mut self,
         index: u8,
@@ -46,7 +46,7 @@ impl Navigator {
         params: &Params,
         stored: &FlightPlan,
     ) -> Result<(), InFlightRefusal> {
-        // A plan holds at most 30 waypoints.
+        // A plan has at most 30 waypoints.
         let count = stored.waypoints.len() as u8;
         let following = stored.waypoints.iter().skip(usize::from(index));
         let Some((positional, _)) =
@@ -72,7 +72,7 @@ impl Navigator {
             self.cursor.load(stored);
             self.announce_plan();
         }
-        // So that it can be resumed when the switch is cycled, also after it was complete.
+        // The mission can then be resumed when the switch is cycled, even after it was complete.
         self.cursor.begin_mission(stored);
         self.yaw_cap_dps = None;
         self.begin_first_leg(positional, true, TransitionReason::SetCurrent, inputs, params);

@@ -1,4 +1,4 @@
-//! Finite inputs, whatever the estimator says.
+//! Keeps the inputs finite, whatever the estimator delivers.
 
 use nalgebra::Vector2;
 
@@ -11,7 +11,8 @@ pub(super) struct InputFilter {
 }
 
 impl InputFilter {
-    /// The inputs with every number finite: what is not keeps its last value, and a broken position is no fix.
+    /// Returns the inputs with every number finite. A number that is not finite keeps its last value, and a broken
+    /// position clears the fix.
     pub(super) fn apply(&mut self, inputs: &NavInputs) -> NavInputs {
         let mut now = inputs.clone();
         now.dt = if now.dt.is_finite() { now.dt.clamp(0.0, 0.1) } else { 0.01 };

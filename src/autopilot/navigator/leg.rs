@@ -1,4 +1,4 @@
-//! Moving on in the plan: the next positional waypoint, the modifiers before it, the start of its leg.
+//! Advances in the plan: the next positional waypoint, the modifiers before it, the start of its leg.
 
 use nalgebra::Vector2;
 
@@ -15,29 +15,29 @@ use crate::plan::{Waypoint, WaypointType};
 use crate::signals::SimTime;
 use crate::telemetry::{Guard, NavState, TransitionReason};
 
-/// Distance below which two waypoints count as one, m.
+/// The distance below which two waypoints count as one, m.
 pub(super) const CO_LOCATED_M: f64 = 0.1;
-/// Slowest speed a DELAY asks for, m/s.
+/// The slowest speed of a DELAY, m/s.
 const SLOWEST_MPS: f64 = 0.1;
-/// Ground speed from which a course is known well enough for an arc, m/s.
+/// The ground speed from which a course is known well enough for an arc, m/s.
 const MOVING_MPS: f64 = 0.5;
 
-/// The current waypoint, resolved: where and how it is flown.
+/// The current waypoint, resolved to the position and the way it is flown.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Leg {
-    /// Position of the waypoint; of a TAKEOFF the place where it began.
+    /// Position of the waypoint. For a TAKEOFF, the place where it began.
     pub waypoint: LatLon,
     /// Altitude above home, m.
     pub altitude_m: f64,
-    /// Where the leg began.
+    /// Start of the leg.
     pub start: LatLon,
-    /// The waypoint must be come back to.
+    /// `true` if the craft must come back to the waypoint.
     pub missed: bool,
     /// Speed cap of a DELAY (m/s) and the time it ends.
     pub delay: Option<(f64, SimTime)>,
     /// The arc at the start of the leg.
     pub arc: Option<CornerArc>,
-    /// It was told that the thrust limits the lean.
+    /// `true` once it was reported that the thrust limits the lean.
     pub told_limited: bool,
 }
 
@@ -53,8 +53,8 @@ impl Navigator {
         self.begin_first_leg_with_guard(index, resumed, reason, None, inputs, params);
     }
 
-    /// The first leg of an engagement, from the craft. A resumed leg keeps its altitude change and the yaw cap of the
-    /// plan before it; a delay is not repeated.
+    /// Begins the first leg of an engagement, from the craft. A resumed leg keeps its altitude change and the yaw cap
+    /// of the plan before it. A delay is not repeated.
     pub(super) fn begin_first_leg_with_guard(
         &mut self,
         index: u8,
@@ -101,13 +101,13 @@ impl Navigator {
         self.clear_clocks();
         self.apply_modifiers(modifiers_from, index, inputs);
         let (from, to) = (local_offset(inputs.origin, start), local_offset(inputs.origin, position));
-        // Already behind the plane: it can only be reached by coming back.
+        // A craft that is already behind the plane can reach the waypoint only by coming back.
         self.leg.missed = plane_crossing(from, to, inputs.pos_ne, inputs.pos_ne) == PlaneCrossing::Behind;
         self.leg.arc = corner_arc(to - inputs.pos_ne, inputs.vel_ne, params);
         self.enter(NavState::Approaching, reason, guard);
     }
 
-    /// Forgets the hold, the landing, the progress and the wait of what was flown.
+    /// Forgets the hold, the landing, the progress and the wait of the previous leg.
     pub(super) fn clear_clocks(&mut self) {
         self.hold = Hold::default();
         self.descent = Descent::default();

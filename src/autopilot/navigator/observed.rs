@@ -1,4 +1,4 @@
-//! What an update computes once from inputs, plan and leg, for all that follows.
+//! Values that an update computes once from inputs, plan and leg.
 
 use nalgebra::Vector2;
 
@@ -8,26 +8,26 @@ use crate::autopilot::io::NavInputs;
 use crate::autopilot::params::Params;
 use crate::geo::local_offset;
 
-/// How the craft lies to its leg and to home; north, east, m.
+/// The position of the craft relative to its leg and to home; north, east, m.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Observed {
-    /// The waypoint of the leg.
+    /// Waypoint of the leg.
     pub waypoint_ne: Vector2<f64>,
-    /// Where the leg began.
+    /// Start of the leg.
     pub start_ne: Vector2<f64>,
-    /// From the craft to the waypoint.
+    /// Offset from the craft to the waypoint.
     pub to_waypoint: Vector2<f64>,
     /// Distance to the waypoint.
     pub distance_m: f64,
     /// Ground speed, m/s.
     pub ground_speed_mps: f64,
-    /// Distance from home, when home is known.
+    /// Distance from home, if home is known.
     pub home_distance_m: Option<f64>,
-    /// No positional waypoint follows.
+    /// `true` if no positional waypoint follows.
     pub is_last: bool,
-    /// The next positional waypoint lies on the current one.
+    /// `true` if the next positional waypoint is at the place of the current one.
     pub is_co_located: bool,
-    /// The pilot moves roll or pitch.
+    /// `true` if the pilot moves roll or pitch.
     pub stick_override: bool,
 }
 

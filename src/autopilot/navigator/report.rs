@@ -1,4 +1,4 @@
-//! The picture for displays, logs and samples: what an update computed.
+//! Reports the results of an update for displays, logs and samples.
 
 use arrayvec::ArrayVec;
 
@@ -12,11 +12,11 @@ use crate::autopilot::machine::{Facts, waiting_for};
 use crate::autopilot::params::Params;
 use crate::telemetry::{L1Mode, NavState, NavTelemetry};
 
-/// Ground speed below which a time to the waypoint says nothing, m/s.
+/// The ground speed below which a time to the waypoint is meaningless, m/s.
 const ETA_MIN_MPS: f64 = 0.5;
 
 impl Navigator {
-    /// Tells of an update; `flown` is what was decided on and what was flown, if anything was.
+    /// Reports an update. `flown` has the facts of the decision and the result of flying it, if anything was flown.
     pub(super) fn report(
         &mut self,
         now: &NavInputs,
@@ -70,7 +70,7 @@ impl Navigator {
         self.report_status();
     }
 
-    /// Tells of state, plan and refusal, also between two updates.
+    /// Reports state, plan and refusal, also between two updates.
     pub(super) fn report_status(&mut self) {
         let is_flying = self.is_flying();
         let telemetry = &mut self.telemetry;

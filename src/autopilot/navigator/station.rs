@@ -1,4 +1,4 @@
-//! The station monitor: a craft that is off the place it should keep, and does not come closer.
+//! The station monitor: detects a craft that is away from the place it should keep and does not come closer.
 
 use super::Navigator;
 use super::observed::Observed;
@@ -7,31 +7,31 @@ use crate::autopilot::io::NavInputs;
 use crate::autopilot::params::Params;
 use crate::telemetry::{CannotHold, HoldLimit, NavEvent, NavState};
 
-/// Hold radii that a craft may be off beyond its pattern.
+/// The number of hold radii that a craft may be away beyond its pattern.
 const HOLD_RADII: f64 = 2.0;
-/// Height that it may be off, m.
+/// The height that it may be off, m.
 const VERTICAL_M: f64 = 3.0;
-/// Two periods of this length are compared to see whether it comes closer, s.
+/// The length of the two periods that are compared to see if the craft comes closer, s.
 const PERIOD_S: f64 = 5.0;
-/// How much closer on average it must be in the later one, m.
+/// The decrease of the mean excess from one period to the next that counts as coming closer, m.
 const CLOSER_M: f64 = 0.5;
-/// How near to its greatest the throttle binds, µs.
+/// The throttle is at its limit when it is this close to its maximum, µs.
 const THROTTLE_BINDS_US: f64 = 1.0;
 
-/// What an update shows of the station.
+/// The values of the station in one update.
 #[derive(Debug, Clone, Copy)]
 struct Station {
     /// Horizontal distance from the target, m.
     distance_m: f64,
-    /// How far the craft may be from it, m.
+    /// Permitted distance from the target, m.
     radius_m: f64,
     /// Height above the setpoint, m.
     vertical_m: f64,
-    /// The lean demand is cut at its limit.
+    /// `true` if the lean demand is at its limit.
     lean_binds: bool,
-    /// The throttle demand is cut at its limit.
+    /// `true` if the throttle demand is at its limit.
     throttle_binds: bool,
-    /// The battery is at its warning voltage or below.
+    /// `true` if the battery is at its warning voltage or below.
     battery_low: bool,
 }
 
@@ -40,13 +40,13 @@ impl Station {
         self.distance_m > self.radius_m || self.vertical_m.abs() > VERTICAL_M
     }
 
-    /// How far it is out of its bounds, m.
+    /// Returns the distance by which the craft is out of its bounds, m.
     fn excess_m(&self) -> f64 {
         (self.distance_m - self.radius_m).max(0.0) + (self.vertical_m.abs() - VERTICAL_M).max(0.0)
     }
 }
 
-/// Integrals over a period off station.
+/// Integrals over a period out of bounds.
 #[derive(Debug, Clone, Copy, Default)]
 struct Period {
     time_s: f64,
@@ -67,7 +67,8 @@ impl Period {
         self.excess_ms / self.time_s.max(f64::MIN_POSITIVE)
     }
 
-    /// What bound for most of the period; for a craft that is too low the throttle counts first.
+    /// Returns the demand that was at its limit for most of the period. For a craft that is too low the throttle
+    /// counts first.
     fn limit(&self, station: &Station) -> HoldLimit {
         let most = |time_s: f64| time_s > 0.5 * self.time_s;
         let too_low = station.vertical_m < -VERTICAL_M;
@@ -81,22 +82,22 @@ impl Period {
     }
 }
 
-/// The monitor with its memory since the craft left its station.
+/// The monitor, with its state since the craft left its station.
 #[derive(Debug, Clone, Default)]
 pub(super) struct StationMonitor {
     period: Period,
-    /// Mean excess of the period before, m.
+    /// Mean excess of the previous period, m.
     before_m: Option<f64>,
     told: Option<CannotHold>,
 }
 
 impl StationMonitor {
-    /// What was told and still holds.
+    /// Returns the report that still holds.
     pub(super) fn told(&self) -> Option<CannotHold> {
         self.told
     }
 
-    /// Takes an update; gives what is to be told now.
+    /// Takes an update. Returns the event to report now.
     fn update(&mut self, station: &Station, dt: f64) -> Option<NavEvent> {
         let deviation =
             |limit| CannotHold { distance_m: station.distance_m, vertical_m: station.vertical_m, limit };
@@ -127,7 +128,7 @@ impl StationMonitor {
         Some(NavEvent::CannotHold { on: true, deviation })
     }
 
-    /// Nothing is kept any more, or somebody else flies.
+    /// Ends the monitoring, since no place is kept any more or something else flies.
     fn leave(&mut self) -> Option<NavEvent> {
         let told = std::mem::take(self).told;
         told.map(|deviation| NavEvent::CannotHold { on: false, deviation })
@@ -135,7 +136,7 @@ impl StationMonitor {
 }
 
 impl Navigator {
-    /// Tells of a craft that cannot keep its place; `seen` is what the demands of this update were made from.
+    /// Reports a craft that cannot keep its place. `seen` is the basis of the demands of this update.
     pub(super) fn watch_station(
         &mut self,
         now: &NavInputs,
@@ -155,7 +156,7 @@ impl Navigator {
             Some(pattern_m) => {
                 let mut setpoint_m = controllers.altitude.setpoint_m();
                 if self.state == NavState::Landing {
-                    // The path of a landing goes on below the ground.
+                    // The path of a landing continues below the ground.
                     setpoint_m = setpoint_m.max(self.leg.altitude_m.min(0.0));
                 }
                 let station = Station {

@@ -1,4 +1,4 @@
-//! Where to steer: target and aim of a leg, a hold, a pattern and a landing.
+//! Target and aim of a leg, a hold, a pattern and a landing.
 
 use nalgebra::Vector2;
 
@@ -15,17 +15,18 @@ use crate::autopilot::params::Params;
 use crate::plan::WaypointType;
 use crate::telemetry::{L1Mode, NavState};
 
-/// Below this altitude a landing moves sideways no faster than this, m and m/s: a fix that jumps just above the ground would
+/// Below this altitude, m, a landing moves sideways no faster than this, m/s. A jump of the fix just above the ground
+/// would tip the craft over.
 /// tip the craft over.
 const LOW_M: f64 = 2.0;
 const LOW_MPS: f64 = 0.5;
 
-/// How the aim of an update was chosen.
+/// The aim of an update and the way it was chosen.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct PathView {
     /// The aim, north and east, m.
     pub aim_ne: Vector2<f64>,
-    /// How it was chosen.
+    /// Mode in which it was chosen.
     pub l1_mode: L1Mode,
     /// Cross-track error, m.
     pub xte_m: Option<f64>,
@@ -38,7 +39,7 @@ pub(super) struct PathView {
 }
 
 impl Navigator {
-    /// Greatest speed on this leg, m/s.
+    /// Returns the maximum speed on this leg, m/s.
     pub(super) fn leg_speed(&self, now: &NavInputs, params: &Params) -> f64 {
         let own = leg_speed_mps(self.cursor.current().unwrap_or_default().speed_cms, params);
         match self.leg.delay {
@@ -47,7 +48,7 @@ impl Navigator {
         }
     }
 
-    /// Target and aim of the state.
+    /// Returns target and aim of the state.
     pub(super) fn horizontal_target(
         &mut self,
         now: &NavInputs,
@@ -83,7 +84,7 @@ impl Navigator {
                     target.aim = target.target;
                 }
                 if now.alt_m < LOW_M {
-                    // The direct law has no limit of the speed.
+                    // The direct law does not limit the speed.
                     target.law = PositionLaw::Speed;
                     target.speed_mps = target.speed_mps.min(LOW_MPS);
                 }
@@ -94,7 +95,7 @@ impl Navigator {
         (target, path)
     }
 
-    /// Target and aim on a leg: straight for the waypoint, or along the line to it.
+    /// Returns target and aim on a leg: straight to the waypoint, or along the line to it.
     fn leg_target(
         &mut self,
         target: &mut PositionTarget,
@@ -128,7 +129,7 @@ impl Navigator {
         }
     }
 
-    /// The aim of the line, or of the arc while one is flown.
+    /// Returns the aim of the line, or of the arc while one is flown.
     fn arc_aim(&mut self, result: &L1Result, now: &NavInputs) -> Vector2<f64> {
         let Some(arc) = &mut self.leg.arc else { return result.aim };
         let to_aim = result.aim - now.pos_ne;
@@ -140,7 +141,7 @@ impl Navigator {
         now.pos_ne + Vector2::new(cos, sin) * result.lookahead_m
     }
 
-    /// Radius of the circles of the pattern, m.
+    /// Returns the radius of the circles of the pattern, m.
     pub(super) fn pattern_radius_m(&self, params: &Params) -> f64 {
         if self.state == NavState::Figure8 {
             f64::from(params.hold_figure8_width) / 200.0
@@ -162,7 +163,7 @@ impl Navigator {
         }
     }
 
-    /// The pattern moves before anything else is decided.
+    /// Advances the pattern. This happens before any decision.
     pub(super) fn move_pattern(&mut self, now: &NavInputs, params: &Params) {
         let period = match self.state {
             NavState::Orbiting => std::f64::consts::TAU,

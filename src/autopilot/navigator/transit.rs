@@ -1,4 +1,4 @@
-//! Carrying out what the machine decided.
+//! Carries out the decisions of the machine.
 
 use super::Navigator;
 use super::entry::here;
@@ -12,7 +12,7 @@ use crate::plan::WaypointType;
 use crate::telemetry::{AbortReason, FenceAction, Guard, NavEvent, NavState, TransitionReason};
 
 impl Navigator {
-    /// At most one transition; returns whether there was one.
+    /// Makes at most one transition. Returns `true` if there was one.
     pub(super) fn step(&mut self, facts: &Facts, now: &NavInputs, params: &Params) -> bool {
         let Some(Transition { outcome, reason, guard }) = transition(self.state, facts) else {
             return false;
@@ -27,7 +27,7 @@ impl Navigator {
             }
             Outcome::Missed => {
                 self.leg.missed = true;
-                // It turns back, which is another leg to the monitors.
+                // The craft turns back, which is another leg to the monitors.
                 self.progress.pause();
             }
             Outcome::Arrive => self.enter(NavState::Arrived, reason, guard),
@@ -59,7 +59,7 @@ impl Navigator {
         true
     }
 
-    /// On to the next positional waypoint. The leg begins at the waypoint just left, or at the craft when it stayed
+    /// Goes on to the next positional waypoint. The leg begins at the previous waypoint, or at the craft if it stayed
     /// there or came back to it.
     fn advance(&mut self, reason: TransitionReason, guard: Option<Guard>, now: &NavInputs, params: &Params) {
         let Some(next) = self.cursor.following() else {
@@ -121,8 +121,8 @@ impl Navigator {
         }
     }
 
-    /// A mission that was given up leaves the craft where the wind takes it: the fence stays up until the switch is
-    /// cycled.
+    /// Checks the fence after an abort. The wind carries the craft off after an abort, so the fence stays active
+    /// until the switch is cycled.
     pub(super) fn check_fence_after_abort(&mut self, now: &NavInputs, params: &Params, seen: &Observed) {
         if self.engagement.aborted().is_none()
             || !now.armed
@@ -132,7 +132,7 @@ impl Navigator {
         {
             return;
         }
-        // As on the leg that was given up.
+        // The same facts as on the leg that was given up.
         let fence = FenceFacts { state: NavState::Approaching, ..self.fence_facts(params, seen) };
         let outside = fence::guard(&fence).filter(Guard::holds);
         if outside.is_some() {
@@ -152,14 +152,14 @@ impl Navigator {
         self.yaw.reset();
     }
 
-    /// The climb before the first leg is over, once for this engagement.
+    /// Ends the climb before the first leg, once per engagement.
     pub(super) fn finish_climb(&mut self) {
         if self.climb.finish() {
             self.push(NavEvent::Climbing(false));
         }
     }
 
-    /// The only place where the state changes.
+    /// Changes the state. No other function does.
     pub(super) fn enter(&mut self, to: NavState, reason: TransitionReason, guard: Option<Guard>) {
         let from = self.state;
         self.state = to;
@@ -171,7 +171,7 @@ impl Navigator {
             self.progress.pause();
         }
         let kind = self.cursor.current().map(|waypoint| waypoint.kind);
-        // A command between two updates shows at once.
+        // A command between two updates is visible at once.
         self.report_status();
         self.push(NavEvent::State {
             from,
@@ -186,7 +186,7 @@ impl Navigator {
     }
 
     pub(super) fn push(&mut self, event: NavEvent) {
-        // Full only when nobody drains: then the newest are dropped.
+        // The queue is full only if nothing drains it. The newest events are dropped then.
         let _ = self.events.try_push(event);
     }
 }

@@ -6,7 +6,7 @@ pub use crate::telemetry::RxLossPolicy;
 
 use crate::telemetry::FenceAction;
 
-/// Which way the nose points while the autopilot flies.
+/// The direction of the nose while the autopilot flies.
 #[derive(
     Debug,
     Clone,
@@ -30,15 +30,15 @@ pub enum YawMode {
     Bearing = 1,
     /// To the waypoint when far, along the course when near.
     Hybrid = 2,
-    /// Where it points already.
+    /// Direction at engagement.
     Fixed = 3,
     /// For wings; a multirotor treats it as [`YawMode::Fixed`].
     Dampener = 4,
 }
 
-/// A type a parameter can have. Conversions saturate, so no number can be out of range of the type.
+/// A type that a parameter can have. Conversions saturate, so no number can be out of range of the type.
 pub(super) trait Value: Copy {
-    /// The words of an enumeration in the order of their numbers; empty for plain numbers.
+    /// The names of the values of an enumeration in the order of their numbers; empty for plain numbers.
     const WORDS: &'static [&'static str];
     fn to_number(self) -> i64;
     fn from_number(number: i64) -> Self;

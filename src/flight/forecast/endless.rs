@@ -1,4 +1,4 @@
-//! Recognises a flight that would go on as it is for ever.
+//! Recognises a flight that would continue for ever.
 
 use super::report::ForecastEnd;
 use crate::flight::waiting;
@@ -6,29 +6,30 @@ use crate::signals::SimTime;
 use crate::telemetry::NavState;
 use crate::vehicle::Vehicle;
 
-/// How long a hold without end is followed, s: long enough to see where it is held.
+/// The time that a hold without end is followed, s: long enough to see the place of the hold.
 const HOLD_S: f64 = 20.0;
-/// How long a craft is followed with which nothing happens while its sticks stay where they are, s.
+/// The time that a craft without any event is followed while its sticks do not move, s.
 const QUIET_S: f64 = 60.0;
 /// The same while the scripted pilot waits for something, s.
 const PILOT_QUIET_S: f64 = 120.0;
-/// A change of height that is something happening, m.
+/// The change of height that counts as an event, m.
 const HEIGHT_M: f64 = 1.0;
-/// What is said of a craft that no autopilot flies and that nothing happens to.
+/// The text for a craft without autopilot and without events.
 pub(super) const LEFT_TO_STICKS: &str = "the sticks have the craft, and the flight has no end";
-/// Hold time left that stands for an endless hold, ds.
+/// The remaining hold time that means an endless hold, ds.
 const ENDLESS_DS: u16 = u16::MAX;
 
-/// The memory of the watch.
+/// The state of the watch.
 #[derive(Debug, Clone, Default)]
 pub(super) struct EndlessWatch {
     hold_since: Option<SimTime>,
-    /// Since when nothing has happened, and the true altitude then, m.
+    /// Time since which nothing has happened, and the true altitude then, m.
     quiet_since: Option<(SimTime, f64)>,
 }
 
 impl EndlessWatch {
-    /// Looks at the vehicle after a tick in which something `happened` or not.
+    /// Observes the vehicle after a tick. `happened` is `true` if there was an event in it. Returns the end if the
+    /// flight is endless.
     pub(super) fn look(&mut self, vehicle: &Vehicle, happened: bool) -> Option<(ForecastEnd, String)> {
         let now = vehicle.time();
         let nav = vehicle.controller().nav()?;

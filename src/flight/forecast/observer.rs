@@ -1,4 +1,4 @@
-//! What is noted of a forecast's flight on the way.
+//! The observations of a forecast's flight on the way.
 
 use super::path::{Path, PathPoint};
 use super::plan_distance::PlanDistance;
@@ -8,22 +8,22 @@ use crate::signals::SimTime;
 use crate::telemetry::{L1Mode, NavTelemetry, PlanSource};
 use crate::vehicle::Vehicle;
 
-/// Distance beside a new leg at which it counts as joined, m.
+/// The distance from a new leg at which it counts as joined, m.
 const JOINED_M: f64 = 1.0;
-/// Interval of observations, µs: that of the navigator's updates.
+/// The interval of observations, µs: that of the navigator's updates.
 const INTERVAL_US: u64 = 10_000;
 
-/// The greatest cross-track error: of a leg from where it was joined, for a corner is not flown along a line; of one that was
-/// never joined the least.
+/// The largest cross-track error. A leg counts from the point where it was joined, since a corner is not flown along
+/// a line. A leg that was never joined counts with its smallest error.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WorstXte {
-    /// Distance beside the leg, m.
+    /// Distance from the leg, m.
     pub xte_m: f64,
     /// Waypoint at the end of the leg.
     pub wp: u8,
 }
 
-/// How long a waypoint took.
+/// The time that a waypoint took.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LegTime {
     pub wp: u8,
@@ -31,14 +31,14 @@ pub struct LegTime {
     pub time_s: f64,
 }
 
-/// How a leg is flown.
+/// The state of a leg in flight.
 #[derive(Debug, Clone, Copy, Default)]
 struct OnLeg {
-    /// Waypoint at its end.
+    /// Waypoint at the end of the leg.
     wp: u8,
-    /// The craft has come near its line.
+    /// `true` once the craft has come near the line.
     joined: bool,
-    /// The least cross-track error so far, m; `None` before the first leg.
+    /// Smallest cross-track error so far, m; `None` before the first leg.
     least_m: Option<f64>,
 }
 
@@ -55,7 +55,7 @@ pub(super) struct Observer {
 }
 
 impl Observer {
-    /// Of a vehicle about to fly `plan`; `None` without a simulated world.
+    /// Returns the observer of a vehicle that is about to fly `plan`, or `None` without a simulated world.
     pub(super) fn new(vehicle: &Vehicle, plan: Option<&FlightPlan>) -> Option<Self> {
         let world = vehicle.world()?;
         let unknown = FlightPlan::default();
@@ -72,7 +72,7 @@ impl Observer {
         })
     }
 
-    /// Looks at the vehicle after a tick.
+    /// Observes the vehicle after a tick.
     pub(super) fn look(&mut self, vehicle: &Vehicle) {
         let now = vehicle.time();
         if now.0 / INTERVAL_US == self.seen_at.0 / INTERVAL_US {
@@ -93,10 +93,10 @@ impl Observer {
         if let Some(leg) = self.legs.last_mut().filter(|leg| leg.wp == nav.wp) {
             leg.time_s += passed_s;
         } else if self.legs.len() < MAX_WAYPOINTS {
-            // A craft sent back flies a waypoint again; the list stays as long as a plan can be.
+            // A craft that was sent back flies a waypoint again. The list stays as long as a plan can be.
             self.legs.push(LegTime { wp: nav.wp, time_s: passed_s });
         }
-        // Only where a line is followed: straight to a point there is none to be beside of.
+        // Only when the craft follows a line. On a direct flight to a point there is no cross-track error.
         if let Some(xte_m) = nav.xte_m.filter(|_| nav.l1_mode == Some(L1Mode::Track)).map(f64::abs) {
             self.note_xte(xte_m, nav.wp);
         }
@@ -130,7 +130,7 @@ impl Observer {
         }
     }
 
-    /// The forecast of the flight that ended so, here and now.
+    /// Returns the forecast of the flight that ended like this, here and now.
     pub(super) fn forecast(&mut self, ended: &Ended, vehicle: &Vehicle) -> Forecast {
         self.end_leg();
         let along_m = vehicle.controller().nav().map_or(0.0, |nav| self.distance.follow(nav));
@@ -154,7 +154,7 @@ impl Observer {
     }
 }
 
-/// Where the craft truly is.
+/// Returns the true place of the craft.
 fn place(vehicle: &Vehicle, along_m: f64) -> Option<PathPoint> {
     let truth = vehicle.world()?.truth();
     let (e, n, alt) = (truth.pos_enu.x, truth.pos_enu.y, truth.pos_enu.z);

@@ -1,11 +1,11 @@
-//! The way of a forecast: a polyline that never grows beyond a bound.
+//! The path of a forecast: a polyline with a maximum number of points.
 
-/// Points kept; when full, every second one is dropped and the spacing doubles.
+/// The maximum number of points. When it is reached, every second point is dropped and the spacing doubles.
 const MAX_POINTS: usize = 2048;
-/// Spacing of points at first, m.
+/// The initial spacing of points, m.
 const SPACING_M: f64 = 0.5;
 
-/// A point of the way.
+/// A point of the path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PathPoint {
     /// North of the boot place, m.
@@ -14,7 +14,7 @@ pub struct PathPoint {
     pub e: f64,
     /// Above the boot place, m.
     pub alt: f64,
-    /// Distance flown along the plan, m: legs from home, without holds and detours; never less than before.
+    /// Distance flown along the plan, m: legs from home, without holds and detours. It never decreases.
     pub along_m: f64,
     /// Simulated time since boot, s.
     pub time_s: f64,
@@ -31,12 +31,12 @@ impl PathPoint {
 pub(super) struct Path {
     points: Vec<PathPoint>,
     spacing_m: f64,
-    /// Where the craft is, though it may be too near the last point to be kept.
+    /// Newest place of the craft, which may be too near the last point to be kept.
     newest: PathPoint,
 }
 
 impl Path {
-    /// A way that begins here.
+    /// Returns a path that begins here.
     pub(super) fn new(start: PathPoint) -> Self {
         Self { points: vec![start], spacing_m: SPACING_M, newest: start }
     }
@@ -57,12 +57,12 @@ impl Path {
         self.points.push(point);
     }
 
-    /// Horizontal distance from the first to the newest point, m.
+    /// Returns the horizontal distance from the first to the newest point, m.
     pub(super) fn moved_m(&self) -> f64 {
         self.points.first().map_or(0.0, |first| (self.newest.n - first.n).hypot(self.newest.e - first.e))
     }
 
-    /// All points, the place of the end last.
+    /// Returns all points, with the end last.
     pub(super) fn points(&self) -> Vec<PathPoint> {
         let mut points = self.points.clone();
         if points.last() != Some(&self.newest) {

@@ -1,4 +1,4 @@
-//! How far along its plan a craft is.
+//! The distance of a craft along its plan.
 
 use nalgebra::Vector2;
 
@@ -6,7 +6,7 @@ use crate::geo::LocalFrame;
 use crate::plan::{FlightPlan, WaypointType};
 use crate::telemetry::{NavState, NavTelemetry, PlanSource};
 
-/// The distance from home along the legs at each waypoint of a plan, m; modifiers have that of the waypoint before.
+/// The distance from home along the legs at each waypoint of a plan, m. Modifiers have that of the previous waypoint.
 #[derive(Debug, Clone)]
 pub(super) struct PlanDistance {
     at_waypoint_m: Vec<f64>,
@@ -14,7 +14,7 @@ pub(super) struct PlanDistance {
 }
 
 impl PlanDistance {
-    /// Of a plan that begins at the origin of `frame`.
+    /// Returns the distances of a plan that begins at the origin of `frame`.
     pub(super) fn new(plan: &FlightPlan, frame: &LocalFrame) -> Self {
         let mut from = Vector2::zeros();
         let mut sum_m = 0.0;
@@ -22,7 +22,7 @@ impl PlanDistance {
             .waypoints
             .iter()
             .map(|waypoint| {
-                // A TAKEOFF stands where it begins.
+                // A TAKEOFF takes place where it begins.
                 if waypoint.kind.uses_position() && waypoint.kind != WaypointType::Takeoff {
                     let place = waypoint.position;
                     let enu = frame.to_enu(place.lat_deg(), place.lon_deg(), frame.alt_amsl_m);
@@ -35,7 +35,7 @@ impl PlanDistance {
         Self { at_waypoint_m, along_m: 0.0 }
     }
 
-    /// Takes an update of the navigator; the distance now, m. It never shrinks.
+    /// Takes an update of the navigator. Returns the present distance, m, which never decreases.
     pub(super) fn follow(&mut self, nav: &NavTelemetry) -> f64 {
         let reached = self.at_waypoint_m.get(usize::from(nav.wp));
         if let Some(&reached_m) = reached.filter(|_| nav.engaged && nav.source == PlanSource::Stored) {

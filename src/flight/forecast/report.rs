@@ -1,34 +1,34 @@
-//! What a forecast tells.
+//! The result of a forecast.
 
 use super::observer::{LegTime, WorstXte};
 use super::path::PathPoint;
 use crate::flight::FlightResult;
 
-/// What is flown ahead.
+/// The flight of a forecast.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ForecastKind {
     /// A plan, from home.
     PlanEstimate,
-    /// The present flight as things stand.
+    /// The present flight as it is.
     LookAhead,
-    /// The present flight with something going wrong.
+    /// The present flight with a failure.
     WhatIf,
 }
 
-/// How the flight of a forecast ends.
+/// The end of a forecast's flight.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ForecastEnd {
-    /// As every headless flight ends.
+    /// An end of any headless flight.
     Flight(FlightResult),
-    /// It does not end by itself.
+    /// The flight does not end by itself.
     Endless,
     /// The craft never takes off.
     Grounded,
-    /// It takes longer than a forecast follows.
+    /// The flight takes longer than a forecast follows.
     TooLong,
 }
 
-/// The end of a run, without what was observed on the way.
+/// The end of a run, without the observations on the way.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Ended {
     pub(super) kind: ForecastKind,
@@ -42,31 +42,32 @@ pub(super) struct Ended {
 pub struct Forecast {
     pub kind: ForecastKind,
     pub end: ForecastEnd,
-    /// Why, as a sentence without its full stop.
+    /// Reason, as a sentence without its full stop.
     pub reason: String,
-    /// Simulated time to the end, s: of a plan from the engagement (from the start when there is none), else from now.
+    /// Simulated time to the end, s. For a plan it counts from the engagement (from the start if there is none), else
+    /// from now.
     pub time_s: f64,
     /// Charge drawn at the end since the battery was full, %.
     pub battery_used_pct: f64,
-    /// The greatest cross-track error on a leg of the plan, if one was flown along a line.
+    /// Largest cross-track error on a leg of the plan, if one was flown along a line.
     pub worst_xte: Option<WorstXte>,
-    /// Nearest approach to the fence from inside, m; negative outside; `None` without a fence or a plan flown.
+    /// Smallest distance to the fence from inside, m; negative outside; `None` without a fence or without a plan.
     pub fence_margin_m: Option<f64>,
     /// Time of each waypoint of the plan, with its hold, in flight order.
     pub legs: Vec<LegTime>,
-    /// How far the craft is at the end from where it was at the start, horizontally, m.
+    /// Horizontal distance of the craft between start and end, m.
     pub moved_m: f64,
-    /// The way of the craft in truth.
+    /// True path of the craft.
     pub path: Vec<PathPoint>,
 }
 
 impl Forecast {
-    /// Whether the plan is flown to its end as it should be.
+    /// Returns `true` if the plan is flown to its planned end.
     pub fn is_complete(&self) -> bool {
         self.end == ForecastEnd::Flight(FlightResult::Complete)
     }
 
-    /// The end in a line: `COMPLETE in 1:52, 41 % left`; `length` writes metres with the unit that is shown.
+    /// Returns the end in a line: `COMPLETE in 1:52, 41 % left`. `length` formats metres in the displayed unit.
     pub fn line(&self, length: impl Fn(f64) -> String) -> String {
         let (time, left) = (minutes(self.time_s), 100.0 - self.battery_used_pct);
         let left = format!("{left:.0} % left");
@@ -90,9 +91,9 @@ impl Forecast {
     }
 }
 
-/// Minutes and seconds: `1:52`.
+/// Returns minutes and seconds: `1:52`.
 fn minutes(seconds: f64) -> String {
-    // Never negative; more than a day is not followed.
+    // Never negative. A forecast never follows more than a day.
     let seconds = seconds.round() as u32;
     format!("{}:{:02}", seconds / 60, seconds % 60)
 }

@@ -3,11 +3,11 @@ use crate::flight::FlightSetup;
 use crate::plan::builtin::BuiltinPlan;
 use crate::sim::{Noise, WorldConfig};
 
-/// A vehicle at boot with this built-in plan stored.
 fn metres(length: f64) -> String {
     format!("{length:.0} m")
 }
 
+/// Returns a vehicle at boot with this built-in plan stored.
 fn vehicle(plan: &str, noise: Noise) -> Vehicle {
     let plan = BuiltinPlan::find(plan).unwrap().read().unwrap();
     let world = WorldConfig { noise, ..WorldConfig::default() };
@@ -33,7 +33,7 @@ fn estimate(name: &str) -> Forecast {
     end(ForecastRun::plan_estimate(vehicle, &plan(name), &[], 10.0).unwrap())
 }
 
-/// Lets the scripted pilot fly until the navigator has been on its way for `seconds`.
+/// Lets the scripted pilot fly until `seconds` after the engagement.
 fn in_flight(mut vehicle: Vehicle, seconds: f64) -> Vehicle {
     vehicle.start_pilot(10.0).unwrap();
     while vehicle.engaged_at().is_none_or(|at| vehicle.time().seconds_since(at) < seconds) {
@@ -58,7 +58,7 @@ fn an_estimate_agrees_with_the_flight_of_the_same_plan() {
     assert!((forecast.battery_used_pct - used_pct).abs() < 0.1, "{} {used_pct}", forecast.battery_used_pct);
     assert_eq!(forecast.legs.iter().map(|leg| leg.wp).collect::<Vec<_>>(), [0, 1, 2, 3]);
     assert!((forecast.legs.iter().map(|leg| leg.time_s).sum::<f64>() - forecast.time_s).abs() < 2.0);
-    // At 5 m/s it flies straight over waypoint 0 and is carried past the corner.
+    // At 5 m/s the craft flies straight over waypoint 0 and overshoots the corner.
     let worst = forecast.worst_xte.unwrap();
     assert!(worst.wp == 1 && (1.0..8.0).contains(&worst.xte_m), "{worst:?}");
     assert!(forecast.path.windows(2).all(|pair| pair[0].along_m <= pair[1].along_m));
@@ -165,7 +165,7 @@ fn sticks_that_stay_have_an_end_too() {
     flying.transmitter_mut().stop_pilot();
     flying.transmitter_mut().sticks_mut().channels[5] = 1000;
     let forecast = end(ForecastRun::look_ahead(flying).unwrap());
-    // Switching the autopilot off counts from here: nothing is flown but the holds of the sticks.
+    // The autopilot is off from here on: only the sticks hold the craft.
     assert_eq!(forecast.end, ForecastEnd::Endless, "{}", forecast.reason);
     assert!(forecast.time_s < 120.0);
 }

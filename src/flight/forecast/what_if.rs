@@ -1,21 +1,21 @@
-//! What may go wrong at this instant.
+//! The failures that can be tried at this instant.
 
 use crate::sim::{Wind, WorldCommand};
 
-/// By how much the wind freshens, m/s.
+/// The increase of the wind, m/s.
 const FRESHER_MPS: f64 = 8.0;
 
-/// Something that may go wrong.
+/// A failure to try.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct WhatIf {
-    /// In one word, to be typed.
+    /// Name in one word, to be typed.
     pub name: &'static str,
-    /// In a few words, for a list and in front of the outcome.
+    /// Title in a few words, for a list and in front of the outcome.
     pub title: &'static str,
     change: Change,
 }
 
-/// What happens to the world.
+/// The change of the world.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Change {
     /// A command in the words of [`WorldCommand::parse`].
@@ -24,7 +24,7 @@ enum Change {
     FresherWind,
 }
 
-/// All of them, the likely ones first.
+/// All failures, the likely ones first.
 pub const WHAT_IFS: [WhatIf; 9] = [
     what_if("gps-loss", "GPS lost here", "fault=gps-loss"),
     what_if("rx-loss", "RC lost here", "fault=rx-loss"),
@@ -42,7 +42,7 @@ const fn what_if(name: &'static str, title: &'static str, command: &'static str)
 }
 
 impl WhatIf {
-    /// The change of a world in which this mean wind blows.
+    /// Returns the command for a world with this mean wind.
     pub(super) fn command(&self, wind: Wind) -> Result<WorldCommand, String> {
         match self.change {
             Change::Command(text) => WorldCommand::parse(text).map_err(|error| error.to_string()),

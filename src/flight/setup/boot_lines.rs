@@ -1,4 +1,4 @@
-//! Command lines that are applied at boot as if typed.
+//! Command lines that are applied at boot as if they were typed.
 
 use crate::did_you_mean;
 use crate::firmware::cli::{
@@ -9,25 +9,25 @@ use crate::firmware::settings;
 use crate::plan::format::{PlanError, Problems, SettingPart};
 use crate::telemetry::FirmwareNotice;
 
-/// What is shown of a line that is no command.
+/// The replacement for a line that is not a command.
 const NOT_SHOWN: &str = "(not shown: this is no command)";
 
-/// Command lines and where they come from.
+/// Command lines with their source.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct BootLines {
-    /// The file or option, for messages.
+    /// File or option, for messages.
     pub source: String,
     pub text: String,
 }
 
 impl BootLines {
-    /// A `set` line for each `name = value`.
+    /// Returns a `set` line for each `name = value`.
     pub fn settings(source: impl Into<String>, settings: &[String]) -> Self {
         let text = settings.iter().map(|setting| format!("set {setting}\n")).collect();
         Self { source: source.into(), text }
     }
 
-    /// Carries out the lines; returns what the pilot should read about them, or those that the firmware refuses with their
+    /// Applies the lines. Returns the notices for the pilot, or the lines that the firmware refuses with their
     /// places.
     pub(super) fn apply(
         &self,
@@ -44,7 +44,7 @@ impl BootLines {
                 reasons.push(refusal(line, reply));
             }
         });
-        // The file may be one that holds secrets and no settings.
+        // The file may contain secrets instead of settings.
         let mut lines: Vec<&str> = self.text.lines().collect();
         for (failed, reason) in std::iter::zip(&report.failed, &mut reasons) {
             if let Some(line) =
@@ -63,7 +63,7 @@ impl BootLines {
     }
 }
 
-/// Whether a line begins with the name of a command, or with what is nearly one.
+/// Returns `true` if a line begins with the name of a command, or with a similar word.
 fn is_command(line: &str) -> bool {
     let word = line.split_whitespace().next().unwrap_or_default();
     let mut names = COMMANDS.iter().map(|command| command.name);
@@ -71,7 +71,7 @@ fn is_command(line: &str) -> bool {
         || did_you_mean::closest(word, &mut names).is_some()
 }
 
-/// The part of a refused line that is wrong, what is wrong with it, and what is allowed.
+/// Returns the wrong part of a refused line, the problem, and the permitted values.
 fn refusal(line: &str, reply: &CliReply) -> (String, String, String) {
     let setting =
         line.split_once(' ').filter(|(word, _)| word.eq_ignore_ascii_case("set")).map(|(_, rest)| rest);

@@ -1,16 +1,16 @@
-//! Where the craft stands at boot.
+//! The place of the craft at boot.
 
 use super::{FlightSetup, SetupNotice};
 use crate::geo::{LatLon, distance_bearing};
 use crate::plan::format::HomePosition;
 use crate::sim;
 
-/// Beyond this distance from home the first waypoint is far: a default home moves there, m.
+/// The distance from home beyond which the first waypoint is far, m. A default home moves there.
 const FAR_FROM_HOME_M: f64 = 10_000.0;
 
 impl FlightSetup {
-    /// Where the craft stands at boot: the user's home, the plan's, the default, or the first waypoint when that is far
-    /// from the default; with a notice when the place is a guess or far from the plan.
+    /// Returns the place of the craft at boot: the user's home, the plan's, the default, or the first waypoint if
+    /// that is far from the default. The notice says that the place is a guess or far from the plan.
     pub fn boot_home(&self) -> (sim::Home, Option<SetupNotice>) {
         let default = self.world.home;
         let at = |home: HomePosition| sim::Home {

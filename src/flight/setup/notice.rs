@@ -1,4 +1,4 @@
-//! What the user should know about a flight before it begins.
+//! Notices for the user about a flight before it begins.
 
 use std::fmt;
 
@@ -6,7 +6,7 @@ use crate::firmware::config::Configuration;
 use crate::geo::LatLon;
 use crate::telemetry::{FaultKind, FirmwareNotice};
 
-/// Something that was decided for the user, or that is probably a mistake; `Display` is the sentence.
+/// A decision made for the user, or a probable mistake. `Display` is the sentence.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SetupNotice {
     /// The craft had no mode condition and got the starter modes.
@@ -15,7 +15,7 @@ pub enum SetupNotice {
     HomeAtFirstWaypoint {
         /// The first waypoint with a place.
         first: LatLon,
-        /// How far it is from the default home, m.
+        /// Distance from the default home, m.
         distance_m: f64,
     },
     /// The plan is far from the home that the user or the plan chose.
@@ -23,12 +23,12 @@ pub enum SetupNotice {
         /// The first waypoint with a place.
         first: LatLon,
         home: LatLon,
-        /// How far one is from the other, m.
+        /// Distance between the two, m.
         distance_m: f64,
     },
-    /// A fault that does nothing, as the flight controller runs outside.
+    /// A fault without effect, since the flight controller is remote.
     IdleFault(FaultKind),
-    /// What the firmware says of the settings that were given.
+    /// Notice of the firmware about the given settings.
     Firmware(FirmwareNotice),
 }
 

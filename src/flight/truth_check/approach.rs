@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use super::craft::CraftTruth;
 use crate::signals::SimTime;
 
-/// The closest approach so far; none while the pilot flew or the craft climbed on the spot.
+/// The closest approach so far; `None` while the pilot flew or the craft climbed on the spot.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct ClosestApproach(Option<(f64, SimTime)>);
 
@@ -20,7 +20,7 @@ impl ClosestApproach {
         }
     }
 
-    /// Distance, m, and when.
+    /// Returns the distance, m, and its time.
     pub(super) fn get(self) -> Option<(f64, SimTime)> {
         self.0
     }

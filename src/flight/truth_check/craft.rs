@@ -1,10 +1,10 @@
-//! What the checks look at: where the craft truly is.
+//! The true motion of the craft, for the checks.
 
 use nalgebra::Vector2;
 
 use crate::signals::SimTime;
 
-/// The true motion of the craft at one instant, and who flies it.
+/// The true motion of the craft at one instant, and the source of its control.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::flight) struct CraftTruth {
     pub(in crate::flight) time: SimTime,
@@ -14,8 +14,8 @@ pub(in crate::flight) struct CraftTruth {
     pub(in crate::flight) alt_m: f64,
     /// Ground speed, m/s.
     pub(in crate::flight) speed_mps: f64,
-    /// The pilot's sticks fly, not the autopilot.
+    /// `true` while the pilot's sticks fly instead of the autopilot.
     pub(in crate::flight) stick_override: bool,
-    /// The climb before the first leg is on.
+    /// `true` during the climb before the first leg.
     pub(in crate::flight) climbing: bool,
 }

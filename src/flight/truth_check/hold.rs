@@ -1,4 +1,4 @@
-//! How well a place or a pattern is held while the time of a hold runs.
+//! Measures the accuracy of a place or a pattern during a hold.
 
 use nalgebra::Vector2;
 
@@ -7,12 +7,12 @@ use super::pattern::Pattern;
 use super::settle::Settle;
 use crate::signals::SimTime;
 
-/// What a hold is measured with.
+/// The limits of a hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct HoldLimits {
-    /// Error from which a craft counts as there, m.
+    /// Error below which a craft counts as at the place, m.
     pub(super) small_m: f64,
-    /// Altitude error from which it counts as level, m.
+    /// Altitude error below which it counts as at the altitude, m.
     pub(super) small_alt_m: f64,
     /// Speed on the way there, m/s.
     pub(super) speed_mps: f64,
@@ -20,13 +20,14 @@ pub(super) struct HoldLimits {
     pub(super) climb_mps: f64,
 }
 
-/// A hold under way: its greatest errors so far.
+/// A hold in progress, with its largest errors so far.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct HoldWatch {
     pattern: Pattern,
     limits: HoldLimits,
     place: Settle,
-    /// Before it counts, being outside the pattern counts: not for a craft that the pilot brought there.
+    /// `true` if a position outside the pattern counts before the hold counts. Not for a craft that the pilot brought
+    /// there.
     outside_counts: bool,
     overridden: bool,
     level: Settle,
@@ -36,8 +37,8 @@ pub(super) struct HoldWatch {
 }
 
 impl HoldWatch {
-    /// A hold that begins now, the craft `alt_error_m` above its altitude. A point is held from the beginning, a pattern
-    /// is entered from its middle.
+    /// Begins a hold now, with the craft `alt_error_m` above its altitude. A point is held from the beginning, a
+    /// pattern is entered from its middle.
     pub(super) fn begin(pattern: Pattern, limits: HoldLimits, now: SimTime, alt_error_m: f64) -> Self {
         let place = match pattern {
             Pattern::Point => Settle::Counts,
@@ -76,8 +77,8 @@ impl HoldWatch {
         }
     }
 
-    /// The horizontal error of an instant, m, as far as it counts. After the pilot has flown, the craft gets time to come
-    /// back.
+    /// Returns the horizontal error of an instant, m, if it counts. After the pilot has flown, the craft gets time to
+    /// come back.
     pub(super) fn error_m(&mut self, craft: &CraftTruth, target_ne: Vector2<f64>) -> Option<f64> {
         let offset = craft.ne - target_ne;
         let error_m = self.pattern.error_m(offset);
@@ -95,12 +96,13 @@ impl HoldWatch {
         self.outside_counts.then(|| self.pattern.outside_m(offset))
     }
 
-    /// The greatest horizontal error, m, and when it was measured; `None` when nothing counted.
+    /// Returns the largest horizontal error, m, and its time, or `None` if nothing counted.
     pub(super) fn worst(&self) -> Option<(f64, SimTime)> {
         self.worst
     }
 
-    /// The greatest altitude error, m, from when the altitude was reached; of a craft that had not the time to, its last.
+    /// Returns the largest altitude error, m, since the altitude was reached. For a craft without enough time for
+    /// that, it is the last error.
     pub(super) fn worst_alt_m(&self) -> Option<f64> {
         self.worst_alt_m.or(self.last_alt_m)
     }

@@ -1,4 +1,4 @@
-//! How far a craft is from the figure that it should fly.
+//! The distance of a craft from the figure that it should fly.
 
 use nalgebra::Vector2;
 
@@ -13,7 +13,7 @@ pub(super) enum Pattern {
 }
 
 impl Pattern {
-    /// Distance of a place (north and east of the waypoint, m) from the figure, m.
+    /// Returns the distance of a place (north and east of the waypoint, m) from the figure, m.
     pub(super) fn error_m(self, offset_ne: Vector2<f64>) -> f64 {
         match self {
             Self::Point => offset_ne.norm(),
@@ -25,7 +25,8 @@ impl Pattern {
         }
     }
 
-    /// How far a place is outside the area that the figure encloses, m; for the point, its distance.
+    /// Returns the distance of a place outside the area that the figure encloses, m. For the point it is the distance
+    /// from it.
     pub(super) fn outside_m(self, offset_ne: Vector2<f64>) -> f64 {
         match self {
             Self::Point => offset_ne.norm(),
@@ -37,7 +38,7 @@ impl Pattern {
         }
     }
 
-    /// The way from the waypoint to the figure, m.
+    /// Returns the distance from the waypoint to the figure, m.
     pub(super) fn entry_m(self) -> f64 {
         match self {
             Self::Point => 0.0,

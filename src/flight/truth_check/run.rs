@@ -1,4 +1,4 @@
-//! One waypoint while it is flown: what is measured of it in each state, by its own rule.
+//! One waypoint while it is flown: the measurements in each state, by its own rule.
 
 use nalgebra::Vector2;
 
@@ -11,13 +11,13 @@ use crate::signals::SimTime;
 use crate::telemetry::snapshot::SettingsView;
 use crate::telemetry::{Guard, ParkedTruth, PlanSource, TransitionReason, WaypointTruth};
 
-/// Which waypoint it is and where it is.
+/// The waypoint and its place.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Target {
     pub(super) source: PlanSource,
     pub(super) wp: u8,
     pub(super) kind: WaypointType,
-    /// North and east of the boot place in the world's projection, m; of a TAKEOFF where the craft was.
+    /// North and east of the boot place in the world's projection, m; for a TAKEOFF the place of the craft.
     pub(super) ne: Vector2<f64>,
     /// Altitude of the leg, m above home.
     pub(super) alt_m: f64,
@@ -32,34 +32,34 @@ pub(super) struct Run {
     settings: SettingsView,
     tolerance_m: f64,
     stage: Stage,
-    /// Greatest distance in the wait before a landing, m.
+    /// Largest distance in the wait before a landing, m.
     waited_max_m: Option<f64>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Stage {
     Leg(ClosestApproach),
-    /// The time of a hold runs.
+    /// Hold with its time running.
     Hold(HoldWatch),
-    /// Coming down: the way to the place of the landing is watched like a hold.
+    /// Descent. The way to the place of the landing is watched like a hold.
     Landing(HoldWatch),
     /// Parked after the last waypoint.
     Parked(HoldWatch),
 }
 
 impl Run {
-    /// A leg that begins now.
+    /// Returns the run of a leg that begins now.
     pub(super) fn leg(target: Target, settings: SettingsView, tolerance_m: f64) -> Self {
         let stage = Stage::Leg(ClosestApproach::default());
         Self { target, settings, tolerance_m, stage, waited_max_m: None }
     }
 
-    /// The plan it belongs to.
+    /// Returns the plan that the waypoint belongs to.
     pub(super) fn source(&self) -> PlanSource {
         self.target.source
     }
 
-    /// Index in that plan.
+    /// Returns the index in that plan.
     pub(super) fn wp(&self) -> u8 {
         self.target.wp
     }
@@ -72,8 +72,8 @@ impl Run {
         }
     }
 
-    /// The waypoint counts as reached: what truth says of a FLYOVER, FLYBY or TAKEOFF. `None` when it is measured later, or
-    /// when the pilot flew.
+    /// Reports that the waypoint is reached. Returns the truth of a FLYOVER, FLYBY or TAKEOFF, or `None` if it is
+    /// measured later or the pilot flew.
     pub(super) fn arrive(
         &self,
         craft: &CraftTruth,
@@ -90,7 +90,8 @@ impl Run {
                 let (distance_m, at) = closest.get()?;
                 let turn = match (self.target.kind, guard) {
                     (_, Some(guard)) => (reason == TransitionReason::TurnRadius).then_some(guard.limit),
-                    // A remote firmware does not tell where it began the turn: as late as the speed allowed.
+                    // A remote firmware does not report where it began the turn, so the latest point for this speed
+                    // counts.
                     (WaypointType::Flyby, None) => Some(self.settings.turn_radius_m(craft.speed_mps)),
                     (_, None) => None,
                 };
@@ -112,12 +113,13 @@ impl Run {
         }
     }
 
-    /// A hold begins, on its pattern.
+    /// Begins a hold on its pattern.
     pub(super) fn hold(&mut self, pattern: Pattern, craft: &CraftTruth) {
         self.stage = Stage::Hold(self.watch(pattern, craft));
     }
 
-    /// What truth says of the hold that is over; of the wait of a LAND, which only begins its landing, nothing yet.
+    /// Returns the truth of the hold that is over. The wait of a LAND only begins its landing, so it gives no truth
+    /// yet.
     pub(super) fn end_hold(&mut self) -> Option<WaypointTruth> {
         let truth = self.hold_truth()?;
         if self.target.kind == WaypointType::Land {
@@ -127,7 +129,7 @@ impl Run {
         Some(truth)
     }
 
-    /// What truth says of the hold under way.
+    /// Returns the truth of the hold in progress.
     pub(super) fn hold_truth(&self) -> Option<WaypointTruth> {
         let Stage::Hold(watch) = self.stage else { return None };
         let (miss_m, at) = watch.worst()?;
@@ -135,19 +137,19 @@ impl Run {
         Some(WaypointTruth { hold_max_m: Some(miss_m), alt_error_m, ..self.truth(miss_m, at) })
     }
 
-    /// The descent of a LAND begins.
+    /// Begins the descent of a LAND.
     pub(super) fn land(&mut self, craft: &CraftTruth) {
         self.stage = Stage::Landing(self.watch(Pattern::Point, craft));
     }
 
-    /// The touchdown; `None` when the pilot flew, or just had.
+    /// Returns the truth of the touchdown, or `None` if the pilot flew or has just flown.
     pub(super) fn touch_down(&mut self, craft: &CraftTruth) -> Option<WaypointTruth> {
         let Stage::Landing(watch) = &mut self.stage else { return None };
         let miss_m = watch.error_m(craft, self.target.ne)?;
         Some(WaypointTruth { hold_max_m: self.waited_max_m, ..self.truth(miss_m, craft.time) })
     }
 
-    /// Parked from now on: on the pattern that was held, else at the waypoint.
+    /// Parks the craft from now on: on the pattern that was held, else at the waypoint.
     pub(super) fn park(&mut self, craft: &CraftTruth) {
         let watch = match self.stage {
             Stage::Hold(watch) | Stage::Parked(watch) => watch,
@@ -156,7 +158,7 @@ impl Run {
         self.stage = Stage::Parked(watch);
     }
 
-    /// The parked craft, as it is now.
+    /// Returns the present truth of the parked craft.
     pub(super) fn parked(&self, craft: &CraftTruth) -> Option<ParkedTruth> {
         let Stage::Parked(mut watch) = self.stage else { return None };
         let Target { wp, kind, ne, alt_m, .. } = self.target;
@@ -176,7 +178,7 @@ impl Run {
     fn watch(&self, pattern: Pattern, craft: &CraftTruth) -> HoldWatch {
         let limits = HoldLimits {
             small_m: self.settings.hold_radius_m,
-            // Half of it: a craft at the edge of the tolerance is still on its way.
+            // Half of it, since a craft at the edge of the tolerance is still on its way.
             small_alt_m: 0.5 * self.tolerance_m,
             speed_mps: self.target.speed_mps,
             climb_mps: self.settings.climb_mps,
@@ -184,7 +186,7 @@ impl Run {
         HoldWatch::begin(pattern, limits, craft.time, craft.alt_m - self.target.alt_m)
     }
 
-    /// A truth with the hold radius, without altitude and hold.
+    /// Returns a truth with the hold radius, without altitude and hold.
     fn truth(&self, miss_m: f64, at: SimTime) -> WaypointTruth {
         let Target { source, wp, kind, .. } = self.target;
         let radius_m = self.settings.hold_radius_m;

@@ -1,27 +1,27 @@
-//! From when on an error counts.
+//! Decides from which time on an error counts.
 
 use crate::signals::SimTime;
 
-/// What a craft gets to reach its place beyond the time the way takes, s.
+/// The time that a craft gets to reach its place in addition to the time of the way, s.
 const GRACE_S: f64 = 20.0;
 
-/// Whether an error counts already: from when it was small for the first time, at the latest after the time that the way
-/// there takes and 20 s.
+/// The state of an error: it counts from its first small value on, at the latest after the time that the way takes
+/// plus 20 s.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Settle {
     Counts,
-    /// It counts at the latest from here on.
+    /// The error counts from this time on at the latest.
     Until(SimTime),
 }
 
 impl Settle {
-    /// A craft that has `way_m` to go at `speed_mps` from `now` on.
+    /// Returns the state for a craft that has `way_m` to go at `speed_mps` from `now` on.
     pub(super) fn after(now: SimTime, way_m: f64, speed_mps: f64) -> Self {
         let way_s = way_m / speed_mps.max(0.1);
         Self::Until(SimTime::from_secs_f64(now.as_secs_f64() + way_s + GRACE_S))
     }
 
-    /// Takes the error of an instant; says whether it counts.
+    /// Takes the error of an instant. Returns `true` if it counts.
     pub(super) fn counts(&mut self, now: SimTime, error_m: f64, small_m: f64) -> bool {
         if let Self::Until(latest) = *self
             && (error_m <= small_m || now >= latest)

@@ -25,7 +25,7 @@ const SETTINGS: SettingsView = SettingsView {
     sink_stick_us: None,
 };
 
-/// A check of a plan of one waypoint of this kind, 20 m above the origin of the frame.
+/// A check of a plan with one waypoint of this kind, 20 m above the origin of the frame.
 struct Bench {
     check: TruthCheck,
     frame: LocalFrame,

@@ -1,17 +1,17 @@
-//! Whether the truth agrees with a mission that the firmware calls complete.
+//! Compares the truth with a mission that is complete for the firmware.
 
 use crate::plan::WaypointType;
 use crate::telemetry::{FlightTruth, ParkedTruth, PlanSource, WaypointTruth};
 
-/// A miss beyond what is allowed.
+/// A miss beyond the permitted distance.
 struct Miss {
-    /// By how much, m.
+    /// Distance beyond the limit, m.
     excess_m: f64,
     sentence: String,
 }
 
-/// The worst miss of the stored plan, as half a sentence; `None` when all are within their own radius and the tolerance,
-/// vertically within the tolerance.
+/// Returns the worst miss of the stored plan, as half a sentence. `None` if all waypoints are within their own radius
+/// and the tolerance, vertically within the tolerance.
 pub(super) fn worst_miss(truth: &FlightTruth, tolerance_m: f64) -> Option<String> {
     let stored = truth.waypoints.iter().filter(|waypoint| waypoint.source == PlanSource::Stored);
     stored
@@ -22,7 +22,7 @@ pub(super) fn worst_miss(truth: &FlightTruth, tolerance_m: f64) -> Option<String
         .map(|miss| miss.sentence)
 }
 
-/// What is said of a mission that the truth agrees with: where the craft is now.
+/// Returns the text for a mission that agrees with the truth: the present place of the craft.
 pub(super) fn agreement(truth: &FlightTruth) -> Option<String> {
     if let Some(ParkedTruth { distance_m: Some(distance_m), .. }) = truth.parked {
         return Some(format!("mission complete, parked {distance_m:.1} m from its place"));

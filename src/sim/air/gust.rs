@@ -1,4 +1,4 @@
-//! Discrete gusts of the shape 1 − cos (MIL-F-8785C), at random times or on command.
+//! Discrete gusts of the shape 1 − cos (MIL-F-8785C), at random times or by command.
 
 use arrayvec::ArrayVec;
 use nalgebra::Vector3;
@@ -10,18 +10,18 @@ use crate::signals::SimTime;
 use crate::sim::config::Wind;
 use crate::sim::random::Stream;
 
-/// How long a gust keeps its full strength, s.
+/// The time that a gust keeps its full strength, s.
 const HOLD_S: f64 = 2.0;
-/// Least and mean time between the starts of random gusts, s.
+/// The minimum and mean time between the starts of random gusts, s.
 const LEAST_SPACING_S: f64 = 6.0;
 const MEAN_SPACING_S: f64 = 15.0;
-/// Random gusts come from within this of the mean wind's direction, degrees.
+/// The maximum deviation of random gusts from the direction of the mean wind, degrees.
 const SPREAD_DEG: f64 = 30.0;
-/// Most gusts at once; more commands take the place of the oldest.
+/// The maximum number of gusts at once. A further command replaces the oldest gust.
 const MAX_GUSTS: usize = 4;
 
-/// Strength of a gust of full strength `peak_mps` at `t` seconds after its start: `A/2·(1 − cos(πt/T))` while rising in
-/// `rise_s`, A while held for `hold_s`, mirrored while falling, 0 before and after.
+/// Returns the strength of a gust with a full strength of `peak_mps`, `t` seconds after its start: `A/2·(1 −
+/// cos(πt/T))` during the rise of `rise_s`, A for `hold_s`, mirrored during the fall, 0 before and after.
 pub fn one_minus_cosine(peak_mps: f64, rise_s: f64, hold_s: f64, t: f64) -> f64 {
     let end = 2.0 * rise_s + hold_s;
     let into = t.min(end - t);
@@ -55,12 +55,12 @@ impl Gust {
     }
 }
 
-/// How long a gust with the given rise time lasts when nothing else is said, s.
+/// Returns the default length of a gust with the given rise time, s.
 pub(in crate::sim) fn usual_length_s(rise_s: f64) -> f64 {
     2.0 * rise_s + HOLD_S
 }
 
-/// Gusts that blow and the next random one.
+/// The active gusts and the next random one.
 #[derive(Debug, Clone)]
 pub(in crate::sim) struct Gusts {
     /// Strength of random gusts, m/s; 0 for none.
@@ -77,23 +77,23 @@ impl Gusts {
         gusts
     }
 
-    /// Strength of random gusts, m/s.
+    /// Returns the strength of random gusts, m/s.
     pub(crate) fn size_mps(&self) -> f64 {
         self.size_mps
     }
 
-    /// Whether a gust blows now.
+    /// Returns `true` while a gust is active.
     pub(crate) fn is_blowing(&self) -> bool {
         !self.blowing.is_empty()
     }
 
-    /// Sets the strength of random gusts; the next one comes after a random time from now.
+    /// Sets the strength of random gusts. The next one comes after a random time from now.
     pub(crate) fn set_size(&mut self, size_mps: f64, now: SimTime) {
         self.size_mps = size_mps;
         self.plan_next(now);
     }
 
-    /// Starts one gust of the given speed and direction that rises and falls in `rise_s` and is over after `total_s`.
+    /// Starts one gust with the given speed and direction that rises and falls in `rise_s` and ends after `total_s`.
     pub(crate) fn blow(&mut self, wind: Wind, rise_s: f64, total_s: f64, now: SimTime) {
         if self.blowing.is_full() {
             self.blowing.remove(0);
@@ -101,7 +101,7 @@ impl Gusts {
         self.blowing.push(Gust::new(wind, rise_s, total_s, now));
     }
 
-    /// Ends gusts that are over and starts a random one when its time has come.
+    /// Ends gusts that are over and starts a random one when it is due.
     pub(crate) fn advance(&mut self, now: SimTime, mean: Wind, rise_s: f64) {
         self.blowing.retain(|gust| !gust.is_over(now));
         if self.next.is_some_and(|next| next <= now) {
@@ -112,7 +112,7 @@ impl Gusts {
         }
     }
 
-    /// Velocity of all gusts together, ENU, m/s.
+    /// Returns the velocity of all gusts together, ENU, m/s.
     pub(crate) fn velocity_enu(&self, time: SimTime) -> Vector3<f64> {
         self.blowing.iter().fold(Vector3::zeros(), |sum, gust| {
             let strength =

@@ -1,7 +1,7 @@
 //! Continuous turbulence: Dryden spectra with the low-altitude scales of MIL-F-8785C.
 //!
 //! Longitudinal: first order, `u' = a·u + b·n` with `a = exp(−VΔt/L)`. Lateral and vertical: second order,
-//! `σ·√(L/πV)·(1 + √3·Ls/V)/(1 + Ls/V)²`. All three are kept at unit variance and scaled by σ when read.
+//! `σ·√(L/πV)·(1 + √3·Ls/V)/(1 + Ls/V)²`. All three have unit variance and are scaled by σ when read.
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
@@ -12,11 +12,11 @@ use crate::sim::random::{Normals, Stream};
 
 const FEET_PER_METRE: f64 = 1.0 / 0.3048;
 const KNOT_MPS: f64 = 1852.0 / 3600.0;
-/// Heights for which the low-altitude scales are stated, ft.
+/// The heights for which the low-altitude scales are specified, ft.
 const HEIGHT_FT: (f64, f64) = (10.0, 1000.0);
-/// How fast the wind at 20 ft that stands for the level follows a change of level, kt/s.
+/// The rate at which the wind at 20 ft follows a change of level, kt/s. That wind represents the level.
 const LEVEL_RAMP_KT_PER_S: f64 = 22.5;
-/// Least airspeed through the frozen field, m/s: a hovering craft shall meet turbulence too.
+/// The minimum airspeed through the frozen field, m/s, so that a hovering craft meets turbulence too.
 const LEAST_AIRSPEED_MPS: f64 = 1.0;
 
 /// Scale lengths (m) and standard deviations (m/s) of turbulence at a height.
@@ -33,8 +33,8 @@ pub struct DrydenScales {
 }
 
 impl DrydenScales {
-    /// The scales at a height above ground (m) for a wind at 20 ft (kt): `L_w = h`, `L_u = L_v = h/(0.177 + 0.000823·h)^1.2`, `σ_w = 0.1·W20`,
-    /// `σ_u = σ_v = σ_w/(0.177 + 0.000823·h)^0.4` with h in anchors.
+    /// Returns the scales at a height above ground (m) for a wind at 20 ft (kt): `L_w = h`, `L_u = L_v = h/(0.177 +
+    /// 0.000823·h)^1.2`, `σ_w = 0.1·W20`, `σ_u = σ_v = σ_w/(0.177 + 0.000823·h)^0.4` with h in feet.
     pub fn at(height_m: f64, wind_at_20ft_kt: f64) -> Self {
         let (low, high) = HEIGHT_FT;
         let height_ft = (height_m * FEET_PER_METRE).clamp(low, high);
@@ -51,25 +51,25 @@ impl DrydenScales {
 }
 
 impl DrydenScales {
-    /// The longitudinal filter of unit variance, `u' = a·u + b·n`, at an airspeed (m/s) and tick (s): `a = exp(−VΔt/L)`,
-    /// `b = √(1 − a²)`.
+    /// Returns the longitudinal filter of unit variance, `u' = a·u + b·n`, at an airspeed (m/s) and tick (s): `a =
+    /// exp(−VΔt/L)`, `b = √(1 − a²)`.
     pub fn longitudinal_filter(&self, airspeed_mps: f64, dt: f64) -> (f64, f64) {
         let keep = decay(airspeed_mps * dt, self.length_uv_m);
         (keep, unit_drive(keep))
     }
 }
 
-/// What is left of a disturbance after flying `way_m` through air of the given scale length.
+/// Returns the rest of a disturbance after a flight of `way_m` through air of the given scale length.
 fn decay(way_m: f64, length_m: f64) -> f64 {
     (-way_m / length_m).exp()
 }
 
-/// Drive that gives a first-order lag unit variance.
+/// Returns the drive that gives a first-order lag unit variance.
 fn unit_drive(keep: f64) -> f64 {
     (1.0 - keep * keep).sqrt()
 }
 
-/// Second-order Dryden filter of unit variance: two lags in a row, `√3·first + (1 − √3)·second`.
+/// A second-order Dryden filter of unit variance: two lags in a row, `√3·first + (1 − √3)·second`.
 #[derive(Debug, Clone, Copy, Default)]
 struct SecondOrder {
     first: f64,
@@ -77,17 +77,17 @@ struct SecondOrder {
 }
 
 impl SecondOrder {
-    /// A state of the filter as it is after a long time.
+    /// Returns a filter in a settled state.
     fn settled(normals: &mut Normals) -> Self {
         // Variances ½ and ¼, covariance ¼.
         let first = FRAC_1_SQRT_2 * normals.next();
         Self { first, second: 0.5 * first + 0.5 * FRAC_1_SQRT_2 * normals.next() }
     }
 
-    /// One tick with `keep = exp(−VΔt/L)`.
+    /// Advances by one tick with `keep = exp(−VΔt/L)`.
     fn advance(&mut self, keep: f64, normal: f64) {
         let before = self.first;
-        // Half the variance of the output is the first lag's.
+        // The first lag has half the variance of the output.
         self.first = keep * before + FRAC_1_SQRT_2 * unit_drive(keep) * normal;
         self.second = keep * self.second + (1.0 - keep) * 0.5 * (before + self.first);
     }
@@ -102,10 +102,10 @@ impl SecondOrder {
 #[derive(Debug, Clone)]
 pub(in crate::sim) struct TurbulenceFilter {
     pub level: Turbulence,
-    /// Wind at 20 ft that stands for the present strength, kt: the level's, or on the way to it.
+    /// Wind at 20 ft for the present strength, kt: that of the level, or on the way to it.
     strength_kt: f64,
     normals: Normals,
-    /// Longitudinal, lateral and vertical filter; none before the first turbulence.
+    /// Longitudinal, lateral and vertical filter; `None` before the first turbulence.
     filters: Option<(f64, SecondOrder, SecondOrder)>,
     scales: DrydenScales,
 }
@@ -122,7 +122,7 @@ impl TurbulenceFilter {
         }
     }
 
-    /// One tick of `dt` seconds at a height above ground (m) and speed through the mean air (m/s).
+    /// Advances by one tick of `dt` seconds at a height above ground (m) and speed through the mean air (m/s).
     pub(crate) fn advance(&mut self, height_m: f64, airspeed_mps: f64, dt: f64) {
         let ramp = LEVEL_RAMP_KT_PER_S * dt;
         self.strength_kt += (self.level.wind_at_20ft_kt() - self.strength_kt).clamp(-ramp, ramp);
@@ -144,7 +144,7 @@ impl TurbulenceFilter {
         w.advance(keep_w, normal.z);
     }
 
-    /// Velocity along the mean wind, to its left, and up, m/s.
+    /// Returns the velocity along the mean wind, to its left, and up, m/s.
     fn velocity_uvw(&self) -> Vector3<f64> {
         self.filters.map_or_else(Vector3::zeros, |(u, v, w)| {
             let (sigma_uv, sigma_w) = (self.scales.sigma_uv_mps, self.scales.sigma_w_mps);
@@ -152,7 +152,7 @@ impl TurbulenceFilter {
         })
     }
 
-    /// Velocity, ENU, m/s, for a mean wind from the given direction.
+    /// Returns the velocity, ENU, m/s, for a mean wind from the given direction.
     pub(crate) fn velocity_enu(&self, from_deg: f64) -> Vector3<f64> {
         let along = Wind { speed_mps: 1.0, from_deg }.velocity_enu();
         let left = Vector3::new(-along.y, along.x, 0.0);
@@ -165,7 +165,8 @@ impl TurbulenceFilter {
 mod tests {
     use super::*;
 
-    /// Standard deviations, means and the autocorrelation of u at `lag` ticks over 20 000 s at 5 m/s and 15.24 m.
+    /// Returns standard deviations, means and the autocorrelation of u at `lag` ticks over 20 000 s at 5 m/s and
+    /// 15.24 m.
     fn statistics(level: Turbulence) -> (Vector3<f64>, Vector3<f64>, f64) {
         let mut filter = TurbulenceFilter::new(11, level);
         let n = 2_000_000;
@@ -203,7 +204,7 @@ mod tests {
         }
     }
 
-    /// One-sided power density of a frequency, (m/s)²/Hz: Hann windows of 100 s, averaged.
+    /// Returns the one-sided power density at a frequency, (m/s)²/Hz, averaged over Hann windows of 100 s.
     fn density(samples: &[f64], frequency_hz: f64) -> f64 {
         const SEGMENT: usize = 10_000;
         let (mut sum, mut count) = (0.0, 0.0);
@@ -215,7 +216,7 @@ mod tests {
                 re += window * sample * cos;
                 im += window * sample * sin;
             }
-            // The squares of the window add up to 1.5 a sample.
+            // The squares of the window average 1.5 per sample.
             sum += 2.0 * (re * re + im * im) * 0.01 / (1.5 * SEGMENT as f64);
             count += 1.0;
         }
@@ -238,7 +239,7 @@ mod tests {
                 (scales.sigma_w_mps, scales.length_w_m / 5.0),
             );
             for frequency_hz in [0.05, 0.1, 0.3, 1.0, 3.0] {
-                // Squared phase of the frequency and power at rest, of a first-order filter.
+                // The squared phase at the frequency and the power at zero frequency, of a first-order filter.
                 let shape = |(sigma, lag): (f64, f64)| {
                     ((std::f64::consts::TAU * frequency_hz * lag).powi(2), sigma * sigma * lag)
                 };
@@ -246,7 +247,7 @@ mod tests {
                 let second = |(x2, power): (f64, f64)| 2.0 * power * (1.0 + 3.0 * x2) / (1.0 + x2).powi(2);
                 let want = [first(shape(uv)), second(shape(uv)), second(shape(w))];
                 for (axis, want) in axes.iter().zip(want) {
-                    // Two hundred windows: 7 % of scatter.
+                    // Two hundred windows have 7 % of scatter.
                     let got = density(axis, frequency_hz);
                     assert!(
                         (got / want - 1.0).abs() < 0.25,
@@ -282,7 +283,8 @@ mod tests {
             filter.level = if tick < 500 { Turbulence::Severe } else { Turbulence::None };
             filter.advance(15.24, 5.0, 0.01);
             let now = filter.velocity_uvw();
-            // Noise of one tick is √(2VΔt/L)·σ ≈ 0.14 m/s, vertically 0.18; the ramp adds 1 % of the full strength.
+            // The noise of one tick is √(2VΔt/L)·σ ≈ 0.14 m/s, vertically 0.18; the ramp adds 1 % of the full
+            // strength.
             assert!((now - last).amax() < 1.0, "{last} {now}");
             last = now;
         }

@@ -1,22 +1,22 @@
-//! What makes an airframe flyable: the rules every airframe file must satisfy.
+//! The rules that every airframe file must satisfy so that the airframe can fly.
 
 use nalgebra::Vector3;
 
 use super::{Airframe, ROTORS};
 
-/// Least thrust over weight.
+/// The minimum thrust over weight.
 const MIN_THRUST_TO_WEIGHT: f64 = 1.3;
-/// Least motor time constant, s: below it the motors' equation is not stable at the longest step.
+/// The minimum motor time constant, s. Below it the equation of the motors is unstable at the longest step.
 const MIN_MOTOR_TAU_S: f64 = 0.002;
-/// Longest step of the integrator, s.
+/// The longest step of the integrator, s.
 const LONGEST_STEP_S: f64 = 0.0025;
-/// Greatest product of leg frequency and step for a quiet stand.
+/// The maximum product of leg frequency and step for a craft that is at rest on the ground.
 const MAX_LEG_PHASE: f64 = 1.2;
-/// Greatest product of leg damping rate and step for a quiet stand.
+/// The maximum product of leg damping rate and step for a craft that is at rest on the ground.
 const MAX_LEG_DECAY: f64 = 1.5;
-/// Spin of M1…M4 that the flight controller's mixer expects.
+/// The spin of M1…M4 that the mixer of the flight controller expects.
 const SPIN: [f64; ROTORS] = [-1.0, 1.0, 1.0, -1.0];
-/// Sign of x and y of M1…M4.
+/// The signs of x and y of M1…M4.
 const PLACES: [(f64, f64, &str); ROTORS] = [
     (-1.0, -1.0, "rear right"),
     (1.0, -1.0, "front right"),
@@ -31,7 +31,7 @@ pub(super) struct Finding {
     pub text: String,
 }
 
-/// Everything wrong with an airframe; empty when it can fly.
+/// Returns everything wrong with an airframe, empty if it can fly.
 pub(super) fn findings(airframe: &Airframe) -> Vec<Finding> {
     let mut found = Findings(Vec::new());
     found.above("mass_kg", airframe.mass_kg, 0.0);
@@ -147,7 +147,7 @@ impl Findings {
         }
     }
 
-    /// The legs as springs on the mass and, through their lever, on the inertias, at the longest step.
+    /// Checks the legs as springs on the mass and, through their lever, on the inertias, at the longest step.
     fn leg_stability(&mut self, airframe: &Airframe) {
         let legs = &airframe.legs_m;
         let lever = |arm: fn(&Vector3<f64>) -> f64, j: f64| legs.iter().map(arm).sum::<f64>() / j;

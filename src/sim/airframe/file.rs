@@ -1,7 +1,7 @@
-//! Airframe files: TOML with one key a constant, checked as a whole.
+//! Airframe files: TOML with one key per constant, checked as a whole.
 //!
-//! `base = "iris"` lets a file state only what differs from a built-in airframe. Errors say line and column, name
-//! the key and show the line; all of a file's problems are reported, not the first only.
+//! With `base = "iris"` a file only gives the differences from a built-in airframe. Errors give line and column, name
+//! the key and show the line. All problems of a file are reported, not only the first.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -35,7 +35,7 @@ const fn optional(name: &'static str, read: fn(&mut Airframe, &DeValue<'_>) -> R
     Key { name, required: false, read }
 }
 
-/// All keys of the file and of its table `battery`, whose names carry the prefix.
+/// All keys of the file and of its table `battery`. The names of the latter carry a prefix.
 const KEYS: [Key; 27] = [
     optional("base", |a, v| base(v).map(|base| *a = base)),
     required("name", |a, v| string(v).map(|name| a.name = name)),
@@ -66,22 +66,23 @@ const KEYS: [Key; 27] = [
     required("battery.capacity_ah", |a, v| number(v).map(|x| a.battery.capacity_ah = x)),
 ];
 
-/// The name of the table of battery keys.
+/// The name of the table with the battery keys.
 const BATTERY: &str = "battery";
-/// Nominal voltage of a cell where the file gives none for the pack, V.
+/// The nominal voltage of a cell if the file gives none for the pack, V.
 const NOMINAL_CELL_V: f64 = 3.7;
 
-/// Most problems of a file that are listed; the others are counted.
+/// The maximum number of listed problems of a file. The others are counted.
 const MOST_LISTED: usize = 100;
 
-/// A key's place in the text.
+/// The positions of the keys in the text.
 type Places = BTreeMap<String, Range<usize>>;
 
 impl Airframe {
-    /// The airframe that a TOML text describes.
+    /// Reads the airframe that a TOML text describes.
     ///
     /// # Errors
-    /// When the text is no TOML, a key is missing, unknown or of the wrong form, or the craft could not fly.
+    /// Fails if the text is not TOML, if a key is missing, unknown or of the wrong form, or if the craft could not
+    /// fly.
     pub fn from_toml(text: &str) -> Result<Self, AirframeFileError> {
         let mut reading = Reading { text, problems: Vec::new(), unlisted: 0 };
         match DeTable::parse(text) {
@@ -96,7 +97,7 @@ impl Airframe {
     }
 }
 
-/// A text being read and what was wrong so far.
+/// The text that is read and the problems found so far.
 struct Reading<'a> {
     text: &'a str,
     problems: Vec<AirframeProblem>,
@@ -135,7 +136,8 @@ impl Reading<'_> {
         Some(airframe)
     }
 
-    /// All known keys with their values, those of the battery's table with its name in front; unknown ones are problems.
+    /// Returns all known keys with their values, those of the battery table with its name in front. Unknown keys are
+    /// problems.
     fn flatten<'t, 'i>(&mut self, table: &'t DeTable<'i>) -> BTreeMap<String, &'t Spanned<DeValue<'i>>> {
         let mut values = BTreeMap::new();
         for (key, value) in table {

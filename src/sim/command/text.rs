@@ -15,12 +15,12 @@ use super::WorldCommand;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CommandWord {
     pub name: &'static str,
-    /// What stands behind the `=`; empty when nothing does.
+    /// Form of the value after the `=`; empty if there is none.
     pub value: &'static str,
     pub help: &'static str,
 }
 
-/// All words but the switches', which stand for themselves.
+/// All words except the switches, which use their own names.
 pub const COMMAND_WORDS: [CommandWord; 9] = [
     CommandWord { name: "wind", value: "SPEED@FROM or calm", help: "the mean wind changes over two seconds" },
     CommandWord { name: "gust", value: "SPEED", help: "random gusts of this strength; 0 for none" },
@@ -38,10 +38,10 @@ pub const COMMAND_WORDS: [CommandWord; 9] = [
 ];
 
 impl WorldCommand {
-    /// The command that a text says; `=` or a space separates the word from its value.
+    /// Reads a command from text. `=` or a space separates the word from its value.
     ///
     /// # Errors
-    /// When the word is unknown or the value is not allowed.
+    /// Fails if the word is unknown or the value is not allowed.
     pub fn parse(text: &str) -> Result<Self, ParseError> {
         let text = text.trim();
         let error = |problem: String| ParseError::new("world command", text, problem);
@@ -82,7 +82,7 @@ impl WorldCommand {
 }
 
 impl fmt::Display for WorldCommand {
-    /// As [`Self::parse`] reads it.
+    /// Writes the form that [`Self::parse`] reads.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::SetWind(wind) => write!(f, "wind {wind}"),
@@ -108,12 +108,12 @@ impl fmt::Display for WorldCommand {
     }
 }
 
-/// Whether the first separator behind the name is the one of a time.
+/// Returns `true` if the first separator after the name is the one of a time.
 fn starts_with_time(value: &str) -> bool {
     value.find(['@', ',', ':']).is_some_and(|place| value[place..].starts_with('@'))
 }
 
-/// `NAME`, `NAME,FOR`, `NAME,FOR,VALUE`, `NAME,,VALUE` or `NAME:VALUE`.
+/// Reads `NAME`, `NAME,FOR`, `NAME,FOR,VALUE`, `NAME,,VALUE` or `NAME:VALUE`.
 fn fault_now(text: &str) -> Result<WorldCommand, ParseError> {
     if let Some((name, value)) = text.split_once(':').filter(|(name, _)| !name.contains(',')) {
         return Ok(WorldCommand::FaultOn(Fault::parse(name, Some(value))?, None));
@@ -125,7 +125,7 @@ fn fault_now(text: &str) -> Result<WorldCommand, ParseError> {
     if duration.is_empty() {
         return Ok(WorldCommand::FaultOn(fault, None));
     }
-    // The same rules as for a fault with a time.
+    // The rules are the same as for a fault with a time.
     let scheduled = ScheduledFault::from_str(&format!("{name}@0,{duration},{fault}"))?;
     let for_s = scheduled.for_s.map(|seconds| seconds.min(MAX_TIME_S));
     Ok(WorldCommand::FaultOn(scheduled.fault, for_s))

@@ -1,9 +1,9 @@
-//! Why a world cannot be built or changed.
+//! The errors of building or changing a world.
 
 use crate::sim::value_text::ParseError;
 use crate::telemetry::FaultKind;
 
-/// Why a world cannot be built or a command cannot be carried out.
+/// The reason why a world cannot be built or a command cannot be carried out.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum WorldError {
     /// A step rate that is too slow to be stable.
@@ -18,7 +18,7 @@ pub enum WorldError {
     /// An airframe that cannot fly.
     #[error("airframe {0}: {1}")]
     Airframe(String, String),
-    /// A home that is no place.
+    /// A home that is not a place.
     #[error("home {0} {1} is out of range; allowed are {2} to {3}")]
     Home(&'static str, f64, f64, f64),
     /// A fault of the external link in a world without one.
@@ -26,17 +26,17 @@ pub enum WorldError {
         "fault {0} acts on the link to an external simulator, and this flight has none; leave it out, or use betadeck serve --physics external"
     )]
     NeedsLink(FaultKind),
-    /// A fault of the craft or the air when a simulator outside has both.
+    /// A fault of the craft or the air while an external simulator controls both.
     #[error(
         "fault {0} is up to the simulator that moves the craft: make it there; here there are rx-loss, gps-loss, stall, fdm-loss, fdm-late, fdm-dup and fdm-jitter"
     )]
     OutsideFault(FaultKind),
-    /// A change of the air, the sensors or the craft's place when a simulator outside has them.
+    /// A change of the air, the sensors or the craft's place while an external simulator controls them.
     #[error(
         "the simulator makes the air and places the craft: change that there; here there are faults of the links (fault=NAME, end=NAME)"
     )]
     Outside,
-    /// More faults than can be kept.
+    /// More faults than the world can keep.
     #[error("there can be at most {0} faults, waiting and active ones together")]
     TooManyFaults(usize),
     /// A fault or a switch with a value that is not allowed.
@@ -45,7 +45,7 @@ pub enum WorldError {
     /// A number that is not allowed.
     #[error("{name} {value} is out of range; allowed are {min} to {max}")]
     OutOfRange {
-        /// What the number is.
+        /// Meaning of the number.
         name: &'static str,
         value: f64,
         min: f64,

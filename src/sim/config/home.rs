@@ -1,4 +1,4 @@
-//! Where the craft stands at boot: `LAT,LON[,AMSL]`.
+//! The place of the craft at boot: `LAT,LON[,AMSL]`.
 
 use std::str::FromStr;
 
@@ -6,7 +6,7 @@ use crate::sim::value_text::{ParseError, number_in};
 
 use super::WorldError;
 
-/// Where the craft stands at boot.
+/// The place of the craft at boot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Home {
     /// Latitude, degrees.
@@ -26,7 +26,7 @@ impl Default for Home {
 }
 
 impl Home {
-    /// Allowed altitudes of the ground, m above mean sea level.
+    /// The permitted altitudes of the ground, m above mean sea level.
     const ALTITUDE_M: (f64, f64) = (-500.0, 9000.0);
 
     pub(in crate::sim) fn check(&self) -> Result<(), WorldError> {
@@ -48,7 +48,7 @@ impl Home {
 impl FromStr for Home {
     type Err = ParseError;
 
-    /// `LAT,LON[,AMSL]`: degrees, degrees, metres above sea level (300 when left out); faces north.
+    /// Reads `LAT,LON[,AMSL]`: degrees, degrees, metres above sea level (300 if left out). The craft faces north.
     fn from_str(text: &str) -> Result<Self, ParseError> {
         let error = |problem: String| {
             ParseError::new(

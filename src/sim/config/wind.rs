@@ -11,17 +11,17 @@ use crate::sim::value_text::{ParseError, number, number_in};
 pub struct Wind {
     /// Speed, m/s.
     pub speed_mps: f64,
-    /// Direction it blows from, degrees clockwise from north.
+    /// Direction that it blows from, degrees clockwise from north.
     pub from_deg: f64,
 }
 
 impl Wind {
     pub const CALM: Self = Self { speed_mps: 0.0, from_deg: 0.0 };
 
-    /// The strongest wind that can be asked for, m/s.
+    /// The maximum wind, m/s.
     pub const MAX_MPS: f64 = 60.0;
 
-    /// Velocity of the air, ENU, m/s: the direction it blows to.
+    /// Returns the velocity of the air, ENU, m/s: the direction that the wind blows to.
     pub fn velocity_enu(&self) -> Vector3<f64> {
         let (east, north) = self.from_deg.to_radians().sin_cos();
         Vector3::new(-self.speed_mps * east, -self.speed_mps * north, 0.0)
@@ -37,7 +37,7 @@ impl Default for Wind {
 impl FromStr for Wind {
     type Err = ParseError;
 
-    /// `SPEED@FROM_DEG`, or `calm`.
+    /// Reads `SPEED@FROM_DEG` or `calm`.
     fn from_str(text: &str) -> Result<Self, ParseError> {
         if text == "calm" {
             return Ok(Self::CALM);

@@ -1,4 +1,4 @@
-//! What the active faults together do to the plant, the sensors and the links.
+//! The combined effects of the active faults on the plant, the sensors and the links.
 
 use nalgebra::Vector3;
 
@@ -31,28 +31,28 @@ pub(in crate::sim) struct Effects {
     pub link: LinkFaults,
 }
 
-/// What is wrong with the GPS.
+/// The faults of the GPS.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct GpsFaults {
     pub loss: bool,
     /// Shift of the position, ENU, m.
     pub shift_enu: Vector3<f64>,
-    /// The last solution is repeated.
+    /// `true` to repeat the last solution.
     pub freeze: bool,
     pub noise_factor: f64,
 }
 
-/// What is wrong with the link to an external simulator.
+/// The faults of the link to an external simulator.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct LinkFaults {
     pub stall: bool,
-    /// Fraction of packets lost.
+    /// Fraction of packets that are lost.
     pub loss: f64,
     /// Delay of every packet, ms.
     pub late_ms: f64,
     /// Fraction of packets that come twice.
     pub duplicated: f64,
-    /// Greatest additional random delay, ms.
+    /// Maximum additional random delay, ms.
     pub jitter_ms: f64,
 }
 
@@ -83,7 +83,7 @@ impl Effects {
         link: LinkFaults { stall: false, loss: 0.0, late_ms: 0.0, duplicated: 0.0, jitter_ms: 0.0 },
     };
 
-    /// Adds one active fault. Instant faults and gusts have acted already.
+    /// Adds one active fault. Instant faults and gusts have already acted.
     pub(crate) fn add(&mut self, fault: &Fault) {
         match *fault {
             Fault::RxLoss => self.rx_loss = true,

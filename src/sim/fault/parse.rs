@@ -14,23 +14,23 @@ use super::{BatteryFault, Direction, Fault, FaultKey, FaultStart, MotorNumber, S
 /// One kind of fault: name, form of its value, meaning.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FaultInfo {
-    /// Which; its name stands before the first `@`.
+    /// The kind; its name comes before the first `@`.
     pub kind: FaultKind,
-    /// What VALUE looks like; empty when there is none.
+    /// Form of VALUE; empty if there is none.
     pub value: &'static str,
-    /// VALUE when it is left out; empty when there is none or it must be given.
+    /// Default of VALUE; empty if there is none or VALUE is required.
     pub default: &'static str,
-    /// What the fault does.
+    /// The effect of the fault.
     pub help: &'static str,
 }
 
 impl FaultInfo {
-    /// Name before the first `@`.
+    /// Returns the name before the first `@`.
     pub fn name(&self) -> &'static str {
         self.kind.into()
     }
 
-    /// Whether the fault acts on the link to an external simulator.
+    /// Returns `true` if the fault acts on the link to an external simulator.
     pub fn needs_link(&self) -> bool {
         self.help.starts_with("external link")
     }
@@ -87,7 +87,7 @@ pub const FAULTS: [FaultInfo; 28] = [
     info(FaultKind::FdmJitter, "ms, 0 to 10000", "5", "external link: packets late at random"),
 ];
 
-/// Longest time that can be asked for, s: a century, so that microseconds never overflow.
+/// The longest permitted time, s: a century, so that microseconds never overflow.
 pub(in crate::sim) const MAX_TIME_S: f64 = 3.2e9;
 
 impl FromStr for ScheduledFault {
@@ -133,10 +133,10 @@ impl FromStr for ScheduledFault {
 }
 
 impl Fault {
-    /// A fault from its name and the text of its value, as a command line or a form gives them.
+    /// Reads a fault from its name and the text of its value, as a command line or a form gives them.
     ///
     /// # Errors
-    /// When the name is unknown or the value is not allowed.
+    /// Fails if the name is unknown or the value is not allowed.
     pub fn parse(name: &str, value: Option<&str>) -> Result<Self, ParseError> {
         find(name)
             .and_then(|info| parse_value(info, value))
@@ -145,14 +145,14 @@ impl Fault {
 }
 
 impl Fault {
-    /// Whether the value is allowed: whatever prints as an allowed value is.
+    /// Checks that the value is allowed: its printed form must parse as an allowed value.
     pub(in crate::sim) fn check(&self) -> Result<(), ParseError> {
         Self::parse(self.name(), Some(&self.to_string())).map(|_| ())
     }
 }
 
 impl ScheduledFault {
-    /// Whether value and times are allowed.
+    /// Checks that value and times are allowed.
     pub(in crate::sim) fn check(&self) -> Result<(), ParseError> {
         self.to_string().parse::<Self>().map(|_| ())
     }
@@ -161,7 +161,7 @@ impl ScheduledFault {
 impl FromStr for FaultKey {
     type Err = ParseError;
 
-    /// `NAME` or, for motor faults, `NAME:MOTOR`.
+    /// Reads `NAME` or, for motor faults, `NAME:MOTOR`.
     fn from_str(text: &str) -> Result<Self, ParseError> {
         let error = |problem: String| ParseError::new("fault", text, problem);
         let (name, motor) = text.split_once(':').map_or((text, None), |(name, motor)| (name, Some(motor)));
@@ -177,7 +177,7 @@ impl FromStr for FaultKey {
 fn find(name: &str) -> Result<&'static FaultInfo, String> {
     FAULTS.iter().find(|info| info.name() == name).ok_or_else(|| {
         let hint = did_you_mean::suffix(name, FAULTS.map(|info| info.name()));
-        // Those of the external link are of no use to most flights.
+        // The faults of the external link are of no use to most flights.
         let names = FAULTS.iter().filter(|info| !info.needs_link()).map(FaultInfo::name);
         format!("there is no fault {name:?}{hint}; there are {}", names.collect::<Vec<_>>().join(", "))
     })

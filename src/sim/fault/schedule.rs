@@ -1,4 +1,4 @@
-//! Which faults wait, which are active, and when the next one begins or ends.
+//! The waiting and active faults, and the time at which the next one begins or ends.
 
 use arrayvec::ArrayVec;
 
@@ -6,33 +6,33 @@ use crate::signals::SimTime;
 
 use super::{Effects, Fault, FaultStart, ScheduledFault};
 
-/// Most faults that can wait and be active together.
+/// The maximum number of waiting and active faults together.
 pub const MAX_FAULTS: usize = 64;
 
-/// An active fault and when it ends.
+/// An active fault with its end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::sim) struct ActiveFault {
     pub fault: Fault,
-    /// When it ends; never when `None`.
+    /// Time of its end; `None` if it does not end.
     pub until: Option<SimTime>,
 }
 
-/// A fault that begins (and when it will end) or ends now.
+/// A fault that begins now, with its end, or ends now.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::sim) enum FaultChange {
     Begin(ActiveFault),
     End(Fault),
 }
 
-/// Faults that wait and faults that are active.
+/// The waiting and the active faults.
 #[derive(Debug, Clone)]
 pub(in crate::sim) struct FaultSchedule {
     waiting: Vec<ScheduledFault>,
     active: ArrayVec<ActiveFault, MAX_FAULTS>,
     engaged: Option<SimTime>,
-    /// Those that the engagement has begun: the next flight begins them again.
+    /// Faults that the engagement has begun. The next flight begins them again.
     spent: ArrayVec<ScheduledFault, MAX_FAULTS>,
-    /// When the next one begins or ends, µs; `u64::MAX` when none will.
+    /// Time at which the next one begins or ends, µs; `u64::MAX` if none will.
     next_us: u64,
 }
 
@@ -44,12 +44,13 @@ impl FaultSchedule {
         schedule
     }
 
-    /// Whether something begins or ends at or before `now`.
+    /// Returns `true` if a fault begins or ends at or before `now`.
     pub(crate) fn is_due(&self, now: SimTime) -> bool {
         now.0 >= self.next_us
     }
 
-    /// Takes one fault that ends or begins at or before `now`: ends first, then beginnings in the order of their times.
+    /// Takes one fault that ends or begins at or before `now`: ends first, then beginnings in the order of their
+    /// times.
     pub(crate) fn take_due(&mut self, now: SimTime) -> Option<FaultChange> {
         let change = self.take_ended(now).or_else(|| self.take_begun(now));
         self.look_ahead();
@@ -68,7 +69,7 @@ impl FaultSchedule {
             .min()?;
         let scheduled = self.waiting.remove(index);
         if matches!(scheduled.start, FaultStart::Engagement(_)) {
-            // There is room: together with those that wait they are at most MAX_FAULTS.
+            // There is room, since these and the waiting faults are at most MAX_FAULTS together.
             let _ = self.spent.try_push(scheduled);
         }
         let ScheduledFault { fault, for_s, .. } = scheduled;
@@ -76,24 +77,24 @@ impl FaultSchedule {
         Some(FaultChange::Begin(self.insert(fault, until)))
     }
 
-    /// Puts a fault on now, in place of an active one of its kind.
+    /// Activates a fault now. It replaces an active one with the same key.
     pub(crate) fn insert(&mut self, fault: Fault, until: Option<SimTime>) -> ActiveFault {
         let begun = ActiveFault { fault, until };
         if !fault.is_instant() {
             self.active.retain(|active| fault.key() != active.fault.key());
-            // There is room: waiting and active faults together are at most MAX_FAULTS.
+            // There is room, since waiting and active faults together are at most MAX_FAULTS.
             let _ = self.active.try_push(begun);
         }
         self.look_ahead();
         begun
     }
 
-    /// Whether another fault can be put on or scheduled.
+    /// Returns `true` if another fault can be activated or scheduled.
     pub(crate) fn has_room(&self) -> bool {
         self.active.len() + self.waiting.len() + self.spent.len() < MAX_FAULTS
     }
 
-    /// Changes when an active fault ends.
+    /// Changes the end of an active fault.
     pub(crate) fn set_end(&mut self, fault: &Fault, until: SimTime) {
         for active in self.active.iter_mut().filter(|active| active.fault == *fault) {
             active.until = Some(until);
@@ -101,7 +102,7 @@ impl FaultSchedule {
         self.look_ahead();
     }
 
-    /// Ends the first active fault that `ends` picks.
+    /// Ends the first active fault for which `ends` returns `true`.
     pub(crate) fn end_first(&mut self, ends: impl Fn(&Fault) -> bool) -> Option<Fault> {
         let index = self.active.iter().position(|active| ends(&active.fault))?;
         let fault = self.active.remove(index).fault;
@@ -133,8 +134,8 @@ impl FaultSchedule {
         self.look_ahead();
     }
 
-    /// The flight is over: faults without `boot+` wait for the next engagement, those that it has begun too. To be
-    /// called until there is none left; gives one that was active and ends now.
+    /// Ends the flight. Faults without `boot+` wait for the next engagement, including those that this engagement has
+    /// begun. Returns one fault that was active and ends now. Call this until it returns `None`.
     pub(crate) fn wait_for_next_flight(&mut self) -> Option<Fault> {
         self.engaged = None;
         let mut ended = None;
@@ -148,7 +149,7 @@ impl FaultSchedule {
         ended
     }
 
-    /// Tells the time from which faults without `boot+` count; of a flight only the first call matters.
+    /// Sets the time from which faults without `boot+` count. Only the first call in a flight has an effect.
     pub(crate) fn set_engaged(&mut self, time: SimTime) {
         if self.engaged.is_none() {
             self.engaged = Some(time);
@@ -164,7 +165,7 @@ impl FaultSchedule {
         &self.waiting
     }
 
-    /// What the active faults together do.
+    /// Returns the combined effects of the active faults.
     pub(crate) fn effects(&self) -> Effects {
         let mut effects = Effects::NONE;
         for active in &self.active {

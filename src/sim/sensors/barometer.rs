@@ -1,17 +1,17 @@
-//! Barometer: static pressure 50 times a second, 20 ms late.
+//! The barometer: static pressure 50 times a second, 20 ms late.
 
 use crate::sim::config::Noise;
 use crate::sim::fault::Effects;
 use crate::sim::random::{GaussMarkov, Normals, Stream};
 use crate::sim::switches::Switches;
 
-/// White noise of one sample, Pa.
+/// The white noise of one sample, Pa.
 const SIGMA_PA: f64 = 1.0;
-/// Drift: standard deviation, Pa, and time constant, s.
+/// The drift: standard deviation, Pa, and time constant, s.
 const DRIFT_PA: (f64, f64) = (3.0, 600.0);
-/// Time between two samples, s.
+/// The time between two samples, s.
 const PERIOD_S: f64 = 0.02;
-/// Samples between two spikes of the spike fault: one second.
+/// The number of samples between two spikes of the spike fault: one second.
 const SPIKE_EVERY: u32 = 50;
 
 #[derive(Debug, Clone)]
@@ -19,10 +19,10 @@ pub(super) struct Barometer {
     normals: Normals,
     drift: f64,
     drift_process: GaussMarkov,
-    /// What the drift fault has added so far, Pa.
+    /// Sum of the drift fault so far, Pa.
     ramp: f64,
     since_spike: u32,
-    /// Pressure at the last sampling instant, Pa; the sampling period is the latency.
+    /// Pressure at the last sampling instant, Pa. The sampling period is the latency.
     last: Option<f64>,
 }
 
@@ -39,12 +39,12 @@ impl Barometer {
         }
     }
 
-    /// Forgets the past: the craft has always been here.
+    /// Forgets the history, as if the craft had always been here.
     pub(super) fn settle(&mut self) {
         self.last = None;
     }
 
-    /// One sample, Pa, where the true pressure is `pressure`; called once a sampling period.
+    /// Returns one sample, Pa, for a true pressure of `pressure`. Call it once per sampling period.
     pub(super) fn read(
         &mut self,
         pressure: f64,

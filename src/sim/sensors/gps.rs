@@ -1,4 +1,4 @@
-//! GPS: position and velocity of one past instant, with acquisition, errors and faults.
+//! The GPS: position and velocity of one past instant, with acquisition, errors and faults.
 
 use nalgebra::Vector3;
 use rand::RngExt;
@@ -17,29 +17,30 @@ pub use grade::GpsGrade;
 use grade::GradeErrors;
 use multipath::Multipath;
 
-/// Slow ticks in a second.
+/// The number of slow ticks per second.
 const TICKS_PER_S: u64 = 100;
-/// Age of a solution, slow ticks: 100 ms.
+/// The age of a solution, slow ticks: 100 ms.
 const LATENCY_TICKS: usize = 10;
 /// Vertical position errors and reported accuracies over horizontal ones.
 const VERTICAL_FACTOR: f64 = 1.6;
-/// Acquisition: first satellites, first fix, full constellation, s after boot; all times ± 20 % together.
+/// The acquisition: first satellites, first fix, full constellation, s after boot. A common factor varies all times
+/// by ± 20 %.
 const FIRST_SATS_S: f64 = 1.5;
 const FIRST_FIX_S: f64 = 3.0;
 const FULL_S: f64 = 4.5;
 const ACQUISITION_SPREAD: f64 = 0.2;
-/// A fix returns this long after the end of a loss, s.
+/// The time from the end of a loss to the next fix, s.
 const REACQUISITION_S: f64 = 1.5;
-/// Satellites while searching and at the first fix, and HDOP there.
+/// The satellites during the search and at the first fix, and the HDOP at the first fix.
 const SEARCH_SATS: u8 = 4;
 const FIX_SATS: u8 = 7;
 const FIX_HDOP: f64 = 2.5;
-/// Errors at the first fix over errors with the full constellation.
+/// The errors at the first fix over the errors with the full constellation.
 const FIX_ERROR_FACTOR: f64 = 3.0;
-/// Default rate, Hz.
+/// The default rate, Hz.
 const DEFAULT_RATE_HZ: u8 = 10;
 
-/// What the receiver sees of the sky.
+/// The receiver's view of the sky.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Sky {
     fix: bool,
@@ -51,12 +52,12 @@ struct Sky {
 impl Sky {
     const BLIND: Self = Self { fix: false, sats: 0, hdop: 99.0, error_factor: 1.0 };
 
-    /// All satellites of a grade.
+    /// Returns the view with all satellites of a grade.
     fn full(grade: &GradeErrors) -> Self {
         Self { fix: true, sats: grade.sats, hdop: grade.hdop, error_factor: 1.0 }
     }
 
-    /// Acquisition `t` nominal seconds after boot.
+    /// Returns the view during acquisition, `t` nominal seconds after boot.
     fn acquiring(t: f64, grade: &GradeErrors) -> Self {
         if t < FIRST_SATS_S {
             Self::BLIND
@@ -85,9 +86,9 @@ pub(in crate::sim) struct Gps {
     multipath: Multipath,
     wander: Vector3<f64>,
     wander_process: GaussMarkov,
-    /// Duration of this receiver's acquisition over the nominal one.
+    /// Duration of the acquisition of this receiver over the nominal one.
     acquisition_scale: f64,
-    /// The last moments, a ring by tick number.
+    /// The last moments, a ring indexed by tick number.
     past: [Moment; LATENCY_TICKS + 1],
     /// Nominal time at which the last loss ended, s after boot.
     lost_until_s: Option<f64>,
@@ -112,25 +113,25 @@ impl Gps {
         }
     }
 
-    /// Sets the number of solutions a second, 1…20.
+    /// Sets the number of solutions per second, 1…20.
     pub(crate) fn set_rate(&mut self, rate_hz: u8) {
         self.rate_hz = rate_hz;
         self.wander_process = wander_process(self.grade, rate_hz);
     }
 
-    /// Changes the grade; the wandering error goes on from where it is in its distribution.
+    /// Changes the grade. The wandering error keeps its place in its distribution.
     pub(crate) fn set_grade(&mut self, grade: GpsGrade) {
         self.wander *= grade.errors().wander_sigma_m / self.grade.errors().wander_sigma_m;
         self.grade = grade;
         self.wander_process = wander_process(grade, self.rate_hz);
     }
 
-    /// Forgets the past: the craft has always been here.
+    /// Forgets the history, as if the craft had always been here.
     pub(crate) fn settle(&mut self, pos_enu: Vector3<f64>, vel_enu: Vector3<f64>) {
         self.past = [(pos_enu, vel_enu); LATENCY_TICKS + 1];
     }
 
-    /// One slow tick; the navigation message when one is due.
+    /// Advances by one slow tick. Returns the navigation message if one is due.
     pub(crate) fn advance(
         &mut self,
         tick: u64,
@@ -170,7 +171,7 @@ impl Gps {
         let grade = self.grade.errors();
         let sky = self.sky(tick as f64 / TICKS_PER_S as f64, faults.loss, noise);
         if noise == Noise::Real {
-            // Drawn without a fix too, so that a loss leaves the later errors as they are.
+            // The errors are drawn even without a fix, so that a loss does not change the later errors.
             let (position, velocity) = self.errors(&grade);
             let factor = sky.error_factor * faults.noise_factor;
             pos += position * factor;
@@ -194,7 +195,7 @@ impl Gps {
         }
     }
 
-    /// Errors of position (m) and velocity (m/s) with the full constellation.
+    /// Returns the errors of position (m) and velocity (m/s) with the full constellation.
     fn errors(&mut self, grade: &GradeErrors) -> (Vector3<f64>, Vector3<f64>) {
         let normal = self.normals.next3();
         self.wander = self.wander.zip_map(&normal, |value, normal| self.wander_process.next(value, normal));
@@ -218,7 +219,7 @@ impl Gps {
         match noise {
             Noise::None if now_s >= FIRST_FIX_S => Sky::full(&GpsGrade::Open.errors()),
             Noise::None => Sky::BLIND,
-            // The epsilon keeps a return of 1.5 s from becoming 1.6 s by rounding.
+            // The epsilon keeps rounding from turning a return after 1.5 s into 1.6 s.
             Noise::Real if self.lost_until_s.is_some_and(|end| now_s - end < REACQUISITION_S - 1e-6) => {
                 Sky { sats: SEARCH_SATS, ..Sky::BLIND }
             }

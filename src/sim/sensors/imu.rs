@@ -1,8 +1,9 @@
 //! Gyro and accelerometer, read with every step.
 //!
-//! Errors of an ordinary MEMS part: white noise by density, turn-on bias, and a bias that wanders as a Gauss–Markov
-//! process; samples are limited and rounded to the converter's steps. Vibration adds to the accelerometer: white with
-//! the square of the rotor speed, and from an unbalanced propeller an acceleration that turns with it.
+//! The errors are those of an ordinary MEMS part: white noise by density, turn-on bias, and a bias that wanders as a
+//! Gauss–Markov process. Samples are limited and rounded to the converter's steps. Vibration adds to the
+//! accelerometer: white noise with the square of the rotor speed, and an acceleration that rotates with an unbalanced
+//! propeller.
 
 use std::f64::consts::TAU;
 
@@ -38,7 +39,7 @@ const ACC_STEPS: f64 = 2048.0 / GRAVITY;
 /// Time between two updates of the wandering biases, s.
 const DRIFT_DT_S: f64 = 0.01;
 
-/// Bias of one triad: what it turned on with and what it has wandered since.
+/// The bias of one triad: the value at turn-on and the drift since.
 #[derive(Debug, Clone)]
 struct Bias {
     turn_on: Vector3<f64>,
@@ -76,9 +77,9 @@ pub(super) struct Imu {
     acc: Normals,
     gyro_bias: Bias,
     acc_bias: Bias,
-    /// The biases in force, held between drifts.
+    /// Present biases, constant between drifts.
     bias: (Vector3<f64>, Vector3<f64>),
-    /// Angle of each rotor while its imbalance matters, rad.
+    /// Angle of each rotor while its imbalance has an effect, rad.
     rotor_angle: [f64; ROTORS],
 }
 
@@ -112,7 +113,7 @@ impl Imu {
         };
     }
 
-    /// Body rates (rad/s) and specific force (m/s²), FLU, as measured now.
+    /// Returns the measured body rates (rad/s) and specific force (m/s²), FLU.
     pub(super) fn read(&mut self, inputs: &SensorInputs<'_>, noise: Noise) -> (Vector3<f64>, Vector3<f64>) {
         let (truth, effects) = (inputs.truth, inputs.effects);
         let mut rate = truth.rate_flu + effects.gyro_bias;
@@ -141,12 +142,12 @@ impl Imu {
         (rate, force)
     }
 
-    /// Mean squared rotor speed over its value in hover.
+    /// Returns the mean squared rotor speed over its value in hover.
     fn rotor_energy(&self, speeds: &[f64; ROTORS]) -> f64 {
         speeds.iter().map(|speed| speed * speed).sum::<f64>() / (ROTORS as f64 * self.hover_speed.powi(2))
     }
 
-    /// Acceleration of the body by unbalanced propellers, m/s².
+    /// Returns the acceleration of the body by unbalanced propellers, m/s².
     fn imbalance(&mut self, speeds: &[f64; ROTORS], at_hover_mps2: &[f64; ROTORS]) -> Vector3<f64> {
         let mut sum = Vector3::zeros();
         for i in 0..ROTORS {

@@ -1,7 +1,7 @@
-//! Magnetometer: the earth's field in body axes, 100 times a second.
+//! The magnetometer: the earth's field in body axes, 100 times a second.
 //!
-//! The field is the one Betaflight's SITL assumes (60° dip, 2° east declination, 500 mG shown as 4096 counts), turned
-//! to the declination that was asked for. Only its direction matters to the flight controller.
+//! The field is that of Betaflight's SITL (60° dip, 2° east declination, 500 mG shown as 4096 counts), turned to the
+//! configured declination. Only its direction matters to the flight controller.
 
 use nalgebra::{UnitQuaternion, Vector3};
 
@@ -9,12 +9,12 @@ use crate::sim::config::Noise;
 use crate::sim::fault::Effects;
 use crate::sim::random::{Normals, Stream};
 
-/// Horizontal and vertical (up) part of the field, counts.
+/// The horizontal and vertical (up) part of the field, counts.
 const HORIZONTAL: f64 = 2_048.048_458_899_349_5;
 const UP: f64 = -3_547.2;
-/// Declination of the field of Betaflight's SITL, degrees east.
+/// The declination of the field of Betaflight's SITL, degrees east.
 pub const SITL_DECLINATION_DEG: f64 = 2.000_675_735_167_871_2;
-/// White noise per axis, counts: 0.4 mG of a field of 500 mG.
+/// The white noise per axis, counts: 0.4 mG of a field of 500 mG.
 const SIGMA: f64 = 0.4 / 500.0 * 4096.0;
 
 #[derive(Debug, Clone)]
@@ -22,7 +22,7 @@ pub(super) struct Magnetometer {
     normals: Normals,
 }
 
-/// The earth's magnetic field for a declination (degrees east), ENU, counts: 4096 counts are 500 mG.
+/// Returns the earth's magnetic field for a declination (degrees east), ENU, counts: 4096 counts are 500 mG.
 pub fn magnetic_field_enu(declination_deg: f64) -> Vector3<f64> {
     let (sin, cos) = declination_deg.to_radians().sin_cos();
     Vector3::new(HORIZONTAL * sin, HORIZONTAL * cos, UP)
@@ -33,7 +33,7 @@ impl Magnetometer {
         Self { normals: Normals::new(seed, Stream::Magnetometer) }
     }
 
-    /// The field in body axes FLU, counts, as measured now.
+    /// Returns the measured field in body axes FLU, counts.
     pub(super) fn read(
         &mut self,
         attitude: &UnitQuaternion<f64>,
@@ -50,7 +50,7 @@ impl Magnetometer {
         }
         let mut field = attitude.inverse_transform_vector(&magnetic_field_enu(declination_deg));
         if effects.mag_bias_rad != 0.0 {
-            // North seen further left means a heading further right.
+            // North measured further left means a heading further right.
             field = UnitQuaternion::from_axis_angle(&Vector3::z_axis(), effects.mag_bias_rad) * field;
         }
         Some(field + error)
@@ -62,7 +62,7 @@ mod tests {
     use super::*;
     use crate::sim::truth;
 
-    /// Heading by a level magnetometer, degrees.
+    /// Returns the heading from a level magnetometer, degrees.
     fn heading(field: Vector3<f64>) -> f64 {
         field.y.atan2(field.x).to_degrees().rem_euclid(360.0)
     }

@@ -22,10 +22,10 @@ use crate::sim::truth::{BatteryTruth, Truth, level_attitude};
 use super::World;
 
 impl World {
-    /// A world at boot: the craft stands on its legs at home.
+    /// Returns a world at boot, with the craft on its legs at home.
     ///
     /// # Errors
-    /// When a value of the configuration is not allowed.
+    /// Fails if a value of the configuration is not allowed.
     pub fn new(config: WorldConfig) -> Result<Self, WorldError> {
         let step_us = step_us(config.rate_hz)?;
         check(&config)?;
@@ -102,7 +102,7 @@ fn check(config: &WorldConfig) -> Result<(), WorldError> {
     Ok(())
 }
 
-/// A craft that stands on its legs at a place east and north of home, m.
+/// Returns a craft on its legs at a place east and north of home, m.
 pub(super) fn standing(
     airframe: &Airframe,
     surface: &Surface,
@@ -115,7 +115,7 @@ pub(super) fn standing(
     let attitude = match surface {
         Surface::Flat => level,
         Surface::Slope(_) => {
-            // There is a shortest rotation between two vectors that point up.
+            // A shortest rotation between two vectors that point up always exists.
             UnitQuaternion::rotation_between(&Vector3::z(), plane.normal()).unwrap_or_default() * level
         }
     };

@@ -15,15 +15,15 @@ use crate::sim::touchdown::TouchdownDetector;
 use super::boot::standing;
 use super::{World, full_battery};
 
-/// The payload hangs this share of the standing height below the centre of mass.
+/// The depth of the payload below the centre of mass, as a share of the height of the craft on its legs.
 const PAYLOAD_DEPTH: f64 = 0.5;
 
 impl World {
-    /// Changes the world; sensors and truth of the present instant stay as they are, but for a reset: nothing that is
-    /// measured after it speaks of the flight before.
+    /// Changes the world. Sensors and truth of the present instant stay as they are, except for a reset: no
+    /// measurement after it contains anything of the previous flight.
     ///
     /// # Errors
-    /// When a value is not allowed; then nothing has changed.
+    /// Fails if a value is not allowed. Nothing has changed then.
     pub fn apply(&mut self, command: WorldCommand) -> Result<(), WorldError> {
         command.check()?;
         if self.link == FaultLink::External && !command.is_about_faults() {
@@ -78,7 +78,7 @@ impl World {
         if self.faults.has_room() { Ok(()) } else { Err(WorldError::TooManyFaults(MAX_FAULTS)) }
     }
 
-    /// Puts on and takes off the faults that are due.
+    /// Begins and ends the faults that are due.
     pub(super) fn run_faults(&mut self) {
         while let Some(change) = self.faults.take_due(self.time) {
             match change {
@@ -110,7 +110,7 @@ impl World {
         self.use_effects();
     }
 
-    /// Starts a gust that is over at a time, or after the usual one; tells when.
+    /// Starts a gust that ends at a given time, or after the default length. Returns its end.
     fn gust(&mut self, wind: Wind, until: Option<SimTime>) -> SimTime {
         let rise_s = self.switches.gust_rise_s;
         let total_s = until.map_or(usual_length_s(rise_s), |until| until.seconds_since(self.time));
@@ -118,7 +118,7 @@ impl World {
         SimTime(self.time.0 + SimTime::from_secs_f64(total_s).0)
     }
 
-    /// Brings the plant in line with the active faults.
+    /// Updates the plant for the active faults.
     fn use_effects(&mut self) {
         self.effects = self.faults.effects();
         self.plant.set_efficiency(self.effects.efficiency);
@@ -131,7 +131,7 @@ impl World {
         self.plant.set_ground_effect(self.switches.ground_effect.then_some(self.airframe.rotor_radius_m));
     }
 
-    /// Brings the plant in line with the shape of the ground. A craft that stands stands on the new ground.
+    /// Updates the plant for the shape of the ground. A craft on the ground is then on the new ground.
     fn set_ground(&mut self) {
         let surface = self.switches.ground;
         if *self.plant.ground().surface() == surface {
@@ -150,7 +150,7 @@ impl World {
         }
     }
 
-    /// Moves a craft that is below the ground up to it; returns its clearance before, m.
+    /// Moves a craft that is below the ground up to it. Returns its clearance before, m.
     fn lift_out_of_the_ground(&mut self) -> f64 {
         let contact = self.plant.ground().contact(&self.body);
         self.body.pos_enu.z -= contact.clearance_m.min(0.0) / contact.plane.normal().z;
@@ -166,15 +166,15 @@ impl World {
         }
     }
 
-    /// The flight is over: faults that count from the engagement wait for the next one.
+    /// Ends the flight. Faults that count from the engagement wait for the next one.
     pub fn wait_for_next_flight(&mut self) {
         while let Some(ended) = self.faults.wait_for_next_flight() {
             self.end_fault(&ended);
         }
     }
 
-    /// Ends faults of the link whose time is over when this much more has passed than the clock shows, µs: a clock that
-    /// goes by what the link brings stands still while it brings nothing.
+    /// Ends faults of the link whose time is over when the clock is advanced by this much, µs. A clock that depends
+    /// on the packets of the link stops while there are none.
     pub fn end_link_faults(&mut self, ahead_us: u64) {
         let time = SimTime(self.time.0.saturating_add(ahead_us));
         while let Some(ended) = self.faults.end_link_fault(time) {

@@ -1,4 +1,4 @@
-//! What the World panel shows of the settings.
+//! The settings that the World panel shows.
 
 use arrayvec::ArrayVec;
 
@@ -11,30 +11,30 @@ use super::World;
 /// The settings of a world at one instant.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WorldStatus {
-    /// Mean wind: a fault's or the one that was set.
+    /// Mean wind: that of a fault, or the one that was set.
     pub wind: Wind,
     /// Strength of random gusts, m/s.
     pub gust_mps: f64,
-    /// A gust is blowing.
+    /// `true` while a gust is active.
     pub gust_blowing: bool,
     pub turbulence: Turbulence,
     pub noise: Noise,
     pub switches: Switches,
-    /// Active faults and how many seconds each will still last.
+    /// Active faults and the remaining seconds of each.
     pub faults: ArrayVec<(Fault, Option<f64>), MAX_FAULTS>,
-    /// Faults that wait for their time.
+    /// Number of waiting faults.
     pub waiting: usize,
-    /// Motor commands refused because they were not numbers.
+    /// Number of motor commands refused because they were not numbers.
     pub refused_commands: u64,
 }
 
 impl World {
-    /// The faults that wait for their time.
+    /// Returns the waiting faults.
     pub fn waiting_faults(&self) -> &[ScheduledFault] {
         self.faults.waiting()
     }
 
-    /// The settings of air, noise and faults as they are now.
+    /// Returns the present settings of air, noise and faults.
     pub fn status(&self) -> WorldStatus {
         let left =
             |fault: &ActiveFault| (fault.fault, fault.until.map(|until| until.seconds_since(self.time)));

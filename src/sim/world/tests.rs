@@ -1,4 +1,4 @@
-//! The world as a whole: standing, flying, falling, failing.
+//! Tests of the whole world: on the ground, in flight, falling, failing.
 
 use super::*;
 use crate::sim::airframe::Airframe;
@@ -22,12 +22,12 @@ fn events(world: &mut World) -> Vec<WorldEventKind> {
     std::iter::from_fn(|| world.take_event()).map(|event| event.kind).collect()
 }
 
-/// The command at which four rotors carry the weight, 0…1.
+/// Returns the command at which four rotors carry the weight, 0…1.
 fn hover_command(airframe: &Airframe) -> f64 {
     airframe.hover_rotor_speed() / airframe.rotor_speed_max
 }
 
-/// A craft lifted `height` metres above its stand.
+/// Returns a craft `height` metres above its place on the ground.
 fn lifted(config: WorldConfig, height: f64) -> World {
     let mut world = World::new(config).unwrap();
     world.apply(WorldCommand::FaultOn(Fault::Teleport([0.0, 0.0, height]), None)).unwrap();
@@ -193,7 +193,7 @@ fn payload_makes_it_heavier_until_it_is_dropped() {
     let payload = Fault::Payload(0.53);
     world.apply(WorldCommand::FaultOn(payload, None)).unwrap();
     run(&mut world, 0.002, [hover; 4]);
-    // Half the lift per mass, in air thinner than the reference.
+    // The lift per mass is half, in air thinner than the reference.
     assert!((world.truth().specific_force_flu.z - 0.5 * 9.806_65 * 0.97).abs() < 0.05);
     world.apply(WorldCommand::FaultOff(payload.key())).unwrap();
     run(&mut world, 0.002, [hover; 4]);

@@ -1,4 +1,4 @@
-//! A flight controller in this program, with the inputs it was given since the last step.
+//! A flight controller in this program, with its inputs since the last step.
 
 use crate::firmware::Firmware;
 use crate::firmware::cli::{CliReply, Interpreter};
@@ -21,7 +21,7 @@ impl EmbeddedController {
     }
 
     pub(super) fn receive_rc(&mut self, frame: &RcFrame, source: RcSource) {
-        // Those of the virtual sticks follow from the transmitter.
+        // The frames of the virtual sticks follow from the transmitter.
         if source != RcSource::Sticks {
             self.inputs.note(|| Input::Rc(*frame, source));
         }
@@ -33,7 +33,7 @@ impl EmbeddedController {
         self.firmware.take_over_sticks(sticks_first);
     }
 
-    /// Lines that only ask are inputs too: each makes the parameters follow the settings anew.
+    /// Lines that only ask are inputs too, since each makes the parameters follow the settings again.
     pub(super) fn run_cli(&mut self, session: &mut Interpreter, line: &str) -> CliReply {
         self.inputs.note(|| Input::Line(Box::new((session.clone(), line.to_owned()))));
         self.firmware.run_cli(session, line)
@@ -83,7 +83,7 @@ impl EmbeddedController {
     }
 }
 
-/// Whether a message can change anything.
+/// Returns `true` if a message can change anything.
 fn writes(code: u16) -> bool {
     let found = MESSAGES.binary_search_by_key(&code, |message| message.code);
     found.ok().and_then(|index| MESSAGES.get(index)).is_some_and(|message| message.access == Access::Write)

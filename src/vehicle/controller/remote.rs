@@ -1,7 +1,7 @@
-//! A flight controller that runs somewhere else, as a mailbox: plain data in and out, without I/O.
+//! A remote flight controller as a mailbox: plain data in and out, without I/O.
 //!
-//! The vehicle puts frames and requests into it; whoever speaks with the real thing takes them out and delivers motor
-//! commands, telemetry, events and answers.
+//! The vehicle puts frames and requests into it. The code that communicates with the remote flight controller takes
+//! them out and delivers motor commands, telemetry, events and answers.
 
 use std::collections::VecDeque;
 
@@ -14,7 +14,7 @@ use crate::signals::{MotorCommand, RcFrame, RcSource, SensorFrame, SimTime};
 use crate::telemetry::snapshot::{CraftView, EstimateView, SettingsView};
 use crate::telemetry::{DisarmReason, FirmwareEvent, Mode, NavTelemetry};
 
-/// Frames that wait to be taken out; beyond that the oldest is dropped, for old measurements are of no use.
+/// The maximum number of waiting frames. Beyond it the oldest frame is dropped, since old measurements are of no use.
 const MAX_FRAMES: usize = 1024;
 /// The middle of a stick, µs.
 const MID_US: u16 = 1500;
@@ -23,44 +23,43 @@ const MID_US: u16 = 1500;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[allow(clippy::large_enum_variant, reason = "most frames are of the sensors")]
 pub enum FrameOut {
-    /// What the sensors measured.
+    /// Measurements of the sensors.
     Sensors(SensorFrame),
-    /// What the RC transmitter sent.
+    /// Frame of the RC transmitter.
     Rc(RcFrame, RcSource),
 }
 
-/// What the flight controller is asked.
+/// A request to the flight controller.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum RemoteRequest {
-    /// To run a CLI line; answered by [`LateAnswer::Cli`].
+    /// Run a CLI line; answered by [`LateAnswer::Cli`].
     Cli(String),
     /// An MSP message; answered by [`LateAnswer::Msp`].
     Msp {
-        /// The message's code.
         code: u16,
         payload: Vec<u8>,
     },
     Restart,
-    /// To fly home and land.
+    /// Fly home and land.
     ReturnHome,
-    /// To take that back.
+    /// Cancel the return home.
     CancelReturn,
 }
 
-/// What a remote flight controller has told of itself; what it has not told is unknown.
+/// The reports of a remote flight controller about itself. Anything that it has not reported is unknown.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RemoteTelemetry {
-    /// What it believes of the craft's motion.
+    /// Estimate of the motion of the craft.
     pub estimate: EstimateView,
     /// Modes, arming, receiver and battery.
     pub craft: CraftView,
     pub nav: Option<NavTelemetry>,
     pub settings: Option<SettingsView>,
-    /// The plan it has stored, its altitudes above home.
+    /// Stored plan, with altitudes above home.
     pub stored_plan: Option<FlightPlan>,
-    /// From where it counts the altitudes of waypoints itself.
+    /// Its own reference of waypoint altitudes.
     pub altitude_reference: AltitudeReference,
-    /// Why it was disarmed last, as far as can be told.
+    /// Reason of the last disarm, as far as known.
     pub last_disarm: Option<DisarmReason>,
 }
 
@@ -70,7 +69,7 @@ pub struct RemoteController {
     requests: VecDeque<(Ticket, RemoteRequest)>,
     next_ticket: u64,
     rc: [Option<RcFrame>; RcSource::COUNT],
-    /// `None` as long as nobody has delivered any.
+    /// `None` until the first delivery.
     motors: Option<MotorCommand>,
     telemetry: RemoteTelemetry,
     events: VecDeque<FirmwareEvent>,
@@ -93,22 +92,22 @@ impl Default for RemoteController {
 }
 
 impl RemoteController {
-    /// Takes the oldest frame out.
+    /// Takes the oldest frame.
     pub fn take_frame(&mut self) -> Option<FrameOut> {
         self.frames.pop_front()
     }
 
-    /// Takes the oldest request out.
+    /// Takes the oldest request.
     pub fn take_request(&mut self) -> Option<(Ticket, RemoteRequest)> {
         self.requests.pop_front()
     }
 
-    /// Delivers a motor command, which stays in force until the next.
+    /// Delivers a motor command, which stays in force until the next one.
     pub fn deliver_motors(&mut self, motors: MotorCommand) {
         self.motors = Some(motors);
     }
 
-    /// Delivers telemetry in place of what was told before.
+    /// Delivers telemetry. It replaces all earlier telemetry.
     pub fn deliver_telemetry(&mut self, telemetry: RemoteTelemetry) {
         self.telemetry = telemetry;
     }
@@ -154,13 +153,13 @@ impl RemoteController {
         ticket
     }
 
-    /// Asks for a restart.
+    /// Requests a restart.
     pub(super) fn restart(&mut self) {
         self.ask(RemoteRequest::Restart);
         self.restarted();
     }
 
-    /// It started anew: what was told before means nothing, and its motors stand still.
+    /// Reports a restart of the flight controller. Earlier telemetry is void, and its motors stop.
     pub(in crate::vehicle) fn restarted(&mut self) {
         self.motors = None;
         self.telemetry = RemoteTelemetry::default();
@@ -178,17 +177,17 @@ impl RemoteController {
         &self.telemetry
     }
 
-    /// The motor command in force.
+    /// Returns the motor command in force.
     pub(super) fn motors(&self) -> MotorCommand {
         self.motors.unwrap_or_default()
     }
 
-    /// The motor command that was delivered last.
+    /// Returns the last delivered motor command.
     pub(super) fn delivered_motors(&self) -> Option<MotorCommand> {
         self.motors
     }
 
-    /// What a pilot sees; without telemetry there is no fix, so that a scripted pilot waits.
+    /// Returns the facts that a pilot sees. Without telemetry there is no fix, so that a scripted pilot waits.
     pub(super) fn pilot_facts(&self, time: SimTime) -> PilotFacts {
         let RemoteTelemetry { estimate, craft, settings, .. } = &self.telemetry;
         PilotFacts {
@@ -197,7 +196,7 @@ impl RemoteController {
             arming_blocked: craft.arming_blocked_by.as_ref().is_none_or(|flags| !flags.is_empty()),
             armed: craft.is_armed(),
             engaged: craft.is_active(Mode::Autopilot),
-            // A remote one does not tell about its heading: it has to be content.
+            // A remote flight controller does not report the state of its heading, so the heading counts as known.
             heading_known: true,
             forward_stick_us: MID_US,
             alt_m: estimate.alt.unwrap_or_default(),

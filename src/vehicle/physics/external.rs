@@ -1,4 +1,4 @@
-//! A craft that an external simulator moves: its time, what it measures, and where that simulator says it is.
+//! A craft that an external simulator moves: its time, its measurements, and its reported place.
 
 use nalgebra::Vector3;
 
@@ -7,24 +7,24 @@ use crate::signals::{Pose, SensorFrame};
 use crate::sim::World;
 use crate::telemetry::snapshot::TruthView;
 
-/// Lower than this above its start (m) and slower than [`STANDING_MPS`], the craft counts as standing: a simulator does
-/// not tell of contact.
+/// A craft lower than this above its start (m) and slower than [`STANDING_MPS`] counts as on the ground, since a
+/// simulator does not report contact.
 const STANDING_M: f64 = 0.3;
-/// See [`STANDING_M`], m/s.
+/// The speed limit for [`STANDING_M`], m/s.
 const STANDING_MPS: f64 = 0.3;
 
-/// What is known of a craft that an external simulator moves.
+/// The known state of a craft that an external simulator moves.
 #[derive(Debug, Clone)]
 pub(in crate::vehicle) struct ExternalPhysics {
-    /// Has the time and the faults of the links; nothing in it moves.
+    /// Time and link faults. Nothing in this world moves.
     links: World,
-    /// What was measured for the present step.
+    /// Measurements for the present step.
     sensors: SensorFrame,
     track: Track,
 }
 
 impl ExternalPhysics {
-    /// Physics whose time and faults `links` has.
+    /// Returns physics that takes time and faults from `links`.
     pub(in crate::vehicle) fn new(links: World) -> Self {
         Self { links, sensors: SensorFrame::default(), track: Track::default() }
     }
@@ -49,7 +49,7 @@ impl ExternalPhysics {
         self.track.truth_view(motors)
     }
 
-    /// One step passes, for which the simulator measured this.
+    /// Makes one step with the measurements of the simulator.
     pub(in crate::vehicle) fn measure(&mut self, sensors: &SensorFrame) {
         self.links.pass();
         let gps = sensors.gps.filter(|_| !self.links.gps_lost());
@@ -61,33 +61,33 @@ impl ExternalPhysics {
         self.links.end_link_faults(silence_us);
     }
 
-    /// Takes in where the simulator says the craft is.
+    /// Takes the place of the craft as reported by the simulator.
     pub(in crate::vehicle) fn see(&mut self, pose: Pose) {
         self.track.see(pose);
     }
 
-    /// Positions count from here, though nobody says where the craft is.
+    /// Sets the origin of positions, even without a report of the place of the craft.
     pub(in crate::vehicle) fn set_frame(&mut self, frame: LocalFrame) {
         self.track.frame = Some(frame);
     }
 
-    /// The craft is put somewhere else and starts where it is seen next.
+    /// Resets the track of a craft that is put somewhere else. It starts where it is seen next.
     pub(in crate::vehicle) fn reset(&mut self) {
         self.track = Track::default();
         self.links.wait_for_next_flight();
     }
 }
 
-/// Where the craft was seen.
+/// The reported places of the craft.
 #[derive(Debug, Clone, Default)]
 struct Track {
-    /// Counts from the place where it was seen first.
+    /// Frame with its origin at the first reported place.
     frame: Option<LocalFrame>,
     pose: Option<Pose>,
 }
 
 impl Track {
-    /// The craft's motion as the simulator tells it.
+    /// Returns the motion of the craft as reported by the simulator.
     fn truth_view(&self, motors: [f64; 4]) -> Option<TruthView> {
         let (pose, frame) = (self.pose.as_ref()?, self.frame.as_ref()?);
         let (lat_deg, lon_deg) = pose.place_deg?;

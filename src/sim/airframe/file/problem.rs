@@ -1,17 +1,17 @@
-//! What is wrong with an airframe file, line by line.
+//! The problems of an airframe file, line by line.
 
 use std::fmt;
 
 use crate::source_snippet::SourceSnippet;
 
-/// One thing wrong with an airframe file.
+/// One problem of an airframe file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AirframeProblem {
-    /// Line, from 1.
+    /// Line, starting at 1.
     pub line: usize,
-    /// Column in characters, from 1.
+    /// Column in characters, starting at 1.
     pub column: usize,
-    /// The line, or the part of it around the place.
+    /// The line, or the part of it around the problem.
     pub source: SourceSnippet,
     pub text: String,
 }
@@ -24,17 +24,17 @@ impl fmt::Display for AirframeProblem {
     }
 }
 
-/// Everything wrong with an airframe file. `Display` gives the problems as `LINE:COLUMN: …`, each with its line.
+/// All problems of an airframe file. `Display` gives them as `LINE:COLUMN: …`, each with its line.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AirframeFileError {
     /// At least one problem, in the order of the keys.
     pub problems: Vec<AirframeProblem>,
-    /// Problems that are not listed.
+    /// Number of problems that are not listed.
     pub unlisted: usize,
 }
 
 impl AirframeFileError {
-    /// The problems as `FILE:LINE:COLUMN: …`, each with its line.
+    /// Returns the problems as `FILE:LINE:COLUMN: …`, each with its line.
     pub fn in_file(&self, file: &str) -> String {
         self.lines(|problem| format!("{file}:{problem}"))
     }

@@ -1,4 +1,4 @@
-//! Airframe files: whole ones, incomplete ones, wrong ones.
+//! Airframe files: complete, incomplete and wrong ones.
 
 use super::*;
 
@@ -37,7 +37,7 @@ fn errors(text: &str) -> Vec<String> {
 #[test]
 fn a_whole_file_is_an_airframe() {
     let read = Airframe::from_toml(WHOLE).unwrap_or_else(|error| panic!("{error}"));
-    // Nominal voltage comes out of 3.7·3 in floating point.
+    // The nominal voltage is the result of 3.7·3 in floating point.
     let nominal_v = read.battery.nominal_v;
     assert!((nominal_v - 11.1).abs() < 1e-9);
     let mut want = Airframe { name: "copy".to_owned(), ..Airframe::iris() };

@@ -1,6 +1,7 @@
-//! How good the receiver and its surroundings are: `--world gps=…`. `docs/physics.md` names the sources of the figures.
+//! The quality of the receiver and its surroundings: `--world gps=…`. `docs/physics.md` names the sources of the
+//! figures.
 
-/// Quality of GPS solutions with real noise.
+/// The quality of GPS solutions with real noise.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, Default, strum::Display, strum::EnumString, strum::VariantNames,
 )]
@@ -32,11 +33,11 @@ pub(super) struct GradeErrors {
     /// Horizontal dilution of precision.
     pub hdop: f64,
     pub sats: u8,
-    /// Whether buildings mask satellites and reflect their signals.
+    /// `true` if buildings mask satellites and reflect their signals.
     pub is_urban: bool,
 }
 
-/// White velocity errors of a receiver with a clear view, m/s: horizontally and vertically.
+/// The white velocity errors of a receiver with a clear view, m/s: horizontally and vertically.
 const CLEAR_VELOCITY_MPS: [f64; 2] = [0.05, 0.08];
 
 impl GpsGrade {

@@ -1,4 +1,5 @@
-//! What buildings do to a receiver: satellites behind walls, and reflected signals that shift the position for a while.
+//! The effects of buildings on a receiver: masked satellites, and reflected signals that shift the position for a
+//! while.
 
 use nalgebra::Vector3;
 use rand::RngExt;
@@ -7,14 +8,14 @@ use rand_distr::{Distribution, Exp1};
 
 use crate::sim::random::Stream;
 
-/// Mean time between the beginnings of two steps, s.
+/// The mean time between the beginnings of two steps, s.
 const MEAN_SPACING_S: f64 = 40.0;
-/// Size, m, and length, s, of a step; each value between is as likely.
+/// The size, m, and length, s, of a step, uniformly distributed.
 const SIZE_M: std::ops::Range<f64> = 2.0..8.0;
 const LENGTH_S: std::ops::Range<f64> = 3.0..15.0;
-/// Most satellites behind walls, and the mean time after which their number changes, s.
+/// The maximum number of masked satellites, and the mean time after which their number changes, s.
 const MOST_MASKED: u8 = 2;
-/// So many satellites stand high enough to be seen between walls.
+/// The number of satellites that are high enough to be visible between walls.
 const HIGH_SATS: u8 = 8;
 const MASK_SPACING_S: f64 = 10.0;
 
@@ -22,7 +23,7 @@ const MASK_SPACING_S: f64 = 10.0;
 #[derive(Debug, Clone)]
 pub(super) struct Multipath {
     rng: ChaCha8Rng,
-    /// The present step, ENU, m, and how long it still stands, s.
+    /// The present step, ENU, m, and its remaining time, s.
     step_enu: Vector3<f64>,
     step_left_s: f64,
     next_step_s: f64,
@@ -44,7 +45,7 @@ impl Multipath {
         }
     }
 
-    /// `dt` seconds pass. A step that begins while another stands takes its place.
+    /// Advances by `dt` seconds. A new step replaces one that is still active.
     pub(super) fn advance(&mut self, dt: f64) {
         self.step_left_s -= dt;
         self.next_step_s -= dt;
@@ -61,18 +62,18 @@ impl Multipath {
         }
     }
 
-    /// How far reflected signals shift the position now, ENU, m.
+    /// Returns the shift of the position by reflected signals, ENU, m.
     pub(super) fn shift_enu(&self) -> Vector3<f64> {
         if self.step_left_s > 0.0 { self.step_enu } else { Vector3::zeros() }
     }
 
-    /// How many of the satellites that are tracked under open sky are in view between the walls.
+    /// Returns the number of satellites in view between the walls, out of those tracked under open sky.
     pub(super) fn sats_in_view(&self, tracked: u8) -> u8 {
         tracked.saturating_sub(self.masked).max(tracked.min(HIGH_SATS))
     }
 }
 
-/// Time to the next event of a Poisson process with this mean spacing, s.
+/// Returns the time to the next event of a Poisson process with this mean spacing, s.
 fn wait(rng: &mut ChaCha8Rng, mean_s: f64) -> f64 {
     let unit: f64 = Exp1.sample(rng);
     mean_s * unit
@@ -111,7 +112,7 @@ mod tests {
         assert!(lengths.iter().all(|length| (2.9..=15.1).contains(length)), "{lengths:?}");
         let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
         assert!((mean(&sizes) - 5.0).abs() < 0.1, "{}", mean(&sizes));
-        // Long steps are more often cut short by the next one, and do not count here.
+        // The next step cuts long steps short more often, and those do not count here.
         assert!((mean(&lengths) - 9.0).abs() < 0.6, "{}", mean(&lengths));
         assert!(counts.iter().all(|&count| (f64::from(count) * 3.0 / f64::from(TICKS) - 1.0).abs() < 0.1));
     }
