@@ -38,7 +38,7 @@ pub(super) struct DatagramPort {
 }
 
 impl DatagramPort {
-    /// A port at this address, and where it is.
+    /// Binds a port at this address. Returns the port and its actual address.
     pub(super) fn bind(
         address: SocketAddr,
         datagrams: Datagrams,

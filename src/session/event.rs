@@ -32,7 +32,7 @@ pub enum SessionEvent {
     Endpoints(EndpointAddresses),
     /// A notice about the external simulator that moves the craft.
     Simulator(SimulatorNotice),
-    /// The first accepted state from an external simulator.
+    /// A state from an external simulator that arrived before any was accepted.
     FirstState {
         /// The simulator's clock, s.
         stamp_s: f64,
