@@ -54,9 +54,9 @@ struct Identity {
 /// Facts about a craft that are known because it is simulated here.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Simulated {
-    /// Altitude of its home above mean sea level, m.
+    /// The altitude of its home above mean sea level, m.
     pub(super) home_m: Option<f64>,
-    /// The switch that has it fly home is on; `None` without one.
+    /// `true` while the switch that makes it fly home is on; `None` without such a switch.
     pub(super) commanded: Option<bool>,
 }
 

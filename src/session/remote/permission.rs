@@ -36,7 +36,7 @@ pub enum Access {
 pub enum Denial {
     /// The user has not permitted changes over this connection.
     NotPermitted,
-    /// It is never done: why, as a sentence.
+    /// It is never allowed, with the reason as a sentence.
     Never(&'static str),
 }
 

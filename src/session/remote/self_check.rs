@@ -54,7 +54,7 @@ pub(super) enum SelfCheck {
     /// It does not answer yet.
     #[default]
     Waiting,
-    /// It answers; at this instant.
+    /// It answers. The check is due at this time.
     At(Instant),
     Done,
 }
