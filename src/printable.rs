@@ -9,9 +9,9 @@ use std::fmt::Write as _;
 
 /// The replacement of a character that is not shown.
 const PLACEHOLDER: char = '?';
-/// The most characters of a line. Longer text is no sentence.
+/// The maximum number of characters of a line. Longer text is no sentence.
 const LONGEST_LINE: usize = 400;
-/// The most characters of a name inside a line.
+/// The maximum number of characters of a name inside a line.
 const LONGEST_NAME: usize = 60;
 
 /// Returns `true` if a terminal shows this character as it is.

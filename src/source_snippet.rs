@@ -1,11 +1,11 @@
 //! Shortens a line for a message. Files may have lines of any length, which neither people nor terminals can
 //! read.
 
-/// The most characters that are shown of a line.
+/// The maximum number of characters that are shown of a line.
 const MOST: usize = 200;
-/// The most characters before the position.
+/// The maximum number of characters before the position.
 const BEFORE: usize = 100;
-/// The most characters of a text from a file in a sentence.
+/// The maximum number of characters of a text from a file in a sentence.
 const SENTENCE: usize = 300;
 
 /// A line, or the part of it around a position.

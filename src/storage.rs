@@ -90,7 +90,7 @@ struct Directory {
     /// Holds the lock during the lifetime of the store; `None` if another process has it.
     lock: Option<File>,
     overwrite: bool,
-    /// The stored image, when it is ours and good.
+    /// The stored image, if it is valid and from this firmware.
     current: Option<Vec<u8>>,
     /// The reason why the file must not be replaced, if there is one.
     protected: Option<Protection>,

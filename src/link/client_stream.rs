@@ -8,7 +8,7 @@ use tokio::net::TcpStream;
 use tokio_tungstenite::WebSocketStream;
 use tokio_tungstenite::tungstenite::{self, Bytes, Message};
 
-/// The most bytes read from TCP at once.
+/// The maximum number of bytes read from TCP at once.
 const CHUNK: usize = 4096;
 /// The largest websocket message in both directions.
 pub(super) const MESSAGE_MAX: usize = 64 * 1024;

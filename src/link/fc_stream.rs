@@ -16,9 +16,10 @@ use tokio::time::Instant;
 
 pub use place::{DEFAULT_BAUD, FcPlace, FcPlaceError};
 
-/// The most pieces that may wait in each direction. A full queue towards the session stops the reading.
+/// The maximum number of pieces that may wait in each direction. A full queue towards the session stops the
+/// reading.
 const QUEUE: usize = 64;
-/// The most bytes read from a stream at once.
+/// The maximum number of bytes read from a stream at once.
 const CHUNK: usize = 4096;
 /// The pause before the first new attempt. It doubles with each failure.
 const PAUSE_FIRST: Duration = Duration::from_millis(200);

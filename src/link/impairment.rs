@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use rand::RngExt as _;
 use rand_chacha::ChaCha8Rng;
 
-/// The most packets in transit. Further packets are lost, as in a full socket.
+/// The maximum number of packets in transit. Further packets are lost, as in a full socket.
 const MAX_IN_FLIGHT: usize = 16_384;
 
 /// The impairments of a link.

@@ -28,8 +28,8 @@ const HANDSHAKE_TIMEOUT: Duration = Duration::from_secs(10);
 const ACCEPT_PAUSE: Duration = Duration::from_millis(100);
 /// The bytes that a websocket reads at once.
 const READ_BUFFER: usize = 16 * 1024;
-/// The most bytes that a websocket holds until the client takes them: one message and the answers to control
-/// frames.
+/// The maximum number of bytes that a websocket holds until the client takes them: one message and the
+/// answers to control frames.
 const WRITE_BUFFER_MAX: usize = 2 * MESSAGE_MAX;
 /// The sub-protocol of the Betaflight App.
 const BINARY: &str = "binary";

@@ -15,7 +15,7 @@ use super::request::Request;
 pub(super) use flood::Stranger;
 use flood::{Flood, sentence};
 
-/// The most notices of one door.
+/// The maximum number of notices of one door.
 const NOTICES_MAX: usize = 64;
 /// The time for which connections of strangers are counted before their first notice.
 const COUNTED_FOR: Duration = Duration::from_secs(1);

@@ -9,7 +9,7 @@ use std::net::IpAddr;
 /// The page of the hosted App.
 const APP: &str = "https://app.betaflight.com";
 
-/// The most characters of an origin or a host in a notice.
+/// The maximum number of characters of an origin or a host in a notice.
 const SHOWN_MAX: usize = 100;
 
 /// The reason why a client is not served, worded for a notice.

@@ -7,7 +7,7 @@ use tokio_util::sync::CancellationToken;
 
 use super::request::ClientId;
 
-/// The most clients of one door.
+/// The maximum number of clients of one door.
 pub(super) const CLIENTS_MAX: usize = 32;
 
 /// One occupied place.

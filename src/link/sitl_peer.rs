@@ -13,7 +13,7 @@ use crate::telemetry::{EndpointKind, EndpointState, EndpointStatus};
 
 /// A size above that of any motor packet.
 const BUFFER: usize = 128;
-/// The most packets read from a socket at once.
+/// The maximum number of packets read from a socket at once.
 const QUEUED_MAX: usize = 4096;
 /// The interval between two frames of the transmitter.
 const RC_PERIOD: Duration = Duration::from_millis(20);

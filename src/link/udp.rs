@@ -23,7 +23,7 @@ pub(super) enum Datagrams {
 
 /// A size above that of any accepted datagram.
 const BUFFER: usize = 2048;
-/// The most datagrams read from a socket at once.
+/// The maximum number of datagrams read from a socket at once.
 const QUEUED_MAX: usize = 4096;
 
 /// A socket whose datagrams become requests. Both the task that waits for them and the session may empty it.

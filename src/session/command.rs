@@ -86,7 +86,7 @@ pub enum Command {
         line: String,
         reply: tokio::sync::oneshot::Sender<CliOutput>,
     },
-    /// Uploads a plan to the craft in the way of a ground station. The reply is the craft's answer.
+    /// Uploads a plan to the craft as a ground station does. The reply is the craft's answer.
     Upload {
         plan: Box<FlightPlan>,
         /// Setting lines that come with the plan file, without `set `.
@@ -94,7 +94,7 @@ pub enum Command {
         /// Receives a report, or the sentence of the first refusal.
         reply: tokio::sync::oneshot::Sender<Result<UploadReport, String>>,
     },
-    /// Reads the plan of the craft in the way of a ground station.
+    /// Reads the plan of the craft as a ground station does.
     Download {
         /// Receives the plan, or the sentence of the refusal.
         reply: tokio::sync::oneshot::Sender<Result<Box<FlightPlan>, String>>,

@@ -10,7 +10,7 @@ use super::runtime::Endpoints;
 use crate::link::{ExternalSimulator, ListenConfig, Listeners, MotorPort, Request};
 use crate::telemetry::EndpointStatus;
 
-/// The most requests that may wait for the session.
+/// The maximum number of requests that may wait for the session.
 const WAITING: usize = 1024;
 
 /// The destination of the motors of a craft that an external simulator moves.

@@ -54,8 +54,8 @@ const REBOOT: u16 = 68;
 const EXCHANGE_US: f64 = 1000.0;
 /// The least wall time between two exchanges. Lost time is made up for at twice the speed.
 pub const EXCHANGE_PAUSE: Duration = Duration::from_micros(500);
-/// The most events of the child process between two steps. A process that prints much must not hold up the
-/// craft.
+/// The maximum number of events of the child process between two steps. A process that prints much must not
+/// hold up the craft.
 const MOST_EVENTS: usize = 64;
 /// The greatest distance between the first fixes of two real craft for which the drawing keeps its origin, m.
 const SAME_FIELD_M: f64 = 1000.0;
@@ -112,7 +112,7 @@ pub struct RemoteLink {
     connected: Option<Instant>,
     /// `true` once data came over the current connection, or the last one.
     heard: bool,
-    /// The last reported reason of a lost connection; `None` once data has arrived since.
+    /// The last reported reason for a lost connection; `None` once data has arrived since.
     told_loss: Option<String>,
     /// The number of requests that it has answered since the first start of its program. Motor packets do not
     /// count.
@@ -227,8 +227,9 @@ impl RemoteLink {
         self.ends.peer.is_some()
     }
 
-    /// Returns the most steps of `step_us` at `speed` times real time that may be flown before the next
-    /// exchange. If only the machine was held up, the motor command must not stay the same for many steps.
+    /// Returns the maximum number of steps of `step_us` at `speed` times real time that may be flown before
+    /// the next exchange. If only the machine was held up, the motor command must not stay the same for many
+    /// steps.
     pub fn most_steps(&self, step_us: u64, speed: f64, now: Instant) -> u64 {
         match &self.ends.peer {
             None => u64::MAX,

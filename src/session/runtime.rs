@@ -303,7 +303,7 @@ impl Session {
         self.simulator.is_none() && self.remote.is_none()
     }
 
-    /// Returns the most steps of one round.
+    /// Returns the maximum number of steps of one round.
     fn most_steps(&self) -> u64 {
         let (step_us, speed) = (self.vehicle.step_us(), self.pacer.speed());
         let of_remote = self.remote.as_ref().map(|remote| remote.most_steps(step_us, speed, Instant::now()));

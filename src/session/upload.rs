@@ -1,4 +1,4 @@
-//! Uploads a plan through the command line, in the way of a ground station, and reads it back. Downloads a
+//! Uploads a plan through the command line, as a ground station does, and reads it back. Downloads a
 //! plan in the same way.
 
 use super::command::UploadView;

@@ -6,7 +6,7 @@ use super::firmware_notice::FirmwareNotice;
 use super::mode::ModeFlags;
 use super::nav::NavEvent;
 
-/// The reason of a disarming. The discriminant is the code in logs and protocols.
+/// The reason for a disarming. The discriminant is the code in logs and protocols.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, strum::Display, strum::EnumIter)]
 #[strum(serialize_all = "SCREAMING_SNAKE_CASE")]
 #[repr(u8)]

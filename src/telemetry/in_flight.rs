@@ -15,7 +15,7 @@ pub enum InFlightCommand {
     Resume,
 }
 
-/// The reason of a refusal.
+/// The reason for a refusal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum InFlightRefusal {
     NotFlying,

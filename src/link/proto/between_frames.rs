@@ -8,7 +8,7 @@ use std::time::Duration;
 
 /// Ignored lines that follow each other faster than this count as one paste.
 const PASTE_GAP: Duration = Duration::from_secs(1);
-/// The most characters of a line's first word. A longer word is no command.
+/// The maximum number of characters of a line's first word. A longer word is no command.
 const WORD_MAX: usize = 24;
 
 /// A byte that belongs neither to MSP nor to text.

@@ -10,9 +10,9 @@ use super::msp::Frame;
 
 /// The code of the message.
 pub(super) const CLI_COMMAND: u16 = 0x3012;
-/// The most output bytes that are kept.
+/// The maximum number of output bytes that are kept.
 const OUTPUT_MAX: usize = 2048;
-/// The most output bytes of one reply.
+/// The maximum number of output bytes of one reply.
 const PAGE_MAX: usize = 512;
 /// Flag: the output was longer than the kept part.
 pub(super) const CUT: u8 = 1;

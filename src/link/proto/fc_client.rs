@@ -37,7 +37,7 @@ use request::{Request, Waiting};
 
 use super::msp::{Decoder, Frame};
 
-/// The most requests that may wait. Further requests are refused.
+/// The maximum number of requests that may wait. Further requests are refused.
 const MAX_QUEUE: usize = 256;
 /// `API_VERSION`, which every flight controller answers.
 const API_VERSION: u16 = 1;

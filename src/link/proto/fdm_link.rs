@@ -6,7 +6,7 @@
 //!                                   ├─ resync (> 0.5 s gap)  time base taken, data unused, servo packet only
 //!                                   └─ state                 sensors + ticks to run, then servo and raw packet
 //!   silence, refused ─▶ poll() ───── repeat the last servo packet ("kick"), since a simulator that lost one packet
-//!                                    waits for it; packets too many are made up for by answers withheld later
+//!                                    waits for it; surplus packets are compensated by replies withheld later
 //! ```
 //!
 //! Times are microseconds of a steady clock. The firmware's own time advances with the simulator's stamps.

@@ -7,7 +7,7 @@ use super::command_line::{AfterLine, Completion, LineReply};
 
 /// The silence that must follow a `#` before it opens the command line.
 pub(super) const ENTRY_QUIET: Duration = Duration::from_millis(100);
-/// The most characters of a line; the rest is dropped.
+/// The maximum number of characters of a line; the rest is dropped.
 pub const MAX_LINE: usize = 255;
 /// The longest duration of a framed session.
 const FRAMED_LIMIT: Duration = Duration::from_secs(2);

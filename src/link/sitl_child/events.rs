@@ -7,9 +7,9 @@ use std::time::{Duration, Instant};
 
 use super::ChildEvent;
 
-/// The most lines that may wait.
+/// The maximum number of lines that may wait.
 const WAITING_MAX: usize = 512;
-/// The most lines in a [`WINDOW`]. Display and recording must keep up with them.
+/// The maximum number of lines in a [`WINDOW`]. Display and recording must keep up with them.
 const TOLD_MAX: usize = 500;
 /// The period in which the lines are counted.
 const WINDOW: Duration = Duration::from_secs(1);

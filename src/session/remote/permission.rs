@@ -31,7 +31,7 @@ pub enum Access {
     Changing,
 }
 
-/// The reason of a refusal. `Display` gives a sentence.
+/// The reason for a refusal. `Display` gives a sentence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Denial {
     /// The user has not permitted changes over this connection.
@@ -53,7 +53,7 @@ impl Access {
     /// Checks that an action with this impact is allowed.
     ///
     /// # Errors
-    /// Returns the reason of the refusal.
+    /// Returns the reason for the refusal.
     pub fn check(self, impact: Impact) -> Result<(), Denial> {
         match (self, impact) {
             (Self::Everything, _) | (_, Impact::Reads) | (Self::Changing, Impact::Changes) => Ok(()),

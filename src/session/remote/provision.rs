@@ -3,7 +3,7 @@
 //!
 //! ```text
 //! look ─▶ nothing differs ───────────────────────────────▶ done
-//!      ─▶ it may not be written: the differences are told ─▶ done
+//!      ─▶ it may not be written: report the differences ─▶ done
 //!      ─▶ write ─▶ save ─▶ restart ─▶ look again ──────────▶ done
 //! ```
 //!
@@ -196,7 +196,7 @@ impl Provision {
         }
     }
 
-    /// Returns the report at the end, or the reason of a failure as part of a sentence.
+    /// Returns the report at the end, or the reason for a failure as part of a sentence.
     fn result(&self) -> Option<Result<&ProvisionReport, &str>> {
         match &self.phase {
             Phase::Done(Ok(())) => Some(Ok(&self.report)),

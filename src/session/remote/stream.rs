@@ -8,8 +8,8 @@ use super::{RemoteLink, RemoteNotice, RemoteState};
 use crate::link::StreamEvent;
 use crate::vehicle::Vehicle;
 
-/// The most pieces and bytes that are read between two steps, so that a flood from the peer does not hold up
-/// the craft. Unread data holds up the peer.
+/// The maximum number of pieces and bytes that are read between two steps, so that a flood from the peer does
+/// not hold up the craft. Unread data holds up the peer.
 const MOST_READ: usize = 64;
 const MOST_BYTES: usize = 8 * 1024;
 
@@ -54,7 +54,7 @@ impl RemoteLink {
                 Some(StreamEvent::Lost(reason)) => self.lose(&reason, vehicle),
             }
         }
-        // The queue was not polled to its end, so it wakes nobody.
+        // The queue was not polled until it was empty, so no wake-up is registered.
         if let Some(context) = context {
             context.waker().wake_by_ref();
         }

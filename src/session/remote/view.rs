@@ -15,7 +15,8 @@ pub enum RemoteState {
     Ready,
     /// The connection is lost. Another one is made automatically.
     Lost,
-    /// It cannot be used, with the reason as a sentence. The link does not recover by itself.
+    /// It cannot be used, with the reason as a sentence. A real flight controller is still asked for its
+    /// API version, and is identified again once it answers.
     Unusable(String),
 }
 

@@ -187,7 +187,7 @@ impl Session {
         }
     }
 
-    /// Saves in the way of a ground station over MSP, without a restart. A remote flight controller stores
+    /// Saves as a ground station does over MSP, without a restart. A remote flight controller stores
     /// its configuration itself.
     fn save(&mut self, reply: oneshot::Sender<Result<(), String>>) {
         let is_real = self.access().is_limited();

@@ -85,7 +85,7 @@ pub(super) fn impact_of_request(request: &Request) -> Impact {
     }
 }
 
-/// Answers a request with the reason of its refusal, if the request has an answer.
+/// Answers a request with the reason for its refusal, if the request has an answer.
 pub(super) fn refuse(request: Request, reason: &str) {
     match request {
         Request::Msp { reply, .. } => answer(reply, None),

@@ -21,7 +21,7 @@ use crate::telemetry::LinkState;
 use crate::timeline::Timeline;
 use crate::vehicle::Vehicle;
 
-/// The most wall time for requests in one round of the loop. The remaining requests wait for the next round.
+/// The maximum wall time for requests in one round of the loop. The remaining requests wait for the next round.
 const REQUEST_TIME: Duration = Duration::from_millis(1);
 
 impl Session {

@@ -13,7 +13,7 @@ const PAUSE: Duration = Duration::from_secs(4);
 /// The silence that must follow the announcement of a restart before it is believed on a link that stays
 /// open.
 pub(super) const RESTART_QUIET: Duration = Duration::from_millis(500);
-/// The most output bytes that are kept.
+/// The maximum number of output bytes that are kept.
 pub(super) const MAX_OUTPUT: usize = 256 * 1024;
 
 /// A line and its output. STX was sent; the line follows once STX is answered, because a flight controller

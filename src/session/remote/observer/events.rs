@@ -66,7 +66,7 @@ impl EventObserver {
         events
     }
 
-    /// Returns the reason of the last disarming, as far as it is known.
+    /// Returns the reason for the last disarming, as far as it is known.
     pub(super) fn last_disarm(&self) -> Option<DisarmReason> {
         self.last_disarm
     }

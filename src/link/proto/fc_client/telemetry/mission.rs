@@ -4,7 +4,7 @@ use crate::geo::LatLon;
 use crate::plan::WaypointType;
 use crate::telemetry::{AbortReason, NavState};
 
-/// The most waypoints that are read from a list.
+/// The maximum number of waypoints that are read from a list.
 const MOST_WAYPOINTS: usize = 256;
 
 /// The mission that a flight controller reports.
@@ -31,7 +31,7 @@ pub struct Mission {
 pub enum MissionPhase {
     /// The autopilot does not fly the mission. It may give a reason.
     Inactive {
-        /// The reason of a refusal.
+        /// The reason for a refusal.
         refused: Option<String>,
     },
     /// The mission is flown, in this state of the waypoint machine.

@@ -7,7 +7,7 @@ use crate::telemetry::{ArmingFlag, ArmingFlags, Mode, ModeBox, ModeFlags};
 
 /// The number of boxes in the fixed part of a status.
 const FIXED_BOXES: u32 = 32;
-/// The most boxes whose state is kept.
+/// The maximum number of boxes whose state is kept.
 const MOST_BOXES: u32 = 128;
 /// The low bits of the byte that gives the number of further bytes with mode bits.
 const COUNT_BITS: u8 = 0x0f;
