@@ -22,8 +22,8 @@ const AT_HOME_US: u64 = 200_000;
 /// The silence after which the motors stop, µs. It counts the time for which packets have gone without an
 /// answer: while this program is held up and sends none, there are no answers either.
 const SILENCE_US: u64 = 1_000_000;
-/// The wall time without an answer after which the craft waits for one, µs. Motors that stop for longer would
-/// let it tip over.
+/// The wall time without an answer after which the craft waits for one, µs. A motor command that stays the
+/// same for longer lets it tip over.
 const PATIENCE_US: u64 = 10_000;
 /// The value of latitude and longitude without a fix, degrees. It is out of range, so that the executable
 /// skips the GPS.
@@ -166,8 +166,8 @@ impl SitlFeed {
         self.is_held_up(now_us) && now_us.saturating_sub(self.sent_us) < PATIENCE_US
     }
 
-    /// Returns `true` if the executable has not answered for longer than motors may stop, but not long enough
-    /// to count as silent.
+    /// Returns `true` if the executable has not answered for longer than the motor command may stay the same,
+    /// but not long enough to count as silent.
     pub fn is_held_up(&self, now_us: u64) -> bool {
         let is_late = |since_us| now_us.saturating_sub(since_us) >= PATIENCE_US;
         self.state(now_us) == FeedState::Answering && self.unanswered_us.is_some_and(is_late)
